@@ -1,0 +1,16 @@
+"""Physical constants, SI units. Each carries its unit and its source; nothing here may be tuned."""
+
+from scipy.constants import R as GAS_CONSTANT  # noqa: F401  [J mol⁻¹ K⁻¹], CODATA
+
+#: Molar volume of liquid water, 300 K [m³ mol⁻¹]; paper, below Eq. (8).
+WATER_MOLAR_VOLUME = 1.8e-5
+#: Liquid-vapour surface energy γ_LG of water, 300 K [N m⁻¹]; paper, below Eq. (8).
+WATER_SURFACE_ENERGY = 0.072
+
+#: Hamaker constants of polysilicon through a medium [J]; paper, below Eq. (10).
+HAMAKER_CONSTANT = {"water": 9.75e-20, "dry": 18.65e-20}
+#: Distance at which the potential between two molecules is zero, r₀ [m]; paper, below Eq. (10).
+MOLECULAR_DISTANCE = 2.09e-10
+
+#: Hardness σ_H of (poly)silicon [Pa]; paper, App. A.
+HARDNESS = 12.8e9

@@ -1,0 +1,140 @@
+"""Figures of the beams (Secs. IV-B to V): 14 and 15."""
+
+import numpy as np
+
+from stiction.constants import WATER_SURFACE_ENERGY
+from stiction.data import ended
+from stiction.energy import adhesion_energy
+from stiction.figures import DOUBLE, MJ, MODELS, UM, handles, letter, panels, styled
+
+#: Work of adhesion of two flats with water between them, 2γ [J m⁻²].
+THEORETICAL = 2 * WATER_SURFACE_ENERGY
+
+
+# Figure 14
+
+
+@styled
+def beam_shapes(beams):
+    """Figure 14: shapes of some released beams, one highlighted; histogram of the crack lengths of S-shapes."""
+    figure, ((shapes, histogram),) = panels(1, 2, (DOUBLE, 2.5))
+    stuck = ended(beams, "S-shape")
+    deflection, x = UM * beams.deflection.values, UM * beams.node.values
+    shapes.plot(x, deflection.T, color="0.7", linewidth=0.4, rasterized=True)
+    for k in np.flatnonzero(stuck[: len(deflection)])[:1]:
+        shapes.plot(x, deflection[k], color="black", linewidth=1.4)
+    shapes.set(xlabel="position [µm]", ylabel="deflection [µm]", xlim=x[[0, -1]])
+    shapes.invert_yaxis()
+    crack = UM * beams.crack_length.values[stuck]
+    histogram.hist(crack, bins="auto", color="0.75", edgecolor="black")
+    histogram.set(xlabel="crack length $l_s$ [µm]", ylabel="number of beams")
+    histogram.margins(y=0.15)
+    histogram.text(0.97, 0.95, _summary(crack, len(stuck)), ha="right", va="top", transform=histogram.transAxes)
+    letter([shapes, histogram], [f"first {len(deflection)} beams", "all beams"])
+    return figure
+
+
+def _summary(crack, total):
+    """Number, mean and standard deviation of crack lengths [µm] in words."""
+    number = f"{len(crack)} of {total} beams S-shaped"
+    return f"{number}\n{crack.mean():.0f} ± {crack.std(ddof=1):.0f} µm" if len(crack) > 1 else number
+
+
+# Figure 15
+
+
+def converted(crack_length, deviation, beam):
+    """Energies of Eq. (13), and how far below and above them the crack lengths ± ``deviation`` lie.
+
+    Parameters
+    ----------
+    crack_length, deviation : (n,) arrays
+        [m]
+    beam : Beam
+        Nominal dimensions.
+
+    Returns
+    -------
+    energy : (n,) array
+        [J m⁻²]
+    bars : (2, n) array
+        Below and above: longer cracks are weaker adhesion [J m⁻²].
+    """
+    energy, low, high = (adhesion_energy(crack_length + sign * deviation, beam) for sign in (0, 1, -1))
+    return energy, np.array([energy - low, high - energy])
+
+
+#: Models of the two columns, and their markers.
+_COLUMNS = ("G", "NG"), ("GEO",)
+_MARKERS = {"G": "s", "NG": "o", "GEO": "o"}
+
+
+@styled
+def adhesion_energies(pairs, printed):
+    """Figure 15: apparent adhesion energy over the humidity; models G and NG on the left, GEO on the right.
+
+    Parameters
+    ----------
+    pairs : dict
+        Pair to its nominal beam, a dict of (humidity, model) to the dataset of stage beams, and a dict of model (G, NG)
+        to the dataset of stage humidity.
+    printed : pandas.DataFrame
+        The published Table III.
+    """
+    figure, axes = panels(len(pairs), 2, (DOUBLE, 2.2 * len(pairs) + 0.6), sharex="row", sharey="row")
+    for row, (pair, (beam, released, bands)) in zip(axes, pairs.items(), strict=True):
+        for panel, models in zip(row, _COLUMNS, strict=True):
+            _pair(panel, printed[printed.pair == pair], beam, models)
+            for model in models:
+                _band(panel, bands["G" if model == "G" else "NG"], model)
+                _released(panel, released, model)
+        row[0].set_ylabel(r"adhesion energy $\Gamma$ [mJ/m²]")
+    for panel in axes[-1]:
+        panel.set_xlabel("relative humidity RH [–]")
+    letter(axes, [f"pair {pair}, {' and '.join(models)}" for pair in pairs for models in _COLUMNS])
+    figure.legend(*handles(*axes[0]), loc="outside upper center", ncols=3)
+    return figure
+
+
+def _pair(panel, printed, beam, models):
+    """What a panel shows besides the simulations: theory, the longest crack, experiment and printed results."""
+    panel.axhline(
+        MJ * THEORETICAL, color="black", linestyle="-.", linewidth=0.8, label=r"flat surfaces, $2\gamma_{LG}$"
+    )
+    weakest = adhesion_energy(beam.length, beam)
+    panel.axhline(MJ * weakest, color="black", linestyle=":", linewidth=0.8, label="crack as long as the beam")
+    panel.set(yscale="log", ylim=(MJ * weakest / 2, 2 * MJ * THEORETICAL))
+    humidity = printed.relative_humidity.to_numpy()
+    energy, bars = converted(printed.experiment.to_numpy() / UM, printed.experiment_std.to_numpy() / UM, beam)
+    panel.errorbar(humidity, MJ * energy, MJ * bars, fmt="D", color="black", markersize=3.5, label="experiment")
+    for model in {"NG", "GEO"}.intersection(models):
+        energy = adhesion_energy(printed[model.lower()].to_numpy() / UM, beam)
+        panel.plot(humidity, MJ * energy, "^", color="#D55E00", fillstyle="none", zorder=4, label="printed NG or GEO")
+
+
+def _band(panel, axis, model):
+    """Median and 5-95 % of the energy of the pieces of surface, along the humidity."""
+    low, median, high = MJ * axis.energy_quantile.transpose("probability", "humidity").values
+    look = {"color": MODELS[model]["color"]}
+    panel.fill_between(axis.humidity, low, high, alpha=0.25, linewidth=0, **look)
+    label = rf"{'G' if model == 'G' else 'NG'}: median and 5–95 % of $\bar e$"
+    panel.plot(axis.humidity, median, linestyle=MODELS[model]["linestyle"], label=label, **look)
+
+
+def _released(panel, released, model):
+    """Mean and standard deviation over the S-shaped beams of every humidity, and their share where it is not all."""
+    look = {"color": MODELS[model]["color"], "markeredgecolor": "black", "markeredgewidth": 0.4}
+    points = [(humidity, beams) for (humidity, which), beams in released.items() if which == model]
+    stuck = [MJ * beams.adhesion_energy.values[ended(beams, "S-shape")] for _, beams in points]
+    bars = [(humidity, e.mean(), e.std(ddof=1)) for (humidity, _), e in zip(points, stuck, strict=True) if len(e) > 1]
+    humidities, means, deviations = np.reshape(bars, (-1, 3)).T
+    panel.errorbar(humidities, means, deviations, fmt=_MARKERS[model], label=f"{model}: beams, mean ± std", **look)
+    for (humidity, beams), energies in zip(points, stuck, strict=True):
+        _share(panel, humidity, energies, len(energies) / beams.sizes["sample"])
+
+
+def _share(panel, humidity, energies, share):
+    """Annotate the share of S-shaped beams, unless it is all."""
+    if share < 1:
+        place = (humidity, energies.mean()) if len(energies) else (humidity, panel.get_ylim()[0])
+        panel.annotate(f"{100 * share:.2g} %", place, (4, 2), textcoords="offset points", fontsize=6)

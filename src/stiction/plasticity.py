@@ -1,0 +1,58 @@
+"""Whether contact stays elastic: stress and contact area of every touching summit (App. A)."""
+
+import numpy as np
+
+from stiction.constants import HARDNESS
+from stiction.estimates import jackknife
+
+#: Share of the hardness at which a sphere starts to yield (Tabor); paper, App. A.
+ONSET = 0.6
+
+
+def touching(height, curvature, distance):
+    """Summits that reach a flat: interference δ [m] and radius R [m], (n_touching,) each.
+
+    Parameters
+    ----------
+    height, curvature : (n,) arrays
+        Of all summits [m], [m⁻¹].
+    distance : float
+        Of the flat from the mean plane [m].
+    """
+    reaching = height > distance
+    return height[reaching] - distance, 1 / curvature[reaching]
+
+
+def contact_area(interference, radius):
+    """Hertz' contact area of a sphere, π R δ [m²]; interference [m], radius [m]."""
+    return np.pi * radius * interference
+
+
+def yields(stress):
+    """Whether a summit with this largest stress [Pa] deforms irreversibly."""
+    return stress > ONSET * HARDNESS
+
+
+def plastic_share(area, stress, strip, strips):
+    """Ratio A_P / A of the contact area that yields to all contact area, with its jackknife standard error.
+
+    Parameters
+    ----------
+    area, stress : (n,) arrays
+        Of all touching summits [m²], [Pa].
+    strip : (n,) int array
+        Number of the strip on which each stands, from 0.
+    strips : int
+        Number of strips, the independent samples.
+
+    Raises
+    ------
+    ValueError
+        If not even two strips are touched.
+    """
+    if len(np.unique(strip)) < 2:
+        raise ValueError(
+            f"contact on {len(np.unique(strip))} of {strips} strips: take a smaller distance or more strips"
+        )
+    sums = [np.bincount(strip, weights, strips) for weights in (area * yields(stress), area)]
+    return jackknife(lambda mean: mean[0] / mean[1], np.column_stack(sums) / np.sum(area))

@@ -1,0 +1,139 @@
+r"""Power spectral density of an isotropic rough surface (Sec. II-C).
+
+Convention, used everywhere: wave numbers are angular [rad m⁻¹] and
+
+.. math:: m_2 = \iint s_Z(\zeta) \, d\zeta_1 d\zeta_2 ,
+
+so ``s_Z`` is in m⁴ and no :math:`2\pi` appears outside this module. (Table II follows it; Eq. (4) does not.)
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import j0
+
+
+@dataclass(frozen=True)
+class CutoffSelfAffine:
+    """Plateau, power law, cut-off: Eq. (7). Parameters as in Table II."""
+
+    plateau: float  #: s⁰ [m⁴]
+    floor: float  #: s¹, reached at the cut-off [m⁴]
+    corner: float  #: ζ₀, end of the plateau [rad m⁻¹]
+    cutoff: float  #: ζ_max, no roughness beyond [rad m⁻¹]
+
+    def __post_init__(self):
+        if not 0 < self.corner < self.cutoff:
+            raise ValueError(f"need 0 < corner < cutoff, got {self.corner:.4g}, {self.cutoff:.4g} rad/m")
+        if not 0 < self.floor <= self.plateau:
+            raise ValueError(f"need 0 < floor <= plateau, got {self.floor:.4g}, {self.plateau:.4g} m⁴")
+
+    @property
+    def slope(self):
+        """Exponent of the power law [-]; negative."""
+        return np.log(self.floor / self.plateau) / np.log(self.cutoff / self.corner)
+
+    def __call__(self, wavenumber):
+        """s_Z at |ζ| [m⁴], shape of ``wavenumber`` [rad m⁻¹]."""
+        decay = np.maximum(wavenumber / self.corner, 1.0) ** self.slope
+        return np.where(wavenumber <= self.cutoff, self.plateau * decay, 0.0)
+
+    def moment(self, order):
+        r"""Radial moment ∫ s_Z ζ^(order+1) dζ [m⁴ (rad m⁻¹)^(order+2)], in closed form."""
+        power = order + 2
+        flat = self.corner**power / power
+        exponent = power + self.slope
+        ratio = self.cutoff / self.corner
+        tail = np.log(ratio) if abs(exponent) < 1e-12 else (ratio**exponent - 1) / exponent
+        return self.plateau * (flat + self.corner**power * tail)
+
+    @property
+    def variance(self):
+        """Second moment m₂ of the heights [m²]."""
+        return 2 * np.pi * self.moment(0)
+
+
+@dataclass(frozen=True)
+class TabulatedSpectrum:
+    """A spectrum known at equally spaced wave numbers; none beyond its cut-off."""
+
+    wavenumber: np.ndarray  #: |ζ|, (n,), from 0 [rad m⁻¹]
+    density: np.ndarray  #: s_Z, (n,) [m⁴] or, for unit variance, [m²]
+    cutoff: float  #: no roughness beyond [rad m⁻¹]
+
+    def __call__(self, wavenumber):
+        """s_Z at |ζ|, shape of ``wavenumber`` [rad m⁻¹], in the unit of ``density``."""
+        return np.where(wavenumber <= self.cutoff, np.interp(wavenumber, self.wavenumber, self.density), 0.0)
+
+
+@dataclass(frozen=True)
+class NayakSummits:
+    """Summits of a continuous Gaussian surface (Nayak): where the identification of a PSD starts."""
+
+    spectrum: CutoffSelfAffine
+
+    @property
+    def profile_moments(self):
+        """Profile spectral moments m₀ [m²], m₂ [-], m₄ [m⁻²]."""
+        return (
+            2 * np.pi * self.spectrum.moment(0),
+            np.pi * self.spectrum.moment(2),
+            0.75 * np.pi * self.spectrum.moment(4),
+        )
+
+    @property
+    def bandwidth(self):
+        """Parameter α = m₀ m₄ / m₂² [-]; at least 1.5."""
+        m0, m2, m4 = self.profile_moments
+        return m0 * m4 / m2**2
+
+    @property
+    def density(self):
+        """Summits per area [m⁻²]."""
+        _, m2, m4 = self.profile_moments
+        return m4 / (6 * np.pi * np.sqrt(3) * m2)
+
+    @property
+    def mean_curvature(self):
+        """Mean curvature of the summits [m⁻¹]."""
+        return 8 / 3 * np.sqrt(self.profile_moments[2] / np.pi)
+
+
+def autocovariance(spectrum, lag, panels=4000):
+    """Autocovariance r_Z(τ) = 2π ∫ s_Z J₀(ζτ) ζ dζ of an isotropic spectrum.
+
+    Parameters
+    ----------
+    spectrum : callable with ``cutoff`` [rad m⁻¹]
+    lag : (n,) array
+        Distances τ [m].
+    panels : int
+        Trapezoids up to the cut-off.
+
+    Returns
+    -------
+    (n,) array
+        In the unit of the heights squared, [m²].
+    """
+    zeta = np.linspace(0, spectrum.cutoff, panels + 1)
+    weights = np.full(panels + 1, zeta[1])
+    weights[[0, -1]] /= 2
+    return 2 * np.pi * j0(np.outer(lag, zeta)) @ (weights * zeta * spectrum(zeta))
+
+
+def correlation_length(spectrum, threshold=0.01, reach=6.0):
+    """Distance l^m beyond which |r_Z| < ``threshold`` · m₂ for good (Sec. III) [m].
+
+    Searched up to ``reach`` wave lengths of the corner; the slowest decay, that of a spectrum all plateau, ends at 4.7.
+
+    Raises
+    ------
+    ValueError
+        If the search ends before the correlation does.
+    """
+    lag = np.linspace(0, reach * 2 * np.pi / spectrum.corner, 1201)
+    covariance = autocovariance(spectrum, lag, panels=1500)
+    last = np.flatnonzero(np.abs(covariance) >= threshold * covariance[0])[-1]
+    if last == len(lag) - 1:
+        raise ValueError(f"heights {lag[-1]:.3g} m apart still correlate by {threshold:g} or more: search farther")
+    return float(lag[last])

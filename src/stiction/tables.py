@@ -1,0 +1,203 @@
+"""Tables I, II and III beside the print, one row per surface or case; Monte-Carlo figures carry standard errors."""
+
+import numpy as np
+import pandas as pd
+
+from stiction.data import ended
+from stiction.estimates import jackknife, mean_with_error
+
+NM, UM, PER_UM2 = 1e-9, 1e-6, 1e12
+_TABLE_1 = ("rms_nm", "skewness", "kurtosis", "mean_summit_radius_um", "summit_density_per_um2")
+
+
+def published(path):
+    """Printed table as a frame."""
+    return pd.read_csv(path, comment="#")
+
+
+def percent(value, reference):
+    """Deviation from a reference [%]."""
+    return 100 * (value / reference - 1) if reference else np.nan
+
+
+def surface_statistics(character):
+    """Statistics of Table I of simulated strips with standard errors: two dicts in the units of the table."""
+
+    def estimate(mean):
+        m1, m2, m3, m4, density, curvature = mean
+        variance = m2 - m1**2
+        third = m3 - 3 * m1 * m2 + 2 * m1**3
+        fourth = m4 - 4 * m1 * m3 + 6 * m1**2 * m2 - 3 * m1**4
+        rms = np.sqrt(variance)
+        return np.array([rms / NM, third / rms**3, fourth / rms**4, 1 / curvature / UM, density / PER_UM2])
+
+    columns = [
+        character.power.values,
+        character.summit_density.values[:, None],
+        character.mean_curvature.values[:, None],
+    ]
+    values, errors = jackknife(estimate, np.hstack(columns))
+    return dict(zip(_TABLE_1, values, strict=True)), dict(zip(_TABLE_1, errors, strict=True))
+
+
+def table_1(characters, measured, printed):
+    """Table I: simulated statistics of the surfaces.
+
+    Parameters
+    ----------
+    characters : dict
+        (surface, model) to the dataset of stage character.
+    measured : dict
+        Surface to its section of the configuration, the statistics that were measured (AFM).
+    printed : pandas.DataFrame
+        The published table.
+    """
+    rows = []
+    for (surface, model), character in characters.items():
+        values, errors = surface_statistics(character)
+        match = printed[(printed.surface == surface) & (printed.column == model)]
+        row = {"surface": surface, "column": model}
+        for name in _TABLE_1:
+            target = measured[surface].get(name, np.nan)
+            print_value = float(match[name].iloc[0]) if len(match) else np.nan
+            row |= {
+                name: values[name],
+                f"{name}_se": errors[name],
+                f"{name}_published": print_value,
+                f"{name}_afm": target,
+                f"{name}_deviation_percent": percent(values[name], print_value),
+            }
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def table_2(identifications, spectra, printed):
+    """Table II: published and identified parameters of Eq. (7), and what the identification leaves.
+
+    Parameters
+    ----------
+    identifications, spectra : dict
+        Surface to the datasets of stages identification and spectrum.
+    printed : pandas.DataFrame
+        The published table, with corrected plateaus.
+    """
+    rows = []
+    for surface, found in identifications.items():
+        match = printed[printed.surface == surface]
+        if len(match):
+            columns = ["plateau_nm4", "floor_nm4", "corner_rad_per_um", "cutoff_rad_per_um"]
+            rows.append({"surface": surface, "psd": "published"} | match[columns].iloc[0].to_dict())
+        rows.append(
+            {
+                "surface": surface,
+                "psd": "identified",
+                "plateau_nm4": float(found.plateau) / NM**4,
+                "floor_nm4": float(found.floor) / NM**4,
+                "corner_rad_per_um": float(found.corner) * UM,
+                "cutoff_rad_per_um": float(found.cutoff) * UM,
+                "rms_residual_percent": percent(float(found.rms), float(found.target_rms)),
+                "radius_residual_percent": percent(float(found.mean_radius), float(found.target_mean_radius)),
+                "density_residual_percent": percent(float(found.summit_density), float(found.target_summit_density)),
+            }
+        )
+    defects = {surface: 100 * float(spectrum.defect) for surface, spectrum in spectra.items()}
+    return pd.DataFrame(rows).assign(gaussian_defect_percent=lambda table: table.surface.map(defects))
+
+
+def table_3(beams, forces, printed):
+    """Table III: crack lengths and adhesion energies of released beams.
+
+    Parameters
+    ----------
+    beams, forces : dict
+        (pair, humidity, model) to the datasets of stages beams and forces.
+    printed : pandas.DataFrame
+        The published table.
+    """
+    return pd.DataFrame([_row_3(key, beams[key], forces[key], printed) for key in beams])
+
+
+def _row_3(key, beams, forces, printed):
+    pair, humidity, model = key
+    stuck = ended(beams, "S-shape")
+    crack, energy = beams.crack_length.values[stuck] / UM, beams.adhesion_energy.values[stuck]
+    meso = forces.adhesion_energy.values
+    row = {"pair": pair, "relative_humidity": humidity, "model": model}
+    row |= {"crack_length_um": np.nan, "crack_length_std_um": np.nan, "crack_length_se_um": np.nan}
+    row |= {
+        "adhesion_energy_J_per_m2": np.nan,
+        "adhesion_energy_std_J_per_m2": np.nan,
+        "adhesion_energy_se_J_per_m2": np.nan,
+    }
+    if stuck.sum() >= 2:
+        for name, unit, values in (("crack_length", "um", crack), ("adhesion_energy", "J_per_m2", energy)):
+            mean, error = mean_with_error(values)
+            row |= {f"{name}_{unit}": mean, f"{name}_std_{unit}": values.std(ddof=1), f"{name}_se_{unit}": error}
+    row |= {"meso_energy_J_per_m2": meso.mean(), "meso_energy_se_J_per_m2": mean_with_error(meso)[1]}
+    row |= {"meso_energy_cv": meso.std(ddof=1) / meso.mean()}
+    for column, state in (("share_s_shape", "S-shape"), ("share_arc", "arc"), ("share_free", "free")):
+        row[column] = float(ended(beams, state).mean())
+    match = printed[(printed.pair == pair) & np.isclose(printed.relative_humidity, humidity)]
+    print_of = {"NG": ("ng", "ng_std"), "GEO": ("geo", "geo_std")}.get(model)
+    row |= dict(zip(("published_um", "published_std_um"), _printed(match, print_of), strict=True))
+    row |= dict(
+        zip(("experiment_um", "experiment_std_um"), _printed(match, ("experiment", "experiment_std")), strict=True)
+    )
+    return row | {"deviation_percent": percent(row["crack_length_um"], row["published_um"])}
+
+
+def _printed(match, columns):
+    """Two printed numbers, or none where the paper has none."""
+    if columns is None or not len(match):
+        return np.nan, np.nan
+    return tuple(match[list(columns)].iloc[0].astype(float))
+
+
+def markdown_1(table):
+    """Table I for reading: value ± standard error (print)."""
+
+    def cell(row, name):
+        value, error, printed = row[name], row[f"{name}_se"], row[f"{name}_published"]
+        digits = max(0, 1 - int(np.floor(np.log10(error))))
+        return f"{value:.{digits}f} ± {error:.{digits}f} ({printed:g})"
+
+    columns = ["surface", "model", "rms [nm]", "skewness", "kurtosis", "summit radius [µm]", "summits [µm⁻²]"]
+    rows = [[row.surface, row.column] + [cell(row, name) for name in _TABLE_1] for _, row in table.iterrows()]
+    caption = "Table I: simulated value ± standard error (printed value)."
+    return caption + "\n\n" + pd.DataFrame(rows, columns=columns).to_markdown(index=False) + "\n"
+
+
+def markdown_2(table):
+    """Table II for reading."""
+    caption = "Table II: parameters of Eq. (7), residuals of the identification, variance beyond any Gaussian field."
+    return caption + "\n\n" + table.to_markdown(index=False, floatfmt=".4g") + "\n"
+
+
+def markdown_3(table):
+    """Table III for reading: crack length of S-shaped beams, mean ± standard deviation."""
+
+    def number(value, form):
+        return "–" if np.isnan(value) else format(value, form)
+
+    def spread(mean, deviation):
+        return f"{number(mean, '.0f')} ± {number(deviation, '.0f')}"
+
+    rows = [
+        {
+            "pair": row.pair,
+            "RH": f"{row.relative_humidity:g}",
+            "model": row.model,
+            "l_s [µm]": spread(row.crack_length_um, row.crack_length_std_um),
+            "se": number(row.crack_length_se_um, ".1f"),
+            "printed": spread(row.published_um, row.published_std_um),
+            "dev. [%]": number(row.deviation_percent, "+.1f"),
+            "experiment": spread(row.experiment_um, row.experiment_std_um),
+            "Γ [mJ/m²]": number(1e3 * row.adhesion_energy_J_per_m2, ".3g"),
+            "ē [mJ/m²]": number(1e3 * row.meso_energy_J_per_m2, ".3g"),
+            "cv(ē)": number(row.meso_energy_cv, ".3f"),
+            "S/arc/free [%]": f"{100 * row.share_s_shape:.0f}/{100 * row.share_arc:.0f}/{100 * row.share_free:.0f}",
+        }
+        for _, row in table.iterrows()
+    ]
+    caption = "Table III: crack length of the S-shaped beams, mean ± standard deviation over the beams."
+    return caption + "\n\n" + pd.DataFrame(rows).to_markdown(index=False) + "\n"

@@ -1,0 +1,183 @@
+"""Tables of the studies beside the main line, each number with its standard error."""
+
+import numpy as np
+import pandas as pd
+
+from stiction import choices
+from stiction.data import STATES
+from stiction.estimates import mean_with_error
+from stiction.tables import percent
+
+UM = 1e-6
+_S_SHAPE = STATES.index("S-shape")
+_LABELS = {
+    "van_der_waals": "vdW: {}",
+    "psd": "PSD: {}",
+    "every": "grid × {}",
+    "spacing_nm": "grid {} nm",
+    "poisson_ratio": "ν = {}",
+}
+
+
+def reading_label(name):
+    """Name of a reading in words.
+
+    Examples
+    --------
+    >>> reading_label("poisson_ratio_0.18"), reading_label("base")
+    ('ν = 0.18', 'base')
+    """
+    key, _, value = name.rpartition("_")
+    return _LABELS[key].format(value) if key else name
+
+
+def sensitivity(datasets, pair, printed):
+    """Fig. 13 in numbers.
+
+    Parameters
+    ----------
+    datasets : dict
+        Moment to the dataset of study sensitivity.
+    pair : str
+    printed : pandas.DataFrame
+        The numbers that the paper states.
+    """
+    rows = []
+    for moment, dataset in datasets.items():
+        for statistic in dataset.statistic.values:
+            chosen = dataset.sel(statistic=statistic)
+            for humidity, slope, error in zip(
+                dataset.humidity.values, chosen.slope.values, chosen.standard_error.values, strict=True
+            ):
+                match = printed[
+                    (printed.pair == pair)
+                    & (printed.moment == moment)
+                    & np.isclose(printed.relative_humidity, humidity)
+                    & (statistic == "mean")
+                ]
+                row = {"pair": pair, "relative_humidity": humidity, "statistic": statistic, "moment": moment}
+                row |= {"slope": slope, "slope_se": error}
+                rows.append(row | {"published": float(match.slope.iloc[0]) if len(match) else np.nan})
+    return pd.DataFrame(rows)
+
+
+def markdown_sensitivity(table):
+    """Fig. 13 for reading: one row per statistic and humidity, one column per moment."""
+    printed = ["" if np.isnan(slope) else f" ({slope:+g})" for slope in table.published]
+    values = [with_error(row.slope, row.slope_se, "+") for row in table.itertuples()]
+    cells = table.assign(cell=list(map(str.__add__, values, printed)))
+    wide = cells.pivot_table("cell", ["statistic", "relative_humidity"], "moment", "first", sort=False)
+    caption = (
+        "Fig. 13: normalised sensitivity (|x|/y) dy/dx of mean and standard deviation y of the meso-scale adhesion "
+        "energy to a moment x of the beam's surface, ± standard error (printed value)."
+    )
+    return caption + "\n\n" + wide.reset_index().to_markdown(index=False) + "\n"
+
+
+def with_error(value, error, sign=""):
+    """Value ± standard error as text, to the first digit of the error, or to the second if the first is 1.
+
+    Examples
+    --------
+    >>> with_error(57.82009, 0.19801), with_error(-4.9, 0.042, "+")
+    ('57.82 ± 0.20', '-4.90 ± 0.04')
+    """
+    if not error > 0:
+        return f"{value:{sign}g} ± {error:g}"
+    first = int(np.floor(np.log10(error)))
+    digits = max(0, (error < 2 * 10.0**first) - first)
+    return f"{value:{sign}.{digits}f} ± {error:.{digits}f}"
+
+
+def cases_of(dataset):
+    """Every case of a dataset of study readings: (humidity, `stiction.choices.Reading`)."""
+    for k, humidity in enumerate(dataset.humidity.values):
+        chosen = dataset.isel(humidity=k)
+        stuck = chosen.state.values == _S_SHAPE
+        yield float(humidity), choices.Reading(chosen.adhesion_energy.values, chosen.crack_length.values, stuck)
+
+
+def readings(datasets, printed):
+    """Table III, model NG, under several readings of the paper: one row per pair, reading and humidity.
+
+    Parameters
+    ----------
+    datasets : dict
+        (pair, reading) to the dataset of study readings; each pair has the reading ``base``.
+    printed : pandas.DataFrame
+        Table III as published.
+    """
+    rows = []
+    for (pair, name), dataset in datasets.items():
+        for (humidity, case), (_, base) in zip(cases_of(dataset), cases_of(datasets[pair, "base"]), strict=True):
+            match = printed[(printed.pair == pair) & np.isclose(printed.relative_humidity, humidity)]
+            row = {"pair": pair, "reading": name, "relative_humidity": humidity}
+            rows.append(row | _effect(case, base) | _compared(case, match))
+    return pd.DataFrame(rows)
+
+
+def _effect(case, base):
+    """What a reading does to one case."""
+    length, error = choices.mean_crack_length(case)
+    shift, shift_error = choices.shift(case, base)
+    reference, _ = choices.mean_crack_length(base)
+    energy, energy_error = mean_with_error(case.energy)
+    energy_shift, energy_shift_error = choices.energy_shift(case, base)
+    return {
+        "crack_length_um": length / UM,
+        "crack_length_se_um": error / UM,
+        "shift_percent": 100 * shift / reference,
+        "shift_se_percent": 100 * shift_error / reference,
+        "share_s_shape": case.stuck.mean(),
+        "meso_energy_J_per_m2": energy,
+        "meso_energy_se_J_per_m2": energy_error,
+        "meso_energy_shift_percent": 100 * energy_shift,
+        "meso_energy_shift_se_percent": 100 * energy_shift_error,
+    }
+
+
+def _compared(case, match):
+    """Deviation of a case from the printed and the measured crack length."""
+    length = choices.mean_crack_length(case)[0] / UM
+    row = {}
+    for column, name in (("ng", "published"), ("experiment", "experiment")):
+        reference = float(match[column].iloc[0]) if len(match) else np.nan
+        row |= {f"{name}_um": reference, f"{name}_deviation_percent": percent(length, reference)}
+    return row
+
+
+def markdown_readings(table):
+    """Summary for reading: effect at the lowest and highest humidity, deviation over all humidities."""
+    groups = dict(list(table.groupby(["pair", "reading"], sort=False)))
+    rows = [_summary(*key, group, groups[key[0], "base"]) for key, group in groups.items()]
+    caption = (
+        "Table III, model NG, under other readings of the paper: change of the mean crack length and of the mean "
+        "meso-scale energy against the base reading, at the lowest and at the highest humidity; root mean square over "
+        "the humidities of the deviation from the printed and from the measured crack length; ± standard error. "
+        "Removed: share of the mean square deviation from print that vanishes with the reading."
+    )
+    return caption + "\n\n" + pd.DataFrame(rows).to_markdown(index=False) + "\n"
+
+
+def _summary(pair, name, group, base):
+    """One row of the summary."""
+    row = {"pair": pair, "reading": reading_label(name)}
+    for which, end in (("low RH", group.iloc[0]), ("high RH", group.iloc[-1])):
+        for title, column in (("Δl_s", "shift"), ("Δē", "meso_energy_shift")):
+            change = with_error(end[f"{column}_percent"], end[f"{column}_se_percent"], "+")
+            row[f"{title} [%], {which}"] = "–" if name == "base" else change
+    for title, column in (("print", "published_um"), ("experiment", "experiment_um")):
+        rms = _rms_deviation(group, column)
+        row[f"rms dev. from {title} [%]"] = with_error(*(100 * x for x in rms)) if rms else "–"
+    here, there = _rms_deviation(group, "published_um"), _rms_deviation(base, "published_um")
+    removed = name != "base" and here
+    row["removed [%]"] = f"{round(100 * (1 - (here[0] / there[0]) ** 2)):+d}" if removed else "–"
+    return row
+
+
+def _rms_deviation(group, column):
+    """Root mean square deviation from the references in a column and its standard error; None without references."""
+    known = group[group[column].notna()]
+    if not len(known):
+        return None
+    return choices.rms_deviation(known.crack_length_um, known.crack_length_se_um, known[column])

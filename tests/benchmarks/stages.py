@@ -1,0 +1,130 @@
+"""Time the stages on one core, state the machine: ``make bench``. Prints a table; nothing here is a test."""
+
+import os
+import platform
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from functools import partial
+from pathlib import Path
+
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ[name] = "1"
+
+import numpy as np  # noqa: E402
+from scipy import fft  # noqa: E402
+
+from stiction import chaos, maxent, settings  # noqa: E402
+from stiction.asperity import MaugisTable, reduced_modulus  # noqa: E402
+from stiction.beam import Beam  # noqa: E402
+from stiction.contact import SurfacePair  # noqa: E402
+from stiction.montecarlo import Experiment, simulate  # noqa: E402
+from stiction.spectrum import CutoffSelfAffine  # noqa: E402
+from stiction.streams import stream  # noqa: E402
+from stiction.surfaces import RoughSurface, StripGrid  # noqa: E402
+from stiction.translation import Translation, underlying_spectrum  # noqa: E402
+from stiction.units import si  # noqa: E402
+from stiction.vanderwaals import attraction  # noqa: E402
+
+ROOT = Path(__file__).parents[2]
+CONFIG = settings.read(ROOT / "config.yaml")
+GRID = StripGrid(1.5e-6, 30e-6, 10e-9, 1e-6)
+
+
+def timed(function, repeats):
+    """Median seconds of one call."""
+    seconds = []
+    for k in range(repeats):
+        start = time.perf_counter()
+        function(k)
+        seconds.append(time.perf_counter() - start)
+    return statistics.median(seconds)
+
+
+def surface(name):
+    """Non-Gaussian surface of the case study."""
+    entry = CONFIG["surfaces"][name]
+    target = CutoffSelfAffine(**si(entry["published_psd"]))
+    translation = Translation(maxent.solve(entry["skewness"], entry["kurtosis"]))
+    underlying, _ = underlying_spectrum(target, translation, GRID.spacing)
+    return RoughSurface(underlying, translation, entry["rms_nm"] * 1e-9, GRID)
+
+
+def contact_rows():
+    """Contact of one pair against its floor: the normals and the inverse FFTs of its two surfaces."""
+    solid = MaugisTable(reduced_modulus(164e9, 0.23), attraction("water"))
+    for name, entry in CONFIG["pairs"].items():
+        sides = surface(entry["beam"]), surface(entry["substrate"])
+        pair = SurfacePair(*sides, solid, 0.05e-9)
+
+        def floor(k, sides=sides):
+            for side in sides:
+                _, amplitude, columns = side._modes
+                stream(1, k).standard_normal(2 * len(amplitude), dtype=np.float32)
+                fft.ifft(np.empty((columns, GRID.field_shape[0]), np.complex64), axis=1)
+                waves = np.empty((GRID.shape[0], columns), np.complex64)
+                fft.irfft(waves, n=GRID.field_shape[1], axis=1)
+
+        def contact(k, pair=pair):
+            pair.contact(pair.draw(stream(1, k), stream(2, k)))
+
+        contact(0)
+        least, whole = timed(floor, 20), timed(contact, 40)
+        yield f"contact of a pair of surfaces, {name}", f"{1e3 * whole:.1f} ms", "25 ms"
+        yield f"— divided by its floor ({1e3 * least:.1f} ms)", f"{whole / least:.2f}", ""
+
+
+def vectors():
+    """Vectors v like those of pair b at RH 0.67."""
+    z = stream(3).standard_normal((5000, 4)) @ np.linalg.cholesky(0.7 + 0.3 * np.eye(4)).T
+    e, f, d, gap = (z * [0.3, 0.3, 0.3e-9, 0.1]).T
+    d_max = 8e-9 + d
+    return np.column_stack([7e-3 * np.exp(e), 2e6 * np.exp(f), d_max, d_max - 1.5e-9 * np.exp(gap)])
+
+
+def law_rows():
+    """Chaos model of one case and beams that use it."""
+    sample = vectors()
+    for tolerance, kept in ((0.05, 3), (0.0, 4)):
+        fit = partial(chaos.fit, sample, sample[:, 1].max(), 12, tolerance)
+        seconds = timed(lambda _, fit=fit: fit(), 3)
+        yield f"chaos model of one case, order 12, {kept} coordinates asked for", f"{seconds:.2f} s", "6 s"
+        model = fit()
+        experiment = Experiment(Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200), 1000, partial(_laws, model))
+        start = time.perf_counter()
+        list(simulate(experiment, range(100), partial(stream, 4)))
+        yield f"one beam, {model.dimension} coordinates", f"{10 * (time.perf_counter() - start):.1f} ms", "15 ms"
+
+
+def _laws(model, rng, n):
+    return chaos.draw_laws(model, n, rng)[0]
+
+
+def dry_run_row():
+    """Planning the whole paper."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "snakemake", "-s", ROOT / "Snakefile", "-d", folder, "-n", "-q", "all"]
+        start = time.perf_counter()
+        subprocess.run(
+            list(map(str, command)), cwd=ROOT, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+    yield "dry run of the whole paper", f"{time.perf_counter() - start:.1f} s", "5 s"
+
+
+def main():
+    """Print the table."""
+    cpu = Path("/proc/cpuinfo").read_text().splitlines()
+    model = next((line.split(":")[1].strip() for line in cpu if line.startswith("model name")), "?")
+    print(f"{model}, {os.cpu_count()} cores, Python {platform.python_version()}, one core used\n")  # noqa: T201
+    print("| stage | measured | wanted at most |\n|---|---|---|")  # noqa: T201
+    for rows in (contact_rows, law_rows, dry_run_row):
+        for row in rows():
+            print("| " + " | ".join(row) + " |", flush=True)  # noqa: T201
+    print(f"\npeak memory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()

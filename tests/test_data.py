@@ -1,0 +1,60 @@
+import numpy as np
+import pytest
+import xarray as xr
+
+from stiction import data
+
+
+def dataset():
+    return xr.Dataset({"x": ("sample", np.linspace(0, 1, 20_000), {"units": "m"})})
+
+
+def test_a_dataset_survives_the_file_with_its_settings(tmp_path):
+    data.save(dataset(), tmp_path / "x.nc", "forces", {"seed": 1, "water": {"temperature_K": 300}})
+    loaded = data.load(tmp_path / "x.nc", "forces")
+    np.testing.assert_array_equal(loaded.x, dataset().x)
+    assert loaded.attrs["settings"] == '{"seed": 1, "water": {"temperature_K": 300}}'
+
+
+def test_equal_data_give_equal_bytes(tmp_path):
+    for name in ("a.nc", "b.nc"):
+        data.save(dataset(), tmp_path / name, "forces", {"b": 1, "a": 2} if name == "a.nc" else {"a": 2, "b": 1})
+    assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
+
+
+def test_a_file_of_another_stage_is_refused_by_name(tmp_path):
+    data.save(dataset(), tmp_path / "x.nc", "forces", {})
+    with pytest.raises(data.DataError, match=r"x\.nc holds forces, not beams"):
+        data.load(tmp_path / "x.nc", "beams")
+
+
+@pytest.mark.parametrize("size", [0, 100, 5000])
+def test_a_truncated_file_is_refused_by_name(tmp_path, size):
+    data.save(dataset(), tmp_path / "x.nc", "forces", {})
+    whole = (tmp_path / "x.nc").read_bytes()
+    assert len(whole) > 5000
+    (tmp_path / "x.nc").write_bytes(whole[:size])
+    with pytest.raises(data.DataError, match=r"x\.nc cannot be read"):
+        data.load(tmp_path / "x.nc", "forces")
+
+
+def test_a_foreign_file_is_refused(tmp_path):
+    dataset().to_netcdf(tmp_path / "x.nc")
+    with pytest.raises(data.DataError, match="no stage of this study"):
+        data.load(tmp_path / "x.nc", "forces")
+
+
+def test_a_failed_write_leaves_the_old_file_and_no_draft(tmp_path):
+    data.save(dataset(), tmp_path / "x.nc", "forces", {})
+    before = (tmp_path / "x.nc").read_bytes()
+    unwritable = xr.Dataset({"x": ("sample", np.array([object()], object))})
+    with pytest.raises((TypeError, ValueError)):
+        data.save(unwritable, tmp_path / "x.nc", "forces", {})
+    assert (tmp_path / "x.nc").read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
+
+
+def test_end_states_are_those_of_the_beam():
+    from stiction.beam import EndState
+
+    assert [state.name.lower().replace("_", "-") for state in EndState] == [s.lower() for s in data.STATES]

@@ -1,0 +1,637 @@
+"""A configuration that cannot run is refused with key, value and what would be allowed; any other runs."""
+
+import copy
+import math
+import re
+from functools import cache, reduce
+from pathlib import Path
+from typing import NamedTuple
+
+import jsonschema
+import pytest
+import yaml
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from snakemake.utils import update_config
+
+from stiction import maxent
+from stiction.settings import (
+    ConfigError,
+    case_id,
+    humidity_of,
+    load,
+    merged,
+    pair_of,
+    read,
+    validate,
+)
+
+ROOT = Path(__file__).parents[1]
+PAPER = read(ROOT / "config.yaml")
+SCHEMA = read(ROOT / "workflow/schemas/config.schema.yaml")
+
+YES = "truth values"
+GONE = "nothing was written"
+
+# What the user writes over the paper's configuration | the key to blame | its value | what the message says
+WRONG = [
+    # numbers outside their range
+    ("seed: -1", "seed", "-1", "at least 0"),
+    ("surfaces: {B1: {rms_nm: 0}}", "surfaces.B1.rms_nm", "0", "above 0 and at most 1000: standard deviation"),
+    ("surfaces: {B1: {rms_nm: -1.7}}", "surfaces.B1.rms_nm", "-1.7", "above 0"),
+    ("surfaces: {B1: {rms_nm: 1.7e+6}}", "surfaces.B1.rms_nm", "1700000.0", "[nm]"),
+    ("surfaces: {B2: {skewness: -11}}", "surfaces.B2.skewness", "-11", "at least -10 and at most 10"),
+    ("surfaces: {B2: {kurtosis: 0.9}}", "surfaces.B2.kurtosis", "0.9", "above 1"),
+    ("surfaces: {B2: {mean_summit_radius_um: 0}}", "surfaces.B2.mean_summit_radius_um", "0", "above 0"),
+    ("surfaces: {B2: {summit_density_per_um2: -1}}", "surfaces.B2.summit_density_per_um2", "-1", "above 0"),
+    ("surfaces: {B1: {published_psd: {plateau_nm4: 0}}}", "surfaces.B1.published_psd.plateau_nm4", "0", "[nm⁴]"),
+    ("surfaces: {B1: {published_psd: {floor_nm4: 0}}}", "surfaces.B1.published_psd.floor_nm4", "0", "above 0"),
+    ("pairs: {a: {gap_um: -20}}", "pairs.a.gap_um", "-20", "above 0"),
+    ("pairs: {a: {humidities: [0.5, 0]}}", "pairs.a.humidities[1]", "0", "above 0 and below 1"),
+    ("pairs: {a: {humidities: [1]}}", "pairs.a.humidities[0]", "1", "above 0 and below 1"),
+    ("pairs: {a: {humidities: [65]}}", "pairs.a.humidities[0]", "65", "as a fraction of 1"),
+    ("sampling: {spacing_nm: 0}", "sampling.spacing_nm", "0", "at least 0.1"),
+    ("sampling: {strip_length_um: -1.5}", "sampling.strip_length_um", "-1.5", "at least 0.01"),
+    ("sampling: {margin_um: 0}", "sampling.margin_um", "0", "above 0"),
+    ("character: {strips: 0}", "character.strips", "0", "at least 2"),
+    ("identification: {patches: 0}", "identification.patches", "0", "at least 1"),
+    ("identification: {patch_um: -5}", "identification.patch_um", "-5", "above 0"),
+    ("solid: {young_modulus_GPa: 164000}", "solid.young_modulus_GPa", "164000", "at most 2000: Young's modulus [GPa]"),
+    ("solid: {poisson_ratio: 0.5}", "solid.poisson_ratio", "0.5", "above -1 and below 0.5"),
+    ("solid: {poisson_ratio: -1}", "solid.poisson_ratio", "-1", "above -1"),
+    ("water: {temperature_K: 20}", "water.temperature_K", "20", "at least 273 and at most 373"),
+    ("water: {temperature_K: 373.5}", "water.temperature_K", "373.5", "liquid water"),
+    ("contact: {samples: 0}", "contact.samples", "0", "at least 5"),
+    ("contact: {chunks: 0}", "contact.chunks", "0", "at least 1"),
+    ("contact: {every: 0}", "contact.every", "0", "at least 1"),
+    ("contact: {distance_step_nm: 0}", "contact.distance_step_nm", "0", "at least 0.001"),
+    ("chaos: {order: 0}", "chaos.order", "0", "at least 1"),
+    ("chaos: {dimension_tolerance: 0}", "chaos.dimension_tolerance", "0", "above 0 and below 1"),
+    ("beam: {length_um: 0}", "beam.length_um", "0", "above 0"),
+    ("beam: {thickness_um: -2.6}", "beam.thickness_um", "-2.6", "above 0"),
+    ("beam: {elements: 1}", "beam.elements", "1", "at least 2"),
+    ("beam: {samples: 0}", "beam.samples", "0", "at least 2"),
+    ("beam: {scatter: -0.01}", "beam.scatter", "-0.01", "at least 0 and below 0.2"),
+    ("beam: {scatter: 0.2}", "beam.scatter", "0.2", "below 0.2"),
+    ("figures: {humidity: 1.0}", "figures.humidity", "1.0", "above 0 and below 1"),
+    ("studies: {sensitivity: {step: 0}}", "studies.sensitivity.step", "0", "above 0 and at most 0.5"),
+    ("studies: {plasticity: {distance_nm: {a: -1}}}", "studies.plasticity.distance_nm.a", "-1", "[nm]"),
+    ("studies: {sample_shares: [0]}", "studies.sample_shares[0]", "0", "above 0 and at most 1"),
+    ("studies: {readings: {psd: [measured]}}", "studies.readings.psd[0]", "'measured'", "one of published, identified"),
+    # what YAML makes of it
+    ("chaos: {dimension_tolerance: 1e-3}", "chaos.dimension_tolerance", "'1e-3'", "as text, write 1.0e-3"),
+    ("solid: {young_modulus_GPa: 1.64e2}", "solid.young_modulus_GPa", "'1.64e2'", "write 1.64e+2"),
+    ("contact: {samples: 5E3}", "contact.samples", "'5E3'", "write 5.0e+3"),
+    ('surfaces: {B1: {rms_nm: "1.7"}}', "surfaces.B1.rms_nm", "'1.7'", "write 1.7 without quotes"),
+    ("beam:\n  thickness_um: 2,6", "beam.thickness_um", "'2,6'", "write 2.6 without"),
+    ("beam: {thickness_um: 2.6 um}", "beam.thickness_um", "'2.6 um'", "write 2.6 without quotes, unit"),
+    ("beam: {thickness_um: thick}", "beam.thickness_um", "'thick'", "must be a number"),
+    ("beam: {thickness_um: yes}", "beam.thickness_um", "True", YES),
+    ("seed: true", "seed", "True", YES),
+    ("beam: {scatter: off}", "beam.scatter", "False", YES),
+    ("beam: {scatter: .nan}", "beam.scatter", "nan", "must be a number"),
+    ("surfaces: {B1: {kurtosis: .inf}}", "surfaces.B1.kurtosis", "inf", "at most 100"),
+    ("contact: {samples: 5000.0}", "contact.samples", "5000.0", "without a decimal point: 5000"),
+    ("chaos: {order: 2.5}", "chaos.order", "2.5", "a whole number"),
+    ("seed:", "seed", "None", GONE),
+    ("beam: {elements: [200]}", "beam.elements", "[200]", "a whole number"),
+    ("beam: {elements: {n: 200}}", "beam.elements", "{'n': 200}", "a whole number"),
+    ("seed: 2021-11-21", "seed", "datetime.date(2021, 11, 21)", "a whole number"),
+    ("van_der_waals: no", "van_der_waals", "False", YES),
+    ("van_der_waals: null", "van_der_waals", "None", "one of water, dry, none"),
+    ("van_der_waals: None", "van_der_waals", "'None'", "did you mean none?"),
+    ("van_der_waals: WATER", "van_der_waals", "'WATER'", "did you mean water?"),
+    ("van_der_waals: vacuum", "van_der_waals", "'vacuum'", "one of water, dry, none"),
+    ("surfaces: {B1: {psd: publisched}}", "surfaces.B1.psd", "'publisched'", "did you mean published?"),
+    ("pairs: {a: {humidities: 0.65}}", "pairs.a.humidities", "0.65", "write [0.65]"),
+    ("pairs: {a: {humidities: []}}", "pairs.a.humidities", "[]", "with at least one entry"),
+    ("pairs: {a: {humidities: [0.5, 7e-1]}}", "pairs.a.humidities[1]", "'7e-1'", "write 7.0e-1"),
+    ("pairs: {a: {beam: 1}}", "pairs.a.beam", "1", "must be text"),
+    ("run: {pairs: a}", "run.pairs", "'a'", "write [a]"),
+    ("run: {pairs: []}", "run.pairs", "[]", "with at least one entry"),
+    ("run: {pairs: [a, no]}", "run.pairs[1]", "False", YES),
+    # sections
+    ("contact:", "contact", "None", "with the keys samples, chunks, distance_step_nm, every"),
+    ("contact: 5000", "contact", "5000", "must be a section"),
+    ("beam: [1500, 30]", "beam", "[1500, 30]", "with the keys length_um, width_um"),
+    ("surfaces:", "surfaces", "None", GONE),
+    ("surfaces: {B1: }", "surfaces.B1", "None", GONE),
+    ("surfaces: {B1: {published_psd: }}", "surfaces.B1.published_psd", "None", GONE),
+    # relations between keys
+    ("surfaces: {B1: {kurtosis: 1.6}}", "surfaces.B1.kurtosis", "1.6", "skewness² + 1 = 1.6084 (given surfaces.B1."),
+    ("surfaces: {B1: {skewness: 0}}", "surfaces.B1.kurtosis", "4.6", "maximum-entropy"),
+    ("surfaces: {B1: {skewness: 1.0e-3}}", "surfaces.B1.kurtosis", "4.6", "surfaces.B1.skewness = 0.001"),
+    ("surfaces: {B1: {published_psd: {corner_rad_per_um: 138}}}", "surfaces.B1.published_psd.corner_rad_per_um", "138",
+     "below the cut-off (given surfaces.B1.published_psd.cutoff_rad_per_um = 138)"),
+    ("surfaces: {B1: {published_psd: {floor_nm4: 525}}}", "surfaces.B1.published_psd.floor_nm4", "525", "plateau"),
+    ("surfaces: {B1: {published_psd: {cutoff_rad_per_um: 315}}}", "surfaces.B1.published_psd.cutoff_rad_per_um", "315",
+     "at most the Nyquist number of the grid, 314.159 rad/µm (given sampling.spacing_nm = 10)"),
+    ("sampling: {strip_length_um: 0.8}\nbeam: {elements: 375}", "sampling.strip_length_um", "0.8",
+     "surfaces.B2.published_psd ="),
+    ("sampling: {margin_um: 0.8}", "sampling.margin_um", "0.8", "above the correlation length of the surface,"),
+    ("identification: {patch_um: 0.8}", "identification.patch_um", "0.8", "above the correlation length of the"),
+    ("identification: {patch_um: 5.005}", "identification.patch_um", "5.005", "whole number of grid spacings of 10 nm"),
+    ("beam: {width_um: 30.005}", "beam.width_um", "30.005", "whole number of contact points 10 nm apart"),
+    ("contact: {every: 2}\nbeam: {width_um: 30.01}", "beam.width_um", "30.01", "contact points 20 nm apart"),
+    ("character: {spacing_nm: 25}", "character.spacing_nm", "25", "a multiple of the grid spacing of 10 nm"),
+    ("character: {spacing_nm: 5}", "character.spacing_nm", "5", "a multiple of the grid spacing of 10 nm"),
+    ("character: {spacing_nm: 510}", "character.spacing_nm", "510", "at most a third of a side of 1.5 µm"),
+    ("character: {spacing_nm: 480}\nbeam: {width_um: 1.4}", "character.spacing_nm", "480", "a side of 1.4 µm"),
+    ("character: {spacing_nm: 350}\nidentification: {patch_um: 1}", "character.spacing_nm", "350", "a side of 1 µm"),
+    ("pairs: {c: {beam: B3}}", "pairs.c.beam", "'B3'", "must be one of B1, B2, Sub1, Sub2"),
+    ("pairs: {c: {substrate: sub2}}", "pairs.c.substrate", "'sub2'", "did you mean Sub2?"),
+    ("run: {pairs: [a, d]}", "run.pairs", "['a', 'd']", "must be one of a, b, c; 'd' is not"),
+    ('run: {pairs: ["a\\n"]}', "run.pairs", r"['a\n']", r"did you mean a?; 'a\n' is not"),
+    ("studies: {plasticity: {distance_nm: {d: 2}}}", "studies.plasticity.distance_nm",
+     "{'a': 2.2, 'b': 5.7, 'c': 9, 'd': 2}", "must be one of a, b, c; 'd' is not"),
+    ("figures: {pair: d}", "figures.pair", "'d'", "must be one of a, b, c"),
+    ("run: {pairs: [a, b, a]}", "run.pairs", "['a', 'b', 'a']", "once; 'a' is there twice"),
+    ("pairs: {a: {humidities: [0.6, 0.60]}}", "pairs.a.humidities", "[0.6, 0.6]", "once; 0.6 is there twice"),
+    ("pairs: {a: {humidities: [0.65001]}}", "pairs.a.humidities", "[0.65001]", "at most 4 decimals"),
+    ("figures: {humidity: 0.65001}", "figures.humidity", "0.65001", "at most 4 decimals"),
+    ("contact: {chunks: 5001}", "contact.chunks", "5001", "at most the number of samples (given contact.samples ="),
+    ("chaos: {order: 17}", "chaos.order", "17", "at most 16, or 5985 samples are needed (given contact."),
+    ("contact: {samples: 1819}", "chaos.order", "12", "at most 11, or 1820 samples are needed"),
+    ("beam: {elements: 300}", "beam.length_um", "1500", "multiple of strip_length x elements = 450 µm"),
+    ("beam: {elements: 2000}", "beam.length_um", "1500", "multiple of strip_length x elements = 3000 µm"),
+    ("pairs: {a: {gap_um: 1000}}\nbeam: {length_um: 900}", "pairs.a.gap_um", "1000", "below the length of the beam"),
+    ("beam: {width_um: 1500}", "beam.width_um", "1500", "below the length of the beam"),
+    ("beam: {thickness_um: 1000, length_um: 900}", "beam.thickness_um", "1000", "below the length of the beam"),
+]  # fmt: skip
+
+# What the user writes | the key to blame | the rest of its line
+UNKNOWN = [
+    ("sead: 1", "sead", "did you mean seed?"),
+    ("pairs: {a: {gap: 20}}", "pairs.a.gap", "did you mean gap_um? Keys carry their unit."),
+    ("beam: {thickness: 2.6}", "beam.thickness", "did you mean thickness_um? Keys carry their unit."),
+    ("beam: {length: 1500}", "beam.length", "did you mean length_um?"),
+    ("beam: {thickness_nm: 2600}", "beam.thickness_nm", "did you mean thickness_um?"),
+    ("surfaces: {B1: {rms: 1.7}}", "surfaces.B1.rms", "did you mean rms_nm?"),
+    ("surfaces: {B1: {kurtosys: 4}}", "surfaces.B1.kurtosys", "did you mean kurtosis?"),
+    ("surfaces: {B1: {published_psd: {corner: 3}}}", "surfaces.B1.published_psd.corner", "mean corner_rad_per_um?"),
+    ("water: {temperature: 300}", "water.temperature", "did you mean temperature_K?"),
+    ("solid: {young_modulus: 164}", "solid.young_modulus", "did you mean young_modulus_GPa?"),
+    ("contact: {sample: 5}", "contact.sample", "(value 5), must be one of samples, chunks, distance_step_nm, every"),
+    ("contact: {colour: red}", "contact.colour", "(value 'red')"),
+    ("beam: {1: 2}", "beam[1]", "must be one of length_um"),
+    ("beam: {no: 2}", "beam.False", "must be one of length_um"),
+    ('beam: {"a b\\n": 2}', r"beam.'a b\n'", "must be one of length_um"),
+]
+
+# Names that would not survive as file names and wildcards
+UNNAMEABLE = ["B-1", "B_1", "B.1", "1B", "B 1", "../B", "{B}", "", "ß", "B" * 33, "B\n", 1, 1.5, None, False]
+
+
+@pytest.fixture(autouse=True, scope="module")
+def known_densities():
+    """Solve the densities of the paper once: a thousand configurations ask for them."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(maxent, "solve", cache(maxent.solve))
+        yield
+
+
+def changed(overlay):
+    """The paper's configuration under an overlay in YAML."""
+    return merged(PAPER, yaml.safe_load(overlay))
+
+
+def problems(config):
+    """Lines about a configuration; none if it can run."""
+    try:
+        validate(config, SCHEMA)
+    except ConfigError as error:
+        return error.problems
+    return ()
+
+
+class Leaf(NamedTuple):
+    """A key that holds a value."""
+
+    path: tuple
+    entry: dict  # its part of the schema
+    required: bool
+
+    def __str__(self):
+        return ".".join(self.path)
+
+
+def leaves(config, schema, path=(), required=True):
+    """All keys of a configuration that hold a value."""
+    if schema["type"] != "object":
+        return [Leaf(path, schema, required)]
+    found = []
+    for key, value in config.items():
+        entry = schema.get("properties", {}).get(key) or schema["additionalProperties"]
+        found += leaves(value, entry, (*path, key), key in schema.get("required", ()))
+    return found
+
+
+def entries(schema):
+    """Every part of the schema that describes a section or a value."""
+    inside = [*schema.get("properties", {}).values()]
+    inside += [schema[key] for key in ("additionalProperties", "items") if isinstance(schema.get(key), dict)]
+    return [schema, *(entry for part in inside for entry in entries(part))]
+
+
+def replaced(path, value):
+    """The paper's configuration with another value at a path."""
+    config = copy.deepcopy(PAPER)
+    section = config
+    for key in path[:-1]:
+        section = section[key]
+    section[path[-1]] = value
+    return config
+
+
+def without(path):
+    """The paper's configuration without the key at a path."""
+    config = replaced(path, None)
+    section = config
+    for key in path[:-1]:
+        section = section[key]
+    del section[path[-1]]
+    return config
+
+
+# One surface, pair or reading stands for all.
+LEAVES = list({id(leaf.entry): leaf for leaf in reversed(leaves(PAPER, SCHEMA))}.values())[::-1]
+NUMBERS = [leaf for leaf in LEAVES if leaf.entry["type"] in ("number", "integer")]
+
+
+def test_the_case_study_of_the_paper_can_run():
+    assert problems(PAPER) == ()
+
+
+@pytest.mark.parametrize(("overlay", "key", "value", "said"), WRONG, ids=[f"{row[1]}={row[2]}" for row in WRONG])
+def test_a_wrong_value_is_refused_in_one_line_with_key_value_and_what_is_allowed(overlay, key, value, said):
+    (line,) = problems(changed(overlay))
+    assert line.startswith(f"{key} is {value}, must ")
+    assert said in line
+
+
+@pytest.mark.parametrize(("overlay", "key", "said"), UNKNOWN, ids=[row[1] for row in UNKNOWN])
+def test_an_unknown_key_is_refused_in_one_line_with_the_known_ones(overlay, key, said):
+    (line,) = problems(changed(overlay))
+    assert line.startswith(f"{key} is unknown (value ")
+    assert said in line
+
+
+@pytest.mark.parametrize("name", UNNAMEABLE)
+@pytest.mark.parametrize("section", ["surfaces", "pairs"])
+def test_a_name_that_would_not_survive_as_a_file_name_is_refused(section, name):
+    entry = next(iter(PAPER[section].values()))
+    (line,) = problems(merged(PAPER, {section: {name: entry}}))
+    assert line.startswith(section)
+    assert "is no name, must be letters and digits" in line
+    assert ("YAML" in line) == (not isinstance(name, str))
+
+
+def test_there_are_at_least_sixty_wrong_configurations():
+    assert len(WRONG) + len(UNKNOWN) >= 60
+
+
+@pytest.mark.parametrize("leaf", [leaf for leaf in LEAVES if leaf.required], ids=str)
+def test_a_missing_key_is_named_with_what_it_must_be(leaf):
+    (line,) = problems(without(leaf.path))
+    assert line.startswith(f"{leaf} is missing, must be ")
+    assert line.endswith(leaf.entry["description"])
+
+
+@pytest.mark.parametrize("section", PAPER)
+def test_a_missing_section_is_named(section):
+    (line,) = problems(without((section,)))
+    assert line.startswith(f"{section} is missing, must be ")
+
+
+@pytest.mark.parametrize("leaf", NUMBERS, ids=str)
+@pytest.mark.parametrize("junk", [None, True, False, "1.0", "", [1], {}, math.nan, math.inf, -math.inf, 10**400])
+def test_no_number_is_replaced_by_something_else(leaf, junk):
+    (line,) = problems(replaced(leaf.path, junk))
+    assert line.startswith(f"{leaf} is ")
+    assert leaf.entry["description"] in line
+
+
+@pytest.mark.parametrize("leaf", NUMBERS, ids=str)
+def test_a_number_is_refused_outside_its_bounds_and_not_inside(leaf):
+    refusal = re.compile(rf"{re.escape(str(leaf))} is .*: {re.escape(leaf.entry['description'])}$")
+    for side, outward in (("inimum", -1), ("aximum", 1)):
+        closed = f"m{side}" in leaf.entry
+        bound = leaf.entry[f"m{side}" if closed else f"exclusiveM{side}"]
+        step = outward if leaf.entry["type"] == "integer" else outward * 1e-6 * max(1, abs(bound))
+        values = (bound - step, bound, bound + step)
+        refused = [any(map(refusal.match, problems(replaced(leaf.path, value)))) for value in values]
+        assert refused == [False, not closed, True]
+
+
+@pytest.mark.parametrize(
+    "overlay",
+    [
+        (ROOT / "workflow/smoke.yaml").read_text(encoding="utf-8"),
+        "surfaces: {Mine: {rms_nm: 2, skewness: -0.5, kurtosis: 3.5, psd: identified, mean_summit_radius_um: 0.5, "
+        "summit_density_per_um2: 30}}\npairs: {d: {beam: Mine, substrate: Sub2, gap_um: 3.5, humidities: [0.675]}}\n"
+        "run: {pairs: [d]}",
+        "surfaces: {B1: {skewness: 0, kurtosis: 3}}",
+        "surfaces: {B1: {skewness: 0, kurtosis: 2}}",
+        "surfaces: {B1: {kurtosis: 1.7}}",
+        "surfaces: {B1: {psd: identified}}",
+        "surfaces: {B1: {published_psd: {cutoff_rad_per_um: 314.159}}}",
+        "surfaces: {B1: {published_psd: {corner_rad_per_um: 137.9, floor_nm4: 524}}}",
+        "sampling: {margin_um: 0.9}",
+        "sampling: {strip_length_um: 1.25}",
+        "sampling: {spacing_nm: 5}",
+        "character: {spacing_nm: 10}",
+        "character: {spacing_nm: 500}",
+        "identification: {patch_um: 0.9}",
+        "contact: {every: 2}",
+        "contact: {chunks: 5000}",
+        "contact: {samples: 1820}",
+        "chaos: {order: 16}",
+        "beam: {elements: 1000}",
+        "beam: {scatter: 0}",
+        "beam: {length_um: 21, width_um: 20.99, elements: 7}",
+        "pairs: {a: {humidities: [0.0001, 0.9999, 0.5]}}",
+        "pairs: {a: {substrate: B1}}",
+        "van_der_waals: none",
+        "run: {pairs: [c, a]}",
+    ],
+)
+def test_what_just_obeys_the_laws_can_run(overlay):
+    assert problems(changed(overlay)) == ()
+
+
+def test_all_problems_are_found_at_once_and_each_only_once():
+    lines = problems(
+        changed(
+            "surfaces: {B1: {rms_nm: -1}, B2: {kurtosis: 1.5}}\npairs: {a: {beam: B9, gap: 3}}\n"
+            "contact: {chunks: 1.0}\nchaos: {order: 20}"
+        )
+    )
+    keys = {line.split()[0] for line in lines}
+    expected = {
+        "surfaces.B1.rms_nm",
+        "surfaces.B2.kurtosis",
+        "pairs.a.beam",
+        "pairs.a.gap",
+        "contact.chunks",
+        "chaos.order",
+    }
+    assert (keys, len(lines)) == (expected, 6)
+
+
+def test_one_that_is_referred_to_is_sought_among_all_that_have_a_proper_name():
+    lines = problems(changed("surfaces: {1: {}}\npairs: {a: {beam: B9}}\nfigures: {pair: d}"))
+    assert "figures.pair is 'd', must be one of a, b, c" in lines
+    assert "pairs.a.beam is 'B9', must be one of B1, B2, Sub1, Sub2" in lines
+
+
+def test_an_identified_spectrum_needs_its_targets_and_a_published_one_its_parameters():
+    identified = without(("surfaces", "B1", "mean_summit_radius_um"))
+    identified["surfaces"]["B1"]["psd"] = "identified"
+    (line,) = problems(identified)
+    assert line.startswith("surfaces.B1.mean_summit_radius_um is missing")
+    (line,) = problems(without(("surfaces", "B1", "published_psd")))
+    assert line.startswith("surfaces.B1.published_psd is missing")
+
+
+@pytest.mark.parametrize(
+    ("humidity", "case"),
+    [(0.67, "b_rh067"), (0.6, "b_rh060"), (0.675, "b_rh0675"), (0.0675, "b_rh00675"), (0.0001, "b_rh00001")],
+)
+def test_a_case_is_named_after_its_pair_and_the_decimals_of_its_humidity(humidity, case):
+    assert case_id("b", humidity) == case
+    assert (pair_of(case), humidity_of(case)) == ("b", humidity)
+
+
+@given(st.integers(1, 9999))
+def test_every_humidity_of_four_decimals_survives_its_name(tenthousandths):
+    humidity = tenthousandths / 10000
+    assert humidity_of(case_id("b", humidity)) == humidity
+
+
+@pytest.mark.parametrize("humidity", [0, 1, -0.5, 0.67512, 0.1 + 0.2, 1e-5, math.nan, 67])
+def test_a_humidity_that_no_case_can_be_named_after_is_refused(humidity):
+    with pytest.raises(ConfigError, match="must be above 0, below 1 and have at most 4 decimals"):
+        case_id("b", humidity)
+
+
+@pytest.mark.parametrize(
+    "case", ["b_rh000", "b_rh0600", "b_rh06", "b_rh067512", "b_rh167", "_rh067", "b_rh067\n", "b_rh0٦٧", "rh067", ""]
+)
+def test_what_is_no_case_has_no_humidity(case):
+    with pytest.raises(ConfigError, match="must be like b_rh067"):
+        humidity_of(case)
+
+
+def test_files_are_merged_key_by_key_and_lists_replaced(tmp_path):
+    overlay = tmp_path / "mine.yaml"
+    overlay.write_text("run: {pairs: [b]}\ncontact: {samples: 2000}\n", encoding="utf-8")
+    config = load([ROOT / "config.yaml", overlay], SCHEMA)
+    assert config["run"]["pairs"] == ["b"]
+    assert config["contact"] == PAPER["contact"] | {"samples": 2000}
+    assert config["surfaces"] == PAPER["surfaces"]
+
+
+@given(*[st.recursive(st.integers(), lambda inner: st.dictionaries(st.sampled_from("abc"), inner, min_size=1))] * 2)
+def test_files_are_merged_as_snakemake_does(base, overlay):
+    merging = {"root": copy.deepcopy(base)}
+    update_config(merging, {"root": overlay})
+    assert merged({"root": base}, {"root": overlay}) == merging
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"seed: 1\nbeam: {elements: 2}\nseed: 2\n", "key 'seed' is given twice"),
+        (b"beam:\n  elements: 2\n  elements: 2\n", "line 2, column 3"),
+        (b"", "holds None, must be sections"),
+        (b"- 1\n", "holds [1], must be sections"),
+        (b"5000\n", "holds 5000, must be sections"),
+        (b"a: [1\n", "expected ',' or ']'"),
+        (b"a:\n\tb: 1\n", "cannot start any token"),
+        (b"a: \xff\n", "cannot be read"),
+        (b"a: \x00\n", "cannot be read"),
+        (b"a: &x {b: *x}\n", "recursive"),
+        (b"a: &x {b: [*x]}\n", "recursive"),
+        (b"a: &x [*x]\n", "recursive"),
+        (b"a: *x\n", "undefined alias"),
+        (b"{[1]: 2}\n", "unhashable key"),
+        (b"a: !!bool x\n", "cannot be read"),
+        (b"a: !!python/object:os.system x\n", "could not determine a constructor"),
+        (b"a: 2021-13-45\n", "cannot be read"),
+        (b"a: 1\n---\na: 2\n", "expected a single document"),
+        (b"a: " + b"1" * 5000, "cannot be read"),
+        (b"[" * 2000, "cannot be read"),
+    ],
+)
+def test_a_file_that_is_no_configuration_is_refused_in_one_line_with_its_name(tmp_path, content, said):
+    path = tmp_path / "mine.yaml"
+    path.write_bytes(content)
+    with pytest.raises(ConfigError) as refused:
+        read(path)
+    assert str(path) in str(refused.value)
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(ConfigError, match=r"nowhere\.yaml cannot be read: .*No such file"):
+        read(tmp_path / "nowhere.yaml")
+
+
+def test_an_anchor_may_be_changed_key_by_key(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text("base: &b {x: 1, y: 2}\nmine: {<<: *b, y: 3}\n", encoding="utf-8")
+    assert read(path)["mine"] == {"x": 1, "y": 3}
+
+
+def test_the_schema_is_one():
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+
+
+def test_every_section_is_closed():
+    sections = [entry for entry in entries(SCHEMA) if entry["type"] == "object"]
+    assert len(sections) > 10
+    for section in sections:
+        assert section["additionalProperties"] is False or "propertyNames" in section
+
+
+UNITS = {
+    "_nm": "[nm]",
+    "_um": "[µm]",
+    "_nm4": "[nm⁴]",
+    "_rad_per_um": "[rad/µm]",
+    "_per_um2": "[1/µm²]",
+    "_GPa": "[GPa]",
+    "_K": "[K]",
+}
+
+
+@pytest.mark.parametrize("leaf", LEAVES, ids=str)
+def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
+    # The last key on the path that has a unit; below it are free names.
+    units = [UNITS[suffix] for key in leaf.path for suffix in sorted(UNITS, key=len) if key.endswith(suffix)][-1:]
+    text = "string" in (leaf.entry["type"], leaf.entry.get("items", {}).get("type"))
+    assert leaf.entry["description"].endswith(tuple(units or (["[name]", "[choice]"] if text else ["[-]"])))
+
+
+@pytest.mark.parametrize("config", [None, [], 5, "seed: 1", {}, {None: 1}, math.nan, True])
+def test_what_is_no_configuration_at_all_is_refused(config):
+    lines = problems(config)
+    assert lines
+    assert all(" must be " in line for line in lines)
+
+
+UNPRINTABLE = {
+    "number": 10**5000,
+    "item": [10**5000],
+    "key": {10**5000: 1},
+    "value": {"x": 10**5000},
+    "depth": reduce(lambda inner, _: [inner], range(100_000), 0),
+}
+
+
+@pytest.mark.parametrize("junk", UNPRINTABLE)
+@pytest.mark.parametrize("path", [("seed",), ("beam",), ("beam", "elements"), ("van_der_waals",), ("surfaces", "B1")])
+def test_what_python_cannot_print_is_refused(path, junk):
+    (line,) = problems(replaced(path, UNPRINTABLE[junk]))
+    assert "cannot be printed" in line
+
+
+FUZZ = settings(max_examples=250, suppress_health_check=[HealthCheck.too_slow])
+JUNK = st.recursive(
+    st.one_of(
+        st.none(),
+        st.booleans(),
+        st.integers(),
+        st.floats(),
+        st.text(max_size=5),
+        st.dates(),
+        st.sampled_from([10**400, "B1", "a", "1e-3", 5000.0, 0.65, 1e-320, 1e308, "published", "identified"]),
+    ),
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(
+            st.text(max_size=3) | st.integers() | st.none() | st.booleans() | st.floats(), inner, max_size=3
+        )
+    ),
+    max_leaves=5,
+)
+
+
+@st.composite
+def mutilated(draw):
+    """The paper's configuration after up to four accidents: values replaced, moved into range, keys lost or added."""
+    config = {"root": copy.deepcopy(PAPER)}
+    for _ in range(draw(st.integers(1, 4))):
+        section, key = config, "root"
+        while isinstance(section[key], dict) and section[key] and draw(st.integers(0, 9)):
+            section = section[key]
+            key = draw(st.sampled_from(list(section)))
+        accident = draw(st.sampled_from(["replace", "scale", "lose", "add"]))
+        if accident == "scale" and isinstance(section[key], int | float) and abs(section[key]) < 1e300:
+            section[key] = section[key] * draw(st.floats(0, 10))
+        elif accident == "lose" and section is not config:
+            del section[key]
+        elif accident == "add" and isinstance(section[key], dict):
+            section[key][draw(st.text(max_size=3) | st.integers() | st.none())] = draw(JUNK)
+        else:
+            section[key] = draw(JUNK)
+    return config["root"]
+
+
+@FUZZ
+@given(mutilated())
+def test_any_configuration_runs_or_is_refused_in_lines_that_name_a_key(config):
+    for line in problems(config):
+        assert re.match(r"\S.* (is|cannot) .*must ", line)
+        assert "\n" not in line
+
+
+def within(entry):
+    """Values that the schema allows."""
+    if "enum" in entry:
+        return st.sampled_from(entry["enum"])
+    if entry["type"] == "integer":
+        return st.integers(entry["minimum"], entry["maximum"])
+    return st.floats(
+        entry.get("minimum", entry.get("exclusiveMinimum")),
+        entry.get("maximum", entry.get("exclusiveMaximum")),
+        exclude_min="exclusiveMinimum" in entry,
+        exclude_max="exclusiveMaximum" in entry,
+    )
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.text(alphabet="abé1.-~: {}[]\n\t,'\"&*!<>?|%@#=0e") | st.text())
+def test_any_text_is_read_as_sections_or_refused_in_one_line(tmp_path, text):
+    path = tmp_path / "mine.yaml"
+    path.write_bytes(text.encode("utf-8", "surrogatepass"))
+    try:
+        assert isinstance(read(path), dict)
+    except ConfigError as error:
+        refused = str(error)
+    else:
+        return
+    assert refused.startswith(str(path))
+    assert len(refused.splitlines()) == 1
+
+
+SCALARS = NUMBERS + [leaf for leaf in LEAVES if "enum" in leaf.entry]
+
+
+@FUZZ
+@given(
+    st.lists(
+        st.sampled_from(SCALARS).flatmap(lambda leaf: st.tuples(st.just(leaf.path), within(leaf.entry))), max_size=8
+    )
+)
+def test_values_that_the_schema_allows_meet_only_laws(values):
+    config = copy.deepcopy(PAPER)
+    for path, value in values:
+        section = config
+        for key in path[:-1]:
+            section = section[key]
+        section[path[-1]] = value
+    for line in problems(config):
+        assert re.match(r"[\w.]+ is .*, must ", line)
+        assert not any(leaf.entry["description"] in line for leaf in SCALARS)

@@ -1,0 +1,76 @@
+"""The chain in one process against the chain of the workflow's scripts, and what it adds to it."""
+
+import importlib.util
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from stiction import data
+from stiction.settings import merged, read
+from stiction.study import PairStudy
+
+ROOT = Path(__file__).parents[1]
+SMALL = {
+    "contact": {"samples": 40},
+    "beam": {"samples": 3, "width_um": 6},
+    "chaos": {"order": 3},
+    "sampling": {"strip_length_um": 1.5},
+}
+CONFIG = merged(read(ROOT / "config.yaml"), SMALL)
+HUMIDITY = 0.8
+
+
+def script(name):
+    """Import ``main`` of a script of the workflow."""
+    spec = importlib.util.spec_from_file_location(name, ROOT / "workflow" / "scripts" / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.main
+
+
+@pytest.fixture(scope="module")
+def study():
+    return PairStudy.of(CONFIG, "b")
+
+
+def test_the_stages_are_those_of_the_workflow(study, tmp_path):
+    names = [CONFIG["pairs"]["b"][side] for side in ("beam", "substrate")]
+    paths = {stage: [tmp_path / f"{stage}_{name}.nc" for name in names] for stage in ("heights", "spectrum")}
+    for name, heights, spectrum in zip(names, paths["heights"], paths["spectrum"], strict=True):
+        entry = CONFIG["surfaces"][name]
+        script("heights")(heights, {key: entry[key] for key in ("rms_nm", "skewness", "kurtosis")})
+        script("spectrum")(heights, None, spectrum, {"spacing_nm": 10, "psd": entry["published_psd"]})
+    contact, forces, chaos = (tmp_path / f"{stage}.nc" for stage in ("contact", "forces", "chaos"))
+    script("contact_chunk")(paths["heights"], paths["spectrum"], contact, CONFIG, "b", "NG", 0, 1)
+    script("forces")(contact, forces, CONFIG | {"humidity": HUMIDITY})
+    script("chaos")(forces, chaos, CONFIG, "b_rh080", "NG")
+    beams = tmp_path / "beams.nc"
+    settings = CONFIG | {"gap_um": 20, "young_modulus_GPa": 164, "strip_length_um": 1.5}
+    script("beams")(chaos, beams, settings, "b_rh080", False, 1)
+    assert_array_equal(study.forces(HUMIDITY)[0], data.vectors(data.load(forces, "forces")))
+    assert_array_equal(study.beams(HUMIDITY)["crack_length"], data.load(beams, "beams").crack_length)
+
+
+def test_a_finer_grid_shows_the_same_surfaces(study):
+    fine = replace(study, settings=merged(CONFIG, {"sampling": {"spacing_nm": 5}}))
+    seeds = [[np.random.default_rng(k) for k in (1, 2)] for _ in range(2)]
+    coarse_heights, fine_heights = study.pair.draw(*seeds[0]), fine.pair.draw(*seeds[1])
+    assert fine_heights.shape == (300, 1200)
+    # Single precision of the Fourier transforms, in units of the rms.
+    assert_allclose(fine_heights[::2, ::2], coarse_heights, atol=1e-5 * 3.4e-9 * 10)
+
+
+def test_humidity_makes_surfaces_stick_and_van_der_waals_forces_help(study):
+    dry, wet = (study.forces(humidity)[0][:, 0].mean() for humidity in (0.5, HUMIDITY))
+    assert dry < wet
+    without = replace(study, settings=merged(CONFIG, {"van_der_waals": "none"}))
+    assert np.all(without.forces(0.5)[0][:, 0] < study.forces(0.5)[0][:, 0])
+
+
+def test_a_spectrum_that_is_to_be_identified_is_asked_for():
+    config = merged(CONFIG, {"surfaces": {"B2": {"psd": "identified"}}})
+    with pytest.raises(ValueError, match="spectrum of B2 has to be identified"):
+        PairStudy.of(config, "b")
