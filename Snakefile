@@ -1,0 +1,67 @@
+"""Stiction of MEMS beams, from the statistics of two rough surfaces to the distribution of crack lengths."""
+
+import os
+import sys
+from pathlib import Path
+
+BASE = Path(workflow.basedir)
+# The code that runs is the code beside this file, whose fingerprint decides what reruns.
+sys.path.insert(0, str(BASE / "src"))
+os.environ.update(PYTHONPATH=str(BASE / "src"))
+
+
+configfile: str(BASE / "config.yaml")
+
+
+# Used only with --software-deployment-method apptainer; see workflow/stiction.def.
+container: "stiction.sif"
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/surfaces.smk"
+include: "workflow/rules/contact.smk"
+include: "workflow/rules/laws.smk"
+include: "workflow/rules/beams.smk"
+include: "workflow/rules/studies.smk"
+include: "workflow/rules/tables.smk"
+include: "workflow/rules/checks.smk"
+include: "workflow/rules/figures_studies.smk"
+include: "workflow/rules/figures.smk"
+
+
+onstart:
+    reserve_folder()
+    try:
+        provenance.record("results/provenance.json", BASE, config)
+    except (OSError, ValueError) as error:
+        raise WorkflowError(f"results/ cannot be used: {error}. Make it writable or choose another --directory.")
+    # Compiled code is cached before jobs fan out: two jobs that write one cache entry at once could mix it up.
+    shell("{sys.executable} -m stiction.compiled")
+
+
+# Seconds of work each, that do not wait in the queue of a cluster.
+localrules:
+    all,
+    heights,
+    spectrum,
+    contact,
+    forces,
+    chaos,
+    tables,
+    table_1,
+    table_2,
+    table_3,
+    checks,
+    verdict,
+    study_figures,
+    figures,
+
+
+rule all:
+    default_target: True
+    input:
+        rules.tables.input,
+        rules.figures.input,
+        rules.verdict.output,
+    message:
+        "The paper's tables and figures."

@@ -1,0 +1,87 @@
+"""The workflow is run as a user runs it: by the command line, into a temporary folder."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SMOKE = ROOT / "workflow" / "smoke.yaml"
+
+#: One case with hardly any samples, for tests that look at files and not at numbers.
+TINY = """
+run: {pairs: [b]}
+pairs: {b: {humidities: [0.88]}}
+figures: {humidity: 0.88, pair: b}
+character: {strips: 2}
+identification: {patches: 1, patch_um: 2}
+contact: {samples: 60, chunks: 2, distance_step_nm: 0.2}
+chaos: {order: 2}
+beam: {samples: 4}
+studies: {plasticity: {strips: 2}, orders: {draws: 1000}, sensitivity: {samples: 10}}
+"""
+#: All main stages lead to it.
+BEAMS = "results/beams/b_rh088_NG.nc"
+
+
+def command(directory, *arguments, configs=(SMOKE,), cores=2):
+    """Arguments of a process that runs Snakemake on the project's Snakefile in ``directory``."""
+    words = [sys.executable, "-m", "snakemake", "--snakefile", ROOT / "Snakefile", "--directory", directory]
+    words += ["--profile", ROOT / "profiles" / "default", "--cores", cores, *arguments]
+    words += ["--configfile", ROOT / "config.yaml", *configs]
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
+    return {"args": list(map(str, words)), "cwd": ROOT, "env": environment, "text": True}
+
+
+def snakemake(directory, *arguments, configs=(SMOKE,), cores=2, check=True):
+    """Run Snakemake on the project's Snakefile in ``directory``; returns the finished process, output in ``stdout``."""
+    words = command(directory, *arguments, configs=configs, cores=cores)
+    done = subprocess.run(**words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    if check and done.returncode:
+        pytest.fail(f"snakemake stopped with {done.returncode}:\n{done.stdout[-6000:]}")
+    return done
+
+
+@pytest.fixture(scope="session")
+def smoke(tmp_path_factory):
+    """Folder of a finished smoke run: one pair, two humidities, all three models."""
+    folder = tmp_path_factory.mktemp("smoke")
+    snakemake(folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def tiny(tmp_path_factory):
+    """File of the tiny configuration."""
+    path = tmp_path_factory.mktemp("config") / "tiny.yaml"
+    path.write_text(TINY)
+    return path
+
+
+@pytest.fixture(scope="session")
+def undisturbed(tmp_path_factory, tiny):
+    """Folder of a finished run of one tiny case."""
+    folder = tmp_path_factory.mktemp("undisturbed")
+    snakemake(folder, BEAMS, configs=[tiny])
+    return folder
+
+
+def datasets(folder):
+    """Content of every file of results that is not a log, a record of the run or a draft, by name."""
+    results = Path(folder) / "results"
+    found = sorted(path for kind in ("*.nc", "*.csv", "*.md") for path in results.rglob(kind))
+    return {str(path.relative_to(results)): path.read_bytes() for path in found}
+
+
+@pytest.fixture
+def overlay(tmp_path):
+    """Write a configuration overlay; returns its path."""
+
+    def write(text):
+        path = tmp_path / "mine.yaml"
+        path.write_text(text)
+        return path
+
+    return write

@@ -1,0 +1,63 @@
+"""What a run would do, asked many times over: a process that has imported Snakemake forks for every question."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+SERVER = """
+import json, os, sys
+import jsonschema, numba, scipy.integrate, scipy.interpolate, scipy.optimize, scipy.stats, snakemake.cli, xarray
+
+for line in sys.stdin:
+    folder, arguments, path = json.loads(line)
+    if (child := os.fork()) == 0:
+        os.chdir(folder)
+        for number, file in enumerate((os.devnull, path, path)):
+            os.dup2(os.open(file, os.O_RDWR | os.O_CREAT | os.O_APPEND), number)
+        snakemake.cli.main(arguments)
+        sys.exit("Snakemake went on")
+    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
+"""
+
+
+class Planner:
+    """Snakemake in one folder, by its command line.
+
+    Parameters
+    ----------
+    folder : path
+        Working directory, in which the Snakefile is found.
+    scratch : path
+        Folder for what is printed.
+    """
+
+    def __init__(self, folder, scratch):
+        self.folder, self.printed = folder, Path(scratch) / "printed.txt"
+        environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
+        self.server = subprocess.Popen(
+            [sys.executable, "-c", SERVER], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
+        )
+
+    def __call__(self, *arguments, config=(), folder=None):
+        """Exit status and all that is printed."""
+        self.printed.unlink(missing_ok=True)
+        command = [*map(str, arguments), "--configfile", "config.yaml", *map(str, config)]
+        self.server.stdin.write(json.dumps([str(folder or self.folder), command, str(self.printed)]) + "\n")
+        self.server.stdin.flush()
+        return int(self.server.stdout.readline()), self.printed.read_text()
+
+    def outputs(self, *arguments, config=()):
+        """Every file of the plan: its rule, and whether a run would make it again."""
+        status, printed = self("--summary", *arguments, config=config)
+        assert status == 0, printed
+        table = csv.DictReader(printed[printed.index("output_file\t") :].splitlines(), delimiter="\t")
+        return {row["output_file"]: (row["rule"], row["plan"] == "update pending") for row in table}
+
+    def close(self):
+        """End the server."""
+        self.server.stdin.close()
+        self.server.wait()
+        self.server.stdout.close()

@@ -1,0 +1,277 @@
+"""What a change reruns and what it must not: plans over placeholder files, in a copy of the tree."""
+
+# ruff: noqa: E501
+import re
+import shutil
+import subprocess
+from functools import reduce
+from itertools import product
+from pathlib import Path
+
+import pytest
+import yaml
+from conftest import ROOT
+from planner import Planner
+
+#: Two pairs, one figure case, so that every rule has few jobs.
+SMALL = """
+run: {pairs: [a, b]}
+pairs: {a: {humidities: [0.6, 0.8]}, b: {humidities: [0.8]}}
+figures: {humidity: 0.8, pair: b}
+contact: {chunks: 2}
+"""
+STUDIES = ("correlation", "mesh", "orders", "sample_sizes", "sensitivity/b_rms", "plasticity/a", "plasticity/b")
+READINGS = ("readings/a_base", "readings/b_base", "readings/a_psd_identified")
+TARGETS = ["all", *(f"results/studies/{name}.nc" for name in STUDIES + READINGS)]
+
+#: Which rules read the files of which, written by hand.
+READ_BY = {
+    "heights": "identify spectrum iteration character contact_chunk sensitivity plasticity",
+    "identify": "table_2 reading",
+    "spectrum": "iteration character contact_chunk table_2 correlation sensitivity plasticity checks",
+    "character": "table_1 checks",
+    "contact_chunk": "contact",
+    "contact": "forces fit humidity",
+    "forces": "fit chaos table_3 sample_sizes orders mesh checks",
+    "chaos": "beams orders checks",
+    "beams": "table_3 checks",
+    "table_3": "checks",
+    "checks": "verdict",
+}
+RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())
+#: Of pair b alone.
+OF_FIGURE = {"sensitivity", "sample_sizes", "orders", "mesh"}
+
+#: Change in words; overlay; rules that it meets, behind which all readers rerun; rules spared for files it cannot
+#: reach; names of files that stay.
+MATRIX = [
+    ("kurtosis of one surface", "surfaces: {B1: {kurtosis: 4.5}}", "heights table_1 reading", OF_FIGURE, "B2|Sub1|/b_"),
+    ("radius of its summits", "surfaces: {B1: {mean_summit_radius_um: 0.42}}", "identify table_1 reading", (),
+     "B2|/b_"),
+    ("its published spectrum", "surfaces: {B1: {published_psd: {floor_nm4: 0.9}}}", "spectrum table_1 reading",
+     OF_FIGURE, "B2|Sub1|/b_"),
+    ("source of its spectrum", "surfaces: {B1: {psd: identified}}", "spectrum table_1 reading", OF_FIGURE, "B2|/b_"),
+    ("surface in a pair", "pairs: {a: {beam: B2}}",
+     "table_1 table_2 correlation contact_chunk plasticity reading checks", OF_FIGURE,
+     "heights|spectrum|/b_"),
+    ("gap of one pair", "pairs: {a: {gap_um: 19}}", "beams reading checks", (), "/b_"),
+    ("one humidity added", "pairs: {a: {humidities: [0.6, 0.7, 0.8]}}", "forces reading table_3 checks", OF_FIGURE,
+     "/b_|/a_rh060|/a_rh080"),
+    ("one humidity removed", "pairs: {a: {humidities: [0.6]}}", "humidity reading table_3 checks", (), "/b_|/a_rh"),
+    ("seed", "seed: 2",
+     "identify iteration character contact_chunk chaos beams sensitivity plasticity orders reading", (), ""),
+    ("van der Waals model", "van_der_waals: dry", "contact_chunk sensitivity plasticity reading", (), ""),
+    ("elasticity", "solid: {young_modulus_GPa: 160}",
+     "contact_chunk beams mesh sensitivity plasticity reading checks", (), ""),
+    ("grid of surfaces", "sampling: {spacing_nm: 5}", "identify spectrum reading", (), "heights"),
+    ("length of strips", "sampling: {strip_length_um: 3.75}",
+     "character contact_chunk beams sensitivity plasticity reading checks", (), "heights|identification|spectrum"),
+    ("strips of Table I", "character: {strips: 50}", "character", (), "contact|forces"),
+    ("spacing of Table I", "character: {spacing_nm: 10}", "identify character", (), "contact|forces"),
+    ("patches of identification", "identification: {patches: 4}", "identify", (), "spectrum|_base"),
+    ("water", "water: {temperature_K: 310}", "forces humidity sensitivity reading", (), "contact"),
+    ("number of samples", "contact: {samples: 5500}", "contact_chunk", (), "studies/(sens|plas|read)"),
+    ("distance step", "contact: {distance_step_nm: 0.1}",
+     "contact_chunk sensitivity plasticity reading", (), "spectrum"),
+    ("chaos order", "chaos: {order: 6}", "chaos reading", (), "forces"),
+    ("beam thickness", "beam: {thickness_um: 2.5}", "beams mesh reading checks", (), "chaos"),
+    ("beam width", "beam: {width_um: 24}", "character contact_chunk beams mesh sensitivity plasticity reading checks",
+     (), "heights|spectrum"),
+    ("number of beams", "beam: {samples: 500}", "beams", (), "chaos|studies"),
+    ("scatter of beams", "beam: {scatter: 0.03}", "beams", (), "chaos|studies"),
+    ("humidity of the figures", "pairs: {b: {humidities: [0.6, 0.8]}}\nfigures: {humidity: 0.6}",
+     "forces humidity table_3 checks sample_sizes orders mesh sensitivity reading", (), "contact|/b_rh080|/a_"),
+    ("chunks", "contact: {chunks: 7}", "", (), ""),
+    ("points along the humidity", "figures: {humidity_points: 5}", "humidity", (), ""),
+    ("study: iteration", "studies: {iteration: {fields: 4}}", "iteration", (), ""),
+    ("studies", "studies: {sensitivity: {step: 0.1}, plasticity: {strips: 50}, sample_shares: [0.1, 0.2], "
+     "orders: {draws: 1000}, mesh: {strips_um: [7.5]}}",
+     "sensitivity plasticity sample_sizes orders mesh", (), "readings"),
+    ("study: readings", "studies: {readings: {samples: 500}}", "reading", (), ""),
+]  # fmt: skip
+# Of each section one key at least, and what the README promises, are planned every time.
+FURTHER = {"radius of its summits", "its published spectrum", "length of strips", "spacing of Table I", "distance step"}
+FURTHER |= {"strips of Table I", "humidity of the figures", "scatter of beams", "one humidity removed"}
+ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)) for name, *row in MATRIX]
+
+
+def behind(rules):
+    """Rules and all that read their files, at any distance."""
+    reached = set(rules)
+    while more := set(" ".join(READ_BY.get(rule, "") for rule in reached).split()) - reached:
+        reached |= more
+    return reached
+
+
+class Tree:
+    """A copy of the tree under git in which everything is done, with empty files for results."""
+
+    def __init__(self, folder, scratch):
+        self.folder = folder
+        for name in ("Snakefile", "config.yaml"):
+            shutil.copy2(ROOT / name, folder)
+        for name in ("workflow", "src", "profiles"):
+            shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+        (folder / ".gitignore").write_text(".gitignore\n.snakemake/\nresults/\n__pycache__/\n")
+        for command in (["init", "-b", "main"], ["add", "."], ["commit", "-m", "all"]):
+            self.git(*command)
+        self.small = scratch / "small.yaml"
+        self.small.write_text(SMALL)
+        self.overlay = scratch / "overlay.yaml"
+        self.planner = Planner(folder, scratch)
+        for name in self.planner.outputs(*TARGETS, config=[self.small]):
+            path = folder / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.touch()
+        touched = [*TARGETS, "--touch", "--forceall", "--scheduler", "greedy", "--no-hooks"]
+        status, printed = self.planner(*touched, config=[self.small])
+        assert status == 0, printed
+
+    def git(self, *command):
+        """Run git here."""
+        person = ["-c", "user.name=nobody", "-c", "user.email=nobody@example.org"]
+        subprocess.run(["git", "-C", self.folder, *person, *command], check=True, capture_output=True)
+
+    def append(self, path, text):
+        """Put text at the end of a file."""
+        with (self.folder / path).open("a") as file:
+            file.write(text)
+
+    def rerun(self, *arguments, overlay="{}"):
+        """Files that would be made again: name to rule."""
+        self.overlay.write_text(overlay)
+        outputs = self.planner.outputs(*TARGETS, *arguments, config=[self.small, self.overlay])
+        return {name: rule for name, (rule, again) in outputs.items() if again}
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """The tree with everything done."""
+    tree = Tree(tmp_path_factory.mktemp("tree"), tmp_path_factory.mktemp("scratch"))
+    yield tree
+    tree.planner.close()
+
+
+@pytest.fixture
+def tree(done):
+    """The tree, put back afterwards."""
+    yield done
+    done.git("checkout", "--force", "main")
+
+
+def known(rerun):
+    """Rules that rerun, but those of figures and further tables, which only read."""
+    return RULES & set(rerun.values())
+
+
+def test_nothing_is_left_to_do(tree):
+    assert tree.rerun() == {}
+
+
+@pytest.mark.parametrize(("overlay", "met", "spared", "stay"), ROWS)
+def test_a_setting_reruns_what_it_meets_and_its_readers_and_no_more(tree, overlay, met, spared, stay):
+    rerun = tree.rerun(overlay=overlay)
+    assert known(rerun) == behind(met.split()) - set(spared)
+    assert not [name for name in rerun if stay and re.search(stay, name) and rerun[name] in RULES - {"table_3"}]
+
+
+def test_adding_a_humidity_runs_no_contact_and_no_surface(tree):
+    rerun = tree.rerun(overlay="pairs: {a: {humidities: [0.6, 0.7, 0.8]}}")
+    made = {name.removeprefix("results/") for name in rerun if name.startswith(("results/c", "results/f", "results/b"))}
+    files = {f"{stage}/a_rh070_{model}.nc" for stage, model in product(("forces", "chaos"), ("G", "NG"))}
+    beams = {f"beams/a_rh070_{model}.nc" for model in ("G", "NG", "GEO")}
+    assert {name for name in made if not re.match("checks|figures|fit/", name)} == files | beams
+
+
+def test_neither_cores_nor_order_of_keys_rerun_anything(tree):
+    def backwards(value):
+        return {key: backwards(value[key]) for key in reversed(value)} if isinstance(value, dict) else value
+
+    path = tree.folder / "config.yaml"
+    path.write_text(yaml.safe_dump(backwards(yaml.safe_load(path.read_text())), sort_keys=False))
+    assert path.read_text().startswith("studies:")
+    assert tree.rerun("--cores", "7", "--set-threads", "beams=3") == {}
+
+
+def test_comments_docstrings_and_touched_files_rerun_nothing(tree):
+    for path in [*tree.folder.rglob("*.py"), *tree.folder.rglob("*.smk"), tree.folder / "config.yaml"]:
+        tree.append(path, "\n\n# A remark.\n")
+        if path.suffix == ".py" and path.read_text().startswith('"""'):
+            path.write_text(path.read_text().replace('"""', '"""In other words: ', 1))
+    for path in tree.folder.glob("workflow/resources/*"):
+        path.touch()
+    assert tree.rerun() == {}
+
+
+def test_a_branch_and_back_reruns_nothing(tree):
+    tree.git("checkout", "-b", "other")
+    tree.append("src/stiction/streams.py", "\nOTHER = 1\n")
+    tree.append("workflow/scripts/heights.py", "\nOTHER = 1\n")
+    tree.git("commit", "-am", "other")
+    assert tree.rerun() != {}
+    tree.git("checkout", "main")
+    assert tree.rerun() == {}
+
+
+# By hand: what a module is for says which rules must and must not care.
+SPOTS = [
+    ("src/stiction/beam.py", "beams mesh reading", "heights spectrum contact_chunk contact forces chaos"),
+    ("src/stiction/meniscus.py", "forces sensitivity reading", "heights spectrum character contact_chunk contact"),
+    ("src/stiction/asperity.py", "contact_chunk sensitivity", "heights spectrum identify character"),
+    ("src/stiction/identify.py", "identify reading", "heights spectrum character contact_chunk forces beams"),
+    ("src/stiction/tables.py", "table_1 table_2 table_3", "heights spectrum character contact forces beams reading"),
+    ("src/stiction/provenance.py", "", " ".join(RULES)),
+    ("workflow/scripts/contact_chunk.py", "contact_chunk contact forces", "heights spectrum sensitivity reading"),
+    ("workflow/scripts/beams.py", "beams table_3 checks", "chaos mesh forces reading"),
+]
+
+
+@pytest.mark.parametrize(("path", "must", "must_not"), SPOTS, ids=[Path(spot[0]).name for spot in SPOTS])
+def test_code_reruns_what_it_computes(tree, path, must, must_not):
+    tree.append(path, "\nCHANGED = 1\n")
+    rerun = known(tree.rerun())
+    assert set(must.split()) <= rerun
+    assert not set(must_not.split()) & rerun
+
+
+def test_code_that_draws_reruns_no_number(tree):
+    drawing = sorted((tree.folder / "src" / "stiction").glob("figures*.py"))
+    for path in drawing:
+        tree.append(path, "\nCHANGED = 1\n")
+    assert known(tree.rerun()) == set()
+
+
+IMPORT = re.compile(
+    r"^\s*(?:from stiction import (.+)|from stiction\.(\w+) import|import stiction\.(\w+))", re.MULTILINE
+)
+
+
+def imported(path):
+    """Modules of the package that a file imports, read without a parser."""
+    found = [re.split(r",\s*", group) for match in IMPORT.findall(path.read_text()) for group in match if group]
+    return {name.split(" as ")[0].strip() for names in found for name in names}
+
+
+def reached(script):
+    """Modules behind a script."""
+    modules = imported(script)
+    while more := reduce(set.union, (imported(ROOT / "src/stiction" / f"{m}.py") for m in modules), set()) - modules:
+        modules |= more
+    return modules
+
+
+CODE = sorted(p.relative_to(ROOT) for p in [*ROOT.glob("src/stiction/*.py"), *ROOT.glob("workflow/scripts/*.py")])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", CODE, ids=[path.name for path in CODE])
+def test_every_module_and_script_reruns_its_rules_and_their_readers(tree, path):
+    tree.append(path, "\nCHANGED = 1\n")
+    scripts = {rule: ROOT / "workflow" / "scripts" / f"{rule}.py" for rule in RULES}
+    if path.parts[0] == "workflow":
+        met = {path.stem} & RULES
+    else:
+        met = {rule for rule, script in scripts.items() if path.stem in reached(script)}
+    if "contact" in met:  # chunks are temporary: to gather them anew they are computed anew
+        met |= {"contact_chunk"}
+    assert known(tree.rerun()) == behind(met)

@@ -1,0 +1,85 @@
+"""The main line from end to end, small."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+from conftest import SMOKE, snakemake
+
+MINE = """
+run:
+  pairs: [mine]
+surfaces:
+  Etched:
+    {rms_nm: 2.5, skewness: -0.5, kurtosis: 3.6, psd: identified,
+     mean_summit_radius_um: 0.5, summit_density_per_um2: 40}
+pairs:
+  mine: {beam: Etched, substrate: Sub1, gap_um: 10, humidities: [0.5]}
+figures: {humidity: 0.5, pair: mine}
+contact: {samples: 60}
+chaos: {order: 2}
+beam: {samples: 6}
+"""
+
+
+def rows(path):
+    with path.open() as file:
+        return list(csv.DictReader(file))
+
+
+def test_smoke_run_gives_all_tables_and_every_case_of_the_third(smoke):
+    tables = smoke / "results" / "tables"
+    cases = {(r["pair"], r["relative_humidity"], r["model"]) for r in rows(tables / "table_3.csv")}
+    assert cases == {("b", rh, model) for rh in ("0.67", "0.88") for model in ("G", "NG", "GEO")}
+    for name in ("table_1", "table_2", "table_3"):
+        assert (tables / f"{name}.md").read_text().startswith("Table")
+
+
+def test_adhesion_grows_with_humidity_and_negative_skewness_sticks_more(smoke):
+    energy = {
+        (r["relative_humidity"], r["model"]): (float(r["meso_energy_J_per_m2"]), float(r["meso_energy_se_J_per_m2"]))
+        for r in rows(smoke / "results" / "tables" / "table_3.csv")
+    }
+    for dry, humid in ((("0.67", "NG"), ("0.88", "NG")), (("0.67", "G"), ("0.67", "NG"))):
+        (low, low_error), (high, high_error) = energy[dry], energy[humid]
+        assert high - low > 4 * (low_error**2 + high_error**2) ** 0.5
+
+
+def test_a_second_run_has_nothing_to_do(smoke):
+    assert "Nothing to be done" in snakemake(smoke, "-n").stdout
+
+
+def test_log_of_a_long_job_shows_its_progress(smoke):
+    log = next((smoke / "results" / "logs" / "contact").glob("b_NG/*.log"))
+    assert "surface pairs: 100%" in log.read_text()
+
+
+def test_a_surface_and_pair_of_the_user_run_beside_the_others(smoke, overlay):
+    done = snakemake(smoke, "tables", configs=(SMOKE, overlay(MINE)))
+    for line in done.stdout.splitlines():
+        assert "pair b" not in line, "the user's pair must not rerun another"
+    table = rows(smoke / "results" / "tables" / "table_3.csv")
+    assert {row["pair"] for row in table} == {"mine"}
+    assert {row["experiment_um"] for row in table} == {""}
+    residual = next(r for r in rows(smoke / "results" / "tables" / "table_2.csv") if r["surface"] == "Etched")
+    assert abs(float(residual["density_residual_percent"])) < 2
+
+
+@pytest.mark.parametrize("cores", [1, 2])
+def test_neither_cores_nor_chunks_change_a_byte(smoke, tmp_path, overlay, cores):
+    chunks = overlay(f"contact: {{chunks: {1 if cores == 1 else 10}}}")
+    target = "results/beams/b_rh067_NG.nc"
+    snakemake(tmp_path, target, configs=(SMOKE, chunks), cores=cores)
+    for path in sorted(Path(tmp_path, "results").rglob("*.nc")):
+        twin = smoke / path.relative_to(tmp_path)
+        assert path.read_bytes() == twin.read_bytes(), f"{path.name} differs"
+
+
+def test_datasets_carry_settings_but_no_time_or_host(smoke):
+    xarray = pytest.importorskip("xarray")
+    for path in sorted((smoke / "results").rglob("*.nc")):
+        with xarray.open_dataset(path) as dataset:
+            assert {"Conventions", "stage", "settings"} <= set(dataset.attrs)
+            assert set(dataset.attrs) == {"Conventions", "stage", "settings"}
+            json.loads(dataset.attrs["settings"])

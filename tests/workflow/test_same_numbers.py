@@ -1,0 +1,37 @@
+"""Where, how wide and in how many parts a run is computed changes no byte of its datasets."""
+
+import json
+import shutil
+import subprocess
+import sys
+
+import pytest
+import xarray as xr
+from conftest import BEAMS, ROOT, command, datasets, snakemake
+
+
+@pytest.mark.parametrize(("cores", "chunks"), [(4, 7), pytest.param(1, 1, marks=pytest.mark.slow)])
+def test_neither_cores_nor_chunks_change_a_byte(undisturbed, tiny, tmp_path, overlay, cores, chunks):
+    snakemake(tmp_path, BEAMS, configs=[tiny, overlay(f"contact: {{chunks: {chunks}}}")], cores=cores)
+    assert datasets(tmp_path) == datasets(undisturbed)
+
+
+def test_a_moved_checkout_gives_the_same_bytes_on_one_core(undisturbed, tiny, tmp_path, overlay):
+    for name in ("Snakefile", "config.yaml"):
+        shutil.copy2(ROOT / name, tmp_path)
+    for name in ("workflow", "src", "profiles"):
+        # With what is compiled already; numba sees that the sources are the same.
+        shutil.copytree(ROOT / name, tmp_path / name)
+    environment = command(tmp_path)["env"]
+    words = [sys.executable, "-m", "snakemake", BEAMS, "--cores", "1", "--configfile", "config.yaml", tiny]
+    done = subprocess.run([*words, overlay("contact: {chunks: 1}")], cwd=tmp_path, env=environment, capture_output=True)
+    assert done.returncode == 0, done.stderr
+    assert datasets(tmp_path) == datasets(undisturbed)
+
+
+def test_datasets_carry_settings_but_no_time_or_host(undisturbed):
+    assert len(datasets(undisturbed)) == 8  # two heights, two spectra, and contact to beams
+    for path in sorted((undisturbed / "results").rglob("*.nc")):
+        with xr.open_dataset(path) as dataset:
+            assert set(dataset.attrs) == {"Conventions", "stage", "settings"}
+            json.loads(dataset.attrs["settings"])

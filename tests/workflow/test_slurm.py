@@ -1,0 +1,269 @@
+"""The workflow on a real cluster: a SLURM of this machine alone, as any user, in a private folder, gone afterwards.
+
+Needs the daemons (apt-get install slurmctld slurmd slurm-client munge) and the plugin (pip install stiction[slurm]).
+"""
+
+import importlib.util
+import os
+import secrets
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, SMOKE, snakemake
+
+pytestmark = pytest.mark.cluster
+
+PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "srun", "squeue", "scancel")
+PATH = os.pathsep.join([os.environ["PATH"], "/usr/sbin"])
+#: Longest wait for a daemon, a job or a run [s].
+PATIENCE = 120
+
+#: The least that passes every stage of the main line.
+TINY = """
+pairs:
+  b: {humidities: [0.67]}
+contact: {samples: 12, chunks: 4}
+chaos: {order: 1}
+beam: {samples: 4}
+"""
+TARGETS = ("results/beams/b_rh067_NG.nc", "results/beams/b_rh067_GEO.nc")
+
+CONF = """
+ClusterName=test
+SlurmctldHost={host}(127.0.0.1)
+SlurmctldPort={ports[0]}
+SlurmdPort={ports[1]}
+SlurmUser={user}
+SlurmdUser={user}
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge.socket
+CommunicationParameters=NoInAddrAny,NoCtldInAddrAny
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool
+SlurmctldLogFile={folder}/slurmctld.log
+SlurmdLogFile={folder}/slurmd.log
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd.pid
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+JobAcctGatherType=jobacct_gather/none
+AccountingStorageType=accounting_storage/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+MpiDefault=none
+MinJobAge=86400
+ReturnToService=2
+SlurmdParameters=config_overrides
+NodeName={host} NodeAddr=127.0.0.1 CPUs=2 RealMemory=16000
+PartitionName=main Nodes={host} Default=YES MaxTime=60 State=UP
+"""
+
+
+def wait_for(condition, what):
+    """First true value of a condition, asked again and again."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        if found := condition():
+            return found
+        time.sleep(0.2)
+    pytest.fail(f"waited {PATIENCE} s in vain for {what}")
+
+
+def free_ports(number):
+    """Ports of this machine that nobody listens on."""
+    sockets = [socket.socket() for _ in range(number)]
+    for each in sockets:
+        each.bind(("127.0.0.1", 0))
+    ports = [each.getsockname()[1] for each in sockets]
+    for each in sockets:
+        each.close()
+    return ports
+
+
+class Cluster:
+    """A running SLURM; commands see it through their environment."""
+
+    def __init__(self, folder):
+        self.folder, self.daemons = folder, []
+        host = socket.gethostname().split(".")[0]
+        user = subprocess.check_output(["id", "-un"], text=True).strip()
+        conf = folder / "slurm.conf"
+        conf.write_text(CONF.format(folder=folder, host=host, user=user, ports=free_ports(2)))
+        for name in ("state", "spool", "bin"):
+            (folder / name).mkdir()
+        # The plugin that works inside of a job drops SLURM_CONF.
+        srun = folder / "bin" / "srun"
+        srun.write_text(f'#!/bin/sh\nSLURM_CONF={conf} exec {shutil.which("srun", path=PATH)} "$@"\n')
+        srun.chmod(0o755)
+        inherited = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "SLURM"))}
+        self.environment = inherited | {"SLURM_CONF": str(conf), "PATH": f"{srun.parent}{os.pathsep}{PATH}"}
+
+    def __enter__(self):
+        key = self.folder / "munge.key"
+        key.write_bytes(secrets.token_bytes(128))
+        key.chmod(0o600)
+        files = {
+            "key": key.name,
+            "socket": "munge.socket",
+            "pid": "munge.pid",
+            "log": "munge.log",
+            "seed": "munge.seed",
+        }
+        names = {"socket": "--socket", "seed": "--seed-file"}
+        arguments = [f"{names.get(what, f'--{what}-file')}={self.folder / file}" for what, file in files.items()]
+        try:
+            # By force, because pytest's folders are closed to others, for whom munged would have a socket open.
+            self.start("munged", "--foreground", "--force", *arguments)
+            self.wait_for((self.folder / "munge.socket").exists, "munged")
+            self.start("slurmctld", "-D", "-c", "-f", self.folder / "slurm.conf")
+            self.start("slurmd", "-D", "-f", self.folder / "slurm.conf")
+            self.wait_for(lambda: "idle" in self.command("sinfo", "-h", "-o", "%T"), "a node that is idle")
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        self.cancel(*(job for job, *_ in self.jobs()))
+        for daemon in reversed(self.daemons):
+            daemon.terminate()
+        for daemon in self.daemons:
+            try:
+                daemon.wait(20)
+            except subprocess.TimeoutExpired:
+                daemon.kill()
+                daemon.wait()
+
+    def start(self, program, *arguments):
+        """Start a daemon that lives as long as this object."""
+        with (self.folder / f"{program}.out").open("w") as out:
+            self.daemons.append(
+                subprocess.Popen(
+                    [shutil.which(program, path=PATH), *map(str, arguments)],
+                    env=self.environment,
+                    cwd=self.folder,
+                    stdin=subprocess.DEVNULL,
+                    stdout=out,
+                    stderr=subprocess.STDOUT,
+                )
+            )
+
+    def wait_for(self, condition, what):
+        """Wait for a condition as long as all daemons live."""
+
+        def asked():
+            for daemon in self.daemons:
+                if daemon.poll() is not None:
+                    out = self.folder / f"{Path(daemon.args[0]).name}.out"
+                    pytest.fail(f"{daemon.args[0]} ended with {daemon.returncode}:\n{out.read_text()[-3000:]}")
+            return condition()
+
+        return wait_for(asked, what)
+
+    def command(self, *command):
+        """What a command of SLURM prints."""
+        return subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=PATIENCE).stdout
+
+    def jobs(self, states="PENDING,RUNNING,COMPLETING"):
+        """Number, state and rule of jobs."""
+        lines = self.command("squeue", "-h", "-t", states, "-o", "%i|%T|%k").splitlines()
+        return [tuple(line.split("|")) for line in lines]
+
+    def cancel(self, *jobs):
+        if jobs:
+            self.command("scancel", *jobs)
+
+    def snakemake(self, directory, configs, *arguments):
+        """Start Snakemake on the cluster, in a process group of its own."""
+        command = [sys.executable, "-m", "snakemake", "--snakefile", ROOT / "Snakefile", "--directory", directory]
+        command += ["--workflow-profile", ROOT / "profiles" / "slurm", "--latency-wait", 5, "--jobs", 4]
+        command += ["--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", 2]
+        command += ["--default-resources", "slurm_partition=main", "mem_mb=500", "runtime=10", *arguments]
+        command += ["--configfile", ROOT / "config.yaml", *configs, "--", *TARGETS]
+        with (directory / "run.log").open("a") as log:
+            return subprocess.Popen(
+                list(map(str, command)),
+                cwd=ROOT,
+                env=self.environment,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    if missing := [program for program in PROGRAMS if not shutil.which(program, path=PATH)]:
+        pytest.skip(f"SLURM is not installed: no {', '.join(missing)}")
+    if not importlib.util.find_spec("snakemake_executor_plugin_slurm"):
+        pytest.skip("the SLURM plugin is not installed: pip install -c requirements.lock stiction[slurm]")
+    with Cluster(tmp_path_factory.mktemp("slurm")) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def configs(tmp_path_factory):
+    path = tmp_path_factory.mktemp("overlay") / "tiny.yaml"
+    path.write_text(TINY)
+    return SMOKE, path
+
+
+@pytest.fixture(scope="module")
+def local(tmp_path_factory, configs):
+    """Datasets of an undisturbed run on this machine: name to content."""
+    folder = tmp_path_factory.mktemp("local")
+    snakemake(folder, *TARGETS, configs=configs)
+    return datasets(folder)
+
+
+def datasets(folder):
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("results/**/*.nc"))}
+
+
+def finished(run, folder):
+    """Wait for the end of a run, which must be a good one."""
+    try:
+        status = run.wait(PATIENCE * 2)
+    except subprocess.TimeoutExpired:
+        os.killpg(run.pid, signal.SIGKILL)
+        status = "no end"
+    log = (folder / "run.log").read_text()
+    assert status == 0, f"snakemake ended with {status}:\n{log[-6000:]}"
+    return log
+
+
+def test_a_cluster_computes_the_same_bytes_though_a_job_was_cancelled(cluster, configs, local, tmp_path):
+    run = cluster.snakemake(tmp_path, configs)
+    cancelled = wait_for(lambda: [job for job, *_ in cluster.jobs("RUNNING")], "a job")[0]
+    cluster.cancel(cancelled)
+    log = finished(run, tmp_path)
+    assert cancelled in [job for job, *_ in cluster.jobs("CANCELLED")]
+    assert "Trying to restart job" in log
+    ran = " ".join(rule for *_, rule in cluster.jobs("COMPLETED"))
+    assert "contact_chunk" in ran, "the chunks must have run on the cluster"
+    assert "beams" in ran
+    assert datasets(tmp_path) == local
+
+
+def test_nothing_is_lost_when_snakemake_is_killed_and_started_again(cluster, configs, local, tmp_path):
+    gathered = tmp_path / "results" / "contact" / "b_NG.nc"
+    run = cluster.snakemake(tmp_path, configs)
+    wait_for(gathered.exists, "the contact of all samples")
+    os.killpg(run.pid, signal.SIGKILL)
+    run.wait()
+    cluster.cancel(*(job for job, *_ in cluster.jobs()))
+    wait_for(lambda: not cluster.jobs(), "the end of all jobs")
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("results/**/*.nc")}
+    assert gathered in before
+    finished(cluster.snakemake(tmp_path, configs, "--unlock"), tmp_path)
+    log = finished(cluster.snakemake(tmp_path, configs), tmp_path)
+    again = log.rpartition("Job stats:")[2]
+    assert "contact_chunk" not in again, "what was there must not run again"
+    assert all(path.stat().st_mtime_ns == time_ for path, time_ in before.items() if path.exists())
+    assert datasets(tmp_path) == local

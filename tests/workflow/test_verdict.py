@@ -1,0 +1,38 @@
+"""The last rules: a run whose results break a law ends with a sentence, and keeps its report."""
+
+import json
+import shutil
+from pathlib import Path
+
+from conftest import snakemake
+
+
+def verdict(folder):
+    """Judge the checks that lie in a folder, without what they were made from."""
+    return snakemake(folder, "results/verdict.txt", "--allowed-rules", "verdict", check=False)
+
+
+def test_all_checks_of_the_smoke_run_pass(smoke):
+    assert (smoke / "results" / "verdict.txt").read_text().startswith("All ")
+    assert "**FAILED**" not in (smoke / "results" / "checks.md").read_text()
+
+
+def test_a_failed_check_ends_the_run_with_a_sentence_and_the_report_stays(smoke, tmp_path):
+    results = tmp_path / "results"
+    results.mkdir()
+    report = Path(shutil.copy(smoke / "results" / "checks.csv", results))
+    text = report.read_text()
+    assert verdict(tmp_path).returncode == 0
+    report.write_text(text.replace(",True,", ",False,", 1))
+    done = verdict(tmp_path)
+    assert done.returncode == 1
+    assert f"1 of {len(text.splitlines()) - 1} checks of the results failed." in done.stdout
+    assert "Traceback" not in done.stdout
+    assert report.exists()
+    assert not (results / "verdict.txt").exists()
+
+
+def test_the_run_is_recorded_beside_the_results(smoke):
+    run = json.loads((smoke / "results" / "provenance.json").read_text())[0]
+    assert run["config"]["contact"]["samples"] == 200
+    assert run["versions"]["snakemake"]

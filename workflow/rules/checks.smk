@@ -1,0 +1,59 @@
+"""The last rules: what was computed is checked against what must hold."""
+
+LAWS = [(case, model) for case in CASES for model in ("G", "NG")]
+OUTCOMES = [(case, model) for case in CASES for model in MODELS]
+
+
+# Judges nothing: files of a failed rule are removed, and this report must outlive a failure.
+rule checks:
+    input:
+        spectrum=expand("results/spectrum/{surface}.nc", surface=SURFACES),
+        character=expand("results/character/{surface}_{model}.nc", surface=SURFACES, model=("NG", "G")),
+        forces=[f"results/forces/{case}_{model}.nc" for case, model in LAWS],
+        chaos=[f"results/chaos/{case}_{model}.nc" for case, model in LAWS],
+        beams=[f"results/beams/{case}_{model}.nc" for case, model in OUTCOMES],
+        table="results/tables/table_3.csv",
+    output:
+        csv="results/checks.csv",
+        markdown="results/checks.md",
+    log:
+        "results/logs/checks.log",
+    resources:
+        mem_mb=700,
+        runtime=10,
+    params:
+        settings={
+            "laws": keys_of(LAWS),
+            "cases": keys_of(OUTCOMES),
+            "surfaces": [(surface, model) for surface in SURFACES for model in ("NG", "G")],
+            "targets": {
+                surface: {key: config["surfaces"][surface][key] for key in ("rms_nm", "skewness", "kurtosis")}
+                for surface in SURFACES
+            },
+            "skewed": [pair for pair in PAIRS if skewed_negatively(pair)],
+            "beams": {pair: nominal_beam(pair) for pair in PAIRS},
+            "strip": {"length_um": config["sampling"]["strip_length_um"]},
+        },
+        code=code("checks.py"),
+    message:
+        "Check the results."
+    script:
+        "../scripts/checks.py"
+
+
+rule verdict:
+    input:
+        "results/checks.csv",
+    output:
+        "results/verdict.txt",
+    log:
+        "results/logs/verdict.log",
+    resources:
+        mem_mb=600,
+        runtime=10,
+    params:
+        code=code("verdict.py"),
+    message:
+        "All checks must have passed."
+    script:
+        "../scripts/verdict.py"

@@ -1,0 +1,177 @@
+"""What all rules share: the checked configuration, names of cases, settings and code that a job depends on."""
+
+import fcntl
+
+from stiction import provenance, settings
+from stiction.settings import case_id
+
+
+wildcard_constraints:
+    surface="[A-Za-z][A-Za-z0-9]*",
+    pair="[A-Za-z][A-Za-z0-9]*",
+    model="NG|G|GEO",
+    case=settings.CASE,
+    chunk="[0-9]+",
+    number="[0-9]+",
+
+
+try:
+    for file in workflow.configfiles:  # Snakemake takes the last of two equal keys without a word
+        settings.read(file)
+    settings.validate(config, settings.read(BASE / "workflow" / "schemas" / "config.schema.yaml"))
+except settings.ConfigError as error:
+    raise WorkflowError(f"The configuration cannot run:\n{error}")
+
+
+def in_order(value):
+    """The same with sorted keys: their order in a file changes no parameter of a rule."""
+    return {key: in_order(value[key]) for key in sorted(value)} if isinstance(value, dict) else value
+
+
+config.update(in_order(config))
+PAIRS = config["run"]["pairs"]
+SIDES = ("beam", "substrate")
+STYLE = str(BASE / "src" / "stiction" / "stiction.mplstyle")
+SUMMITS = {"mean_summit_radius_um", "summit_density_per_um2"}
+SURFACES = [
+    name for name in config["surfaces"] if any(name in (config["pairs"][p][side] for side in SIDES) for p in PAIRS)
+]
+# Those whose summits were measured can have their spectrum identified.
+MEASURED = [name for name in SURFACES if SUMMITS <= config["surfaces"][name].keys()]
+CASES = [case_id(pair, humidity) for pair in PAIRS for humidity in config["pairs"][pair]["humidities"]]
+FIGURE_CASES = [case_id(pair, config["figures"]["humidity"]) for pair in PAIRS]
+FIGURE_PAIR = config["figures"]["pair"] if config["figures"]["pair"] in PAIRS else PAIRS[0]
+
+
+def code(script):
+    """Fingerprint of a script and of all code of the package behind it."""
+    return provenance.fingerprint(BASE / "workflow" / "scripts" / script)
+
+
+def section(*names, **more):
+    """Sections of the configuration that a job depends on, as one plain dict."""
+    return {name: config[name] for name in names} | more
+
+
+def moments_of(wildcards):
+    """Moments of one surface, Table I."""
+    entry = config["surfaces"][wildcards.surface]
+    return {key: entry[key] for key in ("rms_nm", "skewness", "kurtosis")}
+
+
+def spectrum_source(wildcards):
+    """An identified spectrum depends on its identification."""
+    identified = config["surfaces"][wildcards.surface]["psd"] == "identified"
+    return {"identification": "results/identification/{surface}.nc"} if identified else {}
+
+
+def surfaces_of_pair(wildcards):
+    """Datasets of the beam's and the substrate's surface, in this order."""
+    names = [config["pairs"][wildcards.pair][side] for side in SIDES]
+    return {
+        stage: expand("results/{stage}/{surface}.nc", stage=stage, surface=names) for stage in ("heights", "spectrum")
+    }
+
+
+def meeting(wildcards):
+    """Which surfaces meet, as names because a change of input files reruns nothing, and how wide."""
+    pair = config["pairs"][wildcards.pair]
+    return {"surfaces": [pair[side] for side in SIDES], "beam": {"width_um": config["beam"]["width_um"]}}
+
+
+def contact_settings(wildcards):
+    """All that the contact of a pair depends on; neither humidity nor the number of chunks."""
+    contact = {key: value for key, value in config["contact"].items() if key != "chunks"}
+    return section("seed", "sampling", "solid", "van_der_waals", contact=contact, **meeting(wildcards))
+
+
+def printed(number):
+    """The published table."""
+    return str(BASE / "workflow" / "resources" / f"table_{number}.csv")
+
+
+HELD = []  # open files: the lock of this run goes with the process
+
+
+def reserve_folder():
+    """Refuse a second run in this folder; unlike Snakemake's own lock, this one does not outlive a killed run."""
+    try:
+        HELD.append(open(".snakemake/running", "w"))
+        fcntl.flock(HELD[-1], fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise WorkflowError("Another run works in this folder. Wait for its end, or end it.")
+
+
+# Studies beside the main line.
+STUDIES = config["studies"]
+FIGURE_CASE = case_id(FIGURE_PAIR, config["figures"]["humidity"])
+CONTACT = {key: value for key, value in config["contact"].items() if key not in ("chunks", "samples")}
+MOMENTS = ("rms", "skewness", "kurtosis")
+PRESSED_PAIRS = [pair for pair in PAIRS if pair in STUDIES["plasticity"]["distance_nm"]]
+# Section of the configuration in which a reading changes a key; the source of the spectra stands with each surface.
+CHANGED = {"van_der_waals": None, "psd": None, "every": "contact", "spacing_nm": "sampling", "poisson_ratio": "solid"}
+READINGS = {"base": {}} | {
+    f"{key}_{value}": {part: {key: value}} if part else {key: value}
+    for key, part in CHANGED.items()
+    for value in STUDIES["readings"][key]
+}
+
+
+def psd_under(reading, surface):
+    """Source of the spectrum of a surface under a reading: the one it asks for, where that is known."""
+    entry = config["surfaces"][surface]
+    known = {"published": "published_psd" in entry, "identified": surface in MEASURED}
+    wanted = READINGS[reading].get("psd", entry["psd"])
+    return wanted if known[wanted] else entry["psd"]
+
+
+def identified_under(wildcards):
+    """Surfaces of a pair whose spectrum is an identified one under a reading."""
+    names = sorted({config["pairs"][wildcards.pair][side] for side in SIDES})
+    return [name for name in names if psd_under(wildcards.reading, name) == "identified"]
+
+
+def reading_settings(wildcards):
+    """Sections of the configuration that a reading starts from, and what it changes."""
+    pair, reading = config["pairs"][wildcards.pair], wildcards.reading
+    return {
+        "base": section(
+            "seed",
+            "sampling",
+            "solid",
+            "van_der_waals",
+            "water",
+            "chaos",
+            contact=CONTACT | {"samples": STUDIES["readings"]["samples"]},
+            # Without scatter, which models G and NG do not know.
+            beam={key: config["beam"][key] for key in ("length_um", "width_um", "thickness_um", "elements")}
+            | {"samples": STUDIES["readings"]["beams"]},
+            pairs={wildcards.pair: pair},
+            surfaces={
+                name: config["surfaces"][name] | {"psd": psd_under(reading, name)}
+                for name in (pair[side] for side in SIDES)
+            },
+        ),
+        "changes": {key: change for key, change in READINGS[reading].items() if key != "psd"},
+        "identified": identified_under(wildcards),
+    }
+
+
+def keys_of(cases):
+    """Pair, humidity and model of every (case, model)."""
+    return [(settings.pair_of(case), settings.humidity_of(case), model) for case, model in cases]
+
+
+def skewed_negatively(pair):
+    """Whether no surface of a pair is skewed positively and one is negatively."""
+    skewness = [config["surfaces"][config["pairs"][pair][side]]["skewness"] for side in SIDES]
+    return max(skewness) <= 0 > min(skewness)
+
+
+def nominal_beam(pair):
+    """Beam of a pair as the configuration has it."""
+    dimensions = ("length_um", "width_um", "thickness_um", "elements")
+    return {key: config["beam"][key] for key in dimensions} | {
+        "gap_um": config["pairs"][pair]["gap_um"],
+        "young_modulus_GPa": config["solid"]["young_modulus_GPa"],
+    }

@@ -1,0 +1,43 @@
+"""Sec. III-A: adhesive contact of surface pairs, free of humidity."""
+
+
+rule contact_chunk:
+    input:
+        unpack(surfaces_of_pair),
+    output:
+        temp("results/contact/{pair}_{model}/{chunk}-of-{number}.nc"),
+    log:
+        "results/logs/contact/{pair}_{model}/{chunk}-of-{number}.log",
+    resources:
+        mem_mb=800,
+        runtime=30,
+    params:
+        settings=contact_settings,
+        code=code("contact_chunk.py"),
+    message:
+        "Contact of {wildcards.model} surfaces of pair {wildcards.pair}, chunk {wildcards.chunk} of {wildcards.number}."
+    script:
+        "../scripts/contact_chunk.py"
+
+
+rule contact:
+    input:
+        expand(
+            "results/contact/{{pair}}_{{model}}/{chunk}-of-{number}.nc",
+            chunk=range(config["contact"]["chunks"]),
+            number=config["contact"]["chunks"],
+        ),
+    output:
+        "results/contact/{pair}_{model}.nc",
+    log:
+        "results/logs/contact/{pair}_{model}.log",
+    resources:
+        mem_mb=700,
+        runtime=10,
+    params:
+        settings=contact_settings,
+        code=code("contact.py") | code("contact_chunk.py"),
+    message:
+        "Gather the contact of {wildcards.model} surfaces of pair {wildcards.pair} (Sec. III-A)."
+    script:
+        "../scripts/contact.py"

@@ -1,0 +1,80 @@
+"""Tables I, II and III, each as CSV and as Markdown for reading."""
+
+MODELS = ("G", "NG", "GEO")
+
+
+rule table_1:
+    input:
+        characters=expand("results/character/{surface}_{model}.nc", surface=SURFACES, model=("NG", "G")),
+        printed=printed(1),
+    output:
+        csv="results/tables/table_1.csv",
+        markdown="results/tables/table_1.md",
+    log:
+        "results/logs/tables/table_1.log",
+    resources:
+        mem_mb=600,
+        runtime=10,
+    params:
+        settings={
+            "keys": [(s, m) for s in SURFACES for m in ("NG", "G")],
+            "measured": {s: config["surfaces"][s] for s in SURFACES},
+        },
+        code=code("table_1.py"),
+    message:
+        "Table I: statistics of the simulated surfaces."
+    script:
+        "../scripts/table_1.py"
+
+
+rule table_2:
+    input:
+        identifications=expand("results/identification/{surface}.nc", surface=MEASURED),
+        spectra=expand("results/spectrum/{surface}.nc", surface=MEASURED),
+        printed=printed(2),
+    output:
+        csv="results/tables/table_2.csv",
+        markdown="results/tables/table_2.md",
+    log:
+        "results/logs/tables/table_2.log",
+    resources:
+        mem_mb=600,
+        runtime=10,
+    params:
+        settings={"surfaces": MEASURED},
+        code=code("table_2.py"),
+    message:
+        "Table II: published and identified spectra."
+    script:
+        "../scripts/table_2.py"
+
+
+rule table_3:
+    input:
+        beams=expand("results/beams/{case}_{model}.nc", case=CASES, model=MODELS),
+        forces=expand("results/forces/{case}_{model}.nc", case=CASES, model=("G", "NG", "NG")),
+        printed=printed(3),
+    output:
+        csv="results/tables/table_3.csv",
+        markdown="results/tables/table_3.md",
+    log:
+        "results/logs/tables/table_3.log",
+    resources:
+        mem_mb=600,
+        runtime=10,
+    params:
+        settings={"keys": [(settings.pair_of(c), settings.humidity_of(c), m) for c in CASES for m in MODELS]},
+        code=code("table_3.py"),
+    message:
+        "Table III: crack lengths and adhesion energies."
+    script:
+        "../scripts/table_3.py"
+
+
+rule tables:
+    input:
+        rules.table_1.output,
+        rules.table_2.output,
+        rules.table_3.output,
+    message:
+        "All tables."

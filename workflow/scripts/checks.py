@@ -1,0 +1,35 @@
+"""Check what was computed against what must hold; judges nothing, so that its report outlives a failure."""
+
+from itertools import chain
+
+from stiction import checks, data, tables
+from stiction.beam import Beam
+from stiction.logs import logged
+from stiction.units import si
+
+
+def main(paths, csv, markdown, settings):
+    """Write all checks, passed or not."""
+    laws, cases, surfaces = ([tuple(key) for key in settings[name]] for name in ("laws", "cases", "surfaces"))
+
+    def loaded(stage, keys):
+        return {key: data.load(path, stage) for key, path in zip(keys, paths[stage], strict=True)}
+
+    forces, targets = loaded("forces", laws), settings["targets"]
+    defects = {surface: float(spectrum.defect) for surface, spectrum in loaded("spectrum", targets).items()}
+    beams = {pair: Beam(**si(entry)) for pair, entry in settings["beams"].items()}
+    found = chain(
+        checks.of_surfaces(loaded("character", surfaces), targets, defects),
+        checks.of_laws(forces, loaded("chaos", laws)),
+        checks.of_trends(forces, settings["skewed"]),
+        checks.of_beams(loaded("beams", cases), forces, beams, si(settings["strip"])["length"]),
+        checks.of_table(tables.published(paths.table).to_dict("records")),
+    )
+    table = checks.table(found)
+    data.save_text(table.to_csv(index=False), csv)
+    data.save_text(checks.markdown(table), markdown)
+
+
+if __name__ == "__main__":
+    with logged(snakemake.log[0]):
+        main(snakemake.input, snakemake.output.csv, snakemake.output.markdown, snakemake.params.settings)

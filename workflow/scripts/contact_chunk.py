@@ -1,0 +1,30 @@
+"""Sec. III-A: contact of a range of surface pairs."""
+
+from stiction import data, pairs
+from stiction.contact import contact_of_samples
+from stiction.logs import logged, progress
+
+
+def main(heights, spectra, output, settings, pair, model, chunk, number):
+    """Draw surface pairs and keep their solid pressure and bearing area."""
+    surfaces = [(data.load(h, "heights"), data.load(s, "spectrum")) for h, s in zip(heights, spectra, strict=True)]
+    meeting = pairs.surface_pair(surfaces, model, settings)
+    total = settings["contact"]["samples"]
+    samples = range(total * chunk // number, total * (chunk + 1) // number)
+    streams = pairs.streams_of_sides(settings["seed"], pair)
+    curves = contact_of_samples(meeting, streams, progress(samples, "surface pairs"))
+    data.save(data.contact(*curves, meeting.distances, samples), output, "contact", settings)
+
+
+if __name__ == "__main__":
+    with logged(snakemake.log[0]):
+        main(
+            snakemake.input.heights,
+            snakemake.input.spectrum,
+            snakemake.output[0],
+            snakemake.params.settings,
+            snakemake.wildcards.pair,
+            snakemake.wildcards.model,
+            int(snakemake.wildcards.chunk),
+            int(snakemake.wildcards.number),
+        )

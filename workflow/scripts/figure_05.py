@@ -1,0 +1,16 @@
+"""Figure 5: a force curve and its law."""
+
+from stiction import data
+from stiction.figures import save
+from stiction.figures_forces import fitted_curve
+from stiction.logs import logged
+
+
+def main(forces, fit, outputs):
+    """Draw the typical curve of one case."""
+    save(fitted_curve(data.load(forces, "forces"), data.load(fit, "fit")), *outputs)
+
+
+if __name__ == "__main__":
+    with logged(snakemake.log[0]):
+        main(snakemake.input.forces, snakemake.input.fit, snakemake.output)

@@ -1,0 +1,17 @@
+"""Figure 7: densities of the heights."""
+
+from stiction import data
+from stiction.figures import save
+from stiction.figures_surfaces import height_densities
+from stiction.logs import logged
+
+
+def main(heights, outputs, settings):
+    """Draw the densities of all surfaces."""
+    names = settings["surfaces"]
+    save(height_densities({n: data.load(p, "heights") for n, p in zip(names, heights, strict=True)}), *outputs)
+
+
+if __name__ == "__main__":
+    with logged(snakemake.log[0]):
+        main(snakemake.input.heights, snakemake.output, snakemake.params.settings)

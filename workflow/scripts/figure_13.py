@@ -1,0 +1,22 @@
+"""Figure 13: sensitivity of the adhesion energy to the moments of a surface."""
+
+from stiction import data, tables
+from stiction.figures import save
+from stiction.figures_studies import sensitivities
+from stiction.logs import logged
+
+
+def main(paths, outputs, settings):
+    """Draw the sensitivities to all moments beside those that the paper states."""
+    loaded = {
+        moment: data.load(path, "sensitivity") for moment, path in zip(settings["moments"], paths.studies, strict=True)
+    }
+    stated = tables.published(paths.printed)
+    stated = stated[stated.pair == settings["pair"]]
+    printed = dict(zip(zip(stated.moment, stated.relative_humidity, strict=True), stated.slope, strict=True))
+    save(sensitivities(loaded, printed), *outputs)
+
+
+if __name__ == "__main__":
+    with logged(snakemake.log[0]):
+        main(snakemake.input, snakemake.output, snakemake.params.settings)

@@ -1,0 +1,18 @@
+"""Crack lengths of Table III under other readings of what the paper leaves open."""
+
+from stiction import data, tables
+from stiction.figures import save
+from stiction.figures_studies import readings
+from stiction.logs import logged
+
+
+def main(paths, outputs, settings):
+    """Draw all pairs and readings."""
+    keys = map(tuple, settings["keys"])
+    loaded = {key: data.load(path, "reading") for key, path in zip(keys, paths.studies, strict=True)}
+    save(readings(loaded, tables.published(paths.printed)), *outputs)
+
+
+if __name__ == "__main__":
+    with logged(snakemake.log[0]):
+        main(snakemake.input, snakemake.output, snakemake.params.settings)

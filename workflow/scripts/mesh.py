@@ -1,0 +1,35 @@
+"""App. C, Fig. 19: what the mesh makes of one force law."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from stiction import convergence, data, data_studies, forcelaw
+from stiction.logs import logged, progress
+from stiction.study import cantilever
+from stiction.units import si
+
+
+def main(forces, output, settings):
+    """Release beams on uniform ground under ever finer meshes."""
+    forces = data.load(forces, "forces")
+    energies = forces.adhesion_energy.values[: forces.sizes["curve"]]
+    # ASSUME The paper's one realisation is a typical one: of the curves kept, that of median energy.
+    sample = int(np.argsort(energies)[len(energies) // 2])
+    law = forcelaw.coefficients(data.vectors(forces)[[sample]], float(forces.limit))[0]
+    beam = cantilever(settings, settings["pair"])
+    lengths = si({key: np.array(values) for key, values in settings["mesh"].items()})
+    meshes = convergence.whole_meshes(beam.length, lengths["elements"], lengths["strips"])
+    arrests = [
+        convergence.arrest_on_uniform_ground(
+            replace(beam, elements=round(beam.length / element)), law, round(beam.length / point)
+        )
+        for element, point in progress(meshes, "meshes")
+    ]
+    curve = forces.distance.values, forces.force.values[sample]
+    data.save(data_studies.mesh(meshes, arrests, law, curve), output, "mesh", settings)
+
+
+if __name__ == "__main__":
+    with logged(snakemake.log[0]):
+        main(snakemake.input[0], snakemake.output[0], snakemake.params.settings)

@@ -1,0 +1,30 @@
+"""Sec. II-B: the spectrum of the Gaussian field behind a non-Gaussian surface."""
+
+from stiction import cases, data
+from stiction.logs import logged
+from stiction.spectrum import CutoffSelfAffine
+from stiction.translation import Translation, spectrum_of_heights, underlying_spectrum
+from stiction.units import si
+
+
+def main(heights, identification, output, settings):
+    """Take Eq. (7) as published or as identified and invert the translation."""
+    if settings["psd"] == "identified":
+        target = cases.target_spectrum(data.load(identification, "identification"))
+    else:
+        target = CutoffSelfAffine(**si(settings["psd"]))
+    translation = Translation(cases.density(data.load(heights, "heights"), "NG"))
+    spacing = si({"spacing_nm": settings["spacing_nm"]})["spacing"]
+    underlying, defect = underlying_spectrum(target, translation, spacing)
+    achieved = spectrum_of_heights(underlying, translation, spacing)
+    data.save(data.spectrum(target, underlying, achieved, defect), output, "spectrum", settings)
+
+
+if __name__ == "__main__":
+    with logged(snakemake.log[0]):
+        main(
+            snakemake.input.heights,
+            snakemake.input.get("identification"),
+            snakemake.output[0],
+            snakemake.params.settings,
+        )
