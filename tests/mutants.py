@@ -111,7 +111,7 @@ MUTANTS = {
         ("third = radius ** (1 / 3)", "third = radius ** (1 / 2)"),
         ("share = place - row", "share = 1 - place + row"),
         ("weight = unit_force * radius", "weight = unit_force"),
-        ("force / (heights.size * spacing**2)", "force / heights.size"),
+        ("force / inside", "force / (heights.size * spacing**2)"),
         ("heights[:: self.every, :: self.every]", "heights[:: self.every, :]"),
         ("self.beam.grid.spacing * self.every", "self.beam.grid.spacing"),
         ("part * (low[cell + 1] - low[cell])", "(1 - part) * (low[cell + 1] - low[cell])"),

@@ -6,7 +6,7 @@ processes, 0). Pressures are positive in repulsion. Two functions of distance ho
 .. math:: f(d) = p_s(d) - |\Delta P| \, A(d - h_C)
 
 with the solid pressure p_s (spheres fitted to the summits, Hertz or Maugis) and the bearing area A (share of z > d).
-ASSUME: summits below the mean plane never touch, and a summit on the edge of a strip belongs to no strip.
+ASSUME: summits below the mean plane never touch.
 """
 
 from dataclasses import dataclass
@@ -18,9 +18,6 @@ from stiction.asperity import MaugisTable
 from stiction.summits import is_summit, mean_curvature
 from stiction.surfaces import RoughSurface, add_heights
 
-#: The distances reach from -8 to 7.5 standard deviations of z: no summit stands higher (probability 1e-13).
-_LOWEST, _HIGHEST = 8.0, 7.5
-
 
 @dataclass(frozen=True)
 class DistanceGrid:
@@ -31,9 +28,9 @@ class DistanceGrid:
     above: int  #: number of grid points with distance >= 0
 
     @classmethod
-    def covering(cls, deviation, step):
-        """Grid for an equivalent surface with this standard deviation [m]."""
-        return cls(step, int(np.ceil(_LOWEST * deviation / step)), int(np.ceil(_HIGHEST * deviation / step)) + 1)
+    def covering(cls, lowest, highest, step):
+        """Grid from the lowest (negative) to the highest height of an equivalent surface [m]."""
+        return cls(step, int(np.ceil(-lowest / step)), int(np.ceil(highest / step)) + 1)
 
     @property
     def solid(self):
@@ -66,8 +63,9 @@ class SurfacePair:
 
     @property
     def distances(self):
-        """Grid of the distances."""
-        return DistanceGrid.covering(np.hypot(self.beam.rms, self.substrate.rms), self.step)
+        """Grid of the distances, from which no height of z₁ + z₂ stands out."""
+        lowest, highest = (float(self.beam.table[end]) + float(self.substrate.table[end]) for end in (0, -1))
+        return DistanceGrid.covering(lowest, highest, self.step)
 
     def draw(self, beam_rng, substrate_rng):
         """Draw one equivalent surface z = z₁ + z₂; (n1, n2) float32 [m]."""
@@ -108,7 +106,9 @@ class SurfacePair:
                 )
         else:
             _add_hertz(heights, spacing, grid.step, self.solid.modulus, force)
-        return force / (heights.size * spacing**2), bearing_area(heights, grid.step, grid.below, grid.above)
+        # Points on the edge lack neighbours: summits are those of the area inside.
+        inside = (heights.shape[0] - 2) * (heights.shape[1] - 2) * spacing**2
+        return force / inside, bearing_area(heights, grid.step, grid.below, grid.above)
 
 
 @numba.njit(cache=True, nogil=True)

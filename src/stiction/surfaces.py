@@ -40,11 +40,6 @@ class StripGrid:
         """Δζ₁, Δζ₂ of the field [rad m⁻¹]."""
         return tuple(2 * np.pi / (n * self.spacing) for n in self.field_shape)
 
-    @property
-    def area(self):
-        """Apparent area of a strip, all points counted [m²]."""
-        return self.shape[0] * self.shape[1] * self.spacing**2
-
 
 @dataclass(frozen=True)
 class RoughSurface:
