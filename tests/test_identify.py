@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from published import SURFACES
 
+from stiction import identify as identification
+from stiction.errors import NotConverged
 from stiction.identify import SummitTarget, identify
 from stiction.streams import stream
 from stiction.surfaces import StripGrid
@@ -39,6 +41,13 @@ def test_no_isotropic_spectrum_has_the_summits_of_sub2():
     found = identify(target, translation, GRID, streams)
     assert found.mean_radius / target.mean_radius > 1.1
     assert found.density / target.density > 1.1
+
+
+def test_a_search_that_does_not_come_to_rest_is_an_error(monkeypatch):
+    monkeypatch.setattr(identification, "_MAX_EVALUATIONS", 2)
+    target, translation = afm("B2")
+    with pytest.raises(NotConverged, match="identified spectrum.*after 2 iterations"):
+        identify(target, translation, GRID, partial(streams, patches=1))
 
 
 def afm(name):

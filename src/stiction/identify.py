@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
+from stiction.errors import NotConverged
 from stiction.spectrum import CutoffSelfAffine, NayakSummits
 from stiction.summits import find_summits
 from stiction.surfaces import RoughSurface
@@ -13,6 +14,10 @@ from stiction.translation import underlying_spectrum
 #: Flattest and steepest power law and lowest corner (as a share of the cut-off) among which is searched.
 _SLOPES = (1.0, 40.0)
 _CORNERS = (0.01, 0.95)
+#: Step of both logarithms in a difference quotient: wide enough that the count of summits changes by many.
+_STEP = 0.04
+#: Change of the logarithms below which the search ends, and evaluations after which it is given up.
+_TOLERANCE, _MAX_EVALUATIONS = 1e-4, 40
 
 
 @dataclass(frozen=True)
@@ -62,6 +67,11 @@ def identify(target, translation, grid, rngs):
     Returns
     -------
     Identification
+
+    Raises
+    ------
+    NotConverged
+        If the search does not come to rest.
     """
     every = round(target.spacing / grid.spacing)
 
@@ -75,15 +85,21 @@ def identify(target, translation, grid, rngs):
         radius, density = simulated(parameters)
         return np.log([radius / target.mean_radius, density / target.density])
 
-    bounds = np.log([[_CORNERS[0] * target.cutoff, _SLOPES[0]], [_CORNERS[1] * target.cutoff, _SLOPES[1]]])
-    fit = least_squares(misfit, _start(target), bounds=bounds, diff_step=0.02, xtol=1e-4, max_nfev=40)
+    def slopes(parameters):
+        there = [misfit(parameters + step) for step in _STEP * np.eye(2)]
+        return (np.transpose(there) - misfit(parameters)[:, None]) / _STEP
+
+    bounds = np.log([_CORNERS, _SLOPES]).T
+    fit = least_squares(misfit, _start(target), slopes, bounds, xtol=_TOLERANCE, max_nfev=_MAX_EVALUATIONS)
+    if not fit.success:
+        raise NotConverged("identified spectrum, gradient of the misfit", fit.optimality, _TOLERANCE, fit.nfev)
     radius, density = simulated(fit.x)
     return Identification(_spectrum(fit.x, target), radius, density, fit.nfev)
 
 
 def _spectrum(parameters, target):
-    """Eq. (7) with (ln corner, ln -slope) and the rms and cut-off of the target."""
-    corner, slope = np.exp(parameters)
+    """Eq. (7) with (ln of corner / cut-off, ln -slope) and the rms and cut-off of the target."""
+    corner, slope = np.exp(parameters) * [target.cutoff, 1.0]
     floor = (target.cutoff / corner) ** -slope
     shape = CutoffSelfAffine(1.0, floor, corner, target.cutoff)
     plateau = target.rms**2 / shape.variance
@@ -92,8 +108,7 @@ def _spectrum(parameters, target):
 
 def _start(target):
     """Corner and slope, on a coarse lattice, whose continuous Gaussian summits come closest (Nayak)."""
-    corners = np.log(target.cutoff * np.geomspace(*_CORNERS, 30)[1:-1])
-    slopes = np.log(np.geomspace(*_SLOPES, 30)[1:-1])
+    corners, slopes = (np.log(np.geomspace(*ends, 30)[1:-1]) for ends in (_CORNERS, _SLOPES))
     lattice = [(corner, slope) for corner in corners for slope in slopes]
 
     def distance(parameters):
