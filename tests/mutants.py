@@ -59,9 +59,9 @@ MUTANTS = {
         ("fraction * (table[k + 1] - table[k])", "fraction * (table[k] - table[k + 1])"),
         ("scores[i, j] * scale + offset", "scores[i, j] * scale - offset"),
         ("heights[i, j] += table[k]", "heights[i, j] = table[k]"),
-        (" / step**2\n", " / step\n"),
+        ("** 2 / step**2, step)", "** 2 / step, step)"),
         ("step * np.arange(1, n // 2 + 1)", "step * np.arange(n // 2)"),
-        ("2 * np.pi / (n * spacing)", "np.pi / (n * spacing)"),
+        ("step = 2 * np.pi / (len(heights) * spacing)", "step = np.pi / (len(heights) * spacing)"),
     ],
     "summits": [
         ("and h > z[i - 1, j + 1]", "and h > z[i - 1, j]"),
@@ -70,6 +70,44 @@ MUTANTS = {
         ("/ (2 * spacing * spacing)", "/ (spacing * spacing)"),
         ("count / (inner * spacing**2)", "count / (z.size * spacing**2)"),
         ("range(1, z.shape[1] - 1)", "range(1, z.shape[1] - 2)"),
+    ],
+    "identify": [
+        ("return np.pi / self.spacing", "return 2 * np.pi / self.spacing"),
+        ("(target.cutoff / corner) ** -slope", "(target.cutoff / corner) ** slope"),
+        ("target.rms**2 / shape.variance", "target.rms / shape.variance"),
+        ("density / target.density])\n\n    def slopes", "target.density / density])\n\n    def slopes"),
+        ("return 1 / curvature.mean()", "return (1 / curvature).mean()"),
+        ("if not fit.success", "if False"),
+    ],
+    "iteration": [
+        ("spectrum.density * wanted / periodograms", "spectrum.density * periodograms"),
+        ("(square.sum() * step**2)", "square.sum()"),
+        ("np.sqrt(2 / np.pi /", "np.sqrt(2 /"),
+    ],
+    "sensitivity": [
+        ("moment + abs(moment) * step", "moment + moment * step"),
+        ("return np.sign(at[0]) *", "return"),
+        ("np.sqrt(second - first**2)", "np.sqrt(second)"),
+    ],
+    "plasticity": [
+        ("ONSET = 0.6", "ONSET = 1.6"),
+        ("np.pi * radius * interference", "2 * np.pi * radius * interference"),
+        ("height[reaching] - distance", "height[reaching]"),
+    ],
+    "pairs": [
+        ("reduced_modulus(**si(solid))", "2 * reduced_modulus(**si(solid))"),
+        ('contact["distance_step"]', '2 * contact["distance_step"]'),
+        ('for side in ("beam", "substrate")', 'for side in ("substrate", "beam")'),
+    ],
+    "choices": [
+        ("energy_error / (4 * energy)", "energy_error / energy"),
+        ("return ratio - 1, ratio * error", "return ratio - 1, error"),
+        ("both = reading.stuck & base.stuck", "both = reading.stuck"),
+    ],
+    "convergence": [
+        ("KOLMOGOROV_MEAN / np.sqrt(samples)", "KOLMOGOROV_MEAN / samples"),
+        ("1 / size - 1 / len(samples)", "1 / size"),
+        ("first = far[-1] + 1", "first = far[0] + 1"),
     ],
     "meniscus": [
         ("np.log(humidity) / WATER_MOLAR_VOLUME", "np.log10(humidity) / WATER_MOLAR_VOLUME"),

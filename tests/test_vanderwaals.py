@@ -55,5 +55,5 @@ def test_no_attraction_has_no_stress_and_no_work():
 
 
 def test_unknown_medium_is_refused_by_name():
-    with pytest.raises(KeyError, match="oil"):
+    with pytest.raises(ValueError, match="water, dry or none, got 'oil'"):
         attraction("oil")

@@ -38,5 +38,7 @@ class Attraction:
 
 
 def attraction(through):
-    """Attraction of polysilicon through ``"water"`` or ``"dry"`` air, or ``"none"``."""
+    """Attraction of polysilicon through ``"water"`` or ``"dry"`` air, or ``"none"``; ValueError for anything else."""
+    if through not in ("none", *HAMAKER_CONSTANT):
+        raise ValueError(f"attraction acts through {', '.join(HAMAKER_CONSTANT)} or none, got {through!r}")
     return Attraction(0.0 if through == "none" else HAMAKER_CONSTANT[through])
