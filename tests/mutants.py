@@ -99,8 +99,13 @@ MUTANTS = {
         ('contact["distance_step"]', '2 * contact["distance_step"]'),
         ('for side in ("beam", "substrate")', 'for side in ("substrate", "beam")'),
     ],
+    "estimates": [
+        ("/ np.sqrt(len(samples))", "/ len(samples)"),
+        ("abs(power * mean * error / centre)", "abs(mean * error / centre)"),
+        ("np.sqrt((n - 1) / n *", "np.sqrt((n - 1) *"),
+    ],
     "choices": [
-        ("energy_error / (4 * energy)", "energy_error / energy"),
+        ("slopes @ common", "np.linalg.norm(slopes * common)"),
         ("return ratio - 1, ratio * error", "return ratio - 1, error"),
         ("both = reading.stuck & base.stuck", "both = reading.stuck"),
     ],
@@ -210,7 +215,7 @@ MUTANTS = {
         ("6 * beam.bending_stiffness", "3 * beam.bending_stiffness"),
         ("return 1.5 * beam.young_modulus", "return 3 * beam.young_modulus"),
         ("beam.thickness**3 / crack_length**4", "beam.thickness**3 / crack_length**3"),
-        ("/ energy) ** 0.25", "/ energy) ** 0.2"),
+        ("CRACK_LENGTH_POWER = -1 / 4", "CRACK_LENGTH_POWER = -1 / 5"),
     ],
     "montecarlo": [
         ("1 + scatter * rng", "1 + 2 * scatter * rng"),

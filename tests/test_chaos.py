@@ -348,6 +348,13 @@ def test_chaos_draws_follow_the_kernel_density_and_it_the_input(models, dimensio
     assert np.all(values[:, 3] > values[:, mean])
 
 
+def test_the_report_compares_draws_with_those_of_the_input_that_have_a_law(models):
+    weak = np.column_stack([np.full(500, 1e-9), *np.tile(VECTORS[:1, 1:], (500, 1)).T])
+    assert not forcelaw.admissible(weak, models[4].f_limit).any()
+    values, _ = chaos.fit_report(models[4], np.vstack([VECTORS, weak]), 1000, np.random.default_rng(8))
+    np.testing.assert_allclose(values[0], chaos.statistics(VECTORS)[0], rtol=1e-12)
+
+
 def test_with_all_coordinates_the_kernel_density_keeps_the_moments_of_the_input(models):
     free = chaos.unconstrained(VECTORS)
     draws, _ = chaos.draw_kernels(models[4], VECTORS, 200_000, np.random.default_rng(9))

@@ -26,8 +26,8 @@ def compared(k):
 
 def rms_deviation(reading):
     """Deviation of one crack length from a reference."""
-    length, error = choices.mean_crack_length(reading)
-    return choices.rms_deviation(np.array([length]), np.array([error]), np.array([6e-4]))
+    length, *errors = choices.crack_length_with_errors(reading)
+    return choices.rms_deviation([length], *np.reshape(errors, (2, 1)), np.array([6e-4]))
 
 
 def scatter(estimate):
@@ -78,15 +78,23 @@ def test_beams_that_are_not_stuck_in_both_readings_do_not_count():
 
 
 def test_the_rms_deviation_is_that_of_relative_deviations():
-    rms, _ = choices.rms_deviation(np.array([11.0, 36.0]), np.array([0.1, 0.1]), np.array([10.0, 40.0]))
+    rms, _ = choices.rms_deviation([11.0, 36.0], [0.1, 0.1], [0.0, 0.0], np.array([10.0, 40.0]))
     assert_allclose(rms, 0.1)
 
 
-def test_the_error_of_an_rms_deviation_falls_with_the_number_of_cases():
+def test_the_error_of_an_rms_deviation_tells_own_from_common_noise():
     rng, references = np.random.default_rng(0), np.array([3.0, 5.0, 7.0, 11.0])
-    values, errors = references * [1.1, 0.8, 1.3, 0.9], 0.01 * references
-    studies = [
-        choices.rms_deviation(values + errors * rng.standard_normal(4), errors, references)[0] for _ in range(400)
-    ]
-    _, stated = choices.rms_deviation(values, errors, references)
-    assert np.std(studies, ddof=1) == pytest.approx(stated, rel=ALLOWED / np.sqrt(2 * 399))
+    values, errors = references * [1.1, 1.2, 1.3, 0.9], 0.01 * references
+    for own, common in ((1, 0), (0, 1), (1, 1)):
+        draws = own * rng.standard_normal((400, 4)) + common * rng.standard_normal((400, 1))
+        studies = [choices.rms_deviation(values + errors * x, errors, errors, references)[0] for x in draws]
+        _, stated = choices.rms_deviation(values, own * errors, common * errors, references)
+        assert np.std(studies, ddof=1) == pytest.approx(stated, rel=ALLOWED / np.sqrt(2 * 399))
+
+
+def test_share_of_the_deviation_that_a_reading_removes():
+    references = np.array([10.0, 20.0])
+    share, error = choices.removed_share([10.5, 21.0], [11.0, 22.0], [0.0, 0.0], references)
+    assert_allclose((share, error), (0.75, 0.0), rtol=1e-12, atol=1e-12)
+    shifted = choices.removed_share([10.51, 21.02], [11.0, 22.0], [0.01, 0.02], references)
+    assert share - shifted[0] == pytest.approx(shifted[1], rel=0.02)

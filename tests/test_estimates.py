@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from stiction.estimates import jackknife, mean_with_error
+from stiction.estimates import jackknife, mean_on_shared_samples, mean_with_error
 
 
 def test_jackknife_of_a_mean_is_the_textbook_standard_error():
@@ -21,6 +21,21 @@ def test_jackknife_error_covers_the_scatter_of_a_ratio():
     values, errors = np.transpose([experiment() for _ in range(200)])
     # The standard deviation of 200 values is known to 5 %.
     np.testing.assert_allclose(errors.mean(), values.std(ddof=1), rtol=0.2)
+
+
+@pytest.mark.parametrize("power", [1, -0.25])
+def test_errors_of_own_and_of_shared_samples_together_cover_the_scatter(power):
+    rng = np.random.default_rng(3)
+
+    def experiment():
+        shared = rng.normal(10, 2, 100)
+        values = shared.mean() ** power * rng.normal(1, 0.2 * abs(power), 100)
+        return mean_on_shared_samples(values, shared, power)
+
+    values, own, common = np.transpose([experiment() for _ in range(400)])
+    scatter, allowed = values.std(ddof=1), 4 / np.sqrt(2 * 399)
+    assert abs(np.hypot(own, common).mean() / scatter - 1) < allowed
+    assert max(own.mean(), common.mean()) / scatter < 1 - allowed
 
 
 @pytest.mark.parametrize("estimate", [mean_with_error, lambda x: jackknife(lambda mean: mean, x)])

@@ -31,7 +31,8 @@ def test_a_pair_has_the_strips_the_steps_and_the_rms_of_the_configuration():
     pair = pairs.surface_pair((datasets("B1"), datasets("Sub1")), "NG", SETTINGS)
     assert pair.beam.grid.shape == (150, 3000)
     np.testing.assert_allclose((pair.beam.rms, pair.substrate.rms), (1.7e-9, 0.17e-9), rtol=1e-12)
-    assert (pair.step, pair.every) == (0.05e-9, 1)
+    np.testing.assert_allclose(pair.step, 0.05e-9, rtol=1e-12)
+    assert pair.every == 1
 
 
 def test_sides_of_a_sample_draw_from_streams_of_their_own():

@@ -512,6 +512,8 @@ def statistics(vectors):
 def fit_report(model, vectors, n, rng):
     """Statistics of the input, of draws from its kernel density and of draws from the chaos.
 
+    All three are those of vectors that have a law of Eq. (12): no others are drawn.
+
     Parameters
     ----------
     model : ChaosModel
@@ -530,6 +532,7 @@ def fit_report(model, vectors, n, rng):
     correlations : (3, 4, 4) float64
         By source.
     """
-    sources = vectors, draw_kernels(model, vectors, n, rng)[0], draw(model, n, rng)[0]
+    lawful = vectors[forcelaw.admissible(vectors, model.f_limit)]
+    sources = lawful, draw_kernels(model, vectors, n, rng)[0], draw(model, n, rng)[0]
     values, correlations = zip(*map(statistics, sources), strict=True)
     return np.array(values), np.array(correlations)

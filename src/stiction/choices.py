@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stiction.estimates import mean_with_error
+from stiction.energy import CRACK_LENGTH_POWER
+from stiction.estimates import mean_on_shared_samples, mean_with_error
 
 
 @dataclass(frozen=True)
@@ -17,14 +18,14 @@ class Reading:
 
 
 def mean_crack_length(reading):
-    """Mean crack length of the S-shaped beams and its standard error over beams and sampled pairs [m].
+    """Mean crack length of the S-shaped beams and its standard error over beams and sampled pairs [m]."""
+    mean, *errors = crack_length_with_errors(reading)
+    return mean, np.hypot(*errors)
 
-    Beams share their finite number of sampled pairs; through l_s ~ ē^(-1/4), Eq. (13), its error adds a quarter of the
-    relative error of the mean energy.
-    """
-    mean, error = mean_with_error(reading.crack_length[reading.stuck])
-    energy, energy_error = mean_with_error(reading.energy)
-    return mean, np.hypot(error, mean * energy_error / (4 * energy))
+
+def crack_length_with_errors(reading):
+    """Mean crack length of the S-shaped beams and its standard errors: over beams, and over sampled pairs [m]."""
+    return mean_on_shared_samples(reading.crack_length[reading.stuck], reading.energy, CRACK_LENGTH_POWER)
 
 
 def shift(reading, base):
@@ -36,7 +37,7 @@ def shift(reading, base):
     mean, error = mean_with_error(reading.crack_length[both] - base.crack_length[both])
     relative = [r.energy / r.energy.mean() for r in (reading, base)]
     _, energy_error = mean_with_error(relative[0] - relative[1])
-    return mean, np.hypot(error, base.crack_length[both].mean() * energy_error / 4)
+    return mean, np.hypot(error, base.crack_length[both].mean() * CRACK_LENGTH_POWER * energy_error)
 
 
 def energy_shift(reading, base):
@@ -46,8 +47,28 @@ def energy_shift(reading, base):
     return ratio - 1, ratio * error
 
 
-def rms_deviation(values, errors, references):
-    """Root mean square of relative deviations from references (n,), with its error for independent values [-]."""
-    deviations, errors = np.asarray(values) / references - 1, np.asarray(errors) / references
+def rms_deviation(values, own, common, references):
+    """Root mean square of relative deviations from references (n,), with its standard error [-].
+
+    Parameters
+    ----------
+    values : (n,) array
+        One of each case.
+    own, common : (n,) arrays
+        Standard errors: independent from case to case, and of the samples that all cases share.
+    references : (n,) array
+    """
+    deviations = np.asarray(values) / references - 1
     rms = np.sqrt(np.mean(deviations**2))
-    return rms, np.sqrt(np.sum((deviations * errors) ** 2)) / (len(deviations) * rms)
+    slopes = deviations / (len(deviations) * rms * references)
+    return rms, np.hypot(np.linalg.norm(slopes * own), slopes @ common)
+
+
+def removed_share(values, base, errors, references):
+    """Share of the mean square deviation of ``base`` from references that ``values`` do not have, and its error [-].
+
+    ``errors`` are standard errors of values - base, whose parts are common to the cases: they add up.
+    """
+    before, after = (np.asarray(x) / references - 1 for x in (base, values))
+    total = np.sum(before**2)
+    return 1 - np.sum(after**2) / total, 2 * np.sum(np.abs(after / references) * errors) / total

@@ -3,6 +3,9 @@
 The beam is clamped at the height h and flat on the substrate beyond the crack length l; beams are `stiction.beam.Beam`.
 """
 
+#: Crack lengths follow adhesion energies to this power: l_s ~ Γ^(-1/4), Eq. (13).
+CRACK_LENGTH_POWER = -1 / 4
+
 
 def s_shape_energy(crack_length, beam):
     """Elastic energy of an S-shaped beam, 6 EI h² / l³ [J]; crack length l [m], any shape."""
@@ -37,4 +40,4 @@ def adhesion_energy(crack_length, beam):
 
 def arrest_length(energy, beam):
     """Crack length [m] at which an S-shaped beam meets the adhesion energy [J m⁻²], Eq. (13) inverted; any shape."""
-    return (1.5 * beam.young_modulus * beam.gap**2 * beam.thickness**3 / energy) ** 0.25
+    return (energy / (1.5 * beam.young_modulus * beam.gap**2 * beam.thickness**3)) ** CRACK_LENGTH_POWER

@@ -4,11 +4,36 @@ import numpy as np
 
 
 def mean_with_error(samples):
-    """Mean and its standard error over the first axis; NaN error for a single sample is an error of the caller."""
+    """Mean and its standard error over the first axis; ValueError for a single sample."""
     samples = np.asarray(samples, float)
     if len(samples) < 2:
         raise ValueError(f"a standard error needs two samples, got {len(samples)}")
     return samples.mean(axis=0), samples.std(axis=0, ddof=1) / np.sqrt(len(samples))
+
+
+def mean_on_shared_samples(values, shared, power):
+    """Mean of values that all rest on one set of samples, with both parts of its standard error.
+
+    Beams of a case share their finite number of sampled pairs: what these have by chance, all beams have.
+
+    Parameters
+    ----------
+    values : (n,) array
+        Independent of each other but for the samples.
+    shared : (m,) array
+        The samples.
+    power : float
+        The values follow the mean of the samples to this power.
+
+    Returns
+    -------
+    mean : float
+    own, common : float
+        Standard errors of the n values and of the m samples.
+    """
+    mean, own = mean_with_error(values)
+    centre, error = mean_with_error(shared)
+    return mean, own, abs(power * mean * error / centre)
 
 
 def jackknife(estimate, samples):

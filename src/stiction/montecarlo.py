@@ -52,7 +52,7 @@ class Outcome:
 def scattered_beam(beam, scatter, rng):
     """Beam with normally distributed thickness, length, width and gap of relative standard deviation ``scatter``.
 
-    # ASSUME The four dimensions are independent; the mesh keeps its number of elements and points.
+    ASSUME: the four dimensions are independent; the mesh keeps its number of elements and points.
     """
     factors = 1 + scatter * rng.standard_normal(len(SCATTERED))
     return replace(

@@ -118,14 +118,16 @@ def readings(datasets, printed):
 
 def _effect(case, base):
     """What a reading does to one case."""
-    length, error = choices.mean_crack_length(case)
+    length, own, common = choices.crack_length_with_errors(case)
     shift, shift_error = choices.shift(case, base)
     reference, _ = choices.mean_crack_length(base)
     energy, energy_error = mean_with_error(case.energy)
     energy_shift, energy_shift_error = choices.energy_shift(case, base)
     return {
         "crack_length_um": length / UM,
-        "crack_length_se_um": error / UM,
+        "crack_length_se_um": np.hypot(own, common) / UM,
+        "crack_length_beams_se_um": own / UM,
+        "crack_length_pairs_se_um": common / UM,
         "shift_percent": 100 * shift / reference,
         "shift_se_percent": 100 * shift_error / reference,
         "share_s_shape": case.stuck.mean(),
@@ -154,7 +156,7 @@ def markdown_readings(table):
         "Table III, model NG, under other readings of the paper: change of the mean crack length and of the mean "
         "meso-scale energy against the base reading, at the lowest and at the highest humidity; root mean square over "
         "the humidities of the deviation from the printed and from the measured crack length; ± standard error. "
-        "Removed: share of the mean square deviation from print that vanishes with the reading."
+        "Removed: share of the mean square deviation from print that vanishes with the reading; negative: that it adds."
     )
     return caption + "\n\n" + pd.DataFrame(rows).to_markdown(index=False) + "\n"
 
@@ -169,10 +171,19 @@ def _summary(pair, name, group, base):
     for title, column in (("print", "published_um"), ("experiment", "experiment_um")):
         rms = _rms_deviation(group, column)
         row[f"rms dev. from {title} [%]"] = with_error(*(100 * x for x in rms)) if rms else "–"
-    here, there = _rms_deviation(group, "published_um"), _rms_deviation(base, "published_um")
-    removed = name != "base" and here
-    row["removed [%]"] = f"{round(100 * (1 - (here[0] / there[0]) ** 2)):+d}" if removed else "–"
-    return row
+    return row | {"removed [%]": "–" if name == "base" else _removed(group, base)}
+
+
+def _removed(group, base):
+    """Share of the mean square deviation from print that a reading removes, as text [%]."""
+    known = group.published_um.notna().values
+    if not known.any():
+        return "–"
+    here, there = group[known], base[known]
+    errors = here.shift_se_percent.values / 100 * there.crack_length_um.values
+    lengths = here.crack_length_um.values, there.crack_length_um.values
+    share, error = choices.removed_share(*lengths, errors, here.published_um.values)
+    return with_error(100 * share, 100 * error, "+")
 
 
 def _rms_deviation(group, column):
@@ -180,4 +191,5 @@ def _rms_deviation(group, column):
     known = group[group[column].notna()]
     if not len(known):
         return None
-    return choices.rms_deviation(known.crack_length_um, known.crack_length_se_um, known[column])
+    errors = known.crack_length_beams_se_um, known.crack_length_pairs_se_um
+    return choices.rms_deviation(known.crack_length_um, *errors, known[column])

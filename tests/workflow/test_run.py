@@ -1,10 +1,7 @@
 """The main line from end to end, small."""
 
 import csv
-import json
-from pathlib import Path
 
-import pytest
 from conftest import SMOKE, snakemake
 
 MINE = """
@@ -64,22 +61,3 @@ def test_a_surface_and_pair_of_the_user_run_beside_the_others(smoke, overlay):
     assert {row["experiment_um"] for row in table} == {""}
     residual = next(r for r in rows(smoke / "results" / "tables" / "table_2.csv") if r["surface"] == "Etched")
     assert abs(float(residual["density_residual_percent"])) < 2
-
-
-@pytest.mark.parametrize("cores", [1, 2])
-def test_neither_cores_nor_chunks_change_a_byte(smoke, tmp_path, overlay, cores):
-    chunks = overlay(f"contact: {{chunks: {1 if cores == 1 else 10}}}")
-    target = "results/beams/b_rh067_NG.nc"
-    snakemake(tmp_path, target, configs=(SMOKE, chunks), cores=cores)
-    for path in sorted(Path(tmp_path, "results").rglob("*.nc")):
-        twin = smoke / path.relative_to(tmp_path)
-        assert path.read_bytes() == twin.read_bytes(), f"{path.name} differs"
-
-
-def test_datasets_carry_settings_but_no_time_or_host(smoke):
-    xarray = pytest.importorskip("xarray")
-    for path in sorted((smoke / "results").rglob("*.nc")):
-        with xarray.open_dataset(path) as dataset:
-            assert {"Conventions", "stage", "settings"} <= set(dataset.attrs)
-            assert set(dataset.attrs) == {"Conventions", "stage", "settings"}
-            json.loads(dataset.attrs["settings"])

@@ -2,7 +2,7 @@
 
 from itertools import chain
 
-from stiction import checks, data, tables
+from stiction import checks, data
 from stiction.beam import Beam
 from stiction.logs import logged
 from stiction.units import si
@@ -23,7 +23,6 @@ def main(paths, csv, markdown, settings):
         checks.of_laws(forces, loaded("chaos", laws)),
         checks.of_trends(forces, settings["skewed"]),
         checks.of_beams(loaded("beams", cases), forces, beams, si(settings["strip"])["length"]),
-        checks.of_table(tables.published(paths.table).to_dict("records")),
     )
     table = checks.table(found)
     data.save_text(table.to_csv(index=False), csv)

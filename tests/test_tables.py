@@ -1,0 +1,78 @@
+"""Table III from datasets of which every number is known."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from numpy.testing import assert_allclose
+
+from stiction import tables
+
+PRINTED = tables.published(Path(__file__).parents[1] / "workflow" / "resources" / "table_3.csv")
+LENGTHS = np.array([600e-6, 640e-6, 1500e-6])
+ENERGIES = np.array([8e-3, 10e-3, 9e-3, 13e-3])
+
+
+def beams(*states):
+    return xr.Dataset(
+        {
+            "state": ("sample", np.array(states)),
+            "crack_length": ("sample", LENGTHS),
+            "adhesion_energy": ("sample", 1.0 / LENGTHS),
+        }
+    )
+
+
+def forces(spread=1.0):
+    mean = ENERGIES.mean()
+    return xr.Dataset({"adhesion_energy": ("sample", mean + spread * (ENERGIES - mean))})
+
+
+def row(model="NG", spread=1.0, states=(0, 0, 1), pair="a"):
+    key = (pair, 0.45, model)
+    return tables.table_3({key: beams(*states)}, {key: forces(spread)}, PRINTED).iloc[0]
+
+
+def test_averages_are_those_of_s_shaped_beams_and_shares_of_all():
+    found = row()
+    assert_allclose(found.crack_length_um, 620)
+    assert_allclose(found.crack_length_std_um, 40 / np.sqrt(2))
+    assert_allclose((found.share_s_shape, found.share_arc, found.share_free), (2 / 3, 1 / 3, 0))
+    assert_allclose(found.meso_energy_J_per_m2, ENERGIES.mean())
+    assert_allclose(found.meso_energy_cv, ENERGIES.std(ddof=1) / ENERGIES.mean())
+
+
+def test_standard_errors_are_those_of_beams_and_of_the_pairs_that_they_share():
+    pairs = row().meso_energy_se_J_per_m2 / row().meso_energy_J_per_m2
+    assert_allclose(row(spread=0).crack_length_se_um, 20)
+    assert_allclose(row().crack_length_se_um, np.hypot(20, 620 * pairs / 4))
+    own = row(spread=0).adhesion_energy_se_J_per_m2
+    assert_allclose(row().adhesion_energy_se_J_per_m2, np.hypot(own, row().adhesion_energy_J_per_m2 * pairs))
+
+
+@pytest.mark.parametrize(("model", "printed", "bias"), [("NG", 716, 0.4), ("GEO", 715, None), ("G", None, None)])
+def test_every_model_stands_beside_its_own_print_and_all_beside_the_experiment(model, printed, bias):
+    found = row(model)
+    assert_allclose(found.deviation_percent, 100 * (620 / printed - 1) if printed else np.nan)
+    assert_allclose(found.experiment_deviation_percent, 100 * (620 / 718 - 1))
+    assert_allclose(found.published_bias_error_percent, bias or np.nan)
+
+
+def test_a_pair_of_the_user_has_no_print():
+    found = row(pair="mine")
+    assert np.isnan([found.published_um, found.experiment_um, found.deviation_percent]).all()
+    assert_allclose(found.crack_length_um, 620)
+
+
+def test_beams_that_do_not_stick_have_no_crack_length():
+    found = row(states=(1, 1, 2))
+    assert np.isnan([found.crack_length_um, found.crack_length_se_um, found.adhesion_energy_J_per_m2]).all()
+    text = tables.markdown_3(tables.table_3({("a", 0.45, "G"): beams(1, 1, 2)}, {("a", 0.45, "G"): forces()}, PRINTED))
+    assert "| – ± – " in text
+    assert "0/67/33" in text
+
+
+def test_printed_bias_error_is_the_deviation_of_the_printed_model_from_experiment():
+    bias = 100 * np.abs(PRINTED.ng / PRINTED.experiment - 1)
+    assert_allclose(PRINTED.bias_error_percent, bias, atol=0.7)
