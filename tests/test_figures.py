@@ -388,6 +388,34 @@ def test_energy_of_flat_surfaces_is_twice_that_of_water(drawn):
         np.testing.assert_allclose(curve(axes, r"flat surfaces, $2\gamma_{LG}$")[1], 144)  # mJ/m²
 
 
+def test_no_marker_of_a_model_hides_the_experiment(drawn):
+    for axes in drawn["15"].axes[:2]:
+        containers = [c for c in axes.containers if isinstance(c, ErrorbarContainer)]
+        offsets = {c.get_label(): c[0].get_transform().transform((0.6, 10))[0] for c in containers}
+        offsets = {label: place - offsets["experiment"] for label, place in offsets.items()}
+        assert {label for label, offset in offsets.items() if offset < 0} == {c for c in offsets if "beams" in c}
+        assert {label for label, offset in offsets.items() if offset > 0} == {c for c in offsets if "printed" in c}
+        assert max(containers, key=lambda c: c[0].get_zorder()).get_label() == "experiment"
+
+
+def test_printed_results_of_two_models_have_two_names_and_two_forms(drawn):
+    looks = [
+        (c.get_label(), c[0].get_marker())
+        for axes in drawn["15"].axes[:2]
+        for c in axes.containers
+        if "printed" in c.get_label()
+    ]
+    assert [label for label, _ in looks] == ["NG: printed", "GEO: printed"]
+    assert looks[0][1] != looks[1][1]
+
+
+def test_medians_stay_within_the_axes_however_weak(pairs, printed):
+    beam, beams, axes = pairs["b"]
+    weak = axes | {"G": axes["G"].assign(energy_quantile=1e-6 * axes["G"].energy_quantile)}
+    for panel in adhesion_energies({"b": (beam, beams, weak)}, printed).axes:
+        assert panel.get_ylim()[0] < 1e3 * float(weak["G"].energy_quantile.sel(probability=0.5).min())
+
+
 def test_pair_that_the_paper_does_not_know_has_no_experiment(drawn, pairs, printed):
     assert bars(drawn["15"].axes[2], "experiment")[0].shape == (2, 0)
     assert len(axes_of(adhesion_energies({"mine": pairs["mine"]}, printed))) == 2

@@ -1,6 +1,8 @@
 """Figures of the beams (Secs. IV-B to V): 14 and 15."""
 
 import numpy as np
+from matplotlib.patheffects import withStroke
+from matplotlib.transforms import ScaledTranslation
 
 from stiction.constants import WATER_SURFACE_ENERGY
 from stiction.data import ended
@@ -30,7 +32,7 @@ def beam_shapes(beams):
     histogram.set(xlabel="crack length $l_s$ [µm]", ylabel="number of beams")
     histogram.margins(y=0.15)
     histogram.text(0.97, 0.95, _summary(crack, len(stuck)), ha="right", va="top", transform=histogram.transAxes)
-    letter([shapes, histogram], [f"first {len(deflection)} beams", "all beams"])
+    letter([shapes, histogram], [f"first {len(deflection)} of {len(stuck)} beams", "all beams"])
     return figure
 
 
@@ -64,9 +66,14 @@ def converted(crack_length, deviation, beam):
     return energy, np.array([energy - low, high - energy])
 
 
-#: Models of the two columns, and their markers.
+#: Models of the two columns.
 _COLUMNS = ("G", "NG"), ("GEO",)
-_MARKERS = {"G": "s", "NG": "o", "GEO": "o"}
+#: Form of a model, filled where simulated and open where printed, and colour of its simulated markers.
+_MARKERS = {"G": ("s", MODELS["G"]["color"]), "NG": ("o", MODELS["NG"]["color"]), "GEO": ("^", "#009E73")}
+_PRINTED = "#D55E00"
+#: Simulated markers stand this far to the left of their humidity, printed ones to the right, the experiment on it [pt].
+_ASIDE = 3
+_HALO = [withStroke(linewidth=1.8, foreground="white")]
 
 
 @styled
@@ -83,33 +90,47 @@ def adhesion_energies(pairs, printed):
     """
     figure, axes = panels(len(pairs), 2, (DOUBLE, 2.2 * len(pairs) + 0.6), sharex="row", sharey="row")
     for row, (pair, (beam, released, bands)) in zip(axes, pairs.items(), strict=True):
-        for panel, models in zip(row, _COLUMNS, strict=True):
-            _pair(panel, printed[printed.pair == pair], beam, models)
-            for model in models:
-                _band(panel, bands["G" if model == "G" else "NG"], model)
-                _released(panel, released, model)
+        weakest = adhesion_energy(beam.length, beam)
+        lowest = min(weakest, *(float(axis.energy_quantile.sel(probability=0.5).min()) for axis in bands.values()))
+        row[0].set(yscale="log", ylim=(MJ * lowest / 2, 2 * MJ * THEORETICAL))
         row[0].set_ylabel(r"adhesion energy $\Gamma$ [mJ/m²]")
+        for panel, models in zip(row, _COLUMNS, strict=True):
+            _bounds(panel, weakest)
+            for surface in ("G", "NG") if "G" in models else ("NG",):
+                _band(panel, bands[surface], surface)
+            _known(panel, printed[printed.pair == pair], beam, models)
+            for model in models:
+                _released(panel, released, model, weakest)
+        row[0].margins(x=0.06)
     for panel in axes[-1]:
         panel.set_xlabel("relative humidity RH [–]")
     letter(axes, [f"pair {pair}, {' and '.join(models)}" for pair in pairs for models in _COLUMNS])
-    figure.legend(*handles(*axes[0]), loc="outside upper center", ncols=3)
+    figure.legend(*handles(*axes[0]), loc="outside upper center", ncols=5, columnspacing=1.2)
     return figure
 
 
-def _pair(panel, printed, beam, models):
-    """What a panel shows besides the simulations: theory, the longest crack, experiment and printed results."""
-    panel.axhline(
-        MJ * THEORETICAL, color="black", linestyle="-.", linewidth=0.8, label=r"flat surfaces, $2\gamma_{LG}$"
-    )
-    weakest = adhesion_energy(beam.length, beam)
-    panel.axhline(MJ * weakest, color="black", linestyle=":", linewidth=0.8, label="crack as long as the beam")
-    panel.set(yscale="log", ylim=(MJ * weakest / 2, 2 * MJ * THEORETICAL))
+def _aside(panel, points):
+    """Transform of data that draws them some points to the right of their place, whatever the limits."""
+    return panel.transData + ScaledTranslation(points / 72, 0, panel.figure.dpi_scale_trans)
+
+
+def _bounds(panel, weakest):
+    """Energy of flat surfaces and of the longest crack that fits into the beam [J m⁻²]."""
+    look = {"color": "black", "linewidth": 0.8}
+    panel.axhline(MJ * THEORETICAL, linestyle="-.", label=r"flat surfaces, $2\gamma_{LG}$", **look)
+    panel.axhline(MJ * weakest, linestyle=":", label="crack as long as the beam", **look)
+
+
+def _known(panel, printed, beam, models):
+    """Experiment and printed results of Table III."""
     humidity = printed.relative_humidity.to_numpy()
     energy, bars = converted(printed.experiment.to_numpy() / UM, printed.experiment_std.to_numpy() / UM, beam)
-    panel.errorbar(humidity, MJ * energy, MJ * bars, fmt="D", color="black", markersize=3.5, label="experiment")
+    look = {"fmt": "D", "color": "black", "markersize": 3, "zorder": 5}
+    panel.errorbar(humidity, MJ * energy, MJ * bars, label="experiment", **look)
     for model in {"NG", "GEO"}.intersection(models):
         energy = adhesion_energy(printed[model.lower()].to_numpy() / UM, beam)
-        panel.plot(humidity, MJ * energy, "^", color="#D55E00", fillstyle="none", zorder=4, label="printed NG or GEO")
+        look = {"fmt": _MARKERS[model][0], "fillstyle": "none", "color": _PRINTED, "zorder": 4}
+        panel.errorbar(humidity, MJ * energy, transform=_aside(panel, _ASIDE), label=f"{model}: printed", **look)
 
 
 def _band(panel, axis, model):
@@ -117,24 +138,28 @@ def _band(panel, axis, model):
     low, median, high = MJ * axis.energy_quantile.transpose("probability", "humidity").values
     look = {"color": MODELS[model]["color"]}
     panel.fill_between(axis.humidity, low, high, alpha=0.25, linewidth=0, **look)
-    label = rf"{'G' if model == 'G' else 'NG'}: median and 5–95 % of $\bar e$"
+    label = rf"{model}: median and 5–95 % of $\bar e$"
     panel.plot(axis.humidity, median, linestyle=MODELS[model]["linestyle"], label=label, **look)
 
 
-def _released(panel, released, model):
+def _released(panel, released, model, weakest):
     """Mean and standard deviation over the S-shaped beams of every humidity, and their share where it is not all."""
-    look = {"color": MODELS[model]["color"], "markeredgecolor": "black", "markeredgewidth": 0.4}
+    marker, colour = _MARKERS[model]
     points = [(humidity, beams) for (humidity, which), beams in released.items() if which == model]
     stuck = [MJ * beams.adhesion_energy.values[ended(beams, "S-shape")] for _, beams in points]
     bars = [(humidity, e.mean(), e.std(ddof=1)) for (humidity, _), e in zip(points, stuck, strict=True) if len(e) > 1]
     humidities, means, deviations = np.reshape(bars, (-1, 3)).T
-    panel.errorbar(humidities, means, deviations, fmt=_MARKERS[model], label=f"{model}: beams, mean ± std", **look)
+    look = {"fmt": marker, "color": colour, "markeredgecolor": "black", "markeredgewidth": 0.4}
+    look |= {"transform": _aside(panel, -_ASIDE), "zorder": 3, "label": f"{model}: beams, mean ± std"}
+    panel.errorbar(humidities, means, deviations, **look)
     for (humidity, beams), energies in zip(points, stuck, strict=True):
-        _share(panel, humidity, energies, len(energies) / beams.sizes["sample"])
+        _share(
+            panel, (humidity, energies.mean() if len(energies) else MJ * weakest), len(energies) / beams.sizes["sample"]
+        )
 
 
-def _share(panel, humidity, energies, share):
-    """Annotate the share of S-shaped beams, unless it is all."""
+def _share(panel, place, share):
+    """Annotate the share of S-shaped beams, unless it is all; where none is, at the energy that none reaches."""
     if share < 1:
-        place = (humidity, energies.mean()) if len(energies) else (humidity, panel.get_ylim()[0])
-        panel.annotate(f"{100 * share:.2g} %", place, (4, 2), textcoords="offset points", fontsize=6)
+        look = {"fontsize": 6, "ha": "center", "path_effects": _HALO, "zorder": 6}
+        panel.annotate(f"{100 * share:.2g} %", place, (-_ASIDE, 4), textcoords="offset points", **look)
