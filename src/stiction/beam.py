@@ -432,7 +432,7 @@ def release(beam, laws, start_crack):
     NotConverged
         If no equilibrium is found.
     """
-    # DEPARTS The load is taken away at once, not progressively: creeping, the crack cannot run past its place.
+    # DEPARTS: the load is taken away at once, not progressively: creeping, the crack cannot run past its place.
     while not start_crack < 2 * beam.element_length:
         end = _release_from(beam, laws, start_crack)
         if crack_length(beam, laws, end.deflection) > 1.5 * start_crack:
@@ -448,7 +448,10 @@ def distances(beam, laws, deflection):
 
 
 def crack_length(beam, laws, deflection):
-    """First place from the clamp, between points, where d < d_max; the whole length if there is none [m]."""
+    """First place from the clamp, between points, where d < d_max; the whole length if there is none [m].
+
+    ASSUME: the paper does not say where a crack ends; here it ends where the attraction has passed its maximum.
+    """
     excess = distances(beam, laws, deflection) - laws[:, 1]
     r = int(np.argmax(excess < 0))
     if excess[r] >= 0:
@@ -461,8 +464,8 @@ def crack_length(beam, laws, deflection):
 def end_state(beam, laws, deflection):
     """Whether a beam ends S-shaped, as an arc or free; EndState.
 
-    An arc leaves its crack with the slope 3h/2l of a cantilever on a simple support, an S-shape with none: the nearer
-    of the two counts.
+    ASSUME: an arc leaves its crack with the slope 3h/2l of a cantilever on a simple support, an S-shape with none, and
+    the nearer of the two counts; the paper speaks of S-shapes only.
     """
     if np.all(distances(beam, laws, deflection) >= laws[:, 1]):
         return EndState.FREE

@@ -414,7 +414,7 @@ def fit(vectors, f_limit, order, tolerance):
     order : int
         Total order N_d, at most MAX_ORDER.
     tolerance : float
-        Largest Err^DR: the fewest coordinates that meet it are kept.
+        Largest Err^DR: the fewest coordinates that meet it are kept. DEPARTS: the paper keeps 3 in every case.
 
     Returns
     -------

@@ -166,7 +166,7 @@ def correlation(surfaces, lag, correlations, lengths):
     return xr.Dataset(
         {
             "autocorrelation": (("surface", "lag"), correlations, {"units": "1"}),
-            "correlation_length": ("surface", lengths, {"units": "m", "long_name": "|r_Z| < 0.01 m₂ beyond"}),
+            "correlation_length": ("surface", lengths, {"units": "m", "long_name": "r_Z < 0.01 m₂ beyond"}),
         },
         coords={"surface": list(surfaces), "lag": ("lag", lag, {"units": "m"})},
     )

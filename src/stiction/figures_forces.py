@@ -11,6 +11,10 @@ from stiction.figures import DOUBLE, MJ, MODELS, MPA, NM, SINGLE, letter, panels
 _HIGHLIGHTED = 20
 #: A curve is followed until this part of the largest attraction is left.
 _FOLLOWED = 0.01
+#: Range of the forces in Figure 12, relative to the largest attraction of a pair.
+_RANGE = np.array([-1.1, 0.6])
+#: Curves are shown once more, enlarged, if their attraction stays below this part of the largest one of the pair.
+_SHALLOW = 0.5
 _DOTTED = {"color": "0.3", "linestyle": ":", "linewidth": 0.8}
 
 
@@ -19,7 +23,7 @@ _DOTTED = {"color": "0.3", "linestyle": ":", "linewidth": 0.8}
 
 def typical(fit, kept):
     """Number of the sample, among the first ``kept``, whose law has the median error of these."""
-    # ASSUME The paper's typical curve is one of median error.
+    # ASSUME: the paper's typical curve is one of median error.
     errors = fit.curve_error.sel(sample=slice(0, kept - 1))
     return int(errors.sample[np.argsort(errors.values)[errors.size // 2]])
 
@@ -90,13 +94,25 @@ def force_curves(pairs):
         crowds = [(forces.distance.values, forces.force.values) for forces in (gaussian, other)]
         for panel, crowd in zip(row, [*crowds, (distance, generated)], strict=True):
             _crowd(panel, *crowd, 2 * depth)
-        row[0].set(xlim=NM * np.array(window), ylim=(-1.1 * MPA * depth, 1.1 * MPA * depth))
+        row[0].set(xlim=NM * np.array(window), ylim=MPA * depth * _RANGE)
         row[0].set_ylabel(r"force per area $\bar f$ [MPa]")
+        _enlarged(row[0], gaussian, depth)
     for panel in axes[-1]:
         panel.set_xlabel(r"distance $\bar d$ [nm]")
     kinds = (MODELS["G"]["label"], MODELS["NG"]["label"], "generated")
     letter(axes, [f"pair {pair}, {kind}" for pair in pairs for kind in kinds])
     return figure
+
+
+def _enlarged(panel, forces, depth):
+    """Attraction of shallow curves once more, enlarged in the space that they leave below themselves."""
+    deepest = -float(forces.force.min())
+    if deepest < _SHALLOW * depth:
+        below = (-deepest / depth - _RANGE[0]) / np.ptp(_RANGE)
+        inset = panel.inset_axes([0.3, 0.13, 0.67, below - 0.16])
+        _crowd(inset, forces.distance.values, forces.force.values, deepest)
+        inset.set(xlim=NM * np.array(_window(forces)[0]), ylim=MPA * deepest * _RANGE)
+        inset.tick_params(labelsize=6, pad=2)
 
 
 def _window(*cases):

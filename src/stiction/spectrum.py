@@ -57,7 +57,7 @@ class CutoffSelfAffine:
 class TabulatedSpectrum:
     """A spectrum known at equally spaced wave numbers; none beyond its cut-off."""
 
-    wavenumber: np.ndarray  #: |ζ|, (n,), from 0 [rad m⁻¹]
+    wavenumber: np.ndarray  #: |ζ|, (n,); below its first the density stays as it is [rad m⁻¹]
     density: np.ndarray  #: s_Z, (n,) [m⁴] or, for unit variance, [m²]
     cutoff: float  #: no roughness beyond [rad m⁻¹]
 
@@ -122,7 +122,7 @@ def autocovariance(spectrum, lag, panels=4000):
 
 
 def correlation_length(spectrum, threshold=0.01, reach=6.0):
-    """Distance l^m beyond which |r_Z| < ``threshold`` · m₂ for good (Sec. III) [m].
+    """Distance l^m beyond which r_Z < ``threshold`` · m₂ for good (Sec. III) [m].
 
     Searched up to ``reach`` wave lengths of the corner; the slowest decay, that of a spectrum all plateau, ends at 4.7.
 
@@ -133,7 +133,7 @@ def correlation_length(spectrum, threshold=0.01, reach=6.0):
     """
     lag = np.linspace(0, reach * 2 * np.pi / spectrum.corner, 1201)
     covariance = autocovariance(spectrum, lag, panels=1500)
-    last = np.flatnonzero(np.abs(covariance) >= threshold * covariance[0])[-1]
+    last = np.flatnonzero(covariance >= threshold * covariance[0])[-1]
     if last == len(lag) - 1:
         raise ValueError(f"heights {lag[-1]:.3g} m apart still correlate by {threshold:g} or more: search farther")
     return float(lag[last])

@@ -14,7 +14,7 @@ def main(forces, output, settings):
     """Release beams on uniform ground under ever finer meshes."""
     forces = data.load(forces, "forces")
     energies = forces.adhesion_energy.values[: forces.sizes["curve"]]
-    # ASSUME The paper's one realisation is a typical one: of the curves kept, that of median energy.
+    # ASSUME: the paper's one realisation is a typical one: of the curves kept, that of median energy.
     sample = int(np.argsort(energies)[len(energies) // 2])
     law = forcelaw.coefficients(data.vectors(forces)[[sample]], float(forces.limit))[0]
     beam = cantilever(settings, settings["pair"])
