@@ -127,7 +127,7 @@ WRONG = [
     ("surfaces: {B1: {published_psd: {cutoff_rad_per_um: 315}}}", "surfaces.B1.published_psd.cutoff_rad_per_um", "315",
      "at most the Nyquist number of the grid, 314.159 rad/µm (given sampling.spacing_nm = 10)"),
     ("sampling: {strip_length_um: 0.75}\nbeam: {elements: 400}", "sampling.strip_length_um", "0.75",
-     "surfaces.B2.published_psd ="),
+     "surfaces.Sub1.published_psd ="),
     ("sampling: {margin_um: 0.75}", "sampling.margin_um", "0.75", "above the correlation length of the surface,"),
     ("identification: {patch_um: 0.75}", "identification.patch_um", "0.75", "above the correlation length of the"),
     ("identification: {patch_um: 5.005}", "identification.patch_um", "5.005", "whole number of grid spacings of 10 nm"),
