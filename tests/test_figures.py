@@ -305,6 +305,17 @@ def test_force_curves_are_those_kept_and_those_of_the_generated_laws(drawn, forc
     np.testing.assert_allclose(f, 1e-6 * forcelaw.pressure(law, d / 1e9), rtol=1e-6)
 
 
+def test_shallow_curves_are_enlarged_until_their_attraction_fills_the_inset(forces):
+    laws = forcelaw.coefficients(data.vectors(forces), LIMIT)
+    weak = forces.assign(force=0.05 * forces.force)
+    shallow, deep = force_curves({"b": (weak, forces, laws)}).axes[:2]
+    (inset,) = shallow.child_axes
+    assert inset.get_ylim()[0] == pytest.approx(1.1e-6 * float(weak.force.min()))
+    drawn = inset.collections[0].get_segments()[3][:, 1]
+    assert drawn.min() == pytest.approx(1e-6 * float(weak.force[3].min()))
+    assert not deep.child_axes
+
+
 def test_one_pair_fills_one_row_of_force_curves(forces):
     laws = forcelaw.coefficients(data.vectors(forces), LIMIT)
     assert len(axes_of(force_curves({"b": (forces, forces, laws)}))) == 3

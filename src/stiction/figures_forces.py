@@ -14,7 +14,7 @@ _FOLLOWED = 0.01
 #: Range of the forces in Figure 12, relative to the largest attraction of a pair.
 _RANGE = np.array([-1.1, 0.6])
 #: Curves are shown once more, enlarged, if their attraction stays below this part of the largest one of the pair.
-_SHALLOW = 0.5
+_SHALLOW = 0.2
 _DOTTED = {"color": "0.3", "linestyle": ":", "linewidth": 0.8}
 
 
@@ -91,6 +91,7 @@ def force_curves(pairs):
         window, depth = _window(gaussian, other)
         distance = np.linspace(*window, 400)
         generated = forcelaw.pressure(laws[:, None], distance)
+        depth = max(depth, -generated.min())
         crowds = [(forces.distance.values, forces.force.values) for forces in (gaussian, other)]
         for panel, crowd in zip(row, [*crowds, (distance, generated)], strict=True):
             _crowd(panel, *crowd, 2 * depth)
@@ -109,10 +110,12 @@ def _enlarged(panel, forces, depth):
     deepest = -float(forces.force.min())
     if deepest < _SHALLOW * depth:
         below = (-deepest / depth - _RANGE[0]) / np.ptp(_RANGE)
-        inset = panel.inset_axes([0.3, 0.13, 0.67, below - 0.16])
+        inset = panel.inset_axes([0.28, 0.13, 0.66, below - 0.16])
         _crowd(inset, forces.distance.values, forces.force.values, deepest)
         inset.set(xlim=NM * np.array(_window(forces)[0]), ylim=MPA * deepest * _RANGE)
+        inset.locator_params(nbins=4)
         inset.tick_params(labelsize=6, pad=2)
+        inset.text(0.94, 0.06, "enlarged", ha="right", fontsize=6, transform=inset.transAxes)
 
 
 def _window(*cases):
