@@ -13,6 +13,7 @@ from matplotlib import style
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from stiction.data import save_bytes
@@ -29,6 +30,9 @@ MODELS = {
     "NG": {"color": "#0072B2", "linestyle": "-", "label": "non-Gaussian"},
     "GEO": {"color": "#0072B2", "linestyle": "-", "label": "non-Gaussian, scattered geometry"},
 }
+
+#: White outline of text that lies on data.
+OUTLINED = [withStroke(linewidth=1.8, foreground="white")]
 
 #: Decorator of a function that draws: the style of the study, whatever the user's own settings are.
 styled = style.context(STYLE, after_reset=True)

@@ -1,13 +1,12 @@
 """Figures of the beams (Secs. IV-B to V): 14 and 15."""
 
 import numpy as np
-from matplotlib.patheffects import withStroke
 from matplotlib.transforms import ScaledTranslation
 
 from stiction.constants import WATER_SURFACE_ENERGY
 from stiction.data import ended
 from stiction.energy import adhesion_energy
-from stiction.figures import DOUBLE, MJ, MODELS, UM, handles, letter, panels, styled
+from stiction.figures import DOUBLE, MJ, MODELS, OUTLINED, UM, handles, letter, panels, styled
 
 #: Work of adhesion of two flats with water between them, 2γ [J m⁻²].
 THEORETICAL = 2 * WATER_SURFACE_ENERGY
@@ -73,7 +72,6 @@ _MARKERS = {"G": ("s", MODELS["G"]["color"]), "NG": ("o", MODELS["NG"]["color"])
 _PRINTED = "#D55E00"
 #: Simulated markers stand this far to the left of their humidity, printed ones to the right, the experiment on it [pt].
 _ASIDE = 3
-_HALO = [withStroke(linewidth=1.8, foreground="white")]
 
 
 @styled
@@ -161,5 +159,5 @@ def _released(panel, released, model, weakest):
 def _share(panel, place, share):
     """Annotate the share of S-shaped beams, unless it is all; where none is, at the energy that none reaches."""
     if share < 1:
-        look = {"fontsize": 6, "ha": "center", "path_effects": _HALO, "zorder": 6}
+        look = {"fontsize": 6, "ha": "center", "path_effects": OUTLINED, "zorder": 6}
         panel.annotate(f"{100 * share:.2g} %", place, (-_ASIDE, 4), textcoords="offset points", **look)

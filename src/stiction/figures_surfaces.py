@@ -5,7 +5,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.ticker import MaxNLocator
 
 from stiction.estimates import mean_with_error
-from stiction.figures import DOUBLE, MODELS, NM, SINGLE, UM, handles, letter, panels, plain_log, styled
+from stiction.figures import DOUBLE, MODELS, NM, OUTLINED, SINGLE, UM, handles, letter, panels, plain_log, styled
 
 #: Bins along either axis of the joint density of summits.
 _BINS = 40
@@ -208,7 +208,7 @@ def _summits(character):
 
 def _mean_radius(panel, radius):
     """Mark one over the mean curvature [µm], the radius of Table I."""
-    panel.axhline(radius, color="black", linestyle="--", linewidth=0.8)
-    panel.annotate(
-        f"{radius:.2g} µm", (0.98, radius), (0, 2), ("axes fraction", "data"), "offset points", ha="right", fontsize=7
-    )
+    panel.axhline(radius, color="black", linestyle="--", linewidth=0.8, path_effects=OUTLINED)
+    number = f"{radius:#.2g}".rstrip(".")
+    place, look = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
+    panel.annotate(f"{number} µm", (0.96, radius), (0, 3), place, "offset points", **look)
