@@ -75,8 +75,8 @@ MUTANTS = {
         ("return np.pi / self.spacing", "return 2 * np.pi / self.spacing"),
         ("(target.cutoff / corner) ** -slope", "(target.cutoff / corner) ** slope"),
         ("target.rms**2 / shape.variance", "target.rms / shape.variance"),
-        ("density / target.density])\n\n    def slopes", "target.density / density])\n\n    def slopes"),
-        ("return 1 / curvature.mean()", "return (1 / curvature).mean()"),
+        ("target.mean_radius, density / target.density", "target.mean_radius, target.density / density"),
+        ("density * curvature.mean()", "density / curvature.mean()"),
         ("if not fit.success", "if False"),
     ],
     "iteration": [

@@ -54,7 +54,7 @@ WRONG = [
     ("sampling: {strip_length_um: -1.5}", "sampling.strip_length_um", "-1.5", "at least 0.01"),
     ("sampling: {margin_um: 0}", "sampling.margin_um", "0", "above 0"),
     ("character: {strips: 0}", "character.strips", "0", "at least 2"),
-    ("identification: {patches: 0}", "identification.patches", "0", "at least 1"),
+    ("identification: {patches: 1}", "identification.patches", "1", "at least 2"),
     ("identification: {patch_um: -5}", "identification.patch_um", "-5", "above 0"),
     ("solid: {young_modulus_GPa: 164000}", "solid.young_modulus_GPa", "164000", "at most 2000: Young's modulus [GPa]"),
     ("solid: {poisson_ratio: 0.5}", "solid.poisson_ratio", "0.5", "above -1 and below 0.5"),

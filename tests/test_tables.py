@@ -1,4 +1,4 @@
-"""Table III from datasets of which every number is known."""
+"""Tables II and III from datasets of which every number is known."""
 
 from pathlib import Path
 
@@ -9,7 +9,8 @@ from numpy.testing import assert_allclose
 
 from stiction import tables
 
-PRINTED = tables.published(Path(__file__).parents[1] / "workflow" / "resources" / "table_3.csv")
+PUBLISHED = Path(__file__).parents[1] / "workflow" / "resources"
+PRINTED = tables.published(PUBLISHED / "table_3.csv")
 LENGTHS = np.array([600e-6, 640e-6, 1500e-6])
 ENERGIES = np.array([8e-3, 10e-3, 9e-3, 13e-3])
 
@@ -76,3 +77,29 @@ def test_beams_that_do_not_stick_have_no_crack_length():
 def test_printed_bias_error_is_the_deviation_of_the_printed_model_from_experiment():
     bias = 100 * np.abs(PRINTED.ng / PRINTED.experiment - 1)
     assert_allclose(PRINTED.bias_error_percent, bias, atol=0.7)
+
+
+def spectra(corner):
+    """Stages identification and spectrum, with the parameters of B1 but for the corner, and a spectrum as published."""
+    shape = {"plateau": 525e-36, "floor": 0.8e-36, "corner": corner, "cutoff": 138e6}
+    known = {"mean_radius": 0.42e-6, "summit_density": 67e12, "mean_radius_error": 4e-9, "summit_density_error": 1e12}
+    targets = {"target_mean_radius": 0.4e-6, "target_summit_density": 68e12, "target_rms": 1.7e-9}
+    found = xr.Dataset({name: ((), value) for name, value in (shape | known | targets).items()})
+    used = xr.Dataset({name: ((), value) for name, value in (shape | {"corner": 32e6, "defect": 0.01}).items()})
+    return {"B1": found}, {"B1": used}
+
+
+def test_identified_parameters_stand_beside_the_published_with_what_they_leave():
+    printed = tables.published(PUBLISHED / "table_2.csv")
+    published, identified = (row for _, row in tables.table_2(*spectra(33e6), printed).iterrows())
+    assert_allclose(published.rms_residual_percent, 100 * (1.743 / 1.7 - 1), atol=0.1)  # 1.743 nm by the formula of m₂
+    assert_allclose((published.gaussian_defect_percent, identified.gaussian_defect_percent), (1, np.nan))
+    assert_allclose(identified.corner_rad_per_um, 33)
+    assert_allclose((identified.radius_residual_percent, identified.radius_residual_se_percent), (5, 1))
+    assert_allclose(identified.density_residual_percent, 100 * (67 / 68 - 1))
+
+
+def test_defect_is_that_of_the_spectrum_in_use():
+    table = tables.table_2(*spectra(32e6), tables.published(PUBLISHED / "table_2.csv"))
+    assert_allclose(table.gaussian_defect_percent, [1, 1])
+    assert "nan" not in tables.markdown_2(tables.table_2(*spectra(33e6), tables.published(PUBLISHED / "table_2.csv")))

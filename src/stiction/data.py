@@ -144,11 +144,12 @@ def identification(found, target):
     """Stage identification: parameters of Eq. (7), simulated summit statistics and those asked for."""
     return parameters(found.spectrum).assign(
         mean_radius=((), found.mean_radius, {"units": "m"}),
+        mean_radius_error=((), found.mean_radius_error, {"units": "m"}),
         summit_density=((), found.density, {"units": "m-2"}),
+        summit_density_error=((), found.density_error, {"units": "m-2"}),
         target_mean_radius=((), target.mean_radius, {"units": "m"}),
         target_summit_density=((), target.density, {"units": "m-2"}),
         target_rms=((), target.rms, {"units": "m"}),
-        rms=((), np.sqrt(found.spectrum.variance), {"units": "m"}),
         evaluations=((), found.evaluations),
     )
 

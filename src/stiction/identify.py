@@ -6,6 +6,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from stiction.errors import NotConverged
+from stiction.estimates import jackknife
 from stiction.spectrum import CutoffSelfAffine, NayakSummits
 from stiction.summits import find_summits
 from stiction.surfaces import RoughSurface
@@ -44,12 +45,14 @@ class Identification:
     """The spectrum found and how well its surfaces meet the target."""
 
     spectrum: CutoffSelfAffine
-    mean_radius: float  #: of the simulated summits [m]
-    density: float  #: of the simulated summits [m⁻²]
     evaluations: int
+    mean_radius: float  #: of the summits of surfaces that were not used in the search [m]
+    density: float  #: of these summits [m⁻²]
+    mean_radius_error: float  #: standard error [m]
+    density_error: float  #: standard error [m⁻²]
 
 
-def identify(target, translation, grid, rngs):
+def identify(target, translation, grid, rngs, control):
     """Fit corner and slope to radius and density of simulated summits; the plateau follows from the rms.
 
     Every trial spectrum draws its surfaces from the same streams, so the simulated statistics are smooth functions of
@@ -61,8 +64,9 @@ def identify(target, translation, grid, rngs):
     translation : Translation
     grid : StripGrid
         Patch of surface, without margin; its spacing divides that of the target.
-    rngs : callable
-        Makes the streams of the patches, one each, the same at every call.
+    rngs, control : callable
+        Make the streams of the patches, one each, the same at every call: those of the search, and others, two at
+        least, on which the result is judged.
 
     Returns
     -------
@@ -73,16 +77,14 @@ def identify(target, translation, grid, rngs):
     NotConverged
         If the search does not come to rest.
     """
-    every = round(target.spacing / grid.spacing)
 
-    def simulated(parameters):
-        spectrum = _spectrum(parameters, target)
-        underlying, _ = underlying_spectrum(spectrum, translation, grid.spacing, points=512)
+    def simulated(parameters, streams):
+        underlying, _ = underlying_spectrum(_spectrum(parameters, target), translation, grid.spacing, points=512)
         surface = RoughSurface(underlying, translation, target.rms, grid)
-        return _summit_statistics((surface.draw(rng)[::every, ::every] for rng in rngs()), target.spacing)
+        return _summits_per_area(surface, target.spacing, streams)
 
     def misfit(parameters):
-        radius, density = simulated(parameters)
+        radius, density = _radius_and_density(simulated(parameters, rngs()).mean(axis=0))
         return np.log([radius / target.mean_radius, density / target.density])
 
     def slopes(parameters):
@@ -93,8 +95,8 @@ def identify(target, translation, grid, rngs):
     fit = least_squares(misfit, _start(target), slopes, bounds, xtol=_TOLERANCE, max_nfev=_MAX_EVALUATIONS)
     if not fit.success:
         raise NotConverged("identified spectrum, gradient of the misfit", fit.optimality, _TOLERANCE, fit.nfev)
-    radius, density = simulated(fit.x)
-    return Identification(_spectrum(fit.x, target), radius, density, fit.nfev)
+    values, errors = jackknife(_radius_and_density, simulated(fit.x, control()))
+    return Identification(_spectrum(fit.x, target), fit.nfev, *map(float, (*values, *errors)))
 
 
 def _spectrum(parameters, target):
@@ -119,8 +121,17 @@ def _start(target):
     return np.array(min(lattice, key=distance))
 
 
-def _summit_statistics(patches, spacing):
-    """Mean radius 1 / mean curvature [m] and density [m⁻²] of the summits of all patches."""
-    found = [find_summits(patch, spacing) for patch in patches]
-    curvature = np.concatenate([curvature for _, curvature, _ in found])
-    return 1 / curvature.mean(), float(np.mean([density for _, _, density in found]))
+def _summits_per_area(surface, spacing, streams):
+    """Number and total curvature of the summits per area of every patch, (patches, 2) [m⁻²], [m⁻³]."""
+    every = round(spacing / surface.grid.spacing)
+    rows = []
+    for rng in streams:
+        _, curvature, density = find_summits(surface.draw(rng)[::every, ::every], spacing)
+        rows.append((density, density * curvature.mean()))
+    return np.array(rows)
+
+
+def _radius_and_density(per_area):
+    """Radius 1 / mean curvature [m] and density [m⁻²] from number and total curvature of summits per area, (2,)."""
+    density, curvature = per_area
+    return np.array([density / curvature, density])

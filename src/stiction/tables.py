@@ -6,8 +6,16 @@ import pandas as pd
 from stiction.data import STATES, ended
 from stiction.energy import CRACK_LENGTH_POWER
 from stiction.estimates import jackknife, mean_on_shared_samples, mean_with_error
+from stiction.spectrum import CutoffSelfAffine
 
 NM, UM, PER_UM2 = 1e-9, 1e-6, 1e12
+#: Parameters of Eq. (7) in the order of its class, with the unit of each column in SI.
+_TABLE_2 = {
+    "plateau_nm4": NM**4,
+    "floor_nm4": NM**4,
+    "corner_rad_per_um": 1 / UM,
+    "cutoff_rad_per_um": 1 / UM,
+}
 _TABLE_1 = ("rms_nm", "skewness", "kurtosis", "mean_summit_radius_um", "summit_density_per_um2")
 
 
@@ -75,6 +83,9 @@ def table_1(characters, measured, printed):
 def table_2(identifications, spectra, printed):
     """Table II: published and identified parameters of Eq. (7), and what the identification leaves.
 
+    The rms of published parameters is that of the spectrum alone; radius and density are those of surfaces that were
+    not used to identify it.
+
     Parameters
     ----------
     identifications, spectra : dict
@@ -86,23 +97,35 @@ def table_2(identifications, spectra, printed):
     for surface, found in identifications.items():
         match = printed[printed.surface == surface]
         if len(match):
-            columns = ["plateau_nm4", "floor_nm4", "corner_rad_per_um", "cutoff_rad_per_um"]
-            rows.append({"surface": surface, "psd": "published"} | match[columns].iloc[0].to_dict())
-        rows.append(
-            {
-                "surface": surface,
-                "psd": "identified",
-                "plateau_nm4": float(found.plateau) / NM**4,
-                "floor_nm4": float(found.floor) / NM**4,
-                "corner_rad_per_um": float(found.corner) * UM,
-                "cutoff_rad_per_um": float(found.cutoff) * UM,
-                "rms_residual_percent": percent(float(found.rms), float(found.target_rms)),
-                "radius_residual_percent": percent(float(found.mean_radius), float(found.target_mean_radius)),
-                "density_residual_percent": percent(float(found.summit_density), float(found.target_summit_density)),
-            }
-        )
-    defects = {surface: 100 * float(spectrum.defect) for surface, spectrum in spectra.items()}
-    return pd.DataFrame(rows).assign(gaussian_defect_percent=lambda table: table.surface.map(defects))
+            rows.append(_row_2(surface, "published", match[list(_TABLE_2)].iloc[0].to_dict(), found, spectra[surface]))
+            rows[-1]["plateau_nm4_as_printed"] = float(match.plateau_nm4_as_printed.iloc[0])
+        parameters = {name: float(found[name.split("_")[0]]) / unit for name, unit in _TABLE_2.items()}
+        rows.append(_row_2(surface, "identified", parameters, found, spectra[surface]) | _residuals(found))
+    return pd.DataFrame(rows)
+
+
+def _row_2(surface, source, parameters, found, spectrum):
+    """Parameters of Eq. (7) in the units of the table, their rms, and the defect if it is they that are used."""
+    shape = CutoffSelfAffine(**{name.split("_")[0]: parameters[name] * unit for name, unit in _TABLE_2.items()})
+    row = {"surface": surface, "psd": source} | parameters
+    row["rms_residual_percent"] = percent(np.sqrt(shape.variance), float(found.target_rms))
+    used = np.allclose([shape.corner / float(spectrum.corner), shape.slope / _slope(spectrum)], 1, rtol=1e-9)
+    return row | {"gaussian_defect_percent": 100 * float(spectrum.defect) if used else np.nan}
+
+
+def _slope(spectrum):
+    """Exponent of the power law of a dataset of stage spectrum [-]."""
+    return CutoffSelfAffine(*(float(spectrum[name.split("_")[0]]) for name in _TABLE_2)).slope
+
+
+def _residuals(found):
+    """What an identification leaves of radius and density, with standard errors [%]."""
+    row = {}
+    for column, name in (("radius", "mean_radius"), ("density", "summit_density")):
+        target = float(found[f"target_{name}"])
+        row[f"{column}_residual_percent"] = percent(float(found[name]), target)
+        row[f"{column}_residual_se_percent"] = 100 * float(found[f"{name}_error"]) / target
+    return row
 
 
 def table_3(beams, forces, printed):
@@ -178,8 +201,32 @@ def markdown_1(table):
 
 def markdown_2(table):
     """Table II for reading."""
-    caption = "Table II: parameters of Eq. (7), residuals of the identification, variance beyond any Gaussian field."
-    return caption + "\n\n" + table.to_markdown(index=False, floatfmt=".4g") + "\n"
+
+    def residual(row, name):
+        value, error = row[f"{name}_residual_percent"], row[f"{name}_residual_se_percent"]
+        return "–" if np.isnan(value) else f"{value:+.2f} ± {error:.2f}"
+
+    rows = [
+        {
+            "surface": row.surface,
+            "psd": row.psd,
+            "s⁰ [nm⁴]": f"{row.plateau_nm4:.4g}",
+            "s¹ [nm⁴]": f"{row.floor_nm4:.3g}",
+            "ζ₀ [rad/µm]": f"{row.corner_rad_per_um:.3g}",
+            "ζ_max [rad/µm]": f"{row.cutoff_rad_per_um:.3g}",
+            "rms off by [%]": f"{row.rms_residual_percent:+.2f}",
+            "radius off by [%]": residual(row, "radius"),
+            "density off by [%]": residual(row, "density"),
+            "defect [%]": "–" if np.isnan(row.gaussian_defect_percent) else f"{row.gaussian_defect_percent:.2g}",
+        }
+        for _, row in table.iterrows()
+    ]
+    caption = (
+        "Table II: parameters of Eq. (7), as published (with corrected plateaus) and as identified from the summits; "
+        "deviations from the measured (AFM) rms, summit radius and density, on surfaces not used to identify; defect: "
+        "share of the variance that no Gaussian field provides, of the spectrum in use."
+    )
+    return caption + "\n\n" + pd.DataFrame(rows).to_markdown(index=False) + "\n"
 
 
 def markdown_3(table):

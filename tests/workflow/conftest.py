@@ -16,7 +16,7 @@ run: {pairs: [b]}
 pairs: {b: {humidities: [0.88]}}
 figures: {humidity: 0.88, pair: b}
 character: {strips: 2}
-identification: {patches: 1, patch_um: 2}
+identification: {patches: 2, patch_um: 2}
 contact: {samples: 60, chunks: 2, distance_step_nm: 0.2}
 chaos: {order: 2}
 beam: {samples: 4}

@@ -19,10 +19,10 @@ def main(heights, output, settings):
     )
     grid = StripGrid(patch["patch"], patch["patch"], spacing["spacing"], margin=0.0)
 
-    def rngs():
-        return (stream(settings["seed"], "identification", k) for k in range(patch["patches"]))
+    def patches(*address):
+        return lambda: (stream(settings["seed"], "identification", *address, k) for k in range(patch["patches"]))
 
-    found = identify(target, Translation(cases.density(heights, "NG")), grid, rngs)
+    found = identify(target, Translation(cases.density(heights, "NG")), grid, patches(), patches("control"))
     data.save(data.identification(found, target), output, "identification", settings)
 
 
