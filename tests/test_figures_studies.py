@@ -131,10 +131,43 @@ def test_figure_18_shows_the_error_of_the_samples():
     assert any(np.allclose(line.get_ydata(), sampling_distance(50)) for line in panel.get_lines())
 
 
-def test_figure_19_shows_the_relative_error_of_gamma_in_percent():
+def test_figure_16_has_one_scale_of_stress_and_of_number_for_all_pairs():
+    *panels, bar = figures_studies.summit_stresses({"a": plasticity(0.0), "c": plasticity(0.5)}).axes
+    assert panels[0].get_ylim() == panels[1].get_ylim()
+    cells = [panel.collections[0] for panel in panels]
+    assert [found.get_array().sum() for found in cells] == [300, 300]
+    assert cells[0].norm is cells[1].norm
+    assert_allclose(bar.get_ylim(), (1, max(found.get_array().max() for found in cells)))
+
+
+def test_figure_17_shows_the_tolerance_however_far_the_errors_stay_from_it():
+    for tolerance in (1e-6, 1.0):
+        panel = figures_studies.sample_convergence(sizes(), {("a", 0.5): [0.1, 0.01, 0.0]}, tolerance).axes[1]
+        low, high = panel.get_ylim()
+        assert low < min(tolerance, 0.01)
+        assert high > max(tolerance, 0.1)
+
+
+def test_figure_19_shows_gamma_beside_the_energy_of_the_law_and_its_difference_with_sign():
     panel = figures_studies.mesh_convergence(mesh(), correlation()).axes[1]
     energy = 2e6 * (1.5 / 1e9 + 0.5 / 6e8)
-    assert_allclose(heights(panel)[0], 100 * np.abs(np.array([6e-3, 5.9e-3]) / energy - 1))
+    assert_allclose(heights(panel)[0], [6, 5.9])  # mJ/m²
+    assert_allclose(panel.get_lines()[-1].get_ydata(), 1e3 * energy)
+    (inset,) = panel.child_axes
+    assert_allclose(heights(inset)[0], 100 * (np.array([6e-3, 5.9e-3]) / energy - 1))
+
+
+def test_a_coarser_grid_is_named_by_its_spacing_where_the_dataset_knows_it():
+    for settings, label in (('{"base": {"sampling": {"spacing_nm": 10}}}', "grid 20 nm"), ("{}", "grid × 2")):
+        datasets = {("a", "base"): reading((800, 440))}
+        datasets["a", "every_2"] = reading((700, 400)).assign_attrs(settings=settings)
+        assert label in figures_studies.readings(datasets, PRINTED).axes[0].get_legend_handles_labels()[1]
+
+
+def test_base_and_experiment_lie_above_the_other_readings():
+    panel = figures_studies.readings(READINGS, PRINTED).axes[2]
+    above = {c.get_label(): c[0].get_zorder() for c in panel.containers}
+    assert sorted(above, key=above.get) == ["vdW: none", "base", "experiment"]
 
 
 def test_readings_are_compared_with_base_print_and_experiment():
@@ -171,7 +204,8 @@ def test_the_summary_says_how_much_of_the_deviation_from_print_a_reading_removes
         np.mean(table[(table.pair == "a") & (table.reading == name)].published_deviation_percent ** 2)
         for name in ("base", "van_der_waals_none")
     )
-    assert line.split("|")[-2].strip() == f"{round(100 * (1 - other / base)):+d}"
+    shown, error = map(float, line.split("|")[-2].split(" ± "))
+    assert abs(shown - 100 * (1 - other / base)) < error
 
 
 def test_a_summary_without_print_leaves_it_out():

@@ -1,22 +1,28 @@
 """Figures of the studies beside the main line: 13, 16 to 19 and the readings of what the paper leaves open."""
 
+import json
 from itertools import cycle
 
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.colors import LogNorm
 
 from stiction import choices, convergence, forcelaw
 from stiction.constants import HARDNESS
-from stiction.figures import DOUBLE, MJ, MPA, NM, SINGLE, UM, handles, letter, panels, plain_log, styled
+from stiction.figures import DOUBLE, MJ, MPA, NM, OUTLINED, SINGLE, UM, handles, letter, panels, plain_log, styled
 from stiction.plasticity import ONSET
 from stiction.tables_studies import cases_of, reading_label, with_error
 
 GPA = 1e-9
 _MARKERS = ("o", "s", "^", "v", "D", "P", "X", "<", ">")
+_COLOURS = ("#0072B2", "#56B4E9", "#E69F00", "#D55E00", "#CC79A7", "#009E73", "#882255")
 _DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (1, 3)), (0, (4, 4)))
 _ZERO = {"color": "0.6", "linewidth": 0.6, "zorder": 0}
-#: Element length [µm] and error [%] that the paper states for l_meso = 1.5 µm.
-_PAPER_MESH = 7.5, 2.5
+#: Element length [µm] that the paper chooses and the difference of Γ from ē [%] that it states there.
+_PAPER_LENGTH, _PAPER_ERROR = 7.5, 2.5
+#: A single summit is a little darker than this number of them, which is white.
+_FAINTEST = 0.3
+_TARGET = {"color": "black", "linestyle": "--", "linewidth": 0.8}
 _BOUND = {"color": "0.4", "linestyle": ":"}
 
 
@@ -47,7 +53,7 @@ def sensitivities(datasets, printed):
             look = {"marker": marker, "linestyle": dashes, "label": moment}
             panel.errorbar(found.humidity, found.slope, found.standard_error, **look)
         panel.axhline(0, **_ZERO)
-        panel.set(xlabel="relative humidity [-]", ylabel="normalised sensitivity [-]")
+        panel.set(xlabel="relative humidity [–]", ylabel="normalised sensitivity [–]")
     for (moment, humidity), slope in printed.items():
         k = list(datasets).index(moment)
         axes[0].plot(humidity, slope, _MARKERS[k], color=f"C{k}", markerfacecolor="none")
@@ -69,21 +75,31 @@ def summit_stresses(datasets):
     datasets : dict
         Pair to the dataset of study plasticity.
     """
-    figure, (axes,) = panels(1, len(datasets), (min(DOUBLE, SINGLE * len(datasets)), 2.5))
+    figure, (axes,) = panels(1, len(datasets), (min(DOUBLE, SINGLE * len(datasets)), 2.6), sharey=True)
     onset = GPA * ONSET * HARDNESS
+    top = max(1.15 * onset, *(1.05 * GPA * float(dataset.stress.max()) for dataset in datasets.values()))
+    counts = LogNorm(vmin=_FAINTEST)
+    cells = [_cells(panel, dataset, counts, top) for panel, dataset in zip(axes, datasets.values(), strict=True)]
+    counts.vmax = max(2, *(found.get_array().max() for found in cells))  # a bar from 1 to 1 has no length
     for panel, dataset in zip(axes, datasets.values(), strict=True):
-        stress = GPA * dataset.stress
-        panel.hexbin(NM * dataset.interference, stress, gridsize=45, bins="log", cmap="Greys", vmin=0.3, mincnt=1)
         panel.axhline(onset, color="C3", linestyle="--")
-        panel.text(0.98, onset, r"$0.6\,\sigma_H$", transform=panel.get_yaxis_transform(), ha="right", va="bottom")
-        panel.text(0.98, 0.04, _share(dataset), transform=panel.transAxes, ha="right")
-        panel.set(
-            xlabel=r"interference $\delta$ [nm]", xlim=(0, None), ylim=(0, max(1.15 * onset, 1.05 * stress.max()))
-        )
+        place, look = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "path_effects": OUTLINED}
+        panel.annotate(r"$0.6\,\sigma_H$", (0.95, onset), (0, 2), place, "offset points", **look)
+        panel.text(0.95, 0.04, _share(dataset), transform=panel.transAxes, ha="right", path_effects=OUTLINED)
     names = [rf"pair {pair}, $\bar d$ = {NM * float(found.separation):g} nm" for pair, found in datasets.items()]
     letter(axes, names)
     axes[0].set_ylabel(r"largest stress $\sigma_{\max}$ [GPa]")
+    figure.colorbar(cells[0], ax=axes, label="summits per cell [–]", pad=0.01, aspect=30).ax.set_ylim(1, None)
     return figure
+
+
+def _cells(panel, dataset, counts, top):
+    """Numbers of summits in cells, coloured by ``counts``; all panels reach from 0 to ``top``."""
+    interference = NM * dataset.interference
+    extent = (0, 1.05 * float(interference.max()), 0, top)
+    panel.set(xlabel=r"interference $\delta$ [nm]", xlim=extent[:2], ylim=extent[2:])
+    look = {"gridsize": (40, 40), "cmap": "Greys", "mincnt": 1, "linewidths": 0.2, "norm": counts}
+    return panel.hexbin(interference, GPA * dataset.stress, extent=extent, **look)
 
 
 def _share(dataset):
@@ -112,9 +128,11 @@ def sample_convergence(sizes, dimension_errors, tolerance):
     _densities(axes[0], sizes)
     _dimension_errors(axes[1], dimension_errors)
     axes[1].axhline(tolerance, **_BOUND, label="tolerance")
-    axes[1].legend()
+    low, high = axes[1].get_ylim()
+    axes[1].set_ylim(min(low, tolerance / 2), 3 * high)  # room for the legend
+    axes[1].legend(loc="upper right")
     _distances(axes[2], sizes)
-    letter(axes)
+    letter(axes, [r"density of $\bar e$", "variance lost", "distance from all samples"])
     return figure
 
 
@@ -138,7 +156,7 @@ def _distances(panel, sizes):
     panel.plot(count, law, "--", color="0.4", label="independent samples")
     panel.errorbar(part["size"], part.distance, part.distance_error, fmt="o", label=f"m against {total}")
     panel.axhline(own, **_BOUND, label=f"error of {total}")
-    panel.set(xscale="log", yscale="log", xlabel="number of samples m", ylabel="Kolmogorov distance [-]")
+    panel.set(xscale="log", yscale="log", xlabel="number of samples m", ylabel="Kolmogorov distance [–]")
     panel.set_ylim(own / 8, None)
     plain_log(panel.xaxis)
     plain_log(panel.yaxis)
@@ -154,7 +172,8 @@ def _dimension_errors(panel, dimension_errors):
         label = {"label": f"pair {pair}"} if pair not in seen else {}
         panel.plot(range(1, len(errors)), errors[:-1], color=f"C{k}", marker=_MARKERS[k], linestyle=_DASHES[k], **label)
         seen.add(pair)
-    panel.set(xlabel="number of coordinates $N_g$", ylabel="Err$^{DR}$ [-]", yscale="log", xticks=range(1, len(errors)))
+    panel.set(xlabel="number of coordinates $N_g$", ylabel=r"Err$^\mathrm{DR}$ [–]", yscale="log")
+    panel.set_xticks(range(1, len(errors)))
 
 
 # Figure 18
@@ -178,10 +197,11 @@ def order_convergence(orders):
         for order, shade, dashes in zip(shown, _shades(len(shown)), _DASHES[len(shown) - 1 :: -1], strict=False):
             look = {"color": shade, "linestyle": dashes, "label": f"$N_d$ = {order}"}
             panel.step(orders.position, found.density.sel(order=order), where="mid", **look)
-        panel.set(xlabel=rf"$\eta_{eta}$ [-]", ylabel="density [-]", ylim=(0, None))
+        panel.set(xlabel=rf"$\eta_{eta}$ [–]", ylabel="density [–]", ylim=(0, None))
+        panel.margins(x=0)
     axes[0, 0].legend()
     _order_distances(axes[1, 1], orders)
-    letter(axes)
+    letter(axes, [*(rf"marginal of $\eta_{k}$" for k in (1, 2, 3)), "distance from the kernel density"])
     return figure
 
 
@@ -192,7 +212,7 @@ def _order_distances(panel, orders):
         panel.plot(orders.order, distance, marker=marker, linestyle=dashes, label=rf"$\eta_{eta}$")
     bound = convergence.sampling_distance(int(orders.samples))
     panel.axhline(bound, **_BOUND, label=f"error of {int(orders.samples)} samples")
-    panel.set(xlabel="order $N_d$", ylabel="Kolmogorov distance [-]", yscale="log")
+    panel.set(xlabel="order $N_d$", ylabel="Kolmogorov distance [–]", yscale="log")
     panel.xaxis.get_major_locator().set_params(integer=True)
     panel.set_ylim(bottom=0.25 * min(bound, float(orders.distance.sel(target="kernels").min())))
     plain_log(panel.yaxis)
@@ -211,7 +231,7 @@ def mesh_convergence(mesh, correlation):
     mesh, correlation : Dataset
         Studies of these names.
     """
-    figure, (axes,) = panels(1, 3, (DOUBLE, 2.5))
+    figure, (axes,) = panels(1, 3, (DOUBLE, 2.9), width_ratios=(1, 1.4, 1))
     _ground(axes[0], mesh)
     _meshes(axes[1], mesh)
     lengths = UM * correlation.correlation_length.values
@@ -219,9 +239,9 @@ def mesh_convergence(mesh, correlation):
         curve = correlation.autocorrelation.sel(surface=surface)
         axes[2].plot(UM * correlation.lag, curve, linestyle=dashes, label=f"{surface}: $l^m$ = {length:.2f} µm")
     axes[2].axhspan(-0.01, 0.01, color="0.85", zorder=0)
-    axes[2].set(xlabel=r"distance $\tau$ [µm]", ylabel=r"$r_Z / m_2$ [-]", xlim=(0, UM * float(correlation.lag[-1])))
+    axes[2].set(xlabel=r"distance $\tau$ [µm]", ylabel=r"$r_Z / m_2$ [–]", xlim=(0, UM * float(correlation.lag[-1])))
     axes[2].legend()
-    letter(axes)
+    letter(axes, ["law of the ground", "energy under every mesh", "autocorrelation"])
     return figure
 
 
@@ -237,19 +257,38 @@ def _ground(panel, mesh):
 
 
 def _meshes(panel, mesh):
-    """Error of Γ under every mesh."""
-    excess = 100 * np.abs(mesh.energy.values / forcelaw.energy(mesh.law.values) - 1)
+    """Energy Γ under every mesh beside ē; in an inset the difference where it is small."""
+    target = float(forcelaw.energy(mesh.law.values))
+    excess = 100 * (mesh.energy.values / target - 1)
+    inset = _small_differences(panel, excess, UM * mesh.element_length.values)
     points = np.unique(mesh.point_distance.values)[::-1]
-    for point, shade, marker in zip(points, _shades(len(points)), _MARKERS, strict=False):
+    for point, shade, marker, dashes in zip(points, _shades(len(points)), _MARKERS, _DASHES, strict=False):
         chosen = mesh.point_distance.values == point
-        look = {"marker": marker, "color": shade, "label": rf"$l^\mathrm{{meso}}$ = {UM * point:.3g} µm"}
-        panel.plot(UM * mesh.element_length.values[chosen], excess[chosen], **look)
-    panel.plot(*_PAPER_MESH, "*", color="C3", label=r"paper, $l^\mathrm{meso}$ = 1.5 µm")
-    panel.set(xscale="log", yscale="log", xlabel="element length $l_e$ [µm]", ylabel=r"$|\Gamma/\bar e - 1|$ [%]")
-    panel.set_ylim(top=50 * excess.max())
+        length, energy = UM * mesh.element_length.values[chosen], MJ * mesh.energy.values[chosen]
+        look = {"marker": marker, "linestyle": dashes, "color": shade, "label": f"{UM * point:.3g}"}
+        panel.plot(length, energy, **look)
+        inset.plot(length, excess[chosen], **look)
+    panel.axhline(MJ * target, label=r"$\bar e$", **_TARGET)
+    panel.set(xscale="log", xlabel="element length $l_e$ [µm]", ylabel=r"$\Gamma$ [mJ/m²]", ylim=(0, None))
     plain_log(panel.xaxis)
-    panel.yaxis.set_major_formatter("{x:g}")
-    panel.legend(loc="upper left")
+    panel.legend(loc="upper left", title=r"$l^\mathrm{meso}$ [µm]", ncols=2, columnspacing=1, handlelength=1.8)
+
+
+def _small_differences(panel, excess, lengths):
+    """Inset for the differences of Γ from ē [%] that are about as small as the paper's, which it shades."""
+    inset = panel.inset_axes([0.19, 0.31, 0.52, 0.38])
+    near = excess[np.abs(excess) < 1.5 * _PAPER_ERROR]
+    low, high = min([0, *near]), max([_PAPER_ERROR, *near])
+    inset.axhline(0, **_TARGET)
+    inset.axhspan(-_PAPER_ERROR, _PAPER_ERROR, color="0.92", zorder=0)
+    inset.annotate(
+        f"{_PAPER_ERROR} %, paper", (0.03, _PAPER_ERROR), (0, 2), ("axes fraction", "data"), "offset points", fontsize=6
+    )
+    inset.set(xscale="log", xlim=(lengths.min() / 1.3, 1.3 * _PAPER_LENGTH), ylim=(1.2 * low - 0.2 * high, 1.3 * high))
+    inset.set_ylabel(r"$\Gamma/\bar e - 1$ [%]", fontsize=6)
+    inset.tick_params(labelsize=6, pad=2)
+    plain_log(inset.xaxis)
+    return inset
 
 
 # Readings of what the paper leaves open
@@ -270,12 +309,13 @@ def readings(datasets, printed):
     figure, axes = panels(2, len(pairs), (min(DOUBLE, 1.3 * SINGLE * len(pairs)), 4.6), sharex="col")
     for column, pair in zip(axes.T, pairs, strict=True):
         table = printed[printed.pair == pair]
-        for name, look in _looks(names).items():
+        for name, look in _looks({name: datasets[pair, name] for name in names}).items():
             _shift(column[0], datasets[pair, name], datasets[pair, "base"], look)
             _deviation(column[1], datasets[pair, name], table, look)
         measured = 100 * (table.experiment / table.ng - 1), 100 * table.experiment_std / table.ng
-        column[1].errorbar(table.relative_humidity, *measured, fmt="*", color="0.5", label="experiment", zorder=0)
-        column[1].set_xlabel("relative humidity [-]")
+        look = {"color": "black", "markerfacecolor": "white", "markersize": 6, "label": "experiment", "zorder": 4}
+        column[1].errorbar(table.relative_humidity, *measured, fmt="*", **look)
+        column[1].set_xlabel("relative humidity [–]")
         for panel in column:
             panel.axhline(0, **_ZERO)
     axes[0, 0].set_ylabel("change of $l_s$ against base [%]")
@@ -285,14 +325,24 @@ def readings(datasets, printed):
     return figure
 
 
-def _looks(names):
-    """Colour by what a reading changes, line and marker by reading."""
-    families = list(dict.fromkeys(name.rpartition("_")[0] for name in names if name != "base"))
-    looks = {}
-    for name, marker, dashes in zip(names, cycle(_MARKERS), cycle(_DASHES), strict=False):
-        colour = "0.5" if name == "base" else f"C{families.index(name.rpartition('_')[0])}"
-        looks[name] = {"color": colour, "marker": marker, "linestyle": dashes, "label": reading_label(name)}
+def _looks(datasets):
+    """Colour, line and marker of every reading, by dataset of one pair; base black and above the others."""
+    looks = {"base": {"color": "black", "marker": "o", "linestyle": "-", "label": "base", "zorder": 3}}
+    others = [name for name in datasets if name != "base"]
+    for name, colour, marker, dashes in zip(
+        others, cycle(_COLOURS), cycle(_MARKERS[1:]), cycle(_DASHES[1:]), strict=False
+    ):
+        looks[name] = {"color": colour, "marker": marker, "linestyle": dashes, "label": _label(name, datasets[name])}
     return looks
+
+
+def _label(name, dataset):
+    """Name of a reading in words; a coarser grid by its spacing, where the dataset knows it."""
+    base = json.loads(dataset.attrs.get("settings", "{}")).get("base", {})
+    key, _, value = name.rpartition("_")
+    if key == "every" and "sampling" in base:
+        name = f"spacing_nm_{int(value) * base['sampling']['spacing_nm']:g}"
+    return reading_label(name)
 
 
 def _shift(panel, dataset, base, look):
