@@ -348,6 +348,17 @@ def test_chaos_draws_follow_the_kernel_density_and_it_the_input(models, dimensio
     assert np.all(values[:, 3] > values[:, mean])
 
 
+def test_resampled_laws_are_those_of_the_samples_that_have_one_all_equally_often(models):
+    weak = np.column_stack([np.full(300, 1e-9), *np.tile(VECTORS[:1, 1:], (300, 1)).T])
+    limit = models[4].f_limit
+    laws = chaos.resample_laws(np.vstack([weak, VECTORS[:5]]), limit, 5000, np.random.default_rng(3))
+    kinds, counts = np.unique(laws, axis=0, return_counts=True)
+    np.testing.assert_allclose(kinds, np.unique(forcelaw.coefficients(VECTORS[:5], limit), axis=0))
+    assert np.all(np.abs(counts - 1000) < 4 * np.sqrt(800))
+    with pytest.raises(ValueError, match="none of 300 samples has a force law"):
+        chaos.resample_laws(weak, limit, 1, np.random.default_rng(3))
+
+
 def test_the_report_compares_draws_with_those_of_the_input_that_have_a_law(models):
     weak = np.column_stack([np.full(500, 1e-9), *np.tile(VECTORS[:1, 1:], (500, 1)).T])
     assert not forcelaw.admissible(weak, models[4].f_limit).any()

@@ -1,4 +1,4 @@
-"""Tables II and III from datasets of which every number is known."""
+"""Tables II and III and that of the resampled laws from datasets of which every number is known."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from numpy.testing import assert_allclose
 
-from stiction import tables
+from stiction import tables, tables_studies
 
 PUBLISHED = Path(__file__).parents[1] / "workflow" / "resources"
 PRINTED = tables.published(PUBLISHED / "table_3.csv")
@@ -103,3 +103,11 @@ def test_defect_is_that_of_the_spectrum_in_use():
     table = tables.table_2(*spectra(32e6), tables.published(PUBLISHED / "table_2.csv"))
     assert_allclose(table.gaussian_defect_percent, [1, 1])
     assert "nan" not in tables.markdown_2(tables.table_2(*spectra(33e6), tables.published(PUBLISHED / "table_2.csv")))
+
+
+def test_resampling_compares_the_means_of_stuck_beams_with_errors_of_the_beams():
+    longer = beams(0, 0, 0).assign(crack_length=("sample", np.array([630e-6, 650e-6, 670e-6])))
+    (found,) = tables_studies.resampling({("b", 0.8): beams(0, 0, 1)}, {("b", 0.8): longer}).itertuples()
+    assert_allclose((found.chaos_um, found.chaos_se_um, found.samples_um), (620, 20, 650))
+    assert_allclose(found.difference_percent, 100 * (620 / 650 - 1))
+    assert_allclose(found.difference_se_percent, 100 * np.hypot(20, 20 / np.sqrt(3)) / 650)

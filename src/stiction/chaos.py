@@ -500,6 +500,17 @@ def draw_kernels(model, vectors, n, rng):
     return _accept(lambda k: model.coordinates.restore(density.draw(k, rng)), n, model.f_limit)
 
 
+def resample_laws(vectors, f_limit, n, rng):
+    """Draw force laws (n, 4) of the sampled vectors (m, 4) themselves, with replacement.
+
+    A reference that is free of any model: what it does otherwise, the chaos model does.
+    """
+    lawful = vectors[forcelaw.admissible(vectors, f_limit)]
+    if not len(lawful):
+        raise ValueError(f"none of {len(vectors)} samples has a force law")
+    return forcelaw.coefficients(lawful[rng.integers(len(lawful), size=n)], f_limit)
+
+
 # Quality of the fit
 
 

@@ -4,12 +4,11 @@ import numpy as np
 import pandas as pd
 
 from stiction import choices
-from stiction.data import STATES
+from stiction.data import ended
 from stiction.estimates import mean_with_error
 from stiction.tables import percent
 
 UM = 1e-6
-_S_SHAPE = STATES.index("S-shape")
 _LABELS = {
     "van_der_waals": "vdW: {}",
     "psd": "PSD: {}",
@@ -89,12 +88,58 @@ def with_error(value, error, sign=""):
     return f"{value:{sign}.{digits}f} ± {error:.{digits}f}"
 
 
+def resampling(beams, resampled):
+    """Crack lengths of model NG under laws drawn from the chaos model and from the samples themselves.
+
+    Both rest on the same pairs of surfaces: their difference has the standard errors of the beams alone.
+
+    Parameters
+    ----------
+    beams, resampled : dict
+        (pair, humidity) to the datasets of stage beams and of study resampling.
+    """
+    rows = []
+    for (pair, humidity), released in beams.items():
+        (chaos, chaos_error), (samples, samples_error) = map(_crack_length, (released, resampled[pair, humidity]))
+        row = {"pair": pair, "relative_humidity": humidity, "chaos_um": chaos, "chaos_se_um": chaos_error}
+        row |= {"samples_um": samples, "samples_se_um": samples_error, "difference_percent": percent(chaos, samples)}
+        rows.append(row | {"difference_se_percent": 100 * np.hypot(chaos_error, samples_error) / samples})
+    return pd.DataFrame(rows)
+
+
+def _crack_length(beams):
+    """Mean crack length of the S-shaped beams and its standard error over beams; NaN of less than two [µm]."""
+    stuck = beams.crack_length.values[ended(beams, "S-shape")] / UM
+    return mean_with_error(stuck) if len(stuck) >= 2 else (np.nan, np.nan)
+
+
+def markdown_resampling(table):
+    """The comparison for reading."""
+    rows = [
+        {
+            "pair": row.pair,
+            "RH": f"{row.relative_humidity:g}",
+            "l_s, chaos model [µm]": with_error(row.chaos_um, row.chaos_se_um),
+            "l_s, samples [µm]": with_error(row.samples_um, row.samples_se_um),
+            "difference [%]": with_error(row.difference_percent, row.difference_se_percent, "+"),
+        }
+        for row in table.itertuples()
+    ]
+    caption = (
+        "What the chaos model does to the crack length, model NG: mean under laws drawn from it, and under laws of the "
+        "sampled pairs themselves, drawn with replacement; ± standard error over beams."
+    )
+    return caption + "\n\n" + pd.DataFrame(rows).to_markdown(index=False) + "\n"
+
+
 def cases_of(dataset):
     """Every case of a dataset of study readings: (humidity, `stiction.choices.Reading`)."""
     for k, humidity in enumerate(dataset.humidity.values):
         chosen = dataset.isel(humidity=k)
-        stuck = chosen.state.values == _S_SHAPE
-        yield float(humidity), choices.Reading(chosen.adhesion_energy.values, chosen.crack_length.values, stuck)
+        yield (
+            float(humidity),
+            choices.Reading(chosen.adhesion_energy.values, chosen.crack_length.values, ended(chosen, "S-shape")),
+        )
 
 
 def readings(datasets, printed):
