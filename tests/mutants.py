@@ -75,7 +75,7 @@ MUTANTS = {
         ("return np.pi / self.spacing", "return 2 * np.pi / self.spacing"),
         ("(target.cutoff / corner) ** -slope", "(target.cutoff / corner) ** slope"),
         ("target.rms**2 / shape.variance", "target.rms / shape.variance"),
-        ("target.mean_radius, density / target.density", "target.mean_radius, target.density / density"),
+        ("radius / target.mean_radius, density", "1 / target.mean_radius, density"),
         ("density * curvature.mean()", "density / curvature.mean()"),
         ("if not fit.success", "if False"),
     ],

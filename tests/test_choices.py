@@ -56,6 +56,12 @@ def test_shifts_are_those_put_in():
         assert abs(found.mean() - expected) < ALLOWED * found.std(ddof=1) / np.sqrt(200)
 
 
+def test_an_energy_that_is_larger_by_a_factor_has_an_error_larger_by_it():
+    base, other = compared(0)
+    stronger = choices.Reading(3 * other.energy, other.crack_length, other.stuck)
+    assert_allclose(choices.energy_shift(stronger, base)[1], 3 * choices.energy_shift(other, base)[1])
+
+
 def test_common_random_numbers_sharpen_a_shift():
     (base, other), (stranger, _) = compared(0), compared(1)
     assert choices.shift(other, base)[1] < 0.5 * choices.shift(other, stranger)[1]
