@@ -339,7 +339,7 @@ def law(*keys):
     """Register a relation between keys; it is asked only about values that pass the schema.
 
     The values are the arguments of the relation, in order; the first key is the one to blame. In a key ``*`` is each
-    name of a section in turn and ``#`` stands for the list of its names.
+    name of a section or each place in a list in turn, the same in all keys, and ``#`` the list of a section's names.
     """
 
     def register(relation):
@@ -356,10 +356,28 @@ def _law_problems(config, faults):
 
 
 def _spelled_out(keys, config):
-    """The paths of the keys, once for each name that ``*`` stands for."""
-    section = next((key.split(".")[0] for key in keys if "*" in key), None)
-    names = [None] if section is None else _names(config.get(section) if isinstance(config, dict) else None)
-    return [[tuple(name if part == "*" else part for part in key.split(".")) for key in keys] for name in names]
+    """The paths of the keys, once for each choice of what the ``*`` stand for."""
+    paths = [tuple(key.split(".")) for key in keys]
+    sections = list(dict.fromkeys(path[: path.index("*")] for path in paths if "*" in path))
+    choices = itertools.product(*(_members(config, section) for section in sections))
+    return [[_chosen(path, dict(zip(sections, choice, strict=True))) for path in paths] for choice in choices]
+
+
+def _chosen(path, members):
+    """A path in which ``*`` is the chosen member of its section."""
+    if "*" not in path:
+        return path
+    depth = path.index("*")
+    return (*path[:depth], members[path[:depth]], *path[depth + 1 :])
+
+
+def _members(config, path):
+    """Names in a section or places in a list; none if there is neither."""
+    try:
+        found = _value(config, path)
+    except (KeyError, TypeError):
+        return []
+    return range(len(found)) if isinstance(found, list) else _names(found)
 
 
 def _judged(relation, paths, config, faults):
@@ -472,6 +490,19 @@ def grid_carries_the_roughness(cutoff, spacing):
     return None if cutoff <= nyquist else f"must be at most the Nyquist number of the grid, {nyquist:.6g} rad/µm"
 
 
+@law("studies.readings.spacing_nm.*", "surfaces.*.published_psd.cutoff_rad_per_um")
+def other_grid_carries_the_roughness(spacing, cutoff):
+    """The cut-off lies within the Nyquist number of the grid of a reading."""
+    largest = math.pi / cutoff * 1e3
+    return None if spacing <= largest else f"must be at most {largest:.6g} nm, for the Nyquist number of the grid"
+
+
+@law("studies.readings.spacing_nm.*", "character.spacing_nm", "surfaces.*.psd")
+def other_grid_carries_an_identified_spectrum(spacing, coarse, psd):
+    """The cut-off of an identified spectrum is the Nyquist number of the grid of Table I."""
+    return None if spacing <= coarse or psd == "published" else "must be at most that of Table I"
+
+
 @law("identification.patch_um", "surfaces.*.published_psd")
 @law("sampling.strip_length_um", "surfaces.*.published_psd")
 @law("sampling.margin_um", "surfaces.*.published_psd")
@@ -496,6 +527,14 @@ def strip_is_whole_on_the_grid(side, spacing, every):
     """Both sides of a strip are whole numbers of the spacings at which contact is sought."""
     step = spacing * every
     return None if _is_multiple(side * 1e3, step) else f"must be a whole number of contact points {step:g} nm apart"
+
+
+@law("studies.readings.spacing_nm.*", "contact.every", "sampling.strip_length_um", "beam.width_um")
+@law("studies.readings.every.*", "sampling.spacing_nm", "sampling.strip_length_um", "beam.width_um")
+def strip_is_whole_under_a_reading(changed, other, *sides):
+    """As above; step in points times distance of points, whichever of both a reading changes."""
+    whole = all(_is_multiple(side * 1e3, changed * other) for side in sides)
+    return None if whole else "must divide both sides of a strip into whole contact points"
 
 
 @law("identification.patch_um", "sampling.spacing_nm")
@@ -537,6 +576,15 @@ def strips_fill_the_elements(length, strip, elements):
     if _is_multiple(length, strip * elements):
         return None
     return f"must be a multiple of strip_length x elements = {strip * elements:.6g} µm: whole strips on each element"
+
+
+@law("studies.mesh.elements_um", "studies.mesh.strips_um", "beam.length_um")
+def a_mesh_is_whole(elements, strips, length):
+    """Figure 19 leaves out lengths that do not fill each other and the beam, but not all."""
+    fitting = (
+        _is_multiple(length, element) and _is_multiple(element, strip) for element in elements for strip in strips
+    )
+    return None if any(fitting) else "must hold a part of the beam that is a multiple of one of the strips"
 
 
 @law("pairs.*.gap_um", "beam.length_um")

@@ -2,7 +2,7 @@
 
 import fcntl
 
-from stiction import provenance, settings
+from stiction import provenance, sensitivity, settings
 from stiction.settings import case_id
 
 
@@ -106,7 +106,6 @@ def reserve_folder():
 STUDIES = config["studies"]
 FIGURE_CASE = case_id(FIGURE_PAIR, config["figures"]["humidity"])
 CONTACT = {key: value for key, value in config["contact"].items() if key not in ("chunks", "samples")}
-MOMENTS = ("rms", "skewness", "kurtosis")
 PRESSED_PAIRS = [pair for pair in PAIRS if pair in STUDIES["plasticity"]["distance_nm"]]
 # Section of the configuration in which a reading changes a key; the source of the spectra stands with each surface.
 CHANGED = {"van_der_waals": None, "psd": None, "every": "contact", "spacing_nm": "sampling", "poisson_ratio": "solid"}
@@ -115,6 +114,17 @@ READINGS = {"base": {}} | {
     for key, part in CHANGED.items()
     for value in STUDIES["readings"][key]
 }
+
+
+def can_be_shifted(moment):
+    """Whether the beam's surface of Figure 13 exists with a little less and a little more of a moment."""
+    surface = config["surfaces"][config["pairs"][FIGURE_PAIR]["beam"]]
+    shape = {key: surface[key] for key in ("kurtosis", "skewness")}
+    at = sensitivity.shifted(surface[moment], STUDIES["sensitivity"]["step"])
+    return at[0] * at[1] > 0 and not any(settings.heights_have_a_density(**shape | {moment: value}) for value in at)
+
+
+MOMENTS = ["rms", *filter(can_be_shifted, ("skewness", "kurtosis"))]
 
 
 def psd_under(reading, surface):

@@ -2,7 +2,7 @@
 
 
 wildcard_constraints:
-    moment="|".join(MOMENTS),
+    moment="rms|skewness|kurtosis",
     reading="base|[a-z_]+_[a-z0-9.-]+",
 
 

@@ -7,12 +7,12 @@ from stiction.logs import logged
 
 
 def main(paths, outputs, settings):
-    """Draw the sensitivities to all moments beside those that the paper states."""
+    """Draw the sensitivities to the moments beside those that the paper states."""
     loaded = {
         moment: data.load(path, "sensitivity") for moment, path in zip(settings["moments"], paths.studies, strict=True)
     }
     stated = tables.published(paths.printed)
-    stated = stated[stated.pair == settings["pair"]]
+    stated = stated[(stated.pair == settings["pair"]) & stated.moment.isin(settings["moments"])]
     printed = dict(zip(zip(stated.moment, stated.relative_humidity, strict=True), stated.slope, strict=True))
     save(sensitivities(loaded, printed), *outputs)
 
