@@ -172,12 +172,6 @@ def keys_of(cases):
     return [(settings.pair_of(case), settings.humidity_of(case), model) for case, model in cases]
 
 
-def skewed_negatively(pair):
-    """Whether no surface of a pair is skewed positively and one is negatively."""
-    skewness = [config["surfaces"][config["pairs"][pair][side]]["skewness"] for side in SIDES]
-    return max(skewness) <= 0 > min(skewness)
-
-
 def nominal_beam(pair):
     """Beam of a pair as the configuration has it."""
     dimensions = ("length_um", "width_um", "thickness_um", "elements")
