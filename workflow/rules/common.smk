@@ -41,6 +41,7 @@ MEASURED = [name for name in SURFACES if SUMMITS <= config["surfaces"][name].key
 CASES = [case_id(pair, humidity) for pair in PAIRS for humidity in config["pairs"][pair]["humidities"]]
 FIGURE_CASES = [case_id(pair, config["figures"]["humidity"]) for pair in PAIRS]
 FIGURE_PAIR = config["figures"]["pair"] if config["figures"]["pair"] in PAIRS else PAIRS[0]
+FIGURE = {"pair": FIGURE_PAIR, "humidity": config["figures"]["humidity"]}
 
 
 def code(script):

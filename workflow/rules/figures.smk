@@ -26,7 +26,7 @@ rule figure_05:
         mem_mb=600,
         runtime=10,
     params:
-        settings={"case": FIGURE_CASE},
+        settings=FIGURE,
         code=code("figure_05.py"),
     message:
         "Figure 5: a force curve and its law."
@@ -259,7 +259,7 @@ rule figure_14:
         mem_mb=600,
         runtime=10,
     params:
-        settings={"case": FIGURE_CASE},
+        settings=FIGURE,
         code=code("figure_14.py"),
     message:
         "Figure 14: shapes and crack lengths of beams."

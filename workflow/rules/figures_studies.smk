@@ -103,7 +103,8 @@ rule figure_17:
         settings={
             "cases": [(settings.pair_of(c), settings.humidity_of(c)) for c in CASES],
             "tolerance": config["chaos"]["dimension_tolerance"],
-        },
+        }
+        | FIGURE,
         code=code("figure_17.py"),
     message:
         "Figure 17: convergence in samples and coordinates."
@@ -129,6 +130,7 @@ rule figure_18:
         mem_mb=600,
         runtime=10,
     params:
+        settings=FIGURE,
         code=code("figure_18.py"),
     message:
         "Figure 18: convergence in the order of the polynomials."
@@ -155,6 +157,7 @@ rule figure_19:
         mem_mb=600,
         runtime=10,
     params:
+        settings=FIGURE,
         code=code("figure_19.py"),
     message:
         "Figure 19: convergence of the mesh, autocorrelation."
