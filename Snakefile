@@ -33,10 +33,12 @@ onstart:
     reserve_folder()
     try:
         provenance.record("results/provenance.json", BASE, config)
-    except (OSError, ValueError) as error:
+    except OSError as error:
         raise WorkflowError(f"results/ cannot be used: {error}. Make it writable or choose another --directory.")
+    except ValueError as error:
+        raise WorkflowError(str(error))
     # Compiled code is cached before jobs fan out: two jobs that write one cache entry at once could mix it up.
-    shell("{sys.executable} -m stiction.compiled")
+    shell("{sys.executable:q} -m stiction.compiled")
 
 
 # Seconds of work each, that do not wait in the queue of a cluster.

@@ -1,3 +1,5 @@
+import os
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -52,6 +54,33 @@ def test_a_failed_write_leaves_the_old_file_and_no_draft(tmp_path):
         data.save(unwritable, tmp_path / "x.nc", "forces", {})
     assert (tmp_path / "x.nc").read_bytes() == before
     assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
+
+
+def test_a_folder_that_cannot_be_is_named(tmp_path):
+    (tmp_path / "results").write_text("mine")  # stops root as well, whom permissions do not
+    with pytest.raises(data.DataError, match=r"folder .*results cannot be written .*; make it writable"):
+        data.save(dataset(), tmp_path / "results" / "x.nc", "forces", {})
+
+
+def test_a_disk_that_fails_at_the_last_moment_leaves_no_draft(tmp_path, monkeypatch):
+    def fail(_):
+        raise OSError("input/output error")
+
+    monkeypatch.setattr(os, "fsync", fail)
+    with pytest.raises(data.DataError, match=r"x\.txt cannot be written \(input/output error\)"):
+        data.save_text("Δ", tmp_path / "x.txt")
+    assert not list(tmp_path.iterdir())
+
+
+def test_files_have_the_permissions_that_the_user_gives_all_files(tmp_path):
+    before = os.umask(0o027)
+    try:
+        data.save(dataset(), tmp_path / "x.nc", "forces", {})
+        data.save_text("Δ", tmp_path / "x.txt")
+    finally:
+        os.umask(before)
+    assert {path.stat().st_mode & 0o777 for path in tmp_path.iterdir()} == {0o640}
+    assert (tmp_path / "x.txt").read_bytes() == b"\xce\x94"
 
 
 def test_end_states_are_those_of_the_beam():

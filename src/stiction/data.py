@@ -1,8 +1,9 @@
 """Labelled datasets: every population and every file is built and read here."""
 
+import contextlib
 import json
 import os
-import tempfile
+import uuid
 from pathlib import Path
 
 import numpy as np
@@ -40,10 +41,7 @@ def save(dataset, path, stage, settings):
     labelled = dataset.assign_attrs(Conventions="CF-1.10", stage=stage, settings=json.dumps(settings, sort_keys=True))
     encoding = {name: {"zlib": True, "complevel": 1} for name, values in labelled.items() if values.size > 10_000}
     with _replacing(path) as draft:
-        try:
-            labelled.to_netcdf(draft, engine="netcdf4", encoding=encoding)
-        except (OSError, RuntimeError) as error:
-            raise DataError(f"{path} cannot be written ({error}); is the disk full?") from error
+        labelled.to_netcdf(draft, engine="netcdf4", encoding=encoding)
 
 
 def load(path, stage):
@@ -68,38 +66,35 @@ def load(path, stage):
 
 
 def save_text(text, path):
-    """Write a text file whole or not at all."""
+    """Write a text file whole or not at all; raises as :func:`save`."""
     with _replacing(Path(path)) as draft:
-        draft.write_text(text)
+        draft.write_text(text, encoding="utf-8")
 
 
-class _replacing:
+@contextlib.contextmanager
+def _replacing(path):
     """A draft beside the target that takes its place when all is written, and vanishes on an error."""
-
-    def __init__(self, path):
-        self.path = path
-
-    def __enter__(self):
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        for left in self.path.parent.glob(f".{self.path.name}.*"):  # by a run that was killed
+    draft = path.with_name(f".{path.name}.{uuid.uuid4().hex}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        for left in path.parent.glob(f".{path.name}.*"):  # by a run that was killed
             left.unlink(missing_ok=True)
-        handle, name = tempfile.mkstemp(dir=self.path.parent, prefix=f".{self.path.name}.")
-        os.close(handle)
-        self.draft = Path(name)
-        return self.draft
-
-    def __exit__(self, failure, *_):
-        if failure is None:
-            with self.draft.open("rb") as file:
-                os.fsync(file.fileno())  # else a power cut can leave the name without the content
-            self.draft.chmod(0o644)
-            self.draft.replace(self.path)
-        else:
-            self.draft.unlink(missing_ok=True)
+        draft.touch()
+    except OSError as error:
+        raise DataError(f"folder {path.parent} cannot be written ({error}); make it writable") from error
+    try:
+        yield draft
+        with draft.open("rb") as file:
+            os.fsync(file.fileno())  # else a power cut can leave the name without the content
+        draft.replace(path)
+    except (OSError, RuntimeError) as error:
+        raise DataError(f"{path} cannot be written ({error}); is the disk full?") from error
+    finally:
+        draft.unlink(missing_ok=True)
 
 
 def save_bytes(content, path):
-    """Write a binary file whole or not at all."""
+    """Write a binary file whole or not at all; raises as :func:`save`."""
     with _replacing(Path(path)) as draft:
         draft.write_bytes(content)
 

@@ -12,7 +12,7 @@ from tqdm import tqdm
 def logged(path):
     """Send warnings, progress and the traceback of an error to a log; the terminal gets the error's one line."""
     Path(path).parent.mkdir(parents=True, exist_ok=True)
-    with Path(path).open("w", buffering=1) as log:
+    with Path(path).open("w", buffering=1, encoding="utf-8") as log:
         try:
             with contextlib.redirect_stderr(log):
                 yield

@@ -48,6 +48,16 @@ def test_results_that_cannot_be_written_are_named(planner, tmp_path):
     assert "Traceback" not in printed
 
 
+def test_a_record_of_runs_that_is_none_is_to_be_deleted_not_left_behind(planner, tmp_path):
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results" / "provenance.json").write_text("[1, 2")
+    status, printed = planner("--directory", tmp_path, "--cores", 1, "results/heights/B1.nc")
+    assert status == 1
+    assert "provenance.json cannot be read" in printed
+    assert "; delete it" in printed
+    assert "choose another --directory" not in printed
+
+
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write where permissions forbid it")
 def test_a_read_only_folder_is_named(planner, tmp_path):
     (tmp_path / "results").mkdir(mode=0o555)

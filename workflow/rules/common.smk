@@ -101,6 +101,8 @@ def reserve_folder():
         fcntl.flock(HELD[-1], fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         raise WorkflowError("Another run works in this folder. Wait for its end, or end it.")
+    except OSError as error:
+        raise WorkflowError(f"This folder cannot be locked ({error}). Choose a --directory on a disk that knows locks.")
 
 
 # Studies beside the main line.
