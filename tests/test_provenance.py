@@ -62,6 +62,12 @@ def test_a_room_that_is_not_reached_does_not_count(package):
     assert provenance.fingerprint(package / "scripts" / "script.py") == before
 
 
+def test_a_room_that_changes_no_number_does_not_count(package, monkeypatch):
+    monkeypatch.setattr(provenance, "SILENT", {"far"})
+    provenance._read.cache_clear()
+    assert list(provenance.fingerprint(package / "scripts" / "script.py")) == ["script.py", "stiction.near"]
+
+
 def test_every_run_adds_what_it_ran_with_to_the_record(tmp_path):
     path = tmp_path / "results" / "provenance.json"
     for seed in (1, 2):

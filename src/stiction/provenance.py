@@ -14,12 +14,14 @@ from pathlib import Path
 PACKAGE = Path(__file__).parent
 #: Libraries that a result may depend on.
 LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4", "pandas", "matplotlib", "snakemake")
+#: Modules that change no number.
+SILENT = {"logs"}
 
 
 def fingerprint(script):
     """Hash the meaning of a script and of every module of the package that it reaches.
 
-    Comments, docstrings and layout do not count, so that they rerun nothing.
+    Comments, docstrings and layout do not count, nor do modules of ``SILENT``, so that they rerun nothing.
 
     Parameters
     ----------
@@ -44,8 +46,8 @@ def fingerprint(script):
 @cache
 def _read(path, _modified):
     """Hash of one file and the package's files that it imports."""
-    tree = ast.parse(path.read_text())
-    imports = [PACKAGE / f"{name}.py" for node in ast.walk(tree) for name in _rooms(node)]
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    imports = [PACKAGE / f"{name}.py" for node in ast.walk(tree) for name in _rooms(node) if name not in SILENT]
     for node in ast.walk(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node) is not None:
             node.body = node.body[1:]
