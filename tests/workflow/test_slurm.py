@@ -15,7 +15,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, SMOKE, snakemake
+from conftest import ROOT, SMOKE, datasets, snakemake
 
 pytestmark = pytest.mark.cluster
 
@@ -220,10 +220,6 @@ def local(tmp_path_factory, configs):
     folder = tmp_path_factory.mktemp("local")
     snakemake(folder, *TARGETS, configs=configs)
     return datasets(folder)
-
-
-def datasets(folder):
-    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("results/**/*.nc"))}
 
 
 def finished(run, folder):
