@@ -9,7 +9,6 @@ rule beams:
     log:
         "results/logs/beams/{case}_{model}.log",
     resources:
-        mem_mb=700,
         runtime=20,
     params:
         settings=lambda w: section(

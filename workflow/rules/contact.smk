@@ -31,9 +31,6 @@ rule contact:
         "results/contact/{pair}_{model}.nc",
     log:
         "results/logs/contact/{pair}_{model}.log",
-    resources:
-        mem_mb=700,
-        runtime=10,
     params:
         settings=contact_settings,
         code=code("contact.py") | code("contact_chunk.py"),

@@ -8,9 +8,6 @@ rule forces:
         "results/forces/{case}_{model}.nc",
     log:
         "results/logs/forces/{case}_{model}.log",
-    resources:
-        mem_mb=700,
-        runtime=10,
     params:
         settings=lambda w: section("water", humidity=settings.humidity_of(w.case)),
         code=code("forces.py"),
@@ -27,9 +24,6 @@ rule chaos:
         "results/chaos/{case}_{model}.nc",
     log:
         "results/logs/chaos/{case}_{model}.log",
-    resources:
-        mem_mb=700,
-        runtime=10,
     params:
         settings=lambda w: section("chaos", "seed"),
         code=code("chaos.py"),
@@ -47,9 +41,6 @@ rule fit:
         "results/fit/{case}_{model}.nc",
     log:
         "results/logs/fit/{case}_{model}.log",
-    resources:
-        mem_mb=700,
-        runtime=10,
     params:
         settings=lambda w: section("water", humidity=settings.humidity_of(w.case)),
         code=code("fit.py"),
@@ -66,9 +57,6 @@ rule humidity:
         "results/humidity/{pair}_{model}.nc",
     log:
         "results/logs/humidity/{pair}_{model}.log",
-    resources:
-        mem_mb=700,
-        runtime=10,
     params:
         settings=lambda w: section(
             "water",

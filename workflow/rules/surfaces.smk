@@ -6,9 +6,6 @@ rule heights:
         "results/heights/{surface}.nc",
     log:
         "results/logs/heights/{surface}.log",
-    resources:
-        mem_mb=500,
-        runtime=10,
     params:
         settings=moments_of,
         code=code("heights.py"),
@@ -26,7 +23,6 @@ rule identify:
     log:
         "results/logs/identification/{surface}.log",
     resources:
-        mem_mb=700,
         runtime=30,
     params:
         settings=lambda w: section("seed", "identification")
@@ -52,9 +48,6 @@ rule spectrum:
         "results/spectrum/{surface}.nc",
     log:
         "results/logs/spectrum/{surface}.log",
-    resources:
-        mem_mb=700,
-        runtime=10,
     params:
         settings=lambda w: {
             "spacing_nm": config["sampling"]["spacing_nm"],
@@ -79,9 +72,6 @@ rule iteration:
         "results/iteration/{surface}.nc",
     log:
         "results/logs/iteration/{surface}.log",
-    resources:
-        mem_mb=700,
-        runtime=10,
     params:
         settings=lambda w: section(
             "seed", iteration=config["studies"]["iteration"], spacing_nm=config["sampling"]["spacing_nm"]
@@ -101,9 +91,6 @@ rule character:
         "results/character/{surface}_{model}.nc",
     log:
         "results/logs/character/{surface}_{model}.log",
-    resources:
-        mem_mb=700,
-        runtime=10,
     params:
         settings=lambda w: section("seed", "sampling", "character", beam={"width_um": config["beam"]["width_um"]}),
         code=code("character.py"),
