@@ -97,7 +97,7 @@ MUTANTS = {
     "pairs": [
         ("reduced_modulus(**si(solid))", "2 * reduced_modulus(**si(solid))"),
         ('contact["distance_step"]', '2 * contact["distance_step"]'),
-        ('for side in ("beam", "substrate")', 'for side in ("substrate", "beam")'),
+        ('"contact", pair, side, sample', '"contact", pair, "beam", sample'),
     ],
     "estimates": [
         ("/ np.sqrt(len(samples))", "/ len(samples)"),

@@ -2,7 +2,7 @@ import numpy as np
 from published import CONFIG, SPACING, SURFACES
 from scipy.constants import pi
 
-from stiction import pairs, settings, study
+from stiction import cases, pairs, settings
 from stiction.streams import stream
 
 SETTINGS = settings.read(CONFIG)
@@ -12,7 +12,7 @@ def datasets(name):
     """Stages heights and spectrum of a surface."""
     of = SURFACES[name]
     moments = {"rms": of.rms, "skewness": of.skewness, "kurtosis": of.kurtosis}
-    return study.surface(moments, of.spectrum, SPACING)
+    return cases.surface(moments, of.spectrum, SPACING)
 
 
 def test_asperities_of_the_paper_have_the_modulus_and_the_attraction_of_a_hand_calculation():

@@ -1,14 +1,13 @@
 """The chain in one process against the chain of the workflow's scripts, and what it adds to it."""
 
 import importlib.util
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from stiction import data
+from stiction import cases, data, pairs
 from stiction.energy import arrest_length
 from stiction.settings import merged, read
 from stiction.study import PairStudy
@@ -59,24 +58,42 @@ def test_the_stages_are_those_of_the_workflow(study, tmp_path):
 def test_crack_length_of_the_mean_energy_is_the_printed_one(study, humidity, printed):
     # What the paper leaves open (attraction in water or none, ν, grid) is worth 10 % together; twice the modulus, the
     # attraction or the pressure of the water is worth more.
-    energy = study.forces(humidity)[0][:, 0].mean()
+    energy = study.energies(humidity).mean()
     assert_allclose(arrest_length(energy, study.beam), printed * 1e-6, rtol=0.1)
 
 
-def test_a_finer_grid_shows_the_same_surfaces(study):
-    fine = replace(study, settings=merged(CONFIG, {"sampling": {"spacing_nm": 5}}))
-    seeds = [[np.random.default_rng(k) for k in (1, 2)] for _ in range(2)]
-    coarse_heights, fine_heights = study.pair.draw(*seeds[0]), fine.pair.draw(*seeds[1])
-    assert fine_heights.shape == (300, 1200)
+def test_a_finer_grid_shows_the_same_surfaces():
+    surfaces = cases.surfaces_of(CONFIG, "b")
+    settings = CONFIG, merged(CONFIG, {"sampling": {"spacing_nm": 5}})
+    coarse, fine = (pairs.surface_pair(surfaces, "NG", s).draw(*map(np.random.default_rng, (1, 2))) for s in settings)
+    assert fine.shape == (300, 1200)
     # Single precision of the Fourier transforms, in units of the rms.
-    assert_allclose(fine_heights[::2, ::2], coarse_heights, atol=1e-5 * 3.4e-9 * 10)
+    assert_allclose(fine[::2, ::2], coarse, atol=1e-5 * 3.4e-9 * 10)
 
 
 def test_humidity_makes_surfaces_stick_and_van_der_waals_forces_help(study):
-    dry, wet = (study.forces(humidity)[0][:, 0].mean() for humidity in (0.5, HUMIDITY))
+    dry, wet = (study.energies(humidity).mean() for humidity in (0.5, HUMIDITY))
     assert dry < wet
-    without = replace(study, settings=merged(CONFIG, {"van_der_waals": "none"}))
-    assert np.all(without.forces(0.5)[0][:, 0] < study.forces(0.5)[0][:, 0])
+    without = PairStudy.of(merged(CONFIG, {"van_der_waals": "none"}), "b")
+    assert np.all(without.energies(0.5) < study.energies(0.5))
+
+
+def test_energies_are_those_of_the_vectors(study):
+    assert_array_equal(study.energies(HUMIDITY), study.forces(HUMIDITY)[0][:, 0])
+
+
+def test_a_reading_that_changes_nothing_is_the_pair_itself(study, tmp_path):
+    contact, reading = tmp_path / "contact.nc", tmp_path / "reading.nc"
+    one = merged(CONFIG, {"pairs": {"b": {"humidities": [HUMIDITY]}}})
+    script("reading_contact")([], contact, {"base": CONFIG, "changes": {}, "identified": []}, "b")
+    script("reading")(contact, reading, one, "b")
+    found = data.load(reading, "reading").isel(humidity=0)
+    assert_array_equal(found.crack_length, study.beams(HUMIDITY)["crack_length"])
+    script("reading_contact")(
+        [], contact, {"base": CONFIG, "changes": {"van_der_waals": "none"}, "identified": []}, "b"
+    )
+    script("reading")(contact, reading, one, "b")
+    assert np.all(data.load(reading, "reading").adhesion_energy[0] < found.adhesion_energy)
 
 
 def test_a_spectrum_that_is_to_be_identified_is_asked_for():

@@ -1,8 +1,10 @@
 """Tables II and III and that of the resampled laws from datasets of which every number is known."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from numpy.testing import assert_allclose
@@ -111,3 +113,15 @@ def test_resampling_compares_the_means_of_stuck_beams_with_errors_of_the_beams()
     assert_allclose((found.chaos_um, found.chaos_se_um, found.samples_um), (620, 20, 650))
     assert_allclose(found.difference_percent, 100 * (620 / 650 - 1))
     assert_allclose(found.difference_se_percent, 100 * np.hypot(20, 20 / np.sqrt(3)) / 650)
+
+
+def test_a_table_is_saved_for_machines_for_reading_and_for_the_report(tmp_path):
+    key = ("a", 0.45, "NG")
+    table = tables.table_3({key: beams(0, 0, 1)}, {key: forces()}, PRINTED)
+    paths = SimpleNamespace(**{kind: tmp_path / kind for kind in ("csv", "markdown", "html")})
+    tables.save(table, tables.markdown_3(table), paths)
+    assert_allclose(pd.read_csv(paths.csv).crack_length_um, 620)
+    assert paths.markdown.read_text(encoding="utf-8").startswith("Table III")
+    page = paths.html.read_text(encoding="utf-8")
+    assert page.count("<tr") == 2
+    assert "<td>620 ± 28</td>" in page

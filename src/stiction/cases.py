@@ -1,10 +1,14 @@
 """Rough surfaces from the configuration and from datasets: the way back into the theory."""
 
+from stiction import data, maxent
 from stiction.maxent import GAUSSIAN, HeightDensity
 from stiction.spectrum import CutoffSelfAffine, TabulatedSpectrum
 from stiction.surfaces import RoughSurface, StripGrid
-from stiction.translation import Translation
+from stiction.translation import Translation, spectrum_of_heights, underlying_spectrum
 from stiction.units import si
+
+SIDES = ("beam", "substrate")
+MOMENTS = ("rms", "skewness", "kurtosis")
 
 
 def density(heights, model):
@@ -29,3 +33,52 @@ def strip_grid(sampling, beam_width):
     """Grid of the strips l_meso x w, from sections sampling and beam."""
     entry = si(sampling)
     return StripGrid(entry["strip_length"], beam_width, entry["spacing"], entry["margin"])
+
+
+def surface(moments, target, spacing):
+    """One rough surface, as the datasets of stages heights and spectrum (Sec. II-A and II-B).
+
+    Parameters
+    ----------
+    moments : dict
+        rms [m], skewness, kurtosis.
+    target : CutoffSelfAffine
+        Spectrum of the heights; only its shape counts.
+    spacing : float
+        Of the grid on which the surface will be drawn [m].
+    """
+    density = maxent.solve(moments["skewness"], moments["kurtosis"])
+    translation = Translation(density)
+    underlying, defect = underlying_spectrum(target, translation, spacing)
+    achieved = spectrum_of_heights(underlying, translation, spacing)
+    return data.heights(density, moments), data.spectrum(target, underlying, achieved, defect)
+
+
+def _target(name, entry, identified):
+    """Spectrum of a surface of the configuration."""
+    if entry["psd"] == "published":
+        return CutoffSelfAffine(**si(entry["published_psd"]))
+    if name not in identified:
+        raise ValueError(
+            f"the spectrum of {name} has to be identified first, see stiction.identify; given {[*identified]}"
+        )
+    return identified[name]
+
+
+def surfaces_of(config, pair, identified=None):
+    """Datasets (heights, spectrum) of the beam's and of the substrate's surface of a pair.
+
+    Parameters
+    ----------
+    config : dict
+        Sections sampling, pairs and surfaces.
+    pair : str
+    identified : dict, optional
+        Spectra of the surfaces whose psd is not the published one, by name.
+    """
+    spacing, surfaces = si(config["sampling"])["spacing"], []
+    for name in (config["pairs"][pair][side] for side in SIDES):
+        entry = si(config["surfaces"][name])
+        target = _target(name, entry, identified or {})
+        surfaces.append(surface({key: entry[key] for key in MOMENTS}, target, spacing))
+    return tuple(surfaces)

@@ -245,6 +245,17 @@ def fit(samples, errors, total):
     )
 
 
+def resampling(columns):
+    """Study resampling: how every beam on laws of the samples themselves ended; as `stiction.data.beams`."""
+    return xr.Dataset(
+        {
+            "state": ("sample", np.asarray(columns["state"], np.int8)),
+            "crack_length": ("sample", columns["crack_length"], {"units": "m"}),
+        },
+        coords={"sample": columns["sample"]},
+    )
+
+
 def humidity_axis(humidity, probabilities, energies):
     """Stage humidity: distribution of the adhesion energy e over the samples, along the relative humidity.
 

@@ -3,11 +3,11 @@
 Apart from `stiction.cases`, so that a change of the contact reruns nothing that is done to single surfaces.
 """
 
-from functools import partial
-
+from stiction import data
 from stiction.asperity import MaugisTable, reduced_modulus
-from stiction.cases import rough_surface, strip_grid
-from stiction.contact import SurfacePair
+from stiction.cases import SIDES, rough_surface, strip_grid
+from stiction.contact import SurfacePair, contact_of_samples
+from stiction.logs import progress
 from stiction.streams import stream
 from stiction.units import si
 from stiction.vanderwaals import attraction
@@ -29,4 +29,27 @@ def surface_pair(surfaces, model, settings):
 
 def streams_of_sides(seed, pair):
     """Streams of the two surfaces of one sample of a pair: ``(sample) -> beam's, substrate's``."""
-    return lambda sample: tuple(partial(stream, seed, "contact", pair)(side, sample) for side in ("beam", "substrate"))
+    return lambda sample: tuple(stream(seed, "contact", pair, side, sample) for side in SIDES)
+
+
+def contact(surfaces, pair, model, settings, samples=None):
+    """Stage contact: solid pressure and bearing area of the sampled pairs, free of humidity (Sec. III-A).
+
+    Parameters
+    ----------
+    surfaces : tuple
+        Datasets (heights, spectrum) of the beam's and of the substrate's surface.
+    pair : str
+        Part of the addresses of random numbers.
+    model : str
+        ``NG``, or ``G`` for surfaces with Gaussian heights.
+    settings : dict
+        Sections seed, sampling, solid, van_der_waals, contact and the width of the beam.
+    samples : range, optional
+        Numbers of the samples; all by default.
+    """
+    meeting = surface_pair(surfaces, model, settings)
+    samples = range(settings["contact"]["samples"]) if samples is None else samples
+    streams = streams_of_sides(settings["seed"], pair)
+    curves = contact_of_samples(meeting, streams, progress(samples, "surface pairs"))
+    return data.contact(*curves, meeting.distances, samples)

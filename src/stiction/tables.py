@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from stiction.data import STATES, ended
+from stiction.data import STATES, ended, save_text
 from stiction.energy import CRACK_LENGTH_POWER
 from stiction.estimates import jackknife, mean_on_shared_samples, mean_with_error
 from stiction.spectrum import CutoffSelfAffine
@@ -22,6 +22,22 @@ _TABLE_1 = ("rms_nm", "skewness", "kurtosis", "mean_summit_radius_um", "summit_d
 def published(path):
     """Printed table as a frame."""
     return pd.read_csv(path, comment="#")
+
+
+def save(table, markdown, paths):
+    """Write a table as CSV, for reading as Markdown, and the latter for the report as HTML."""
+    save_text(table.to_csv(index=False), paths.csv)
+    save_text(markdown, paths.markdown)
+    save_text(html(markdown), paths.html)
+
+
+def html(markdown):
+    """Page of a caption and a table in Markdown."""
+    caption, _, grid = markdown.partition("\n\n")
+    titles, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in grid.strip().splitlines())
+    table = pd.DataFrame(rows, columns=titles).to_html(index=False, border=0)
+    style = "body { font: 13px sans-serif } td, th { padding: 1px 10px; text-align: right }"
+    return f'<!DOCTYPE html>\n<meta charset="utf-8">\n<style>{style}</style>\n<p>{caption}</p>\n{table}\n'
 
 
 def percent(value, reference):

@@ -21,18 +21,26 @@ figures: {humidity: 0.8, pair: b}
 contact: {chunks: 2}
 """
 STUDIES = ("correlation", "mesh", "orders", "sample_sizes", "sensitivity/b_rms", "plasticity/a", "plasticity/b")
-READINGS = ("readings/a_base", "readings/b_base", "readings/a_psd_identified")
+READINGS = (
+    "resampling/a_rh060",
+    "resampling/b_rh080",
+    "readings/a_base",
+    "readings/b_base",
+    "readings/a_psd_identified",
+)
 TARGETS = ["all", *(f"results/studies/{name}.nc" for name in STUDIES + READINGS)]
 
 #: Which rules read the files of which, written by hand.
 READ_BY = {
-    "heights": "identify spectrum iteration character contact_chunk sensitivity plasticity",
-    "identify": "table_2 reading",
-    "spectrum": "iteration character contact_chunk table_2 correlation sensitivity plasticity checks",
+    "heights": "identify spectrum iteration character contact_chunk sensitivity_contact plasticity",
+    "identify": "table_2 reading_contact",
+    "spectrum": "iteration character contact_chunk table_2 correlation sensitivity_contact plasticity checks",
     "character": "table_1 checks",
     "contact_chunk": "contact",
     "contact": "forces fit humidity",
-    "forces": "fit chaos table_3 sample_sizes orders mesh checks",
+    "forces": "fit chaos table_3 sample_sizes orders mesh resampling checks",
+    "sensitivity_contact": "sensitivity",
+    "reading_contact": "reading",
     "chaos": "beams orders checks",
     "beams": "table_3 checks",
     "table_3": "checks",
@@ -40,42 +48,43 @@ READ_BY = {
 }
 RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())
 #: Of pair b alone.
-OF_FIGURE = {"sensitivity", "sample_sizes", "orders", "mesh"}
+OF_FIGURE = {"sensitivity_contact", "sensitivity", "sample_sizes", "orders", "mesh"}
 
 #: Change in words; overlay; rules that it meets, behind which all readers rerun; rules spared for files it cannot
 #: reach; names of files that stay.
 MATRIX = [
-    ("kurtosis of one surface", "surfaces: {B1: {kurtosis: 4.5}}", "heights table_1 reading", OF_FIGURE, "B2|Sub1|/b_"),
-    ("radius of its summits", "surfaces: {B1: {mean_summit_radius_um: 0.42}}", "identify table_1 reading", (),
+    ("kurtosis of one surface", "surfaces: {B1: {kurtosis: 4.5}}", "heights table_1 reading_contact", OF_FIGURE, "B2|Sub1|/b_"),
+    ("radius of its summits", "surfaces: {B1: {mean_summit_radius_um: 0.42}}", "identify table_1", (),
      "B2|/b_"),
-    ("its published spectrum", "surfaces: {B1: {published_psd: {floor_nm4: 0.9}}}", "spectrum table_1 reading",
+    ("its published spectrum", "surfaces: {B1: {published_psd: {floor_nm4: 0.9}}}", "spectrum table_1 reading_contact",
      OF_FIGURE, "B2|Sub1|/b_"),
-    ("source of its spectrum", "surfaces: {B1: {psd: identified}}", "spectrum table_1 reading", OF_FIGURE, "B2|/b_"),
+    ("source of its spectrum", "surfaces: {B1: {psd: identified}}", "spectrum table_1 reading_contact", OF_FIGURE, "B2|/b_"),
     ("surface in a pair", "pairs: {a: {beam: B2}}",
-     "table_1 table_2 correlation contact_chunk plasticity reading checks", OF_FIGURE,
+     "table_1 table_2 correlation contact_chunk plasticity reading_contact checks", OF_FIGURE,
      "heights|spectrum|/b_"),
-    ("gap of one pair", "pairs: {a: {gap_um: 19}}", "beams reading checks", (), "/b_"),
+    ("gap of one pair", "pairs: {a: {gap_um: 19}}", "beams resampling reading checks", (), "/b_"),
     ("one humidity added", "pairs: {a: {humidities: [0.6, 0.7, 0.8]}}", "forces reading table_3 checks", OF_FIGURE,
      "/b_|/a_rh060|/a_rh080"),
     ("one humidity removed", "pairs: {a: {humidities: [0.6]}}", "humidity reading table_3 checks", (), "/b_|/a_rh"),
     ("seed", "seed: 2",
-     "identify iteration character contact_chunk chaos beams sensitivity plasticity orders reading", (), ""),
-    ("van der Waals model", "van_der_waals: dry", "contact_chunk sensitivity plasticity reading", (), ""),
+     "identify iteration character contact_chunk chaos beams sensitivity_contact plasticity orders resampling reading_contact", (), ""),
+    ("van der Waals model", "van_der_waals: dry", "contact_chunk sensitivity_contact plasticity reading_contact", (), ""),
     ("elasticity", "solid: {young_modulus_GPa: 160}",
-     "contact_chunk beams mesh sensitivity plasticity reading checks", (), ""),
-    ("grid of surfaces", "sampling: {spacing_nm: 5}", "identify spectrum reading", (), "heights"),
+     "contact_chunk beams mesh resampling sensitivity_contact plasticity reading_contact checks", (), ""),
+    ("grid of surfaces", "sampling: {spacing_nm: 5}", "identify spectrum reading_contact", (), "heights"),
     ("length of strips", "sampling: {strip_length_um: 3.75}",
-     "character contact_chunk beams sensitivity plasticity reading checks", (), "heights|identification|spectrum"),
+     "character contact_chunk beams resampling sensitivity_contact plasticity reading_contact checks", (),
+     "heights|identification|spectrum"),
     ("strips of Table I", "character: {strips: 50}", "character", (), "contact|forces"),
     ("spacing of Table I", "character: {spacing_nm: 10}", "identify character", (), "contact|forces"),
     ("patches of identification", "identification: {patches: 4}", "identify", (), "spectrum|_base"),
     ("water", "water: {temperature_K: 310}", "forces humidity sensitivity reading", (), "contact"),
     ("number of samples", "contact: {samples: 5500}", "contact_chunk", (), "studies/(sens|plas|read)"),
     ("distance step", "contact: {distance_step_nm: 0.1}",
-     "contact_chunk sensitivity plasticity reading", (), "spectrum"),
+     "contact_chunk sensitivity_contact plasticity reading_contact", (), "spectrum"),
     ("chaos order", "chaos: {order: 6}", "chaos reading", (), "forces"),
-    ("beam thickness", "beam: {thickness_um: 2.5}", "beams mesh reading checks", (), "chaos"),
-    ("beam width", "beam: {width_um: 24}", "character contact_chunk beams mesh sensitivity plasticity reading checks",
+    ("beam thickness", "beam: {thickness_um: 2.5}", "beams resampling mesh reading checks", (), "chaos"),
+    ("beam width", "beam: {width_um: 24}", "character contact_chunk beams resampling mesh sensitivity_contact plasticity reading_contact checks",
      (), "heights|spectrum"),
     ("number of beams", "beam: {samples: 500}", "beams", (), "chaos|studies"),
     ("scatter of beams", "beam: {scatter: 0.03}", "beams", (), "chaos|studies"),
@@ -86,8 +95,9 @@ MATRIX = [
     ("study: iteration", "studies: {iteration: {fields: 4}}", "iteration", (), ""),
     ("studies", "studies: {sensitivity: {step: 0.1}, plasticity: {strips: 50}, sample_shares: [0.1, 0.2], "
      "orders: {draws: 1000}, mesh: {strips_um: [7.5]}}",
-     "sensitivity plasticity sample_sizes orders mesh", (), "readings"),
-    ("study: readings", "studies: {readings: {samples: 500}}", "reading", (), ""),
+     "sensitivity_contact plasticity sample_sizes orders mesh", (), "readings"),
+    ("study: resampling", "studies: {resampling: {beams: 5}}", "resampling", (), ""),
+    ("study: readings", "studies: {readings: {samples: 500}}", "reading_contact", (), ""),
 ]  # fmt: skip
 # Of each section one key at least, and what the README promises, are planned every time.
 FURTHER = {"radius of its summits", "its published spectrum", "length of strips", "spacing of Table I", "distance step"}
@@ -183,6 +193,13 @@ def test_adding_a_humidity_runs_no_contact_and_no_surface(tree):
     assert {name for name in made if not re.match("checks|figures|fit/", name)} == files | beams
 
 
+def test_adding_a_humidity_to_the_pair_of_the_figures_draws_no_surface_either(tree):
+    rerun = tree.rerun(overlay="pairs: {b: {humidities: [0.7, 0.8]}}")
+    assert {"forces", "chaos", "beams", "resampling", "sensitivity", "reading"} <= known(rerun)
+    drawing = {"heights", "spectrum", "character", "contact_chunk", "sensitivity_contact", "reading_contact"}
+    assert not drawing & known(rerun)
+
+
 def test_neither_cores_nor_order_of_keys_rerun_anything(tree):
     def backwards(value):
         return {key: backwards(value[key]) for key in reversed(value)} if isinstance(value, dict) else value
@@ -215,9 +232,21 @@ def test_a_branch_and_back_reruns_nothing(tree):
 
 # By hand: what a module is for says which rules must and must not care.
 SPOTS = [
-    ("src/stiction/beam.py", "beams mesh reading", "heights spectrum contact_chunk contact forces chaos"),
-    ("src/stiction/meniscus.py", "forces sensitivity reading", "heights spectrum character contact_chunk contact"),
-    ("src/stiction/asperity.py", "contact_chunk sensitivity", "heights spectrum identify character"),
+    (
+        "src/stiction/beam.py",
+        "beams resampling mesh reading",
+        "heights spectrum contact_chunk contact reading_contact forces chaos",
+    ),
+    (
+        "src/stiction/meniscus.py",
+        "forces sensitivity reading",
+        "heights character contact_chunk contact reading_contact sensitivity_contact",
+    ),
+    (
+        "src/stiction/asperity.py",
+        "contact_chunk sensitivity_contact reading_contact",
+        "heights spectrum identify character",
+    ),
     ("src/stiction/identify.py", "identify reading", "heights spectrum character contact_chunk forces beams"),
     ("src/stiction/tables.py", "table_1 table_2 table_3", "heights spectrum character contact forces beams reading"),
     ("src/stiction/provenance.py", "", " ".join(RULES)),

@@ -91,6 +91,13 @@ def printed(number):
     return str(BASE / "workflow" / "resources" / f"table_{number}.csv")
 
 
+def table_files(name, shows):
+    """Outputs of a rule that makes a table; the page is for the report."""
+    labels = {"item": name.replace("_", " ").capitalize(), "shows": shows}
+    page = report(f"results/tables/{name}.html", category="Tables", labels=labels)
+    return {"csv": f"results/tables/{name}.csv", "markdown": f"results/tables/{name}.md", "html": page}
+
+
 HELD = []  # open files: the lock of this run goes with the process
 
 
@@ -128,46 +135,6 @@ def can_be_shifted(moment):
 
 
 MOMENTS = ["rms", *filter(can_be_shifted, ("skewness", "kurtosis"))]
-
-
-def psd_under(reading, surface):
-    """Source of the spectrum of a surface under a reading: the one it asks for, where that is known."""
-    entry = config["surfaces"][surface]
-    known = {"published": "published_psd" in entry, "identified": surface in MEASURED}
-    wanted = READINGS[reading].get("psd", entry["psd"])
-    return wanted if known[wanted] else entry["psd"]
-
-
-def identified_under(wildcards):
-    """Surfaces of a pair whose spectrum is an identified one under a reading."""
-    names = sorted({config["pairs"][wildcards.pair][side] for side in SIDES})
-    return [name for name in names if psd_under(wildcards.reading, name) == "identified"]
-
-
-def reading_settings(wildcards):
-    """Sections of the configuration that a reading starts from, and what it changes."""
-    pair, reading = config["pairs"][wildcards.pair], wildcards.reading
-    return {
-        "base": section(
-            "seed",
-            "sampling",
-            "solid",
-            "van_der_waals",
-            "water",
-            "chaos",
-            contact=CONTACT | {"samples": STUDIES["readings"]["samples"]},
-            # Without scatter, which models G and NG do not know.
-            beam={key: config["beam"][key] for key in ("length_um", "width_um", "thickness_um", "elements")}
-            | {"samples": STUDIES["readings"]["beams"]},
-            pairs={wildcards.pair: pair},
-            surfaces={
-                name: config["surfaces"][name] | {"psd": psd_under(reading, name)}
-                for name in (pair[side] for side in SIDES)
-            },
-        ),
-        "changes": {key: change for key, change in READINGS[reading].items() if key != "psd"},
-        "identified": identified_under(wildcards),
-    }
 
 
 def keys_of(cases):

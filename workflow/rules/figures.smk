@@ -38,8 +38,7 @@ rule fit_quality:
     input:
         expand("results/fit/{case}_{model}.nc", case=CASES, model=("G", "NG")),
     output:
-        csv="results/tables/fit_quality.csv",
-        markdown="results/tables/fit_quality.md",
+        **table_files("fit_quality", "fit of the force curves by Eq. (12)"),
     log:
         "results/logs/tables/fit_quality.log",
     resources:

@@ -3,7 +3,7 @@
 # Group of the report.
 ON_STUDIES = "Sensitivity, appendices, readings"
 SENSITIVITIES = expand("results/studies/sensitivity/{pair}_{moment}.nc", pair=FIGURE_PAIR, moment=MOMENTS)
-STUDIED = [(pair, reading) for pair in PAIRS for reading in READINGS]
+STUDIED = [(pair, reading) for pair in PAIRS for reading in READINGS if changes_something(reading, pair)]
 STUDY_FIGURES = ["figure_13", "figure_17", "figure_18", "figure_19", "readings"] + ["figure_16"] * bool(PRESSED_PAIRS)
 
 
@@ -39,8 +39,7 @@ rule table_sensitivity:
         studies=SENSITIVITIES,
         printed=str(BASE / "workflow" / "resources" / "sensitivity.csv"),
     output:
-        csv="results/tables/sensitivity.csv",
-        markdown="results/tables/sensitivity.md",
+        **table_files("sensitivity", "sensitivity to the moments of a surface"),
     log:
         "results/logs/tables/sensitivity.log",
     resources:
@@ -197,8 +196,7 @@ rule table_readings:
         studies=[f"results/studies/readings/{pair}_{reading}.nc" for pair, reading in STUDIED],
         printed=printed(3),
     output:
-        csv="results/tables/readings.csv",
-        markdown="results/tables/readings.md",
+        **table_files("readings", "Table III under other readings of the paper"),
     log:
         "results/logs/tables/readings.log",
     resources:
@@ -213,10 +211,31 @@ rule table_readings:
         "../scripts/table_readings.py"
 
 
+rule table_resampling:
+    input:
+        beams=expand("results/beams/{case}_NG.nc", case=CASES),
+        resampled=expand("results/studies/resampling/{case}.nc", case=CASES),
+    output:
+        **table_files("resampling", "what the chaos model does to the crack length"),
+    log:
+        "results/logs/tables/resampling.log",
+    resources:
+        mem_mb=600,
+        runtime=10,
+    params:
+        settings={"keys": [(settings.pair_of(case), settings.humidity_of(case)) for case in CASES]},
+        code=code("table_resampling.py"),
+    message:
+        "Crack lengths on laws of the chaos model and of the samples."
+    script:
+        "../scripts/table_resampling.py"
+
+
 rule study_figures:
     input:
         expand("results/figures/{name}.{kind}", name=STUDY_FIGURES, kind=("pdf", "png")),
         rules.table_sensitivity.output,
         rules.table_readings.output,
+        rules.table_resampling.output,
     message:
         "Figures and tables of the studies beside the main line."

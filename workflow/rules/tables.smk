@@ -8,8 +8,7 @@ rule table_1:
         characters=expand("results/character/{surface}_{model}.nc", surface=SURFACES, model=("NG", "G")),
         printed=printed(1),
     output:
-        csv="results/tables/table_1.csv",
-        markdown="results/tables/table_1.md",
+        **table_files("table_1", "statistics of the surfaces"),
     log:
         "results/logs/tables/table_1.log",
     resources:
@@ -33,8 +32,7 @@ rule table_2:
         spectra=expand("results/spectrum/{surface}.nc", surface=MEASURED),
         printed=printed(2),
     output:
-        csv="results/tables/table_2.csv",
-        markdown="results/tables/table_2.md",
+        **table_files("table_2", "spectra and their identification"),
     log:
         "results/logs/tables/table_2.log",
     resources:
@@ -55,8 +53,7 @@ rule table_3:
         forces=expand("results/forces/{case}_{model}.nc", case=CASES, model=("G", "NG", "NG")),
         printed=printed(3),
     output:
-        csv="results/tables/table_3.csv",
-        markdown="results/tables/table_3.md",
+        **table_files("table_3", "crack lengths and adhesion energies"),
     log:
         "results/logs/tables/table_3.log",
     resources:

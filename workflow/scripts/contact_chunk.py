@@ -1,19 +1,15 @@
 """Sec. III-A: contact of a range of surface pairs."""
 
 from stiction import data, pairs
-from stiction.contact import contact_of_samples
-from stiction.logs import logged, progress
+from stiction.logs import logged
 
 
 def main(heights, spectra, output, settings, pair, model, chunk, number):
     """Draw surface pairs and keep their solid pressure and bearing area."""
     surfaces = [(data.load(h, "heights"), data.load(s, "spectrum")) for h, s in zip(heights, spectra, strict=True)]
-    meeting = pairs.surface_pair(surfaces, model, settings)
     total = settings["contact"]["samples"]
     samples = range(total * chunk // number, total * (chunk + 1) // number)
-    streams = pairs.streams_of_sides(settings["seed"], pair)
-    curves = contact_of_samples(meeting, streams, progress(samples, "surface pairs"))
-    data.save(data.contact(*curves, meeting.distances, samples), output, "contact", settings)
+    data.save(pairs.contact(surfaces, pair, model, settings, samples), output, "contact", settings)
 
 
 if __name__ == "__main__":

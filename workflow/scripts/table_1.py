@@ -4,15 +4,14 @@ from stiction import data, tables
 from stiction.logs import logged
 
 
-def main(paths, csv, markdown, settings):
+def main(paths, output, settings):
     """Compare simulated, printed and measured statistics."""
     keys = map(tuple, settings["keys"])
     loaded = {key: data.load(path, "character") for key, path in zip(keys, paths.characters, strict=True)}
     table = tables.table_1(loaded, settings["measured"], tables.published(paths.printed))
-    data.save_text(table.to_csv(index=False), csv)
-    data.save_text(tables.markdown_1(table), markdown)
+    tables.save(table, tables.markdown_1(table), output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output.csv, snakemake.output.markdown, snakemake.params.settings)
+        main(snakemake.input, snakemake.output, snakemake.params.settings)

@@ -4,16 +4,15 @@ from stiction import data, tables
 from stiction.logs import logged
 
 
-def main(paths, csv, markdown, settings):
+def main(paths, output, settings):
     """Compare the parameters of Eq. (7)."""
     names = settings["surfaces"]
     found = {n: data.load(p, "identification") for n, p in zip(names, paths.identifications, strict=True)}
     spectra = {n: data.load(p, "spectrum") for n, p in zip(names, paths.spectra, strict=True)}
     table = tables.table_2(found, spectra, tables.published(paths.printed))
-    data.save_text(table.to_csv(index=False), csv)
-    data.save_text(tables.markdown_2(table), markdown)
+    tables.save(table, tables.markdown_2(table), output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output.csv, snakemake.output.markdown, snakemake.params.settings)
+        main(snakemake.input, snakemake.output, snakemake.params.settings)

@@ -4,16 +4,15 @@ from stiction import data, tables
 from stiction.logs import logged
 
 
-def main(paths, csv, markdown, settings):
+def main(paths, output, settings):
     """Average over the beams of every case and compare with print and experiment."""
     keys = [tuple(key) for key in settings["keys"]]
     beams = {key: data.load(path, "beams") for key, path in zip(keys, paths.beams, strict=True)}
     forces = {key: data.load(path, "forces") for key, path in zip(keys, paths.forces, strict=True)}
     table = tables.table_3(beams, forces, tables.published(paths.printed))
-    data.save_text(table.to_csv(index=False), csv)
-    data.save_text(tables.markdown_3(table), markdown)
+    tables.save(table, tables.markdown_3(table), output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output.csv, snakemake.output.markdown, snakemake.params.settings)
+        main(snakemake.input, snakemake.output, snakemake.params.settings)
