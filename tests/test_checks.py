@@ -138,6 +138,27 @@ def test_beam_out_of_balance_fails():
     assert not checks.beams_are_in_balance("b", beams(0.0, np.nan), LIMIT, BEAM, STRIP).passed
 
 
+def released(mean, n=400, stuck=1.0):
+    """Beams of this mean crack length [µm], 5 % apart, of which a share sticks."""
+    lengths = mean * 1e-6 * (1 + 0.05 * stream(3, "beams").standard_normal(n))
+    state = np.where(np.arange(n) < stuck * n, 0, 1)
+    return xr.Dataset({"crack_length": ("sample", lengths), "state": ("sample", state)})
+
+
+def test_chaos_model_may_move_a_crack_length_by_one_per_cent_and_errors():
+    assert checks.crack_lengths_are_kept("b", released(700), released(706)).passed
+    # 1 % and 4 · √2 · 5 % / √400
+    assert checks.crack_lengths_are_kept("b", released(700), released(700 / 1.023)).passed
+    assert not checks.crack_lengths_are_kept("b", released(700), released(700 / 1.026)).passed
+    assert not checks.crack_lengths_are_kept("b", released(700), released(700 * 1.026)).passed
+
+
+def test_cases_where_hardly_a_beam_sticks_have_no_crack_length_to_compare():
+    key = ("b", 0.5, "NG")
+    assert list(checks.of_resampling({key: released(700)}, {key: released(700, stuck=0)})) == []
+    assert len(list(checks.of_resampling({key: released(700)}, {key: released(700, stuck=0.5)}))) == 1
+
+
 def study(energies):
     """Forces of one pair from {(humidity, model): energy}."""
     return {("b", rh, model): forces(energy) for (rh, model), energy in energies.items()}

@@ -12,7 +12,7 @@ import pandas as pd
 from scipy.stats import norm, t
 
 from stiction.beam import ROUNDING, TOLERANCE
-from stiction.data import vectors
+from stiction.data import ended, vectors
 from stiction.estimates import jackknife, mean_with_error
 from stiction.forcelaw import admissible
 from stiction.tables import surface_statistics
@@ -21,6 +21,8 @@ ALLOWED = 4
 #: The chaos model may miss the mean of its input by this part of the standard deviation, that by this part of itself,
 #: and correlations by this much: kernels around log v widen the tails of v.
 MEAN_OFF, SPREAD_OFF, CORRELATION_OFF = 0.02, 0.15, 0.05
+#: Part of the mean crack length that the chaos model may take from it or add to it.
+LENGTH_OFF = 0.01
 #: Share of draws that may lack a force law: of non-Gaussian surfaces, and beyond that of the samples themselves.
 REJECTED, REJECTED_OFF = 0.05, 0.02
 
@@ -126,6 +128,19 @@ def chaos_reproduces_input(case, chaos, samples):
     return Check("chaos model reproduces its input", case, bool(np.all(np.less_equal(off, limits))), said)
 
 
+def crack_lengths_are_kept(case, beams, resampled):
+    """Beams on laws of the chaos model stop where those on laws of the samples themselves do, in the mean."""
+    (length, error), (reference, its_error) = (
+        mean_with_error(1e6 * outcomes.crack_length.values[ended(outcomes, "S-shape")])
+        for outcomes in (beams, resampled)
+    )
+    allowed = LENGTH_OFF * reference + ALLOWED * np.hypot(error, its_error)
+    said = (
+        f"{length:.1f} ± {error:.2g} µm, of the samples {reference:.1f} ± {its_error:.2g} µm, allowed ± {allowed:.2g}"
+    )
+    return Check("chaos model keeps the crack length", case, bool(abs(length - target) <= allowed), said)
+
+
 def few_draws_rejected(case, chaos, forces, limit):
     """Draws that Eq. (12) cannot follow are at most ``limit``, and as frequent as such samples.
 
@@ -226,9 +241,22 @@ def of_beams(outcomes, forces, beams, strip):
     strip : float
         Length of a strip [m].
     """
-    for (pair, humidity, model), ended in outcomes.items():
+    for (pair, humidity, model), released in outcomes.items():
         limit = float(forces[pair, humidity, "G" if model == "G" else "NG"].limit)
-        yield beams_are_in_balance(_name(pair, humidity, model), ended, limit, beams[pair], strip)
+        yield beams_are_in_balance(_name(pair, humidity, model), released, limit, beams[pair], strip)
+
+
+def of_resampling(outcomes, resampled):
+    """What the chaos model does to crack lengths, wherever two beams stick at least.
+
+    Parameters
+    ----------
+    outcomes, resampled : dict
+        (pair, humidity, model) to the datasets of stage beams and, for model NG, of study resampling.
+    """
+    for key, reference in resampled.items():
+        if min(ended(beams, "S-shape").sum() for beams in (outcomes[key], reference)) >= 2:
+            yield crack_lengths_are_kept(_name(*key), outcomes[key], reference)
 
 
 def _name(pair, humidity, model):

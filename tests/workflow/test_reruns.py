@@ -43,7 +43,7 @@ READ_BY = {
     "reading_contact": "reading",
     "chaos": "beams orders checks",
     "beams": "table_3 checks",
-    "table_3": "checks",
+    "resampling": "checks",
     "checks": "verdict",
 }
 RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())

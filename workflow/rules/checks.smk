@@ -16,7 +16,7 @@ rule checks:
         forces=[f"results/forces/{case}_{model}.nc" for case, model in LAWS],
         chaos=[f"results/chaos/{case}_{model}.nc" for case, model in LAWS],
         beams=[f"results/beams/{case}_{model}.nc" for case, model in OUTCOMES],
-        table="results/tables/table_3.csv",
+        resampling=[f"results/studies/resampling/{case}.nc" for case in CASES],
     output:
         csv="results/checks.csv",
         markdown="results/checks.md",
@@ -26,6 +26,7 @@ rule checks:
         settings={
             "laws": keys_of(LAWS),
             "cases": keys_of(OUTCOMES),
+            "resampled": keys_of((case, "NG") for case in CASES),
             "surfaces": [(surface, model) for surface in SURFACES for model in ("NG", "G")],
             "targets": {
                 surface: {key: config["surfaces"][surface][key] for key in ("rms_nm", "skewness", "kurtosis")}

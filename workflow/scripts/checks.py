@@ -10,7 +10,8 @@ from stiction.units import si
 
 def main(paths, csv, markdown, settings):
     """Write all checks, passed or not."""
-    laws, cases, surfaces = ([tuple(key) for key in settings[name]] for name in ("laws", "cases", "surfaces"))
+    names = ("laws", "cases", "surfaces", "resampled")
+    laws, cases, surfaces, resampled = ([tuple(key) for key in settings[name]] for name in names)
 
     def loaded(stage, keys):
         return {key: data.load(path, stage) for key, path in zip(keys, paths[stage], strict=True)}
@@ -18,11 +19,13 @@ def main(paths, csv, markdown, settings):
     forces, targets = loaded("forces", laws), settings["targets"]
     defects = {surface: float(spectrum.defect) for surface, spectrum in loaded("spectrum", targets).items()}
     beams = {pair: Beam(**si(entry)) for pair, entry in settings["beams"].items()}
+    outcomes = loaded("beams", cases)
     found = chain(
         checks.of_surfaces(loaded("character", surfaces), targets, defects),
         checks.of_laws(forces, loaded("chaos", laws)),
         checks.of_trends(forces, settings["skewed"]),
-        checks.of_beams(loaded("beams", cases), forces, beams, si(settings["strip"])["length"]),
+        checks.of_beams(outcomes, forces, beams, si(settings["strip"])["length"]),
+        checks.of_resampling(outcomes, loaded("resampling", resampled)),
     )
     table = checks.table(found)
     data.save_text(table.to_csv(index=False), csv)
