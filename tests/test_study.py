@@ -9,7 +9,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction import cases, data, pairs
 from stiction.energy import arrest_length
-from stiction.settings import merged, read
+from stiction.keys import merged
+from stiction.settings import read
 from stiction.study import PairStudy
 
 ROOT = Path(__file__).parents[1]

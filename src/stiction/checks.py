@@ -130,14 +130,11 @@ def chaos_reproduces_input(case, chaos, samples):
 
 def crack_lengths_are_kept(case, beams, resampled):
     """Beams on laws of the chaos model stop where those on laws of the samples themselves do, in the mean."""
-    (length, error), (reference, its_error) = (
-        mean_with_error(1e6 * outcomes.crack_length.values[ended(outcomes, "S-shape")])
-        for outcomes in (beams, resampled)
+    (length, error), (target, its_error) = (
+        mean_with_error(1e6 * end.crack_length.values[ended(end, "S-shape")]) for end in (beams, resampled)
     )
-    allowed = LENGTH_OFF * reference + ALLOWED * np.hypot(error, its_error)
-    said = (
-        f"{length:.1f} ± {error:.2g} µm, of the samples {reference:.1f} ± {its_error:.2g} µm, allowed ± {allowed:.2g}"
-    )
+    allowed = LENGTH_OFF * target + ALLOWED * np.hypot(error, its_error)
+    said = f"{length:.1f} ± {error:.2g} µm, on the samples {target:.1f} ± {its_error:.2g} µm, allowed ± {allowed:.2g}"
     return Check("chaos model keeps the crack length", case, bool(abs(length - target) <= allowed), said)
 
 

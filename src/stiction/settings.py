@@ -19,15 +19,10 @@ from jsonschema import Draft202012Validator, validators
 
 from stiction import maxent
 from stiction.errors import NotConverged
+from stiction.keys import NAMEABLE, decimals, merged
 from stiction.spectrum import CutoffSelfAffine, correlation_length
 from stiction.translation import LARGEST_SCORE
 from stiction.units import si
-
-#: A case as it stands in paths: name of the pair, two to four decimals of the relative humidity.
-CASE = "[A-Za-z][A-Za-z0-9]*_rh0[0-9]{2,4}"
-
-
-_NAMEABLE = "have at most 4 decimals, which name its files"
 
 
 class ConfigError(ValueError):
@@ -40,67 +35,6 @@ class ConfigError(ValueError):
 
     def __str__(self):
         return "\n".join(self.problems)
-
-
-def case_id(pair, humidity):
-    """Name of a pair at a relative humidity [-], safe in paths and wildcards.
-
-    Raises
-    ------
-    ConfigError
-        If the humidity is not in (0, 1) or has more than four decimals.
-
-    Examples
-    --------
-    >>> case_id("b", 0.67), case_id("b", 0.6), case_id("b", 0.675)
-    ('b_rh067', 'b_rh060', 'b_rh0675')
-    """
-    decimals = _decimals(humidity)
-    if not (0 < humidity < 1 and decimals):
-        raise ConfigError(f"humidity {humidity} of pair {pair} must be above 0, below 1 and {_NAMEABLE}")
-    return f"{pair}_rh{decimals.replace('.', '')}"
-
-
-def humidity_of(case):
-    """Relative humidity [-] of a case.
-
-    Raises
-    ------
-    ConfigError
-        If ``case`` is not what `case_id` returns.
-
-    Examples
-    --------
-    >>> humidity_of("b_rh067")
-    0.67
-    """
-    return _parted(case)[1]
-
-
-def pair_of(case):
-    """Name of the pair of a case; raises as `humidity_of`.
-
-    Examples
-    --------
-    >>> pair_of("b_rh067")
-    'b'
-    """
-    return _parted(case)[0]
-
-
-def _parted(case):
-    """Pair and humidity of a case, the inverse of `case_id`."""
-    pair, _, decimals = case.partition("_rh0")
-    humidity = float(f"0.{decimals}") if re.fullmatch(CASE, case) else 0.0
-    if not humidity or case_id(pair, humidity) != case:
-        raise ConfigError(f"{_shown(case)} is not a case, must be like b_rh067 for pair b at relative humidity 0.67")
-    return pair, humidity
-
-
-def _decimals(humidity):
-    """Humidity with two to four decimals, ``None`` if these do not hold it."""
-    texts = (f"{humidity:.{places}f}" for places in (2, 3, 4))
-    return next((text for text in texts if float(text) == humidity), None)
 
 
 def read(path):
@@ -143,13 +77,6 @@ def load(paths, schema):
     config = functools.reduce(merged, map(read, paths))
     validate(config, schema)
     return config
-
-
-def merged(base, overlay):
-    """Mapping ``base`` changed key by key, as Snakemake does; lists and numbers are replaced whole."""
-    if not (isinstance(base, dict) and isinstance(overlay, dict)):
-        return overlay
-    return base | {key: merged(base.get(key), value) for key, value in overlay.items()}
 
 
 def _twins(items):
@@ -445,9 +372,9 @@ def name_is_defined(name, defined):
 @law("pairs.*.humidities")
 def cases_have_names_of_their_own(humidities):
     """A humidity of a pair has one name, and no other has it."""
-    nameless = [humidity for humidity in humidities if not _decimals(humidity)]
+    nameless = [humidity for humidity in humidities if not decimals(humidity)]
     if nameless:
-        return f"must each {_NAMEABLE}; {nameless[0]} has more"
+        return f"must each {NAMEABLE}; {nameless[0]} has more"
     twins = _twins(humidities)
     return f"must hold each humidity once; {twins[0]} is there twice" if twins else None
 
@@ -455,7 +382,7 @@ def cases_have_names_of_their_own(humidities):
 @law("figures.humidity")
 def humidity_of_the_figures_has_a_name(humidity):
     """The humidity of the figures is a case like the others."""
-    return None if _decimals(humidity) else f"must {_NAMEABLE}"
+    return None if decimals(humidity) else f"must {NAMEABLE}"
 
 
 @law("surfaces.*.kurtosis", "surfaces.*.skewness")

@@ -13,10 +13,10 @@ from stiction.beam import Beam
 from stiction.cases import surfaces_of
 from stiction.curves import force_curves
 from stiction.forcelaw import adhesion_energies, parametrise
+from stiction.keys import case_id
 from stiction.logs import progress
 from stiction.montecarlo import Experiment, columns, simulate
 from stiction.pairs import contact
-from stiction.settings import case_id
 from stiction.streams import stream
 from stiction.units import si
 

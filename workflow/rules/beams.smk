@@ -14,7 +14,7 @@ rule beams:
         settings=lambda w: section(
             "seed",
             "beam",
-            gap_um=config["pairs"][settings.pair_of(w.case)]["gap_um"],
+            gap_um=config["pairs"][keys.pair_of(w.case)]["gap_um"],
             young_modulus_GPa=config["solid"]["young_modulus_GPa"],
             strip_length_um=config["sampling"]["strip_length_um"],
         ),

@@ -2,15 +2,14 @@
 
 import fcntl
 
-from stiction import provenance, sensitivity, settings
-from stiction.settings import case_id
+from stiction import keys, provenance, sensitivity, settings
 
 
 wildcard_constraints:
     surface="[A-Za-z][A-Za-z0-9]*",
     pair="[A-Za-z][A-Za-z0-9]*",
     model="NG|G|GEO",
-    case=settings.CASE,
+    case=keys.CASE,
     chunk="[0-9]+",
     number="[0-9]+",
 
@@ -38,8 +37,8 @@ SURFACES = [
 ]
 # Those whose summits were measured can have their spectrum identified.
 MEASURED = [name for name in SURFACES if SUMMITS <= config["surfaces"][name].keys()]
-CASES = [case_id(pair, humidity) for pair in PAIRS for humidity in config["pairs"][pair]["humidities"]]
-FIGURE_CASES = [case_id(pair, config["figures"]["humidity"]) for pair in PAIRS]
+CASES = [keys.case_id(pair, humidity) for pair in PAIRS for humidity in config["pairs"][pair]["humidities"]]
+FIGURE_CASES = [keys.case_id(pair, config["figures"]["humidity"]) for pair in PAIRS]
 FIGURE_PAIR = config["figures"]["pair"] if config["figures"]["pair"] in PAIRS else PAIRS[0]
 FIGURE = {"pair": FIGURE_PAIR, "humidity": config["figures"]["humidity"]}
 
@@ -114,7 +113,7 @@ def reserve_folder():
 
 # Studies beside the main line.
 STUDIES = config["studies"]
-FIGURE_CASE = case_id(FIGURE_PAIR, config["figures"]["humidity"])
+FIGURE_CASE = keys.case_id(FIGURE_PAIR, config["figures"]["humidity"])
 CONTACT = {key: value for key, value in config["contact"].items() if key not in ("chunks", "samples")}
 PRESSED_PAIRS = [pair for pair in PAIRS if pair in STUDIES["plasticity"]["distance_nm"]]
 # Section of the configuration in which a reading changes a key; the source of the spectra stands with each surface.
@@ -139,7 +138,7 @@ MOMENTS = ["rms", *filter(can_be_shifted, ("skewness", "kurtosis"))]
 
 def keys_of(cases):
     """Pair, humidity and model of every (case, model)."""
-    return [(settings.pair_of(case), settings.humidity_of(case), model) for case, model in cases]
+    return [(keys.pair_of(case), keys.humidity_of(case), model) for case, model in cases]
 
 
 def nominal_beam(pair):

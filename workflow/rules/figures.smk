@@ -45,7 +45,7 @@ rule fit_quality:
         mem_mb=600,
         runtime=10,
     params:
-        settings={"keys": [(settings.pair_of(c), settings.humidity_of(c), m) for c in CASES for m in ("G", "NG")]},
+        settings={"keys": [(keys.pair_of(c), keys.humidity_of(c), m) for c in CASES for m in ("G", "NG")]},
         code=code("fit_quality.py"),
     message:
         "Errors of Eq. (12) over all samples of every case."
@@ -290,7 +290,7 @@ rule figure_15:
             "beam",
             "solid",
             pairs={pair: config["pairs"][pair] for pair in PAIRS},
-            cases=[(settings.pair_of(c), settings.humidity_of(c), m) for c in CASES for m in MODELS],
+            cases=[(keys.pair_of(c), keys.humidity_of(c), m) for c in CASES for m in MODELS],
             bands=[(pair, model) for pair in PAIRS for model in ("G", "NG")],
         ),
         code=code("figure_15.py"),

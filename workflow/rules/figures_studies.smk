@@ -100,7 +100,7 @@ rule figure_17:
         runtime=10,
     params:
         settings={
-            "cases": [(settings.pair_of(c), settings.humidity_of(c)) for c in CASES],
+            "cases": [(keys.pair_of(c), keys.humidity_of(c)) for c in CASES],
             "tolerance": config["chaos"]["dimension_tolerance"],
         }
         | FIGURE,
@@ -223,7 +223,7 @@ rule table_resampling:
         mem_mb=600,
         runtime=10,
     params:
-        settings={"keys": [(settings.pair_of(case), settings.humidity_of(case)) for case in CASES]},
+        settings={"keys": [(keys.pair_of(case), keys.humidity_of(case)) for case in CASES]},
         code=code("table_resampling.py"),
     message:
         "Crack lengths on laws of the chaos model and of the samples."

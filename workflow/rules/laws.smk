@@ -3,13 +3,13 @@
 
 rule forces:
     input:
-        lambda w: f"results/contact/{settings.pair_of(w.case)}_{w.model}.nc",
+        lambda w: f"results/contact/{keys.pair_of(w.case)}_{w.model}.nc",
     output:
         "results/forces/{case}_{model}.nc",
     log:
         "results/logs/forces/{case}_{model}.log",
     params:
-        settings=lambda w: section("water", humidity=settings.humidity_of(w.case)),
+        settings=lambda w: section("water", humidity=keys.humidity_of(w.case)),
         code=code("forces.py"),
     message:
         "Force curves of {wildcards.case}, {wildcards.model} (Sec. III-B1)."
@@ -35,14 +35,14 @@ rule chaos:
 
 rule fit:
     input:
-        contact=lambda w: f"results/contact/{settings.pair_of(w.case)}_{w.model}.nc",
+        contact=lambda w: f"results/contact/{keys.pair_of(w.case)}_{w.model}.nc",
         forces="results/forces/{case}_{model}.nc",
     output:
         "results/fit/{case}_{model}.nc",
     log:
         "results/logs/fit/{case}_{model}.log",
     params:
-        settings=lambda w: section("water", humidity=settings.humidity_of(w.case)),
+        settings=lambda w: section("water", humidity=keys.humidity_of(w.case)),
         code=code("fit.py"),
     message:
         "Errors of Eq. (12) in {wildcards.case}, {wildcards.model} (Sec. III-B1)."

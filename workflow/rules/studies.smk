@@ -283,7 +283,7 @@ rule resampling:
         mem_mb=600,
         runtime=30,
     params:
-        settings=lambda w: cantilever_settings(settings.pair_of(w.case)) | {"beams": STUDIES["resampling"]["beams"]},
+        settings=lambda w: cantilever_settings(keys.pair_of(w.case)) | {"beams": STUDIES["resampling"]["beams"]},
         code=code("resampling.py"),
     message:
         "Release the beams of {wildcards.case} on laws of the samples themselves (App. B)."

@@ -60,7 +60,7 @@ rule table_3:
         mem_mb=600,
         runtime=10,
     params:
-        settings={"keys": [(settings.pair_of(c), settings.humidity_of(c), m) for c in CASES for m in MODELS]},
+        settings={"keys": [(keys.pair_of(c), keys.humidity_of(c), m) for c in CASES for m in MODELS]},
         code=code("table_3.py"),
     message:
         "Table III: crack lengths and adhesion energies."

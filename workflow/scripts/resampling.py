@@ -3,9 +3,9 @@
 from functools import partial
 
 from stiction import chaos, data, data_studies, study
+from stiction.keys import pair_of
 from stiction.logs import logged, progress
 from stiction.montecarlo import Experiment, columns, simulate
-from stiction.settings import pair_of
 from stiction.streams import stream
 from stiction.units import si
 
