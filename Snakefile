@@ -18,6 +18,7 @@ container: "stiction.sif"
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/common_studies.smk"
 include: "workflow/rules/surfaces.smk"
 include: "workflow/rules/contact.smk"
 include: "workflow/rules/laws.smk"
@@ -51,6 +52,7 @@ localrules:
     chaos,
     fit,
     humidity,
+    sensitivity,
     sample_sizes,
     mesh,
     correlation,
@@ -61,6 +63,7 @@ localrules:
     fit_quality,
     table_sensitivity,
     table_readings,
+    table_resampling,
     checks,
     verdict,
     study_figures,

@@ -16,7 +16,7 @@ PHYSICS = (
     "plasticity sensitivity convergence choices",
 )
 BORDER = (
-    "provenance logs units keys settings data data_studies curves laws cases pairs compiled study",
+    "provenance logs units keys settings data data_studies curves laws cases pairs cantilevers compiled study",
     "tables tables_fit tables_studies figures figures_surfaces figures_forces figures_beams figures_studies checks",
 )
 ROOMS = " ".join((BASE, *PHYSICS, *BORDER)).split()

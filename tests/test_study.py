@@ -49,8 +49,7 @@ def test_the_stages_are_those_of_the_workflow(study, tmp_path):
     script("forces")(contact, forces, CONFIG | {"humidity": HUMIDITY})
     script("chaos")(forces, chaos, CONFIG, "b_rh080", "NG")
     beams = tmp_path / "beams.nc"
-    settings = CONFIG | {"gap_um": 20, "young_modulus_GPa": 164, "strip_length_um": 1.5}
-    script("beams")(chaos, beams, settings, "b_rh080", False, 1)
+    script("beams")(chaos, beams, CONFIG | {"samples": 3, "scatter": 0}, "b_rh080", 1)
     assert_array_equal(study.forces(HUMIDITY)[0], data.vectors(data.load(forces, "forces")))
     assert_array_equal(study.beams(HUMIDITY)["crack_length"], data.load(beams, "beams").crack_length)
 

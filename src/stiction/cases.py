@@ -48,10 +48,15 @@ def surface(moments, target, spacing):
         Of the grid on which the surface will be drawn [m].
     """
     density = maxent.solve(moments["skewness"], moments["kurtosis"])
+    return data.heights(density, moments), spectrum(density, target, spacing)
+
+
+def spectrum(density, target, spacing):
+    """Dataset of stage spectrum of a surface with this density (Sec. II-B); the rest as in `surface`."""
     translation = Translation(density)
     underlying, defect = underlying_spectrum(target, translation, spacing)
     achieved = spectrum_of_heights(underlying, translation, spacing)
-    return data.heights(density, moments), data.spectrum(target, underlying, achieved, defect)
+    return data.spectrum(target, underlying, achieved, defect)
 
 
 def _target(name, entry, identified):

@@ -9,7 +9,7 @@ from functools import partial
 import xarray as xr
 
 from stiction import chaos
-from stiction.beam import Beam
+from stiction.cantilevers import cantilever, points
 from stiction.cases import surfaces_of
 from stiction.curves import force_curves
 from stiction.forcelaw import adhesion_energies, parametrise
@@ -19,14 +19,6 @@ from stiction.montecarlo import Experiment, columns, simulate
 from stiction.pairs import contact
 from stiction.streams import stream
 from stiction.units import si
-
-
-def cantilever(settings, pair):
-    """The nominal beam of a pair, from sections beam, solid and pairs."""
-    entry = si(settings["beam"])
-    sizes = {key: entry[key] for key in ("length", "width", "thickness", "elements")}
-    gap, young_modulus = si(settings["pairs"][pair])["gap"], si(settings["solid"])["young_modulus"]
-    return Beam(**sizes, gap=gap, young_modulus=young_modulus)
 
 
 @dataclass(frozen=True)
@@ -71,7 +63,8 @@ class PairStudy:
     def beams(self, humidity, scatter=0.0, threads=1):
         """Beams released at a relative humidity, as `stiction.montecarlo.columns` (Sec. III-C)."""
         fitted, entry = self.chaos(humidity), self.settings["beam"]
-        experiment = Experiment(self.beam, self.points, lambda rng, n: chaos.draw_laws(fitted, n, rng)[0], scatter)
+        strips = points(self.settings)
+        experiment = Experiment(self.beam, strips, lambda rng, n: chaos.draw_laws(fitted, n, rng)[0], scatter)
         address = partial(stream, self.settings["seed"], "beams", case_id(self.name, humidity))
         released = simulate(experiment, range(entry["samples"]), address, threads)
         return columns(list(progress(released, f"beams at {humidity}", total=entry["samples"])))
@@ -80,8 +73,3 @@ class PairStudy:
     def beam(self):
         """The nominal cantilever."""
         return cantilever(self.settings, self.name)
-
-    @property
-    def points(self):
-        """Number of force laws along the beam, N_p."""
-        return round(self.beam.length / si(self.settings["sampling"])["strip_length"])

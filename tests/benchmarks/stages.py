@@ -17,21 +17,13 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 import numpy as np  # noqa: E402
 from scipy import fft  # noqa: E402
 
-from stiction import chaos, maxent, settings  # noqa: E402
-from stiction.asperity import MaugisTable, reduced_modulus  # noqa: E402
-from stiction.beam import Beam  # noqa: E402
-from stiction.contact import SurfacePair  # noqa: E402
+from stiction import cases, chaos, pairs, settings  # noqa: E402
+from stiction.cantilevers import cantilever, points  # noqa: E402
 from stiction.montecarlo import Experiment, simulate  # noqa: E402
-from stiction.spectrum import CutoffSelfAffine  # noqa: E402
 from stiction.streams import stream  # noqa: E402
-from stiction.surfaces import RoughSurface, StripGrid  # noqa: E402
-from stiction.translation import Translation, underlying_spectrum  # noqa: E402
-from stiction.units import si  # noqa: E402
-from stiction.vanderwaals import attraction  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
 CONFIG = settings.read(ROOT / "config.yaml")
-GRID = StripGrid(1.5e-6, 30e-6, 10e-9, 1e-6)
 
 
 def timed(function, repeats):
@@ -44,29 +36,19 @@ def timed(function, repeats):
     return statistics.median(seconds)
 
 
-def surface(name):
-    """Non-Gaussian surface of the case study."""
-    entry = CONFIG["surfaces"][name]
-    target = CutoffSelfAffine(**si(entry["published_psd"]))
-    translation = Translation(maxent.solve(entry["skewness"], entry["kurtosis"]))
-    underlying, _ = underlying_spectrum(target, translation, GRID.spacing)
-    return RoughSurface(underlying, translation, entry["rms_nm"] * 1e-9, GRID)
-
-
 def contact_rows():
     """Contact of one pair against its floor: the normals and the inverse FFTs of its two surfaces."""
-    solid = MaugisTable(reduced_modulus(164e9, 0.23), attraction("water"))
-    for name, entry in CONFIG["pairs"].items():
-        sides = surface(entry["beam"]), surface(entry["substrate"])
-        pair = SurfacePair(*sides, solid, 0.05e-9)
+    for name in CONFIG["pairs"]:
+        pair = pairs.surface_pair(cases.surfaces_of(CONFIG, name), "NG", CONFIG)
+        sides, grid = (pair.beam, pair.substrate), pair.beam.grid
 
-        def floor(k, sides=sides):
+        def floor(k, sides=sides, grid=grid):
             for side in sides:
                 _, amplitude, columns = side._modes
                 stream(1, k).standard_normal(2 * len(amplitude), dtype=np.float32)
-                fft.ifft(np.empty((columns, GRID.field_shape[0]), np.complex64), axis=1)
-                waves = np.empty((GRID.shape[0], columns), np.complex64)
-                fft.irfft(waves, n=GRID.field_shape[1], axis=1)
+                fft.ifft(np.empty((columns, grid.field_shape[0]), np.complex64), axis=1)
+                waves = np.empty((grid.shape[0], columns), np.complex64)
+                fft.irfft(waves, n=grid.field_shape[1], axis=1)
 
         def contact(k, pair=pair):
             pair.contact(pair.draw(stream(1, k), stream(2, k)))
@@ -93,7 +75,7 @@ def law_rows():
         seconds = timed(lambda _, fit=fit: fit(), 3)
         yield f"chaos model of one case, order 12, {kept} coordinates asked for", f"{seconds:.2f} s", "6 s"
         model = fit()
-        experiment = Experiment(Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200), 1000, partial(_laws, model))
+        experiment = Experiment(cantilever(CONFIG, "b"), points(CONFIG), partial(_laws, model))
         start = time.perf_counter()
         list(simulate(experiment, range(100), partial(stream, 4)))
         yield f"one beam, {model.dimension} coordinates", f"{10 * (time.perf_counter() - start):.1f} ms", "15 ms"

@@ -13,10 +13,10 @@ rule beams:
     params:
         settings=lambda w: section(
             "seed",
-            "beam",
-            gap_um=config["pairs"][keys.pair_of(w.case)]["gap_um"],
-            young_modulus_GPa=config["solid"]["young_modulus_GPa"],
-            strip_length_um=config["sampling"]["strip_length_um"],
+            **cantilever_settings(keys.pair_of(w.case)),
+            sampling=STRIP,
+            samples=config["beam"]["samples"],
+            scatter=config["beam"]["scatter"] if w.model == "GEO" else 0,
         ),
         code=code("beams.py"),
     message:

@@ -1,7 +1,5 @@
 """The last rules: what was computed is checked against what must hold."""
 
-LAWS = [(case, model) for case in CASES for model in ("G", "NG")]
-OUTCOMES = [(case, model) for case in CASES for model in MODELS]
 PUBLISHED = {line.partition(",")[0] for line in Path(printed(3)).read_text(encoding="utf-8").splitlines()}
 SKEWNESS = {pair: [config["surfaces"][config["pairs"][pair][side]]["skewness"] for side in SIDES] for pair in PAIRS}
 # That negative skewness binds is a claim about the paper's own pairs: no surface skewed positively, one negatively.
@@ -28,14 +26,11 @@ rule checks:
             "cases": keys_of(OUTCOMES),
             "resampled": keys_of((case, "NG") for case in CASES),
             "surfaces": [(surface, model) for surface in SURFACES for model in ("NG", "G")],
-            "targets": {
-                surface: {key: config["surfaces"][surface][key] for key in ("rms_nm", "skewness", "kurtosis")}
-                for surface in SURFACES
-            },
+            "targets": {surface: chosen(config["surfaces"][surface], MOMENTS) for surface in SURFACES},
             "skewed": SKEWED,
-            "beams": {pair: nominal_beam(pair) for pair in PAIRS},
-            "strip": {"length_um": config["sampling"]["strip_length_um"]},
-        },
+            "sampling": STRIP,
+        }
+        | cantilever_settings(*PAIRS),
         code=code("checks.py"),
     message:
         "Check the results."

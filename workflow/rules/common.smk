@@ -2,7 +2,7 @@
 
 import fcntl
 
-from stiction import keys, provenance, sensitivity, settings
+from stiction import keys, provenance, settings
 
 
 wildcard_constraints:
@@ -30,16 +30,24 @@ def in_order(value):
 config.update(in_order(config))
 PAIRS = config["run"]["pairs"]
 SIDES = ("beam", "substrate")
+MODELS = ("G", "NG", "GEO")
 STYLE = str(BASE / "src" / "stiction" / "stiction.mplstyle")
-SUMMITS = {"mean_summit_radius_um", "summit_density_per_um2"}
+MOMENTS = ("rms_nm", "skewness", "kurtosis")
+SUMMITS = ("mean_summit_radius_um", "summit_density_per_um2")
 SURFACES = [
     name for name in config["surfaces"] if any(name in (config["pairs"][p][side] for side in SIDES) for p in PAIRS)
 ]
 # Those whose summits were measured can have their spectrum identified.
-MEASURED = [name for name in SURFACES if SUMMITS <= config["surfaces"][name].keys()]
+MEASURED = [name for name in SURFACES if all(key in config["surfaces"][name] for key in SUMMITS)]
 CASES = [keys.case_id(pair, humidity) for pair in PAIRS for humidity in config["pairs"][pair]["humidities"]]
+# Force laws, of which model GEO has those of NG, and beams: case and model.
+LAWS = [(case, model) for case in CASES for model in ("G", "NG")]
+OUTCOMES = [(case, model) for case in CASES for model in MODELS]
+STRIP = {"strip_length_um": config["sampling"]["strip_length_um"]}
 FIGURE_CASES = [keys.case_id(pair, config["figures"]["humidity"]) for pair in PAIRS]
 FIGURE_PAIR = config["figures"]["pair"] if config["figures"]["pair"] in PAIRS else PAIRS[0]
+FIGURE_CASE = keys.case_id(FIGURE_PAIR, config["figures"]["humidity"])
+FIGURE_SURFACE = config["pairs"][FIGURE_PAIR]["beam"]
 FIGURE = {"pair": FIGURE_PAIR, "humidity": config["figures"]["humidity"]}
 
 
@@ -53,10 +61,9 @@ def section(*names, **more):
     return {name: config[name] for name in names} | more
 
 
-def moments_of(wildcards):
-    """Moments of one surface, Table I."""
-    entry = config["surfaces"][wildcards.surface]
-    return {key: entry[key] for key in ("rms_nm", "skewness", "kurtosis")}
+def chosen(entry, names):
+    """Those keys of a section that are named and given."""
+    return {name: entry[name] for name in names if name in entry}
 
 
 def spectrum_source(wildcards):
@@ -97,6 +104,20 @@ def table_files(name, shows):
     return {"csv": f"results/tables/{name}.csv", "markdown": f"results/tables/{name}.md", "html": page}
 
 
+def keys_of(cases):
+    """Pair, humidity and model of every (case, model)."""
+    return [(keys.pair_of(case), keys.humidity_of(case), model) for case, model in cases]
+
+
+def cantilever_settings(*pairs):
+    """Sections from which `stiction.cantilevers` makes the nominal beams of pairs."""
+    return {
+        "solid": chosen(config["solid"], ["young_modulus_GPa"]),
+        "beam": chosen(config["beam"], ("length_um", "width_um", "thickness_um", "elements")),
+        "pairs": {pair: chosen(config["pairs"][pair], ["gap_um"]) for pair in pairs},
+    }
+
+
 HELD = []  # open files: the lock of this run goes with the process
 
 
@@ -109,42 +130,3 @@ def reserve_folder():
         raise WorkflowError("Another run works in this folder. Wait for its end, or end it.")
     except OSError as error:
         raise WorkflowError(f"This folder cannot be locked ({error}). Choose a --directory on a disk that knows locks.")
-
-
-# Studies beside the main line.
-STUDIES = config["studies"]
-FIGURE_CASE = keys.case_id(FIGURE_PAIR, config["figures"]["humidity"])
-CONTACT = {key: value for key, value in config["contact"].items() if key not in ("chunks", "samples")}
-PRESSED_PAIRS = [pair for pair in PAIRS if pair in STUDIES["plasticity"]["distance_nm"]]
-# Section of the configuration in which a reading changes a key; the source of the spectra stands with each surface.
-CHANGED = {"van_der_waals": None, "psd": None, "every": "contact", "spacing_nm": "sampling", "poisson_ratio": "solid"}
-READINGS = {"base": {}} | {
-    f"{key}_{value}": {part: {key: value}} if part else {key: value}
-    for key, part in CHANGED.items()
-    for value in STUDIES["readings"][key]
-}
-
-
-def can_be_shifted(moment):
-    """Whether the beam's surface of Figure 13 exists with a little less and a little more of a moment."""
-    surface = config["surfaces"][config["pairs"][FIGURE_PAIR]["beam"]]
-    shape = {key: surface[key] for key in ("kurtosis", "skewness")}
-    at = sensitivity.shifted(surface[moment], STUDIES["sensitivity"]["step"])
-    return at[0] * at[1] > 0 and not any(settings.heights_have_a_density(**shape | {moment: value}) for value in at)
-
-
-MOMENTS = ["rms", *filter(can_be_shifted, ("skewness", "kurtosis"))]
-
-
-def keys_of(cases):
-    """Pair, humidity and model of every (case, model)."""
-    return [(keys.pair_of(case), keys.humidity_of(case), model) for case, model in cases]
-
-
-def nominal_beam(pair):
-    """Beam of a pair as the configuration has it."""
-    dimensions = ("length_um", "width_um", "thickness_um", "elements")
-    return {key: config["beam"][key] for key in dimensions} | {
-        "gap_um": config["pairs"][pair]["gap_um"],
-        "young_modulus_GPa": config["solid"]["young_modulus_GPa"],
-    }

@@ -1,6 +1,5 @@
 """Figures, drawn from datasets only: a change of style reruns nothing but the drawing."""
 
-FIGURE_SURFACE = config["pairs"][FIGURE_PAIR]["beam"]
 OTHER_SURFACES = [surface for surface in SURFACES if surface != FIGURE_SURFACE]
 DRAWN = ["05", "07", "08", "09", "10", "11", "12", "14", "15"] + ["11_supplement"] * bool(OTHER_SURFACES)
 # Groups of the report.
@@ -22,9 +21,6 @@ rule figure_05:
         ),
     log:
         "results/logs/figures/figure_05.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings=FIGURE,
         code=code("figure_05.py"),
@@ -41,11 +37,8 @@ rule fit_quality:
         **table_files("fit_quality", "fit of the force curves by Eq. (12)"),
     log:
         "results/logs/tables/fit_quality.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
-        settings={"keys": [(keys.pair_of(c), keys.humidity_of(c), m) for c in CASES for m in ("G", "NG")]},
+        settings={"keys": keys_of(LAWS)},
         code=code("fit_quality.py"),
     message:
         "Errors of Eq. (12) over all samples of every case."
@@ -67,9 +60,6 @@ rule figure_07:
         ),
     log:
         "results/logs/figures/figure_07.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings={"surfaces": SURFACES},
         code=code("figure_07.py"),
@@ -93,9 +83,6 @@ rule figure_08:
         ),
     log:
         "results/logs/figures/figure_08.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings={"surfaces": SURFACES},
         code=code("figure_08.py"),
@@ -119,9 +106,6 @@ rule figure_09:
         ),
     log:
         "results/logs/figures/figure_09.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings={"surface": FIGURE_SURFACE},
         code=code("figure_09.py"),
@@ -148,9 +132,6 @@ rule figure_10:
         ),
     log:
         "results/logs/figures/figure_10.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings={"surfaces": SURFACES},
         code=code("figure_10.py"),
@@ -175,9 +156,6 @@ rule figure_11:
         ),
     log:
         "results/logs/figures/figure_11.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings={"surfaces": [FIGURE_SURFACE]},
         code=code("figure_11.py"),
@@ -202,9 +180,6 @@ use rule figure_11 as figure_11_supplement with:
         ),
     log:
         "results/logs/figures/figure_11_supplement.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings={"surfaces": OTHER_SURFACES},
         code=code("figure_11.py"),
@@ -228,9 +203,6 @@ rule figure_12:
         ),
     log:
         "results/logs/figures/figure_12.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings=section("seed", cases=dict(zip(PAIRS, FIGURE_CASES))),
         code=code("figure_12.py"),
@@ -254,9 +226,6 @@ rule figure_14:
         ),
     log:
         "results/logs/figures/figure_14.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings=FIGURE,
         code=code("figure_14.py"),
@@ -282,17 +251,12 @@ rule figure_15:
         ),
     log:
         "results/logs/figures/figure_15.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
-        settings=section(
-            "beam",
-            "solid",
-            pairs={pair: config["pairs"][pair] for pair in PAIRS},
-            cases=[(keys.pair_of(c), keys.humidity_of(c), m) for c in CASES for m in MODELS],
-            bands=[(pair, model) for pair in PAIRS for model in ("G", "NG")],
-        ),
+        settings={
+            "cases": keys_of(OUTCOMES),
+            "bands": [(pair, model) for pair in PAIRS for model in ("G", "NG")],
+        }
+        | cantilever_settings(*PAIRS),
         code=code("figure_15.py"),
     message:
         "Figure 15: adhesion energy over the humidity."

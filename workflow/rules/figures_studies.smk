@@ -2,7 +2,7 @@
 
 # Group of the report.
 ON_STUDIES = "Sensitivity, appendices, readings"
-SENSITIVITIES = expand("results/studies/sensitivity/{pair}_{moment}.nc", pair=FIGURE_PAIR, moment=MOMENTS)
+SENSITIVITIES = expand("results/studies/sensitivity/{pair}_{moment}.nc", pair=FIGURE_PAIR, moment=SHIFTED)
 STUDIED = [(pair, reading) for pair in PAIRS for reading in READINGS if changes_something(reading, pair)]
 STUDY_FIGURES = ["figure_13", "figure_17", "figure_18", "figure_19", "readings"] + ["figure_16"] * bool(PRESSED_PAIRS)
 
@@ -22,11 +22,8 @@ rule figure_13:
         ),
     log:
         "results/logs/figures/figure_13.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
-        settings={"pair": FIGURE_PAIR, "moments": MOMENTS},
+        settings={"pair": FIGURE_PAIR, "moments": SHIFTED},
         code=code("figure_13.py"),
     message:
         "Figure 13: sensitivity to the moments of a surface."
@@ -42,11 +39,8 @@ rule table_sensitivity:
         **table_files("sensitivity", "sensitivity to the moments of a surface"),
     log:
         "results/logs/tables/sensitivity.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
-        settings={"pair": FIGURE_PAIR, "moments": MOMENTS},
+        settings={"pair": FIGURE_PAIR, "moments": SHIFTED},
         code=code("table_sensitivity.py"),
     message:
         "Figure 13 in numbers."
@@ -68,9 +62,6 @@ rule figure_16:
         ),
     log:
         "results/logs/figures/figure_16.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings={"pairs": PRESSED_PAIRS},
         code=code("figure_16.py"),
@@ -95,9 +86,6 @@ rule figure_17:
         ),
     log:
         "results/logs/figures/figure_17.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings={
             "cases": [(keys.pair_of(c), keys.humidity_of(c)) for c in CASES],
@@ -125,9 +113,6 @@ rule figure_18:
         ),
     log:
         "results/logs/figures/figure_18.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings=FIGURE,
         code=code("figure_18.py"),
@@ -152,9 +137,6 @@ rule figure_19:
         ),
     log:
         "results/logs/figures/figure_19.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings=FIGURE,
         code=code("figure_19.py"),
@@ -179,9 +161,6 @@ rule figure_readings:
         ),
     log:
         "results/logs/figures/readings.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings={"keys": STUDIED},
         code=code("figure_readings.py"),
@@ -199,9 +178,6 @@ rule table_readings:
         **table_files("readings", "Table III under other readings of the paper"),
     log:
         "results/logs/tables/readings.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings={"keys": STUDIED},
         code=code("table_readings.py"),
@@ -219,9 +195,6 @@ rule table_resampling:
         **table_files("resampling", "what the chaos model does to the crack length"),
     log:
         "results/logs/tables/resampling.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings={"keys": [(keys.pair_of(case), keys.humidity_of(case)) for case in CASES]},
         code=code("table_resampling.py"),

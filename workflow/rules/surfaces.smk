@@ -7,7 +7,7 @@ rule heights:
     log:
         "results/logs/heights/{surface}.log",
     params:
-        settings=moments_of,
+        settings=lambda w: chosen(config["surfaces"][w.surface], MOMENTS),
         code=code("heights.py"),
     message:
         "Maximum-entropy height density of {wildcards.surface} (Sec. II-A)."
@@ -29,9 +29,7 @@ rule identify:
         | {
             "spacing_nm": config["sampling"]["spacing_nm"],
             "target_spacing_nm": config["character"]["spacing_nm"],
-            "target": {
-                key: config["surfaces"][w.surface][key] for key in ("mean_summit_radius_um", "summit_density_per_um2")
-            },
+            "target": chosen(config["surfaces"][w.surface], SUMMITS),
         },
         code=code("identify.py"),
     message:

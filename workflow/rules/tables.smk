@@ -1,7 +1,5 @@
 """Tables I, II and III, each as CSV and as Markdown for reading."""
 
-MODELS = ("G", "NG", "GEO")
-
 
 rule table_1:
     input:
@@ -11,13 +9,10 @@ rule table_1:
         **table_files("table_1", "statistics of the surfaces"),
     log:
         "results/logs/tables/table_1.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings={
             "keys": [(s, m) for s in SURFACES for m in ("NG", "G")],
-            "measured": {s: config["surfaces"][s] for s in SURFACES},
+            "measured": {s: chosen(config["surfaces"][s], (*MOMENTS, *SUMMITS)) for s in SURFACES},
         },
         code=code("table_1.py"),
     message:
@@ -35,9 +30,6 @@ rule table_2:
         **table_files("table_2", "spectra and their identification"),
     log:
         "results/logs/tables/table_2.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
         settings={"surfaces": MEASURED},
         code=code("table_2.py"),
@@ -56,11 +48,8 @@ rule table_3:
         **table_files("table_3", "crack lengths and adhesion energies"),
     log:
         "results/logs/tables/table_3.log",
-    resources:
-        mem_mb=600,
-        runtime=10,
     params:
-        settings={"keys": [(keys.pair_of(c), keys.humidity_of(c), m) for c in CASES for m in MODELS]},
+        settings={"keys": keys_of(OUTCOMES)},
         code=code("table_3.py"),
     message:
         "Table III: crack lengths and adhesion energies."

@@ -3,29 +3,26 @@
 from functools import partial
 
 from stiction import chaos, data, laws
-from stiction.beam import Beam
+from stiction.cantilevers import cantilever, points
+from stiction.keys import pair_of
 from stiction.logs import logged, progress
 from stiction.montecarlo import Experiment, columns, simulate
 from stiction.streams import stream
-from stiction.units import si
 
 #: Number of shapes kept for drawing (Fig. 14).
 KEPT = 100
 
 
-def main(model, output, settings, case, scattered, threads):
+def main(model, output, settings, case, threads):
     """Release all beams of a case; models NG and GEO share their force laws."""
-    entry = si(settings["beam"])
-    gap, young_modulus = si({"gap_um": settings["gap_um"]}), si({"young_modulus_GPa": settings["young_modulus_GPa"]})
-    beam = Beam(**{key: entry[key] for key in ("length", "width", "thickness", "elements")}, **gap, **young_modulus)
-    points = round(beam.length / si({"strip_length_um": settings["strip_length_um"]})["strip_length"])
+    beam, number = cantilever(settings, pair_of(case)), settings["samples"]
     fitted = laws.chaos_model(data.load(model, "chaos"))
     experiment = Experiment(
-        beam, points, lambda rng, n: chaos.draw_laws(fitted, n, rng)[0], entry["scatter"] if scattered else 0.0
+        beam, points(settings), lambda rng, n: chaos.draw_laws(fitted, n, rng)[0], settings["scatter"]
     )
     address = partial(stream, settings["seed"], "beams", case)
-    released = simulate(experiment, range(entry["samples"]), address, threads)
-    outcomes = list(progress(released, "beams", total=entry["samples"]))
+    released = simulate(experiment, range(number), address, threads)
+    outcomes = list(progress(released, "beams", total=number))
     data.save(data.beams(columns(outcomes, KEPT), beam.nodes), output, "beams", settings)
 
 
@@ -36,6 +33,5 @@ if __name__ == "__main__":
             snakemake.output[0],
             snakemake.params.settings,
             snakemake.wildcards.case,
-            snakemake.wildcards.model == "GEO",
             snakemake.threads,
         )

@@ -3,7 +3,7 @@
 from itertools import chain
 
 from stiction import checks, data
-from stiction.beam import Beam
+from stiction.cantilevers import cantilever
 from stiction.logs import logged
 from stiction.units import si
 
@@ -18,13 +18,13 @@ def main(paths, csv, markdown, settings):
 
     forces, targets = loaded("forces", laws), settings["targets"]
     defects = {surface: float(spectrum.defect) for surface, spectrum in loaded("spectrum", targets).items()}
-    beams = {pair: Beam(**si(entry)) for pair, entry in settings["beams"].items()}
+    beams = {pair: cantilever(settings, pair) for pair in settings["pairs"]}
     outcomes = loaded("beams", cases)
     found = chain(
         checks.of_surfaces(loaded("character", surfaces), targets, defects),
         checks.of_laws(forces, loaded("chaos", laws)),
         checks.of_trends(forces, settings["skewed"]),
-        checks.of_beams(outcomes, forces, beams, si(settings["strip"])["length"]),
+        checks.of_beams(outcomes, forces, beams, si(settings["sampling"])["strip_length"]),
         checks.of_resampling(outcomes, loaded("resampling", resampled)),
     )
     table = checks.table(found)

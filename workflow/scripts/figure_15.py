@@ -1,10 +1,10 @@
 """Figure 15: adhesion energies over the humidity."""
 
 from stiction import data
+from stiction.cantilevers import cantilever
 from stiction.figures import save
 from stiction.figures_beams import adhesion_energies
 from stiction.logs import logged
-from stiction.study import cantilever
 from stiction.tables import published
 
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from stiction import convergence, data, data_studies, forcelaw
+from stiction.cantilevers import cantilever
 from stiction.logs import logged, progress
-from stiction.study import cantilever
 from stiction.units import si
 
 

@@ -2,21 +2,20 @@
 
 from functools import partial
 
-from stiction import chaos, data, data_studies, study
+from stiction import chaos, data, data_studies
+from stiction.cantilevers import cantilever, points
 from stiction.keys import pair_of
 from stiction.logs import logged, progress
 from stiction.montecarlo import Experiment, columns, simulate
 from stiction.streams import stream
-from stiction.units import si
 
 
 def main(forces, output, settings, case):
     """Draw the laws of every beam from the samples, with replacement."""
     forces = data.load(forces, "forces")
     vectors, limit = data.vectors(forces), float(forces.limit)
-    beam, number = study.cantilever(settings, pair_of(case)), settings["beams"]
-    points = round(beam.length / si(settings["sampling"])["strip_length"])
-    experiment = Experiment(beam, points, lambda rng, n: chaos.resample_laws(vectors, limit, n, rng))
+    beam, number = cantilever(settings, pair_of(case)), settings["beams"]
+    experiment = Experiment(beam, points(settings), lambda rng, n: chaos.resample_laws(vectors, limit, n, rng))
     released = simulate(experiment, range(number), partial(stream, settings["seed"], "resampling", case))
     outcomes = list(progress(released, "beams", total=number))
     data.save(data_studies.resampling(columns(outcomes)), output, "resampling", settings)

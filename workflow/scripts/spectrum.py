@@ -3,7 +3,6 @@
 from stiction import cases, data
 from stiction.logs import logged
 from stiction.spectrum import CutoffSelfAffine
-from stiction.translation import Translation, spectrum_of_heights, underlying_spectrum
 from stiction.units import si
 
 
@@ -13,11 +12,9 @@ def main(heights, identification, output, settings):
         target = cases.target_spectrum(data.load(identification, "identification"))
     else:
         target = CutoffSelfAffine(**si(settings["psd"]))
-    translation = Translation(cases.density(data.load(heights, "heights"), "NG"))
+    density = cases.density(data.load(heights, "heights"), "NG")
     spacing = si({"spacing_nm": settings["spacing_nm"]})["spacing"]
-    underlying, defect = underlying_spectrum(target, translation, spacing)
-    achieved = spectrum_of_heights(underlying, translation, spacing)
-    data.save(data.spectrum(target, underlying, achieved, defect), output, "spectrum", settings)
+    data.save(cases.spectrum(density, target, spacing), output, "spectrum", settings)
 
 
 if __name__ == "__main__":
