@@ -44,33 +44,36 @@ def surface_under(reading, surface):
     return chosen(config["surfaces"][surface], used) | {"psd": psd}
 
 
-def changes_something(reading, pair):
-    """Whether a reading differs from the base; that of a spectrum does only where another is known."""
-    differs = (surface_under(reading, name) != surface_under("base", name) for name in sides_of(pair))
-    return reading == "base" or "psd" not in READINGS[reading] or any(differs)
-
-
-def identified_under(wildcards):
-    """Surfaces of a pair whose spectrum is an identified one under a reading."""
-    names = sorted(set(sides_of(wildcards.pair)))
-    return [name for name in names if psd_under(wildcards.reading, name) == "identified"]
-
-
-def reading_contact_settings(wildcards):
-    """What the contact under a reading starts from, and what the reading changes."""
-    pair, reading = wildcards.pair, wildcards.reading
+def reading_contact_settings(pair, reading):
+    """What the contact of a pair under a reading starts from, and what the reading changes."""
     base = section(
         "seed",
         "sampling",
         "solid",
         "van_der_waals",
         contact=CONTACT | {"samples": STUDIES["readings"]["samples"]},
-        beam={"width_um": config["beam"]["width_um"]},
-        pairs={pair: dict(zip(SIDES, sides_of(pair)))},
+        beam=chosen(config["beam"], ["width_um"]),
+        pairs={pair: chosen(config["pairs"][pair], SIDES)},
         surfaces={name: surface_under(reading, name) for name in sides_of(pair)},
     )
     changes = {key: change for key, change in READINGS[reading].items() if key != "psd"}
-    return {"base": base, "changes": changes, "identified": identified_under(wildcards)}
+    identified = sorted(name for name, entry in base["surfaces"].items() if entry["psd"] == "identified")
+    return {"base": base, "changes": changes, "identified": identified}
+
+
+def under(pair, reading):
+    """Settings of a pair as a reading changes them."""
+    found = reading_contact_settings(pair, reading)
+    return keys.merged(found["base"], found["changes"])
+
+
+# What a reading leaves as it is stands with the base.
+STUDIED = [
+    (pair, reading)
+    for pair in PAIRS
+    for reading in READINGS
+    if reading == "base" or under(pair, reading) != under(pair, "base")
+]
 
 
 def reading_settings(wildcards):

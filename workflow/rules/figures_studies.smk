@@ -3,7 +3,6 @@
 # Group of the report.
 ON_STUDIES = "Sensitivity, appendices, readings"
 SENSITIVITIES = expand("results/studies/sensitivity/{pair}_{moment}.nc", pair=FIGURE_PAIR, moment=SHIFTED)
-STUDIED = [(pair, reading) for pair in PAIRS for reading in READINGS if changes_something(reading, pair)]
 STUDY_FIGURES = ["figure_13", "figure_17", "figure_18", "figure_19", "readings"] + ["figure_16"] * bool(PRESSED_PAIRS)
 
 

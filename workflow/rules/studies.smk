@@ -145,7 +145,9 @@ rule correlation:
 
 rule reading_contact:
     input:
-        lambda w: expand("results/identification/{surface}.nc", surface=identified_under(w)),
+        lambda w: expand(
+            "results/identification/{surface}.nc", surface=reading_contact_settings(w.pair, w.reading)["identified"]
+        ),
     output:
         "results/studies/readings/contact/{pair}_{reading}.nc",
     log:
@@ -154,7 +156,7 @@ rule reading_contact:
         mem_mb=800,
         runtime=30,
     params:
-        settings=reading_contact_settings,
+        settings=lambda w: reading_contact_settings(w.pair, w.reading),
         code=code("reading_contact.py"),
     message:
         "Contact of pair {wildcards.pair} under reading {wildcards.reading}."

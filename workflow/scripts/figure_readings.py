@@ -8,9 +8,12 @@ from stiction.logs import logged
 
 def main(paths, outputs, settings):
     """Draw all pairs and readings."""
-    keys = map(tuple, settings["keys"])
+    keys = [tuple(key) for key in settings["keys"]]
     loaded = {key: data.load(path, "reading") for key, path in zip(keys, paths.studies, strict=True)}
-    save(readings(loaded, tables.published(paths.printed)), *outputs)
+    pairs, names = (dict.fromkeys(parts) for parts in zip(*keys, strict=True))
+    # A reading that changes nothing of a pair was left out: there it is the base.
+    whole = {(pair, name): loaded.get((pair, name), loaded[pair, "base"]) for pair in pairs for name in names}
+    save(readings(whole, tables.published(paths.printed)), *outputs)
 
 
 if __name__ == "__main__":
