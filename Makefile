@@ -60,7 +60,7 @@ format: $(VENV)/ready
 
 # A SLURM of this machine alone; skipped with a reason where its daemons are not installed.
 cluster: $(VENV)/ready
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock "snakemake-executor-plugin-slurm>=2.8,<3"
+	-$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock "snakemake-executor-plugin-slurm>=2.8,<3"
 	$(BIN)/python -m stiction.compiled
 	$(BIN)/python -m pytest -m cluster -rs tests/workflow/test_slurm.py $(ARGS)
 

