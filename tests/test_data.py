@@ -19,15 +19,22 @@ def test_a_dataset_survives_the_file_with_its_settings(tmp_path):
 
 
 def test_equal_data_give_equal_bytes(tmp_path):
-    for name in ("a.nc", "b.nc"):
-        data.save(dataset(), tmp_path / name, "forces", {"b": 1, "a": 2} if name == "a.nc" else {"a": 2, "b": 1})
-    assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
+    for name, settings in (("one", {"b": 1, "a": 2}), ("two", {"a": 2, "b": 1})):
+        data.save(dataset(), tmp_path / name / "a.nc", "forces", settings)
+    assert (tmp_path / "one" / "a.nc").read_bytes() == (tmp_path / "two" / "a.nc").read_bytes()
 
 
 def test_a_file_of_another_stage_is_refused_by_name(tmp_path):
     data.save(dataset(), tmp_path / "x.nc", "forces", {})
-    with pytest.raises(data.DataError, match=r"x\.nc holds forces, not beams"):
+    with pytest.raises(data.DataError, match=r"x\.nc holds forces of x, not beams of x"):
         data.load(tmp_path / "x.nc", "beams")
+
+
+def test_a_file_of_another_case_is_refused_by_name(tmp_path):
+    data.save(dataset(), tmp_path / "b_rh067_NG.nc", "forces", {})
+    (tmp_path / "b_rh067_NG.nc").rename(tmp_path / "b_rh088_NG.nc")
+    with pytest.raises(data.DataError, match=r"holds forces of b_rh067_NG, not forces of b_rh088_NG"):
+        data.load(tmp_path / "b_rh088_NG.nc", "forces")
 
 
 @pytest.mark.parametrize("size", [0, 100, 5000])
@@ -42,7 +49,7 @@ def test_a_truncated_file_is_refused_by_name(tmp_path, size):
 
 def test_a_foreign_file_is_refused(tmp_path):
     dataset().to_netcdf(tmp_path / "x.nc")
-    with pytest.raises(data.DataError, match="no stage of this study"):
+    with pytest.raises(data.DataError, match="no result of this study"):
         data.load(tmp_path / "x.nc", "forces")
 
 

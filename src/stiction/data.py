@@ -21,14 +21,14 @@ class DataError(RuntimeError):
 
 
 def save(dataset, path, stage, settings):
-    """Write a dataset whole or not at all, with the stage and the settings that made it.
+    """Write a dataset whole or not at all, with its stage, its name and the settings that made it.
 
     Parameters
     ----------
     dataset : xarray.Dataset
     path : path
     stage : str
-        Name of the stage, checked by :func:`load`.
+        Name of the stage; :func:`load` checks it, and that the file still has the name under which it was written.
     settings : dict
         Plain numbers, texts, lists and dicts; neither time nor machine, so that equal settings give equal files.
 
@@ -38,7 +38,8 @@ def save(dataset, path, stage, settings):
         If the disk is full or the folder cannot be written.
     """
     path = Path(path)
-    labelled = dataset.assign_attrs(Conventions="CF-1.10", stage=stage, settings=json.dumps(settings, sort_keys=True))
+    origin = {"stage": stage, "name": path.stem, "settings": json.dumps(settings, sort_keys=True)}
+    labelled = dataset.assign_attrs(Conventions="CF-1.10", **origin)
     encoding = {name: {"zlib": True, "complevel": 1} for name, values in labelled.items() if values.size > 10_000}
     with _replacing(path) as draft:
         labelled.to_netcdf(draft, engine="netcdf4", encoding=encoding)
@@ -50,18 +51,20 @@ def load(path, stage):
     Raises
     ------
     DataError
-        If the file is truncated, foreign or of another stage.
+        If the file is truncated, foreign, of another stage or of another case.
     """
+    wanted = stage, Path(path).stem
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
-            found = dataset.attrs.get("stage")
+            found = dataset.attrs.get("stage"), dataset.attrs.get("name")
             loaded = dataset.load()
     except (OSError, ValueError, RuntimeError) as error:
         raise DataError(
             f"{path} cannot be read ({error}); delete it and start again, it will be computed anew"
         ) from error
-    if found != stage:
-        raise DataError(f"{path} holds {found or 'no stage of this study'}, not {stage}; delete it and start again")
+    if found != wanted:
+        held = "{} of {}".format(*found) if all(found) else "no result of this study"
+        raise DataError(f"{path} holds {held}, not {stage} of {wanted[1]}; delete it and start again")
     return loaded
 
 
