@@ -126,6 +126,13 @@ def test_figure_16_shows_the_onset_of_yield_and_the_share_beyond():
         assert_allclose(panel.get_lines()[0].get_ydata(), 0.6 * 12.8)
 
 
+def test_figure_16_says_where_nothing_touches():
+    empty = plasticity(0.0).isel(summit=slice(0)).assign(plastic_share=np.nan, plastic_share_error=np.nan)
+    panels = figures_studies.summit_stresses({"a": empty, "c": plasticity(0.5)}).axes
+    assert "hardly any contact" in [text.get_text() for text in panels[0].texts]
+    assert figures_studies.summit_stresses({"a": empty})
+
+
 def test_figure_18_shows_the_error_of_the_samples():
     panel = figures_studies.order_convergence(orders(2, 4)).axes[3]
     assert any(np.allclose(line.get_ydata(), sampling_distance(50)) for line in panel.get_lines())
@@ -155,13 +162,6 @@ def test_figure_19_shows_gamma_beside_the_energy_of_the_law_and_its_difference_w
     assert_allclose(panel.get_lines()[-1].get_ydata(), 1e3 * energy)
     (inset,) = panel.child_axes
     assert_allclose(heights(inset)[0], 100 * (np.array([6e-3, 5.9e-3]) / energy - 1))
-
-
-def test_a_coarser_grid_is_named_by_its_spacing_where_the_dataset_knows_it():
-    for settings, label in (('{"base": {"sampling": {"spacing_nm": 10}}}', "grid 20 nm"), ("{}", "grid × 2")):
-        datasets = {("a", "base"): reading((800, 440))}
-        datasets["a", "every_2"] = reading((700, 400)).assign_attrs(settings=settings)
-        assert label in figures_studies.readings(datasets, PRINTED).axes[0].get_legend_handles_labels()[1]
 
 
 def test_base_and_experiment_lie_above_the_other_readings():

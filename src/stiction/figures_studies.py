@@ -1,6 +1,5 @@
 """Figures of the studies beside the main line: 13, 16 to 19 and the readings of what the paper leaves open."""
 
-import json
 from itertools import cycle
 
 import numpy as np
@@ -77,10 +76,11 @@ def summit_stresses(datasets):
     """
     figure, (axes,) = panels(1, len(datasets), (min(DOUBLE, SINGLE * len(datasets)), 2.6), sharey=True)
     onset = GPA * ONSET * HARDNESS
-    top = max(1.15 * onset, *(1.05 * GPA * float(dataset.stress.max()) for dataset in datasets.values()))
+    top = max([1.15 * onset, *(1.05 * GPA * stress for data in datasets.values() for stress in data.stress.values)])
     counts = LogNorm(vmin=_FAINTEST)
     cells = [_cells(panel, dataset, counts, top) for panel, dataset in zip(axes, datasets.values(), strict=True)]
-    counts.vmax = max(2, *(found.get_array().max() for found in cells))  # a bar from 1 to 1 has no length
+    # A bar from 1 to 1 has no length.
+    counts.vmax = max([2, *(count for found in cells for count in found.get_array())])
     for panel, dataset in zip(axes, datasets.values(), strict=True):
         panel.axhline(onset, color="C3", linestyle="--")
         place, look = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "path_effects": OUTLINED}
@@ -96,7 +96,7 @@ def summit_stresses(datasets):
 def _cells(panel, dataset, counts, top):
     """Numbers of summits in cells, coloured by ``counts``; all panels reach from 0 to ``top``."""
     interference = NM * dataset.interference
-    extent = (0, 1.05 * float(interference.max()), 0, top)
+    extent = (0, 1.05 * interference.values.max(initial=0) or 1, 0, top)
     panel.set(xlabel=r"interference $\delta$ [nm]", xlim=extent[:2], ylim=extent[2:])
     look = {"gridsize": (40, 40), "cmap": "Greys", "mincnt": 1, "linewidths": 0.2, "norm": counts}
     return panel.hexbin(interference, GPA * dataset.stress, extent=extent, **look)
@@ -105,6 +105,8 @@ def _cells(panel, dataset, counts, top):
 def _share(dataset):
     """Share of the contact area that yields, in words."""
     share, error = float(dataset.plastic_share), float(dataset.plastic_share_error)
+    if np.isnan(share):
+        return "hardly any contact"
     return f"$A_P/A$ = {with_error(100 * share, 100 * error)} %" if share > 0 else "$A_P$ = 0"
 
 
@@ -309,7 +311,7 @@ def readings(datasets, printed):
     figure, axes = panels(2, len(pairs), (min(DOUBLE, 1.3 * SINGLE * len(pairs)), 4.6), sharex="col")
     for column, pair in zip(axes.T, pairs, strict=True):
         table = printed[printed.pair == pair]
-        for name, look in _looks({name: datasets[pair, name] for name in names}).items():
+        for name, look in _looks(names).items():
             _shift(column[0], datasets[pair, name], datasets[pair, "base"], look)
             _deviation(column[1], datasets[pair, name], table, look)
         measured = 100 * (table.experiment / table.ng - 1), 100 * table.experiment_std / table.ng
@@ -325,24 +327,15 @@ def readings(datasets, printed):
     return figure
 
 
-def _looks(datasets):
-    """Colour, line and marker of every reading, by dataset of one pair; base black and above the others."""
+def _looks(names):
+    """Colour, line and marker of every reading; base black and above the others."""
     looks = {"base": {"color": "black", "marker": "o", "linestyle": "-", "label": "base", "zorder": 3}}
-    others = [name for name in datasets if name != "base"]
+    others = [name for name in names if name != "base"]
     for name, colour, marker, dashes in zip(
         others, cycle(_COLOURS), cycle(_MARKERS[1:]), cycle(_DASHES[1:]), strict=False
     ):
-        looks[name] = {"color": colour, "marker": marker, "linestyle": dashes, "label": _label(name, datasets[name])}
+        looks[name] = {"color": colour, "marker": marker, "linestyle": dashes, "label": reading_label(name)}
     return looks
-
-
-def _label(name, dataset):
-    """Name of a reading in words; a coarser grid by its spacing, where the dataset knows it."""
-    base = json.loads(dataset.attrs.get("settings", "{}")).get("base", {})
-    key, _, value = name.rpartition("_")
-    if key == "every" and "sampling" in base:
-        name = f"spacing_nm_{int(value) * base['sampling']['spacing_nm']:g}"
-    return reading_label(name)
 
 
 def _shift(panel, dataset, base, look):

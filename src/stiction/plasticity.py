@@ -36,6 +36,8 @@ def yields(stress):
 def plastic_share(area, stress, strip, strips):
     """Ratio A_P / A of the contact area that yields to all contact area, with its jackknife standard error.
 
+    Both are NaN if not even two strips are touched: without contact there is no such ratio.
+
     Parameters
     ----------
     area, stress : (n,) arrays
@@ -44,15 +46,8 @@ def plastic_share(area, stress, strip, strips):
         Number of the strip on which each stands, from 0.
     strips : int
         Number of strips, the independent samples.
-
-    Raises
-    ------
-    ValueError
-        If not even two strips are touched.
     """
     if len(np.unique(strip)) < 2:
-        raise ValueError(
-            f"contact on {len(np.unique(strip))} of {strips} strips: take a smaller distance or more strips"
-        )
+        return np.nan, np.nan
     sums = [np.bincount(strip, weights, strips) for weights in (area * yields(stress), area)]
     return jackknife(lambda mean: mean[0] / mean[1], np.column_stack(sums) / np.sum(area))
