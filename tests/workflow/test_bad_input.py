@@ -7,6 +7,7 @@ import subprocess
 import pytest
 from conftest import ROOT
 from planner import Planner
+from test_settings import WRONG as TABLE
 
 WRONG = [
     ("surfaces: {B1: {kurtosis: 1.2}}", "surfaces.B1.kurtosis", "1.2", "must be"),
@@ -26,7 +27,10 @@ def planner(tmp_path_factory):
     planner.close()
 
 
-@pytest.mark.parametrize(("text", "key", "value", "allowed"), WRONG, ids=[row[1] for row in WRONG])
+ROWS = [*WRONG, *(pytest.param(*row, marks=pytest.mark.slow) for row in TABLE)]
+
+
+@pytest.mark.parametrize(("text", "key", "value", "allowed"), ROWS)
 def test_a_wrong_configuration_stops_before_the_first_job(planner, tmp_path, overlay, text, key, value, allowed):
     folder = tmp_path / "work"
     folder.mkdir()

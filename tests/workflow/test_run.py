@@ -2,6 +2,7 @@
 
 import csv
 
+import pytest
 from conftest import SMOKE, snakemake
 
 MINE = """
@@ -60,4 +61,20 @@ def test_a_surface_and_pair_of_the_user_run_beside_the_others(smoke, overlay):
     assert {row["pair"] for row in table} == {"mine"}
     assert {row["experiment_um"] for row in table} == {""}
     residual = next(r for r in rows(smoke / "results" / "tables" / "table_2.csv") if r["surface"] == "Etched")
-    assert abs(float(residual["density_residual_percent"])) < 2
+    # Search and control have patches of their own.
+    error = float(residual["density_residual_se_percent"]) * 2**0.5
+    assert abs(float(residual["density_residual_percent"])) < 4 * error
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "moments", ["skewness: -0.5, kurtosis: 3.6", "skewness: 0, kurtosis: 3", "skewness: 0.3, kurtosis: 3.2"]
+)
+def test_everything_can_be_computed_and_drawn_for_a_surface_of_the_user(tmp_path, overlay, moments):
+    mine = overlay(MINE.replace("skewness: -0.5, kurtosis: 3.6", moments))
+    done = snakemake(tmp_path, "all", "--keep-going", configs=(SMOKE, mine), check=False)
+    # With so few samples and so low an order the chaos model may miss its input, and the run says so.
+    assert done.returncode == 0 or "checks of the results failed" in done.stdout, done.stdout[-3000:]
+    drawn = {path.stem for path in (tmp_path / "results" / "figures").glob("*.pdf")}
+    assert {"figure_05", "figure_13", "figure_15", "figure_18", "figure_19", "readings"} <= drawn
+    assert (tmp_path / "results" / "checks.md").exists()
