@@ -62,7 +62,9 @@ class RoughSurface:
 
     @cached_property
     def _modes(self):
-        """Waves of the half plane ζ₂ >= 0 up to the cut-off: position in the (ζ₂, ζ₁) array, amplitude (n,) float32.
+        """Waves of the half plane ζ₂ >= 0 up to the cut-off.
+
+        Position in the (ζ₂, ζ₁) array and amplitude, (n,) int and float32, and the number of rows ζ₂ of that array.
 
         Their order depends on the size of the field, not on its spacing: the same stream draws the same surface on a
         finer grid.
