@@ -70,7 +70,7 @@ def vectors():
 def law_rows():
     """Chaos model of one case and beams that use it."""
     sample = vectors()
-    for tolerance in (0.2, 0.0):
+    for tolerance in (0.1, 0.0):
         fit = partial(chaos.fit, sample, sample[:, 1].max(), 12, tolerance)
         seconds, model = timed(lambda _, fit=fit: fit(), 3), fit()
         yield f"chaos model of one case, order 12, {model.dimension} coordinates", f"{seconds:.2f} s", "6 s"
