@@ -104,3 +104,11 @@ def test_share_of_the_deviation_that_a_reading_removes():
     assert_allclose((share, error), (0.75, 0.0), rtol=1e-12, atol=1e-12)
     shifted = choices.removed_share([10.51, 21.02], [11.0, 22.0], [0.01, 0.02], references)
     assert share - shifted[0] == pytest.approx(shifted[1], rel=0.02)
+
+
+@pytest.mark.parametrize("stuck", [0, 1])
+def test_where_hardly_a_beam_sticks_there_is_no_crack_length(stuck):
+    base, other = compared(0)
+    weak = choices.Reading(other.energy, other.crack_length, np.arange(BEAMS) < stuck)
+    assert np.isnan([*choices.mean_crack_length(weak), *choices.shift(weak, base), *choices.shift(base, weak)]).all()
+    assert np.isfinite(choices.energy_shift(weak, base)).all()

@@ -125,3 +125,26 @@ def test_a_table_is_saved_for_machines_for_reading_and_for_the_report(tmp_path):
     page = paths.html.read_text(encoding="utf-8")
     assert page.count("<tr") == 2
     assert "<td>620 ± 28</td>" in page
+
+
+def reading(*states):
+    """Study reading of one humidity."""
+    return xr.Dataset(
+        {
+            "adhesion_energy": (("humidity", "sample"), ENERGIES[None]),
+            "crack_length": (("humidity", "beam"), LENGTHS[None]),
+            "state": (("humidity", "beam"), np.array([states])),
+        },
+        {"humidity": [0.45]},
+    )
+
+
+@pytest.mark.parametrize("pair", ["a", "mine"])
+def test_a_reading_under_which_no_beam_sticks_has_no_crack_length_but_an_energy(pair):
+    studies = {(pair, "base"): reading(0, 0, 1), (pair, "van_der_waals_none"): reading(1, 1, 2)}
+    table = tables_studies.readings(studies, PRINTED)
+    assert_allclose(table.crack_length_um, [620, np.nan])
+    assert_allclose(table.meso_energy_shift_percent, 0)
+    weak = tables_studies.markdown_readings(table).splitlines()[-1]
+    assert "nan" not in weak
+    assert weak.count("–") >= 3

@@ -1,4 +1,7 @@
-"""What a choice that the paper leaves open does to the crack length of Table III: paired comparison of two readings."""
+"""What a choice that the paper leaves open does to the crack length of Table III: paired comparison of two readings.
+
+Crack lengths are NaN where fewer than two beams stick.
+"""
 
 from dataclasses import dataclass
 
@@ -25,6 +28,8 @@ def mean_crack_length(reading):
 
 def crack_length_with_errors(reading):
     """Mean crack length of the S-shaped beams and its standard errors: over beams, and over sampled pairs [m]."""
+    if reading.stuck.sum() < 2:
+        return np.nan, np.nan, np.nan
     return mean_on_shared_samples(reading.crack_length[reading.stuck], reading.energy, CRACK_LENGTH_POWER)
 
 
@@ -34,6 +39,8 @@ def shift(reading, base):
     Beam k and sample k of both readings use the same random numbers: their differences are the independent samples.
     """
     both = reading.stuck & base.stuck
+    if both.sum() < 2:
+        return np.nan, np.nan
     mean, error = mean_with_error(reading.crack_length[both] - base.crack_length[both])
     relative = [r.energy / r.energy.mean() for r in (reading, base)]
     _, energy_error = mean_with_error(relative[0] - relative[1])

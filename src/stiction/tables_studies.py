@@ -74,13 +74,15 @@ def markdown_sensitivity(table):
 
 
 def with_error(value, error, sign=""):
-    """Value ± standard error as text, to the first digit of the error, or to the second if the first is 1.
+    """Value ± standard error as text, to the first digit of the error, or to the second if the first is 1; – for NaN.
 
     Examples
     --------
     >>> with_error(57.82009, 0.19801), with_error(-4.9, 0.042, "+")
     ('57.82 ± 0.20', '-4.90 ± 0.04')
     """
+    if np.isnan(value):
+        return "–"
     if not error > 0:
         return f"{value:{sign}g} ± {error:g}"
     first = int(np.floor(np.log10(error)))
@@ -221,7 +223,7 @@ def _summary(pair, name, group, base):
 
 def _removed(group, base):
     """Share of the mean square deviation from print that a reading removes, as text [%]."""
-    known = group.published_um.notna().values
+    known = (group.published_um.notna() & group.crack_length_um.notna()).values & base.crack_length_um.notna().values
     if not known.any():
         return "–"
     here, there = group[known], base[known]
@@ -233,7 +235,7 @@ def _removed(group, base):
 
 def _rms_deviation(group, column):
     """Root mean square deviation from the references in a column and its standard error; None without references."""
-    known = group[group[column].notna()]
+    known = group[group[column].notna() & group.crack_length_um.notna()]
     if not len(known):
         return None
     errors = known.crack_length_beams_se_um, known.crack_length_pairs_se_um
