@@ -3,7 +3,7 @@
 
 rule beams:
     input:
-        lambda w: f"results/chaos/{w.case}_{'G' if w.model == 'G' else 'NG'}.nc",
+        lambda w: "results/chaos/{}_{}.nc".format(w.case, "G" if w.model == "G" else "NG"),
     output:
         "results/beams/{case}_{model}.nc",
     log:
