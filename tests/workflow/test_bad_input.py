@@ -70,6 +70,13 @@ def test_a_read_only_folder_is_named(planner, tmp_path):
     assert "Make it writable or choose another --directory" in printed
 
 
+def made(folder, *arguments):
+    """Run make in a folder, without the variables of the make that runs the tests."""
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("MAKE")}
+    words = ["make", "-C", folder, *arguments]
+    return subprocess.run(words, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+
 @pytest.fixture
 def make(tmp_path):
     """Run make in a folder with nothing but the Makefile and what it installs from."""
@@ -77,9 +84,7 @@ def make(tmp_path):
         shutil.copy2(ROOT / name, tmp_path)
 
     def run(*arguments):
-        done = subprocess.run(
-            ["make", "-C", tmp_path, *arguments], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
-        )
+        done = made(tmp_path, *arguments)
         assert not (tmp_path / ".venv").exists()
         assert "Traceback" not in done.stdout
         return done
@@ -109,6 +114,6 @@ def test_make_run_without_settings_says_what_it_needs(tmp_path):
     (tmp_path / ".venv").mkdir()
     for name in ("requirements.lock", "pyproject.toml", ".venv/ready"):
         (tmp_path / name).touch()
-    done = subprocess.run(["make", "-C", tmp_path, "run"], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    done = made(tmp_path, "run")
     assert done.returncode == 2
     assert "make run CONFIG=mine.yaml" in done.stdout
