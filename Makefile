@@ -4,7 +4,8 @@
 #   make run CONFIG=mine.yaml    with your own surfaces, pairs, beams; figures and report take CONFIG=... as well
 #   make test      format, lint, tests                                    make test-all the slow tests too (minutes)
 #   make cluster   test on a SLURM of this machine                        make mutants  test the tests
-#   make bench     time the stages                                        ARGS=...      goes to snakemake, e.g. ARGS=-n
+#   make bench     time the stages                                        make jobs     time and memory of a run's jobs
+#   ARGS=...       goes to snakemake, e.g. ARGS=-n
 
 PYTHON ?= python3
 VENV := .venv
@@ -17,7 +18,7 @@ ifneq ($(CONFIG),$(wildcard $(CONFIG)))
 $(error cannot read $(CONFIG))
 endif
 
-.PHONY: help paper smoke figures run report test test-all lint format cluster mutants bench lock clean
+.PHONY: help paper smoke figures run report test test-all lint format cluster mutants bench jobs lock clean
 .DELETE_ON_ERROR:
 
 paper: $(VENV)/ready
@@ -71,6 +72,10 @@ mutants: $(VENV)/ready
 bench: $(VENV)/ready
 	$(BIN)/python -m stiction.compiled
 	$(BIN)/python tests/benchmarks/stages.py
+
+# From the logs of the last run.
+jobs: $(VENV)/ready
+	$(BIN)/python tests/benchmarks/jobs.py
 
 lock:
 	uv pip compile --universal --python-version 3.11 --no-emit-index-url --no-header --no-annotate --upgrade --extra dev pyproject.toml -o requirements.lock

@@ -1,7 +1,9 @@
-"""What a job leaves behind while it works: progress and errors in its log."""
+"""What a job leaves behind while it works: progress, errors and what it took, in its log."""
 
 import contextlib
+import resource
 import sys
+import time
 import traceback
 from pathlib import Path
 
@@ -10,15 +12,30 @@ from tqdm import tqdm
 
 @contextlib.contextmanager
 def logged(path):
-    """Send warnings, progress and the traceback of an error to a log; the terminal gets the error's one line."""
+    """Send warnings, progress and the traceback of an error to a log; the terminal gets the error's one line.
+
+    The last line of the log of a job that succeeded tells how long it worked and its peak of memory.
+    """
+    start = time.perf_counter()
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     with Path(path).open("w", buffering=1, encoding="utf-8") as log:
         try:
             with contextlib.redirect_stderr(log):
                 yield
+            log.write(f"took {time.perf_counter() - start:.1f} s, {peak_memory():.0f} MB\n")
         except Exception as error:
             traceback.print_exc(file=log)
             sys.exit(" ".join([f"{type(error).__name__}: {error}", *getattr(error, "__notes__", [])]))
+
+
+def peak_memory():
+    """Largest resident memory of this process so far [MB]."""
+    status = Path("/proc/self/status")  # where there is one, it counts this program alone; the other count inherits
+    counted = dict(line.split(":", 1) for line in status.read_text().splitlines()) if status.exists() else {}
+    if "VmHWM" in counted:
+        return int(counted["VmHWM"].split()[0]) / 1024
+    kilo = 1024 if sys.platform == "darwin" else 1
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / kilo / 1024
 
 
 def progress(steps, what, total=None):

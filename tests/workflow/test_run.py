@@ -3,6 +3,7 @@
 import csv
 
 import pytest
+from benchmarks import jobs
 from conftest import SMOKE, snakemake
 
 MINE = """
@@ -51,6 +52,15 @@ def test_a_second_run_has_nothing_to_do(smoke):
 def test_log_of_a_long_job_shows_its_progress(smoke):
     log = next((smoke / "results" / "logs" / "contact").glob("b_NG/*.log"))
     assert "surface pairs: 100%" in log.read_text()
+
+
+def test_no_job_takes_more_than_its_rule_states(smoke):
+    measured = list(jobs.measured(smoke / "results"))
+    assert sum(number for _, number, *_ in measured) == len(list((smoke / "results" / "logs").rglob("*.log")))
+    for rule, _, seconds, megabytes, memory, minutes in measured:
+        # On a cluster a job has two processes of Snakemake beside its script.
+        assert megabytes + 2 * 170 < memory, rule
+        assert seconds < 60 * minutes, rule
 
 
 def test_a_surface_and_pair_of_the_user_run_beside_the_others(smoke, overlay):

@@ -8,8 +8,10 @@ rule beams:
         "results/beams/{case}_{model}.nc",
     log:
         "results/logs/beams/{case}_{model}.log",
+    threads: 1
     resources:
-        runtime=20,
+        mem_mb=800,
+        runtime=30,
     params:
         settings=lambda w: section(
             "seed",

@@ -8,6 +8,7 @@ rule contact_chunk:
         temp("results/contact/{pair}_{model}/{chunk}-of-{number}.nc"),
     log:
         "results/logs/contact/{pair}_{model}/{chunk}-of-{number}.log",
+    threads: 1
     resources:
         mem_mb=800,
         runtime=30,

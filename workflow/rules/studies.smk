@@ -13,7 +13,8 @@ rule sensitivity_contact:
     output:
         "results/studies/sensitivity/contact/{pair}_{moment}_{side}.nc",
     log:
-        "results/logs/studies/sensitivity/{pair}_{moment}_{side}.log",
+        "results/logs/studies/sensitivity/contact/{pair}_{moment}_{side}.log",
+    threads: 1
     resources:
         mem_mb=800,
         runtime=30,
@@ -41,9 +42,6 @@ rule sensitivity:
         "results/studies/sensitivity/{pair}_{moment}.nc",
     log:
         "results/logs/studies/sensitivity/{pair}_{moment}.log",
-    resources:
-        mem_mb=800,
-        runtime=10,
     params:
         settings=lambda w: section("water", humidities=config["pairs"][w.pair]["humidities"]),
         code=code("sensitivity.py"),
@@ -60,6 +58,10 @@ rule plasticity:
         "results/studies/plasticity/{pair}.nc",
     log:
         "results/logs/studies/plasticity/{pair}.log",
+    threads: 1
+    resources:
+        mem_mb=800,
+        runtime=30,
     params:
         settings=lambda w: section(
             "seed",
@@ -102,6 +104,10 @@ rule orders:
         "results/studies/orders.nc",
     log:
         "results/logs/studies/orders.log",
+    threads: 1
+    resources:
+        mem_mb=800,
+        runtime=30,
     params:
         settings=section("seed", draws=STUDIES["orders"]["draws"], case=FIGURE_CASE),
         code=code("orders.py"),
@@ -152,6 +158,7 @@ rule reading_contact:
         "results/studies/readings/contact/{pair}_{reading}.nc",
     log:
         "results/logs/studies/readings/contact/{pair}_{reading}.log",
+    threads: 1
     resources:
         mem_mb=800,
         runtime=30,
@@ -171,6 +178,7 @@ rule reading:
         "results/studies/readings/{pair}_{reading}.nc",
     log:
         "results/logs/studies/readings/{pair}_{reading}.log",
+    threads: 1
     resources:
         mem_mb=800,
         runtime=30,
@@ -190,7 +198,9 @@ rule resampling:
         "results/studies/resampling/{case}.nc",
     log:
         "results/logs/studies/resampling/{case}.log",
+    threads: 1
     resources:
+        mem_mb=800,
         runtime=30,
     params:
         settings=lambda w: section(

@@ -22,7 +22,9 @@ rule identify:
         "results/identification/{surface}.nc",
     log:
         "results/logs/identification/{surface}.log",
+    threads: 1
     resources:
+        mem_mb=800,
         runtime=30,
     params:
         settings=lambda w: section("seed", "identification")
@@ -70,6 +72,10 @@ rule iteration:
         "results/iteration/{surface}.nc",
     log:
         "results/logs/iteration/{surface}.log",
+    threads: 1
+    resources:
+        mem_mb=800,
+        runtime=30,
     params:
         settings=lambda w: section(
             "seed", iteration=config["studies"]["iteration"], spacing_nm=config["sampling"]["spacing_nm"]
@@ -89,6 +95,10 @@ rule character:
         "results/character/{surface}_{model}.nc",
     log:
         "results/logs/character/{surface}_{model}.log",
+    threads: 1
+    resources:
+        mem_mb=800,
+        runtime=30,
     params:
         settings=lambda w: section("seed", "sampling", "character", beam={"width_um": config["beam"]["width_um"]}),
         code=code("character.py"),

@@ -1,0 +1,45 @@
+"""What the jobs of a run took, rule by rule, from their logs: ``make jobs``. Prints a table."""
+
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+TOOK = re.compile(r"^took ([\d.]+) s, (\d+) MB$", re.MULTILINE)
+
+
+def rules():
+    """Of every rule that has a script: name, pattern of its logs, and the memory [MB] and minutes it states."""
+    default = (ROOT / "profiles" / "default" / "config.yaml").read_text()
+    for file in sorted((ROOT / "workflow" / "rules").glob("*.smk")):
+        for name, body in re.findall(
+            r"^(?:use )?rule (?:\w+ as )?(\w+)(?: with)?:\n((?:[ \n].*\n|\n)+)", file.read_text(), re.MULTILINE
+        ):
+            if log := re.search(r'"results/logs/(.+)\.log"', body):
+                stated = [
+                    int((re.search(key, body) or re.search(key, default))[1])
+                    for key in (r"mem_mb=(\d+)", r"runtime=(\d+)")
+                ]
+                yield name, re.compile(re.sub(r"{\w+}", "[^/]+", log[1])), *stated
+
+
+def measured(results):
+    """Of every rule that ran: name, number of jobs, most seconds, most memory [MB], stated memory and minutes."""
+    logs = {str(path.relative_to(results / "logs"))[:-4]: path.read_text() for path in results.rglob("logs/**/*.log")}
+    for name, pattern, memory, minutes in rules():
+        took = [TOOK.findall(text)[-1] for log, text in logs.items() if pattern.fullmatch(log) and TOOK.search(text)]
+        if took:
+            seconds, megabytes = (max(map(float, column)) for column in zip(*took, strict=True))
+            yield name, len(took), seconds, megabytes, memory, minutes
+
+
+def main():
+    """Print the table."""
+    results = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "results")
+    print("| rule | jobs | longest [s] | most memory [MB] | stated [MB] | stated [min] |\n|---|---|---|---|---|---|")  # noqa: T201
+    for name, jobs, seconds, megabytes, memory, minutes in measured(results):
+        print(f"| {name} | {jobs} | {seconds:.1f} | {megabytes:.0f} | {memory} | {minutes} |")  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()
