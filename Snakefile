@@ -1,7 +1,9 @@
 """Stiction of MEMS beams, from the statistics of two rough surfaces to the distribution of crack lengths."""
 
 import os
+import signal
 import sys
+import threading
 from pathlib import Path
 
 BASE = Path(workflow.basedir)
@@ -31,6 +33,9 @@ include: "workflow/rules/figures.smk"
 
 
 onstart:
+    # Snakemake's answer to SIGTERM needs a lock, for which it would wait for ever if this thread holds it already.
+    if callable(answer := signal.getsignal(signal.SIGTERM)):
+        signal.signal(signal.SIGTERM, lambda *received: threading.Thread(target=answer, args=received).start())
     reserve_folder()
     try:
         provenance.record("results/provenance.json", BASE, config)

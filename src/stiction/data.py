@@ -42,6 +42,7 @@ def save(dataset, path, stage, settings):
     labelled = dataset.assign_attrs(Conventions="CF-1.10", **origin)
     encoding = {name: {"zlib": True, "complevel": 1} for name, values in labelled.items() if values.size > 10_000}
     with _replacing(path) as draft:
+        draft.write_bytes(bytes(labelled.nbytes + 2**16))  # a full disk is told here; HDF5 would fail without a reason
         labelled.to_netcdf(draft, engine="netcdf4", encoding=encoding)
 
 

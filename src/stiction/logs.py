@@ -16,16 +16,21 @@ def logged(path):
 
     The last line of the log of a job that succeeded tells how long it worked and its peak of memory.
     """
-    start = time.perf_counter()
+    start, failure = time.perf_counter(), None
     Path(path).parent.mkdir(parents=True, exist_ok=True)
-    with Path(path).open("w", buffering=1, encoding="utf-8") as log:
+    Path(path).touch()
+    # A full disk takes no more lines of a log; the terminal still gets its own.
+    what_fits = contextlib.suppress(OSError)
+    with what_fits, Path(path).open("w", buffering=1, encoding="utf-8") as log, contextlib.redirect_stderr(log):
         try:
-            with contextlib.redirect_stderr(log):
-                yield
-            log.write(f"took {time.perf_counter() - start:.1f} s, {peak_memory():.0f} MB\n")
+            yield
         except Exception as error:
+            failure = " ".join([f"{type(error).__name__}: {error}", *getattr(error, "__notes__", [])])
             traceback.print_exc(file=log)
-            sys.exit(" ".join([f"{type(error).__name__}: {error}", *getattr(error, "__notes__", [])]))
+        else:
+            log.write(f"took {time.perf_counter() - start:.1f} s, {peak_memory():.0f} MB\n")
+    if failure:
+        sys.exit(failure)
 
 
 def peak_memory():

@@ -20,7 +20,8 @@ identification: {patches: 2, patch_um: 2}
 contact: {samples: 60, chunks: 2, distance_step_nm: 0.2}
 chaos: {order: 2}
 beam: {samples: 4}
-studies: {plasticity: {strips: 2}, orders: {draws: 1000}, sensitivity: {samples: 10}}
+studies: {plasticity: {strips: 2}, orders: {draws: 1000}, sensitivity: {samples: 10},
+          iteration: {iterations: 1, fields: 2}, readings: {samples: 20, beams: 2}, resampling: {beams: 4}}
 """
 #: All main stages lead to it.
 BEAMS = "results/beams/b_rh088_NG.nc"
@@ -71,7 +72,8 @@ def undisturbed(tmp_path_factory, tiny):
 def datasets(folder):
     """Content of every file of results that is not a log, a record of the run or a draft, by name."""
     results = Path(folder) / "results"
-    found = sorted(path for kind in ("*.nc", "*.csv", "*.md") for path in results.rglob(kind))
+    kinds = ("nc", "csv", "md", "html", "pdf", "png")
+    found = sorted(path for kind in kinds for path in results.rglob(f"*.{kind}"))
     return {str(path.relative_to(results)): path.read_bytes() for path in found}
 
 
