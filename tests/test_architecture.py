@@ -17,6 +17,7 @@ PHYSICS = (
 )
 BORDER = (
     "provenance logs units keys settings data data_studies curves laws cases pairs cantilevers compiled study",
+    "identifications",
     "tables tables_fit tables_studies figures figures_surfaces figures_forces figures_beams figures_studies checks",
 )
 ROOMS = " ".join((BASE, *PHYSICS, *BORDER)).split()

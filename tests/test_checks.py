@@ -68,6 +68,12 @@ def test_energies_of_the_same_surfaces_are_compared_pair_by_pair():
     assert checks.energy_grows("b", weak, strong).passed, "a scatter that both share must not hide the growth"
 
 
+def test_nothing_is_claimed_of_air_drier_than_in_any_experiment():
+    dry = {(0.1, "NG"): 9, (0.3, "NG"): 5, (0.5, "NG"): 7, (0.7, "NG"): 8}
+    found = list(checks.of_trends(study(dry), []))
+    assert [check.case for check in found] == ["b NG, RH 0.5 to 0.7"]
+
+
 def test_skewed_surfaces_that_stick_more_pass_and_those_that_stick_less_fail():
     assert checks.skewness_binds("b", forces(1), forces(6)).passed
     assert not checks.skewness_binds("b", forces(6), forces(1)).passed

@@ -100,6 +100,12 @@ def test_gamma_tends_to_the_energy_of_uniform_ground_as_mesh_and_points_get_fine
     assert excess[2] < 0.02 < 0.5 < excess[0]
 
 
+def test_a_beam_that_does_not_stick_has_no_crack_length():
+    weak = LAW * np.array([1e-3, 1, 1, 1])
+    with pytest.raises(ValueError, match="does not stick in an S-shape"):
+        convergence.arrest_on_uniform_ground(PAPER, weak, 1000)
+
+
 def test_meshes_are_whole():
     meshes = convergence.whole_meshes(30.0, [15.0, 7.5, 4.0], [7.5, 3.0])
     assert meshes == [(15.0, 7.5), (7.5, 7.5), (15.0, 3.0)]

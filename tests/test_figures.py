@@ -1,6 +1,7 @@
 """Figures show the numbers of their datasets, in the units of their axes, and are equal byte for byte."""
 
 import re
+from dataclasses import replace
 
 import matplotlib as mpl
 import numpy as np
@@ -428,5 +429,30 @@ def test_medians_stay_within_the_axes_however_weak(pairs, printed):
 
 
 def test_pair_that_the_paper_does_not_know_has_no_experiment(drawn, pairs, printed):
-    assert bars(drawn["15"].axes[2], "experiment")[0].shape == (2, 0)
+    known, own = (drawn["15"].axes[k].get_legend_handles_labels()[1] for k in (0, 2))
+    assert set(known) - set(own) == {"experiment", "NG: printed"}
     assert len(axes_of(adhesion_energies({"mine": pairs["mine"]}, printed))) == 2
+
+
+def test_the_legend_names_what_any_pair_shows(pairs, printed):
+    figure = adhesion_energies({name: pairs[name] for name in ("mine", "b")}, printed)
+    named = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert {"experiment", "NG: printed", "GEO: printed", "GEO: beams, mean ± std"} <= named
+
+
+def test_a_single_humidity_shows_its_median_and_quantiles(pairs, printed):
+    beam, beams, axes = pairs["b"]
+    single = {model: axis.isel(humidity=[2]) for model, axis in axes.items()}
+    panel = adhesion_energies({"b": (beam, beams, single)}, printed).axes[0]
+    centres, ends = bars(panel, r"NG: median and 5–95 % of $\bar e$")
+    low, median, high = 1e3 * single["NG"].energy_quantile.values.ravel()
+    np.testing.assert_allclose([*map(float, centres.ravel())], [0.6, median])
+    np.testing.assert_allclose(ends, [[low, high]])
+
+
+def test_the_energy_that_no_crack_reaches_is_shown_however_high(pairs, printed):
+    _, beams, axes = pairs["b"]
+    stiff = replace(BEAM, thickness=10 * BEAM.thickness)
+    for panel in adhesion_energies({"b": (stiff, beams, axes)}, printed).axes:
+        weakest = curve(panel, "crack as long as the beam")[1][0]
+        assert 144 < weakest < panel.get_ylim()[1]

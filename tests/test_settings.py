@@ -14,6 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from stiction import maxent
+from stiction.chaos import MAX_ORDER
 from stiction.keys import merged
 from stiction.settings import ConfigError, load, read, validate
 
@@ -56,7 +57,8 @@ WRONG = [
     ("contact: {chunks: 0}", "contact.chunks", "0", "at least 1"),
     ("contact: {every: 0}", "contact.every", "0", "at least 1"),
     ("contact: {distance_step_nm: 0}", "contact.distance_step_nm", "0", "at least 0.001"),
-    ("chaos: {order: 0}", "chaos.order", "0", "at least 1"),
+    ("chaos: {order: 0}", "chaos.order", "0", "at least 1 and at most 12"),
+    ("chaos: {order: 13}", "chaos.order", "13", "at least 1 and at most 12"),
     ("chaos: {dimension_tolerance: 0}", "chaos.dimension_tolerance", "0", "above 0 and below 1"),
     ("beam: {length_um: 0}", "beam.length_um", "0", "above 0"),
     ("beam: {thickness_um: -2.6}", "beam.thickness_um", "-2.6", "above 0"),
@@ -70,9 +72,12 @@ WRONG = [
     ("studies: {sample_shares: [0]}", "studies.sample_shares[0]", "0", "above 0 and at most 1"),
     ("studies: {readings: {psd: [measured]}}", "studies.readings.psd[0]", "'measured'", "one of published, identified"),
     # what YAML makes of it
+    ("seed: 1e3", "seed", "'1e3'", "as text, write 1000"),
+    ("beam: {thickness_um: 1.5e-3um}", "beam.thickness_um", "'1.5e-3um'", "write 1.5e-3 without"),
+    ("pairs: {a: {humidities: [44%]}}", "pairs.a.humidities[0]", "'44%'", "below 1: relative humidity, as a fraction"),
     ("chaos: {dimension_tolerance: 1e-3}", "chaos.dimension_tolerance", "'1e-3'", "as text, write 1.0e-3"),
     ("solid: {young_modulus_GPa: 1.64e2}", "solid.young_modulus_GPa", "'1.64e2'", "write 1.64e+2"),
-    ("contact: {samples: 5E3}", "contact.samples", "'5E3'", "write 5.0e+3"),
+    ("contact: {samples: 5E3}", "contact.samples", "'5E3'", "write 5000"),
     ('surfaces: {B1: {rms_nm: "1.7"}}', "surfaces.B1.rms_nm", "'1.7'", "write 1.7 without quotes"),
     ("beam:\n  thickness_um: 2,6", "beam.thickness_um", "'2,6'", "write 2.6 without"),
     ("beam: {thickness_um: 2.6 um}", "beam.thickness_um", "'2.6 um'", "write 2.6 without quotes, unit"),
@@ -155,7 +160,6 @@ WRONG = [
     ("pairs: {a: {humidities: [0.65001]}}", "pairs.a.humidities", "[0.65001]", "at most 4 decimals"),
     ("figures: {humidity: 0.65001}", "figures.humidity", "0.65001", "at most 4 decimals"),
     ("contact: {chunks: 5001}", "contact.chunks", "5001", "at most the number of samples (given contact.samples ="),
-    ("chaos: {order: 17}", "chaos.order", "17", "at most 16, or 5985 samples are needed (given contact."),
     ("contact: {samples: 1819}", "chaos.order", "12", "at most 11, or 1820 samples are needed"),
     ("beam: {elements: 300}", "beam.length_um", "1500", "multiple of strip_length x elements = 450 µm"),
     ("beam: {elements: 2000}", "beam.length_um", "1500", "multiple of strip_length x elements = 3000 µm"),
@@ -353,7 +357,7 @@ def test_a_number_is_refused_outside_its_bounds_and_not_inside(leaf):
         "studies: {mesh: {elements_um: [7, 30], strips_um: [4, 3]}}",
         "contact: {chunks: 5000}",
         "contact: {samples: 1820}",
-        "chaos: {order: 16}",
+        "chaos: {order: 1}",
         "beam: {elements: 1000}",
         "beam: {scatter: 0}",
         "beam: {length_um: 21, width_um: 20.98, elements: 7}",
@@ -454,6 +458,10 @@ def test_an_anchor_may_be_changed_key_by_key(tmp_path):
     path = tmp_path / "mine.yaml"
     path.write_text("base: &b {x: 1, y: 2}\nmine: {<<: *b, y: 3}\n", encoding="utf-8")
     assert read(path)["mine"] == {"x": 1, "y": 3}
+
+
+def test_the_highest_order_is_that_of_the_chaos_model():
+    assert SCHEMA["properties"]["chaos"]["properties"]["order"]["maximum"] == MAX_ORDER
 
 
 def test_the_schema_is_one():

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction import cases, data, pairs
 from stiction.energy import arrest_length
+from stiction.identifications import identified_spectra
 from stiction.keys import merged
 from stiction.settings import read
 from stiction.study import PairStudy
@@ -96,7 +97,23 @@ def test_a_reading_that_changes_nothing_is_the_pair_itself(study, tmp_path):
     assert np.all(data.load(reading, "reading").adhesion_energy[0] < found.adhesion_energy)
 
 
-def test_a_spectrum_that_is_to_be_identified_is_asked_for():
-    config = merged(CONFIG, {"surfaces": {"B2": {"psd": "identified"}}})
-    with pytest.raises(ValueError, match="spectrum of B2 has to be identified"):
+def test_a_spectrum_is_identified_as_by_the_workflow(tmp_path):
+    config = merged(
+        CONFIG, {"surfaces": {"B2": {"psd": "identified"}}, "identification": {"patches": 2, "patch_um": 2}}
+    )
+    entry, heights, found = config["surfaces"]["B2"], tmp_path / "heights.nc", tmp_path / "found.nc"
+    script("heights")(heights, {key: entry[key] for key in ("rms_nm", "skewness", "kurtosis")})
+    target = {key: entry[key] for key in ("mean_summit_radius_um", "summit_density_per_um2")}
+    settings = {"spacing_nm": 10, "target_spacing_nm": config["character"]["spacing_nm"], "target": target}
+    script("identify")(heights, found, config | settings)
+    spectra = identified_spectra(config, "b")
+    with pytest.raises(ValueError, match=r"spectrum of B2 has to be identified first, see stiction\.identifications"):
         PairStudy.of(config, "b")
+    assert spectra == {"B2": cases.target_spectrum(data.load(found, "identification"))}
+    (_, drawn), (_, other) = cases.surfaces_of(config, "b", spectra)
+    assert cases.target_spectrum(drawn) == spectra["B2"] != cases.target_spectrum(other)
+
+
+def test_a_pair_that_is_not_there_is_named():
+    with pytest.raises(ValueError, match="there is no pair nope; the configuration has a, b, c"):
+        PairStudy.of(CONFIG, "nope")

@@ -345,10 +345,9 @@ def _mesh(beam, laws, load, tip_force):
     return _Mesh(shape, beam.bending_stiffness / l_e**3, float(beam.gap), area, float(load) * l_e, float(tip_force))
 
 
-def _tolerance(mesh, laws):
-    """Largest unbalanced force of an equilibrium [N]."""
-    pull = laws[:, 0].mean() * mesh.area if len(laws) else 0.0
-    return TOLERANCE * pull + ROUNDING * 12 * mesh.stiffness * mesh.gap
+def allowed_imbalance(beam, pull):
+    """Largest unbalanced force of an equilibrium whose points pull with ``pull`` [N] at most, in the mean [N]."""
+    return TOLERANCE * pull + ROUNDING * 12 * (beam.bending_stiffness / beam.element_length**3) * beam.gap
 
 
 def equilibrate(beam, laws, start, load=0.0, tip_force=0.0, max_iterations=MAX_ITERATIONS):
@@ -379,7 +378,8 @@ def equilibrate(beam, laws, start, load=0.0, tip_force=0.0, max_iterations=MAX_I
     """
     laws = np.ascontiguousarray(laws, float)
     mesh = _mesh(beam, laws, load, tip_force)
-    scale, tolerance = np.array([1, beam.element_length]), _tolerance(mesh, laws)
+    tolerance = allowed_imbalance(beam, laws[:, 0].mean() * mesh.area if len(laws) else 0.0)
+    scale = np.array([1, beam.element_length])
     u = (np.asarray(start, float) * scale).ravel()
     imbalance, iterations = _relax(u, laws, mesh, tolerance, max_iterations)
     if not imbalance <= tolerance:
@@ -438,7 +438,9 @@ def release(beam, laws, start_crack):
         if crack_length(beam, laws, end.deflection) > 1.5 * start_crack:
             return end
         start_crack /= 2
-    raise ValueError(f"elements of {beam.element_length:.3g} m do not resolve a crack of {start_crack:.3g} m")
+    raise ValueError(
+        f"elements of {beam.element_length:.3g} m do not resolve a crack of {start_crack:.3g} m: take more"
+    )
 
 
 def distances(beam, laws, deflection):

@@ -59,18 +59,7 @@ def spectrum(density, target, spacing):
     return data.spectrum(target, underlying, achieved, defect)
 
 
-def _target(name, entry, identified):
-    """Spectrum of a surface of the configuration."""
-    if entry["psd"] == "published":
-        return CutoffSelfAffine(**si(entry["published_psd"]))
-    if name not in identified:
-        raise ValueError(
-            f"the spectrum of {name} has to be identified first, see stiction.identify; given {[*identified]}"
-        )
-    return identified[name]
-
-
-def surfaces_of(config, pair, identified=None):
+def surfaces_of(config, pair, identified=()):
     """Datasets (heights, spectrum) of the beam's and of the substrate's surface of a pair.
 
     Parameters
@@ -78,12 +67,20 @@ def surfaces_of(config, pair, identified=None):
     config : dict
         Sections sampling, pairs and surfaces.
     pair : str
-    identified : dict, optional
+    identified : dict
         Spectra of the surfaces whose psd is not the published one, by name.
+
+    Raises
+    ------
+    ValueError
+        If one of these is missing.
     """
     spacing, surfaces = si(config["sampling"])["spacing"], []
     for name in (config["pairs"][pair][side] for side in SIDES):
         entry = si(config["surfaces"][name])
-        target = _target(name, entry, identified or {})
+        published = entry["psd"] == "published"
+        if not published and name not in identified:
+            raise ValueError(f"the spectrum of {name} has to be identified first, see stiction.identifications")
+        target = CutoffSelfAffine(**si(entry["published_psd"])) if published else identified[name]
         surfaces.append(surface({key: entry[key] for key in MOMENTS}, target, spacing))
     return tuple(surfaces)

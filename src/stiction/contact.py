@@ -102,7 +102,8 @@ class SurfacePair:
             )
             if outside:
                 raise ValueError(
-                    f"{outside} summits leave the table of Maugis' λ {self.solid.transitions} or interference"
+                    f"{outside} summits leave the table of Maugis' λ {self.solid.transitions} or interference: "
+                    "such rms, spectrum or modulus is not provided for"
                 )
         else:
             _add_hertz(heights, spacing, grid.step, self.solid.modulus, force)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr
 
-from stiction.beam import crack_length, release
+from stiction.beam import EndState, crack_length, end_state, release
 from stiction.chaos import silverman_bandwidth
 from stiction.energy import adhesion_energy, arrest_length
 from stiction.forcelaw import energy
@@ -100,10 +100,19 @@ class Arrest:
 
 
 def arrest_on_uniform_ground(beam, law, points):
-    """Release a beam whose ``points`` contact points all have one law [f_max, d_max, a_left, a_right], Arrest."""
+    """Release a beam whose ``points`` contact points all have one law [f_max, d_max, a_left, a_right], Arrest.
+
+    Raises
+    ------
+    ValueError
+        If the beam does not stick in an S-shape, or its crack is too short for its elements.
+    """
     laws = np.tile(law, (points, 1))
     start = START * min(float(arrest_length(energy(law), beam)), beam.length)
-    crack = crack_length(beam, laws, release(beam, laws, start).deflection)
+    deflection = release(beam, laws, start).deflection
+    if end_state(beam, laws, deflection) != EndState.S_SHAPE:
+        raise ValueError(f"under {energy(law):.3g} J/m² the beam does not stick in an S-shape")
+    crack = crack_length(beam, laws, deflection)
     return Arrest(crack, adhesion_energy(crack, beam))
 
 

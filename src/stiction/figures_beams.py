@@ -90,7 +90,7 @@ def adhesion_energies(pairs, printed):
     for row, (pair, (beam, released, bands)) in zip(axes, pairs.items(), strict=True):
         weakest = adhesion_energy(beam.length, beam)
         lowest = min(weakest, *(float(axis.energy_quantile.sel(probability=0.5).min()) for axis in bands.values()))
-        row[0].set(yscale="log", ylim=(MJ * lowest / 2, 2 * MJ * THEORETICAL))
+        row[0].set(yscale="log", ylim=(MJ * lowest / 2, 2 * MJ * max(THEORETICAL, weakest)))
         row[0].set_ylabel(r"adhesion energy $\Gamma$ [mJ/m²]")
         for panel, models in zip(row, _COLUMNS, strict=True):
             _bounds(panel, weakest)
@@ -103,7 +103,7 @@ def adhesion_energies(pairs, printed):
     for panel in axes[-1]:
         panel.set_xlabel("relative humidity RH [–]")
     letter(axes, [f"pair {pair}, {' and '.join(models)}" for pair in pairs for models in _COLUMNS])
-    figure.legend(*handles(*axes[0]), loc="outside upper center", ncols=5, columnspacing=1.2)
+    figure.legend(*handles(*axes.flat), loc="outside upper center", ncols=5, columnspacing=1.2)
     return figure
 
 
@@ -120,7 +120,9 @@ def _bounds(panel, weakest):
 
 
 def _known(panel, printed, beam, models):
-    """Experiment and printed results of Table III."""
+    """Experiment and printed results of Table III, where there are any."""
+    if printed.empty:
+        return
     humidity = printed.relative_humidity.to_numpy()
     energy, bars = converted(printed.experiment.to_numpy() / UM, printed.experiment_std.to_numpy() / UM, beam)
     look = {"fmt": "D", "color": "black", "markersize": 3, "zorder": 5}
@@ -134,10 +136,12 @@ def _known(panel, printed, beam, models):
 def _band(panel, axis, model):
     """Median and 5-95 % of the energy of the pieces of surface, along the humidity."""
     low, median, high = MJ * axis.energy_quantile.transpose("probability", "humidity").values
-    look = {"color": MODELS[model]["color"]}
-    panel.fill_between(axis.humidity, low, high, alpha=0.25, linewidth=0, **look)
-    label = rf"{model}: median and 5–95 % of $\bar e$"
-    panel.plot(axis.humidity, median, linestyle=MODELS[model]["linestyle"], label=label, **look)
+    look = {"color": MODELS[model]["color"], "label": rf"{model}: median and 5–95 % of $\bar e$"}
+    if axis.sizes["humidity"] == 1:
+        panel.errorbar(axis.humidity, median, [median - low, high - median], fmt="_", elinewidth=3, alpha=0.6, **look)
+        return
+    panel.fill_between(axis.humidity, low, high, alpha=0.25, linewidth=0, color=look["color"])
+    panel.plot(axis.humidity, median, linestyle=MODELS[model]["linestyle"], **look)
 
 
 def _released(panel, released, model, weakest):

@@ -150,9 +150,9 @@ def _densities(panel, sizes):
 
 def _distances(panel, sizes):
     """Kolmogorov's distances to all samples and what independent samples give."""
-    total = int(sizes["size"].max())
-    part = sizes.isel(size=sizes["size"].values < total)
-    count = np.geomspace(part["size"].min() / 1.5, 0.97 * total, 100)
+    total = int(sizes["size"][-1])
+    part = sizes.isel(size=slice(-1))
+    count = np.geomspace(sizes["size"][0] / 1.5, 0.97 * total, 100)
     law = convergence.KOLMOGOROV_MEAN * np.sqrt(1 / count - 1 / total)
     own = convergence.sampling_distance(total)
     panel.plot(count, law, "--", color="0.4", label="independent samples")
@@ -308,23 +308,35 @@ def readings(datasets, printed):
         Table III as published.
     """
     pairs, names = (list(dict.fromkeys(parts)) for parts in zip(*datasets, strict=True))
-    figure, axes = panels(2, len(pairs), (min(DOUBLE, 1.3 * SINGLE * len(pairs)), 4.6), sharex="col")
+    rows = 2 if printed.pair.isin(pairs).any() else 1
+    figure, axes = panels(rows, len(pairs), (min(DOUBLE, 1.3 * SINGLE * len(pairs)), 1 + 1.8 * rows), sharex="col")
     for column, pair in zip(axes.T, pairs, strict=True):
         table = printed[printed.pair == pair]
         for name, look in _looks(names).items():
             _shift(column[0], datasets[pair, name], datasets[pair, "base"], look)
-            _deviation(column[1], datasets[pair, name], table, look)
-        measured = 100 * (table.experiment / table.ng - 1), 100 * table.experiment_std / table.ng
-        look = {"color": "black", "markerfacecolor": "white", "markersize": 6, "label": "experiment", "zorder": 4}
-        column[1].errorbar(table.relative_humidity, *measured, fmt="*", **look)
-        column[1].set_xlabel("relative humidity [–]")
+            if len(table):
+                _deviation(column[1], datasets[pair, name], table, look)
+        if len(table):
+            _experiment(column[1], table)
+        elif rows > 1:
+            column[1].text(0.5, 0.6, "not printed", transform=column[1].transAxes, ha="center", color="0.5")
+        column[-1].set_xlabel("relative humidity [–]")
         for panel in column:
             panel.axhline(0, **_ZERO)
-    axes[0, 0].set_ylabel("change of $l_s$ against base [%]")
-    axes[1, 0].set_ylabel("deviation of $l_s$ from print [%]")
-    letter(axes, [f"pair {pair}" for pair in pairs] * 2)
+    for panel, deviation in zip(
+        axes[:, 0], ("change of $l_s$ against base", "deviation of $l_s$ from print"), strict=False
+    ):
+        panel.set_ylabel(f"{deviation} [%]")
+    letter(axes, [f"pair {pair}" for pair in pairs] * rows)
     figure.legend(*handles(*axes.flat), loc="outside lower center", ncols=5)
     return figure
+
+
+def _experiment(panel, table):
+    """Deviation of the measured crack length from the printed one."""
+    measured = 100 * (table.experiment / table.ng - 1), 100 * table.experiment_std / table.ng
+    look = {"color": "black", "markerfacecolor": "white", "markersize": 6, "label": "experiment", "zorder": 4}
+    panel.errorbar(table.relative_humidity, *measured, fmt="*", **look)
 
 
 def _looks(names):

@@ -121,7 +121,9 @@ def _reach(force, start, level):
     for i in range(start - 1, -1, -1):
         if force[i] >= level:
             return i
-    raise ValueError("the force does not rise to zero or to f_limit on its grid")
+    raise ValueError(
+        "the force does not rise to zero or to f_limit on its grid: the air is too dry, or steps are too long"
+    )
 
 
 @njit(cache=True, nogil=True)

@@ -226,13 +226,16 @@ def _hint(value, entry):
 
 def _number_hint(text, entry):
     """How to write a number that YAML read as text."""
-    if entry["type"] not in ("number", "integer"):
+    parts = re.fullmatch(r"([-+]?\d+(?:[.,]\d*)?)(?:[eE]([-+]?\d{1,2}))?\s*([^\W\d][^%]*)?", text)
+    if entry["type"] not in ("number", "integer") or not parts:
         return ""
-    if parts := re.fullmatch(r"([-+]?\d+\.?\d*)[eE]([-+]?\d{1,3})", text):
-        return f"; YAML reads {text} as text, write {float(parts[1])}e{int(parts[2]):+d}"
-    if parts := re.match(r"[-+]?\d+([.,]\d+)?", text):
-        return f"; write {parts[0].replace(',', '.')} without quotes, unit or decimal comma"
-    return ""
+    mantissa, exponent, unit = parts[1].replace(",", "."), parts[2], parts[3]
+    value = float(f"{mantissa}e{exponent or 0}")
+    whole = entry["type"] == "integer" and value.is_integer()
+    written = f"{value:.15g}" if whole else f"{float(mantissa)}e{int(exponent):+d}" if exponent else mantissa
+    if exponent and not unit:
+        return f"; YAML reads {text} as text, write {written}"
+    return f"; write {written} without quotes, unit or decimal comma"
 
 
 def _name_hint(name):

@@ -37,11 +37,19 @@ class PairStudy:
     settings: dict  #: sections seed, sampling, solid, water, chaos, beam and pairs of the configuration
 
     @classmethod
-    def of(cls, config, name, model="NG", identified=None):
+    def of(cls, config, name, model="NG", identified=()):
         """Study of one pair of a configuration: draws its surfaces and computes their contact, 15 ms a sample.
 
-        Parameters as in `stiction.cases.surfaces_of` and `stiction.pairs.contact`.
+        Parameters as in `stiction.cases.surfaces_of` and `stiction.pairs.contact`; spectra that are to be identified
+        come from `stiction.identifications.identified_spectra`.
+
+        Raises
+        ------
+        ValueError
+            If the configuration has no such pair, or a spectrum has to be identified.
         """
+        if name not in config["pairs"]:
+            raise ValueError(f"there is no pair {name}; the configuration has {', '.join(config['pairs'])}")
         return cls(name, contact(surfaces_of(config, name, identified), name, model, config), config)
 
     def _curves(self, humidity):

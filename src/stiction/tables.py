@@ -207,7 +207,7 @@ def markdown_1(table):
     def cell(row, name):
         value, error, printed = row[name], row[f"{name}_se"], row[f"{name}_published"]
         digits = max(0, 1 - int(np.floor(np.log10(error))))
-        return f"{value:.{digits}f} ± {error:.{digits}f} ({printed:g})"
+        return f"{value:.{digits}f} ± {error:.{digits}f}" + (f" ({printed:g})" if np.isfinite(printed) else "")
 
     columns = ["surface", "model", "rms [nm]", "skewness", "kurtosis", "summit radius [µm]", "summits [µm⁻²]"]
     rows = [[row.surface, row.column] + [cell(row, name) for name in _TABLE_1] for _, row in table.iterrows()]
@@ -252,7 +252,7 @@ def markdown_3(table):
         return "–" if np.isnan(value) else format(value, form)
 
     def spread(mean, deviation):
-        return f"{number(mean, '.0f')} ± {number(deviation, '.0f')}"
+        return "–" if np.isnan(mean) else f"{mean:.0f} ± {number(deviation, '.0f')}"
 
     rows = [
         {

@@ -11,7 +11,7 @@ rule beams:
     threads: 1
     resources:
         mem_mb=800,
-        runtime=30,
+        runtime=10,
     params:
         settings=lambda w: section(
             "seed",

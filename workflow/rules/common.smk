@@ -28,6 +28,8 @@ def in_order(value):
 
 
 config.update(in_order(config))
+for pair in config["pairs"].values():
+    pair["humidities"].sort()  # tables and curves begin with the driest, in whatever order they were written
 PAIRS = config["run"]["pairs"]
 SIDES = ("beam", "substrate")
 MODELS = ("G", "NG", "GEO")

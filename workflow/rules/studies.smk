@@ -61,7 +61,7 @@ rule plasticity:
     threads: 1
     resources:
         mem_mb=800,
-        runtime=30,
+        runtime=10,
     params:
         settings=lambda w: section(
             "seed",
@@ -107,7 +107,7 @@ rule orders:
     threads: 1
     resources:
         mem_mb=800,
-        runtime=30,
+        runtime=10,
     params:
         settings=section("seed", draws=STUDIES["orders"]["draws"], case=FIGURE_CASE),
         code=code("orders.py"),
@@ -181,7 +181,7 @@ rule reading:
     threads: 1
     resources:
         mem_mb=800,
-        runtime=30,
+        runtime=10,
     params:
         settings=reading_settings,
         code=code("reading.py"),
@@ -201,7 +201,7 @@ rule resampling:
     threads: 1
     resources:
         mem_mb=800,
-        runtime=30,
+        runtime=10,
     params:
         settings=lambda w: section(
             "seed",

@@ -25,7 +25,7 @@ rule identify:
     threads: 1
     resources:
         mem_mb=800,
-        runtime=30,
+        runtime=10,
     params:
         settings=lambda w: section("seed", "identification")
         | {
@@ -75,7 +75,7 @@ rule iteration:
     threads: 1
     resources:
         mem_mb=800,
-        runtime=30,
+        runtime=10,
     params:
         settings=lambda w: section(
             "seed", iteration=config["studies"]["iteration"], spacing_nm=config["sampling"]["spacing_nm"]
@@ -98,7 +98,7 @@ rule character:
     threads: 1
     resources:
         mem_mb=800,
-        runtime=30,
+        runtime=10,
     params:
         settings=lambda w: section("seed", "sampling", "character", beam={"width_um": config["beam"]["width_um"]}),
         code=code("character.py"),

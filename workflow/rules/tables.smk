@@ -60,7 +60,7 @@ rule table_3:
 rule tables:
     input:
         rules.table_1.output,
-        rules.table_2.output,
+        rules.table_2.output if MEASURED else [],
         rules.table_3.output,
     message:
         "All tables."

@@ -13,7 +13,7 @@ def main(forces, output, settings):
     """Compare the first samples with all."""
     energies = data.load(forces, "forces").adhesion_energy.values
     at = np.linspace(0, 1.2 * energies.max(), POINTS)
-    sizes = [max(2, round(share * len(energies))) for share in settings["shares"]]
+    sizes = sorted({max(2, round(share * len(energies))) for share in settings["shares"]} | {len(energies)})
     density = [convergence.kernel_estimate(energies[:size], at) for size in sizes]
     distances = [convergence.distance_of_parts(energies, size) for size in sizes]
     data.save(data_studies.sample_sizes(at, density, sizes, distances), output, "sample_sizes", settings)
