@@ -100,10 +100,28 @@ def test_the_error_of_an_rms_deviation_tells_own_from_common_noise():
 
 def test_share_of_the_deviation_that_a_reading_removes():
     references = np.array([10.0, 20.0])
-    share, error = choices.removed_share([10.5, 21.0], [11.0, 22.0], [0.0, 0.0], references)
+    share, error = choices.removed_share([10.5, 21.0], [11.0, 22.0], references, np.zeros((3, 2)))
     assert_allclose((share, error), (0.75, 0.0), rtol=1e-12, atol=1e-12)
-    shifted = choices.removed_share([10.51, 21.02], [11.0, 22.0], [0.01, 0.02], references)
+    shifted = choices.removed_share([10.51, 21.02], [11.0, 22.0], references, [[0.01, 0.02], [0, 0], [0, 0]])
     assert share - shifted[0] == pytest.approx(shifted[1], rel=0.02)
+
+
+@pytest.mark.parametrize("part", [0, 1, 2])
+def test_error_of_the_removed_share_is_that_of_repeated_studies(part):
+    references, base, shift = np.array([10.0, 20.0, 30.0]), np.array([11.0, 21.0, 33.0]), np.array([-0.5, -0.2, -2.5])
+    errors = np.zeros((3, 3))
+    errors[part] = 0.02, 0.03, 0.05
+    noise = stream(7, part).standard_normal((20_000, 3))
+    draws = errors[part] * (noise if part == 1 else noise[:, :1])
+    draws *= np.sign(1 - (base + shift) / references) if part == 0 else 1  # shifts that agree in what they remove
+    bases, shifts = (base, shift + draws) if part == 0 else (base + draws, shift)
+    found = [
+        choices.removed_share(b + s, b, references, errors)[0]
+        for b, s in zip(np.broadcast_to(bases, draws.shape), np.broadcast_to(shifts, draws.shape), strict=True)
+    ]
+    _, error = choices.removed_share(base + shift, base, references, errors)
+    # A standard deviation of n draws is known to 1/√2n; the slope of the share is not quite constant.
+    assert np.std(found) == pytest.approx(error, rel=0.03)
 
 
 @pytest.mark.parametrize("stuck", [0, 1])

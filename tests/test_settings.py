@@ -137,6 +137,10 @@ WRONG = [
     ("surfaces: {Mine: {rms_nm: 2, skewness: -0.5, kurtosis: 3.5, psd: identified, mean_summit_radius_um: 0.5, "
      "summit_density_per_um2: 30}}\ncharacter: {spacing_nm: 10}\nstudies: {readings: {spacing_nm: [11.71875]}}",
      "studies.readings.spacing_nm[0]", "11.71875", "at most that of Table I (given character.spacing_nm = 10"),
+    ("studies: {readings: {strips_per_element: [3]}}", "studies.readings.strips_per_element[0]", "3",
+     "must divide the strips along the beam into whole elements"),
+    ("studies: {readings: {strips_per_element: [1000]}}", "studies.readings.strips_per_element[0]", "1000",
+     "at least two"),
     ("studies: {readings: {spacing_nm: [7]}}", "studies.readings.spacing_nm[0]", "7", "both sides of a strip into"),
     ("studies: {readings: {every: [7]}}", "studies.readings.every[0]", "7", "both sides of a strip into whole contact"),
     ("beam: {width_um: 30.01}", "studies.readings.every[0]", "2", "beam.width_um = 30.01"),

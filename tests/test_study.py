@@ -105,7 +105,7 @@ def test_a_spectrum_is_identified_as_by_the_workflow(tmp_path):
     script("heights")(heights, {key: entry[key] for key in ("rms_nm", "skewness", "kurtosis")})
     target = {key: entry[key] for key in ("mean_summit_radius_um", "summit_density_per_um2")}
     settings = {"spacing_nm": 10, "target_spacing_nm": config["character"]["spacing_nm"], "target": target}
-    script("identify")(heights, found, config | settings)
+    script("identify")(heights, found, config | settings, "B2")
     spectra = identified_spectra(config, "b")
     with pytest.raises(ValueError, match=r"spectrum of B2 has to be identified first, see stiction\.identifications"):
         PairStudy.of(config, "b")

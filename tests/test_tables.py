@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 from numpy.testing import assert_allclose
 
-from stiction import tables, tables_studies
+from stiction import data, tables, tables_studies
 
 PUBLISHED = Path(__file__).parents[1] / "workflow" / "resources"
 PRINTED = tables.published(PUBLISHED / "table_3.csv")
@@ -27,9 +27,12 @@ def beams(*states):
     )
 
 
-def forces(spread=1.0):
+def forces(spread=1.0, weak=False):
+    """Samples of which the first has no law where ``weak``: 0.5 f_max / a_left is more than its energy."""
     mean = ENERGIES.mean()
-    return xr.Dataset({"adhesion_energy": ("sample", mean + spread * (ENERGIES - mean))})
+    pull_off = np.full(len(ENERGIES), 1e6) * np.where(np.arange(len(ENERGIES)) == 0, 100.0 if weak else 1.0, 1.0)
+    v = [mean + spread * (ENERGIES - mean), pull_off, np.full(len(ENERGIES), 8e-9), np.full(len(ENERGIES), 6.5e-9)]
+    return data.forces(np.column_stack(v), 1e8, np.arange(3.0), np.zeros((1, 3)))
 
 
 def row(model="NG", spread=1.0, states=(0, 0, 1), pair="a"):
@@ -44,6 +47,27 @@ def test_averages_are_those_of_s_shaped_beams_and_shares_of_all():
     assert_allclose((found.share_s_shape, found.share_arc, found.share_free), (2 / 3, 1 / 3, 0))
     assert_allclose(found.meso_energy_J_per_m2, ENERGIES.mean())
     assert_allclose(found.meso_energy_cv, ENERGIES.std(ddof=1) / ENERGIES.mean())
+
+
+def test_energies_that_no_beam_meets_are_told_apart():
+    key = ("a", 0.45, "G")
+    table = tables.table_3({key: beams(0, 0, 1)}, {key: forces(weak=True)}, PRINTED)
+    assert_allclose(table.share_without_law, 1 / 4)
+    assert_allclose(table.meso_energy_J_per_m2, ENERGIES.mean())
+    assert_allclose(table.meso_energy_lawful_J_per_m2, ENERGIES[1:].mean())
+    assert row().share_without_law == 0
+
+
+def test_a_share_of_few_beams_is_not_rounded_away():
+    key = ("b", 0.55, "G")
+    few = xr.Dataset(
+        {
+            "state": ("sample", [0] + 199 * [1]),
+            "crack_length": ("sample", np.full(200, 1e-3)),
+            "adhesion_energy": ("sample", np.full(200, 1e-3)),
+        }
+    )
+    assert "| 0.5/99.5/0 " in tables.markdown_3(tables.table_3({key: few}, {key: forces()}, PRINTED))
 
 
 def test_standard_errors_are_those_of_beams_and_of_the_pairs_that_they_share():
@@ -73,7 +97,7 @@ def test_beams_that_do_not_stick_have_no_crack_length():
     assert np.isnan([found.crack_length_um, found.crack_length_se_um, found.adhesion_energy_J_per_m2]).all()
     text = tables.markdown_3(tables.table_3({("a", 0.45, "G"): beams(1, 1, 2)}, {("a", 0.45, "G"): forces()}, PRINTED))
     assert "±" not in text.splitlines()[-1].split("|")[4]
-    assert "0/67/33" in text
+    assert "0/66.7/33.3" in text
 
 
 def test_printed_bias_error_is_the_deviation_of_the_printed_model_from_experiment():

@@ -71,11 +71,20 @@ def rms_deviation(values, own, common, references):
     return rms, np.hypot(np.linalg.norm(slopes * own), slopes @ common)
 
 
-def removed_share(values, base, errors, references):
+def removed_share(values, base, references, errors):
     """Share of the mean square deviation of ``base`` from references that ``values`` do not have, and its error [-].
 
-    ``errors`` are standard errors of values - base, whose parts are common to the cases: they add up.
+    Parameters
+    ----------
+    values, base, references : (n,) arrays
+        One of each case.
+    errors : (3, n) array
+        Standard errors: of values - base, whose parts are common to the cases and add up; of base, independent from
+        case to case; of base, common to them. What moves the base moves the values with it.
     """
     before, after = (np.asarray(x) / references - 1 for x in (base, values))
-    total = np.sum(before**2)
-    return 1 - np.sum(after**2) / total, 2 * np.sum(np.abs(after / references) * errors) / total
+    total, left = np.sum(before**2), np.sum(after**2)
+    by_shift, by_base = 2 * after / references / total, 2 * (left / total * before - after) / references / total
+    shift, own, common = errors
+    parts = np.abs(by_shift) @ shift, np.linalg.norm(by_base * own), by_base @ common
+    return 1 - left / total, np.linalg.norm(parts)

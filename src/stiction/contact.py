@@ -96,6 +96,7 @@ class SurfacePair:
         grid = self.distances
         spacing = self.beam.grid.spacing * self.every
         force = np.zeros(grid.above)
+        # ASSUME: a summit stands above its eight neighbours on this grid and is a sphere of its mean curvature there.
         if self.solid.attraction.hamaker_constant > 0:
             outside = _add_maugis(
                 heights, spacing, grid.step, self.solid.dimensional, self.solid.snap_off, self.solid.load, force
@@ -107,7 +108,8 @@ class SurfacePair:
                 )
         else:
             _add_hertz(heights, spacing, grid.step, self.solid.modulus, force)
-        # Points on the edge lack neighbours: summits are those of the area inside.
+        # ASSUME: the area is that in which a point can be a summit, 1.4 % less than that of a strip of 1.5 µm, because
+        # points on the edge lack neighbours.
         inside = (heights.shape[0] - 2) * (heights.shape[1] - 2) * spacing**2
         return force / inside, bearing_area(heights, grid.step, grid.below, grid.above)
 

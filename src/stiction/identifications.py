@@ -9,11 +9,13 @@ from stiction.translation import Translation
 from stiction.units import si
 
 
-def identification(heights, settings):
+def identification(name, heights, settings):
     """Stage identification: Eq. (7) fitted to radius and density of a surface's summits (Sec. II-C).
 
     Parameters
     ----------
+    name : str
+        Of the surface, part of the addresses of random numbers.
     heights : Dataset
         Stage heights.
     settings : dict
@@ -31,7 +33,7 @@ def identification(heights, settings):
     grid = StripGrid(patch["patch"], patch["patch"], spacing["spacing"], margin=0.0)
 
     def patches(*address):
-        return lambda: (stream(settings["seed"], "identification", *address, k) for k in range(patch["patches"]))
+        return lambda: (stream(settings["seed"], "identification", name, *address, k) for k in range(patch["patches"]))
 
     found = identify(target, Translation(density(heights, "NG")), grid, patches(), patches("control"))
     return data.identification(found, target)
@@ -47,10 +49,10 @@ def identified_spectra(config, pair):
     pair : str
     """
     entries = {name: config["surfaces"][name] for name in (config["pairs"][pair][side] for side in SIDES)}
-    return {name: _spectrum(entry, config) for name, entry in entries.items() if entry["psd"] == "identified"}
+    return {name: _spectrum(name, entry, config) for name, entry in entries.items() if entry["psd"] == "identified"}
 
 
-def _spectrum(entry, config):
+def _spectrum(name, entry, config):
     """Spectrum of one surface from its section of the configuration."""
     moments = {key: si(entry)[key] for key in MOMENTS}
     heights = data.heights(maxent.solve(moments["skewness"], moments["kurtosis"]), moments)
@@ -61,4 +63,4 @@ def _spectrum(entry, config):
         "target_spacing_nm": config["character"]["spacing_nm"],
         "target": {key: entry[key] for key in ("mean_summit_radius_um", "summit_density_per_um2")},
     }
-    return target_spectrum(identification(heights, settings))
+    return target_spectrum(identification(name, heights, settings))

@@ -508,6 +508,14 @@ def strips_fill_the_elements(length, strip, elements):
     return f"must be a multiple of strip_length x elements = {strip * elements:.6g} µm: whole strips on each element"
 
 
+@law("studies.readings.strips_per_element.*", "beam.length_um", "sampling.strip_length_um")
+def strips_fill_finer_elements(strips, length, strip):
+    """As above, in a reading; two elements at least."""
+    if _is_multiple(length, strip * strips) and length > 1.5 * strip * strips:
+        return None
+    return "must divide the strips along the beam into whole elements, at least two"
+
+
 @law("studies.mesh.elements_um", "studies.mesh.strips_um", "beam.length_um")
 def a_mesh_is_whole(elements, strips, length):
     """Figure 19 leaves out lengths that do not fill each other and the beam, but not all."""

@@ -3,9 +3,10 @@
 import numpy as np
 import pandas as pd
 
-from stiction.data import STATES, ended, save_text
+from stiction.data import STATES, ended, save_text, vectors
 from stiction.energy import CRACK_LENGTH_POWER
 from stiction.estimates import jackknife, mean_on_shared_samples, mean_with_error
+from stiction.forcelaw import admissible
 from stiction.spectrum import CutoffSelfAffine
 
 NM, UM, PER_UM2 = 1e-9, 1e-6, 1e12
@@ -191,6 +192,9 @@ def _simulated(beams, forces):
         row |= {f"{name}_{unit}": mean, f"{name}_std_{unit}": spread, f"{name}_se_{unit}": error}
     mean, error = mean_with_error(meso)
     row |= {"meso_energy_J_per_m2": mean, "meso_energy_se_J_per_m2": error, "meso_energy_cv": meso.std(ddof=1) / mean}
+    # Beams meet only those pairs that Eq. (12) can follow.
+    lawful = admissible(vectors(forces), float(forces.limit))
+    row |= {"share_without_law": float(np.mean(~lawful)), "meso_energy_lawful_J_per_m2": meso[lawful].mean()}
     return row | {f"share_{state.lower().replace('-', '_')}": float(ended(beams, state).mean()) for state in STATES}
 
 
@@ -269,7 +273,7 @@ def markdown_3(table):
             "Γ [mJ/m²]": number(1e3 * row.adhesion_energy_J_per_m2, ".3g"),
             "ē [mJ/m²]": number(1e3 * row.meso_energy_J_per_m2, ".3g"),
             "cv(ē)": number(row.meso_energy_cv, ".3f"),
-            "S/arc/free [%]": f"{100 * row.share_s_shape:.0f}/{100 * row.share_arc:.0f}/{100 * row.share_free:.0f}",
+            "S/arc/free [%]": "/".join(f"{100 * row[f'share_{state}']:.3g}" for state in ("s_shape", "arc", "free")),
         }
         for _, row in table.iterrows()
     ]

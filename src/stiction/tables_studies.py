@@ -15,6 +15,7 @@ _LABELS = {
     "every": "grid × {}",
     "spacing_nm": "grid {} nm",
     "poisson_ratio": "ν = {}",
+    "strips_per_element": "element = {} strip",
 }
 
 
@@ -227,9 +228,10 @@ def _removed(group, base):
     if not known.any():
         return "–"
     here, there = group[known], base[known]
-    errors = here.shift_se_percent.values / 100 * there.crack_length_um.values
-    lengths = here.crack_length_um.values, there.crack_length_um.values
-    share, error = choices.removed_share(*lengths, errors, here.published_um.values)
+    lengths = [of.crack_length_um.values for of in (here, there)]
+    errors = [here.shift_se_percent.values / 100 * lengths[1]]
+    errors += [there[f"crack_length_{part}_se_um"].values for part in ("beams", "pairs")]
+    share, error = choices.removed_share(*lengths, here.published_um.values, errors)
     return with_error(100 * share, 100 * error, "+")
 
 

@@ -1,5 +1,6 @@
 """A run that is ended anywhere, in any way, loses what it was at and nothing else."""
 
+import contextlib
 import fcntl
 import os
 import resource
@@ -35,16 +36,24 @@ def files_of(stage, folder):
     ]
 
 
+def logs_of(stage, folder):
+    """When the logs of a stage were last written to, by path."""
+    times = {}
+    for path in files_of(stage, folder / "results" / "logs"):
+        with contextlib.suppress(FileNotFoundError):  # Snakemake has just removed it, before its job starts
+            times[path] = path.stat().st_mtime_ns
+    return times
+
+
 def end_in_stage(stage, how, folder, targets, tiny, after=0.0):
     """Start a run; when a job of a stage has opened its log, wait [s] and send its process group a signal."""
-    logs = folder / "results" / "logs"
-    before = {path: path.stat().st_mtime_ns for path in files_of(stage, logs)}
+    before = logs_of(stage, folder)
     with (folder / "printed.txt").open("w") as printed:
         run = subprocess.Popen(
             **command(folder, *targets, configs=[tiny]), stdout=printed, stderr=printed, start_new_session=True
         )
         while run.poll() is None:
-            if any(before.get(path) != path.stat().st_mtime_ns for path in files_of(stage, logs)):
+            if logs_of(stage, folder).items() - before.items():
                 time.sleep(after)
                 os.killpg(run.pid, how)
                 break

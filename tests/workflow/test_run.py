@@ -77,6 +77,25 @@ def test_a_surface_and_pair_of_the_user_run_beside_the_others(smoke, overlay):
 
 
 @pytest.mark.slow
+def test_surfaces_without_summits_and_few_samples_are_tabulated_and_drawn(tmp_path, overlay):
+    mine = overlay(
+        "run: {pairs: [mine]}\n"
+        "surfaces: {Etched: {rms_nm: 2.5, skewness: -0.5, kurtosis: 3.6, psd: published,\n"
+        "  published_psd: {plateau_nm4: 14380, floor_nm4: 0.3, corner_rad_per_um: 12, cutoff_rad_per_um: 125}}}\n"
+        "pairs: {mine: {beam: Etched, substrate: Etched, gap_um: 10, humidities: [0.7, 0.5]}}\n"
+        "figures: {humidity: 0.5, pair: mine}\ncontact: {samples: 20}\nchaos: {order: 1}\nbeam: {samples: 4}\n"
+        "studies: {readings: {samples: 20, beams: 2}}"
+    )
+    targets = ["results/figures/figure_17.png", "results/tables/table_1.csv", "results/tables/readings.csv"]
+    done = snakemake(tmp_path, "tables", *targets, configs=(SMOKE, mine))
+    assert "Table II" not in done.stdout.replace("Table III", "")
+    assert not (tmp_path / "results" / "tables" / "table_2.csv").exists()
+    humidities = [row["relative_humidity"] for row in rows(tmp_path / "results" / "tables" / "readings.csv")]
+    assert humidities == ["0.5", "0.7"] * (len(humidities) // 2), "readings begin with the driest air"
+    assert "(nan)" not in (tmp_path / "results" / "tables" / "table_1.md").read_text()
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "moments", ["skewness: -0.5, kurtosis: 3.6", "skewness: 0, kurtosis: 3", "skewness: 0.3, kurtosis: 3.2"]
 )

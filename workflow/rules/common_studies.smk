@@ -12,6 +12,16 @@ READINGS = {"base": {}} | {
     for key, part in CHANGED.items()
     for value in STUDIES["readings"][key]
 }
+# A finer beam meets the same surfaces.
+FINER = {
+    f"strips_per_element_{strips}": {
+        "elements": round(config["beam"]["length_um"] / (STRIP["strip_length_um"] * strips))
+    }
+    for strips in STUDIES["readings"]["strips_per_element"]
+}
+READINGS |= {
+    reading: {"beam": mesh} for reading, mesh in FINER.items() if mesh["elements"] != config["beam"]["elements"]
+}
 
 
 def can_be_shifted(moment):
@@ -76,9 +86,15 @@ STUDIED = [
 ]
 
 
+def contact_of_reading(wildcards):
+    """Contact under a reading."""
+    reading = "base" if wildcards.reading in FINER else wildcards.reading
+    return f"results/studies/readings/contact/{wildcards.pair}_{reading}.nc"
+
+
 def reading_settings(wildcards):
     """What follows the contact under a reading: water, force laws and beams without scatter, at all humidities."""
     found = section("seed", "water", "chaos", **cantilever_settings(wildcards.pair), sampling=STRIP)
-    found["beam"] |= {"samples": STUDIES["readings"]["beams"]}
+    found["beam"] |= {"samples": STUDIES["readings"]["beams"]} | FINER.get(wildcards.reading, {})
     found["pairs"][wildcards.pair] |= chosen(config["pairs"][wildcards.pair], ["humidities"])
     return found

@@ -173,7 +173,7 @@ rule reading_contact:
 
 rule reading:
     input:
-        "results/studies/readings/contact/{pair}_{reading}.nc",
+        contact_of_reading,
     output:
         "results/studies/readings/{pair}_{reading}.nc",
     log:

@@ -5,11 +5,12 @@ from stiction.identifications import identification
 from stiction.logs import logged
 
 
-def main(heights, output, settings):
+def main(heights, output, settings, surface):
     """Fit Eq. (7) to radius and density of the summits."""
-    data.save(identification(data.load(heights, "heights"), settings), output, "identification", settings)
+    found = identification(surface, data.load(heights, "heights"), settings)
+    data.save(found, output, "identification", settings)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input.heights, snakemake.output[0], snakemake.params.settings)
+        main(snakemake.input.heights, snakemake.output[0], snakemake.params.settings, snakemake.wildcards.surface)

@@ -13,6 +13,7 @@ def main(heights, spectra, output, settings, wildcards):
     moments = {name: float(beam[0][name]) for name in cases.MOMENTS}
     less, more = sensitivity.shifted(moments[wildcards.moment], settings["step"])
     moments[wildcards.moment] = less if wildcards.side == "less" else more
+    # ASSUME: the spectrum of the heights keeps its shape when a moment changes.
     shape = cases.surface(moments, cases.target_spectrum(beam[1]), si(settings["sampling"])["spacing"])
     contact = pairs.contact((shape, substrate), wildcards.pair, "NG", settings)
     data.save(contact.assign(moment=moments[wildcards.moment]), output, "contact", settings)
