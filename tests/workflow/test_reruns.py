@@ -99,6 +99,8 @@ MATRIX = [
      "sensitivity_contact plasticity sample_sizes orders mesh", (), "readings"),
     ("study: resampling", "studies: {resampling: {beams: 5}}", "resampling", (), ""),
     ("study: readings", "studies: {readings: {samples: 500}}", "reading_contact", (), ""),
+    ("study: finer elements", "studies: {readings: {strips_per_element: [1, 2]}}", "reading", (), "_base|_element_1"),
+    ("order of humidities", "pairs: {a: {humidities: [0.8, 0.6]}}", "", (), ""),
 ]  # fmt: skip
 # Of each section one key at least, and what the README promises, are planned every time.
 FURTHER = {"radius of its summits", "its published spectrum", "length of strips", "spacing of Table I", "distance step"}
@@ -265,6 +267,12 @@ def test_code_reruns_what_it_computes(tree, path, must, must_not):
     rerun = known(tree.rerun())
     assert set(must.split()) <= rerun
     assert not set(must_not.split()) & rerun
+
+
+def test_a_figure_style_redraws_all_figures_and_nothing_else(tree):
+    tree.append("src/stiction/stiction.mplstyle", "\nlines.linewidth: 2\n")
+    drawn = {f"results/figures/{path.name}" for path in (tree.folder / "results" / "figures").iterdir()}
+    assert set(tree.rerun()) == drawn != set()
 
 
 def test_code_that_draws_reruns_no_number(tree):
