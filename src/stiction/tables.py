@@ -234,7 +234,7 @@ def markdown_2(table):
             "s¹ [nm⁴]": f"{row.floor_nm4:.3g}",
             "ζ₀ [rad/µm]": f"{row.corner_rad_per_um:.3g}",
             "ζ_max [rad/µm]": f"{row.cutoff_rad_per_um:.3g}",
-            "rms off by [%]": f"{row.rms_residual_percent:+.2f}",
+            "rms off by [%]": f"{round(row.rms_residual_percent, 2) + 0.0:+.2f}",
             "radius off by [%]": residual(row, "radius"),
             "density off by [%]": residual(row, "density"),
             "defect [%]": "–" if np.isnan(row.gaussian_defect_percent) else f"{row.gaussian_defect_percent:.2g}",

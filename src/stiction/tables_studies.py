@@ -15,7 +15,7 @@ _LABELS = {
     "every": "grid × {}",
     "spacing_nm": "grid {} nm",
     "poisson_ratio": "ν = {}",
-    "strips_per_element": "element = {} strip",
+    "strips_per_element": "elements of {} strips",
 }
 
 
