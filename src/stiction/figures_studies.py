@@ -14,7 +14,7 @@ from stiction.tables_studies import cases_of, reading_label, with_error
 
 GPA = 1e-9
 _MARKERS = ("o", "s", "^", "v", "D", "P", "X", "<", ">")
-_COLOURS = ("#0072B2", "#56B4E9", "#E69F00", "#D55E00", "#CC79A7", "#009E73", "#882255")
+_COLOURS = ("#0072B2", "#56B4E9", "#E69F00", "#D55E00", "#CC79A7", "#009E73", "#882255", "#7F7F00")
 _DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (1, 3)), (0, (4, 4)))
 _ZERO = {"color": "0.6", "linewidth": 0.6, "zorder": 0}
 #: Element length [µm] that the paper chooses and the difference of Γ from ē [%] that it states there.
