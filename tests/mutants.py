@@ -108,11 +108,15 @@ MUTANTS = {
         ("slopes @ common", "np.linalg.norm(slopes * common)"),
         ("return ratio - 1, ratio * error", "return ratio - 1, error"),
         ("both = reading.stuck & base.stuck", "both = reading.stuck"),
+        ("2 * (left / total * before - after)", "2 * (left / total * before + after)"),
+        ("np.linalg.norm(by_base * own)", "by_base @ own"),
+        ("np.abs(by_shift) @ shift", "np.linalg.norm(by_shift * shift)"),
     ],
     "convergence": [
         ("KOLMOGOROV_MEAN / np.sqrt(samples)", "KOLMOGOROV_MEAN / samples"),
         ("1 / size - 1 / len(samples)", "1 / size"),
         ("first = far[-1] + 1", "first = far[0] + 1"),
+        ("!= EndState.S_SHAPE", "== EndState.FREE"),
     ],
     "meniscus": [
         ("np.log(humidity) / WATER_MOLAR_VOLUME", "np.log10(humidity) / WATER_MOLAR_VOLUME"),
