@@ -103,8 +103,8 @@ def test_gamma_tends_to_the_energy_of_uniform_ground_as_mesh_and_points_get_fine
 @pytest.mark.parametrize("share", [0.001, 0.02])  # free, and an arc
 def test_a_beam_that_does_not_stick_has_no_crack_length(share):
     weak = LAW * np.array([share, 1, 1, 1])
-    with pytest.raises(ValueError, match="does not stick in an S-shape"):
-        convergence.arrest_on_uniform_ground(PAPER, weak, 1000)
+    arrest = convergence.arrest_on_uniform_ground(PAPER, weak, 1000)
+    assert np.isnan([arrest.crack_length, arrest.energy]).all()
 
 
 def test_meshes_are_whole():

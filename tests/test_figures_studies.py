@@ -72,10 +72,12 @@ def orders(dimension, last):
     )
 
 
-def mesh():
-    law, arrests = [2e6, 7e-9, 6e8, 1e9], [Arrest(7e-4, 6e-3), Arrest(7.1e-4, 5.9e-3)]
-    distance = np.linspace(0, 2e-8, 60)
-    return data_studies.mesh([(1.5e-5, 1.5e-6), (7.5e-6, 1.5e-6)], arrests, law, (distance, RNG.random(60)))
+def mesh(*arrests):
+    law, distance = [2e6, 7e-9, 6e8, 1e9], np.linspace(0, 2e-8, 60)
+    return data_studies.mesh([(1.5e-5, 1.5e-6), (7.5e-6, 1.5e-6)], arrests or ARRESTS, law, (distance, RNG.random(60)))
+
+
+ARRESTS, NONE = [Arrest(7e-4, 6e-3), Arrest(7.1e-4, 5.9e-3)], Arrest(np.nan, np.nan)
 
 
 def correlation():
@@ -90,6 +92,7 @@ DRAWN = {
     "18": lambda: figures_studies.order_convergence(orders(4, 12)),
     "18 of few coordinates": lambda: figures_studies.order_convergence(orders(1, 2)),
     "19": lambda: figures_studies.mesh_convergence(mesh(), correlation()),
+    "19 of a beam that does not stick": lambda: figures_studies.mesh_convergence(mesh(NONE, NONE), correlation()),
     "readings": lambda: figures_studies.readings(READINGS, PRINTED),
     "readings without print": lambda: figures_studies.readings(READINGS, PRINTED[:0]),
 }

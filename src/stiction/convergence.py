@@ -102,16 +102,18 @@ class Arrest:
 def arrest_on_uniform_ground(beam, law, points):
     """Release a beam whose ``points`` contact points all have one law [f_max, d_max, a_left, a_right], Arrest.
 
+    Both numbers are NaN where the beam does not stick in an S-shape.
+
     Raises
     ------
     ValueError
-        If the beam does not stick in an S-shape, or its crack is too short for its elements.
+        If the crack is too short for the elements.
     """
     laws = np.tile(law, (points, 1))
     start = START * min(float(arrest_length(energy(law), beam)), beam.length)
     deflection = release(beam, laws, start).deflection
     if end_state(beam, laws, deflection) != EndState.S_SHAPE:
-        raise ValueError(f"under {energy(law):.3g} J/m² the beam does not stick in an S-shape")
+        return Arrest(np.nan, np.nan)
     crack = crack_length(beam, laws, deflection)
     return Arrest(crack, adhesion_energy(crack, beam))
 

@@ -272,6 +272,8 @@ def _meshes(panel, mesh):
         inset.plot(length, excess[chosen], **look)
     panel.axhline(MJ * target, label=r"$\bar e$", **_TARGET)
     panel.set(xscale="log", xlabel="element length $l_e$ [µm]", ylabel=r"$\Gamma$ [mJ/m²]", ylim=(0, None))
+    # Limits of its own: under a law that lets the beam go there is nothing but ē to draw.
+    panel.set_xlim(UM * mesh.element_length.values.min() / 1.2, 1.2 * UM * mesh.element_length.values.max())
     plain_log(panel.xaxis)
     panel.legend(loc="upper left", title=r"$l^\mathrm{meso}$ [µm]", ncols=2, columnspacing=1, handlelength=1.8)
 

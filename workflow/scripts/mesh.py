@@ -26,7 +26,7 @@ def main(forces, output, settings):
         ground = replace(beam, elements=round(beam.length / element)), law, round(beam.length / point)
         try:
             arrests[element, point] = convergence.arrest_on_uniform_ground(*ground)
-        except ValueError as reason:  # no crack, or one too short for the elements
+        except ValueError as reason:  # the crack is too short for the elements
             warnings.warn(f"left out: {reason}", stacklevel=2)
     if not arrests:
         raise ValueError("no mesh of studies.mesh resolves the crack: take shorter elements")
