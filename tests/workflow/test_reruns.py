@@ -105,6 +105,7 @@ MATRIX = [
 # Of each section one key at least, and what the README promises, are planned every time.
 FURTHER = {"radius of its summits", "its published spectrum", "length of strips", "spacing of Table I", "distance step"}
 FURTHER |= {"strips of Table I", "humidity of the figures", "scatter of beams", "one humidity removed"}
+FURTHER |= {"study: finer elements", "study: resampling", "order of humidities"}
 ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)) for name, *row in MATRIX]
 
 
