@@ -41,11 +41,11 @@ report: $(VENV)/ready
 	$(SNAKEMAKE) --report results/report.html $(ARGS) $(MINE)
 
 test: lint
-	$(BIN)/python -m stiction.compiled
+	$(BIN)/python -m stiction.run.warmup
 	$(BIN)/python -m pytest $(ARGS)
 
 test-all: lint
-	$(BIN)/python -m stiction.compiled
+	$(BIN)/python -m stiction.run.warmup
 	$(BIN)/python -m pytest -m "not cluster" $(ARGS)
 
 lint: $(VENV)/ready
@@ -62,7 +62,7 @@ format: $(VENV)/ready
 # A SLURM of this machine alone; skipped with a reason where its daemons are not installed.
 cluster: $(VENV)/ready
 	-$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock "snakemake-executor-plugin-slurm>=2.8,<3"
-	$(BIN)/python -m stiction.compiled
+	$(BIN)/python -m stiction.run.warmup
 	$(BIN)/python -m pytest -m cluster -rs tests/workflow/test_slurm.py $(ARGS)
 
 # Breaks the physics in small ways, one at a time in a copy, and counts the ways that no test notices.
@@ -70,7 +70,7 @@ mutants: $(VENV)/ready
 	$(BIN)/python tests/mutants.py $(ARGS)
 
 bench: $(VENV)/ready
-	$(BIN)/python -m stiction.compiled
+	$(BIN)/python -m stiction.run.warmup
 	$(BIN)/python tests/benchmarks/stages.py
 
 # From the logs of the last run.

@@ -44,7 +44,7 @@ onstart:
     except ValueError as error:
         raise WorkflowError(str(error))
     # Compiled code is cached before jobs fan out: two jobs that write one cache entry at once could mix it up.
-    shell("{sys.executable:q} -m stiction.compiled")
+    shell("{sys.executable:q} -m stiction.run.warmup")
 
 
 # Seconds of work each, that do not wait in the queue of a cluster.

@@ -17,9 +17,12 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 PATIENCE = 180  # [s] a mutant whose tests take longer does not end, which counts as noticed
 
+#: Names of test files that are not those of their modules: no two test files have one name.
+TESTS = {"chaos.model": "chaos_model", "stages.pairs": "stage_pairs"}
+
 #: Module to replacements (what stands there once, what takes its place).
 MUTANTS = {
-    "maxent": [
+    "surface.maxent": [
         ("return np.exp(-exponent)", "return np.exp(exponent)"),
         ("_HEIGHTS**order * self", "_HEIGHTS**(order + 1) * self"),
         ("0.5 * (self(_HEIGHTS[1:])", "0.6 * (self(_HEIGHTS[1:])"),
@@ -31,7 +34,7 @@ MUTANTS = {
         (".max() < _FARTHEST_MODE", ".max() < 100 * _FARTHEST_MODE"),
         ("known[0]) | (score > known[-1])", "known[0]) | (score > 2 * known[-1])"),
     ],
-    "spectrum": [
+    "surface.spectrum": [
         ("np.log(self.floor / self.plateau)", "np.log(self.plateau / self.floor)"),
         ("np.maximum(wavenumber / self.corner, 1.0)", "np.maximum(wavenumber / self.corner, 0.9)"),
         ("power = order + 2", "power = order + 1"),
@@ -44,7 +47,7 @@ MUTANTS = {
         ("@ (weights * zeta * spectrum(zeta))", "@ (weights * spectrum(zeta))"),
         ("[-1]\n    if last", "[0]\n    if last"),
     ],
-    "translation": [
+    "surface.translation": [
         ("np.sqrt(k - 1) * previous", "np.sqrt(k) * previous"),
         ("previous) / np.sqrt(k)", "previous) / np.sqrt(k + 1)"),
         ("power = self.hermite_coefficients**2", "power = np.abs(self.hermite_coefficients)"),
@@ -52,7 +55,7 @@ MUTANTS = {
         ("rho -= error /", "rho += error /"),
         ("lowest = self.autocorrelation(-1.0)", "lowest = self.autocorrelation(1.0)"),
     ],
-    "surfaces": [
+    "surface.field": [
         ("np.where(k2 == 0, 1.0, 0.5)", "np.where(k2 == 0, 1.0, 1.0)"),
         ("np.where(k2 == 0, 1, 4)", "np.where(k2 == 0, 1, 2)"),
         ("(self.rms * self.translation.table)", "(self.rms**2 * self.translation.table)"),
@@ -63,7 +66,7 @@ MUTANTS = {
         ("step * np.arange(1, n // 2 + 1)", "step * np.arange(n // 2)"),
         ("step = 2 * np.pi / (len(heights) * spacing)", "step = np.pi / (len(heights) * spacing)"),
     ],
-    "summits": [
+    "surface.summits": [
         ("and h > z[i - 1, j + 1]", "and h > z[i - 1, j]"),
         ("h > z[i, j - 1]\n", "h >= z[i, j - 1]\n"),
         ("(4 * h - z", "(3 * h - z"),
@@ -71,7 +74,7 @@ MUTANTS = {
         ("count / (inner * spacing**2)", "count / (z.size * spacing**2)"),
         ("range(1, z.shape[1] - 1)", "range(1, z.shape[1] - 2)"),
     ],
-    "identify": [
+    "surface.identify": [
         ("return np.pi / self.spacing", "return 2 * np.pi / self.spacing"),
         ("(target.cutoff / corner) ** -slope", "(target.cutoff / corner) ** slope"),
         ("target.rms**2 / shape.variance", "target.rms / shape.variance"),
@@ -79,22 +82,22 @@ MUTANTS = {
         ("density * curvature.mean()", "density / curvature.mean()"),
         ("if not fit.success", "if False"),
     ],
-    "iteration": [
+    "surface.iteration": [
         ("spectrum.density * wanted / periodograms", "spectrum.density * periodograms"),
         ("(square.sum() * step**2)", "square.sum()"),
         ("np.sqrt(2 / np.pi /", "np.sqrt(2 /"),
     ],
-    "sensitivity": [
+    "studies.sensitivity": [
         ("moment + abs(moment) * step", "moment + moment * step"),
         ("return np.sign(at[0]) *", "return"),
         ("np.sqrt(second - first**2)", "np.sqrt(second)"),
     ],
-    "plasticity": [
+    "studies.plasticity": [
         ("ONSET = 0.6", "ONSET = 1.6"),
         ("np.pi * radius * interference", "2 * np.pi * radius * interference"),
         ("height[reaching] - distance", "height[reaching]"),
     ],
-    "pairs": [
+    "stages.pairs": [
         ("reduced_modulus(**si(solid))", "2 * reduced_modulus(**si(solid))"),
         ('contact["distance_step"]', '2 * contact["distance_step"]'),
         ('"contact", pair, side, sample', '"contact", pair, "beam", sample'),
@@ -104,7 +107,7 @@ MUTANTS = {
         ("abs(power * mean * error / centre)", "abs(mean * error / centre)"),
         ("np.sqrt((n - 1) / n *", "np.sqrt((n - 1) *"),
     ],
-    "choices": [
+    "studies.variants": [
         ("slopes @ common", "np.linalg.norm(slopes * common)"),
         ("return ratio - 1, ratio * error", "return ratio - 1, error"),
         ("both = reading.stuck & base.stuck", "both = reading.stuck"),
@@ -112,27 +115,27 @@ MUTANTS = {
         ("np.linalg.norm(by_base * own)", "by_base @ own"),
         ("np.abs(by_shift) @ shift", "np.linalg.norm(by_shift * shift)"),
     ],
-    "convergence": [
+    "studies.convergence": [
         ("KOLMOGOROV_MEAN / np.sqrt(samples)", "KOLMOGOROV_MEAN / samples"),
         ("1 / size - 1 / len(samples)", "1 / size"),
         ("first = far[-1] + 1", "first = far[0] + 1"),
         ("!= EndState.S_SHAPE", "== EndState.FREE"),
     ],
-    "meniscus": [
+    "contact.meniscus": [
         ("np.log(humidity) / WATER_MOLAR_VOLUME", "np.log10(humidity) / WATER_MOLAR_VOLUME"),
         ("GAS_CONSTANT * temperature *", "GAS_CONSTANT *"),
         ("return -2 * kelvin_radius", "return -kelvin_radius"),
         ("(humidity < 1))", "(humidity <= 1))"),
         ("WATER_SURFACE_ENERGY / laplace_pressure", "-WATER_SURFACE_ENERGY / laplace_pressure"),
     ],
-    "vanderwaals": [
+    "contact.vanderwaals": [
         ("(2 / 15) ** (1 / 6)", "(2 / 15) ** (1 / 3)"),
         ("(16 * np.pi *", "(12 * np.pi *"),
         ("0.97 * 2 ** (1 / 6)", "0.97 * 2 ** (1 / 3)"),
         ("self.work_of_adhesion / self.range", "self.work_of_adhesion * self.range"),
         ('0.0 if through == "none"', '0.0 if through == "dry"'),
     ],
-    "asperity": [
+    "contact.asperity": [
         ("(2 * (1 - poisson_ratio**2))", "(2 * (1 + poisson_ratio**2))"),
         ("return 4 / 3 * modulus * np.sqrt(radius)", "return 3 / 4 * modulus * np.sqrt(radius)"),
         ("np.maximum(interference, 0) ** 1.5", "np.maximum(interference, 0) ** 1.4"),
@@ -150,7 +153,7 @@ MUTANTS = {
         ("float(np.log(high / low) / (n - 1))", "float(np.log(high / low) / n)"),
         ("float(np.pi * self.attraction.work_of_adhesion)", "float(self.attraction.work_of_adhesion)"),
     ],
-    "contact": [
+    "contact.pair": [
         ("count[k] = higher / heights.size", "count[k] = higher"),
         ("+ below + 1, 0)", "+ below, 0)"),
         ("factor = 4 / 3 * modulus / np.sqrt", "factor = 4 / 3 * modulus * np.sqrt"),
@@ -163,7 +166,7 @@ MUTANTS = {
         ("self.beam.grid.spacing * self.every", "self.beam.grid.spacing"),
         ("part * (low[cell + 1] - low[cell])", "(1 - part) * (low[cell + 1] - low[cell])"),
     ],
-    "forcelaw": [
+    "contact.forcelaw": [
         ("((1 - weight) * here + weight * ahead)", "(weight * here + (1 - weight) * ahead)"),
         ("1.0, -tension, out)", "1.0, tension, out)"),
         ("(starts[2] - shift - starts[1])", "(starts[2] + shift - starts[1])"),
@@ -178,7 +181,7 @@ MUTANTS = {
         ("(1.5 / a_right + 0.5 / a_left)", "(0.5 / a_right + 1.5 / a_left)"),
         ("float(f_max.max())", "float(f_max.min())"),
     ],
-    "chaos": [
+    "chaos.model": [
         ("d_max - np.exp(log_gap)", "d_max + np.exp(log_gap)"),
         ("@ self.axes / np.sqrt(self.variances)", "@ self.axes / self.variances"),
         ("constrained(q * self.scale)", "constrained(q)"),
@@ -197,7 +200,7 @@ MUTANTS = {
         ("missing -= int(good.sum())", "missing -= int(good.size)"),
         ("first += 1  #", "first += 2  #"),
     ],
-    "beam": [
+    "beam.cantilever": [
         ("self.thickness**3 / 12", "self.thickness**3 / 3"),
         ("1 - 3 * s**2 + 2 * s**3, s", "1 - 3 * s**2 + s**3, s"),
         ("band[i + 1, 2] += 2 * k", "band[i + 1, 2] += 4 * k"),
@@ -215,13 +218,13 @@ MUTANTS = {
         ("crack_length(beam, laws, end.deflection) > 1.5", "crack_length(beam, laws, end.deflection) > 0.5"),
         ("* mesh.area * x * (x - 2)", "* x * (x - 2)"),
     ],
-    "energy": [
+    "beam.energy": [
         ("6 * beam.bending_stiffness", "3 * beam.bending_stiffness"),
         ("return 1.5 * beam.young_modulus", "return 3 * beam.young_modulus"),
         ("beam.thickness**3 / crack_length**4", "beam.thickness**3 / crack_length**3"),
         ("CRACK_LENGTH_POWER = -1 / 4", "CRACK_LENGTH_POWER = -1 / 5"),
     ],
-    "montecarlo": [
+    "beam.montecarlo": [
         ("1 + scatter * rng", "1 + 2 * scatter * rng"),
         ("rng.standard_normal(len(SCATTERED))", "rng.standard_normal()"),
         ("beam = scattered_beam(experiment.beam, experiment.scatter, rng)", "beam = experiment.beam"),
@@ -231,6 +234,17 @@ MUTANTS = {
         ("outcomes[:shapes]", "outcomes[shapes:]"),
     ],
 }
+
+
+def source_of(module):
+    """File of a module such as ``surface.maxent``."""
+    return f"src/stiction/{module.replace('.', '/')}.py"
+
+
+def tests_of(module):
+    """File of its tests."""
+    *folder, name = module.split(".")
+    return "/".join(["tests", *folder, f"test_{TESTS.get(module, name)}.py"])
 
 
 class Copy:
@@ -246,7 +260,7 @@ class Copy:
 
     def tests(self, module, cache):
         """Run the tests of a module; the name of the first that fails, empty if all pass."""
-        files = [f"tests/test_{module}.py", f"src/stiction/{module}.py"]
+        files = [tests_of(module), source_of(module)]
         command = [sys.executable, "-B", "-m", "pytest", "-x", "--tb=no", "-p", "no:cacheprovider", *files]
         environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), "OMP_NUM_THREADS": "1"}
         environment["PYTHONPATH"] = str(self.folder / "src")
@@ -263,7 +277,7 @@ class Copy:
 
     def notice(self, module, old, new):
         """The test that notices a mutant, empty if none does."""
-        path = self.folder / "src" / "stiction" / f"{module}.py"
+        path = self.folder / source_of(module)
         text = path.read_text(encoding="utf-8")
         shutil.rmtree(self.cache, ignore_errors=True)
         shutil.copytree(self.warm, self.cache)
@@ -280,11 +294,9 @@ def chosen(modules):
     """(module, old, new) of all mutants of the modules; each must change exactly one place."""
     mutants = [(module, old, new) for module in modules for old, new in MUTANTS[module]]
     for module, old, _ in mutants:
-        text = (ROOT / "src" / "stiction" / f"{module}.py").read_text(encoding="utf-8")
+        text = (ROOT / source_of(module)).read_text(encoding="utf-8")
         if text.count(old) != 1:
-            sys.exit(
-                f"{module}.py holds {old!r} {text.count(old)} times, must be once: bring tests/mutants.py up to date"
-            )
+            sys.exit(f"{module} holds {old!r} {text.count(old)} times, must be once: bring tests/mutants.py up to date")
     return mutants
 
 

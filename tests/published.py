@@ -6,10 +6,11 @@ from pathlib import Path
 
 import yaml
 
-from stiction import maxent, units
-from stiction.spectrum import CutoffSelfAffine
-from stiction.surfaces import RoughSurface
-from stiction.translation import Translation, underlying_spectrum
+from stiction.config import units
+from stiction.surface import maxent
+from stiction.surface.field import RoughSurface
+from stiction.surface.spectrum import CutoffSelfAffine
+from stiction.surface.translation import Translation, underlying_spectrum
 
 CONFIG = Path(__file__).parents[1] / "config.yaml"
 #: Spacing of the generated surfaces; fine enough for the largest cut-off of Table II [m].

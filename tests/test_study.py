@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from stiction import cases, data, pairs
-from stiction.energy import arrest_length
-from stiction.identifications import identified_spectra
-from stiction.keys import merged
-from stiction.settings import read
+from stiction.beam.energy import arrest_length
+from stiction.config.cases import merged
+from stiction.config.settings import read
+from stiction.stages import cases, data, pairs
+from stiction.stages.identifications import identified_spectra
 from stiction.study import PairStudy
 
 ROOT = Path(__file__).parents[1]
@@ -107,7 +107,7 @@ def test_a_spectrum_is_identified_as_by_the_workflow(tmp_path):
     settings = {"spacing_nm": 10, "target_spacing_nm": config["character"]["spacing_nm"], "target": target}
     script("identify")(heights, found, config | settings, "B2")
     spectra = identified_spectra(config, "b")
-    with pytest.raises(ValueError, match=r"spectrum of B2 has to be identified first, see stiction\.identifications"):
+    with pytest.raises(ValueError, match=r"spectrum of B2 has to be identified first, see stiction\.stages\.identifications"):
         PairStudy.of(config, "b")
     assert spectra == {"B2": cases.target_spectrum(data.load(found, "identification"))}
     (_, drawn), (_, other) = cases.surfaces_of(config, "b", spectra)

@@ -8,17 +8,17 @@ from functools import partial
 
 import xarray as xr
 
-from stiction import chaos
-from stiction.cantilevers import cantilever, points
-from stiction.cases import surfaces_of
-from stiction.curves import force_curves
-from stiction.forcelaw import adhesion_energies, parametrise
-from stiction.keys import case_id
-from stiction.logs import progress
-from stiction.montecarlo import Experiment, columns, simulate
-from stiction.pairs import contact
+from stiction.beam.montecarlo import Experiment, columns, simulate
+from stiction.chaos import model as chaos
+from stiction.config.cases import case_id
+from stiction.config.units import si
+from stiction.contact.forcelaw import adhesion_energies, parametrise
+from stiction.progress import progress
+from stiction.stages.cantilevers import cantilever, points
+from stiction.stages.cases import surfaces_of
+from stiction.stages.curves import force_curves
+from stiction.stages.pairs import contact
 from stiction.streams import stream
-from stiction.units import si
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,8 @@ class PairStudy:
     def of(cls, config, name, model="NG", identified=()):
         """Study of one pair of a configuration: draws its surfaces and computes their contact, 15 ms a sample.
 
-        Parameters as in `stiction.cases.surfaces_of` and `stiction.pairs.contact`; spectra that are to be identified
-        come from `stiction.identifications.identified_spectra`.
+        Parameters as in `stiction.stages.cases.surfaces_of` and `stiction.stages.pairs.contact`; spectra that are to be
+        identified come from `stiction.stages.identifications.identified_spectra`.
 
         Raises
         ------
@@ -69,7 +69,7 @@ class PairStudy:
         return chaos.fit(*self.forces(humidity), wanted["order"], wanted["dimension_tolerance"])
 
     def beams(self, humidity, scatter=0.0, threads=1):
-        """Beams released at a relative humidity, as `stiction.montecarlo.columns` (Sec. III-C)."""
+        """Beams released at a relative humidity, as `stiction.beam.montecarlo.columns` (Sec. III-C)."""
         fitted, entry = self.chaos(humidity), self.settings["beam"]
         strips = points(self.settings)
         experiment = Experiment(self.beam, strips, lambda rng, n: chaos.draw_laws(fitted, n, rng)[0], scatter)

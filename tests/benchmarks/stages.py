@@ -17,9 +17,11 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 import numpy as np  # noqa: E402
 from scipy import fft  # noqa: E402
 
-from stiction import cases, chaos, pairs, settings  # noqa: E402
-from stiction.cantilevers import cantilever, points  # noqa: E402
-from stiction.montecarlo import Experiment, simulate  # noqa: E402
+from stiction.beam.montecarlo import Experiment, simulate  # noqa: E402
+from stiction.chaos import model as chaos  # noqa: E402
+from stiction.config import settings  # noqa: E402
+from stiction.stages import cases, pairs  # noqa: E402
+from stiction.stages.cantilevers import cantilever, points  # noqa: E402
 from stiction.streams import stream  # noqa: E402
 
 ROOT = Path(__file__).parents[2]

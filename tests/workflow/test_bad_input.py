@@ -7,7 +7,7 @@ import subprocess
 import pytest
 from conftest import ROOT
 from planner import Planner
-from test_settings import WRONG as TABLE
+from wrong_configurations import WRONG as TABLE
 
 WRONG = [
     ("surfaces: {B1: {kurtosis: 1.2}}", "surfaces.B1.kurtosis", "1.2", "must be"),

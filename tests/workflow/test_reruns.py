@@ -237,25 +237,29 @@ def test_a_branch_and_back_reruns_nothing(tree):
 # By hand: what a module is for says which rules must and must not care.
 SPOTS = [
     (
-        "src/stiction/beam.py",
+        "src/stiction/beam/cantilever.py",
         "beams resampling mesh reading",
         "heights spectrum contact_chunk contact reading_contact forces chaos",
     ),
     (
-        "src/stiction/meniscus.py",
+        "src/stiction/contact/meniscus.py",
         "forces sensitivity reading",
         "heights character contact_chunk contact reading_contact sensitivity_contact",
     ),
     (
-        "src/stiction/asperity.py",
+        "src/stiction/contact/asperity.py",
         "contact_chunk sensitivity_contact reading_contact",
         "heights spectrum identify character",
     ),
-    ("src/stiction/identify.py", "identify reading", "heights spectrum character contact_chunk forces beams"),
-    ("src/stiction/tables.py", "table_1 table_2 table_3", "heights spectrum character contact forces beams reading"),
-    ("src/stiction/provenance.py", "", " ".join(RULES)),
-    ("src/stiction/logs.py", "", " ".join(RULES)),
-    ("src/stiction/settings.py", "", " ".join(RULES)),
+    ("src/stiction/surface/identify.py", "identify reading", "heights spectrum character contact_chunk forces beams"),
+    (
+        "src/stiction/report/tables.py",
+        "table_1 table_2 table_3",
+        "heights spectrum character contact forces beams reading",
+    ),
+    ("src/stiction/run/provenance.py", "", " ".join(RULES)),
+    ("src/stiction/run/logs.py", "", " ".join(RULES)),
+    ("src/stiction/config/settings.py", "", " ".join(RULES)),
     ("src/stiction/study.py", "sensitivity reading", "heights spectrum contact_chunk beams mesh resampling checks"),
     ("workflow/scripts/contact_chunk.py", "contact_chunk contact forces", "heights spectrum sensitivity reading"),
     ("workflow/scripts/beams.py", "beams table_3 checks", "chaos mesh forces reading"),
@@ -271,49 +275,57 @@ def test_code_reruns_what_it_computes(tree, path, must, must_not):
 
 
 def test_a_figure_style_redraws_all_figures_and_nothing_else(tree):
-    tree.append("src/stiction/stiction.mplstyle", "\nlines.linewidth: 2\n")
+    tree.append("src/stiction/report/stiction.mplstyle", "\nlines.linewidth: 2\n")
     drawn = {f"results/figures/{path.name}" for path in (tree.folder / "results" / "figures").iterdir()}
     assert set(tree.rerun()) == drawn != set()
 
 
 def test_code_that_draws_reruns_no_number(tree):
-    drawing = sorted((tree.folder / "src" / "stiction").glob("figures*.py"))
+    drawing = sorted((tree.folder / "src" / "stiction" / "report").glob("figures*.py"))
     for path in drawing:
         tree.append(path, "\nCHANGED = 1\n")
     assert known(tree.rerun()) == set()
 
 
-IMPORT = re.compile(
-    r"^\s*(?:from stiction import (.+)|from stiction\.(\w+) import|import stiction\.(\w+))", re.MULTILINE
-)
+PACKAGE = ROOT / "src" / "stiction"
+IMPORT = re.compile(r"^\s*(?:from (stiction[\w.]*) import (.+)|import (stiction[\w.]*))", re.MULTILINE)
 
 
 def imported(path):
-    """Modules of the package that a file imports, read without a parser."""
-    found = [re.split(r",\s*", group) for match in IMPORT.findall(path.read_text()) for group in match if group]
-    return {name.split(" as ")[0].strip() for names in found for name in names}
+    """Modules of the package that a file imports, read without a parser; as paths."""
+    found = set()
+    for folder, names, module in IMPORT.findall(path.read_text()):
+        words = [name.split(" as ")[0].strip(" ()") for name in names.split(",") if name.strip(" (")]
+        for dotted in [module] if module else [folder, *(f"{folder}.{word}" for word in words)]:
+            file = ROOT / "src" / f"{dotted.replace('.', '/')}.py"
+            found |= {file} if file.is_file() else set()
+    return found
 
 
 def reached(script):
     """Modules behind a script."""
     modules = imported(script)
-    while more := reduce(set.union, (imported(ROOT / "src/stiction" / f"{m}.py") for m in modules), set()) - modules:
+    while more := reduce(set.union, map(imported, modules), set()) - modules:
         modules |= more
-    return modules - {"logs"}  # changes no number
+    return modules - {PACKAGE / "progress.py", PACKAGE / "run" / "logs.py"}  # change no number
 
 
-CODE = sorted(p.relative_to(ROOT) for p in [*ROOT.glob("src/stiction/*.py"), *ROOT.glob("workflow/scripts/*.py")])
+CODE = sorted(
+    path.relative_to(ROOT)
+    for path in [*PACKAGE.rglob("*.py"), *ROOT.glob("workflow/scripts/*.py")]
+    if path.name != "__init__.py"
+)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", CODE, ids=[path.name for path in CODE])
+@pytest.mark.parametrize("path", CODE, ids=[str(path.with_suffix("")).removeprefix("src/stiction/") for path in CODE])
 def test_every_module_and_script_reruns_its_rules_and_their_readers(tree, path):
     tree.append(path, "\nCHANGED = 1\n")
     scripts = {rule: ROOT / "workflow" / "scripts" / f"{rule}.py" for rule in RULES}
     if path.parts[0] == "workflow":
         met = {path.stem} & RULES
     else:
-        met = {rule for rule, script in scripts.items() if path.stem in reached(script)}
+        met = {rule for rule, script in scripts.items() if ROOT / path in reached(script)}
     if "contact" in met:  # chunks are temporary: to gather them anew they are computed anew
         met |= {"contact_chunk"}
     assert known(tree.rerun()) == behind(met)

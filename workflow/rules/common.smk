@@ -2,7 +2,9 @@
 
 import fcntl
 
-from stiction import keys, provenance, settings
+from stiction.config import cases as keys
+from stiction.run import fingerprint, provenance
+from stiction.config import settings
 
 
 wildcard_constraints:
@@ -33,7 +35,7 @@ for pair in config["pairs"].values():
 PAIRS = config["run"]["pairs"]
 SIDES = ("beam", "substrate")
 MODELS = ("G", "NG", "GEO")
-STYLE = str(BASE / "src" / "stiction" / "stiction.mplstyle")
+STYLE = str(BASE / "src" / "stiction" / "report" / "stiction.mplstyle")
 MOMENTS = ("rms_nm", "skewness", "kurtosis")
 SUMMITS = ("mean_summit_radius_um", "summit_density_per_um2")
 SURFACES = [
@@ -55,7 +57,7 @@ FIGURE = {"pair": FIGURE_PAIR, "humidity": config["figures"]["humidity"]}
 
 def code(script):
     """Fingerprint of a script and of all code of the package behind it."""
-    return provenance.fingerprint(BASE / "workflow" / "scripts" / script)
+    return fingerprint.fingerprint(BASE / "workflow" / "scripts" / script)
 
 
 def section(*names, **more):
@@ -112,7 +114,7 @@ def keys_of(cases):
 
 
 def cantilever_settings(*pairs):
-    """Sections from which `stiction.cantilevers` makes the nominal beams of pairs."""
+    """Sections from which `stiction.stages.cantilevers` makes the nominal beams of pairs."""
     return {
         "solid": chosen(config["solid"], ["young_modulus_GPa"]),
         "beam": chosen(config["beam"], ("length_um", "width_um", "thickness_um", "elements")),

@@ -1,6 +1,6 @@
 """What the rules of the studies beside the main line share."""
 
-from stiction import sensitivity
+from stiction.studies import sensitivity
 
 STUDIES = config["studies"]
 CONTACT = {key: value for key, value in config["contact"].items() if key not in ("chunks", "samples")}

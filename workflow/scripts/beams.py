@@ -2,11 +2,13 @@
 
 from functools import partial
 
-from stiction import chaos, data, laws
-from stiction.cantilevers import cantilever, points
-from stiction.keys import pair_of
-from stiction.logs import logged, progress
-from stiction.montecarlo import Experiment, columns, simulate
+from stiction.beam.montecarlo import Experiment, columns, simulate
+from stiction.chaos import model as chaos
+from stiction.config.cases import pair_of
+from stiction.progress import progress
+from stiction.run.logs import logged
+from stiction.stages import data, laws
+from stiction.stages.cantilevers import cantilever, points
 from stiction.streams import stream
 
 #: Number of shapes kept for drawing (Fig. 14).

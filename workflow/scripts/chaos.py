@@ -1,7 +1,8 @@
 """App. B: the chaos model of the force law, and its statistics beside those of its input."""
 
-from stiction import chaos, data
-from stiction.logs import logged
+from stiction.chaos import model as chaos
+from stiction.run.logs import logged
+from stiction.stages import data
 from stiction.streams import stream
 
 #: Draws on which the model is compared with its input.

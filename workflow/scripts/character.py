@@ -2,12 +2,13 @@
 
 import numpy as np
 
-from stiction import cases, data
-from stiction.logs import logged, progress
+from stiction.config.units import si
+from stiction.progress import progress
+from stiction.run.logs import logged
+from stiction.stages import cases, data
 from stiction.streams import stream
-from stiction.summits import find_summits
-from stiction.surfaces import StripGrid, radial_periodogram
-from stiction.units import si
+from stiction.surface.field import StripGrid, radial_periodogram
+from stiction.surface.summits import find_summits
 
 #: Side of the periodic fields for the spectrum and of the patch for pictures [m], and their number.
 FIELD, FIELDS = 10.24e-6, 8

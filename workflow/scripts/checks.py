@@ -2,10 +2,11 @@
 
 from itertools import chain
 
-from stiction import checks, data
-from stiction.cantilevers import cantilever
-from stiction.logs import logged
-from stiction.units import si
+from stiction.config.units import si
+from stiction.report import checks
+from stiction.run.logs import logged
+from stiction.stages import data
+from stiction.stages.cantilevers import cantilever
 
 
 def main(paths, csv, markdown, settings):

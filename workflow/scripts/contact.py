@@ -2,8 +2,8 @@
 
 import xarray as xr
 
-from stiction import data
-from stiction.logs import logged
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(chunks, output, settings):

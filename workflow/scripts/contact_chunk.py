@@ -1,7 +1,7 @@
 """Sec. III-A: contact of a range of surface pairs."""
 
-from stiction import data, pairs
-from stiction.logs import logged
+from stiction.run.logs import logged
+from stiction.stages import data, pairs
 
 
 def main(heights, spectra, output, settings, pair, model, chunk, number):

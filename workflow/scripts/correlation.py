@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from stiction import cases, data, data_studies
-from stiction.logs import logged
-from stiction.spectrum import autocovariance, correlation_length
+from stiction.run.logs import logged
+from stiction.stages import cases, data, data_studies
+from stiction.surface.spectrum import autocovariance, correlation_length
 
 #: Distances drawn [m].
 LAG = np.linspace(0, 1e-6, 401)

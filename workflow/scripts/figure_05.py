@@ -1,9 +1,9 @@
 """Figure 5: a force curve and its law."""
 
-from stiction import data
-from stiction.figures import save
-from stiction.figures_forces import fitted_curve
-from stiction.logs import logged
+from stiction.report.figures_forces import fitted_curve
+from stiction.report.style import save
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(forces, fit, outputs):

@@ -1,9 +1,9 @@
 """Figure 7: densities of the heights."""
 
-from stiction import data
-from stiction.figures import save
-from stiction.figures_surfaces import height_densities
-from stiction.logs import logged
+from stiction.report.figures_surfaces import height_densities
+from stiction.report.style import save
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(heights, outputs, settings):

@@ -1,9 +1,9 @@
 """Figure 9: profiles of one surface with either height model."""
 
-from stiction import data
-from stiction.figures import save
-from stiction.figures_surfaces import profiles
-from stiction.logs import logged
+from stiction.report.figures_surfaces import profiles
+from stiction.report.style import save
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(characters, outputs, settings):

@@ -1,9 +1,9 @@
 """Figure 10: spectra of simulated surfaces."""
 
-from stiction import data
-from stiction.figures import save
-from stiction.figures_surfaces import spectra
-from stiction.logs import logged
+from stiction.report.figures_surfaces import spectra
+from stiction.report.style import save
+from stiction.run.logs import logged
+from stiction.stages import data
 
 STAGES = ("heights", "spectrum", "character", "iteration")
 

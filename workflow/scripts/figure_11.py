@@ -1,9 +1,9 @@
 """Figure 11: heights and radii of summits, of one surface or of the others."""
 
-from stiction import data
-from stiction.figures import save
-from stiction.figures_surfaces import summits
-from stiction.logs import logged
+from stiction.report.figures_surfaces import summits
+from stiction.report.style import save
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(gaussian, other, outputs, settings):

@@ -1,9 +1,10 @@
 """Figure 12: computed and generated force curves."""
 
-from stiction import chaos, data, laws
-from stiction.figures import save
-from stiction.figures_forces import force_curves
-from stiction.logs import logged
+from stiction.chaos import model as chaos
+from stiction.report.figures_forces import force_curves
+from stiction.report.style import save
+from stiction.run.logs import logged
+from stiction.stages import data, laws
 from stiction.streams import stream
 
 

@@ -1,9 +1,10 @@
 """Figure 13: sensitivity of the adhesion energy to the moments of a surface."""
 
-from stiction import data, tables
-from stiction.figures import save
-from stiction.figures_studies import sensitivities
-from stiction.logs import logged
+from stiction.report import tables
+from stiction.report.figures_studies import sensitivities
+from stiction.report.style import save
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(paths, outputs, settings):

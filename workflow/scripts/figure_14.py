@@ -1,9 +1,9 @@
 """Figure 14: shapes and crack lengths of the beams of one case."""
 
-from stiction import data
-from stiction.figures import save
-from stiction.figures_beams import beam_shapes
-from stiction.logs import logged
+from stiction.report.figures_beams import beam_shapes
+from stiction.report.style import save
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(beams, outputs):

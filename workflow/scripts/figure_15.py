@@ -1,11 +1,11 @@
 """Figure 15: adhesion energies over the humidity."""
 
-from stiction import data
-from stiction.cantilevers import cantilever
-from stiction.figures import save
-from stiction.figures_beams import adhesion_energies
-from stiction.logs import logged
-from stiction.tables import published
+from stiction.report.figures_beams import adhesion_energies
+from stiction.report.style import save
+from stiction.report.tables import published
+from stiction.run.logs import logged
+from stiction.stages import data
+from stiction.stages.cantilevers import cantilever
 
 
 def by_pair(keys, paths, stage):

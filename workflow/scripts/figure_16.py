@@ -1,9 +1,9 @@
 """Figure 16: largest stress of the touching summits."""
 
-from stiction import data
-from stiction.figures import save
-from stiction.figures_studies import summit_stresses
-from stiction.logs import logged
+from stiction.report.figures_studies import summit_stresses
+from stiction.report.style import save
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(studies, outputs, settings):

@@ -1,9 +1,9 @@
 """Figure 17: convergence in the number of samples and of coordinates."""
 
-from stiction import data
-from stiction.figures import save
-from stiction.figures_studies import sample_convergence
-from stiction.logs import logged
+from stiction.report.figures_studies import sample_convergence
+from stiction.report.style import save
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(paths, outputs, settings):

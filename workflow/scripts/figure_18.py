@@ -1,9 +1,9 @@
 """Figure 18: convergence of the chaos model in the order of its polynomials."""
 
-from stiction import data
-from stiction.figures import save
-from stiction.figures_studies import order_convergence
-from stiction.logs import logged
+from stiction.report.figures_studies import order_convergence
+from stiction.report.style import save
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(orders, outputs):

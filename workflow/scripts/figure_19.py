@@ -1,9 +1,9 @@
 """Figure 19: convergence of the mesh, autocorrelation of the surfaces."""
 
-from stiction import data
-from stiction.figures import save
-from stiction.figures_studies import mesh_convergence
-from stiction.logs import logged
+from stiction.report.figures_studies import mesh_convergence
+from stiction.report.style import save
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(paths, outputs):

@@ -1,9 +1,10 @@
 """Crack lengths of Table III under other readings of what the paper leaves open."""
 
-from stiction import data, tables
-from stiction.figures import save
-from stiction.figures_studies import readings
-from stiction.logs import logged
+from stiction.report import tables
+from stiction.report.figures_studies import readings
+from stiction.report.style import save
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(paths, outputs, settings):

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from stiction import data, data_studies
-from stiction.curves import force_curves
-from stiction.forcelaw import admissible, fit_errors
-from stiction.logs import logged
-from stiction.units import si
+from stiction.config.units import si
+from stiction.contact.forcelaw import admissible, fit_errors
+from stiction.run.logs import logged
+from stiction.stages import data, data_studies
+from stiction.stages.curves import force_curves
 
 
 def main(contact, forces, output, settings):

@@ -1,8 +1,9 @@
 """Table of the fit by Eq. (12) over all cases."""
 
-from stiction import data, tables
-from stiction.logs import logged
-from stiction.tables_fit import fit_quality, markdown_fit
+from stiction.report import tables
+from stiction.report.tables_fit import fit_quality, markdown_fit
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(fits, output, settings):

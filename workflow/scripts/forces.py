@@ -1,10 +1,10 @@
 """Sec. III-B1: force curves at one humidity and the vectors of their parameters."""
 
-from stiction import data
-from stiction.curves import force_curves
-from stiction.forcelaw import parametrise
-from stiction.logs import logged
-from stiction.units import si
+from stiction.config.units import si
+from stiction.contact.forcelaw import parametrise
+from stiction.run.logs import logged
+from stiction.stages import data
+from stiction.stages.curves import force_curves
 
 #: Number of curves kept for drawing (Fig. 12).
 KEPT = 200

@@ -1,8 +1,9 @@
 """Sec. II-A: the maximum-entropy height density of one surface."""
 
-from stiction import data, maxent
-from stiction.logs import logged
-from stiction.units import si
+from stiction.config.units import si
+from stiction.run.logs import logged
+from stiction.stages import data
+from stiction.surface import maxent
 
 
 def main(output, settings):

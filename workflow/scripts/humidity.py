@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from stiction import data, data_studies
-from stiction.curves import force_curves
-from stiction.forcelaw import adhesion_energies
-from stiction.logs import logged, progress
-from stiction.units import si
+from stiction.config.units import si
+from stiction.contact.forcelaw import adhesion_energies
+from stiction.progress import progress
+from stiction.run.logs import logged
+from stiction.stages import data, data_studies
+from stiction.stages.curves import force_curves
 
 #: Median and bounds of the band.
 PROBABILITIES = np.array([0.05, 0.5, 0.95])

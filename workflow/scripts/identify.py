@@ -1,8 +1,8 @@
 """Sec. II-C: the spectrum whose surfaces have the measured summits."""
 
-from stiction import data
-from stiction.identifications import identification
-from stiction.logs import logged
+from stiction.run.logs import logged
+from stiction.stages import data
+from stiction.stages.identifications import identification
 
 
 def main(heights, output, settings, surface):

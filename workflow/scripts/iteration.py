@@ -4,13 +4,14 @@ from itertools import islice
 
 import numpy as np
 
-from stiction import cases, data, data_studies
-from stiction.iteration import iterate, misfit, sampling_misfit, target_rings
-from stiction.logs import logged, progress
+from stiction.config.units import si
+from stiction.progress import progress
+from stiction.run.logs import logged
+from stiction.stages import cases, data, data_studies
 from stiction.streams import stream
-from stiction.surfaces import StripGrid
-from stiction.translation import Translation
-from stiction.units import si
+from stiction.surface.field import StripGrid
+from stiction.surface.iteration import iterate, misfit, sampling_misfit, target_rings
+from stiction.surface.translation import Translation
 
 #: Side of the periodic fields [m].
 FIELD = 10.24e-6

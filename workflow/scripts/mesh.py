@@ -5,10 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from stiction import convergence, data, data_studies, forcelaw
-from stiction.cantilevers import cantilever
-from stiction.logs import logged, progress
-from stiction.units import si
+from stiction.config.units import si
+from stiction.contact import forcelaw
+from stiction.progress import progress
+from stiction.run.logs import logged
+from stiction.stages import data, data_studies
+from stiction.stages.cantilevers import cantilever
+from stiction.studies import convergence
 
 
 def main(forces, output, settings):

@@ -4,9 +4,12 @@ from functools import partial
 
 import numpy as np
 
-from stiction import chaos, convergence, data, data_studies, laws
-from stiction.logs import logged, progress
+from stiction.chaos import model as chaos
+from stiction.progress import progress
+from stiction.run.logs import logged
+from stiction.stages import data, data_studies, laws
 from stiction.streams import stream
+from stiction.studies import convergence
 
 #: Bins of the marginal densities.
 EDGES = np.linspace(-4, 4, 65)

@@ -2,11 +2,13 @@
 
 import numpy as np
 
-from stiction import data, data_studies, pairs, plasticity
-from stiction.asperity import hertz_maximum_stress, reduced_modulus
-from stiction.logs import logged, progress
-from stiction.summits import find_summits
-from stiction.units import si
+from stiction.config.units import si
+from stiction.contact.asperity import hertz_maximum_stress, reduced_modulus
+from stiction.progress import progress
+from stiction.run.logs import logged
+from stiction.stages import data, data_studies, pairs
+from stiction.studies import plasticity
+from stiction.surface.summits import find_summits
 
 
 def main(heights, spectra, output, settings, pair):

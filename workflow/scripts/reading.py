@@ -1,7 +1,7 @@
 """Crack lengths of a pair under one reading of what the paper leaves open, from its contact."""
 
-from stiction import data, data_studies
-from stiction.logs import logged
+from stiction.run.logs import logged
+from stiction.stages import data, data_studies
 from stiction.study import PairStudy
 
 

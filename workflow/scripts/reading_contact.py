@@ -1,8 +1,8 @@
 """Contact of a pair under one reading of what the paper leaves open; like all contact, free of humidity."""
 
-from stiction import cases, data, pairs
-from stiction.keys import merged
-from stiction.logs import logged
+from stiction.config.cases import merged
+from stiction.run.logs import logged
+from stiction.stages import cases, data, pairs
 
 
 def main(identifications, output, settings, pair):

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from stiction import convergence, data, data_studies
-from stiction.logs import logged
+from stiction.run.logs import logged
+from stiction.stages import data, data_studies
+from stiction.studies import convergence
 
 #: Energies at which the density is given.
 POINTS = 200

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from stiction import data, data_studies, sensitivity
-from stiction.logs import logged
+from stiction.run.logs import logged
+from stiction.stages import data, data_studies
+from stiction.studies import sensitivity
 from stiction.study import PairStudy
 
 

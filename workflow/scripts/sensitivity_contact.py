@@ -1,8 +1,9 @@
 """Fig. 13: contact of a pair whose beam surface has a little less or a little more of one moment."""
 
-from stiction import cases, data, pairs, sensitivity
-from stiction.logs import logged
-from stiction.units import si
+from stiction.config.units import si
+from stiction.run.logs import logged
+from stiction.stages import cases, data, pairs
+from stiction.studies import sensitivity
 
 
 def main(heights, spectra, output, settings, wildcards):

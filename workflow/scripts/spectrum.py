@@ -1,9 +1,9 @@
 """Sec. II-B: the spectrum of the Gaussian field behind a non-Gaussian surface."""
 
-from stiction import cases, data
-from stiction.logs import logged
-from stiction.spectrum import CutoffSelfAffine
-from stiction.units import si
+from stiction.config.units import si
+from stiction.run.logs import logged
+from stiction.stages import cases, data
+from stiction.surface.spectrum import CutoffSelfAffine
 
 
 def main(heights, identification, output, settings):

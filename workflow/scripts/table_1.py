@@ -1,7 +1,8 @@
 """Table I: statistics of the simulated surfaces."""
 
-from stiction import data, tables
-from stiction.logs import logged
+from stiction.report import tables
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(paths, output, settings):

@@ -1,7 +1,8 @@
 """Table II: published and identified spectra."""
 
-from stiction import data, tables
-from stiction.logs import logged
+from stiction.report import tables
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(paths, output, settings):

@@ -1,7 +1,8 @@
 """Table III: crack lengths and adhesion energies."""
 
-from stiction import data, tables
-from stiction.logs import logged
+from stiction.report import tables
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(paths, output, settings):

@@ -1,7 +1,8 @@
 """Table III under other readings of what the paper leaves open."""
 
-from stiction import data, tables, tables_studies
-from stiction.logs import logged
+from stiction.report import tables, tables_studies
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(paths, output, settings):

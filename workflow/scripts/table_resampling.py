@@ -1,7 +1,8 @@
 """What the chaos model does to the crack length: laws drawn from it beside laws of the samples themselves."""
 
-from stiction import data, tables, tables_studies
-from stiction.logs import logged
+from stiction.report import tables, tables_studies
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(paths, output, settings):

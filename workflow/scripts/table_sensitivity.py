@@ -1,7 +1,8 @@
 """Figure 13 in numbers."""
 
-from stiction import data, tables, tables_studies
-from stiction.logs import logged
+from stiction.report import tables, tables_studies
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(paths, output, settings):

@@ -2,8 +2,9 @@
 
 import sys
 
-from stiction import checks, data, tables
-from stiction.logs import logged
+from stiction.report import checks, tables
+from stiction.run.logs import logged
+from stiction.stages import data
 
 
 def main(path, output):

@@ -1,0 +1,214 @@
+"""Figures of the surfaces (Secs. II and IV-A): 7 to 11."""
+
+import numpy as np
+from matplotlib.colors import LogNorm
+from matplotlib.ticker import MaxNLocator
+
+from stiction.estimates import mean_with_error
+from stiction.report.style import DOUBLE, MODELS, NM, OUTLINED, SINGLE, UM, handles, letter, panels, plain_log, styled
+
+#: Bins along either axis of the joint density of summits.
+_BINS = 40
+_SIDE_BY_SIDE = ("G", "NG")
+
+
+# Figure 7
+
+
+@styled
+def height_densities(heights):
+    """Figure 7: maximum-entropy density of the heights beside the Gaussian one, linear above and logarithmic below.
+
+    Parameters
+    ----------
+    heights : dict
+        Surface to the dataset of stage heights.
+    """
+    figure, axes = panels(2, len(heights), (DOUBLE / 4 * len(heights) + 0.2, 3.4), sharex="col")
+    for column, dataset in zip(axes.T, heights.values(), strict=True):
+        for panel in column:
+            _density(panel, dataset)
+        column[1].set_yscale("log")
+        column[1].set_ylim(1e-6 * float(dataset.density.max()) / (NM * float(dataset.rms)), None)
+        column[1].set_xlabel("height $z$ [nm]")
+    for panel in axes[:, 0]:
+        panel.set_ylabel("density $p_Z$ [nm$^{-1}$]")
+    letter(axes, [*heights, *heights])
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    return figure
+
+
+def _density(panel, heights):
+    """Both densities of one surface."""
+    rms, z = NM * float(heights.rms), heights.height.values
+    panel.plot(rms * z, np.exp(-(z**2) / 2) / np.sqrt(2 * np.pi) / rms, **MODELS["G"])
+    panel.plot(rms * z, heights.density.values / rms, **MODELS["NG"] | {"label": "maximum entropy"})
+
+
+# Figures 8 and 9
+
+
+@styled
+def elevation_maps(characters):
+    """Figure 8: a piece of every simulated surface, seen from above.
+
+    Parameters
+    ----------
+    characters : dict
+        Surface to the dataset of stage character.
+    """
+    columns = min(2, len(characters))
+    rows = -(-len(characters) // columns)
+    figure, axes = panels(rows, columns, (SINGLE * columns, 2.9 * rows))
+    for panel, dataset in zip(axes.flat, characters.values(), strict=False):
+        extent = [0, UM * float(dataset.x[-1] + dataset.x[1]), 0, UM * float(dataset.y[-1] + dataset.y[1])]
+        image = panel.imshow(NM * dataset.elevation.values.T, origin="lower", extent=extent)
+        figure.colorbar(image, ax=panel, label="height $z$ [nm]", shrink=0.9)
+        panel.set(xlabel="$x_1$ [µm]", ylabel="$x_2$ [µm]")
+    letter(axes.flat[: len(characters)], list(characters))
+    for unused in axes.flat[len(characters) :]:
+        unused.remove()
+    return figure
+
+
+@styled
+def profiles(name, characters):
+    """Figure 9: one profile of a Gaussian and of a non-Gaussian surface that stem from the same random numbers.
+
+    Parameters
+    ----------
+    name : str
+        Of the surface.
+    characters : dict
+        Model (G, NG) to the dataset of stage character.
+    """
+    figure, axes = panels(2, 1, (SINGLE, 2.8), sharex=True, sharey=True)
+    for (panel,), model in zip(axes, _SIDE_BY_SIDE, strict=True):
+        dataset = characters[model]
+        middle = dataset.sizes["y"] // 2
+        panel.axhline(0, color="0.7", linewidth=0.6)
+        panel.plot(UM * dataset.x, NM * dataset.elevation[:, middle], color=MODELS[model]["color"])
+        panel.set(ylabel="height $z$ [nm]", xlim=UM * dataset.x[[0, -1]])
+    axes[-1, 0].set_xlabel("$x_1$ [µm]")
+    letter(axes, [f"{name}, {MODELS[model]['label']}" for model in _SIDE_BY_SIDE])
+    return figure
+
+
+# Figure 10
+
+_DRAWN = {"color": MODELS["NG"]["color"], "linewidth": 0.9, "label": "surfaces drawn from the closed form"}
+_ITERATED = {"color": "#D55E00", "linestyle": ":", "label": "surfaces of the last iteration"}
+_CLOSED = {"color": "black", "linestyle": "--", "linewidth": 0.8, "label": "closed form, expected"}
+
+
+@styled
+def spectra(surfaces):
+    """Figure 10: target spectrum, closed form and iterative algorithm; relation to the target; error by iteration.
+
+    Parameters
+    ----------
+    surfaces : dict
+        Surface to its datasets of stages heights, spectrum, character (non-Gaussian) and iteration.
+    """
+    figure, axes = panels(3, len(surfaces), (DOUBLE / 4 * len(surfaces) + 0.2, 5.4), height_ratios=[1.3, 1, 1])
+    for column, datasets in zip(axes.T, surfaces.values(), strict=True):
+        _spectra(column[0], *datasets)
+        _relations(column[1], *datasets)
+        _misfits(column[2], datasets[3])
+    names = ("spectrum $s_Z$ [nm$^4$]", "spectrum / target [–]", "mean error per ring [%]")
+    for panel, name in zip(axes[:, 0], names, strict=True):
+        panel.set_ylabel(name)
+    letter(axes, [*surfaces] * 3)
+    figure.legend(*handles(axes[0, 0], axes[1, 0]), loc="outside upper center", ncols=min(4, len(surfaces)))
+    figure.legend(*handles(axes[2, 0]), loc="outside lower center", ncols=min(3, len(surfaces) + 1))
+    return figure
+
+
+def _spectra(panel, heights, spectrum, character, iteration):
+    """Spectra of one surface: target, drawn from the closed form, drawn in the last iteration."""
+    variance = float(heights.rms) ** 2
+    target = spectrum.wavenumber[1:], variance * spectrum.target[1:]
+    last = iteration.wavenumber, variance * iteration.periodogram[-1].mean("field")
+    drawn = character.wavenumber, character.periodogram.mean("field")
+    looks = {"color": "0.75", "linewidth": 2.5, "label": "target"}, _DRAWN, _ITERATED
+    for (zeta, density), look in zip((target, drawn, last), looks, strict=True):
+        panel.loglog(zeta / UM, density * NM**4, **look)
+    panel.set_ylim(0.05 * NM**4 * float(target[1][-2]), None)
+    panel.set_xlabel(r"wave number $\zeta$ [rad/µm]")
+
+
+def _relations(panel, heights, spectrum, character, iteration):
+    """Spectra of :func:`_spectra` over the target, with two standard errors, and what the closed form lets expect."""
+    zeta, target = _whole_rings(spectrum)
+    panel.axhline(1, color="0.75", linewidth=2.5)
+    drawn = character.periodogram.sel(wavenumber=slice(0, zeta[-1])) / float(heights.rms) ** 2
+    drawn = drawn / np.interp(drawn.wavenumber, zeta, target)
+    for relation, look in ((drawn, _DRAWN), (iteration.periodogram[-1] / iteration.target, _ITERATED)):
+        mean, error = mean_with_error(relation.transpose("field", "wavenumber"))
+        panel.fill_between(
+            relation.wavenumber / UM, mean - 2 * error, mean + 2 * error, color=look["color"], alpha=0.25, linewidth=0
+        )
+        panel.plot(relation.wavenumber / UM, mean, **look)
+    panel.plot(zeta / UM, spectrum.achieved[1 : len(zeta) + 1] / target, **_CLOSED)
+    panel.set(xscale="log", xlabel=r"wave number $\zeta$ [rad/µm]")
+
+
+def _whole_rings(spectrum):
+    """Wave numbers and target of the rings that neither contain 0 nor are cut by the cut-off."""
+    zeta, target = spectrum.wavenumber.values, spectrum.target.values
+    inside = (zeta > 0) & (zeta + zeta[1] / 2 <= float(spectrum.cutoff))
+    return zeta[inside], target[inside]
+
+
+def _misfits(panel, iteration):
+    """Error of the iterated spectra, beside that of the closed form and that of a right spectrum by sampling."""
+    number = iteration.iteration
+    panel.plot(number, 100 * iteration.misfit, **_ITERATED | {"marker": "o", "label": "iterated"})
+    panel.plot(number, 100 * iteration.sampling_misfit, color="0.5", linestyle="-.", label="sampling alone")
+    panel.axhline(100 * float(iteration.closed_form_misfit), **_CLOSED)
+    panel.set(xlabel="iteration", yscale="log")
+    panel.xaxis.set_major_locator(MaxNLocator(integer=True))
+    plain_log(panel.yaxis)
+
+
+# Figure 11
+
+
+@styled
+def summits(characters):
+    """Figure 11: joint density of heights and radii of summits, Gaussian on the left, non-Gaussian on the right.
+
+    Parameters
+    ----------
+    characters : dict
+        Surface to a dict of model to the dataset of stage character.
+    """
+    figure, axes = panels(len(characters), 2, (1.4 * SINGLE, 2.2 * len(characters)), sharex="row", sharey="row")
+    for row, models in zip(axes, characters.values(), strict=True):
+        points = [_summits(models[model]) for model in _SIDE_BY_SIDE]
+        edges = [np.histogram_bin_edges(np.concatenate(both), _BINS) for both in zip(*points, strict=True)]
+        densities = [np.histogram2d(*both, edges, density=True)[0] for both in points]
+        shades = LogNorm(min(d[d > 0].min() for d in densities), np.max(densities))
+        for panel, density, both in zip(row, densities, points, strict=True):
+            filled = np.ma.masked_equal(density.T, 0)
+            image = panel.pcolormesh(edges[0], 10 ** edges[1], filled, norm=shades, cmap="cividis_r")
+            panel.set(yscale="log", xlabel="summit height [nm]")
+            plain_log(panel.yaxis)
+            _mean_radius(panel, 1 / np.mean(10 ** -both[1]))
+        row[0].set_ylabel("summit radius [µm]")
+        figure.colorbar(image, ax=row, label="density [nm$^{-1}$ decade$^{-1}$]")
+    letter(axes, [f"{name}, {MODELS[model]['label']}" for name in characters for model in _SIDE_BY_SIDE])
+    return figure
+
+
+def _summits(character):
+    """Heights [nm] and decimal logarithms of the radii [µm] of the summits kept."""
+    return NM * character.summit_height.values, -np.log10(character.summit_curvature.values / UM)
+
+
+def _mean_radius(panel, radius):
+    """Mark one over the mean curvature [µm], the radius of Table I."""
+    panel.axhline(radius, color="black", linestyle="--", linewidth=0.8, path_effects=OUTLINED)
+    number = f"{radius:#.2g}".rstrip(".")
+    place, look = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
+    panel.annotate(f"{number} µm", (0.96, radius), (0, 3), place, "offset points", **look)

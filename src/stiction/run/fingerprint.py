@@ -1,0 +1,104 @@
+"""Fingerprint of a script and of all code of the package behind it: what Snakemake does not see by itself.
+
+The fingerprint is a parameter of every rule, so that a changed module reruns the rules whose scripts import it,
+directly or through other modules. This module needs the standard library alone.
+"""
+
+import ast
+import hashlib
+from functools import cache
+from pathlib import Path
+
+PACKAGE = Path(__file__).parents[1]
+#: Modules that change no number.
+SILENT = {"stiction.progress", "stiction.run.logs"}
+#: Fields of a syntax tree that say nothing about what the code does.
+_WITHOUT_MEANING = {"kind", "type_comment", "type_ignores"}
+
+
+def fingerprint(script):
+    """Hash the meaning of a script and of every module of the package that it imports, at any distance.
+
+    Comments, docstrings and layout do not count, nor do the modules of ``SILENT``, so that they rerun nothing. All
+    versions of Python give the same hashes.
+
+    Parameters
+    ----------
+    script : path
+
+    Returns
+    -------
+    dict
+        Name of the script and of modules to the first 8 hex digits of their hashes, sorted.
+    """
+    reached, open_files = {}, [Path(script)]
+    while open_files:
+        path = open_files.pop()
+        name = _name(path)
+        if name not in reached:
+            reached[name], imports = _read(path, path.stat().st_mtime_ns)
+            open_files += imports
+    return dict(sorted(reached.items()))
+
+
+def _name(path):
+    """Dotted name of a module of the package, file name of a script."""
+    if not path.is_relative_to(PACKAGE) or path.parent.name == "scripts":
+        return path.name
+    return ".".join(("stiction", *path.relative_to(PACKAGE).with_suffix("").parts))
+
+
+@cache
+def _read(path, _modified):
+    """Hash of one file and the files of the package that it imports."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    imports = [module for node in ast.walk(tree) for module in imported(node) if _name(module) not in SILENT]
+    return hashlib.sha256(canonical(tree).encode()).hexdigest()[:8], imports
+
+
+def imported(node):
+    """Files of the package that an import statement names; none for any other node."""
+    if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "stiction":
+        names = [(*node.module.split("."), alias.name) for alias in node.names]
+    elif isinstance(node, ast.Import):
+        names = [alias.name.split(".") for alias in node.names if alias.name.startswith("stiction.")]
+    else:
+        return []
+    # A name is a module, or something in the module before it.
+    paths = [[PACKAGE.joinpath(*parts[1:end]).with_suffix(".py") for end in (None, -1)] for parts in map(list, names)]
+    return [path for both in paths for path in both if path != PACKAGE.with_suffix(".py") and path.is_file()]
+
+
+def canonical(node):
+    """Syntax tree as text that is the same in every version of Python, without docstrings.
+
+    `ast.dump` is not: versions differ in whether they print empty fields, and in how they split formatted strings.
+    """
+    if isinstance(node, list):
+        return f"[{','.join(map(canonical, node))}]"
+    if not isinstance(node, ast.AST):
+        return repr(node)
+    fields = {name: value for name, value in ast.iter_fields(node) if name not in _WITHOUT_MEANING}
+    if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and _has_docstring(node):
+        fields["body"] = node.body[1:]
+    if isinstance(node, ast.JoinedStr):
+        fields["values"] = _joined(node.values)
+    parts = (f"{name}={canonical(value)}" for name, value in sorted(fields.items()) if value not in (None, []))
+    return f"{type(node).__name__}({','.join(parts)})"
+
+
+def _has_docstring(node):
+    """Whether a definition begins with a docstring."""
+    return ast.get_docstring(node, clean=False) is not None
+
+
+def _joined(values):
+    """Parts of a formatted string, with neighbouring texts joined and empty ones left out."""
+    joined = []
+    for value in values:
+        text = isinstance(value, ast.Constant)
+        if text and joined and isinstance(joined[-1], ast.Constant):
+            joined[-1] = ast.Constant(joined[-1].value + value.value)
+        elif not text or value.value:
+            joined.append(value)
+    return joined

@@ -1,0 +1,244 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from stiction.contact.asperity import (
+    MaugisTable,
+    hertz_force,
+    hertz_maximum_stress,
+    interference_scale,
+    maugis_apart,
+    maugis_branch,
+    maugis_in_contact,
+    reduced_modulus,
+    touching_radius,
+    transition_parameter,
+)
+from stiction.contact.vanderwaals import Attraction, attraction
+
+POLYSILICON = reduced_modulus(164e9, 0.23)
+WATER = MaugisTable(POLYSILICON, attraction("water"))
+interferences, radii, moduli = st.floats(1e-11, 1e-7), st.floats(1e-8, 1e-5), st.floats(1e10, 2e11)
+
+
+def test_two_equal_bodies_are_half_as_stiff_as_one_against_a_rigid_one():
+    alone = 164e9 / (1 - 0.23**2)
+    np.testing.assert_allclose(1 / POLYSILICON, 2 / alone, rtol=1e-14)
+
+
+@given(interferences, radii, moduli)
+def test_hertz_force_is_the_gradient_of_hertz_energy(interference, radius, modulus):
+    def energy(overlap):
+        return 8 / 15 * modulus * np.sqrt(radius) * overlap**2.5
+
+    step = 1e-4 * interference
+    gradient = (energy(interference + step) - energy(interference - step)) / (2 * step)
+    np.testing.assert_allclose(hertz_force(interference, radius, modulus), gradient, rtol=1e-7)  # step² / 8
+
+
+@given(interferences, radii, moduli)
+def test_hertz_force_is_the_load_on_a_row_of_springs_under_the_sphere(interference, radius, modulus):
+    edge = np.sqrt(radius * interference)
+    springs = quad(lambda x: 2 * modulus * interference * edge * (1 - x**2), 0, 1)[0]
+    np.testing.assert_allclose(hertz_force(interference, radius, modulus), springs, rtol=1e-10)
+
+
+@given(interferences, radii, moduli)
+def test_largest_hertz_stress_is_three_halves_of_the_mean_stress(interference, radius, modulus):
+    mean = hertz_force(interference, radius, modulus) / (np.pi * radius * interference)
+    np.testing.assert_allclose(hertz_maximum_stress(interference, radius, modulus), 1.5 * mean, rtol=1e-10)
+
+
+def test_elastic_bodies_apart_feel_nothing():
+    apart = np.array([-1e-9, 0.0])
+    np.testing.assert_array_equal(hertz_force(apart, 1e-7, POLYSILICON), 0)
+    np.testing.assert_array_equal(hertz_maximum_stress(apart, 1e-7, POLYSILICON), 0)
+
+
+def dugdale_sphere(contact, adhesive, radius, modulus, stress):
+    """Load, interference and work of adhesion of a sphere that touches and is pulled by ``stress`` within two radii.
+
+    By the method of dimensionality reduction: a row of springs with a displacement u(x) that is continuous where the
+    contact ends.
+    The work is the stress times the gap at the edge of the attraction.
+    """
+
+    def pull(x):
+        return -2 * stress * np.sqrt(adhesive**2 - x**2) / modulus
+
+    interference = contact**2 / radius + pull(contact)
+    angle = np.arcsin(contact / adhesive)
+
+    def spring(t):
+        x = adhesive * np.sin(t)
+        return interference - x**2 / radius if t < angle else pull(x)
+
+    def over_both_parts(function):
+        return quad(function, 0, angle)[0] + quad(function, angle, np.pi / 2)[0]
+
+    load = 2 * modulus * over_both_parts(lambda t: spring(t) * adhesive * np.cos(t))
+    gap = adhesive**2 / (2 * radius) - interference + 2 / np.pi * over_both_parts(spring)
+    return load, interference, stress * gap
+
+
+@pytest.mark.parametrize("contact_nm", [1.0, 4.0, 12.0])
+@pytest.mark.parametrize("excess", [1.02, 1.5, 6.0])
+def test_maugis_in_contact_is_a_sphere_on_springs_pulled_by_a_constant_stress(contact_nm, excess):
+    contact, radius, stress = contact_nm * 1e-9, 4e-7, 4e8
+    force, interference, work = dugdale_sphere(contact, excess * contact, radius, POLYSILICON, stress)
+    unit = (np.pi * work * radius**2 / (4 / 3 * POLYSILICON)) ** (1 / 3)  # of lengths in the plane of contact
+    transition = 2 * stress * unit**2 / (np.pi * work * radius)
+    load, delta = maugis_in_contact(np.array([np.sqrt(excess**2 - 1)]), transition)
+    # Quadrature across the bend of the springs is good to 1e-7 of the force scale.
+    np.testing.assert_allclose(load * np.pi * work * radius, force, rtol=0, atol=1e-6 * np.pi * work * radius)
+    np.testing.assert_allclose(delta * unit**2 / radius, interference, rtol=1e-6)
+
+
+@pytest.mark.parametrize("adhesive_nm", [2.0, 9.0])
+def test_maugis_apart_is_a_sphere_pulled_by_a_constant_stress_alone(adhesive_nm):
+    adhesive, radius, stress = adhesive_nm * 1e-9, 4e-7, 4e8
+    # Without contact any height of the sphere is in balance; the edge of the attraction fixes it.
+    work = stress * WATER.attraction.range
+    force = -np.pi * adhesive**2 * stress
+    bulge = 2 / np.pi * quad(lambda t: -2 * stress * adhesive * np.cos(t) / POLYSILICON, 0, np.pi / 2)[0]
+    interference = adhesive**2 / (2 * radius) + bulge - WATER.attraction.range
+    unit = (np.pi * work * radius**2 / (4 / 3 * POLYSILICON)) ** (1 / 3)
+    transition = 2 * stress * unit**2 / (np.pi * work * radius)
+    load, delta = maugis_apart(adhesive / unit, transition)
+    np.testing.assert_allclose(load * np.pi * work * radius, force, rtol=1e-10)
+    np.testing.assert_allclose(delta * unit**2 / radius, interference, rtol=1e-10)
+
+
+@given(radii, moduli)
+def test_scales_of_a_sphere_are_those_of_maugis(radius, modulus):
+    pull, stiffness = attraction("dry"), 4 / 3 * modulus
+    unit = (np.pi * pull.work_of_adhesion * radius**2 / stiffness) ** (1 / 3)  # of the contact radius
+    np.testing.assert_allclose(interference_scale(radius, modulus, pull), unit**2 / radius, rtol=1e-12)
+    pull_on_unit = 2 * pull.stress * unit**2 / (np.pi * pull.work_of_adhesion * radius)
+    np.testing.assert_allclose(transition_parameter(radius, modulus, pull), pull_on_unit, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("transition", "golden"), [(0.1, 1.95060), (0.5, 1.71825), (1.0, 1.60074), (5.0, 1.50635)])
+def test_pull_off_force_is_that_of_an_independent_solution(transition, golden):
+    load, _ = maugis_branch(transition)
+    np.testing.assert_allclose(-load.min(), golden, rtol=0, atol=1e-5)
+
+
+def test_pull_off_force_falls_from_dmt_to_jkr():
+    transitions = np.geomspace(1e-3, 30, 25)
+    pull_off = np.array([-maugis_branch(x)[0].min() for x in transitions])
+    assert np.all(np.diff(pull_off) < 0)
+    np.testing.assert_allclose(pull_off[0], 2, atol=1e-3)
+    np.testing.assert_allclose(pull_off[-1], 1.5, atol=1e-3)
+
+
+@pytest.mark.parametrize("transition", [1e-3, 1e-5])
+def test_maugis_tends_to_dmt_for_small_hard_spheres(transition):
+    load, interference = maugis_branch(transition, points=100_000)
+    overlap = np.linspace(0.5, 4, 30)
+    # The limit is approached only like the square root of λ.
+    np.testing.assert_allclose(np.interp(overlap, interference, load), overlap**1.5 - 2, atol=5 * np.sqrt(transition))
+
+
+@pytest.mark.parametrize("transition", [10, 50])
+def test_maugis_tends_to_jkr_for_large_soft_spheres(transition):
+    load, interference = maugis_branch(transition, points=100_000)
+    a = np.linspace((1 / 6) ** (1 / 3), 4, 100_000)  # from the least interference on
+    jkr_load, jkr_interference = a**3 - a * np.sqrt(6 * a), a**2 - 2 / 3 * np.sqrt(6 * a)
+    overlap = np.linspace(-0.9, 8, 200)
+    error = np.interp(overlap, interference, load) - np.interp(overlap, jkr_interference, jkr_load)
+    assert np.abs(error).max() < 1.3 / transition**2
+
+
+@given(st.floats(0.02, 20), st.floats(0.02, 100))
+def test_gap_closes_at_the_edge_of_the_attraction(transition, spread):
+    _, interference = maugis_in_contact(np.array([spread]), transition)
+    # One of the two contact radii that δ̄ = ā² - (4/3) λ ā u allows must obey Maugis' closure.
+    half = 2 / 3 * transition * spread
+    a = half + np.array([-1, 1]) * np.sqrt(half**2 + interference)
+    m, t = np.hypot(spread, 1), np.arctan(spread)
+    closure = transition * a**2 / 2 * (spread + (m**2 - 2) * t) + 4 / 3 * transition**2 * a * (spread * t - m + 1)
+    assert np.abs(closure - 1).min() < 1e-5  # a small radius is the difference of large numbers
+
+
+@pytest.mark.parametrize("transition", [0.05, 0.3, 1.0, 5.0])
+def test_sphere_that_comes_to_touch_carries_on_where_the_free_one_ended(transition):
+    touching = maugis_in_contact(np.array([1e7]), transition)
+    free = maugis_apart(np.array([touching_radius(transition)]), transition)
+    np.testing.assert_allclose(touching, free, rtol=0, atol=1e-5)
+
+
+@pytest.mark.parametrize("transition", [0.03, 0.2, 0.7, 6.0])
+def test_stable_states_are_ordered_by_interference_and_reach_deep_into_contact(transition):
+    _, interference = maugis_branch(transition)
+    assert np.all(np.diff(interference) > 0)
+    assert interference[-1] > 1000
+
+
+@pytest.mark.parametrize("transition", [0.03, 0.1, 0.3])
+def test_hard_sphere_snaps_off_where_its_free_state_loses_stability(transition):
+    c = 8 * transition / (3 * np.pi)
+    load, interference = maugis_branch(transition)
+    np.testing.assert_allclose(interference[0], -(c**2) / 2 - 2 / (np.pi * transition), rtol=1e-12)
+    np.testing.assert_allclose(load[0], -np.pi / 2 * transition * c**2, rtol=1e-12)
+
+
+@pytest.mark.parametrize("transition", [1.0, 3.0, 6.0])
+def test_soft_sphere_snaps_off_in_contact_at_a_vertical_tangent(transition):
+    load, interference = maugis_branch(transition, points=60_000)
+    assert load[0] > load.min() + 1e-3  # beyond the pull-off force
+    slope = (load[1] - load[0]) / (interference[1] - interference[0])
+    assert abs(slope) > 50
+
+
+def test_no_attraction_leaves_hertz():
+    faint = MaugisTable(POLYSILICON, Attraction(1e-30))
+    interference = np.linspace(1e-10, 5e-9, 20)
+    np.testing.assert_allclose(faint.force(interference, 3e-7), hertz_force(interference, 3e-7, POLYSILICON), rtol=1e-4)
+
+
+@given(st.floats(0.3, 4))
+def test_spheres_with_the_same_transition_parameter_are_similar(factor):
+    # λ and the scale of interference depend on R / E'² only: twice as stiff and four times as blunt pulls four times
+    # as hard.
+    similar = MaugisTable(factor * POLYSILICON, WATER.attraction)
+    interference = np.linspace(-2e-10, 2e-9, 9)
+    np.testing.assert_allclose(
+        similar.force(interference, factor**2 * 2e-7), factor**2 * WATER.force(interference, 2e-7), rtol=1e-9
+    )
+
+
+@given(st.floats(1e-8, 1e-5))
+def test_sphere_out_of_reach_feels_nothing(radius):
+    scale = interference_scale(radius, POLYSILICON, WATER.attraction)
+    load, delta = maugis_branch(transition_parameter(radius, POLYSILICON, WATER.attraction), 20_000)
+    force = WATER.force(np.array([-1e-8, delta[0] * scale * (1 + 1e-9), delta[0] * scale * (1 - 1e-9)]), radius)
+    np.testing.assert_array_equal(force[:2], 0)
+    np.testing.assert_allclose(force[2], np.pi * WATER.attraction.work_of_adhesion * radius * load[0], rtol=1e-2)
+
+
+def test_tabulated_load_is_the_load_of_the_branch():
+    low, high, n = WATER.transitions
+    roots = np.linspace(*WATER.roots)
+    for row in (0, 60, n - 1):
+        load, delta = maugis_branch(low * (high / low) ** (row / (n - 1)), 50_000)
+        exact = np.interp(roots**2, delta - delta[0], load)
+        # Both interpolate: 6000 states against 50 000; the error stays below 1e-4 of the pull-off force or of the load.
+        # Snap-off itself has a vertical tangent.
+        np.testing.assert_allclose(WATER.load[row][1:], exact[1:], rtol=1e-4, atol=1e-4)
+        assert WATER.load[row][0] == pytest.approx(load[0], abs=5e-3)
+        assert WATER.snap_off[row] == pytest.approx(delta[0], abs=1e-6)
+
+
+def test_dimensional_scales_are_those_of_a_sphere_of_one_metre():
+    log_transition, interference, force, first, log_step, root_step = WATER.dimensional
+    np.testing.assert_allclose(
+        log_transition, np.log(transition_parameter(1.0, POLYSILICON, WATER.attraction)), rtol=1e-14
+    )
+    np.testing.assert_allclose(interference, interference_scale(1.0, POLYSILICON, WATER.attraction), rtol=1e-14)
+    np.testing.assert_allclose(force, np.pi * WATER.attraction.work_of_adhesion, rtol=1e-14)
+    low, high, n = WATER.transitions
+    np.testing.assert_allclose(np.exp(first + log_step * np.arange(n))[[0, -1]], [low, high], rtol=1e-12)
+    assert root_step * (WATER.load.shape[1] - 1) == pytest.approx(WATER.roots[1], rel=1e-12)

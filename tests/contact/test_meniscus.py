@@ -1,0 +1,59 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
+from stiction.contact.meniscus import kelvin_radius, laplace_pressure, meniscus_height
+
+ROUNDING = 1e-12  # a dozen operations in double precision, and the logarithm near RH = 1
+humidities = st.floats(0.01, 0.999)
+temperatures = st.floats(250, 400)
+
+
+@given(humidities, temperatures)
+def test_tension_times_height_is_twice_the_surface_energy(humidity, temperature):
+    product = abs(laplace_pressure(humidity, temperature)) * meniscus_height(humidity, temperature)
+    np.testing.assert_allclose(product, 2 * WATER_SURFACE_ENERGY, rtol=ROUNDING)
+
+
+def test_water_at_65_percent_has_the_tension_and_the_height_of_the_paper():
+    assert round(float(laplace_pressure(0.65, 300)) / 1e6, 1) == -59.7
+    assert round(float(meniscus_height(0.65, 300)) * 1e9, 2) == 2.41
+
+
+@given(humidities, temperatures)
+def test_vapour_over_the_meniscus_obeys_kelvins_equation(humidity, temperature):
+    radius = kelvin_radius(humidity, temperature)
+    vapour = np.exp(WATER_SURFACE_ENERGY * WATER_MOLAR_VOLUME / (GAS_CONSTANT * temperature * radius))
+    np.testing.assert_allclose(vapour, humidity, rtol=ROUNDING)
+
+
+@given(humidities, humidities, temperatures)
+def test_tension_adds_up_when_humidities_multiply(first, second, temperature):
+    together = laplace_pressure(first * second, temperature)
+    apart = laplace_pressure(first, temperature) + laplace_pressure(second, temperature)
+    np.testing.assert_allclose(together, apart, rtol=ROUNDING)
+
+
+def test_meniscus_grows_and_its_tension_fades_as_the_air_saturates():
+    humidity = np.linspace(0.05, 0.999, 50)
+    assert np.all(np.diff(meniscus_height(humidity, 300)) > 0)
+    assert np.all(np.diff(laplace_pressure(humidity, 300)) > 0)
+    dryness = 1e-6
+    ideal = -GAS_CONSTANT * 300 * dryness / WATER_MOLAR_VOLUME
+    np.testing.assert_allclose(laplace_pressure(1 - dryness, 300), ideal, rtol=dryness)  # ln(1 - x) = -x - x²/2
+
+
+def test_water_always_pulls():
+    humidity = np.array([[0.01, 0.5], [0.9, 0.999]])
+    assert laplace_pressure(humidity, 300).shape == (2, 2)
+    assert np.all(laplace_pressure(humidity, 300) < 0)
+    assert np.all(meniscus_height(humidity, 300) > 0)
+
+
+@pytest.mark.parametrize("humidity", [0.0, 1.0, -0.1, 1.5, float("nan"), [0.5, 1.0]])
+def test_humidity_outside_the_open_interval_is_refused_with_its_value(humidity):
+    shown = str(np.ravel(humidity)[-1]).removesuffix(".0")
+    with pytest.raises(ValueError, match=rf"\(0, 1\), got .*{shown}"):
+        laplace_pressure(humidity, 300)

@@ -1,0 +1,328 @@
+import dataclasses
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+from published import IDENTITY, SPACING, SURFACES
+from scipy.stats import norm
+from standard_errors import ALLOWED, errors_off
+
+from stiction.contact.asperity import MaugisTable, hertz_force, reduced_modulus, transition_parameter
+from stiction.contact.pair import DistanceGrid, SurfacePair, bearing_area, contact_of_samples
+from stiction.contact.vanderwaals import attraction
+from stiction.streams import stream
+from stiction.surface import maxent
+from stiction.surface.field import StripGrid
+from stiction.surface.summits import find_summits
+from stiction.surface.translation import Translation
+
+POLYSILICON = reduced_modulus(164e9, 0.23)
+WATER, NONE = (MaugisTable(POLYSILICON, attraction(through)) for through in ("water", "none"))
+STRIP = StripGrid(0.6e-6, 0.8e-6, SPACING, margin=0.2e-6)
+STEP = 0.05e-9
+PAIR = SurfacePair(SURFACES["B1"].on(STRIP), SURFACES["Sub1"].on(STRIP), WATER, STEP)
+HERTZ = dataclasses.replace(PAIR, solid=NONE)
+#: The table interpolates between rows of λ: 1.5 % of the force scale πwR where a sphere comes to touch, 1e-4 of a
+#: large load.
+TABLE, TABLE_DEEP = 0.015, 1e-4
+
+
+def streams(number):
+    return stream(2021, "beam", number), stream(2021, "substrate", number)
+
+
+def rough(number=0, pair=PAIR):
+    return pair.draw(*streams(number))
+
+
+def spheres(*tops, radius=3e-7, shape=(61, 61), spacing=SPACING):
+    """Flat far below, with spherical caps (paraboloids) at places (i, j) of these heights [m]."""
+    i, j = (np.arange(n) * spacing for n in shape)
+    caps = [z - ((i[:, None] - i[a]) ** 2 + (j - j[b]) ** 2) / (2 * radius) for a, b, z in tops]
+    return np.max(caps, axis=0).astype(np.float32)
+
+
+def area_inside(heights, spacing=SPACING):
+    """Area of the points that have all neighbours, on which a summit can stand [m²]."""
+    return (heights.shape[0] - 2) * (heights.shape[1] - 2) * spacing**2
+
+
+def force_scale(radius):
+    return np.pi * WATER.attraction.work_of_adhesion * radius
+
+
+def next_to_snap_off(forces):
+    """Mark the distances at which a sphere lets go, last axis: the table may do so one step earlier or later."""
+    lets_go = np.diff((forces != 0).astype(int), append=0) != 0
+    early, late = np.roll(lets_go, -1, axis=-1), np.roll(lets_go, 1, axis=-1)
+    return np.any(np.atleast_2d(lets_go | early | late), axis=0)
+
+
+@pytest.mark.parametrize("radius", [3e-8, 3e-7, 3e-6])
+def test_one_spherical_bump_without_attraction_is_hertz(radius):
+    z = spheres((30, 30, 5e-9), radius=radius)
+    pressure, _ = HERTZ.contact(z)
+    overlap = float(z.max()) - HERTZ.distances.solid
+    # The curvature is a difference of heights, which are good to 2⁻²⁴ of 5 nm.
+    rounding = 2 * 5e-9 * 2.0**-24 * radius / SPACING**2
+    np.testing.assert_allclose(
+        pressure * area_inside(z), hertz_force(overlap, radius, POLYSILICON), rtol=1e-9 + rounding
+    )
+
+
+@pytest.mark.parametrize("radius", [3e-8, 1e-7, 3e-7, 1e-6, 3e-6])
+def test_one_spherical_bump_with_attraction_is_maugis(radius):
+    z = spheres((30, 30, 5e-9), radius=radius)
+    force = PAIR.contact(z)[0] * area_inside(z)
+    exact = WATER.force(float(z.max()) - PAIR.distances.solid, radius)
+    allowed = TABLE * force_scale(radius) * (exact != 0) + TABLE_DEEP * np.abs(exact)
+    assert np.all((np.abs(force - exact) <= allowed)[~next_to_snap_off(exact)])
+    assert -force.min() > 1.4 * force_scale(radius)
+
+
+def test_two_bumps_carry_the_sum_of_their_forces():
+    both = spheres((15, 15, 5e-9), (45, 40, 3e-9), radius=1e-7)
+    alone = [spheres(top, radius=1e-7) for top in ((15, 15, 5e-9), (45, 40, 3e-9))]
+    for pair in (PAIR, HERTZ):
+        np.testing.assert_allclose(
+            pair.contact(both)[0],
+            sum(pair.contact(z)[0] for z in alone),
+            rtol=1e-5,
+            atol=1e-9 * pair.contact(both)[0].max(),
+        )
+
+
+def test_hertz_pressure_of_a_rough_surface_is_the_plain_sum_over_its_summits():
+    z = rough()
+    height, curvature, _ = find_summits(z, SPACING)
+    overlap = height[:, None] - HERTZ.distances.solid
+    plain = np.sum(hertz_force(overlap, 1 / curvature[:, None], POLYSILICON), axis=0) / area_inside(z)
+    np.testing.assert_allclose(HERTZ.contact(z)[0], plain, rtol=1e-9, atol=1e-9)
+
+
+def test_maugis_pressure_of_a_rough_surface_is_the_plain_sum_over_its_summits():
+    z = rough()
+    height, curvature, _ = find_summits(z, SPACING)
+    assert len(height) > 20
+    distance = PAIR.distances.solid
+    forces = np.array([WATER.force(h - distance, 1 / k) for h, k in zip(height, curvature, strict=True)])
+    error = np.abs(PAIR.contact(z)[0] * area_inside(z) - forces.sum(axis=0))
+    allowed = TABLE * force_scale(1 / curvature) @ (forces != 0) + TABLE_DEEP * np.abs(forces).sum(axis=0)
+    assert np.all((error <= allowed)[~next_to_snap_off(forces)])
+    assert np.sum(~next_to_snap_off(forces)) > 100
+    assert np.abs(forces).sum(axis=0).max() > 100 * allowed.max()
+
+
+def test_hertz_pressure_falls_with_the_distance_and_ends_at_the_highest_summit():
+    z = rough()
+    pressure, _ = HERTZ.contact(z)
+    assert np.all(np.diff(pressure) <= 0)
+    highest = find_summits(z, SPACING)[0].max()
+    distance = HERTZ.distances.solid
+    assert np.all(pressure[distance < highest] > 0)
+    assert np.all(pressure[distance > highest] == 0)
+
+
+def test_attraction_takes_away_pressure_and_reaches_farther_than_elasticity():
+    z = rough()
+    adhesive, elastic = PAIR.contact(z)[0], HERTZ.contact(z)[0]
+    assert np.all(adhesive[elastic > 0] < elastic[elastic > 0])
+    beyond = PAIR.distances.solid > find_summits(z, SPACING)[0].max()
+    assert adhesive[beyond].min() < 0
+    assert np.all(adhesive[PAIR.distances.solid > z.max() + 1e-9] == 0)
+
+
+@given(st.floats(0.1, 10))
+@settings(max_examples=10)
+def test_hertz_pressure_is_proportional_to_the_modulus(factor):
+    stiffer = dataclasses.replace(HERTZ, solid=MaugisTable(factor * POLYSILICON, attraction("none")))
+    z = rough()
+    np.testing.assert_allclose(stiffer.contact(z)[0], factor * HERTZ.contact(z)[0], rtol=1e-12)
+
+
+@pytest.mark.parametrize("pair", [PAIR, HERTZ], ids=["Maugis", "Hertz"])
+def test_lifting_the_surface_by_some_steps_shifts_both_curves_by_these_steps(pair):
+    z, steps = rough(), 40
+    pressure, area = pair.contact(z)
+    lifted_pressure, lifted_area = pair.contact(z + np.float32(steps * STEP))
+    scale = np.abs(pressure).max()
+    # Summits below the mean plane pull on a flat at it only from above: leave out the reach of the attraction.
+    np.testing.assert_allclose(lifted_pressure[steps + 10 :], pressure[10:-steps], rtol=1e-4, atol=1e-5 * scale)
+    np.testing.assert_allclose(
+        lifted_area[steps:], area[:-steps], atol=2 / z.size
+    )  # a point on a step may fall on either side
+
+
+@pytest.mark.parametrize("pair", [PAIR, HERTZ], ids=["Maugis", "Hertz"])
+def test_turning_the_pair_changes_nothing(pair):
+    z = rough()
+    for one, other in zip(pair.contact(z), pair.contact(np.ascontiguousarray(z.T)), strict=True):
+        np.testing.assert_allclose(other, one, rtol=1e-9, atol=1e-9 * np.abs(one).max())
+
+
+@pytest.mark.parametrize("pair", [PAIR, HERTZ], ids=["Maugis", "Hertz"])
+def test_finer_steps_of_the_distance_add_points_and_change_none(pair):
+    z = rough()
+    finer = dataclasses.replace(pair, step=STEP / 2)
+    coarse, fine = pair.contact(z)[0], finer.contact(z)[0][::2]
+    n = min(len(coarse), len(fine))
+    np.testing.assert_allclose(fine[:n], coarse[:n], rtol=1e-9, atol=1e-9 * np.abs(coarse).max())
+
+
+def test_every_other_point_is_the_same_contact_on_a_coarser_grid():
+    halved = dataclasses.replace(PAIR, every=2)
+    z = rough()
+    np.testing.assert_array_equal(rough(pair=halved), z[::2, ::2])
+    fine, coarse = spheres((30, 30, 5e-9)), spheres((15, 15, 5e-9), shape=(31, 31), spacing=2 * SPACING)
+    forces = PAIR.contact(fine)[0] * area_inside(fine), halved.contact(coarse)[0] * area_inside(coarse, 2 * SPACING)
+    np.testing.assert_allclose(forces[1], forces[0], rtol=1e-4, atol=1e-4 * force_scale(3e-7))
+
+
+@pytest.mark.parametrize("modulus", [1e7, 1e13])
+def test_sphere_softer_or_harder_than_the_table_is_refused(modulus):
+    pair = dataclasses.replace(PAIR, solid=MaugisTable(modulus, attraction("water")))
+    low, high, _ = pair.solid.transitions
+    assert not low < transition_parameter(3e-7, modulus, pair.solid.attraction) < high
+    with pytest.raises(ValueError, match="1 summits leave the table"):
+        pair.contact(spheres((30, 30, 5e-9)))
+
+
+def test_sphere_pressed_deeper_than_the_table_is_refused():
+    hard = dataclasses.replace(PAIR, solid=MaugisTable(1e13, attraction("dry")))
+    radius = 1e-4
+    low, high, _ = hard.solid.transitions
+    assert low < transition_parameter(radius, 1e13, hard.solid.attraction) < high
+    with pytest.raises(ValueError, match="leave the table"):
+        hard.contact(spheres((30, 30, 1e-7), radius=radius))
+
+
+@given(arrays.arrays(np.float32, (6, 7), elements=st.integers(-6000, 6000).map(lambda k: k * 1e-12)))
+def test_bearing_area_is_the_count_of_higher_points(heights):
+    below, above = 60, 50
+    distance = 1e-10 * np.arange(-below, above)
+    found = bearing_area(heights, 1e-10, below, above)
+    # Points within single precision of a distance may count or not.
+    slack = 1e-15
+    least = np.mean(heights[..., None] > distance + slack, axis=(0, 1))
+    most = np.mean(heights[..., None] > distance - slack, axis=(0, 1))
+    assert np.all((least - 1e-12 <= found) & (found <= most + 1e-12))
+
+
+def test_bearing_area_of_a_flat_is_all_below_it_and_nothing_above():
+    flat = np.full((20, 20), 1.02e-9, np.float32)
+    pressure, area = PAIR.contact(flat)
+    np.testing.assert_array_equal(area, PAIR.distances.bearing < 1.02e-9)
+    np.testing.assert_array_equal(pressure, 0)  # no summit
+
+
+def test_bearing_area_of_a_ramp_falls_like_a_ramp():
+    ramp = np.linspace(-2e-9, 2e-9, 40_001, dtype=np.float32).reshape(1, -1)
+    area = bearing_area(ramp, 1e-10, 30, 30)
+    distance = 1e-10 * np.arange(-30, 30)
+    np.testing.assert_allclose(area, np.clip(0.5 - distance / 4e-9, 0, 1), atol=1e-4)
+
+
+def test_bearing_area_of_a_rough_surface_falls_from_everything_to_nothing():
+    _, area = PAIR.contact(rough())
+    assert area[0] == 1
+    assert area[-1] == 0
+    assert np.all(np.diff(area) <= 0)
+
+
+def test_integral_of_the_bearing_area_is_the_mean_height_above_the_lowest_distance():
+    z = rough()
+    grid = PAIR.distances
+    _, area = PAIR.contact(z)
+    # Every point counts at one distance more than the steps below it: half a step on average.
+    mean = STEP * area.sum() + grid.bearing[0] - STEP / 2
+    spread = STEP / np.sqrt(12 * z.size)
+    np.testing.assert_allclose(mean, z.mean(dtype=float), rtol=0, atol=4 * spread)
+
+
+def test_mean_bearing_area_is_the_upper_tail_of_the_height_density_and_the_test_can_tell():
+    surface = SURFACES["Sub2"]
+    polished = dataclasses.replace(SURFACES["Sub1"].on(STRIP), rms=1e-15)
+    pair = SurfacePair(surface.on(STRIP), polished, NONE, STEP)
+    places = pair.distances.below + np.array([-100, 0, 100, 200])
+    areas = np.array([pair.contact(rough(k, pair))[1][places] for k in range(100)])
+    scores = np.linspace(-8, 8, 160_001)
+    share = norm.pdf(scores) * (scores[1] - scores[0])
+    tail = [share @ (surface.translation(scores) > d / surface.rms) for d in pair.distances.bearing[places]]
+    assert errors_off(areas, tail) < ALLOWED
+    assert errors_off(areas, norm.sf(pair.distances.bearing[places] / surface.rms)) > ALLOWED
+
+
+def test_distances_cover_the_surface_on_both_sides_and_contain_zero():
+    grid = DistanceGrid.covering(-16e-9, 15e-9, 0.4e-9)
+    assert grid.bearing[grid.below] == 0
+    assert grid.bearing[0] <= -16e-9 < grid.bearing[1]
+    assert grid.bearing[-2] < 15e-9 <= grid.bearing[-1]
+    np.testing.assert_array_equal(grid.solid, grid.bearing[grid.below :])
+    np.testing.assert_allclose(np.diff(grid.bearing), 0.4e-9, rtol=1e-9)
+
+
+def test_no_height_of_a_surface_with_a_long_upper_tail_stands_out_of_the_distances():
+    mirrored = Translation(maxent.solve(0.78, 4.6))
+    beam = dataclasses.replace(SURFACES["B1"].on(STRIP), translation=mirrored)
+    pair = dataclasses.replace(PAIR, beam=beam)
+    highest = max(rough(k, pair).max() for k in range(40))
+    assert highest > 7 * beam.rms  # where a grid made for Gaussian surfaces would end
+    assert pair.distances.solid[-1] > highest
+    _, area = pair.contact(rough(0, pair))
+    assert area[0] == 1
+    assert area[-1] == 0
+
+
+def test_mean_pressure_does_not_depend_on_the_size_of_the_strip_and_the_test_can_tell():
+    narrow = dataclasses.replace(STRIP, length=5 * SPACING)
+    pairs = PAIR, dataclasses.replace(PAIR, beam=SURFACES["B1"].on(narrow), substrate=SURFACES["Sub1"].on(narrow))
+    place = PAIR.distances.solid.searchsorted(1e-9)
+    wide, slim = (
+        np.array([pair.contact(rough(k, pair))[0][place] for k in range(samples)])
+        for pair, samples in zip(pairs, (100, 1200), strict=True)
+    )
+    error = np.hypot(*(x.std(ddof=1) / np.sqrt(len(x)) for x in (wide, slim)))
+    assert abs(wide.mean() - slim.mean()) < ALLOWED * error
+    inside = area_inside(rough(0, pairs[1])) / (narrow.shape[0] * narrow.shape[1] * SPACING**2)
+    assert wide.mean() - slim.mean() * inside > ALLOWED * error
+
+
+def test_equivalent_surface_is_the_sum_of_the_two_surfaces():
+    z = rough()
+    parts = PAIR.beam.draw(stream(2021, "beam", 0)) + PAIR.substrate.draw(stream(2021, "substrate", 0))
+    np.testing.assert_allclose(z, parts, rtol=0, atol=1e-15)
+    assert z.flags.c_contiguous
+    assert z.dtype == np.float32
+    other = PAIR.draw(stream(2021, "beam", 0), stream(2021, "substrate", 1))
+    assert np.abs(other - z).max() > 1e-10
+
+
+def test_contact_of_a_sample_does_not_depend_on_the_samples_it_is_computed_with():
+    together = contact_of_samples(PAIR, streams, range(4))
+    apart = [contact_of_samples(PAIR, streams, chunk) for chunk in ([2, 3], [0, 1])]
+    for which in range(2):
+        assert together[which].dtype == np.float32
+        np.testing.assert_array_equal(together[which], np.concatenate([apart[1][which], apart[0][which]]))
+        np.testing.assert_allclose(together[which][3], PAIR.contact(rough(3))[which], rtol=1e-6)
+
+
+def test_sample_that_cannot_be_computed_is_named():
+    soft = dataclasses.replace(PAIR, solid=MaugisTable(1e7, attraction("water")))
+    with pytest.raises(ValueError, match="sample 7: .* summits leave the table"):
+        contact_of_samples(soft, streams, [7])
+
+
+@pytest.mark.parametrize("change", [{"length": 0.5e-6}, {"length": 0.48e-6, "width": 0.64e-6, "spacing": 8e-9}])
+def test_surfaces_on_different_points_cannot_meet(change):
+    other = SURFACES["Sub1"].gaussian_twin(dataclasses.replace(STRIP, **change))
+    with pytest.raises(ValueError, match="must meet point by point"):
+        dataclasses.replace(PAIR, substrate=other)
+
+
+def test_wider_margin_is_no_obstacle_to_meeting():
+    wider = dataclasses.replace(STRIP, margin=0.4e-6)
+    pair = dataclasses.replace(PAIR, substrate=SURFACES["Sub1"].gaussian_twin(wider))
+    assert rough(pair=pair).shape == STRIP.shape
+    assert pair.substrate.translation is IDENTITY

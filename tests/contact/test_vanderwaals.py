@@ -1,0 +1,59 @@
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from stiction.constants import HAMAKER_CONSTANT, MOLECULAR_DISTANCE
+from stiction.contact.vanderwaals import Attraction, attraction
+
+
+def half_space_pressure(distance, hamaker_constant):
+    """Lennard-Jones repulsion minus attraction of two half spaces [Pa]."""
+    return hamaker_constant / (6 * np.pi) * (2 / 15 * MOLECULAR_DISTANCE**6 / distance**9 - distance**-3)
+
+
+@pytest.mark.parametrize("through", ["water", "dry"])
+def test_half_spaces_feel_no_force_at_the_equilibrium_distance(through):
+    pull = attraction(through)
+    at_rest = half_space_pressure(pull.equilibrium_distance, pull.hamaker_constant)
+    assert abs(at_rest) < 1e-9 * abs(half_space_pressure(1.1 * pull.equilibrium_distance, pull.hamaker_constant))
+
+
+@pytest.mark.parametrize("through", ["water", "dry"])
+def test_work_of_adhesion_is_the_work_against_the_lennard_jones_pressure(through):
+    pull = attraction(through)
+    start = pull.equilibrium_distance
+    # In units of the equilibrium distance, where quadrature keeps its relative accuracy.
+    work = quad(lambda x: -start * half_space_pressure(x * start, pull.hamaker_constant), 1, np.inf, epsrel=1e-10)[0]
+    np.testing.assert_allclose(pull.work_of_adhesion, work, rtol=1e-8)
+
+
+@pytest.mark.parametrize("through", ["water", "dry"])
+def test_dugdale_stress_does_the_work_of_adhesion_over_its_range(through):
+    pull = attraction(through)
+    np.testing.assert_allclose(pull.stress * pull.range, pull.work_of_adhesion, rtol=1e-14)
+
+
+def test_distances_and_stress_are_those_of_the_paper():
+    pull = attraction("water")
+    assert round(pull.equilibrium_distance * 1e10, 2) == 1.49
+    assert round(pull.range * 1e10, 2) == 2.28
+    # The check values come from D₀ rounded to 1.49 Å, a quarter of a percent, which enters squared.
+    np.testing.assert_allclose(pull.work_of_adhesion, 0.0874, rtol=6e-3)
+    np.testing.assert_allclose(pull.stress, 383e6, rtol=6e-3)
+
+
+def test_water_weakens_the_attraction_by_the_ratio_of_the_hamaker_constants():
+    ratio = HAMAKER_CONSTANT["dry"] / HAMAKER_CONSTANT["water"]
+    np.testing.assert_allclose(ratio, 18.65 / 9.75, rtol=1e-14)
+    np.testing.assert_allclose(attraction("dry").stress / attraction("water").stress, ratio, rtol=1e-14)
+    assert attraction("dry").range == attraction("water").range
+
+
+def test_no_attraction_has_no_stress_and_no_work():
+    assert attraction("none") == Attraction(0.0)
+    assert attraction("none").stress == attraction("none").work_of_adhesion == 0
+
+
+def test_unknown_medium_is_refused_by_name():
+    with pytest.raises(ValueError, match="water, dry or none, got 'oil'"):
+        attraction("oil")

@@ -1,0 +1,192 @@
+"""Every check passes where its law holds, and has a control that fails."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from stiction.beam.cantilever import ROUNDING, TOLERANCE, Beam
+from stiction.report import checks
+from stiction.stages import data
+from stiction.streams import stream
+
+BEAM = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200)
+STRIP = 1.5e-6
+LIMIT = 2e6
+TARGET = {"rms_nm": 1.7, "skewness": 0.0, "kurtosis": 3.0}
+
+
+def forces(mean, scatter=0.1, n=400, noise=0, **changed):
+    """Samples of v with an adhesion energy of given mean [mJ/m²] and scatter; the same surfaces every time."""
+    common, own = (stream(3, "checks", name).standard_normal(n) for name in ("common", noise))
+    energy = mean * 1e-3 * (1 + scatter * common + 1e-3 * own)
+    v = np.column_stack([energy, np.full(n, 1e6), np.full(n, 8e-9), np.full(n, 6.5e-9)])
+    for name, value in changed.items():
+        v[0, data.VECTOR.index(name)] = value
+    return data.forces(v, LIMIT, np.arange(3.0), np.zeros((1, 3)))
+
+
+def chaos(mean_off=0.0, spread_off=0.0, correlation_off=0.0, rejected=0.0):
+    """What the chaos stage reports: input of mean 10 and standard deviation 2, draws off by parts of the latter."""
+    statistics = np.zeros((3, 4, 4))
+    statistics[:, 0], statistics[:, 1] = 10, 2
+    statistics[2, 0, 1] += 2 * mean_off
+    statistics[2, 1, 2] *= 1 + spread_off
+    coordinates = {"source": ["input", "kernels", "chaos"], "component": list(data.VECTOR)}
+    coordinates["statistic"] = ["mean", "standard deviation", "1 % quantile", "99 % quantile"]
+    correlation = np.tile(np.eye(4), (3, 1, 1))
+    correlation[2, 0, 3] += correlation_off
+    variables = {
+        "statistics": (("source", "statistic", "component"), statistics),
+        "correlation": (("source", "component", "other"), correlation),
+        "rejected": ((), rejected),
+    }
+    return xr.Dataset(variables, coordinates)
+
+
+def character(strips, rms=1.7, exponent=1.0):
+    """Moments of strips of independent heights; an exponent other than 1 skews them."""
+    z = stream(5, "heights").standard_normal((strips, 4000))
+    z = rms * 1e-9 * (np.sign(z) * np.abs(z) ** exponent if exponent < 2 else (z**2 - 1) / np.sqrt(2))
+    power = np.stack([np.mean(z**order, axis=1) for order in (1, 2, 3, 4)], axis=1)
+    return xr.Dataset(
+        {"power": (("strip", "order"), power)}
+        | {name: ("strip", np.linspace(1, 2, strips)) for name in ("summit_density", "mean_curvature")}
+    )
+
+
+def beams(*imbalance):
+    return xr.Dataset({"imbalance": ("sample", np.array(imbalance))})
+
+
+def test_energy_that_grows_with_humidity_passes_and_the_same_energy_fails():
+    assert checks.energy_grows("b", forces(5), forces(9)).passed
+    assert not checks.energy_grows("b", forces(9), forces(5)).passed
+    assert not checks.energy_grows("b", forces(5), forces(5, noise=1)).passed, "noise alone is no growth"
+
+
+def test_energies_of_the_same_surfaces_are_compared_pair_by_pair():
+    weak, strong = forces(5, scatter=0.5), forces(5.1, scatter=0.5)
+    assert checks.energy_grows("b", weak, strong).passed, "a scatter that both share must not hide the growth"
+
+
+def test_nothing_is_claimed_of_air_drier_than_in_any_experiment():
+    dry = {(0.1, "NG"): 9, (0.3, "NG"): 5, (0.5, "NG"): 7, (0.7, "NG"): 8}
+    found = list(checks.of_trends(study(dry), []))
+    assert [check.case for check in found] == ["b NG, RH 0.5 to 0.7"]
+
+
+def test_skewed_surfaces_that_stick_more_pass_and_those_that_stick_less_fail():
+    assert checks.skewness_binds("b", forces(1), forces(6)).passed
+    assert not checks.skewness_binds("b", forces(6), forces(1)).passed
+
+
+def test_scatter_may_fall_with_the_energy_but_not_grow():
+    assert checks.scatter_falls("b", forces(5, 0.3), forces(9, 0.1)).passed
+    assert not checks.scatter_falls("b", forces(5, 0.1), forces(9, 0.3)).passed
+
+
+def test_scatter_is_relative_to_the_energy():
+    assert checks.scatter_falls("b", forces(5, 0.2), forces(9, 0.2, noise=1)).passed
+
+
+@pytest.mark.parametrize("strips", [4, 60])
+def test_gaussian_heights_have_gaussian_moments(strips):
+    assert all(check.passed for check in checks.moments_meet_targets("B", character(strips), TARGET, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "failed"), [({"rms": 1.8}, [0]), ({"exponent": 1.2}, [0, 2]), ({"exponent": 2}, [1, 2])]
+)
+def test_heights_with_other_moments_fail_in_those_moments(wrong, failed):
+    found = list(checks.moments_meet_targets("B", character(60, **wrong), TARGET, 0.0))
+    assert [k for k, check in enumerate(found) if not check.passed] == failed
+
+
+def test_variance_that_no_gaussian_field_provides_is_allowed_for():
+    *_, found = [list(checks.moments_meet_targets("B", character(60, rms=1.8), TARGET, d))[0] for d in (0.0, 0.2)]
+    assert found.passed
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"adhesion_energy": -1e-3}, {"pull_off": 3e6}, {"pull_off": -1.0}, {"limit_distance": 9e-9}]
+)
+def test_one_impossible_sample_fails(wrong):
+    assert checks.vectors_are_possible("b", forces(9)).passed
+    found = checks.vectors_are_possible("b", forces(9, **wrong))
+    assert not found.passed
+    assert "1 of 400 samples" in found.said
+
+
+def test_chaos_model_may_be_off_by_its_tolerance_and_no_more():
+    assert checks.chaos_reproduces_input("b", chaos(), 5000).passed
+    assert checks.chaos_reproduces_input("b", chaos(0.07, 0.2, 0.1), 5000).passed
+    for wrong in ({"mean_off": -0.09}, {"spread_off": 0.22}, {"spread_off": -0.22}, {"correlation_off": -0.12}):
+        assert not checks.chaos_reproduces_input("b", chaos(**wrong), 5000).passed
+
+
+def test_few_samples_are_judged_more_kindly():
+    assert checks.chaos_reproduces_input("b", chaos(0.25), 200).passed
+
+
+def test_draws_are_rejected_as_often_as_samples_have_no_law():
+    strong, weak = forces(9), forces(0.3)  # 0.5 f_max / a_left = 0.7 mJ/m² is more than the weak ones hold
+    assert checks.few_draws_rejected("b", chaos(), strong, 0.05).passed
+    assert not checks.few_draws_rejected("b", chaos(rejected=0.1), strong, 1.0).passed
+    assert checks.few_draws_rejected("b", chaos(rejected=1.0), weak, 1.0).passed
+    assert not checks.few_draws_rejected("b", chaos(rejected=0.9), weak, 1.0).passed
+    assert not checks.few_draws_rejected("b", chaos(rejected=1.0), weak, 0.05).passed
+
+
+def test_beam_out_of_balance_fails():
+    pull, bending = LIMIT * 30e-6 * STRIP, 12 * 164e9 * 30e-6 * 2.6e-6**3 / 12 / 7.5e-6**3 * 20e-6
+    allowed = TOLERANCE * pull + ROUNDING * bending
+    assert checks.beams_are_in_balance("b", beams(0.0, 0.99 * allowed), LIMIT, BEAM, STRIP).passed
+    assert not checks.beams_are_in_balance("b", beams(0.0, 1.01 * allowed), LIMIT, BEAM, STRIP).passed
+    assert not checks.beams_are_in_balance("b", beams(0.0, np.nan), LIMIT, BEAM, STRIP).passed
+
+
+def released(mean, n=400, stuck=1.0):
+    """Beams of this mean crack length [µm], 5 % apart, of which a share sticks."""
+    lengths = mean * 1e-6 * (1 + 0.05 * stream(3, "beams").standard_normal(n))
+    state = np.where(np.arange(n) < stuck * n, 0, 1)
+    return xr.Dataset({"crack_length": ("sample", lengths), "state": ("sample", state)})
+
+
+def test_chaos_model_may_move_a_crack_length_by_one_per_cent_and_errors():
+    assert checks.crack_lengths_are_kept("b", released(700), released(706)).passed
+    # 1 % and 4 · √2 · 5 % / √400
+    assert checks.crack_lengths_are_kept("b", released(700), released(700 / 1.023)).passed
+    assert not checks.crack_lengths_are_kept("b", released(700), released(700 / 1.026)).passed
+    assert not checks.crack_lengths_are_kept("b", released(700), released(700 * 1.026)).passed
+
+
+def test_cases_where_hardly_a_beam_sticks_have_no_crack_length_to_compare():
+    key = ("b", 0.5, "NG")
+    assert list(checks.of_resampling({key: released(700)}, {key: released(700, stuck=0)})) == []
+    assert len(list(checks.of_resampling({key: released(700)}, {key: released(700, stuck=0.5)}))) == 1
+
+
+def study(energies):
+    """Forces of one pair from {(humidity, model): energy}."""
+    return {("b", rh, model): forces(energy) for (rh, model), energy in energies.items()}
+
+
+def test_trends_compare_neighbouring_humidities_and_twins():
+    found = list(checks.of_trends(study({(0.8, "NG"): 9, (0.5, "NG"): 5, (0.8, "G"): 3, (0.5, "G"): 1}), ["b"]))
+    assert [check.law.split()[0] for check in found] == ["energy", "energy", "scatter", "negative", "negative"]
+    assert all(check.passed for check in found)
+
+
+def test_surfaces_that_are_not_skewed_negatively_need_not_bind_more():
+    found = list(checks.of_trends(study({(0.8, "NG"): 3, (0.8, "G"): 9}), []))
+    assert not found
+
+
+def test_verdict_names_what_failed_and_the_report_holds_every_number():
+    good, bad = checks.energy_grows("dry", forces(5), forces(9)), checks.energy_grows("wet", forces(9), forces(5))
+    assert checks.verdict(checks.table([good])) == "All 1 checks of the results passed."
+    said = checks.verdict(checks.table([good, bad]))
+    assert said.startswith("1 of 2 checks of the results failed. energy grows with humidity: wet: mean adhesion energy")
+    report = checks.markdown(checks.table([good, bad]))
+    assert good.said in report
+    assert f"**FAILED** wet: {bad.said}" in report

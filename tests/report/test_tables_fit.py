@@ -1,0 +1,35 @@
+"""Table of the fit by Eq. (12)."""
+
+import numpy as np
+import pytest
+
+from stiction.report.tables_fit import fit_quality, markdown_fit
+from stiction.stages import data_studies
+
+
+@pytest.fixture
+def table():
+    curve = np.linspace(0.01, 0.21, 101)
+    fit = data_studies.fit(np.arange(101), (curve, np.full(101, 1e-16)), 125)
+    return fit_quality({("b", 0.67, "NG"): fit})
+
+
+def test_errors_are_percent_with_their_standard_error(table):
+    (row,) = table.to_dict("records")
+    assert (row["pair"], row["relative_humidity"], row["model"], row["samples"]) == ("b", 0.67, "NG", 101)
+    assert row["curve_error_percent"] == pytest.approx(11)
+    assert row["curve_error_median_percent"] == pytest.approx(11)
+    assert row["curve_error_95_percent"] == pytest.approx(20)
+    # n equally spaced numbers in a range r have the variance r² n (n + 1) / 12 / (n - 1)².
+    assert row["curve_error_se_percent"] == pytest.approx(20 * np.sqrt(102 / 12) / 100)
+    assert row["energy_error_max_percent"] == pytest.approx(1e-14)
+
+
+def test_samples_without_a_law_are_counted_not_averaged(table):
+    assert table.share_without_law[0] == pytest.approx(24 / 125)
+
+
+def test_markdown_says_what_the_numbers_are(table):
+    text = markdown_fit(table)
+    assert "11.00 ± 0.58" in text
+    assert "d ≥ d_limit" in text.splitlines()[0]

@@ -1,0 +1,116 @@
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from stiction.run import fingerprint
+
+#: Everything that versions of Python print differently in a syntax tree, and its hash by Python 3.11, 3.12 and 3.13.
+SAMPLE = '''"""Docstring."""
+import os
+
+
+@decorator
+class Law(Base, flag=True):
+    """Docstring."""
+
+    e: float = 1.5e-3
+
+    async def wait(self, *rest, key=None, **more):
+        """Docstring."""
+        return [x async for x in rest if x]
+
+
+def f(a, /, b=2, *, c: int = 3) -> str:
+    match a:
+        case [1, *_] | {"k": str()}:
+            return f"{a!r:>{b}.3f} and" " text" f"{c=}" + u"kind"
+    return rf"{a:{b}}\\n" f"" f"{'nested'}"
+'''
+HASH = "a100a4f6"
+
+
+@pytest.fixture
+def package(tmp_path, monkeypatch):
+    """A package of three modules in two folders and a script that reaches two of them."""
+    files = {
+        "near.py": "from stiction.folder import far\nX = 1\n",
+        "folder/far.py": "def f():\n    return 2\n",
+        "other.py": "Y = 3\n",
+        "scripts/script.py": '"""Say."""\nfrom stiction.near import X\n',
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    monkeypatch.setattr(fingerprint, "PACKAGE", tmp_path)
+    return tmp_path
+
+
+def of_script(package):
+    fingerprint._read.cache_clear()
+    return fingerprint.fingerprint(package / "scripts" / "script.py")
+
+
+def test_the_fingerprint_names_the_script_and_all_it_reaches(package):
+    assert list(of_script(package)) == ["script.py", "stiction.folder.far", "stiction.near"]
+
+
+@pytest.mark.parametrize(
+    "statement", ["from stiction.folder.far import f", "import stiction.folder.far", "from stiction.folder import far"]
+)
+def test_every_form_of_an_import_counts(package, statement):
+    (package / "scripts" / "script.py").write_text(f"def main():\n    {statement}\n")
+    assert list(of_script(package)) == ["script.py", "stiction.folder.far"]
+
+
+def test_a_script_and_a_module_of_one_file_name_both_count(package):
+    script = package / "scripts" / "near.py"
+    script.write_text("from stiction import near\n")
+    assert list(fingerprint.fingerprint(script)) == ["near.py", "stiction.folder.far", "stiction.near"]
+
+
+def test_a_change_far_away_changes_one_entry(package):
+    before = of_script(package)
+    (package / "folder" / "far.py").write_text("def f():\n    return 2.5\n")
+    after = of_script(package)
+    assert {name for name in before if before[name] != after[name]} == {"stiction.folder.far"}
+
+
+def test_comments_docstrings_and_layout_do_not_count(package):
+    before = of_script(package)
+    (package / "folder" / "far.py").write_text('"""A module."""\n\n# why\ndef f():\n    """Two."""\n    return (2)\n')
+    assert of_script(package) == before
+
+
+def test_a_module_that_is_not_reached_does_not_count(package):
+    before = of_script(package)
+    (package / "other.py").write_text("Y = 4\n")
+    assert of_script(package) == before
+
+
+def test_a_module_that_changes_no_number_does_not_count(package, monkeypatch):
+    monkeypatch.setattr(fingerprint, "SILENT", {"stiction.folder.far"})
+    assert list(of_script(package)) == ["script.py", "stiction.near"]
+
+
+def test_this_python_gives_the_hash_that_others_give(tmp_path):
+    path = tmp_path / "sample.py"
+    path.write_text(SAMPLE)
+    assert fingerprint.fingerprint(path) == {"sample.py": HASH}
+
+
+@pytest.mark.parametrize("version", ["3.11", "3.12", "3.13", "3.14"])
+def test_other_pythons_on_this_machine_give_the_same_fingerprints(version):
+    if not (python := shutil.which(f"python{version}")) or subprocess.run([python, "-c", ""]).returncode:
+        pytest.skip(f"Python {version} is not installed")
+    scripts = sorted((fingerprint.PACKAGE.parents[1] / "workflow" / "scripts").glob("*.py"))
+    assert scripts
+    command = "import sys; from stiction.run.fingerprint import *; print([fingerprint(s) for s in sys.argv[1:]])"
+    environment = os.environ | {"PYTHONPATH": str(fingerprint.PACKAGE.parent)}
+    found, expected = (
+        subprocess.run([p, "-c", command, *scripts], env=environment, capture_output=True, text=True, check=True).stdout
+        for p in (python, sys.executable)
+    )
+    assert found == expected

@@ -1,0 +1,49 @@
+"""The log of a job."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from stiction.progress import progress
+from stiction.run.logs import logged
+
+
+def test_a_job_that_succeeds_leaves_progress_warnings_time_and_memory(tmp_path):
+    with logged(tmp_path / "logs" / "job.log"):
+        sys.stderr.write("Warning: rather small\n")
+        assert sum(progress(range(3), "steps")) == 3
+    log = (tmp_path / "logs" / "job.log").read_text()
+    assert "rather small" in log
+    assert "steps: 100%" in log
+    seconds, _, megabytes, _ = log.splitlines()[-1].removeprefix("took ").split()
+    assert float(seconds) >= 0
+    assert int(megabytes) > 20  # an interpreter with its libraries
+
+
+def test_memory_is_that_of_the_peak(tmp_path):
+    def peak(megabytes):
+        job = f"from stiction.run.logs import logged\nwith logged('job.log'):\n    b'x' * ({megabytes} * 2**20)"
+        subprocess.run([sys.executable, "-c", job], cwd=tmp_path, check=True)
+        return int((tmp_path / "job.log").read_text().split()[-2])
+
+    assert peak(128) - peak(0) == pytest.approx(128, abs=5)
+
+
+def test_a_job_that_fails_leaves_its_traceback_and_says_one_line(tmp_path):
+    error = ValueError("negative rms")
+    error.add_note("It was -1 nm.")
+    with pytest.raises(SystemExit, match=r"^ValueError: negative rms It was -1 nm\.$"), logged(tmp_path / "job.log"):
+        raise error
+    log = (tmp_path / "job.log").read_text()
+    assert "Traceback" in log
+    assert "took" not in log
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_on_a_full_disk_the_terminal_still_gets_its_line():
+    with pytest.raises(SystemExit, match="^ValueError: negative rms$"), logged("/dev/full"):
+        raise ValueError("negative rms")
+    with logged("/dev/full"):
+        sys.stdout.write("done\n")
