@@ -1,11 +1,17 @@
-# Everything runs in .venv, which each target sets up by itself.
-#   make paper     the whole paper: tables and figures into results/      make smoke    the same with small samples
-#   make figures   redraw what is drawn                                   make report   results/report.html
-#   make run CONFIG=mine.yaml    with your own surfaces, pairs, beams; figures and report take CONFIG=... as well
-#   make test      format, lint, tests                                    make test-all the slow tests too (minutes)
-#   make cluster   test on a SLURM of this machine                        make mutants  test the tests
-#   make bench     time the stages                                        make jobs     time and memory of a run's jobs
-#   ARGS=...       goes to snakemake, e.g. ARGS=-n
+# Each target first creates the virtual environment .venv if necessary and runs in it.
+#   make paper      the whole paper: tables and figures in results/ (about 15 minutes)
+#   make smoke      the same with small samples (about a minute), in results/smoke/   (takes CONFIG=... too)
+#   make run CONFIG=mine.yaml    your own surfaces, pairs and beams; the file changes single keys of config.yaml
+#   make figures    redraw the figures                       (takes CONFIG=... too)
+#   make report     results/report.html                      (takes CONFIG=... too)
+#
+#   make test       format, lint and tests                   make test-all   the slow tests as well
+#   make format     format the code                          make mutants    break the code, count undetected errors
+#   make bench      time the stages                          make jobs       time and memory of the jobs of the last run
+#   make cluster    test with SLURM on this machine          make docs       the documentation
+#   make lock       update requirements.lock                 make clean      delete .venv, keep results
+#
+#   ARGS=...        further arguments for the tool that a target runs: ARGS=-n shows what Snakemake would do
 
 PYTHON ?= python3
 VENV := .venv
@@ -13,22 +19,32 @@ BIN := $(VENV)/bin
 SNAKEMAKE := $(BIN)/snakemake
 SMOKE := --configfile config.yaml workflow/smoke.yaml
 MINE := $(if $(CONFIG),--configfile config.yaml $(CONFIG))
+EMPTY :=
+SPACE := $(EMPTY) $(EMPTY)
 
+# Snakemake starts its jobs without quotes around the path of the interpreter.
+ifneq (,$(findstring $(SPACE),$(CURDIR)))
+$(error the path of this folder contains a space ($(CURDIR)), which Snakemake does not support: move or rename it)
+endif
+ifneq (,$(findstring $(SPACE),$(CONFIG)))
+$(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
+endif
 ifneq ($(CONFIG),$(wildcard $(CONFIG)))
 $(error cannot read $(CONFIG))
 endif
 
-.PHONY: help paper smoke figures run report test test-all lint format cluster mutants bench jobs lock clean
+.PHONY: help paper smoke figures run report test test-all lint format cluster mutants bench jobs docs lock clean
 .DELETE_ON_ERROR:
+.DEFAULT_GOAL := help
+
+help:
+	@sed -n 's/^#   //p; s/^#$$//p' Makefile
 
 paper: $(VENV)/ready
 	$(SNAKEMAKE) $(ARGS) $(MINE)
 
-help:
-	@sed -n 's/^#   //p' Makefile
-
 smoke: $(VENV)/ready
-	$(SNAKEMAKE) --directory results/smoke $(SMOKE) $(ARGS)
+	$(SNAKEMAKE) --directory results/smoke $(SMOKE) $(CONFIG) $(ARGS)
 
 figures: $(VENV)/ready
 	$(SNAKEMAKE) figures $(ARGS) $(MINE)
@@ -38,6 +54,7 @@ run: $(VENV)/ready
 	$(SNAKEMAKE) $(ARGS) $(MINE)
 
 report: $(VENV)/ready
+	@test -e results/verdict.txt || { echo "there are no results for a report yet: run make paper first"; exit 2; }
 	$(SNAKEMAKE) --report results/report.html $(ARGS) $(MINE)
 
 test: lint
@@ -49,39 +66,49 @@ test-all: lint
 	$(BIN)/python -m pytest -m "not cluster" $(ARGS)
 
 lint: $(VENV)/ready
-	$(BIN)/ruff format --check src tests workflow
-	$(BIN)/ruff check src tests workflow
+	$(BIN)/ruff format --check src tests workflow docs
+	$(BIN)/ruff check src tests workflow docs
 	$(BIN)/snakefmt --check Snakefile workflow/rules
 	$(SNAKEMAKE) --lint
 
 format: $(VENV)/ready
-	$(BIN)/ruff format src tests workflow
-	$(BIN)/ruff check --fix src tests workflow
+	$(BIN)/ruff format src tests workflow docs
+	$(BIN)/ruff check --fix src tests workflow docs
 	$(BIN)/snakefmt Snakefile workflow/rules
 
-# A SLURM of this machine alone; skipped with a reason where its daemons are not installed.
+# A SLURM cluster on this machine; the test is skipped, with the reason, if the daemons of SLURM are not installed.
 cluster: $(VENV)/ready
 	-$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock "snakemake-executor-plugin-slurm>=2.8,<3"
 	$(BIN)/python -m stiction.run.warmup
 	$(BIN)/python -m pytest -m cluster -rs tests/workflow/test_slurm.py $(ARGS)
 
-# Breaks the physics in small ways, one at a time in a copy, and counts the ways that no test notices.
+# Introduce one small error at a time into a copy of the code, and count the errors that no test detects.
 mutants: $(VENV)/ready
 	$(BIN)/python tests/mutants.py $(ARGS)
 
 bench: $(VENV)/ready
 	$(BIN)/python -m stiction.run.warmup
-	$(BIN)/python tests/benchmarks/stages.py
+	$(BIN)/python tests/benchmarks/stages.py | tee docs/tables/bench.md
 
-# From the logs of the last run.
+# Reads the logs of the last run.
 jobs: $(VENV)/ready
 	$(BIN)/python tests/benchmarks/jobs.py
 
-lock:
-	uv pip compile --universal --python-version 3.11 --no-emit-index-url --no-header --no-annotate --upgrade --extra dev pyproject.toml -o requirements.lock
+# Update numbers, tables and pictures if the run of the paper has finished; then build HTML, without network access.
+docs: $(VENV)/ready
+	$(BIN)/python docs/update.py results
+	$(BIN)/python -m sphinx -W --keep-going -n -q docs docs/_build/html
+	@echo "open docs/_build/html/index.html"
 
-# .snakemake stays with results/: without its record of settings and code Snakemake compares times only, and old results
-# would pass for those of new settings.
+# Keeps pinned versions as long as pyproject.toml allows them; ARGS=--upgrade updates all. Requires uv.
+lock:
+	uv pip compile --universal --python-version 3.11 --no-emit-index-url --no-header --no-annotate \
+	  --extra dev --extra docs --extra workflow $(ARGS) pyproject.toml -o requirements.lock
+	@{ echo '# Pinned dependencies for Python 3.11 to 3.14, from pyproject.toml by `make lock`.'; cat requirements.lock; } \
+	  > requirements.lock.new && mv requirements.lock.new requirements.lock
+
+# Keeps .snakemake with results/: without its record of settings and code, Snakemake compares only modification times
+# and would accept old results for new settings.
 clean:
 	rm -rf $(VENV)
 

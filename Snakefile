@@ -7,9 +7,11 @@ import threading
 from pathlib import Path
 
 BASE = Path(workflow.basedir)
-# The code that runs is the code beside this file, whose fingerprint decides what reruns.
-sys.path.insert(0, str(BASE / "src"))
-os.environ.update(PYTHONPATH=str(BASE / "src"))
+# Jobs use the code next to this file, because the fingerprint of that code decides what reruns.
+SOURCE = str(BASE / "src")
+sys.path.insert(0, SOURCE)
+PATHS = [SOURCE, *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
+os.environ["PYTHONPATH"] = os.pathsep.join(dict.fromkeys(PATHS))
 
 
 configfile: str(BASE / "config.yaml")
@@ -20,7 +22,6 @@ container: "stiction.sif"
 
 
 include: "workflow/rules/common.smk"
-include: "workflow/rules/common_studies.smk"
 include: "workflow/rules/surfaces.smk"
 include: "workflow/rules/contact.smk"
 include: "workflow/rules/laws.smk"
@@ -32,63 +33,23 @@ include: "workflow/rules/figures_studies.smk"
 include: "workflow/rules/figures.smk"
 
 
+HELD = []  # open file that holds the lock on the folder of this run
+
+
 onstart:
-    # Snakemake's answer to SIGTERM needs a lock, for which it would wait for ever if this thread holds it already.
-    if callable(answer := signal.getsignal(signal.SIGTERM)):
-        signal.signal(signal.SIGTERM, lambda *received: threading.Thread(target=answer, args=received).start())
-    reserve_folder()
+    # Snakemake's handler of SIGTERM acquires a lock and would deadlock if this thread already holds it.
+    if callable(handler := signal.getsignal(signal.SIGTERM)):
+        signal.signal(signal.SIGTERM, lambda *received: threading.Thread(target=handler, args=received).start())
     try:
+        HELD.append(folder.reserved(".snakemake/running"))
         provenance.record("results/provenance.json", BASE, config)
-    except OSError as error:
-        raise WorkflowError(f"results/ cannot be used: {error}. Make it writable or choose another --directory.")
-    except ValueError as error:
+    except (OSError, DataError) as error:
+        reason = error.__cause__ or error
+        raise WorkflowError(f"results/ cannot be used: {reason}. Make it writable or choose another --directory.")
+    except (RuntimeError, ValueError) as error:
         raise WorkflowError(str(error))
-    # Compiled code is cached before jobs fan out: two jobs that write one cache entry at once could mix it up.
+    # Kernels are compiled and cached before jobs run in parallel, because two jobs could corrupt a shared cache entry.
     shell("{sys.executable:q} -m stiction.run.warmup")
-
-
-# Seconds of work each, that do not wait in the queue of a cluster.
-localrules:
-    all,
-    heights,
-    spectrum,
-    contact,
-    forces,
-    chaos,
-    fit,
-    humidity,
-    sensitivity,
-    sample_sizes,
-    mesh,
-    correlation,
-    tables,
-    table_1,
-    table_2,
-    table_3,
-    fit_quality,
-    table_sensitivity,
-    table_readings,
-    table_resampling,
-    checks,
-    verdict,
-    study_figures,
-    figures,
-    figure_05,
-    figure_07,
-    figure_08,
-    figure_09,
-    figure_10,
-    figure_11,
-    figure_11_supplement,
-    figure_12,
-    figure_13,
-    figure_14,
-    figure_15,
-    figure_16,
-    figure_17,
-    figure_18,
-    figure_19,
-    figure_readings,
 
 
 rule all:
@@ -97,5 +58,6 @@ rule all:
         rules.tables.input,
         rules.figures.input,
         rules.verdict.output,
+    localrule: True
     message:
         "The paper's tables and figures."

@@ -10,7 +10,7 @@ E_BAR = 6.8e-3
 
 
 def uniform_laws(points, energy=E_BAR, f_max=2e6, reach=1.0):
-    """One law everywhere, of pair b's size; ``reach`` shrinks its distances at constant energy."""
+    """The same law at every point, of the size of pair b's; ``reach`` scales its distances at constant energy."""
     vector = np.array([[energy, f_max / reach, 8e-9 * reach, 6.5e-9 * reach]])
     return np.repeat(forcelaw.coefficients(vector, 2 * f_max / reach), points, axis=0)
 

@@ -2,6 +2,6 @@
 
 from hypothesis import settings
 
-# Machines are shared: the time of one example says nothing. The same examples every time.
+# No deadline, because machines are shared and timings vary; the same examples in every run.
 settings.register_profile("steady", deadline=None, derandomize=True)
 settings.load_profile("steady")

@@ -1,9 +1,9 @@
-"""Test the tests: break the physics in small ways and count the ways that no test notices.
+"""Mutation testing: introduce small errors into the code and count those that no test detects.
 
     python tests/mutants.py [module ...]
 
 Each mutant is one replacement in one module of a copy of the project, on which the tests of that module run until the
-first fails. Caches of compiled code are separate, so that no broken kernel outlives its mutant.
+first fails. Each mutant has a separate cache of compiled code, so that no faulty kernel is reused.
 """
 
 import argparse
@@ -15,12 +15,30 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-PATIENCE = 180  # [s] a mutant whose tests take longer does not end, which counts as noticed
+PATIENCE = 180  # [s] if the tests of a mutant take longer, the mutant counts as detected
 
-#: Names of test files that are not those of their modules: no two test files have one name.
-TESTS = {"chaos.model": "chaos_model", "stages.pairs": "stage_pairs"}
+#: Tests of modules that have no test file of their name: names of test files are unique.
+TESTS = {
+    "chaos.model": "chaos/test_chaos_model.py",
+    "report.tables_surfaces": "report",
+    "report.tables_beams": "report",
+    "report.tables_studies": "report",
+    "report.style": "report",
+    "run.atomic": "stages/test_storage.py",
+    "stages.curves": "stages/test_stage_curves.py",
+    "stages.pairs": "stages/test_stage_pairs.py",
+    "stages.named": "stages/test_storage.py",
+    "config.merging": "config/test_files.py",
+    "models": "config/test_plan.py",
+}
+#: Stages and studies whose tests are in one file each.
+STAGES = "heights spectrum identification character forces chaos releases beams cantilevers"
+STUDIES = "sensitivity_contact sensitivity plasticity fit humidity iteration sample_sizes orders mesh correlation"
+STUDIES += " resampling variant variant_contact"
+TESTS |= {f"stages.{name}": "stages/test_stages.py" for name in STAGES.split()}
+TESTS |= {f"studies.{name}": "studies/test_studies.py" for name in STUDIES.split()}
 
-#: Module to replacements (what stands there once, what takes its place).
+#: Modules and their replacements (text that occurs exactly once, its replacement).
 MUTANTS = {
     "surface.maxent": [
         ("return np.exp(-exponent)", "return np.exp(exponent)"),
@@ -46,6 +64,8 @@ MUTANTS = {
         ("weights[[0, -1]] /= 2", "weights[[0, -1]] *= 2"),
         ("@ (weights * zeta * spectrum(zeta))", "@ (weights * spectrum(zeta))"),
         ("[-1]\n    if last", "[0]\n    if last"),
+        ("step * np.arange(1, rings + 1)", "step * np.arange(rings)"),
+        ("astype(int)[counted]", "astype(int)[~counted]"),
     ],
     "surface.translation": [
         ("np.sqrt(k - 1) * previous", "np.sqrt(k) * previous"),
@@ -63,7 +83,6 @@ MUTANTS = {
         ("scores[i, j] * scale + offset", "scores[i, j] * scale - offset"),
         ("heights[i, j] += table[k]", "heights[i, j] = table[k]"),
         ("** 2 / step**2, step)", "** 2 / step, step)"),
-        ("step * np.arange(1, n // 2 + 1)", "step * np.arange(n // 2)"),
         ("step = 2 * np.pi / (len(heights) * spacing)", "step = np.pi / (len(heights) * spacing)"),
     ],
     "surface.summits": [
@@ -81,25 +100,29 @@ MUTANTS = {
         ("radius / target.mean_radius, density", "1 / target.mean_radius, density"),
         ("density * curvature.mean()", "density / curvature.mean()"),
         ("if not fit.success", "if False"),
+        ("if key not in known", "if True"),
     ],
     "surface.iteration": [
         ("spectrum.density * wanted / periodograms", "spectrum.density * periodograms"),
         ("(square.sum() * step**2)", "square.sum()"),
         ("np.sqrt(2 / np.pi /", "np.sqrt(2 /"),
     ],
-    "studies.sensitivity": [
+    "analysis.sensitivity": [
         ("moment + abs(moment) * step", "moment + moment * step"),
         ("return np.sign(at[0]) *", "return"),
         ("np.sqrt(second - first**2)", "np.sqrt(second)"),
     ],
-    "studies.plasticity": [
+    "analysis.plasticity": [
         ("ONSET = 0.6", "ONSET = 1.6"),
         ("np.pi * radius * interference", "2 * np.pi * radius * interference"),
         ("height[reaching] - distance", "height[reaching]"),
     ],
     "stages.pairs": [
-        ("reduced_modulus(**si(solid))", "2 * reduced_modulus(**si(solid))"),
-        ('contact["distance_step"]', '2 * contact["distance_step"]'),
+        (
+            "reduced_modulus(settings.solid.young_modulus, settings.solid.poisson_ratio)",
+            "2 * reduced_modulus(settings.solid.young_modulus, settings.solid.poisson_ratio)",
+        ),
+        ("solid, settings.contact.distance_step", "solid, 2 * settings.contact.distance_step"),
         ('"contact", pair, side, sample', '"contact", pair, "beam", sample'),
     ],
     "estimates": [
@@ -107,19 +130,24 @@ MUTANTS = {
         ("abs(power * mean * error / centre)", "abs(mean * error / centre)"),
         ("np.sqrt((n - 1) / n *", "np.sqrt((n - 1) *"),
     ],
-    "studies.variants": [
+    "analysis.variants": [
         ("slopes @ common", "np.linalg.norm(slopes * common)"),
         ("return ratio - 1, ratio * error", "return ratio - 1, error"),
-        ("both = reading.stuck & base.stuck", "both = reading.stuck"),
+        ("both = variant.stuck & base.stuck", "both = variant.stuck"),
         ("2 * (left / total * before - after)", "2 * (left / total * before + after)"),
         ("np.linalg.norm(by_base * own)", "by_base @ own"),
         ("np.abs(by_shift) @ shift", "np.linalg.norm(by_shift * shift)"),
     ],
-    "studies.convergence": [
+    "analysis.convergence": [
         ("KOLMOGOROV_MEAN / np.sqrt(samples)", "KOLMOGOROV_MEAN / samples"),
         ("1 / size - 1 / len(samples)", "1 / size"),
         ("first = far[-1] + 1", "first = far[0] + 1"),
+    ],
+    "analysis.mesh": [
         ("!= EndState.S_SHAPE", "== EndState.FREE"),
+        ("apparent_adhesion_energy(end.crack_length, beam))", "0.0)"),
+        ("if is_multiple(length, e) and is_multiple(e, p)", "if is_multiple(length, e)"),
+        ("if is_multiple(length, e) and", "if is_multiple(length, p) and"),
     ],
     "contact.meniscus": [
         ("np.log(humidity) / WATER_MOLAR_VOLUME", "np.log10(humidity) / WATER_MOLAR_VOLUME"),
@@ -133,7 +161,7 @@ MUTANTS = {
         ("(16 * np.pi *", "(12 * np.pi *"),
         ("0.97 * 2 ** (1 / 6)", "0.97 * 2 ** (1 / 3)"),
         ("self.work_of_adhesion / self.range", "self.work_of_adhesion * self.range"),
-        ('0.0 if through == "none"', '0.0 if through == "dry"'),
+        ('None if through == "none"', 'None if through == "dry"'),
     ],
     "contact.asperity": [
         ("(2 * (1 - poisson_ratio**2))", "(2 * (1 + poisson_ratio**2))"),
@@ -152,19 +180,24 @@ MUTANTS = {
         ("np.argmin(interference)", "np.argmin(load)"),
         ("float(np.log(high / low) / (n - 1))", "float(np.log(high / low) / n)"),
         ("float(np.pi * self.attraction.work_of_adhesion)", "float(self.attraction.work_of_adhesion)"),
-    ],
-    "contact.pair": [
-        ("count[k] = higher / heights.size", "count[k] = higher"),
-        ("+ below + 1, 0)", "+ below, 0)"),
         ("factor = 4 / 3 * modulus / np.sqrt", "factor = 4 / 3 * modulus * np.sqrt"),
         ("overlap = max(heights[i, j] - k * step, 0.0)", "overlap = max(heights[i, j] - (k + 1) * step, 0.0)"),
         ("third = radius ** (1 / 3)", "third = radius ** (1 / 2)"),
         ("share = place - row", "share = 1 - place + row"),
-        ("weight = unit_force * radius", "weight = unit_force"),
+        ("weight = scales.force * radius", "weight = scales.force"),
+        ("part * (low[cell + 1] - low[cell])", "(1 - part) * (low[cell + 1] - low[cell])"),
+        ("if attraction is None else", "if attraction is not None else"),
+    ],
+    "contact.pair": [
+        ("count[k] = higher / heights.size", "count[k] = higher"),
+        ("+ below + 1, 0)", "+ below, 0)"),
+        (
+            "self.asperity.add_forces(heights, spacing, grid.step, force)",
+            "self.asperity.add_forces(heights, 2 * spacing, grid.step, force)",
+        ),
         ("force / inside", "force / (heights.size * spacing**2)"),
         ("heights[:: self.every, :: self.every]", "heights[:: self.every, :]"),
         ("self.beam.grid.spacing * self.every", "self.beam.grid.spacing"),
-        ("part * (low[cell + 1] - low[cell])", "(1 - part) * (low[cell + 1] - low[cell])"),
     ],
     "contact.forcelaw": [
         ("((1 - weight) * here + weight * ahead)", "(weight * here + (1 - weight) * ahead)"),
@@ -181,27 +214,53 @@ MUTANTS = {
         ("(1.5 / a_right + 0.5 / a_left)", "(0.5 / a_right + 1.5 / a_left)"),
         ("float(f_max.max())", "float(f_max.min())"),
     ],
-    "chaos.model": [
+    "chaos.coordinates": [
         ("d_max - np.exp(log_gap)", "d_max + np.exp(log_gap)"),
         ("@ self.axes / np.sqrt(self.variances)", "@ self.axes / self.variances"),
         ("constrained(q * self.scale)", "constrained(q)"),
+        ("np.cumsum(variances[:0:-1])[::-1]", "np.cumsum(variances[1:])"),
+        (
+            "return PrincipalCoordinates(scale, q.mean(axis=0), variances.copy(), axes * signs)",
+            "return PrincipalCoordinates(scale, q.mean(axis=0), variances.copy(), -axes * signs)",
+        ),
+        ("& (d_max > d_limit)", "& (d_max >= d_limit)"),
+    ],
+    "chaos.density": [
         ("(4 / (samples * (dimension + 2)))", "(4 / (samples * (dimension + 4)))"),
         ("1 / np.sqrt(1 + bandwidth**2)", "1 / (1 + bandwidth**2)"),
         ("np.exp(0.5 * (nearest - weights[i]))", "np.exp(nearest - weights[i])"),
         ("edge = start - 0.5 * taps.size * step", "edge = start - taps.size * step"),
         ("density.bandwidth**2 - step**2 / 6", "density.bandwidth**2 + step**2 / 6"),
+        ("self.bandwidth * rng.standard_normal", "rng.standard_normal"),
+    ],
+    "chaos.polynomials": [
         ("values[1] = 2 * points - 1", "values[1] = 2 * points + 1"),
         ("- a * values[a - 1, i]) / (a + 1)", "- a * values[a - 1, i]) / (a + 2)"),
         ("values[a] *= np.sqrt(2 * a + 1)", "values[a] *= np.sqrt(2 * a + 2)"),
         ("3 * w * t * (1 - t)", "6 * w * t * (1 - t)"),
         ("if sum(alpha) <= order]", "if sum(alpha) < order]"),
+        ("first += 1  #", "first += 2  #"),
+        ("last -= 1  #", "last -= 2  #"),
+        ("used = ~indices[:, k:]", "used = ~indices[:, k - 1 :]"),
+    ],
+    "chaos.model": [
         ("self.coefficients[:, 1:] ** 2", "self.coefficients ** 2"),
         ("<= tolerance))", "< 10 * tolerance))"),
         ("missing -= int(good.sum())", "missing -= int(good.size)"),
-        ("first += 1  #", "first += 2  #"),
+        ("<= order\n", "< order\n"),
+        ("lawful[rng.integers(len(lawful), size=n)]", "lawful[:n]"),
+    ],
+    "numbers": [
+        ("rtol=1e-9", "rtol=1e-1"),
+        ("max(1, round(whole / part))", "round(whole / part)"),
     ],
     "beam.cantilever": [
         ("self.thickness**3 / 12", "self.thickness**3 / 3"),
+        ("self.young_modulus * self.second_moment", "self.young_modulus / self.second_moment"),
+        ("self.length / self.elements", "self.length * self.elements"),
+        ("value > 0 and", "value >= 0 and"),
+    ],
+    "beam.equilibrium": [
         ("1 - 3 * s**2 + 2 * s**3, s", "1 - 3 * s**2 + s**3, s"),
         ("band[i + 1, 2] += 2 * k", "band[i + 1, 2] += 4 * k"),
         ("force[i + 1] += load / 12", "force[i + 1] += load / 6"),
@@ -211,12 +270,17 @@ MUTANTS = {
         ("system.force[i + row] -= n[row] * push", "system.force[i + row] += n[row] * push"),
         ("np.abs(system.force[rows]).max()", "system.force[rows].max()"),
         ("mesh.load * first**4 / (24 * mesh.stiffness)", "mesh.load * first**4 / (12 * mesh.stiffness)"),
+        ("* mesh.area * x * (x - 2)", "* x * (x - 2)"),
+        ("return beam.gap - (np.hstack", "return beam.gap + (np.hstack"),
+    ],
+    "beam.release": [
         ("return 72 * beam", "return 36 * beam"),
+        ("(6 - 8 * s + 3 * s**2)", "(6 - 8 * s + 2 * s**2)"),
         ("excess[r] / (before - excess[r])", "excess[r] / (before + excess[r])"),
         ("(r + 0.5 + behind)", "(r + 1 + behind)"),
         ("> 0.75 * beam.gap / crack", "> 1.75 * beam.gap / crack"),
         ("crack_length(beam, laws, end.deflection) > 1.5", "crack_length(beam, laws, end.deflection) > 0.5"),
-        ("* mesh.area * x * (x - 2)", "* x * (x - 2)"),
+        ("START * min(arrest_length(energy, beam), beam.length)", "arrest_length(energy, beam)"),
     ],
     "beam.energy": [
         ("6 * beam.bending_stiffness", "3 * beam.bending_stiffness"),
@@ -228,10 +292,289 @@ MUTANTS = {
         ("1 + scatter * rng", "1 + 2 * scatter * rng"),
         ("rng.standard_normal(len(SCATTERED))", "rng.standard_normal()"),
         ("beam = scattered_beam(experiment.beam, experiment.scatter, rng)", "beam = experiment.beam"),
-        ("adhesion_energy(crack, experiment.beam)", "adhesion_energy(crack, beam)"),
-        ("end.deflection[:, 0]", "end.deflection[:, 1]"),
+        ("adhesion_energy(end.crack_length, experiment.beam)", "adhesion_energy(end.crack_length, beam)"),
+        ("end.equilibrium.deflection[:, 0]", "end.equilibrium.deflection[:, 1]"),
         ("stream(k)), samples)", "stream(0)), samples)"),
         ("outcomes[:shapes]", "outcomes[shapes:]"),
+    ],
+    "report.format": [
+        (
+            "return 100 * (value / reference - 1) if reference else np.nan",
+            "return 100 * (value - reference) if reference else np.nan",
+        ),
+        ("return text if float(text) else format(0.0, form)", "return text"),
+        ("(error < 2 * 10.0**first) - first)", "1 - first)"),
+        ("(error < 2 * 10.0**first) - first)", "-first)"),
+    ],
+    "report.published": [
+        ("return published[published.iloc[:, 0].isin(list(names))]", "return published"),
+        ("else np.isclose(held.astype(float), value)", "else held == value"),
+        ('keep_default_na=False, na_values=[""]', "keep_default_na=True"),
+    ],
+    "report.tables": [
+        ("disable_numparse=True, ", ""),
+    ],
+    "report.tables_surfaces": [
+        ("third / rms**3", "third / rms**2"),
+        ("1 / curvature / UM", "curvature * UM"),
+        ("{source: 100 * float(spectra[surface].defect)}", '{"published": 100 * float(spectra[surface].defect)}'),
+    ],
+    "report.tables_beams": [
+        ("spread, error = values.std(ddof=1), np.hypot(*errors)", "spread, error = values.std(ddof=1), errors[0]"),
+        ("100 * np.hypot(chaos_error, samples_error) / samples", "100 * (chaos_error + samples_error) / samples"),
+    ],
+    "report.tables_studies": [
+        ('if statistic == "mean" else np.nan', "if True else np.nan"),
+    ],
+    "report.style": [
+        ("return _MARKERS[k % len(_MARKERS)]", "return _MARKERS[k]"),
+        ("panel.set_xlim(max(left, 0), min(right, 1))", "pass"),
+    ],
+    "report.checks": [
+        (
+            'return pd.read_csv(path, dtype={"passed": bool}, keep_default_na=False)',
+            'return pd.read_csv(path, comment="#")',
+        ),
+    ],
+    "config.files": [
+        ("changes, read(PAPER))", "reversed(list(changes)), read(PAPER))"),
+        ("    validate(config)\n", ""),
+        ("return normalised(config)", "return config"),
+        ("for key in sorted(value)}", "for key in value}"),
+        ('sorted(pair["humidities"])', 'pair["humidities"]'),
+        ("for key in duplicates(", "for key in set("),
+        ("if not isinstance(content, dict)", "if content is None"),
+        ('key.tag != "tag:yaml.org,2002:merge"', "key.tag"),
+    ],
+    "config.relations": [
+        ("if kurtosis <= skewness**2 + 1", "if kurtosis < skewness**2 + 1"),
+        ("return None if corner < cutoff", "return None if corner <= cutoff"),
+        ("return None if floor < plateau", "return None if floor <= plateau"),
+        ("nyquist = math.pi / spacing", "nyquist = 2 * math.pi / spacing"),
+        ("largest = math.pi / cutoff", "largest = 2 * math.pi / cutoff"),
+        ("return None if spacing <= coarse or", "return None if spacing >= coarse or"),
+        ("return None if length > bound", "return None if length > 0.5 * bound"),
+        ("step = spacing * every", "step = spacing"),
+        ("if 3 * coarse <= side", "if 2 * coarse <= side"),
+        ("return None if chunks <= samples", "return None if chunks < samples"),
+        ("math.comb(n + 4, 4) <= samples", "math.comb(n + 3, 3) <= samples"),
+        ("is_multiple(length, strip * elements)", "is_multiple(length, strip)"),
+        ("length > 1.5 * strip * strips", "length > 0.5 * strip * strips"),
+        ("return None if size < length", "return None if size <= length"),
+        ("return path[:depth] == fault[:depth]", "return path == fault"),
+        ("dict.fromkeys(map(str, problems))", "map(str, problems)"),
+    ],
+    "run.fingerprint": [
+        ("if _name(module) not in SILENT", "if True"),
+        ("open_files += imports", "pass"),
+        ('fields["body"] = node.body[1:]', "pass"),
+        ("for node in ast.walk(tree)", "for node in tree.body"),
+        ("for end in (None, -1)]", "for end in (None,)]"),
+        ("for name, value in sorted(fields.items())", "for name, value in fields.items()"),
+        ("if value not in (None, [])", "if True"),
+        ("elif not text or value.value:", "else:"),
+        ("ast.Constant(joined[-1].value + value.value)", "ast.Constant(value.value)"),
+        ("if not path.is_relative_to(PACKAGE) or path.parent", "if path.parent"),
+        ('name.startswith("stiction.")', 'name.startswith("stiction.x")'),
+    ],
+    "config.units": [
+        ("value * factor\n", "value / factor\n"),
+        ('"um": 1e-6', '"um": 1e-9'),
+        ("key[: unit.start()] if unit else key", "key"),
+        ("tuple(item * factor for item in value)", "tuple(value)"),
+    ],
+    "config.plan": [
+        (
+            "[case_id(pair, humidity) for pair in self.pairs",
+            '[case_id(pair, humidity) for pair in self.config["pairs"]',
+        ),
+        ("return wanted if wanted in self.pairs else self.pairs[0]", "return wanted"),
+        ("return at[0] * at[1] > 0 and exists", "return exists"),
+        ("if elements != same}", "}"),
+        ('return wanted if known[wanted] else entry["psd"]', "return wanted"),
+        ('if variant == "base" or self._under(pair, variant) != self._under(pair, "base")', "if True"),
+        ("and set(self.sides(pair)) <= set(self.paper_surfaces)", ""),
+        ("if beam\n            and _same", "if _same"),
+        ('but=["psd"])', 'but=["psd", "published_psd"])'),
+        ('if key != "psd"}', "}"),
+    ],
+    "config.jobs": [
+        ('section["scatter"] if model == "GEO" else 0', 'section["scatter"]'),
+        ("[min(humidities), max(humidities)]", "[max(humidities), min(humidities)]"),
+        ("if max(values) <= 0 > min(values)]", "if min(values) < 0]"),
+        ("| plan.finer_beams.get(name, {})", ""),
+        ('("distance_step_nm", "every")) | more', '("distance_step_nm", "every", "chunks")) | more'),
+        ('samples=study["samples"]), "step"', 'samples=plan.config["contact"]["samples"]), "step"'),
+    ],
+    "stages.storage": [
+        ("if found != wanted", "if found[0] != wanted[0]"),
+        ("sort_keys=True", "sort_keys=False"),
+    ],
+    "run.atomic": [
+        ("        draft.unlink(missing_ok=True)\n\n\ndef save_text", "        pass\n\n\ndef save_text"),
+        ("os.fsync(file.fileno())", "pass"),
+        ("draft.replace(path)", "path.write_bytes(draft.read_bytes())"),
+    ],
+    "stages.curves": [
+        ("-float(laplace_pressure(humidity, temperature))", "float(laplace_pressure(humidity, temperature))"),
+        ("float(meniscus_height(humidity, temperature)),", "0.5 * float(meniscus_height(humidity, temperature)),"),
+    ],
+    "stages.heights": [
+        ("maxent.solve(settings.skewness, settings.kurtosis)", "maxent.solve(-settings.skewness, settings.kurtosis)"),
+        ('if model == "NG" else GAUSSIAN', 'if model == "G" else GAUSSIAN'),
+        ("float(heights.skewness), float(heights.kurtosis))", "float(heights.kurtosis), float(heights.skewness))"),
+        ("np.linspace(-6, 6, 601)", "np.linspace(-3, 6, 601)"),
+    ],
+    "stages.spectrum": [
+        ("target(zeta) / target.variance", "target(zeta)"),
+        ('density(heights, "NG")', 'density(heights, "G")'),
+        ('if model == "G":', 'if model == "NG":'),
+        ("spectrum.underlying.values, target.cutoff)", "spectrum.target.values, target.cutoff)"),
+        ("spectrum.wavenumber, spectrum.achieved)", "spectrum.wavenumber, spectrum.target)"),
+        ("spectrum_of_heights(underlying, translation, settings.spacing), defect)", "underlying, defect)"),
+    ],
+    "stages.identification": [
+        (
+            "summits.mean_summit_radius, summits.summit_density",
+            "summits.mean_summit_radius, 2 * summits.summit_density",
+        ),
+        ('patches(), patches("control"))', "patches(), patches())"),
+        ('"identification", surface, *address)', '"identification", *address)'),
+        ("StripGrid(patch, patch, settings.spacing,", "StripGrid(patch, patch, settings.target_spacing,"),
+    ],
+    "stages.character": [
+        ("[::every, ::every]", "[::every, :]"),
+        ("** order) for order in (1, 2, 3, 4)]", "** order) for order in (0, 1, 2, 3)]"),
+        ('"character", name, k)', '"character", name, 0)'),
+        ('"character", surface, "field", k)', '"character", surface, "field", 0)'),
+        ("np.hstack(summits)[:, :_KEPT]", "np.hstack(summits)[:, 1:_KEPT]"),
+        ("find_summits(z, spacing)", "find_summits(z, surface.grid.spacing)"),
+    ],
+    "stages.forces": [
+        ("settings.humidity, settings.water)", "0.9 * settings.humidity, settings.water)"),
+        ("[curve(k).copy() for k", "[curve(k) for k"),
+        ("min(_KEPT, contact", "min(1, contact"),
+        ("for name in COMPONENTS]", "for name in COMPONENTS[::-1]]"),
+    ],
+    "stages.chaos": [
+        ("settings.chaos.order, settings.chaos.dimension_tolerance)", "settings.chaos.order, 0.5)"),
+        ('stream(settings.seed, "chaos", case, model)', 'stream(settings.seed, "chaos", case)'),
+        ('stream(settings.seed, "rejection", case, model)', 'stream(settings.seed, "chaos", case, model)'),
+        ("rejected / (rejected + _DRAWS)", "rejected / _DRAWS"),
+        ('("scale", "mean", "variance", "axes"))', '("mean", "scale", "variance", "axes"))'),
+    ],
+    "stages.releases": [
+        ('"beams", case)', '"beam", case)'),
+        ("draw, settings.scatter)", "draw)"),
+        ("range(number), address, threads)", "range(1, number + 1), address, threads)"),
+        ("total=number)), shapes)", "total=number)))"),
+        ("beams.state.values == STATES", "beams.state.values >= STATES"),
+    ],
+    "stages.beams": [
+        ("case, settings, shapes=_KEPT)", "case, settings, shapes=1)"),
+        ('columns["energy"], {"units"', 'columns["crack_length"], {"units"'),
+        ("pair_of(case)).nodes", "pair_of(case)).nodes[::-1]"),
+        ('" ".join(releases.STATES)', '" ".join(releases.STATES[::-1])'),
+    ],
+    "stages.cantilevers": [
+        ("width=size.width", "width=size.thickness"),
+        ("gap=settings.pairs[pair].gap", "gap=size.thickness"),
+        ("round(beam.length / sampling.strip_length)", "round(beam.length / sampling.strip_length / 5)"),
+    ],
+    "studies.sensitivity_contact": [
+        ('less if side == "less" else more', 'more if side == "less" else less'),
+        ("found.assign(moment=getattr(moments, moment))", "found.assign(moment=less)"),
+        ("beam = changed, stage_spectrum", "beam = heights, stage_spectrum"),
+        ("(beam, substrate), pair,", "(substrate, beam), pair,"),
+    ],
+    "studies.sensitivity": [
+        ("energy_sensitivity(found.swapaxes(1, 2), at)", "energy_sensitivity(found.swapaxes(1, 2), at[::-1])"),
+        ("[moment(contact) for contact in contacts]", "[moment(contact) for contact in contacts[::-1]]"),
+        ("slopes, errors = estimate", "errors, slopes = estimate"),
+        ('("mean", "standard deviation")', '("standard deviation", "mean")'),
+    ],
+    "studies.plasticity": [
+        ("grid.spacing * meeting.every)", "grid.spacing * 2)"),
+        ("touching(height, curvature, settings.distance)", "touching(height, curvature, 0.9 * settings.distance)"),
+        ("plastic_share(area, stress,", "plastic_share(stress, area,"),
+        ("np.full(len(radius), k)", "np.full(len(radius), k // 2)"),
+        ('surface_pair(surfaces, "NG", settings)', 'surface_pair(surfaces, "G", settings)'),
+        ("meeting.draw(*streams(k))", "meeting.draw(*streams(0))"),
+    ],
+    "studies.fit": [
+        ("np.flatnonzero(admissible(vectors, limit))", "np.arange(len(vectors))"),
+        ("vectors[samples], limit)", "vectors[: len(samples)], limit)"),
+        ("1 - len(samples) / total", "len(samples) / total"),
+    ],
+    "studies.humidity": [
+        ("np.array([0.05, 0.5, 0.95])", "np.array([0.01, 0.5, 0.99])"),
+        ("np.linspace(*settings.range, settings.points)", "np.linspace(*settings.range[::-1], settings.points)"),
+        ("mean_with_error(energies.T)", "mean_with_error(energies.T[1:])"),
+    ],
+    "studies.iteration": [
+        ("misfit(periodograms.mean(axis=1), rings)", "misfit(periodograms[:, 0], rings)"),
+        ("misfit(achieved(spectrum, zeta), rings)", "misfit(target(zeta) / target.variance, rings)"),
+        ('"iteration", surface)', '"iteration")'),
+        ('density(heights, "NG")', 'density(heights, "G")'),
+        ("sampling_misfit(periodograms),", "sampling_misfit(periodograms[:, :, 1:]),"),
+    ],
+    "studies.sample_sizes": [
+        ("energies[:size], at)", "energies[-size:], at)"),
+        ("| {len(energies)})", ")"),
+        ("max(2, round(", "max(1, round("),
+        ("1.2 * energies.max()", "energies.max()"),
+        ("distance_of_parts(energies, size)", "distance_of_parts(energies[:size], size)"),
+    ],
+    "studies.orders": [
+        ("chaos.truncated(fitted, order)(xi)", "fitted(xi)"),
+        ('"orders", settings.case)', '"orders")'),
+        ("[:, : fitted.dimension]", "[:, -fitted.dimension :]"),
+        ("distances[0].T]", "distances[1].T + 1]"),
+        ('"target": ["kernels", "input"]', '"target": ["input", "kernels"]'),
+    ],
+    "studies.mesh": [
+        ("len(energies) // 2]", "len(energies) // 4]"),
+        ("coefficients(samples[[sample]], limit)", "coefficients(samples[[sample]], 2 * limit)"),
+        ("round(beam.length / point)", "round(beam.length / element)"),
+        ("(distance, curves[sample])", "(distance, curves[0])"),
+        ("elements, points = np.transpose", "points, elements = np.transpose"),
+    ],
+    "studies.correlation": [
+        ("[c / c[0] for c", "[c for c"),
+        ("np.linspace(0, 1e-6, 401)", "np.linspace(0, 2e-6, 401)"),
+        (
+            "[correlation_length(target) for target in targets]",
+            "[correlation_length(target, 0.1) for target in targets]",
+        ),
+    ],
+    "studies.resampling": [
+        ('"resampling", case)', '"beams", case)'),
+        ("samples=settings.beams, scatter=0)", "samples=settings.beams, scatter=0.01)"),
+        ('np.asarray(columns["state"], np.int8)', 'np.ones_like(columns["state"])'),
+    ],
+    "studies.variant": [
+        ("energies.append(vectors[:, 0])", "energies.append(vectors[:, 1])"),
+        ("samples=number, scatter=0", "samples=number, scatter=0.01"),
+        ("case_id(pair, humidity), beams)", "case_id(pair, humidities[0]), beams)"),
+        ("settings.chaos.order, settings", "1, settings"),
+        ('releases.ended(chosen, "S-shape")', 'releases.ended(chosen, "arc")'),
+    ],
+    "studies.variant_contact": [
+        ("base.sampling.spacing, identifications)", "2 * base.sampling.spacing, identifications)"),
+        ('pair, "NG", changed)', 'pair, "NG", base)'),
+        ('surfaces, pair, "NG"', 'surfaces, pair, "G"'),
+    ],
+    "config.merging": [
+        ("return {**base, **{key", "return {**{key"),
+        ("key: merged(base.get(key), value)", "key: value"),
+    ],
+    "models": [
+        ('return "G" if model == "G" else "NG"', "return model"),
+    ],
+    "stages.named": [
+        ("key(Path(path).stem)", "Path(path).stem"),
+        ("return (*key, model) if model else key", "return key"),
+        ('name.rpartition("_")[2]', 'name.partition("_")[2]'),
     ],
 }
 
@@ -242,18 +585,18 @@ def source_of(module):
 
 
 def tests_of(module):
-    """File of its tests."""
+    """File or folder of its tests."""
     *folder, name = module.split(".")
-    return "/".join(["tests", *folder, f"test_{TESTS.get(module, name)}.py"])
+    return f"tests/{TESTS.get(module, '/'.join([*folder, f'test_{name}.py']))}"
 
 
 class Copy:
-    """A copy of the project in which one mutant lives at a time."""
+    """Copy of the project with one mutant at a time."""
 
     def __init__(self, folder):
         self.folder, self.warm, self.cache = folder / "project", folder / "warm", folder / "cache"
-        ignored = shutil.ignore_patterns("__pycache__", "workflow", "benchmarks")
-        for name in ("src", "tests"):
+        ignored = shutil.ignore_patterns("__pycache__", "benchmarks")
+        for name in ("src", "tests", "workflow"):
             shutil.copytree(ROOT / name, self.folder / name, ignore=ignored)
         for name in ("pyproject.toml", "config.yaml"):
             shutil.copy(ROOT / name, self.folder)
@@ -276,7 +619,7 @@ class Copy:
         return lines[0] if lines else f"pytest ended with {done.returncode}"
 
     def notice(self, module, old, new):
-        """The test that notices a mutant, empty if none does."""
+        """Name of the test that detects a mutant; empty if none does."""
         path = self.folder / source_of(module)
         text = path.read_text(encoding="utf-8")
         shutil.rmtree(self.cache, ignore_errors=True)
@@ -301,7 +644,7 @@ def chosen(modules):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Break the physics in small ways and count what no test notices.")
+    parser = argparse.ArgumentParser(description="Introduce small errors and count those that no test detects.")
     parser.add_argument("modules", nargs="*", metavar="module", help="of src/stiction; all by default")
     modules = parser.parse_args().modules or list(MUTANTS)
     if unknown := set(modules) - set(MUTANTS):
@@ -319,7 +662,7 @@ def main():
             print(f"{'caught  ' if test else 'SURVIVED'} {module}: {old!r} -> {new!r}  {test}", flush=True)  # noqa: T201
     caught = len(mutants) - len(survivors)
     print(f"{caught} of {len(mutants)} mutants caught, {100 * caught / len(mutants):.0f} %")  # noqa: T201
-    sys.exit(caught < 0.9 * len(mutants))
+    sys.exit(caught < 0.99 * len(mutants))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The four surfaces of Tables I and II, as the configuration holds them, in SI."""
+"""The four surfaces of Tables I and II, from the configuration, in SI units."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import yaml
 
-from stiction.config import units
+from stiction.config.units import typed
 from stiction.surface import maxent
 from stiction.surface.field import RoughSurface
 from stiction.surface.spectrum import CutoffSelfAffine
@@ -29,11 +29,11 @@ class PublishedSurface:
     mean_summit_radius: float
     summit_density: float
     psd: str
-    published_psd: dict
+    published_psd: CutoffSelfAffine
 
     @cached_property
     def spectrum(self):
-        return CutoffSelfAffine(**units.si(self.published_psd))
+        return self.published_psd
 
     @cached_property
     def density(self):
@@ -62,6 +62,6 @@ class PublishedSurface:
 
 IDENTITY = Translation(maxent.GAUSSIAN)
 SURFACES = {
-    name: PublishedSurface(**units.si(entry))
+    name: typed(PublishedSurface, entry)
     for name, entry in yaml.safe_load(CONFIG.read_text(encoding="utf-8"))["surfaces"].items()
 }

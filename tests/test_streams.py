@@ -22,8 +22,8 @@ def test_integer_address_is_the_child_that_spawning_reaches():
     assert numbers(7, 2, 4) == tuple(expected)
 
 
-def test_words_enter_by_their_checksum_and_not_by_the_salted_hash_of_the_process():
-    # The check value of CRC-32 is that of the digits 1 to 9.
+def test_strings_enter_by_their_checksum_and_not_by_the_salted_hash_of_the_process():
+    # Check value of CRC-32: the checksum of the digits 1 to 9.
     assert numbers(1, "123456789") == numbers(1, 0xCBF43926)
 
 
@@ -56,6 +56,6 @@ def test_numpy_integer_is_the_same_address():
     assert numbers(1, "beam", np.int64(3)) == numbers(1, "beam", 3)
 
 
-def test_fraction_is_no_address():
+def test_a_float_is_not_a_valid_address():
     with pytest.raises(TypeError, match="float"):
         stream(1, "humidity", 0.45)

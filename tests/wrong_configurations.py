@@ -1,10 +1,10 @@
-"""Configurations that cannot run, and what the user is told."""
+"""Invalid configurations and their error messages."""
 
 YES = "truth values"
-GONE = "nothing was written"
+GONE = "there is no value"
 
-# What the user writes over the paper's configuration | the key to blame | its value | what the message says
-WRONG = [
+# Overlay on the paper's configuration | offending key | its value | part of the message
+WRONG_VALUES = [
     # numbers outside their range
     ("seed: -1", "seed", "-1", "at least 0"),
     ("surfaces: {B1: {rms_nm: 0}}", "surfaces.B1.rms_nm", "0", "above 0 and at most 1000: standard deviation"),
@@ -48,8 +48,8 @@ WRONG = [
     ("studies: {sensitivity: {step: 0}}", "studies.sensitivity.step", "0", "above 0 and at most 0.5"),
     ("studies: {plasticity: {distance_nm: {a: -1}}}", "studies.plasticity.distance_nm.a", "-1", "[nm]"),
     ("studies: {sample_shares: [0]}", "studies.sample_shares[0]", "0", "above 0 and at most 1"),
-    ("studies: {readings: {psd: [measured]}}", "studies.readings.psd[0]", "'measured'", "one of published, identified"),
-    # what YAML makes of it
+    ("studies: {variants: {psd: [measured]}}", "studies.variants.psd[0]", "'measured'", "one of published, identified"),
+    # values misread by YAML
     ("seed: 1e3", "seed", "'1e3'", "as text, write 1000"),
     ("beam: {thickness_um: 1.5e-3um}", "beam.thickness_um", "'1.5e-3um'", "write 1.5e-3 without"),
     ("pairs: {a: {humidities: [44%]}}", "pairs.a.humidities[0]", "'44%'", "below 1: relative humidity, as a fraction"),
@@ -91,7 +91,12 @@ WRONG = [
     ("surfaces:", "surfaces", "None", GONE),
     ("surfaces: {B1: }", "surfaces.B1", "None", GONE),
     ("surfaces: {B1: {published_psd: }}", "surfaces.B1.published_psd", "None", GONE),
-    # relations between keys
+]  # fmt: skip
+
+# As above, for relations between keys
+WRONG_RELATIONS = [
+    ("surfaces: {B1: {skewness: -0.5, kurtosis: 1.25}}", "surfaces.B1.kurtosis", "1.25",
+     "above skewness² + 1 = 1.25 (given"),
     ("surfaces: {B1: {kurtosis: 1.6}}", "surfaces.B1.kurtosis", "1.6", "skewness² + 1 = 1.6084 (given surfaces.B1."),
     ("surfaces: {B1: {skewness: 0}}", "surfaces.B1.kurtosis", "4.6", "maximum-entropy"),
     ("surfaces: {B1: {skewness: 1.0e-3}}", "surfaces.B1.kurtosis", "4.6", "surfaces.B1.skewness = 0.001"),
@@ -100,29 +105,29 @@ WRONG = [
     ("surfaces: {B1: {published_psd: {floor_nm4: 525}}}", "surfaces.B1.published_psd.floor_nm4", "525", "plateau"),
     ("surfaces: {B1: {published_psd: {cutoff_rad_per_um: 315}}}", "surfaces.B1.published_psd.cutoff_rad_per_um", "315",
      "at most the Nyquist number of the grid, 314.159 rad/µm (given sampling.spacing_nm = 10)"),
-    ("sampling: {strip_length_um: 0.75}\nbeam: {elements: 400}\nstudies: {readings: {every: []}}",
+    ("sampling: {strip_length_um: 0.75}\nbeam: {elements: 400}\nstudies: {variants: {every: []}}",
      "sampling.strip_length_um", "0.75",
      "surfaces.Sub1.published_psd ="),
     ("sampling: {margin_um: 0.75}", "sampling.margin_um", "0.75", "above the correlation length of the surface,"),
     ("identification: {patch_um: 0.75}", "identification.patch_um", "0.75", "above the correlation length of the"),
     ("identification: {patch_um: 5.005}", "identification.patch_um", "5.005", "whole number of grid spacings of 10 nm"),
-    ("beam: {width_um: 30.005}\nstudies: {readings: {every: []}}", "beam.width_um", "30.005",
+    ("beam: {width_um: 30.005}\nstudies: {variants: {every: []}}", "beam.width_um", "30.005",
      "whole number of contact points 10 nm apart"),
-    ("contact: {every: 2}\nbeam: {width_um: 30.01}\nstudies: {readings: {every: []}}", "beam.width_um", "30.01",
+    ("contact: {every: 2}\nbeam: {width_um: 30.01}\nstudies: {variants: {every: []}}", "beam.width_um", "30.01",
      "contact points 20 nm apart"),
-    ("studies: {readings: {spacing_nm: [5, 20]}}", "studies.readings.spacing_nm[1]", "20",
+    ("studies: {variants: {spacing_nm: [5, 20]}}", "studies.variants.spacing_nm[1]", "20",
      "at most 11.9 nm, for the Nyquist number of the grid (given surfaces.Sub1.published_psd.cutoff_rad_per_um ="),
     ("surfaces: {Mine: {rms_nm: 2, skewness: -0.5, kurtosis: 3.5, psd: identified, mean_summit_radius_um: 0.5, "
-     "summit_density_per_um2: 30}}\ncharacter: {spacing_nm: 10}\nstudies: {readings: {spacing_nm: [11.71875]}}",
-     "studies.readings.spacing_nm[0]", "11.71875", "at most that of Table I (given character.spacing_nm = 10"),
-    ("studies: {readings: {strips_per_element: [3]}}", "studies.readings.strips_per_element[0]", "3",
+     "summit_density_per_um2: 30}}\ncharacter: {spacing_nm: 10}\nstudies: {variants: {spacing_nm: [11.71875]}}",
+     "studies.variants.spacing_nm[0]", "11.71875", "at most that of Table I (given character.spacing_nm = 10"),
+    ("studies: {variants: {strips_per_element: [3]}}", "studies.variants.strips_per_element[0]", "3",
      "must divide the strips along the beam into whole elements"),
-    ("studies: {readings: {strips_per_element: [1000]}}", "studies.readings.strips_per_element[0]", "1000",
+    ("studies: {variants: {strips_per_element: [1000]}}", "studies.variants.strips_per_element[0]", "1000",
      "at least two"),
-    ("studies: {readings: {spacing_nm: [7]}}", "studies.readings.spacing_nm[0]", "7", "both sides of a strip into"),
-    ("studies: {readings: {every: [7]}}", "studies.readings.every[0]", "7", "both sides of a strip into whole contact"),
-    ("beam: {width_um: 30.01}", "studies.readings.every[0]", "2", "beam.width_um = 30.01"),
-    ("studies: {mesh: {elements_um: [7]}}", "studies.mesh.elements_um", "[7]", "must hold a part of the beam that is"),
+    ("studies: {variants: {spacing_nm: [7]}}", "studies.variants.spacing_nm[0]", "7", "both sides of a strip into"),
+    ("studies: {variants: {every: [7]}}", "studies.variants.every[0]", "7", "both sides of a strip into whole contact"),
+    ("beam: {width_um: 30.01}", "studies.variants.every[0]", "2", "beam.width_um = 30.01"),
+    ("studies: {mesh: {elements_um: [7]}}", "studies.mesh.elements_um", "[7]", "must include a divisor of the beam"),
     ("studies: {mesh: {strips_um: [4, 31]}}", "studies.mesh.elements_um", "[30, 15, 7.5, 3.75, 1.5]",
      "multiple of one of the strips (given studies.mesh.strips_um = [4, 31], beam.length_um = 1500)"),
     ("character: {spacing_nm: 25}", "character.spacing_nm", "25", "a multiple of the grid spacing of 10 nm"),
@@ -137,8 +142,8 @@ WRONG = [
     ("studies: {plasticity: {distance_nm: {d: 2}}}", "studies.plasticity.distance_nm",
      "{'a': 2.2, 'b': 5.7, 'c': 9, 'd': 2}", "must be one of a, b, c; 'd' is not"),
     ("figures: {pair: d}", "figures.pair", "'d'", "must be one of a, b, c"),
-    ("run: {pairs: [a, b, a]}", "run.pairs", "['a', 'b', 'a']", "once; 'a' is there twice"),
-    ("pairs: {a: {humidities: [0.6, 0.60]}}", "pairs.a.humidities", "[0.6, 0.6]", "once; 0.6 is there twice"),
+    ("run: {pairs: [a, b, a]}", "run.pairs", "['a', 'b', 'a']", "once; 'a' is listed twice"),
+    ("pairs: {a: {humidities: [0.6, 0.60]}}", "pairs.a.humidities", "[0.6, 0.6]", "once; 0.6 is listed twice"),
     ("pairs: {a: {humidities: [0.65001]}}", "pairs.a.humidities", "[0.65001]", "at most 4 decimals"),
     ("figures: {humidity: 0.65001}", "figures.humidity", "0.65001", "at most 4 decimals"),
     ("contact: {chunks: 5001}", "contact.chunks", "5001", "at most the number of samples (given contact.samples ="),
@@ -150,7 +155,9 @@ WRONG = [
     ("beam: {thickness_um: 1000, length_um: 900}", "beam.thickness_um", "1000", "below the length of the beam"),
 ]  # fmt: skip
 
-# What the user writes | the key to blame | the rest of its line
+WRONG = [*WRONG_VALUES, *WRONG_RELATIONS]
+
+# Overlay | offending key | part of the message
 UNKNOWN = [
     ("sead: 1", "sead", "did you mean seed?"),
     ("pairs: {a: {gap: 20}}", "pairs.a.gap", "did you mean gap_um? Keys carry their unit."),
@@ -169,5 +176,5 @@ UNKNOWN = [
     ('beam: {"a b\\n": 2}', r"beam.'a b\n'", "must be one of length_um"),
 ]
 
-# Names that would not survive as file names and wildcards
+# Names that are not safe in file names and wildcards
 UNNAMEABLE = ["B-1", "B_1", "B.1", "1B", "B 1", "../B", "{B}", "", "ß", "B" * 33, "B\n", 1, 1.5, None, False]

@@ -1,0 +1,87 @@
+"""Stiction of MEMS beams: rough surfaces, their contact, stochastic force laws and the release of cantilevers.
+
+The names below are the public interface of the package. A module is imported when one of its names is first used, so
+that ``import stiction`` takes almost no time. Modules and scripts of this project import from the modules instead,
+because fingerprints follow such imports only.
+
+>>> import stiction
+>>> config = stiction.load({"contact": {"samples": 2000}})
+>>> study = stiction.PairStudy.of(config, "b")  # doctest: +SKIP
+>>> study.beams(0.67)["crack_length"]  # doctest: +SKIP
+"""
+
+from importlib import import_module
+
+TYPE_CHECKING = False  # type checkers assume that it is true; importing it from typing takes 20 ms
+if TYPE_CHECKING:
+    from stiction.beam.cantilever import Beam
+    from stiction.beam.release import EndState, release
+    from stiction.chaos.model import ChaosModel
+    from stiction.chaos.model import fit as fit_chaos
+    from stiction.config.cases import case_id
+    from stiction.config.files import load
+    from stiction.config.messages import ConfigError
+    from stiction.contact.asperity import HertzAsperity, MaugisTable, asperity, reduced_modulus
+    from stiction.contact.pair import SurfacePair
+    from stiction.contact.vanderwaals import DugdaleAttraction, attraction
+    from stiction.errors import NotConverged
+    from stiction.streams import stream
+    from stiction.study import PairStudy
+    from stiction.surface.field import RoughSurface, StripGrid
+    from stiction.surface.maxent import HeightDensity
+    from stiction.surface.maxent import solve as maximum_entropy
+    from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
+    from stiction.surface.translation import Translation, underlying_spectrum
+
+__version__ = "0.2.0"
+
+#: Public names and where each is defined.
+_PLACES = {
+    # configuration and study of a pair of surfaces
+    "load": "config.files.load",
+    "case_id": "config.cases.case_id",
+    "PairStudy": "study.PairStudy",
+    # surfaces
+    "maximum_entropy": "surface.maxent.solve",
+    "HeightDensity": "surface.maxent.HeightDensity",
+    "CutoffSelfAffine": "surface.spectrum.CutoffSelfAffine",
+    "TabulatedSpectrum": "surface.spectrum.TabulatedSpectrum",
+    "Translation": "surface.translation.Translation",
+    "underlying_spectrum": "surface.translation.underlying_spectrum",
+    "StripGrid": "surface.field.StripGrid",
+    "RoughSurface": "surface.field.RoughSurface",
+    # contact and force laws
+    "DugdaleAttraction": "contact.vanderwaals.DugdaleAttraction",
+    "attraction": "contact.vanderwaals.attraction",
+    "reduced_modulus": "contact.asperity.reduced_modulus",
+    "asperity": "contact.asperity.asperity",
+    "MaugisTable": "contact.asperity.MaugisTable",
+    "HertzAsperity": "contact.asperity.HertzAsperity",
+    "SurfacePair": "contact.pair.SurfacePair",
+    "ChaosModel": "chaos.model.ChaosModel",
+    "fit_chaos": "chaos.model.fit",
+    # beams
+    "Beam": "beam.cantilever.Beam",
+    "EndState": "beam.release.EndState",
+    "release": "beam.release.release",
+    # random numbers and errors
+    "stream": "streams.stream",
+    "ConfigError": "config.messages.ConfigError",
+    "NotConverged": "errors.NotConverged",
+}
+
+__all__ = list(_PLACES)
+
+
+def __getattr__(name):
+    """Import the module that defines a public name when the name is first used."""
+    if name not in _PLACES:
+        raise AttributeError(f"module 'stiction' has no attribute {name!r}")
+    module, _, attribute = _PLACES[name].rpartition(".")
+    globals()[name] = getattr(import_module(f"stiction.{module}"), attribute)
+    return globals()[name]
+
+
+def __dir__():
+    """All public names, including those not imported yet."""
+    return sorted({*globals(), *__all__})

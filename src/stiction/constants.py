@@ -1,4 +1,4 @@
-"""Physical constants, SI units. Each carries its unit and its source; nothing here may be tuned."""
+"""Physical constants in SI units, each with unit and source; none is a tuning parameter."""
 
 from scipy.constants import R as GAS_CONSTANT  # noqa: F401  [J mol⁻¹ K⁻¹], CODATA
 

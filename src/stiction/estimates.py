@@ -1,43 +1,48 @@
-"""Standard errors of Monte-Carlo figures."""
+"""Standard errors of Monte-Carlo estimates."""
+
+from collections.abc import Callable
 
 import numpy as np
 
 
-def mean_with_error(samples):
-    """Mean and its standard error over the first axis; ValueError for a single sample."""
+def mean_with_error(samples: np.ndarray) -> tuple[float | np.ndarray, float | np.ndarray]:
+    """Mean over the first axis and its standard error; raises ValueError for a single sample."""
     samples = np.asarray(samples, float)
     if len(samples) < 2:
         raise ValueError(f"a standard error needs two samples, got {len(samples)}")
     return samples.mean(axis=0), samples.std(axis=0, ddof=1) / np.sqrt(len(samples))
 
 
-def mean_on_shared_samples(values, shared, power):
-    """Mean of values that all rest on one set of samples, with both parts of its standard error.
+def mean_on_shared_samples(values: np.ndarray, shared: np.ndarray, power: float) -> tuple[float, float, float]:
+    """Mean of values that all depend on one set of samples, and both parts of its standard error.
 
-    Beams of a case share their finite number of sampled pairs: what these have by chance, all beams have.
+    The beams of a case share a finite number of sampled pairs, whose sampling error is common to all beams.
 
     Parameters
     ----------
     values : (n,) array
-        Independent of each other but for the samples.
+        Values that are independent given the samples.
     shared : (m,) array
-        The samples.
+        Samples on which all values depend.
     power : float
-        ASSUME: the values follow the mean of the samples to this power. Resampled studies scatter by 0.7 to 1.6 times
-        the stated common error; it means nothing where the case selects its values, as among a few beams that stick.
+        ASSUME: the values are proportional to the mean of the samples to this power. Resampled studies scatter by 0.7
+        to 1.6 times the reported common error. The common error is invalid if the values are a selection, such as the
+        few beams that stick.
 
     Returns
     -------
     mean : float
     own, common : float
-        Standard errors of the n values and of the m samples.
+        Standard errors due to the n values and due to the m samples.
     """
     mean, own = mean_with_error(values)
     centre, error = mean_with_error(shared)
     return mean, own, abs(power * mean * error / centre)
 
 
-def jackknife(estimate, samples):
+def jackknife(
+    estimate: Callable[[np.ndarray], float | np.ndarray], samples: np.ndarray
+) -> tuple[float | np.ndarray, float | np.ndarray]:
     """Estimate from all samples and its jackknife standard error.
 
     Parameters

@@ -1,10 +1,14 @@
 """Progress bars of long loops."""
 
 import sys
+from collections.abc import Iterable, Iterator
+from typing import TypeVar
 
 from tqdm import tqdm
 
+T = TypeVar("T")
 
-def progress(steps, what, total=None):
-    """Iterate over ``steps`` and show a progress bar on the standard error, which in a job is its log."""
+
+def progress(steps: Iterable[T], what: str, total: int | None = None) -> Iterator[T]:
+    """Iterate over ``steps`` with a progress bar on standard error, which jobs redirect to their log."""
     return tqdm(steps, desc=what, total=total, mininterval=2.0, ascii=True, file=sys.stderr)

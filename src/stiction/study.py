@@ -1,83 +1,115 @@
-"""The paper in one process: from the configuration of a pair to the crack lengths of its beams, without files.
+"""The whole model in one process: from a configuration to the crack lengths of the beams of a pair, without files.
 
-Stages, settings and addresses of random numbers are those of the workflow, and so are the results.
+Stages, settings and addresses of random numbers are the same as in the workflow, and so are the results.
 """
 
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property
 
+import numpy as np
 import xarray as xr
 
-from stiction.beam.montecarlo import Experiment, columns, simulate
-from stiction.chaos import model as chaos
+from stiction.beam.cantilever import Beam
+from stiction.chaos.model import ChaosModel, Truncation, fit
+from stiction.config import jobs
 from stiction.config.cases import case_id
-from stiction.config.units import si
-from stiction.contact.forcelaw import adhesion_energies, parametrise
-from stiction.progress import progress
-from stiction.stages.cantilevers import cantilever, points
-from stiction.stages.cases import surfaces_of
-from stiction.stages.curves import force_curves
-from stiction.stages.pairs import contact
-from stiction.streams import stream
+from stiction.config.plan import Plan
+from stiction.config.units import typed
+from stiction.contact.pair import SurfacePair
+from stiction.stages import contact as stage_contact
+from stiction.stages import curves, heights, identification, pairs, releases, spectrum
+from stiction.stages.cantilevers import Cantilevers, cantilever
 
 
 @dataclass(frozen=True)
 class PairStudy:
-    """One pair of surfaces and all that the humidity does to it, stage by stage.
+    """One pair of surfaces and its results at any relative humidity, stage by stage.
 
     Examples
     --------
-    >>> config = settings.load(["config.yaml", "workflow/smoke.yaml"], schema)  # doctest: +SKIP
-    >>> study = PairStudy.of(config, "b")  # doctest: +SKIP
+    >>> import stiction
+    >>> study = stiction.PairStudy.of(stiction.load(), "b")  # doctest: +SKIP
     >>> study.beams(0.67)["crack_length"]  # doctest: +SKIP
     """
 
-    name: str  #: of the pair, part of the addresses of random numbers
-    contact: xr.Dataset  #: stage contact
-    settings: dict  #: sections seed, sampling, solid, water, chaos, beam and pairs of the configuration
+    name: str  #: name of the pair, part of the addresses of random numbers
+    surfaces: SurfacePair  #: the two surfaces, from which samples can be drawn
+    contact: xr.Dataset  #: dataset of stage contact
+    config: dict  #: complete configuration
 
     @classmethod
-    def of(cls, config, name, model="NG", identified=()):
-        """Study of one pair of a configuration: draws its surfaces and computes their contact, 15 ms a sample.
+    def of(cls, config: dict, name: str, model: str = "NG") -> "PairStudy":
+        """Study of one pair of a configuration: draws the surfaces and computes their contact, 15 ms per sample.
 
-        Parameters as in `stiction.stages.cases.surfaces_of` and `stiction.stages.pairs.contact`; spectra that are to be
-        identified come from `stiction.stages.identifications.identified_spectra`.
+        Spectra with ``psd: identified`` are identified first, which takes about 15 s each.
+
+        Parameters
+        ----------
+        config : dict
+            Complete configuration, from `stiction.load`.
+        name : str
+            Name of the pair.
+        model : str
+            ``NG``, or ``G`` for surfaces with Gaussian heights.
 
         Raises
         ------
         ValueError
-            If the configuration has no such pair, or a spectrum has to be identified.
+            If the configuration has no such pair.
         """
         if name not in config["pairs"]:
             raise ValueError(f"there is no pair {name}; the configuration has {', '.join(config['pairs'])}")
-        return cls(name, contact(surfaces_of(config, name, identified), name, model, config), config)
+        plan = Plan(config)
+        surfaces = [_surface(plan, side) for side in plan.sides(name)]
+        settings = typed(stage_contact.Settings, jobs.contact(plan, name))
+        pair = pairs.surface_pair(surfaces, model, settings)
+        return cls(name, pair, stage_contact.compute(surfaces, name, model, settings), config)
 
-    def _curves(self, humidity):
-        return force_curves(self.contact, humidity, si(self.settings["water"])["temperature"])
-
-    def energies(self, humidity):
+    def energies(self, humidity: float) -> np.ndarray:
         """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
-        return adhesion_energies(*self._curves(humidity), self.contact.sizes["sample"])
+        return curves.energies(self.contact, humidity, self._water)
 
-    def forces(self, humidity):
+    def forces(self, humidity: float) -> tuple[np.ndarray, float]:
         """Vectors v of Eq. (11), (m, 4) [SI], and f_limit [Pa] at a relative humidity (Sec. III-B1)."""
-        return parametrise(*self._curves(humidity), self.contact.sizes["sample"])
+        return curves.vectors(self.contact, humidity, self._water)
 
-    def chaos(self, humidity):
+    def chaos(self, humidity: float) -> ChaosModel:
         """Chaos model of the force laws at a relative humidity (App. B)."""
-        wanted = self.settings["chaos"]
-        return chaos.fit(*self.forces(humidity), wanted["order"], wanted["dimension_tolerance"])
+        wanted = typed(Truncation, self.config["chaos"])
+        return fit(*self.forces(humidity), wanted.order, wanted.dimension_tolerance)
 
-    def beams(self, humidity, scatter=0.0, threads=1):
-        """Beams released at a relative humidity, as `stiction.beam.montecarlo.columns` (Sec. III-C)."""
-        fitted, entry = self.chaos(humidity), self.settings["beam"]
-        strips = points(self.settings)
-        experiment = Experiment(self.beam, strips, lambda rng, n: chaos.draw_laws(fitted, n, rng)[0], scatter)
-        address = partial(stream, self.settings["seed"], "beams", case_id(self.name, humidity))
-        released = simulate(experiment, range(entry["samples"]), address, threads)
-        return columns(list(progress(released, f"beams at {humidity}", total=entry["samples"])))
+    def beams(self, humidity: float, scatter: float = 0.0, threads: int = 1) -> dict[str, np.ndarray]:
+        """Beams released at a relative humidity (Sec. III-C); arrays as in `stiction.beam.montecarlo.columns`.
+
+        Parameters
+        ----------
+        humidity : float
+            [-]
+        scatter : float
+            Relative standard deviation of each dimension of the beams [-]; 0.025 in the paper's model GEO.
+        threads : int
+            Number of beams computed in parallel; it does not affect the results.
+        """
+        case = case_id(self.name, humidity)
+        plain = jobs.beams(Plan(self.config), case, "NG") | {"scatter": scatter}
+        return releases.released(self.chaos(humidity), case, typed(releases.Settings, plain), threads)
 
     @property
-    def beam(self):
-        """The nominal cantilever."""
-        return cantilever(self.settings, self.name)
+    def beam(self) -> Beam:
+        """Nominal cantilever of the pair."""
+        return cantilever(typed(Cantilevers, jobs.cantilevers(Plan(self.config), self.name)), self.name)
+
+    @cached_property
+    def _water(self):
+        return typed(curves.Water, self.config["water"])
+
+
+def _surface(plan, name):
+    """Datasets of stages heights and spectrum of one surface."""
+    found = heights.compute(typed(heights.Settings, jobs.heights(plan, name)))
+    settings = typed(spectrum.Settings, jobs.spectrum(plan, name))
+    identified = None
+    if settings.psd == "identified":
+        wanted = typed(identification.Settings, jobs.identification(plan, name))
+        identified = identification.compute(found, name, wanted)
+    return found, spectrum.compute(found, identified, settings)

@@ -1,4 +1,4 @@
-"""What the jobs of a run took, rule by rule, from their logs: ``make jobs``. Prints a table."""
+"""Time and memory of the jobs of a run, rule by rule, from their logs: ``make jobs``. Prints a table."""
 
 import re
 import sys
@@ -9,7 +9,7 @@ TOOK = re.compile(r"^took ([\d.]+) s, (\d+) MB$", re.MULTILINE)
 
 
 def rules():
-    """Of every rule that has a script: name, pattern of its logs, and the memory [MB] and minutes it states."""
+    """For every rule with a script: name, pattern of its logs, and the stated memory [MB] and minutes."""
     default = (ROOT / "profiles" / "default" / "config.yaml").read_text()
     for file in sorted((ROOT / "workflow" / "rules").glob("*.smk")):
         for name, body in re.findall(
@@ -24,21 +24,27 @@ def rules():
 
 
 def measured(results):
-    """Of every rule that ran: name, number of jobs, most seconds, most memory [MB], stated memory and minutes."""
+    """For every rule that ran: name, number of jobs, most and all seconds, most memory [MB], stated MB and minutes."""
     logs = {str(path.relative_to(results / "logs"))[:-4]: path.read_text() for path in results.rglob("logs/**/*.log")}
     for name, pattern, memory, minutes in rules():
         took = [TOOK.findall(text)[-1] for log, text in logs.items() if pattern.fullmatch(log) and TOOK.search(text)]
         if took:
-            seconds, megabytes = (max(map(float, column)) for column in zip(*took, strict=True))
-            yield name, len(took), seconds, megabytes, memory, minutes
+            seconds, megabytes = (list(map(float, column)) for column in zip(*took, strict=True))
+            yield name, len(took), max(seconds), sum(seconds), max(megabytes), memory, minutes
+
+
+def table(results):
+    """The table in Markdown."""
+    lines = ["| rule | jobs | longest [s] | all [s] | most memory [MB] | stated [MB] | stated [min] |"]
+    lines += ["|---|---|---|---|---|---|---|"]
+    for name, jobs, longest, seconds, megabytes, memory, minutes in measured(results):
+        lines += [f"| {name} | {jobs} | {longest:.1f} | {seconds:.0f} | {megabytes:.0f} | {memory} | {minutes} |"]
+    return "\n".join(lines) + "\n"
 
 
 def main():
     """Print the table."""
-    results = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "results")
-    print("| rule | jobs | longest [s] | most memory [MB] | stated [MB] | stated [min] |\n|---|---|---|---|---|---|")  # noqa: T201
-    for name, jobs, seconds, megabytes, memory, minutes in measured(results):
-        print(f"| {name} | {jobs} | {seconds:.1f} | {megabytes:.0f} | {memory} | {minutes} |")  # noqa: T201
+    print(table(Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "results")), end="")  # noqa: T201
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Time the stages on one core, state the machine: ``make bench``. Prints a table; nothing here is a test."""
+"""Time the stages on one core and state the machine: ``make bench``. Prints a table; this is no test."""
 
 import os
 import platform
@@ -19,13 +19,14 @@ from scipy import fft  # noqa: E402
 
 from stiction.beam.montecarlo import Experiment, simulate  # noqa: E402
 from stiction.chaos import model as chaos  # noqa: E402
-from stiction.config import settings  # noqa: E402
-from stiction.stages import cases, pairs  # noqa: E402
-from stiction.stages.cantilevers import cantilever, points  # noqa: E402
+from stiction.config import files  # noqa: E402
 from stiction.streams import stream  # noqa: E402
+from stiction.study import PairStudy  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
-CONFIG = settings.read(ROOT / "config.yaml")
+CONFIG = files.load({"contact": {"samples": 5}, "chaos": {"order": 1}})  # as few samples as are allowed
+#: Force laws along the beam of the paper.
+STRIPS = 1000
 
 
 def timed(function, repeats):
@@ -39,9 +40,9 @@ def timed(function, repeats):
 
 
 def contact_rows():
-    """Contact of one pair against its floor: the normals and the inverse FFTs of its two surfaces."""
+    """Contact of one pair compared with its floor: the normal numbers and inverse FFTs of its two surfaces."""
     for name in CONFIG["pairs"]:
-        pair = pairs.surface_pair(cases.surfaces_of(CONFIG, name), "NG", CONFIG)
+        pair = PairStudy.of(CONFIG, name).surfaces
         sides, grid = (pair.beam, pair.substrate), pair.beam.grid
 
         def floor(k, sides=sides, grid=grid):
@@ -71,19 +72,15 @@ def vectors():
 
 def law_rows():
     """Chaos model of one case and beams that use it."""
-    sample = vectors()
+    sample, beam = vectors(), PairStudy.of(CONFIG, "b").beam
     for tolerance in (0.1, 0.0):
         fit = partial(chaos.fit, sample, sample[:, 1].max(), 12, tolerance)
         seconds, model = timed(lambda _, fit=fit: fit(), 3), fit()
         yield f"chaos model of one case, order 12, {model.dimension} coordinates", f"{seconds:.2f} s", "6 s"
-        experiment = Experiment(cantilever(CONFIG, "b"), points(CONFIG), partial(_laws, model))
+        experiment = Experiment(beam, STRIPS, partial(chaos.draw_laws, model))
         start = time.perf_counter()
         list(simulate(experiment, range(100), partial(stream, 4)))
         yield f"one beam, {model.dimension} coordinates", f"{10 * (time.perf_counter() - start):.1f} ms", "15 ms"
-
-
-def _laws(model, rng, n):
-    return chaos.draw_laws(model, n, rng)[0]
 
 
 def dry_run_row():

@@ -1,14 +1,12 @@
-"""A case has one name and the name one case; files change single keys."""
+"""Cases and their names correspond one to one."""
 
-import copy
 import math
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from snakemake.utils import update_config
 
-from stiction.config.cases import case_id, humidity_of, merged, pair_of
+from stiction.config.cases import case_id, humidity_of, pair_of
 
 
 @pytest.mark.parametrize(
@@ -21,13 +19,13 @@ def test_a_case_is_named_after_its_pair_and_the_decimals_of_its_humidity(humidit
 
 
 @given(st.integers(1, 9999))
-def test_every_humidity_of_four_decimals_survives_its_name(tenthousandths):
+def test_every_humidity_of_four_decimals_is_recovered_from_its_case_name(tenthousandths):
     humidity = tenthousandths / 10000
     assert humidity_of(case_id("b", humidity)) == humidity
 
 
 @pytest.mark.parametrize("humidity", [0, 1, -0.5, 0.67512, 0.1 + 0.2, 1e-5, math.nan, 67])
-def test_a_humidity_that_no_case_can_be_named_after_is_refused(humidity):
+def test_a_humidity_without_a_valid_case_name_is_rejected(humidity):
     with pytest.raises(ValueError, match="must be above 0, below 1 and have at most 4 decimals"):
         case_id("b", humidity)
 
@@ -35,13 +33,6 @@ def test_a_humidity_that_no_case_can_be_named_after_is_refused(humidity):
 @pytest.mark.parametrize(
     "case", ["b_rh000", "b_rh0600", "b_rh06", "b_rh067512", "b_rh167", "_rh067", "b_rh067\n", "b_rh0٦٧", "rh067", ""]
 )
-def test_what_is_no_case_has_no_humidity(case):
+def test_an_invalid_case_name_is_rejected(case):
     with pytest.raises(ValueError, match="must be like b_rh067"):
         humidity_of(case)
-
-
-@given(*[st.recursive(st.integers(), lambda inner: st.dictionaries(st.sampled_from("abc"), inner, min_size=1))] * 2)
-def test_files_are_merged_as_snakemake_does(base, overlay):
-    merging = {"root": copy.deepcopy(base)}
-    update_config(merging, {"root": overlay})
-    assert merged({"root": base}, {"root": overlay}) == merging

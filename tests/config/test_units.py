@@ -1,6 +1,34 @@
+from dataclasses import FrozenInstanceError, dataclass
+
 import pytest
 
-from stiction.config.units import si
+from stiction.config.units import typed
+
+
+@dataclass(frozen=True)
+class Anything:
+    rms: float | None = None
+    gap: float | None = None
+    plateau: float | None = None
+    corner: float | None = None
+    summit_density: float | None = None
+    young_modulus: float | None = None
+    temperature: float | None = None
+    elements: tuple[float, ...] = ()
+    samples: int | None = None
+    psd: str | None = None
+
+
+@dataclass(frozen=True)
+class Inner:
+    spacing: float
+
+
+@dataclass(frozen=True)
+class Outer:
+    sampling: Inner
+    pairs: dict[str, Inner]
+    psd: Inner | str
 
 
 @pytest.mark.parametrize(
@@ -15,13 +43,28 @@ from stiction.config.units import si
         ("temperature_K", 300, "temperature", 300.0),
     ],
 )
-def test_a_key_gives_its_unit_away(key, value, name, expected):
-    assert si({key: value}) == {name: pytest.approx(expected, rel=1e-15)}
+def test_a_value_is_converted_by_the_unit_of_its_key(key, value, name, expected):
+    assert getattr(typed(Anything, {key: value}), name) == pytest.approx(expected, rel=1e-15)
 
 
-def test_numbers_without_unit_stay_as_they_are():
-    assert si({"samples": 5000, "kurtosis": 3.1, "psd": "published"}) == {
-        "samples": 5000,
-        "kurtosis": 3.1,
-        "psd": "published",
-    }
+def test_values_without_unit_stay_as_they_are_and_lists_become_tuples():
+    found = typed(Anything, {"samples": 5000, "psd": "published", "elements_um": [30, 7.5]})
+    assert (found.samples, found.psd) == (5000, "published")
+    assert found.elements == pytest.approx((30e-6, 7.5e-6), rel=1e-15)
+    with pytest.raises(FrozenInstanceError):
+        found.samples = 1
+
+
+@pytest.mark.parametrize("psd", ["identified", {"spacing_nm": 3}])
+def test_sections_inside_become_objects_of_their_fields(psd):
+    plain = {"sampling": {"spacing_nm": 10}, "pairs": {"a": {"spacing_nm": 5}, "b": {"spacing_nm": 20}}, "psd": psd}
+    found = typed(Outer, plain)
+    assert found.sampling == Inner(10e-9)
+    assert found.pairs == {"a": Inner(5e-9), "b": Inner(20e-9)}
+    assert found.psd == (Inner(3 * 1e-9) if isinstance(psd, dict) else psd)
+
+
+@pytest.mark.parametrize("section", [{}, {"spacing_nm": 1, "margin_um": 2}])
+def test_a_missing_or_an_unknown_key_is_rejected(section):
+    with pytest.raises(TypeError, match=r"spacing|margin"):
+        typed(Inner, section)

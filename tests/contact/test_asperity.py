@@ -1,11 +1,16 @@
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.testing import assert_array_equal
 from scipy.integrate import quad
 
 from stiction.contact.asperity import (
+    HertzAsperity,
     MaugisTable,
+    asperity,
     hertz_force,
     hertz_maximum_stress,
     interference_scale,
@@ -16,7 +21,7 @@ from stiction.contact.asperity import (
     touching_radius,
     transition_parameter,
 )
-from stiction.contact.vanderwaals import Attraction, attraction
+from stiction.contact.vanderwaals import DugdaleAttraction, attraction
 
 POLYSILICON = reduced_modulus(164e9, 0.23)
 WATER = MaugisTable(POLYSILICON, attraction("water"))
@@ -193,8 +198,8 @@ def test_soft_sphere_snaps_off_in_contact_at_a_vertical_tangent(transition):
     assert abs(slope) > 50
 
 
-def test_no_attraction_leaves_hertz():
-    faint = MaugisTable(POLYSILICON, Attraction(1e-30))
+def test_maugis_without_attraction_is_hertz():
+    faint = MaugisTable(POLYSILICON, DugdaleAttraction(1e-30))
     interference = np.linspace(1e-10, 5e-9, 20)
     np.testing.assert_allclose(faint.force(interference, 3e-7), hertz_force(interference, 3e-7, POLYSILICON), rtol=1e-4)
 
@@ -233,7 +238,7 @@ def test_tabulated_load_is_the_load_of_the_branch():
 
 
 def test_dimensional_scales_are_those_of_a_sphere_of_one_metre():
-    log_transition, interference, force, first, log_step, root_step = WATER.dimensional
+    log_transition, interference, force, first, log_step, root_step = WATER.scales
     np.testing.assert_allclose(
         log_transition, np.log(transition_parameter(1.0, POLYSILICON, WATER.attraction)), rtol=1e-14
     )
@@ -242,3 +247,32 @@ def test_dimensional_scales_are_those_of_a_sphere_of_one_metre():
     low, high, n = WATER.transitions
     np.testing.assert_allclose(np.exp(first + log_step * np.arange(n))[[0, -1]], [low, high], rtol=1e-12)
     assert root_step * (WATER.load.shape[1] - 1) == pytest.approx(WATER.roots[1], rel=1e-12)
+
+
+def test_without_attraction_an_asperity_is_hertz_and_with_it_maugis():
+    assert asperity(POLYSILICON, attraction("none")) == HertzAsperity(POLYSILICON)
+    assert asperity(POLYSILICON, attraction("water")) == WATER
+    interference = np.linspace(-1e-9, 5e-9, 7)
+    found = HertzAsperity(POLYSILICON).force(interference, 3e-7)
+    np.testing.assert_array_equal(found, hertz_force(interference, 3e-7, POLYSILICON))
+
+
+@pytest.mark.parametrize("model", [HertzAsperity(POLYSILICON), WATER], ids=["Hertz", "Maugis"])
+def test_force_of_a_surface_with_one_summit_is_that_of_a_sphere(model):
+    radius, spacing, step = 3e-7, 10e-9, 0.05e-9
+    x = spacing * np.arange(-3, 4)
+    heights = (5e-9 - (x[:, None] ** 2 + x**2) / (2 * radius)).astype(np.float32)
+    total = np.ones(150)
+    model.add_forces(heights, spacing, step, total)
+    exact = model.force(5e-9 - step * np.arange(150), radius)
+    # Single precision of the heights, and the interpolation between rows of λ near the first contact.
+    np.testing.assert_allclose(
+        total - 1, exact, rtol=2e-3, atol=0.015 * np.pi * WATER.attraction.work_of_adhesion * radius
+    )
+
+
+def test_another_attraction_of_the_same_work_and_stress_gives_the_same_asperity():
+    found = attraction("water")
+    other = SimpleNamespace(work_of_adhesion=found.work_of_adhesion, stress=found.stress)
+    at = np.linspace(-2e-9, 3e-9, 50)
+    assert_array_equal(MaugisTable(POLYSILICON, other).force(at, 1e-6), MaugisTable(POLYSILICON, found).force(at, 1e-6))

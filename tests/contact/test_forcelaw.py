@@ -33,18 +33,18 @@ def grid(step, end=60 * NM):
 # Eq. (12)
 
 
-def test_law_is_lowest_at_d_max_where_it_equals_minus_f_max():
+def test_force_law_has_its_minimum_minus_f_max_at_d_max():
     for law in coefficients(VECTORS, F_LIMIT):
         around = law[1] + np.linspace(-1, 1, 201) * NM
         assert np.argmin(pressure(law, around)) == 100
         np.testing.assert_allclose(pressure(law, law[1]), -law[0], rtol=1e-14)
 
 
-def test_law_reaches_f_limit_at_d_limit():
+def test_force_law_reaches_f_limit_at_d_limit():
     np.testing.assert_allclose(pressure(coefficients(VECTORS, F_LIMIT), VECTORS[:, 3]), F_LIMIT, rtol=1e-12)
 
 
-def test_integral_of_the_attraction_of_a_law_is_e():
+def test_integral_of_the_attraction_of_a_force_law_is_e():
     for vector, law in zip(VECTORS, coefficients(VECTORS, F_LIMIT), strict=True):
         crossing = law[1] - np.log(2) / law[2]
         assert abs(pressure(law, crossing)) < 1e-9 * law[0]
@@ -62,7 +62,7 @@ def test_pressure_of_many_laws_is_that_of_each():
 
 
 @given(st.floats(0.2, 5), st.floats(0.3, 3), st.floats(0.1, 4), st.floats(0.05, 20))
-def test_a_vector_has_a_law_exactly_if_the_left_branch_leaves_energy_to_the_right(f_max, gap, limit, share):
+def test_a_vector_has_a_force_law_exactly_if_its_energy_exceeds_that_of_the_left_branch(f_max, gap, limit, share):
     a_left = np.log(1 + np.sqrt(1 + limit / f_max)) / (gap * NM)
     left = 0.5 * f_max * 1e6 / a_left
     vector = np.array([[share * left, f_max * 1e6, 8 * NM, (8 - gap) * NM]])
@@ -75,7 +75,7 @@ def test_a_vector_has_a_law_exactly_if_the_left_branch_leaves_energy_to_the_righ
         np.testing.assert_allclose(energy(law), vector[:, 0], rtol=1e-8)
 
 
-def test_a_vector_without_a_law_is_an_error_that_names_it():
+def test_a_vector_without_a_force_law_is_an_error_with_its_number():
     poor = VECTORS.copy()
     poor[1, 0] = 1e-4
     assert admissible(poor, F_LIMIT).tolist() == [True, False, True]
@@ -110,7 +110,7 @@ def test_parameters_converge_with_the_square_of_the_grid_step():
     assert np.all(coarse / fine > 3.2)  # second order: 4, up to higher orders
 
 
-def test_parameters_move_with_the_curve_by_parts_of_a_step():
+def test_parameters_shift_with_the_curve_by_fractions_of_a_step():
     distance, shift = grid(STEP), 0.37 * STEP
     for shifted in (0.0, shift):
         law = SMOOTH + [0, shifted, 0, 0]
@@ -119,7 +119,7 @@ def test_parameters_move_with_the_curve_by_parts_of_a_step():
         assert abs(extremum(distance, force)[0] - law[1]) < 0.016 * STEP
 
 
-def test_parabola_is_found_exactly():
+def test_minimum_of_a_parabola_is_found_exactly():
     distance = grid(STEP, 20 * NM)
     force = -2e6 + 1e24 * (distance - 8.013 * NM) ** 2
     np.testing.assert_allclose(extremum(distance, force), [8.013 * NM, 2e6], rtol=1e-9)
@@ -135,13 +135,13 @@ def test_straight_lines_are_integrated_and_crossed_exactly():
     np.testing.assert_allclose(limit_distance(distance, force, F_LIMIT), expected, rtol=1e-9)
 
 
-def test_the_first_crossing_left_of_the_minimum_counts():
+def test_d_limit_is_the_first_crossing_left_of_the_minimum():
     distance = grid(STEP)
     force = pressure(SMOOTH, distance)
     energy_before = adhesion_energy(distance, force)
     d_limit = limit_distance(distance, force, F_LIMIT)
     beyond = distance < d_limit - NM
-    force[beyond] = -1e5  # another attractive stretch behind the wall
+    force[beyond] = -1e5  # another attractive interval at smaller distances, behind the repulsion
     assert adhesion_energy(distance, force) == energy_before
     assert limit_distance(distance, force, F_LIMIT) == d_limit
 
@@ -150,7 +150,7 @@ def test_f_limit_is_the_deepest_sample_and_d_limit_is_where_each_curve_reaches_i
     distance, laws = grid(STEP), coefficients(VECTORS, F_LIMIT)
     vectors, f_limit = parametrise(distance, lambda k: pressure(laws[k], distance), 3)
     assert f_limit == vectors[:, 1].max()
-    # e and f_max: (a step)² = 1e-3; d_max: the curvature jumps there, only half a step is certain
+    # e and f_max: (a step)² = 1e-3; d_max: the curvature jumps there, so that the error is up to half a step
     np.testing.assert_allclose(vectors[:, :2], VECTORS[:, :2], rtol=2e-3)
     np.testing.assert_allclose(vectors[:, 2], VECTORS[:, 2], atol=0.5 * STEP)
     reached = [pressure(law, d) for law, d in zip(laws, vectors[:, 3], strict=True)]
@@ -160,15 +160,15 @@ def test_f_limit_is_the_deepest_sample_and_d_limit_is_where_each_curve_reaches_i
 @pytest.mark.parametrize(
     ("spoil", "message"),
     [
-        (lambda f: np.abs(f), "attracts nowhere"),
+        (lambda f: np.abs(f), "nowhere attractive"),
         (lambda f: np.where(f > 0, -1.0, f), "does not rise"),
         (lambda f: np.minimum(f, 1e6), "does not rise"),
-        (lambda f: f - 1e4, "has not died out"),
-        (lambda f: np.linspace(1e6, -1e6, f.size), "lowest at an end"),
-        (lambda f: np.full(f.size, np.nan), "attracts nowhere"),
+        (lambda f: f - 1e4, "has not decayed"),
+        (lambda f: np.linspace(1e6, -1e6, f.size), "minimum of the force is at an end"),
+        (lambda f: np.full(f.size, np.nan), "nowhere attractive"),
     ],
 )
-def test_a_curve_that_lacks_a_parameter_is_an_error_that_names_the_sample(spoil, message):
+def test_a_curve_that_lacks_a_parameter_is_an_error_with_the_number_of_the_sample(spoil, message):
     distance = grid(STEP)
     force = pressure(SMOOTH, distance)
     deeper = 1.5 * force  # raises f_limit to 3 MPa
@@ -197,7 +197,7 @@ def film_curve(offset, tension, shift):
 
 @pytest.mark.parametrize("offset", [0.0, 7.0, 0.4])
 @pytest.mark.parametrize("shift", [0.0, 48.0, 48.27, 150.6])
-def test_film_pulls_with_its_tension_on_the_area_at_the_distance_less_its_height(offset, shift):
+def test_film_attracts_with_its_tension_times_the_area_at_the_distance_less_its_height(offset, shift):
     d, force = film_curve(offset, 6e7, shift)
     solid = np.interp(d, [0, 80], [4e6, 0])
     area = np.interp(d - shift, [-20, 100], [1, 0])
@@ -213,7 +213,7 @@ def test_a_film_adds_energy_in_proportion_to_its_tension():
     np.testing.assert_allclose(np.sum(wet - dry), -1e7 * (28.3 + 60 + 0.5), rtol=1e-3)
 
 
-def test_distances_short_of_the_solid_grid_are_an_error():
+def test_distances_below_the_solid_grid_are_an_error():
     with pytest.raises(ValueError, match="not known"):
         film_curve(-1.0, 6e7, 48.0)
 
@@ -257,7 +257,7 @@ def test_error_of_a_curve_is_relative_to_the_curve_whatever_the_length_of_its_ta
     np.testing.assert_allclose(shorter, 0.2, rtol=1e-6)
 
 
-def test_fit_is_judged_where_the_force_is_below_f_limit_only():
+def test_fit_error_includes_only_distances_beyond_d_limit():
     laws = pressure(coefficients(VECTORS, F_LIMIT)[:, None], grid(STEP))
     stiffer = np.where(grid(STEP) < VECTORS[:, 3:], 2 * laws, laws)
     np.testing.assert_array_equal(errors_of(stiffer)[0], 0)

@@ -36,7 +36,7 @@ def test_tension_adds_up_when_humidities_multiply(first, second, temperature):
     np.testing.assert_allclose(together, apart, rtol=ROUNDING)
 
 
-def test_meniscus_grows_and_its_tension_fades_as_the_air_saturates():
+def test_meniscus_grows_and_its_tension_vanishes_as_the_air_saturates():
     humidity = np.linspace(0.05, 0.999, 50)
     assert np.all(np.diff(meniscus_height(humidity, 300)) > 0)
     assert np.all(np.diff(laplace_pressure(humidity, 300)) > 0)
@@ -45,7 +45,7 @@ def test_meniscus_grows_and_its_tension_fades_as_the_air_saturates():
     np.testing.assert_allclose(laplace_pressure(1 - dryness, 300), ideal, rtol=dryness)  # ln(1 - x) = -x - x²/2
 
 
-def test_water_always_pulls():
+def test_water_always_attracts():
     humidity = np.array([[0.01, 0.5], [0.9, 0.999]])
     assert laplace_pressure(humidity, 300).shape == (2, 2)
     assert np.all(laplace_pressure(humidity, 300) < 0)

@@ -9,7 +9,7 @@ from published import IDENTITY, SPACING, SURFACES
 from scipy.stats import norm
 from standard_errors import ALLOWED, errors_off
 
-from stiction.contact.asperity import MaugisTable, hertz_force, reduced_modulus, transition_parameter
+from stiction.contact.asperity import HertzAsperity, MaugisTable, hertz_force, reduced_modulus, transition_parameter
 from stiction.contact.pair import DistanceGrid, SurfacePair, bearing_area, contact_of_samples
 from stiction.contact.vanderwaals import attraction
 from stiction.streams import stream
@@ -19,12 +19,12 @@ from stiction.surface.summits import find_summits
 from stiction.surface.translation import Translation
 
 POLYSILICON = reduced_modulus(164e9, 0.23)
-WATER, NONE = (MaugisTable(POLYSILICON, attraction(through)) for through in ("water", "none"))
+WATER, NONE = MaugisTable(POLYSILICON, attraction("water")), HertzAsperity(POLYSILICON)
 STRIP = StripGrid(0.6e-6, 0.8e-6, SPACING, margin=0.2e-6)
 STEP = 0.05e-9
 PAIR = SurfacePair(SURFACES["B1"].on(STRIP), SURFACES["Sub1"].on(STRIP), WATER, STEP)
-HERTZ = dataclasses.replace(PAIR, solid=NONE)
-#: The table interpolates between rows of λ: 1.5 % of the force scale πwR where a sphere comes to touch, 1e-4 of a
+HERTZ = dataclasses.replace(PAIR, asperity=NONE)
+#: The table interpolates between rows of λ: error of 1.5 % of the force scale πwR at first contact, 1e-4 of a
 #: large load.
 TABLE, TABLE_DEEP = 0.015, 1e-4
 
@@ -45,7 +45,7 @@ def spheres(*tops, radius=3e-7, shape=(61, 61), spacing=SPACING):
 
 
 def area_inside(heights, spacing=SPACING):
-    """Area of the points that have all neighbours, on which a summit can stand [m²]."""
+    """Area of the points with eight neighbours, which can be summits [m²]."""
     return (heights.shape[0] - 2) * (heights.shape[1] - 2) * spacing**2
 
 
@@ -54,10 +54,10 @@ def force_scale(radius):
 
 
 def next_to_snap_off(forces):
-    """Mark the distances at which a sphere lets go, last axis: the table may do so one step earlier or later."""
-    lets_go = np.diff((forces != 0).astype(int), append=0) != 0
-    early, late = np.roll(lets_go, -1, axis=-1), np.roll(lets_go, 1, axis=-1)
-    return np.any(np.atleast_2d(lets_go | early | late), axis=0)
+    """Mask of the distances, last axis, at which a sphere snaps off: in the table this may be one step off."""
+    snaps = np.diff((forces != 0).astype(int), append=0) != 0
+    early, late = np.roll(snaps, -1, axis=-1), np.roll(snaps, 1, axis=-1)
+    return np.any(np.atleast_2d(snaps | early | late), axis=0)
 
 
 @pytest.mark.parametrize("radius", [3e-8, 3e-7, 3e-6])
@@ -65,7 +65,7 @@ def test_one_spherical_bump_without_attraction_is_hertz(radius):
     z = spheres((30, 30, 5e-9), radius=radius)
     pressure, _ = HERTZ.contact(z)
     overlap = float(z.max()) - HERTZ.distances.solid
-    # The curvature is a difference of heights, which are good to 2⁻²⁴ of 5 nm.
+    # The curvature is a difference of heights, which are accurate to 2⁻²⁴ of 5 nm.
     rounding = 2 * 5e-9 * 2.0**-24 * radius / SPACING**2
     np.testing.assert_allclose(
         pressure * area_inside(z), hertz_force(overlap, radius, POLYSILICON), rtol=1e-9 + rounding
@@ -125,7 +125,7 @@ def test_hertz_pressure_falls_with_the_distance_and_ends_at_the_highest_summit()
     assert np.all(pressure[distance > highest] == 0)
 
 
-def test_attraction_takes_away_pressure_and_reaches_farther_than_elasticity():
+def test_attraction_lowers_the_pressure_and_has_a_longer_range_than_elasticity():
     z = rough()
     adhesive, elastic = PAIR.contact(z)[0], HERTZ.contact(z)[0]
     assert np.all(adhesive[elastic > 0] < elastic[elastic > 0])
@@ -137,7 +137,7 @@ def test_attraction_takes_away_pressure_and_reaches_farther_than_elasticity():
 @given(st.floats(0.1, 10))
 @settings(max_examples=10)
 def test_hertz_pressure_is_proportional_to_the_modulus(factor):
-    stiffer = dataclasses.replace(HERTZ, solid=MaugisTable(factor * POLYSILICON, attraction("none")))
+    stiffer = dataclasses.replace(HERTZ, asperity=HertzAsperity(factor * POLYSILICON))
     z = rough()
     np.testing.assert_allclose(stiffer.contact(z)[0], factor * HERTZ.contact(z)[0], rtol=1e-12)
 
@@ -148,7 +148,7 @@ def test_lifting_the_surface_by_some_steps_shifts_both_curves_by_these_steps(pai
     pressure, area = pair.contact(z)
     lifted_pressure, lifted_area = pair.contact(z + np.float32(steps * STEP))
     scale = np.abs(pressure).max()
-    # Summits below the mean plane pull on a flat at it only from above: leave out the reach of the attraction.
+    # Summits just below the mean plane attract a flat at distances > 0 only: leave out the range of the attraction.
     np.testing.assert_allclose(lifted_pressure[steps + 10 :], pressure[10:-steps], rtol=1e-4, atol=1e-5 * scale)
     np.testing.assert_allclose(
         lifted_area[steps:], area[:-steps], atol=2 / z.size
@@ -156,7 +156,7 @@ def test_lifting_the_surface_by_some_steps_shifts_both_curves_by_these_steps(pai
 
 
 @pytest.mark.parametrize("pair", [PAIR, HERTZ], ids=["Maugis", "Hertz"])
-def test_turning_the_pair_changes_nothing(pair):
+def test_rotating_the_pair_changes_nothing(pair):
     z = rough()
     for one, other in zip(pair.contact(z), pair.contact(np.ascontiguousarray(z.T)), strict=True):
         np.testing.assert_allclose(other, one, rtol=1e-9, atol=1e-9 * np.abs(one).max())
@@ -182,19 +182,19 @@ def test_every_other_point_is_the_same_contact_on_a_coarser_grid():
 
 @pytest.mark.parametrize("modulus", [1e7, 1e13])
 def test_sphere_softer_or_harder_than_the_table_is_refused(modulus):
-    pair = dataclasses.replace(PAIR, solid=MaugisTable(modulus, attraction("water")))
-    low, high, _ = pair.solid.transitions
-    assert not low < transition_parameter(3e-7, modulus, pair.solid.attraction) < high
-    with pytest.raises(ValueError, match="1 summits leave the table"):
+    pair = dataclasses.replace(PAIR, asperity=MaugisTable(modulus, attraction("water")))
+    low, high, _ = pair.asperity.transitions
+    assert not low < transition_parameter(3e-7, modulus, pair.asperity.attraction) < high
+    with pytest.raises(ValueError, match="1 summits are outside the table"):
         pair.contact(spheres((30, 30, 5e-9)))
 
 
 def test_sphere_pressed_deeper_than_the_table_is_refused():
-    hard = dataclasses.replace(PAIR, solid=MaugisTable(1e13, attraction("dry")))
+    hard = dataclasses.replace(PAIR, asperity=MaugisTable(1e13, attraction("dry")))
     radius = 1e-4
-    low, high, _ = hard.solid.transitions
-    assert low < transition_parameter(radius, 1e13, hard.solid.attraction) < high
-    with pytest.raises(ValueError, match="leave the table"):
+    low, high, _ = hard.asperity.transitions
+    assert low < transition_parameter(radius, 1e13, hard.asperity.attraction) < high
+    with pytest.raises(ValueError, match="outside the table"):
         hard.contact(spheres((30, 30, 1e-7), radius=radius))
 
 
@@ -203,28 +203,28 @@ def test_bearing_area_is_the_count_of_higher_points(heights):
     below, above = 60, 50
     distance = 1e-10 * np.arange(-below, above)
     found = bearing_area(heights, 1e-10, below, above)
-    # Points within single precision of a distance may count or not.
+    # Points within single precision of a distance may be counted or not.
     slack = 1e-15
     least = np.mean(heights[..., None] > distance + slack, axis=(0, 1))
     most = np.mean(heights[..., None] > distance - slack, axis=(0, 1))
     assert np.all((least - 1e-12 <= found) & (found <= most + 1e-12))
 
 
-def test_bearing_area_of_a_flat_is_all_below_it_and_nothing_above():
+def test_bearing_area_of_a_flat_is_one_below_it_and_zero_above():
     flat = np.full((20, 20), 1.02e-9, np.float32)
     pressure, area = PAIR.contact(flat)
     np.testing.assert_array_equal(area, PAIR.distances.bearing < 1.02e-9)
     np.testing.assert_array_equal(pressure, 0)  # no summit
 
 
-def test_bearing_area_of_a_ramp_falls_like_a_ramp():
+def test_bearing_area_of_a_ramp_falls_linearly():
     ramp = np.linspace(-2e-9, 2e-9, 40_001, dtype=np.float32).reshape(1, -1)
     area = bearing_area(ramp, 1e-10, 30, 30)
     distance = 1e-10 * np.arange(-30, 30)
     np.testing.assert_allclose(area, np.clip(0.5 - distance / 4e-9, 0, 1), atol=1e-4)
 
 
-def test_bearing_area_of_a_rough_surface_falls_from_everything_to_nothing():
+def test_bearing_area_of_a_rough_surface_falls_from_one_to_zero():
     _, area = PAIR.contact(rough())
     assert area[0] == 1
     assert area[-1] == 0
@@ -241,7 +241,7 @@ def test_integral_of_the_bearing_area_is_the_mean_height_above_the_lowest_distan
     np.testing.assert_allclose(mean, z.mean(dtype=float), rtol=0, atol=4 * spread)
 
 
-def test_mean_bearing_area_is_the_upper_tail_of_the_height_density_and_the_test_can_tell():
+def test_mean_bearing_area_is_the_upper_tail_of_the_height_density_with_a_control_that_fails():
     surface = SURFACES["Sub2"]
     polished = dataclasses.replace(SURFACES["Sub1"].on(STRIP), rms=1e-15)
     pair = SurfacePair(surface.on(STRIP), polished, NONE, STEP)
@@ -263,19 +263,19 @@ def test_distances_cover_the_surface_on_both_sides_and_contain_zero():
     np.testing.assert_allclose(np.diff(grid.bearing), 0.4e-9, rtol=1e-9)
 
 
-def test_no_height_of_a_surface_with_a_long_upper_tail_stands_out_of_the_distances():
+def test_distances_cover_all_heights_of_a_surface_with_a_long_upper_tail():
     mirrored = Translation(maxent.solve(0.78, 4.6))
     beam = dataclasses.replace(SURFACES["B1"].on(STRIP), translation=mirrored)
     pair = dataclasses.replace(PAIR, beam=beam)
     highest = max(rough(k, pair).max() for k in range(40))
-    assert highest > 7 * beam.rms  # where a grid made for Gaussian surfaces would end
+    assert highest > 7 * beam.rms  # the end of a grid for Gaussian surfaces
     assert pair.distances.solid[-1] > highest
     _, area = pair.contact(rough(0, pair))
     assert area[0] == 1
     assert area[-1] == 0
 
 
-def test_mean_pressure_does_not_depend_on_the_size_of_the_strip_and_the_test_can_tell():
+def test_mean_pressure_does_not_depend_on_the_size_of_the_strip_with_a_control_that_fails():
     narrow = dataclasses.replace(STRIP, length=5 * SPACING)
     pairs = PAIR, dataclasses.replace(PAIR, beam=SURFACES["B1"].on(narrow), substrate=SURFACES["Sub1"].on(narrow))
     place = PAIR.distances.solid.searchsorted(1e-9)
@@ -308,20 +308,20 @@ def test_contact_of_a_sample_does_not_depend_on_the_samples_it_is_computed_with(
         np.testing.assert_allclose(together[which][3], PAIR.contact(rough(3))[which], rtol=1e-6)
 
 
-def test_sample_that_cannot_be_computed_is_named():
-    soft = dataclasses.replace(PAIR, solid=MaugisTable(1e7, attraction("water")))
-    with pytest.raises(ValueError, match="sample 7: .* summits leave the table"):
+def test_sample_that_cannot_be_computed_is_an_error_with_its_number():
+    soft = dataclasses.replace(PAIR, asperity=MaugisTable(1e7, attraction("water")))
+    with pytest.raises(ValueError, match="sample 7: .* summits are outside the table"):
         contact_of_samples(soft, streams, [7])
 
 
 @pytest.mark.parametrize("change", [{"length": 0.5e-6}, {"length": 0.48e-6, "width": 0.64e-6, "spacing": 8e-9}])
-def test_surfaces_on_different_points_cannot_meet(change):
+def test_surfaces_on_different_points_are_refused(change):
     other = SURFACES["Sub1"].gaussian_twin(dataclasses.replace(STRIP, **change))
-    with pytest.raises(ValueError, match="must meet point by point"):
+    with pytest.raises(ValueError, match="must have the same points"):
         dataclasses.replace(PAIR, substrate=other)
 
 
-def test_wider_margin_is_no_obstacle_to_meeting():
+def test_surfaces_with_different_margins_are_accepted():
     wider = dataclasses.replace(STRIP, margin=0.4e-6)
     pair = dataclasses.replace(PAIR, substrate=SURFACES["Sub1"].gaussian_twin(wider))
     assert rough(pair=pair).shape == STRIP.shape

@@ -3,7 +3,7 @@ import pytest
 from scipy.integrate import quad
 
 from stiction.constants import HAMAKER_CONSTANT, MOLECULAR_DISTANCE
-from stiction.contact.vanderwaals import Attraction, attraction
+from stiction.contact.vanderwaals import DugdaleAttraction, attraction
 
 
 def half_space_pressure(distance, hamaker_constant):
@@ -12,7 +12,7 @@ def half_space_pressure(distance, hamaker_constant):
 
 
 @pytest.mark.parametrize("through", ["water", "dry"])
-def test_half_spaces_feel_no_force_at_the_equilibrium_distance(through):
+def test_half_spaces_exert_no_force_at_the_equilibrium_distance(through):
     pull = attraction(through)
     at_rest = half_space_pressure(pull.equilibrium_distance, pull.hamaker_constant)
     assert abs(at_rest) < 1e-9 * abs(half_space_pressure(1.1 * pull.equilibrium_distance, pull.hamaker_constant))
@@ -37,7 +37,7 @@ def test_distances_and_stress_are_those_of_the_paper():
     pull = attraction("water")
     assert round(pull.equilibrium_distance * 1e10, 2) == 1.49
     assert round(pull.range * 1e10, 2) == 2.28
-    # The check values come from D₀ rounded to 1.49 Å, a quarter of a percent, which enters squared.
+    # The published values follow from D₀ rounded to 1.49 Å, an error of a quarter of a percent, which enters squared.
     np.testing.assert_allclose(pull.work_of_adhesion, 0.0874, rtol=6e-3)
     np.testing.assert_allclose(pull.stress, 383e6, rtol=6e-3)
 
@@ -49,9 +49,10 @@ def test_water_weakens_the_attraction_by_the_ratio_of_the_hamaker_constants():
     assert attraction("dry").range == attraction("water").range
 
 
-def test_no_attraction_has_no_stress_and_no_work():
-    assert attraction("none") == Attraction(0.0)
-    assert attraction("none").stress == attraction("none").work_of_adhesion == 0
+def test_no_attraction_is_none_and_not_one_of_zero_strength():
+    assert attraction("none") is None
+    with pytest.raises(ValueError, match="positive Hamaker constant, got 0 J"):
+        DugdaleAttraction(0.0)
 
 
 def test_unknown_medium_is_refused_by_name():

@@ -1,12 +1,13 @@
-"""Every check passes where its law holds, and has a control that fails."""
+"""Every check passes on data that satisfy it, and has a control that fails."""
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from stiction.beam.cantilever import ROUNDING, TOLERANCE, Beam
+from stiction.beam.cantilever import Beam
+from stiction.beam.equilibrium import ROUNDING, TOLERANCE
 from stiction.report import checks
-from stiction.stages import data
+from stiction.stages import forces as stage_forces
 from stiction.streams import stream
 
 BEAM = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200)
@@ -16,22 +17,22 @@ TARGET = {"rms_nm": 1.7, "skewness": 0.0, "kurtosis": 3.0}
 
 
 def forces(mean, scatter=0.1, n=400, noise=0, **changed):
-    """Samples of v with an adhesion energy of given mean [mJ/m²] and scatter; the same surfaces every time."""
+    """Samples of v with an adhesion energy of given mean [mJ/m²] and scatter, always of the same surfaces."""
     common, own = (stream(3, "checks", name).standard_normal(n) for name in ("common", noise))
     energy = mean * 1e-3 * (1 + scatter * common + 1e-3 * own)
     v = np.column_stack([energy, np.full(n, 1e6), np.full(n, 8e-9), np.full(n, 6.5e-9)])
     for name, value in changed.items():
-        v[0, data.VECTOR.index(name)] = value
-    return data.forces(v, LIMIT, np.arange(3.0), np.zeros((1, 3)))
+        v[0, stage_forces.COMPONENTS.index(name)] = value
+    return stage_forces.layout(v, LIMIT, np.arange(3.0), np.zeros((1, 3)))
 
 
 def chaos(mean_off=0.0, spread_off=0.0, correlation_off=0.0, rejected=0.0):
-    """What the chaos stage reports: input of mean 10 and standard deviation 2, draws off by parts of the latter."""
+    """Dataset of stage chaos: input of mean 10 and standard deviation 2; draws shifted by shares of the deviation."""
     statistics = np.zeros((3, 4, 4))
     statistics[:, 0], statistics[:, 1] = 10, 2
     statistics[2, 0, 1] += 2 * mean_off
     statistics[2, 1, 2] *= 1 + spread_off
-    coordinates = {"source": ["input", "kernels", "chaos"], "component": list(data.VECTOR)}
+    coordinates = {"source": ["input", "kernels", "chaos"], "component": list(stage_forces.COMPONENTS)}
     coordinates["statistic"] = ["mean", "standard deviation", "1 % quantile", "99 % quantile"]
     correlation = np.tile(np.eye(4), (3, 1, 1))
     correlation[2, 0, 3] += correlation_off
@@ -66,18 +67,18 @@ def test_energy_that_grows_with_humidity_passes_and_the_same_energy_fails():
 
 def test_energies_of_the_same_surfaces_are_compared_pair_by_pair():
     weak, strong = forces(5, scatter=0.5), forces(5.1, scatter=0.5)
-    assert checks.energy_grows("b", weak, strong).passed, "a scatter that both share must not hide the growth"
+    assert checks.energy_grows("b", weak, strong).passed, "a common scatter must not hide the growth"
 
 
-def test_nothing_is_claimed_of_air_drier_than_in_any_experiment():
+def test_air_drier_than_in_any_experiment_is_not_checked_for_growth():
     dry = {(0.1, "NG"): 9, (0.3, "NG"): 5, (0.5, "NG"): 7, (0.7, "NG"): 8}
     found = list(checks.of_trends(study(dry), []))
     assert [check.case for check in found] == ["b NG, RH 0.5 to 0.7"]
 
 
-def test_skewed_surfaces_that_stick_more_pass_and_those_that_stick_less_fail():
-    assert checks.skewness_binds("b", forces(1), forces(6)).passed
-    assert not checks.skewness_binds("b", forces(6), forces(1)).passed
+def test_skewed_surfaces_that_adhere_more_pass_and_those_that_adhere_less_fail():
+    assert checks.skewness_increases_adhesion("b", forces(1), forces(6)).passed
+    assert not checks.skewness_increases_adhesion("b", forces(6), forces(1)).passed
 
 
 def test_scatter_may_fall_with_the_energy_but_not_grow():
@@ -102,7 +103,7 @@ def test_heights_with_other_moments_fail_in_those_moments(wrong, failed):
     assert [k for k, check in enumerate(found) if not check.passed] == failed
 
 
-def test_variance_that_no_gaussian_field_provides_is_allowed_for():
+def test_the_tolerance_of_the_rms_includes_the_variance_that_no_gaussian_field_provides():
     *_, found = [list(checks.moments_meet_targets("B", character(60, rms=1.8), TARGET, d))[0] for d in (0.0, 0.2)]
     assert found.passed
 
@@ -114,22 +115,22 @@ def test_one_impossible_sample_fails(wrong):
     assert checks.vectors_are_possible("b", forces(9)).passed
     found = checks.vectors_are_possible("b", forces(9, **wrong))
     assert not found.passed
-    assert "1 of 400 samples" in found.said
+    assert "1 of 400 samples" in found.message
 
 
-def test_chaos_model_may_be_off_by_its_tolerance_and_no_more():
+def test_chaos_model_may_deviate_by_its_tolerance_and_no_more():
     assert checks.chaos_reproduces_input("b", chaos(), 5000).passed
     assert checks.chaos_reproduces_input("b", chaos(0.07, 0.2, 0.1), 5000).passed
     for wrong in ({"mean_off": -0.09}, {"spread_off": 0.22}, {"spread_off": -0.22}, {"correlation_off": -0.12}):
         assert not checks.chaos_reproduces_input("b", chaos(**wrong), 5000).passed
 
 
-def test_few_samples_are_judged_more_kindly():
+def test_the_tolerance_is_wider_for_few_samples():
     assert checks.chaos_reproduces_input("b", chaos(0.25), 200).passed
 
 
 def test_draws_are_rejected_as_often_as_samples_have_no_law():
-    strong, weak = forces(9), forces(0.3)  # 0.5 f_max / a_left = 0.7 mJ/m² is more than the weak ones hold
+    strong, weak = forces(9), forces(0.3)  # 0.5 f_max / a_left = 0.7 mJ/m² is more than the energy of the weak ones
     assert checks.few_draws_rejected("b", chaos(), strong, 0.05).passed
     assert not checks.few_draws_rejected("b", chaos(rejected=0.1), strong, 1.0).passed
     assert checks.few_draws_rejected("b", chaos(rejected=1.0), weak, 1.0).passed
@@ -137,12 +138,12 @@ def test_draws_are_rejected_as_often_as_samples_have_no_law():
     assert not checks.few_draws_rejected("b", chaos(rejected=1.0), weak, 0.05).passed
 
 
-def test_beam_out_of_balance_fails():
+def test_a_beam_out_of_equilibrium_fails():
     pull, bending = LIMIT * 30e-6 * STRIP, 12 * 164e9 * 30e-6 * 2.6e-6**3 / 12 / 7.5e-6**3 * 20e-6
     allowed = TOLERANCE * pull + ROUNDING * bending
-    assert checks.beams_are_in_balance("b", beams(0.0, 0.99 * allowed), LIMIT, BEAM, STRIP).passed
-    assert not checks.beams_are_in_balance("b", beams(0.0, 1.01 * allowed), LIMIT, BEAM, STRIP).passed
-    assert not checks.beams_are_in_balance("b", beams(0.0, np.nan), LIMIT, BEAM, STRIP).passed
+    assert checks.beams_are_in_equilibrium("b", beams(0.0, 0.99 * allowed), LIMIT, BEAM, STRIP).passed
+    assert not checks.beams_are_in_equilibrium("b", beams(0.0, 1.01 * allowed), LIMIT, BEAM, STRIP).passed
+    assert not checks.beams_are_in_equilibrium("b", beams(0.0, np.nan), LIMIT, BEAM, STRIP).passed
 
 
 def released(mean, n=400, stuck=1.0):
@@ -152,15 +153,15 @@ def released(mean, n=400, stuck=1.0):
     return xr.Dataset({"crack_length": ("sample", lengths), "state": ("sample", state)})
 
 
-def test_chaos_model_may_move_a_crack_length_by_one_per_cent_and_errors():
-    assert checks.crack_lengths_are_kept("b", released(700), released(706)).passed
+def test_chaos_model_may_change_a_crack_length_by_one_per_cent_plus_errors():
+    assert checks.chaos_keeps_crack_length("b", released(700), released(706)).passed
     # 1 % and 4 · √2 · 5 % / √400
-    assert checks.crack_lengths_are_kept("b", released(700), released(700 / 1.023)).passed
-    assert not checks.crack_lengths_are_kept("b", released(700), released(700 / 1.026)).passed
-    assert not checks.crack_lengths_are_kept("b", released(700), released(700 * 1.026)).passed
+    assert checks.chaos_keeps_crack_length("b", released(700), released(700 / 1.023)).passed
+    assert not checks.chaos_keeps_crack_length("b", released(700), released(700 / 1.026)).passed
+    assert not checks.chaos_keeps_crack_length("b", released(700), released(700 * 1.026)).passed
 
 
-def test_cases_where_hardly_a_beam_sticks_have_no_crack_length_to_compare():
+def test_cases_with_fewer_than_two_stuck_beams_are_not_compared():
     key = ("b", 0.5, "NG")
     assert list(checks.of_resampling({key: released(700)}, {key: released(700, stuck=0)})) == []
     assert len(list(checks.of_resampling({key: released(700)}, {key: released(700, stuck=0.5)}))) == 1
@@ -171,22 +172,44 @@ def study(energies):
     return {("b", rh, model): forces(energy) for (rh, model), energy in energies.items()}
 
 
-def test_trends_compare_neighbouring_humidities_and_twins():
+def test_trends_compare_neighbouring_humidities_and_both_height_models():
     found = list(checks.of_trends(study({(0.8, "NG"): 9, (0.5, "NG"): 5, (0.8, "G"): 3, (0.5, "G"): 1}), ["b"]))
-    assert [check.law.split()[0] for check in found] == ["energy", "energy", "scatter", "negative", "negative"]
+    assert [check.name.split()[0] for check in found] == ["energy", "energy", "scatter", "negative", "negative"]
     assert all(check.passed for check in found)
 
 
-def test_surfaces_that_are_not_skewed_negatively_need_not_bind_more():
+def test_surfaces_that_are_not_skewed_negatively_need_not_adhere_more():
     found = list(checks.of_trends(study({(0.8, "NG"): 3, (0.8, "G"): 9}), []))
     assert not found
 
 
-def test_verdict_names_what_failed_and_the_report_holds_every_number():
+def test_verdict_lists_failed_checks_and_the_report_every_number():
     good, bad = checks.energy_grows("dry", forces(5), forces(9)), checks.energy_grows("wet", forces(9), forces(5))
     assert checks.verdict(checks.table([good])) == "All 1 checks of the results passed."
-    said = checks.verdict(checks.table([good, bad]))
-    assert said.startswith("1 of 2 checks of the results failed. energy grows with humidity: wet: mean adhesion energy")
+    sentence = checks.verdict(checks.table([good, bad]))
+    assert sentence.startswith(
+        "1 of 2 checks of the results failed. energy grows with humidity: wet: mean adhesion energy"
+    )
     report = checks.markdown(checks.table([good, bad]))
-    assert good.said in report
-    assert f"**FAILED** wet: {bad.said}" in report
+    assert good.message in report
+    assert f"**FAILED** wet: {bad.message}" in report
+
+
+def test_checks_are_read_as_they_were_written_whatever_their_message(tmp_path):
+    table = checks.table(
+        [checks.Check("growth", "mine # 2", False, "grows by 1 # 2, 3"), checks.Check("NA", "b", True, "")]
+    )
+    path = tmp_path / "checks.csv"
+    path.write_text(table.to_csv(index=False), encoding="utf-8")
+    read = checks.read(path)
+    assert list(read.columns) == ["name", "case", "passed", "message"]
+    assert read.to_dict("records") == table.to_dict("records")
+    assert checks.verdict(read) == "1 of 2 checks of the results failed. growth: mine # 2: grows by 1 # 2, 3"
+
+
+def test_messages_give_as_many_digits_as_their_error_allows():
+    found = checks.energy_grows("b", forces(5), forces(9))
+    number, _, error = (
+        found.message.removeprefix("mean adhesion energy grows by ").removesuffix(" mJ/m²").partition(" ± ")
+    )
+    assert len(number.partition(".")[2]) == len(error.partition(".")[2])

@@ -1,18 +1,25 @@
-"""Figures and tables of the studies: they show what the datasets hold, and nothing of when they were made."""
+"""Figures and tables of the studies show the numbers of their datasets; equal data give equal files."""
 
 import numpy as np
 import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
 
+from stiction.analysis.convergence import sampling_distance
+from stiction.analysis.mesh import Arrest
 from stiction.report import figures_studies, tables_studies
 from stiction.report.style import save
-from stiction.stages import data_studies
-from stiction.studies.convergence import Arrest, sampling_distance
+from stiction.studies import correlation as study_correlation
+from stiction.studies import mesh as study_mesh
+from stiction.studies import orders as study_orders
+from stiction.studies import plasticity as study_plasticity
+from stiction.studies import sample_sizes as study_sample_sizes
+from stiction.studies import sensitivity as study_sensitivity
+from stiction.studies import variant as study_variant
 
 HUMIDITIES = (0.5, 0.8)
 RNG = np.random.default_rng(0)
-PRINTED = pd.DataFrame(
+PUBLISHED = pd.DataFrame(
     {
         "pair": ["a"] * 3 + ["b"] * 3,
         "relative_humidity": [0.5, 0.7, 0.8] * 2,
@@ -26,11 +33,11 @@ PRINTED = pd.DataFrame(
 def sensitivity(slope):
     errors = np.full((2, 2), 0.1)
     energies = RNG.random((2, 2, 5))
-    return data_studies.sensitivity(energies, (0.95, 1.05), (np.full((2, 2), slope), errors), HUMIDITIES)
+    return study_sensitivity.layout(energies, (0.95, 1.05), (np.full((2, 2), slope), errors), HUMIDITIES)
 
 
-def reading(length_um, energy=1.0, free=0):
-    """Dataset of two humidities with 40 samples and 20 beams, ``free`` of which do not stick."""
+def variant(length_um, energy=1.0, free=0):
+    """Dataset of two humidities with 40 samples and 20 beams, ``free`` of which are free."""
     rng = np.random.default_rng(1)
     beams = [
         {
@@ -40,30 +47,30 @@ def reading(length_um, energy=1.0, free=0):
         for length in length_um
     ]
     energies = [energy * 1e-2 * np.exp(0.2 * rng.standard_normal(40)) for _ in beams]
-    return data_studies.reading(HUMIDITIES, energies, beams)
+    return study_variant.layout(HUMIDITIES, energies, beams)
 
 
-READINGS = {
-    ("a", "base"): reading((800, 440)),
-    ("a", "van_der_waals_none"): reading((880, 400), 0.8),
-    ("b", "base"): reading((700, 500)),
-    ("b", "van_der_waals_none"): reading((800, 400), 0.8),
+VARIANTS = {
+    ("a", "base"): variant((800, 440)),
+    ("a", "van_der_waals_none"): variant((880, 400), 0.8),
+    ("b", "base"): variant((700, 500)),
+    ("b", "van_der_waals_none"): variant((800, 400), 0.8),
 }
 
 
 def plasticity(share):
     columns = {name: RNG.random(300) * 1e-9 for name in ("interference", "radius")}
     columns |= {"stress": RNG.random(300) * 1e10, "strip": np.arange(300) // 100}
-    return data_studies.plasticity(columns, (share, 0.1 * share), 2e-9)
+    return study_plasticity.layout(columns, (share, 0.1 * share), 2e-9)
 
 
 def sizes():
-    return data_studies.sample_sizes(np.linspace(0, 1e-2, 50), RNG.random((3, 50)), (5, 10, 20), RNG.random((3, 2)))
+    return study_sample_sizes.layout(np.linspace(0, 1e-2, 50), RNG.random((3, 50)), (5, 10, 20), RNG.random((3, 2)))
 
 
 def orders(dimension, last):
     shape = (last, dimension, 16)
-    return data_studies.orders(
+    return study_orders.layout(
         np.linspace(-4, 4, 17),
         RNG.random(shape[1:]),
         RNG.random(shape),
@@ -75,14 +82,14 @@ def orders(dimension, last):
 
 def mesh(*arrests):
     law, distance = [2e6, 7e-9, 6e8, 1e9], np.linspace(0, 2e-8, 60)
-    return data_studies.mesh([(1.5e-5, 1.5e-6), (7.5e-6, 1.5e-6)], arrests or ARRESTS, law, (distance, RNG.random(60)))
+    return study_mesh.layout([(1.5e-5, 1.5e-6), (7.5e-6, 1.5e-6)], arrests or ARRESTS, law, (distance, RNG.random(60)))
 
 
 ARRESTS, NONE = [Arrest(7e-4, 6e-3), Arrest(7.1e-4, 5.9e-3)], Arrest(np.nan, np.nan)
 
 
 def correlation():
-    return data_studies.correlation(["B1"], np.linspace(0, 1e-6, 9), RNG.random((1, 9)), [3e-7])
+    return study_correlation.layout(["B1"], np.linspace(0, 1e-6, 9), RNG.random((1, 9)), [3e-7])
 
 
 DRAWN = {
@@ -94,8 +101,8 @@ DRAWN = {
     "18 of few coordinates": lambda: figures_studies.order_convergence(orders(1, 2)),
     "19": lambda: figures_studies.mesh_convergence(mesh(), correlation()),
     "19 of a beam that does not stick": lambda: figures_studies.mesh_convergence(mesh(NONE, NONE), correlation()),
-    "readings": lambda: figures_studies.readings(READINGS, PRINTED),
-    "readings without print": lambda: figures_studies.readings(READINGS, PRINTED[:0]),
+    "variants": lambda: figures_studies.variants(VARIANTS, PUBLISHED),
+    "variants without published values": lambda: figures_studies.variants(VARIANTS, PUBLISHED[:0]),
 }
 
 
@@ -109,7 +116,7 @@ def test_every_figure_can_be_drawn(name, tmp_path):
 def test_equal_data_give_equal_files(tmp_path):
     paths = [tmp_path / f"{k}.pdf" for k in range(2)]
     for path in paths:
-        save(figures_studies.readings(READINGS, PRINTED), path)
+        save(figures_studies.variants(VARIANTS, PUBLISHED), path)
     assert paths[0].read_bytes() == paths[1].read_bytes()
 
 
@@ -118,19 +125,19 @@ def heights(panel):
     return [line.get_ydata() for line in panel.get_lines() if line.get_marker() not in ("None", "_", "|")]
 
 
-def test_figure_13_shows_slopes_and_print():
+def test_figure_13_shows_slopes_and_published_values():
     panel = figures_studies.sensitivities({"rms": sensitivity(-6.0)}, {("rms", 0.5): -6.5}).axes[0]
     assert [list(np.atleast_1d(y)) for y in heights(panel)] == [[-6.0, -6.0], [-6.5]]
 
 
 def test_figure_16_shows_the_onset_of_yield_and_the_share_beyond():
-    for found, said in ((plasticity(0.0), "$A_P$ = 0"), (plasticity(0.5), "$A_P/A$ = 50 ± 5 %")):
+    for found, label in ((plasticity(0.0), "$A_P$ = 0"), (plasticity(0.5), "$A_P/A$ = 50 ± 5 %")):
         panel = figures_studies.summit_stresses({"c": found}).axes[0]
-        assert said in [text.get_text() for text in panel.texts]
+        assert label in [text.get_text() for text in panel.texts]
         assert_allclose(panel.get_lines()[0].get_ydata(), 0.6 * 12.8)
 
 
-def test_figure_16_says_where_nothing_touches():
+def test_figure_16_labels_pairs_without_contact():
     empty = plasticity(0.0).isel(summit=slice(0)).assign(plastic_share=np.nan, plastic_share_error=np.nan)
     panels = figures_studies.summit_stresses({"a": empty, "c": plasticity(0.5)}).axes
     assert "hardly any contact" in [text.get_text() for text in panels[0].texts]
@@ -151,7 +158,7 @@ def test_figure_16_has_one_scale_of_stress_and_of_number_for_all_pairs():
     assert_allclose(bar.get_ylim(), (1, max(found.get_array().max() for found in cells)))
 
 
-def test_figure_17_shows_the_tolerance_however_far_the_errors_stay_from_it():
+def test_figure_17_always_shows_the_tolerance():
     for tolerance in (1e-6, 1.0):
         panel = figures_studies.sample_convergence(sizes(), {("a", 0.5): [0.1, 0.01, 0.0]}, tolerance).axes[1]
         low, high = panel.get_ylim()
@@ -159,7 +166,7 @@ def test_figure_17_shows_the_tolerance_however_far_the_errors_stay_from_it():
         assert high > max(tolerance, 0.1)
 
 
-def test_figure_19_shows_gamma_beside_the_energy_of_the_law_and_its_difference_with_sign():
+def test_figure_19_shows_gamma_the_energy_of_the_law_and_their_signed_difference():
     panel = figures_studies.mesh_convergence(mesh(), correlation()).axes[1]
     energy = 2e6 * (1.5 / 1e9 + 0.5 / 6e8)
     assert_allclose(heights(panel)[0], [6, 5.9])  # mJ/m²
@@ -168,69 +175,62 @@ def test_figure_19_shows_gamma_beside_the_energy_of_the_law_and_its_difference_w
     assert_allclose(heights(inset)[0], 100 * (np.array([6e-3, 5.9e-3]) / energy - 1))
 
 
-def test_base_and_experiment_lie_above_the_other_readings():
-    panel = figures_studies.readings(READINGS, PRINTED).axes[2]
+def test_base_and_experiment_lie_above_the_other_variants():
+    panel = figures_studies.variants(VARIANTS, PUBLISHED).axes[2]
     above = {c.get_label(): c[0].get_zorder() for c in panel.containers}
     assert sorted(above, key=above.get) == ["vdW: none", "base", "experiment"]
 
 
-def test_readings_are_compared_with_base_print_and_experiment():
-    table = tables_studies.readings(READINGS, PRINTED)
-    row = table[(table.pair == "a") & (table.reading == "van_der_waals_none")].iloc[0]
+def test_variants_are_compared_with_base_published_values_and_experiment():
+    table = tables_studies.variants(VARIANTS, PUBLISHED).frame
+    row = table[(table.pair == "a") & (table.variant == "van_der_waals_none")].iloc[0]
     assert_allclose(row.shift_percent, 10, rtol=1e-9)
     assert_allclose(row.meso_energy_shift_percent, -20, rtol=1e-9)
-    mean = READINGS["a", "van_der_waals_none"].crack_length[0].values.mean() * 1e6
+    mean = VARIANTS["a", "van_der_waals_none"].crack_length[0].values.mean() * 1e6
     assert_allclose(row.crack_length_um, mean)
     assert_allclose(row.published_deviation_percent, 100 * (mean / 800 - 1))
     assert_allclose(row.experiment_deviation_percent, 100 * (mean / 820 - 1))
     assert row.share_s_shape == 1
 
 
-def test_the_figure_of_the_readings_shows_the_numbers_of_the_table():
-    table = tables_studies.readings(READINGS, PRINTED).set_index(["pair", "reading"])
-    axes = figures_studies.readings(READINGS, PRINTED).axes
+def test_the_figure_of_the_variants_shows_the_numbers_of_the_table():
+    table = tables_studies.variants(VARIANTS, PUBLISHED).frame.set_index(["pair", "variant"])
+    axes = figures_studies.variants(VARIANTS, PUBLISHED).axes
     assert_allclose(heights(axes[1])[0], table.loc["b", "van_der_waals_none"].shift_percent)
     assert_allclose(heights(axes[2])[0], table.loc["a", "base"].published_deviation_percent)
 
 
-def test_beams_that_came_free_are_counted_and_not_averaged():
-    datasets = {("a", "base"): reading((800, 440), free=5)}
-    first = tables_studies.readings(datasets, PRINTED).iloc[0]
+def test_free_beams_are_counted_and_not_averaged():
+    datasets = {("a", "base"): variant((800, 440), free=5)}
+    first = tables_studies.variants(datasets, PUBLISHED).frame.iloc[0]
     assert first.share_s_shape == 0.75
     assert_allclose(first.crack_length_um, datasets["a", "base"].crack_length[0].values[5:].mean() * 1e6)
 
 
-def test_the_summary_says_how_much_of_the_deviation_from_print_a_reading_removes():
-    table = tables_studies.readings(READINGS, PRINTED)
-    lines = tables_studies.markdown_readings(table).splitlines()
-    (line,) = (line for line in lines if line.startswith("| a ") and "vdW: none" in line)
+def test_the_summary_states_the_share_of_the_published_deviation_that_a_variant_removes():
+    table = tables_studies.variants(VARIANTS, PUBLISHED)
+    lines = table.markdown.splitlines()
+    table = table.frame
+    (line,) = (line for line in lines if line.replace(" ", "").startswith("|a|") and "vdW: none" in line)
     base, other = (
-        np.mean(table[(table.pair == "a") & (table.reading == name)].published_deviation_percent ** 2)
+        np.mean(table[(table.pair == "a") & (table.variant == name)].published_deviation_percent ** 2)
         for name in ("base", "van_der_waals_none")
     )
     shown, error = map(float, line.split("|")[-2].split(" ± "))
     assert abs(shown - 100 * (1 - other / base)) < error
 
 
-def test_a_summary_without_print_leaves_it_out():
-    lines = tables_studies.markdown_readings(tables_studies.readings(READINGS, PRINTED[:0])).splitlines()
+def test_a_summary_without_published_values_leaves_them_out():
+    lines = tables_studies.variants(VARIANTS, PUBLISHED[:0]).markdown.splitlines()
     assert all(line.split("|")[-2].strip() == "–" for line in lines[4:])
 
 
-def test_the_table_of_sensitivities_puts_the_print_where_it_belongs():
-    printed = pd.DataFrame({"pair": ["b"], "relative_humidity": [0.5], "moment": ["rms"], "slope": [-6.5]})
-    table = tables_studies.sensitivity({"rms": sensitivity(-6.0), "kurtosis": sensitivity(-5.0)}, "b", printed)
-    known = table[table.published.notna()]
-    assert len(table) == 8
+def test_published_sensitivities_are_in_the_row_of_their_moment_and_humidity():
+    published = pd.DataFrame({"pair": ["b"], "relative_humidity": [0.5], "moment": ["rms"], "slope": [-6.5]})
+    table = tables_studies.sensitivity({"rms": sensitivity(-6.0), "kurtosis": sensitivity(-5.0)}, "b", published)
+    known = table.frame[table.frame.published.notna()]
+    assert len(table.frame) == 8
     assert known[["relative_humidity", "statistic", "moment", "published"]].to_numpy().tolist() == [
         [0.5, "mean", "rms", -6.5]
     ]
-    assert "-6.00 ± 0.10 (-6.5)" in tables_studies.markdown_sensitivity(table)
-
-
-@pytest.mark.parametrize(
-    ("value", "error", "text"),
-    [(12.34, 0.5, "12.3 ± 0.5"), (1234.0, 30.0, "1234 ± 30"), (0.5, 0.0, "0.5 ± 0"), (2.0, 0.1, "2.00 ± 0.10")],
-)
-def test_a_number_has_the_digits_that_its_error_allows(value, error, text):
-    assert tables_studies.with_error(value, error) == text
+    assert "-6.00 ± 0.10 (-6.5)" in table.markdown

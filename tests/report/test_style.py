@@ -17,8 +17,15 @@ from stiction.report.figures_beams import adhesion_energies, beam_shapes, conver
 from stiction.report.figures_forces import fitted_curve, force_curves, typical
 from stiction.report.figures_surfaces import elevation_maps, height_densities, profiles, spectra, summits
 from stiction.report.style import letter, panels, save
-from stiction.stages import data, data_studies
+from stiction.stages import beams as stage_beams
+from stiction.stages import character as stage_character
+from stiction.stages import forces as stage_forces
+from stiction.stages import heights as stage_heights
+from stiction.stages import spectrum as stage_spectrum
 from stiction.streams import stream
+from stiction.studies import fit as study_fit
+from stiction.studies import humidity as study_humidity
+from stiction.studies import iteration as study_iteration
 
 BEAM = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200)
 HUMIDITIES = (0.5, 0.7)
@@ -27,21 +34,21 @@ LIMIT = 3e6
 
 @pytest.fixture(scope="module")
 def heights():
-    moments = {name: {"rms": s.rms, "skewness": s.skewness, "kurtosis": s.kurtosis} for name, s in SURFACES.items()}
-    return {name: data.heights(s.density, moments[name]) for name, s in SURFACES.items()}
+    moments = {name: stage_heights.Settings(s.rms, s.skewness, s.kurtosis) for name, s in SURFACES.items()}
+    return {name: stage_heights.layout(s.density, moments[name]) for name, s in SURFACES.items()}
 
 
 @pytest.fixture(scope="module")
 def spectrum():
     s = SURFACES["B2"]
-    return data.spectrum(s.spectrum, s.underlying, s.underlying, s.defect)
+    return stage_spectrum.layout(s.spectrum, s.underlying, s.underlying, s.defect)
 
 
 def character(rms, seed=0):
-    """Statistics as of a surface, of random numbers."""
+    """Statistics of a surface, from random numbers."""
     rng = stream(seed)
     zeta = 2 * np.pi / 10.24e-6 * np.arange(1, 300)
-    return data.character(
+    return stage_character.layout(
         {"power": np.ones((3, 4)), "summit_density": np.ones(3), "mean_curvature": np.ones(3)},
         (zeta, rms**2 * 1e-15 * rng.uniform(1, 2, (4, len(zeta)))),
         (rms * rng.standard_normal(500), 1e6 * np.exp(rng.standard_normal(500))),
@@ -59,7 +66,7 @@ def iteration(spectrum):
     zeta, target = spectrum.wavenumber.values[1:-1], spectrum.target.values[1:-1]
     periodograms = target * stream(1).uniform(0.8, 1.2, (3, 5, len(zeta)))
     misfits = {"misfit": [0.3, 0.2, 0.1], "sampling_misfit": [0.02, 0.02, 0.02], "closed_form_misfit": 0.001}
-    return data_studies.iteration((zeta, target), (np.tile(target, (3, 1)), periodograms), misfits)
+    return study_iteration.layout((zeta, target), (np.tile(target, (3, 1)), periodograms), misfits)
 
 
 def population(n, seed=2):
@@ -68,7 +75,7 @@ def population(n, seed=2):
     distance = np.linspace(4e-9, 30e-9, 600)
     law = forcelaw.coefficients(vectors, LIMIT)
     ripple = 1 + 0.1 * np.linspace(0, 1, n)[:, None] * np.sin(distance / 1e-9)
-    return data.forces(vectors, LIMIT, distance, forcelaw.pressure(law[:, None], distance) * ripple)
+    return stage_forces.layout(vectors, LIMIT, distance, forcelaw.pressure(law[:, None], distance) * ripple)
 
 
 @pytest.fixture(scope="module")
@@ -79,12 +86,14 @@ def forces():
 @pytest.fixture(scope="module")
 def fit(forces):
     curves = forces.force.values.astype(float)
-    errors = forcelaw.fit_errors(forces.distance.values, lambda k: curves[k], range(30), data.vectors(forces), LIMIT)
-    return data_studies.fit(np.arange(30), errors, 30)
+    errors = forcelaw.fit_errors(
+        forces.distance.values, lambda k: curves[k], range(30), stage_forces.vectors(forces)[0], LIMIT
+    )
+    return study_fit.layout(np.arange(30), errors, 30)
 
 
 def released(lengths, states=None):
-    """Beams with given crack lengths [m]; S-shaped unless said otherwise."""
+    """Beams with given crack lengths [m]; S-shaped by default."""
     lengths = np.asarray(lengths, float)
     nodes = np.linspace(0, BEAM.length, 21)
     columns = {
@@ -96,7 +105,7 @@ def released(lengths, states=None):
         "iterations": np.ones(len(lengths), int),
         "deflection": BEAM.gap * np.minimum(nodes / lengths[:3, None], 1),
     }
-    return data.beams(columns, nodes)
+    return stage_beams.layout(columns, nodes)
 
 
 @pytest.fixture(scope="module")
@@ -109,23 +118,23 @@ def pairs():
 
     energies = stream(3).lognormal(-5, 0.3, (5, 400))
     axes = {
-        model: data_studies.humidity_axis(np.linspace(0.5, 0.7, 5), np.array([0.05, 0.5, 0.95]), scale * energies)
+        model: study_humidity.layout(np.linspace(0.5, 0.7, 5), np.array([0.05, 0.5, 0.95]), scale * energies)
         for model, scale in (("G", 0.2), ("NG", 1))
     }
     return {name: (BEAM, dict(cases()), axes) for name in ("b", "mine")}
 
 
 @pytest.fixture(scope="module")
-def printed():
+def published():
     row = {"pair": "b", "relative_humidity": 0.5, "experiment": 700.0, "experiment_std": 50.0, "ng": 710, "geo": 720}
     return pd.DataFrame([row, row | {"relative_humidity": 0.7, "experiment": 600.0}])
 
 
 @pytest.fixture(scope="module")
-def drawn(heights, spectrum, characters, iteration, forces, fit, pairs, printed):
+def drawn(heights, spectrum, characters, iteration, forces, fit, pairs, published):
     """All figures by name; a warning of matplotlib is an error."""
     both = {"G": characters["B1"], "NG": characters["B2"]}
-    laws = forcelaw.coefficients(data.vectors(forces)[:7], LIMIT)
+    laws = forcelaw.coefficients(stage_forces.vectors(forces)[0][:7], LIMIT)
     return {
         "05": fitted_curve(forces, fit),
         "07": height_densities(heights),
@@ -135,7 +144,7 @@ def drawn(heights, spectrum, characters, iteration, forces, fit, pairs, printed)
         "11": summits({"B2": both}),
         "12": force_curves({"a": (forces, population(30, 5), laws), "b": (forces, forces, laws)}),
         "14": beam_shapes(released(np.linspace(600e-6, 700e-6, 40))),
-        "15": adhesion_energies(pairs, printed),
+        "15": adhesion_energies(pairs, published),
     }
 
 
@@ -179,19 +188,19 @@ def test_figure_is_written_without_a_warning(drawn, name, tmp_path):
 
 
 def test_figures_of_equal_data_are_equal_byte_for_byte(forces, fit, characters, tmp_path):
-    laws = forcelaw.coefficients(data.vectors(forces), LIMIT)
+    laws = forcelaw.coefficients(stage_forces.vectors(forces)[0], LIMIT)
     draw = {
         "lines": lambda: fitted_curve(forces, fit),
         "mesh": lambda: summits({"B1": {"G": characters["B1"], "NG": characters["B2"]}}),
         "pixels in a drawing": lambda: force_curves({"b": (forces, forces, laws)}),
     }
     for name, figure in draw.items():
-        twins = [[tmp_path / f"{name} {twin}.{kind}" for kind in ("pdf", "png")] for twin in "ab"]
-        for paths in twins:
+        copies = [[tmp_path / f"{name} {copy}.{kind}" for kind in ("pdf", "png")] for copy in "ab"]
+        for paths in copies:
             save(figure(), *paths)
-        for first, second in zip(*twins, strict=True):
+        for first, second in zip(*copies, strict=True):
             assert first.read_bytes() == second.read_bytes(), name
-        assert b"CreationDate" not in twins[0][0].read_bytes()
+        assert b"CreationDate" not in copies[0][0].read_bytes()
 
 
 def test_other_figures_give_other_bytes(drawn, tmp_path):
@@ -200,7 +209,7 @@ def test_other_figures_give_other_bytes(drawn, tmp_path):
     assert (tmp_path / "a.pdf").read_bytes() != (tmp_path / "b.pdf").read_bytes()
 
 
-def test_style_of_the_study_neither_depends_on_nor_touches_that_of_the_user(heights):
+def test_style_of_the_study_is_independent_of_that_of_the_user(heights):
     with mpl.rc_context({"font.size": 30, "axes.grid": True}):
         before = dict(mpl.rcParams)
         axes = height_densities(heights).axes[0]
@@ -209,10 +218,23 @@ def test_style_of_the_study_neither_depends_on_nor_touches_that_of_the_user(heig
     assert not axes.xaxis.get_gridlines()[0].get_visible()
 
 
-def test_more_panels_than_letters_still_have_marks():
+def test_panels_beyond_the_alphabet_have_marks():
     _, axes = panels(1, 28, (20, 1))
     letter(axes)
     assert [axes[0, k].get_title(loc="left") for k in (0, 25, 26, 27)] == ["(a)", "(z)", "(aa)", "(ab)"]
+
+
+@pytest.mark.parametrize("count", [1, 5, 12])
+def test_more_surfaces_than_fit_side_by_side_continue_below(heights, spectrum, characters, iteration, count, tmp_path):
+    names = [f"S{k}" for k in range(count)]
+    densities = height_densities({name: heights["B2"] for name in names})
+    shown = spectra({name: (heights["B2"], spectrum, characters["B2"], iteration) for name in names})
+    for figure, rows in ((densities, 2), (shown, 3)):
+        save(figure, tmp_path / "figure.png")
+        assert figure.get_figwidth() < 7.5
+        titles = [axes.get_title(loc="left").partition(" ")[2] for axes in axes_of(figure)]
+        assert sorted(titles) == sorted(names * rows)
+        assert all(axes.lines for axes in axes_of(figure))
 
 
 def test_densities_are_those_of_the_dataset_per_nanometre(drawn, heights):
@@ -284,7 +306,7 @@ def test_typical_curve_has_the_median_error(fit):
 def test_law_in_figure_5_passes_through_the_marked_parameters(drawn, forces, fit):
     axes = drawn["05"].axes[0]
     k = typical(fit, 30)
-    energy, f_max, d_max, d_limit = data.vectors(forces)[k]
+    energy, f_max, d_max, d_limit = stage_forces.vectors(forces)[0][k]
     law = curve(axes, "Eq. (12)")
     assert np.interp(1e9 * d_limit, *law) == pytest.approx(1e-6 * LIMIT, rel=1e-3)
     assert law[1].min() == pytest.approx(-1e-6 * f_max, rel=1e-3)
@@ -302,13 +324,13 @@ def test_force_curves_are_those_kept_and_those_of_the_generated_laws(drawn, forc
     np.testing.assert_allclose(f, 1e-6 * np.interp(d / 1e9, forces.distance, forces.force[3]), rtol=1e-6)
     generated = drawn["12"].axes[2].collections[0].get_segments()
     assert len(generated) == 7
-    law = forcelaw.coefficients(data.vectors(forces)[:7], LIMIT)[3]
+    law = forcelaw.coefficients(stage_forces.vectors(forces)[0][:7], LIMIT)[3]
     d, f = generated[3].T
     np.testing.assert_allclose(f, 1e-6 * forcelaw.pressure(law, d / 1e9), rtol=1e-6)
 
 
 def test_shallow_curves_are_enlarged_until_their_attraction_fills_the_inset(forces):
-    laws = forcelaw.coefficients(data.vectors(forces), LIMIT)
+    laws = forcelaw.coefficients(stage_forces.vectors(forces)[0], LIMIT)
     weak = forces.assign(force=0.05 * forces.force)
     shallow, deep = force_curves({"b": (weak, forces, laws)}).axes[:2]
     (inset,) = shallow.child_axes
@@ -319,7 +341,7 @@ def test_shallow_curves_are_enlarged_until_their_attraction_fills_the_inset(forc
 
 
 def test_one_pair_fills_one_row_of_force_curves(forces):
-    laws = forcelaw.coefficients(data.vectors(forces), LIMIT)
+    laws = forcelaw.coefficients(stage_forces.vectors(forces)[0], LIMIT)
     assert len(axes_of(force_curves({"b": (forces, forces, laws)}))) == 3
 
 
@@ -332,7 +354,7 @@ def test_histogram_counts_only_beams_that_ended_s_shaped():
     assert shapes.yaxis_inverted()
 
 
-def test_figure_of_beams_that_all_came_free_is_drawn_and_says_so(tmp_path):
+def test_figure_of_beams_that_are_all_free_states_their_number(tmp_path):
     figure = beam_shapes(released([1500e-6] * 5, [2] * 5))
     save(figure, tmp_path / "free.png")
     assert figure.axes[1].texts[0].get_text() == "0 of 5 beams S-shaped"
@@ -370,7 +392,7 @@ def test_beams_show_mean_and_standard_deviation_of_the_s_shapes_alone(drawn, pai
     assert (high - low) / 2 == pytest.approx(energies.std(ddof=1))
 
 
-def test_share_of_s_shapes_stands_where_it_is_not_all(drawn):
+def test_share_of_s_shapes_is_shown_if_below_one(drawn):
     left, right = drawn["15"].axes[:2]
     assert {(text.xy[0], text.get_text()) for text in left.texts} == {(0.5, "0 %"), (0.7, "75 %")}
     assert not right.texts
@@ -390,7 +412,7 @@ def test_band_is_that_of_the_fine_humidity_axis(drawn, pairs):
 
 def test_humidity_axis_takes_mean_and_quantiles_over_the_samples_of_each_humidity():
     energies = np.outer([1.0, 3.0], np.arange(101.0))
-    axis = data_studies.humidity_axis(np.array([0.5, 0.6]), np.array([0.05, 0.95]), energies)
+    axis = study_humidity.layout(np.array([0.5, 0.6]), np.array([0.05, 0.95]), energies)
     np.testing.assert_allclose(axis.energy_quantile.sel(humidity=0.6), [15, 285])
     np.testing.assert_allclose(axis.energy_mean, [50, 150])
     np.testing.assert_allclose(axis.energy_mean_error, energies.std(axis=1, ddof=1) / np.sqrt(101))
@@ -401,59 +423,69 @@ def test_energy_of_flat_surfaces_is_twice_that_of_water(drawn):
         np.testing.assert_allclose(curve(axes, r"flat surfaces, $2\gamma_{LG}$")[1], 144)  # mJ/m²
 
 
-def test_no_marker_of_a_model_hides_the_experiment(drawn):
+def test_markers_of_models_do_not_cover_the_experiment(drawn):
     for axes in drawn["15"].axes[:2]:
         containers = [c for c in axes.containers if isinstance(c, ErrorbarContainer)]
         offsets = {c.get_label(): c[0].get_transform().transform((0.6, 10))[0] for c in containers}
         offsets = {label: place - offsets["experiment"] for label, place in offsets.items()}
         assert {label for label, offset in offsets.items() if offset < 0} == {c for c in offsets if "beams" in c}
-        assert {label for label, offset in offsets.items() if offset > 0} == {c for c in offsets if "printed" in c}
+        assert {label for label, offset in offsets.items() if offset > 0} == {c for c in offsets if "published" in c}
         assert max(containers, key=lambda c: c[0].get_zorder()).get_label() == "experiment"
 
 
-def test_printed_results_of_two_models_have_two_names_and_two_forms(drawn):
-    looks = [
+def test_published_results_of_two_models_have_two_names_and_two_markers(drawn):
+    markers = [
         (c.get_label(), c[0].get_marker())
         for axes in drawn["15"].axes[:2]
         for c in axes.containers
-        if "printed" in c.get_label()
+        if "published" in c.get_label()
     ]
-    assert [label for label, _ in looks] == ["NG: printed", "GEO: printed"]
-    assert looks[0][1] != looks[1][1]
+    assert [label for label, _ in markers] == ["NG: published", "GEO: published"]
+    assert markers[0][1] != markers[1][1]
 
 
-def test_medians_stay_within_the_axes_however_weak(pairs, printed):
+def test_medians_of_weak_adhesion_stay_within_the_axes(pairs, published):
     beam, beams, axes = pairs["b"]
     weak = axes | {"G": axes["G"].assign(energy_quantile=1e-6 * axes["G"].energy_quantile)}
-    for panel in adhesion_energies({"b": (beam, beams, weak)}, printed).axes:
+    for panel in adhesion_energies({"b": (beam, beams, weak)}, published).axes:
         assert panel.get_ylim()[0] < 1e3 * float(weak["G"].energy_quantile.sel(probability=0.5).min())
 
 
-def test_pair_that_the_paper_does_not_know_has_no_experiment(drawn, pairs, printed):
+def test_pair_of_the_user_has_no_experiment(drawn, pairs, published):
     known, own = (drawn["15"].axes[k].get_legend_handles_labels()[1] for k in (0, 2))
-    assert set(known) - set(own) == {"experiment", "NG: printed"}
-    assert len(axes_of(adhesion_energies({"mine": pairs["mine"]}, printed))) == 2
+    assert set(known) - set(own) == {"experiment", "NG: published"}
+    assert len(axes_of(adhesion_energies({"mine": pairs["mine"]}, published))) == 2
 
 
-def test_the_legend_names_what_any_pair_shows(pairs, printed):
-    figure = adhesion_energies({name: pairs[name] for name in ("mine", "b")}, printed)
+def test_the_legend_lists_the_curves_of_all_pairs(pairs, published):
+    figure = adhesion_energies({name: pairs[name] for name in ("mine", "b")}, published)
     named = {text.get_text() for text in figure.legends[0].get_texts()}
-    assert {"experiment", "NG: printed", "GEO: printed", "GEO: beams, mean ± std"} <= named
+    assert {"experiment", "NG: published", "GEO: published", "GEO: beams, mean ± std"} <= named
 
 
-def test_a_single_humidity_shows_its_median_and_quantiles(pairs, printed):
+def test_a_single_humidity_shows_its_median_and_quantiles(pairs, published):
     beam, beams, axes = pairs["b"]
     single = {model: axis.isel(humidity=[2]) for model, axis in axes.items()}
-    panel = adhesion_energies({"b": (beam, beams, single)}, printed).axes[0]
+    panel = adhesion_energies({"b": (beam, beams, single)}, published).axes[0]
     centres, ends = bars(panel, r"NG: median and 5–95 % of $\bar e$")
     low, median, high = 1e3 * single["NG"].energy_quantile.values.ravel()
     np.testing.assert_allclose([*map(float, centres.ravel())], [0.6, median])
     np.testing.assert_allclose(ends, [[low, high]])
 
 
-def test_the_energy_that_no_crack_reaches_is_shown_however_high(pairs, printed):
+def test_a_pair_of_one_humidity_shows_its_median_and_stays_within_all_humidities(pairs, published):
+    beam, beams, axes = pairs["b"]
+    humid = {(0.99, model): found for (humidity, model), found in beams.items() if humidity == 0.5}
+    repeated = {model: axis.assign_coords(humidity=np.full(5, 0.99)) for model, axis in axes.items()}
+    panel = adhesion_energies({"mine": (beam, humid, repeated)}, published).axes[0]
+    centres, _ = bars(panel, r"NG: median and 5–95 % of $\bar e$")
+    np.testing.assert_allclose([*map(float, centres.ravel())][0], 0.99)
+    assert panel.get_xlim()[0] < 0.99 < panel.get_xlim()[1] <= 1
+
+
+def test_the_energy_of_the_longest_crack_is_always_shown(pairs, published):
     _, beams, axes = pairs["b"]
     stiff = replace(BEAM, thickness=10 * BEAM.thickness)
-    for panel in adhesion_energies({"b": (stiff, beams, axes)}, printed).axes:
+    for panel in adhesion_energies({"b": (stiff, beams, axes)}, published).axes:
         weakest = curve(panel, "crack as long as the beam")[1][0]
         assert 144 < weakest < panel.get_ylim()[1]

@@ -1,4 +1,4 @@
-"""Tables II and III and that of the resampled laws from datasets of which every number is known."""
+"""Tables from datasets with known numbers."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -9,11 +9,12 @@ import pytest
 import xarray as xr
 from numpy.testing import assert_allclose
 
-from stiction.report import tables, tables_studies
-from stiction.stages import data
+from stiction.models import surface_model
+from stiction.report import published, tables, tables_beams, tables_studies, tables_surfaces
+from stiction.stages import forces as stage_forces
 
-PUBLISHED = Path(__file__).parents[2] / "workflow" / "resources"
-PRINTED = tables.published(PUBLISHED / "table_3.csv")
+RESOURCES = Path(__file__).parents[2] / "workflow" / "resources"
+PUBLISHED = published.read(RESOURCES / "table_3.csv")
 LENGTHS = np.array([600e-6, 640e-6, 1500e-6])
 ENERGIES = np.array([8e-3, 10e-3, 9e-3, 13e-3])
 
@@ -29,16 +30,18 @@ def beams(*states):
 
 
 def forces(spread=1.0, weak=False):
-    """Samples of which the first has no law where ``weak``: 0.5 f_max / a_left is more than its energy."""
+    """Samples; if ``weak``, the first one has no force law: 0.5 f_max / a_left is more than its energy."""
     mean = ENERGIES.mean()
     pull_off = np.full(len(ENERGIES), 1e6) * np.where(np.arange(len(ENERGIES)) == 0, 100.0 if weak else 1.0, 1.0)
     v = [mean + spread * (ENERGIES - mean), pull_off, np.full(len(ENERGIES), 8e-9), np.full(len(ENERGIES), 6.5e-9)]
-    return data.forces(np.column_stack(v), 1e8, np.arange(3.0), np.zeros((1, 3)))
+    return stage_forces.layout(np.column_stack(v), 1e8, np.arange(3.0), np.zeros((1, 3)))
 
 
 def row(model="NG", spread=1.0, states=(0, 0, 1), pair="a"):
     key = (pair, 0.45, model)
-    return tables.table_3({key: beams(*states)}, {key: forces(spread)}, PRINTED).iloc[0]
+    return tables_beams.table_3(
+        {key: beams(*states)}, {(pair, 0.45, surface_model(model)): forces(spread)}, PUBLISHED
+    ).frame.iloc[0]
 
 
 def test_averages_are_those_of_s_shaped_beams_and_shares_of_all():
@@ -50,16 +53,16 @@ def test_averages_are_those_of_s_shaped_beams_and_shares_of_all():
     assert_allclose(found.meso_energy_cv, ENERGIES.std(ddof=1) / ENERGIES.mean())
 
 
-def test_energies_that_no_beam_meets_are_told_apart():
+def test_energies_without_a_force_law_are_reported_separately():
     key = ("a", 0.45, "G")
-    table = tables.table_3({key: beams(0, 0, 1)}, {key: forces(weak=True)}, PRINTED)
+    table = tables_beams.table_3({key: beams(0, 0, 1)}, {key: forces(weak=True)}, PUBLISHED).frame
     assert_allclose(table.share_without_law, 1 / 4)
     assert_allclose(table.meso_energy_J_per_m2, ENERGIES.mean())
     assert_allclose(table.meso_energy_lawful_J_per_m2, ENERGIES[1:].mean())
     assert row().share_without_law == 0
 
 
-def test_a_share_of_few_beams_is_not_rounded_away():
+def test_a_small_share_of_beams_is_not_rounded_to_zero():
     key = ("b", 0.55, "G")
     few = xr.Dataset(
         {
@@ -68,7 +71,7 @@ def test_a_share_of_few_beams_is_not_rounded_away():
             "adhesion_energy": ("sample", np.full(200, 1e-3)),
         }
     )
-    assert "| 0.5/99.5/0 " in tables.markdown_3(tables.table_3({key: few}, {key: forces()}, PRINTED))
+    assert " 0.5/99.5/0 |" in tables_beams.table_3({key: few}, {key: forces()}, PUBLISHED).markdown
 
 
 def test_standard_errors_are_those_of_beams_and_of_the_pairs_that_they_share():
@@ -79,15 +82,15 @@ def test_standard_errors_are_those_of_beams_and_of_the_pairs_that_they_share():
     assert_allclose(row().adhesion_energy_se_J_per_m2, np.hypot(own, row().adhesion_energy_J_per_m2 * pairs))
 
 
-@pytest.mark.parametrize(("model", "printed", "bias"), [("NG", 716, 0.4), ("GEO", 715, None), ("G", None, None)])
-def test_every_model_stands_beside_its_own_print_and_all_beside_the_experiment(model, printed, bias):
+@pytest.mark.parametrize(("model", "known", "bias"), [("NG", 716, 0.4), ("GEO", 715, None), ("G", None, None)])
+def test_each_model_is_compared_with_its_own_published_values_and_all_with_the_experiment(model, known, bias):
     found = row(model)
-    assert_allclose(found.deviation_percent, 100 * (620 / printed - 1) if printed else np.nan)
+    assert_allclose(found.deviation_percent, 100 * (620 / known - 1) if known else np.nan)
     assert_allclose(found.experiment_deviation_percent, 100 * (620 / 718 - 1))
     assert_allclose(found.published_bias_error_percent, bias or np.nan)
 
 
-def test_a_pair_of_the_user_has_no_print():
+def test_a_pair_of_the_user_has_no_published_values():
     found = row(pair="mine")
     assert np.isnan([found.published_um, found.experiment_um, found.deviation_percent]).all()
     assert_allclose(found.crack_length_um, 620)
@@ -96,14 +99,15 @@ def test_a_pair_of_the_user_has_no_print():
 def test_beams_that_do_not_stick_have_no_crack_length():
     found = row(states=(1, 1, 2))
     assert np.isnan([found.crack_length_um, found.crack_length_se_um, found.adhesion_energy_J_per_m2]).all()
-    text = tables.markdown_3(tables.table_3({("a", 0.45, "G"): beams(1, 1, 2)}, {("a", 0.45, "G"): forces()}, PRINTED))
+    key = ("a", 0.45, "G")
+    text = tables_beams.table_3({key: beams(1, 1, 2)}, {key: forces()}, PUBLISHED).markdown
     assert "±" not in text.splitlines()[-1].split("|")[4]
     assert "0/66.7/33.3" in text
 
 
-def test_printed_bias_error_is_the_deviation_of_the_printed_model_from_experiment():
-    bias = 100 * np.abs(PRINTED.ng / PRINTED.experiment - 1)
-    assert_allclose(PRINTED.bias_error_percent, bias, atol=0.7)
+def test_published_bias_error_is_the_deviation_of_the_published_model_from_experiment():
+    bias = 100 * np.abs(PUBLISHED.ng / PUBLISHED.experiment - 1)
+    assert_allclose(PUBLISHED.bias_error_percent, bias, atol=0.7)
 
 
 def spectra(corner):
@@ -116,35 +120,80 @@ def spectra(corner):
     return {"B1": found}, {"B1": used}
 
 
-def test_identified_parameters_stand_beside_the_published_with_what_they_leave():
-    printed = tables.published(PUBLISHED / "table_2.csv")
-    published, identified = (row for _, row in tables.table_2(*spectra(33e6), printed).iterrows())
-    assert_allclose(published.rms_residual_percent, 100 * (1.743 / 1.7 - 1), atol=0.1)  # 1.743 nm by the formula of m₂
-    assert_allclose((published.gaussian_defect_percent, identified.gaussian_defect_percent), (1, np.nan))
+def table_2(corner, source):
+    return tables_surfaces.table_2(*spectra(corner), published.read(RESOURCES / "table_2.csv"), {"B1": source})
+
+
+def test_identified_parameters_are_listed_with_the_published_and_with_their_residuals():
+    known, identified = (row for _, row in table_2(33e6, "published").frame.iterrows())
+    assert_allclose(known.rms_residual_percent, 100 * (1.743 / 1.7 - 1), atol=0.1)  # 1.743 nm by the formula of m₂
     assert_allclose(identified.corner_rad_per_um, 33)
     assert_allclose((identified.radius_residual_percent, identified.radius_residual_se_percent), (5, 1))
     assert_allclose(identified.density_residual_percent, 100 * (67 / 68 - 1))
 
 
-def test_defect_is_that_of_the_spectrum_in_use():
-    table = tables.table_2(*spectra(32e6), tables.published(PUBLISHED / "table_2.csv"))
-    assert_allclose(table.gaussian_defect_percent, [1, 1])
-    assert "nan" not in tables.markdown_2(tables.table_2(*spectra(33e6), tables.published(PUBLISHED / "table_2.csv")))
+@pytest.mark.parametrize(("source", "defects"), [("published", [1, np.nan]), ("identified", [np.nan, 1])])
+@pytest.mark.parametrize("corner", [32e6, 33e6])
+def test_defect_is_that_of_the_spectrum_in_use(source, defects, corner):
+    table = table_2(corner, source)
+    assert_allclose(table.frame.gaussian_defect_percent, defects)
+    assert "nan" not in table.markdown
+
+
+def test_a_surface_of_the_user_has_identified_parameters_only():
+    known = published.of_paper(published.read(RESOURCES / "table_2.csv"), ["B2"])
+    table = tables_surfaces.table_2(*spectra(33e6), known, {"B1": "identified"})
+    assert table.frame.psd.tolist() == ["identified"]
+
+
+def character(strips=40):
+    """Stage character: moments of strips of independent Gaussian heights."""
+    z = 1.7e-9 * np.random.default_rng(3).standard_normal((strips, 4000))
+    return xr.Dataset(
+        {
+            "power": (("strip", "order"), np.stack([np.mean(z**order, axis=1) for order in (1, 2, 3, 4)], axis=1)),
+            "summit_density": ("strip", np.linspace(60e12, 70e12, strips)),
+            "mean_curvature": ("strip", np.linspace(2.4e6, 2.6e6, strips)),
+        }
+    )
+
+
+def test_statistics_of_exponential_heights_are_those_of_their_distribution():
+    z = 2e-9 * np.random.default_rng(5).standard_exponential((100, 4000))
+    power = np.stack([np.mean(z**order, axis=1) for order in (1, 2, 3, 4)], axis=1)
+    values, errors = tables_surfaces.surface_statistics(
+        character(100).assign(power=(("strip", "order"), power)),
+    )
+    for name, known in {"rms_nm": 2, "skewness": 2, "kurtosis": 9}.items():
+        assert abs(values[name] - known) < 4 * errors[name] < 0.2 * known
+
+
+def test_statistics_are_compared_with_the_published_ones_and_listed_with_the_measured_ones():
+    known = published.read(RESOURCES / "table_1.csv")
+    measured = {"B1": {"rms_nm": 1.7}, "mine": {}}
+    table = tables_surfaces.table_1({("B1", "NG"): character(), ("mine", "NG"): character()}, measured, known)
+    first, other = (row for _, row in table.frame.iterrows())
+    assert_allclose((first.summit_density_per_um2, first.mean_summit_radius_um), (65, 0.4), rtol=1e-3)
+    assert_allclose((first.summit_density_per_um2_published, first.rms_nm_afm), (63, 1.7))
+    assert_allclose(first.summit_density_per_um2_deviation_percent, 100 * (65 / 63 - 1))
+    assert np.isnan([other.rms_nm_published, other.rms_nm_afm, other.rms_nm_deviation_percent]).all()
+    assert "(63) |" in table.markdown.splitlines()[-2]
+    assert "(" not in table.markdown.splitlines()[-1]
 
 
 def test_resampling_compares_the_means_of_stuck_beams_with_errors_of_the_beams():
     longer = beams(0, 0, 0).assign(crack_length=("sample", np.array([630e-6, 650e-6, 670e-6])))
-    (found,) = tables_studies.resampling({("b", 0.8): beams(0, 0, 1)}, {("b", 0.8): longer}).itertuples()
+    (found,) = tables_beams.resampling({("b", 0.8): beams(0, 0, 1)}, {("b", 0.8): longer}).frame.itertuples()
     assert_allclose((found.chaos_um, found.chaos_se_um, found.samples_um), (620, 20, 650))
     assert_allclose(found.difference_percent, 100 * (620 / 650 - 1))
     assert_allclose(found.difference_se_percent, 100 * np.hypot(20, 20 / np.sqrt(3)) / 650)
 
 
-def test_a_table_is_saved_for_machines_for_reading_and_for_the_report(tmp_path):
+def test_a_table_is_saved_as_numbers_as_markdown_and_as_html(tmp_path):
     key = ("a", 0.45, "NG")
-    table = tables.table_3({key: beams(0, 0, 1)}, {key: forces()}, PRINTED)
+    table = tables_beams.table_3({key: beams(0, 0, 1)}, {key: forces()}, PUBLISHED)
     paths = SimpleNamespace(**{kind: tmp_path / kind for kind in ("csv", "markdown", "html")})
-    tables.save(table, tables.markdown_3(table), paths)
+    tables.save(table, paths)
     assert_allclose(pd.read_csv(paths.csv).crack_length_um, 620)
     assert paths.markdown.read_text(encoding="utf-8").startswith("Table III")
     page = paths.html.read_text(encoding="utf-8")
@@ -152,8 +201,17 @@ def test_a_table_is_saved_for_machines_for_reading_and_for_the_report(tmp_path):
     assert "<td>620 ± 28</td>" in page
 
 
-def reading(*states):
-    """Study reading of one humidity."""
+def test_markdown_and_html_show_the_same_text_even_if_it_looks_like_a_number():
+    cells = pd.DataFrame({"pair": ["a|b", "c"], "deviation [%]": ["+1.0", "-0.50"]})
+    table = tables.Table(pd.DataFrame({"x": [1.0]}), "Caption & units.", cells)
+    for text in ("+1.0", "-0.50"):
+        assert f" {text} |" in table.markdown
+        assert f"<td>{text}</td>" in table.html
+    assert table.html.count("<td>") == 4
+
+
+def variant(*states):
+    """Study variants of one humidity."""
     return xr.Dataset(
         {
             "adhesion_energy": (("humidity", "sample"), ENERGIES[None]),
@@ -165,11 +223,19 @@ def reading(*states):
 
 
 @pytest.mark.parametrize("pair", ["a", "mine"])
-def test_a_reading_under_which_no_beam_sticks_has_no_crack_length_but_an_energy(pair):
-    studies = {(pair, "base"): reading(0, 0, 1), (pair, "van_der_waals_none"): reading(1, 1, 2)}
-    table = tables_studies.readings(studies, PRINTED)
-    assert_allclose(table.crack_length_um, [620, np.nan])
-    assert_allclose(table.meso_energy_shift_percent, 0)
-    weak = tables_studies.markdown_readings(table).splitlines()[-1]
+def test_a_variant_under_which_no_beam_sticks_has_no_crack_length_but_an_energy(pair):
+    studies = {(pair, "base"): variant(0, 0, 1), (pair, "van_der_waals_none"): variant(1, 1, 2)}
+    table = tables_studies.variants(studies, PUBLISHED)
+    assert_allclose(table.frame.crack_length_um, [620, np.nan])
+    assert_allclose(table.frame.meso_energy_shift_percent, 0)
+    weak = table.markdown.splitlines()[-1]
     assert "nan" not in weak
     assert weak.count("–") >= 3
+
+
+def test_a_redefined_pair_with_a_name_of_the_paper_is_compared_with_nothing():
+    known, key = published.of_paper(PUBLISHED, ["b", "c"]), ("a", 0.45, "NG")
+    (row,) = tables_beams.table_3({key: beams(0, 0, 1)}, {key: forces()}, known).frame.itertuples()
+    assert np.isnan([row.published_um, row.experiment_um, row.published_bias_error_percent]).all()
+    (row,) = tables_studies.variants({("a", "base"): variant(0, 0, 1)}, known).frame.itertuples()
+    assert np.isnan([row.published_um, row.experiment_um]).all()

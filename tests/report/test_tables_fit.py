@@ -3,19 +3,19 @@
 import numpy as np
 import pytest
 
-from stiction.report.tables_fit import fit_quality, markdown_fit
-from stiction.stages import data_studies
+from stiction.report.tables_beams import fit_quality
+from stiction.studies import fit as study_fit
 
 
 @pytest.fixture
 def table():
     curve = np.linspace(0.01, 0.21, 101)
-    fit = data_studies.fit(np.arange(101), (curve, np.full(101, 1e-16)), 125)
+    fit = study_fit.layout(np.arange(101), (curve, np.full(101, 1e-16)), 125)
     return fit_quality({("b", 0.67, "NG"): fit})
 
 
 def test_errors_are_percent_with_their_standard_error(table):
-    (row,) = table.to_dict("records")
+    (row,) = table.frame.to_dict("records")
     assert (row["pair"], row["relative_humidity"], row["model"], row["samples"]) == ("b", 0.67, "NG", 101)
     assert row["curve_error_percent"] == pytest.approx(11)
     assert row["curve_error_median_percent"] == pytest.approx(11)
@@ -26,10 +26,10 @@ def test_errors_are_percent_with_their_standard_error(table):
 
 
 def test_samples_without_a_law_are_counted_not_averaged(table):
-    assert table.share_without_law[0] == pytest.approx(24 / 125)
+    assert table.frame.share_without_law[0] == pytest.approx(24 / 125)
 
 
-def test_markdown_says_what_the_numbers_are(table):
-    text = markdown_fit(table)
-    assert "11.00 ± 0.58" in text
+def test_markdown_describes_the_numbers(table):
+    text = table.markdown
+    assert "11.0 ± 0.6" in text
     assert "d ≥ d_limit" in text.splitlines()[0]

@@ -1,4 +1,4 @@
-"""The log of a job."""
+"""Logs of jobs."""
 
 import subprocess
 import sys
@@ -10,7 +10,7 @@ from stiction.progress import progress
 from stiction.run.logs import logged
 
 
-def test_a_job_that_succeeds_leaves_progress_warnings_time_and_memory(tmp_path):
+def test_a_successful_job_logs_progress_warnings_time_and_memory(tmp_path):
     with logged(tmp_path / "logs" / "job.log"):
         sys.stderr.write("Warning: rather small\n")
         assert sum(progress(range(3), "steps")) == 3
@@ -22,7 +22,7 @@ def test_a_job_that_succeeds_leaves_progress_warnings_time_and_memory(tmp_path):
     assert int(megabytes) > 20  # an interpreter with its libraries
 
 
-def test_memory_is_that_of_the_peak(tmp_path):
+def test_the_logged_memory_is_the_peak(tmp_path):
     def peak(megabytes):
         job = f"from stiction.run.logs import logged\nwith logged('job.log'):\n    b'x' * ({megabytes} * 2**20)"
         subprocess.run([sys.executable, "-c", job], cwd=tmp_path, check=True)
@@ -31,7 +31,7 @@ def test_memory_is_that_of_the_peak(tmp_path):
     assert peak(128) - peak(0) == pytest.approx(128, abs=5)
 
 
-def test_a_job_that_fails_leaves_its_traceback_and_says_one_line(tmp_path):
+def test_a_failed_job_logs_its_traceback_and_prints_one_line(tmp_path):
     error = ValueError("negative rms")
     error.add_note("It was -1 nm.")
     with pytest.raises(SystemExit, match=r"^ValueError: negative rms It was -1 nm\.$"), logged(tmp_path / "job.log"):
@@ -42,7 +42,7 @@ def test_a_job_that_fails_leaves_its_traceback_and_says_one_line(tmp_path):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-def test_on_a_full_disk_the_terminal_still_gets_its_line():
+def test_on_a_full_disk_the_error_is_still_printed():
     with pytest.raises(SystemExit, match="^ValueError: negative rms$"), logged("/dev/full"):
         raise ValueError("negative rms")
     with logged("/dev/full"):

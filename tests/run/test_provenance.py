@@ -8,7 +8,7 @@ import pytest
 from stiction.run import provenance
 
 
-def test_every_run_adds_what_it_ran_with_to_the_record(tmp_path):
+def test_every_run_appends_its_code_machine_and_configuration_to_the_record(tmp_path):
     path = tmp_path / "results" / "provenance.json"
     for seed in (1, 2):
         provenance.record(path, tmp_path, {"seed": seed})
@@ -21,7 +21,7 @@ def test_every_run_adds_what_it_ran_with_to_the_record(tmp_path):
 
 
 @pytest.mark.parametrize("text", ["[1, 2", "{}"])
-def test_a_record_that_is_none_is_named_and_kept(tmp_path, text):
+def test_an_invalid_record_is_reported_and_kept(tmp_path, text):
     path = tmp_path / "provenance.json"
     path.write_text(text)
     with pytest.raises(ValueError, match=r"provenance\.json .*; delete it"):
@@ -44,3 +44,11 @@ def test_git_state_is_the_commit_and_whether_files_differ_from_it(tmp_path):
     assert not clean["changed"]
     (tmp_path / "law").write_text("2")
     assert provenance.git_state(tmp_path) == clean | {"changed": True}
+
+
+def test_a_library_that_is_not_installed_is_recorded_as_none(tmp_path, monkeypatch):
+    monkeypatch.setattr(provenance, "LIBRARIES", ("numpy", "a-library-that-nobody-has"))
+    provenance.record(tmp_path / "provenance.json", tmp_path, {})
+    (run,) = json.loads((tmp_path / "provenance.json").read_text())
+    assert run["versions"]["a-library-that-nobody-has"] is None
+    assert run["versions"]["numpy"] == numpy.__version__

@@ -1,20 +1,20 @@
-"""From datasets back to force curves."""
+"""Force curves from stored datasets."""
 
 import numpy as np
 
 from stiction.contact.pair import DistanceGrid
-from stiction.stages import data
-from stiction.stages.curves import force_curves
+from stiction.stages import contact
+from stiction.stages.curves import Water, force_curves
 
 
 def test_force_at_a_humidity_is_solid_pressure_less_tension_on_the_wet_area():
     grid = DistanceGrid(0.5e-9, 10, 40)
     solid = np.exp(-grid.solid / 2e-9)[None] * 1e8
     bearing = 1 / (1 + np.exp(grid.bearing / 2e-9))[None]
-    contact = data.contact(solid, bearing, grid, range(1))
-    distance, curve = force_curves(contact, 0.65, 300.0)
+    dataset = contact.layout(solid, bearing, grid, range(1))
+    distance, curve = force_curves(dataset, 0.65, Water(300.0))
     # Tension 59.7 MPa and height 2.41 nm of water at RH 0.65, 300 K.
     tension, height = 59.7e6, 2.41e-9
     for k in (5, 12):
         wet = np.interp(distance[k] - height, grid.bearing, bearing[0])
-        np.testing.assert_allclose((solid[0, k] - curve(0)[k]) / tension, wet, rtol=2e-3)  # figures printed to 3 digits
+        np.testing.assert_allclose((solid[0, k] - curve(0)[k]) / tension, wet, rtol=2e-3)  # inputs have 3 digits

@@ -12,7 +12,7 @@ from stiction.surface.field import RoughSurface, StripGrid, add_heights, radial_
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum, autocovariance, correlation_length
 from stiction.surface.translation import LARGEST_SCORE, spectrum_of_heights
 
-#: Whole periodic fields: what is drawn has no edges.
+#: Whole periodic fields, without edges.
 FIELD = StripGrid(1.28e-6, 1.28e-6, SPACING, margin=0)
 OBLONG = StripGrid(0.8e-6, 1.6e-6, SPACING, margin=0)
 STRIP = StripGrid(0.6e-6, 0.8e-6, SPACING, margin=0.2e-6)
@@ -37,7 +37,7 @@ def test_heights_have_the_moments_of_table_1(surface):
     assert errors_off(found, [0, 1, surface.skewness, surface.kurtosis]) < ALLOWED
 
 
-def test_moments_of_a_gaussian_twin_are_told_from_those_of_table_1():
+def test_moments_of_gaussian_heights_differ_significantly_from_those_of_table_1():
     surface = SURFACES["Sub2"]
     found = moments(draws(surface.gaussian_twin(FIELD), 200))
     assert errors_off(found, [0, 1, 0, 3]) < ALLOWED
@@ -53,7 +53,7 @@ def test_share_of_high_points_is_that_of_the_height_density(surface):
         assert errors_off(above, norm.sf(score)) < ALLOWED
 
 
-def test_negative_skewness_takes_away_the_highest_points():
+def test_negative_skewness_removes_the_highest_points():
     surface = SURFACES["Sub2"]
     skewed, gaussian = (draws(kind(FIELD), 100) for kind in (surface.on, surface.gaussian_twin))
     assert errors_off(np.mean(gaussian > 2, axis=(1, 2)), norm.sf(2)) < ALLOWED
@@ -74,7 +74,7 @@ def test_heights_are_translated_scores():
     np.testing.assert_allclose(surface.draw(stream(1)), expected, rtol=0, atol=1e-5 * surface.rms)  # single precision
 
 
-def test_add_heights_adds_what_interpolation_in_the_table_gives():
+def test_add_heights_adds_the_heights_interpolated_in_the_table():
     table = SURFACES["Sub2"].translation.table.astype(np.float32)
     scores = np.linspace(-LARGEST_SCORE, LARGEST_SCORE, 3000, dtype=np.float32).reshape(30, 100)[:, :99]
     heights = np.ones(scores.shape, np.float32)
@@ -84,7 +84,7 @@ def test_add_heights_adds_what_interpolation_in_the_table_gives():
     np.testing.assert_allclose(heights, expected, rtol=0, atol=1e-5)  # |z| < 20 in single precision
 
 
-def test_scores_that_do_not_occur_get_the_heights_at_the_ends_of_the_table():
+def test_scores_outside_the_table_get_the_heights_at_its_ends():
     table = np.linspace(-3, 5, 17, dtype=np.float32)
     scores = np.array([[-9, 9, -np.inf, np.inf, 0]], np.float32)[:, :4]
     heights = np.zeros((1, 4), np.float32)
@@ -121,7 +121,7 @@ def test_periodogram_of_a_plane_wave_is_its_variance_on_the_ring_of_its_wave_num
 
 
 @published
-def test_spectrum_of_gaussian_surfaces_is_the_target_and_the_test_can_tell(surface):
+def test_spectrum_of_gaussian_surfaces_is_the_target_with_a_control_that_fails(surface):
     found = periodograms(surface.gaussian_twin(FIELD), 200)
     expected = on_rings(surface.spectrum, FIELD)
     inside = expected > 0
@@ -154,7 +154,7 @@ def iterated_spectrum(surface, grid, strips, iterations=3):
 
 
 @pytest.mark.parametrize("name", ["B1", "B2"])
-def test_iteration_of_fig_4_ends_at_the_spectrum_that_the_hermite_series_gives_at_once(name):
+def test_iteration_of_fig_4_converges_to_the_spectrum_of_the_hermite_series(name):
     surface, strips = SURFACES[name], 100
     grid = StripGrid(2.56e-6, 2.56e-6, SPACING, margin=0)
     ring = np.arange(
@@ -165,7 +165,7 @@ def test_iteration_of_fig_4_ends_at_the_spectrum_that_the_hermite_series_gives_a
     # A ring holds 2πn waves, half of them independent, each with 100 % scatter of its power.
     scatter = 1 / np.sqrt(np.pi * ring * strips)
     off, off_before = (np.sqrt(np.mean(((iterated / s - 1) / scatter) ** 2)) for s in (at_once, unchanged))
-    assert off < 2  # the rings share the scatter of the variance
+    assert off < 2  # the scatter of the variance is common to all rings
     assert off_before > 4
 
 
@@ -174,7 +174,7 @@ def covariance_along(heights, shift):
     return np.mean(heights * np.roll(heights, shift, axis=(1, 2)), axis=(1, 2))
 
 
-def test_surface_is_isotropic_and_the_test_can_tell():
+def test_surface_is_isotropic_with_a_control_that_fails():
     surface = SURFACES["B1"]
     heights = draws(surface.gaussian_twin(OBLONG), 300)
     shifts = [(7, 0), (0, 7), (5, 5), (5, -5)]
@@ -194,7 +194,7 @@ def test_non_gaussian_surface_is_isotropic_with_the_translated_autocovariance():
     assert errors_off(along, autocovariance(surface.spectrum, distance) / surface.spectrum.variance) < ALLOWED
 
 
-def test_surface_is_equally_rough_everywhere_and_the_test_can_tell():
+def test_roughness_is_homogeneous_with_a_control_that_fails():
     heights = draws(SURFACES["B1"].on(STRIP), 400)
     quarters = np.stack(
         [np.mean(q**2, axis=(1, 2)) for half in np.split(heights, 2, 1) for q in np.split(half, 2, 2)], axis=1
@@ -206,7 +206,7 @@ def test_surface_is_equally_rough_everywhere_and_the_test_can_tell():
 
 
 @published
-def test_opposite_edges_of_a_strip_do_not_know_of_each_other(surface):
+def test_opposite_edges_of_a_strip_are_uncorrelated(surface):
     margin = correlation_length(surface.spectrum)
     apart = StripGrid(margin, 0.4e-6, SPACING, margin)
     heights = draws(surface.on(apart), 300)
@@ -217,7 +217,7 @@ def test_opposite_edges_of_a_strip_do_not_know_of_each_other(surface):
 
 
 @pytest.mark.parametrize("translation", [IDENTITY, SURFACES["B1"].translation], ids=["Gaussian", "B1"])
-def test_same_stream_draws_the_same_surface_on_a_finer_grid(translation):
+def test_same_stream_gives_the_same_surface_on_a_finer_grid(translation):
     spectrum = SURFACES["B1"].spectrum
     coarse, fine = (
         RoughSurface(spectrum, translation, 1.0, dataclasses.replace(STRIP, spacing=spacing)).draw(stream(1))
@@ -233,14 +233,14 @@ def test_strip_of_the_paper_is_cut_from_the_same_field_on_finer_grids(spacing):
     np.testing.assert_allclose(sizes, [2.5e-6, 31.25e-6], rtol=1e-12)
 
 
-def test_strip_is_a_window_of_its_field():
+def test_strip_is_a_part_of_its_field():
     surface = SURFACES["B2"].on(STRIP)
     whole = dataclasses.replace(surface, grid=StripGrid(0.8e-6, 1.0e-6, SPACING, margin=0))
     assert surface.grid.field_shape == whole.grid.shape
     np.testing.assert_array_equal(surface.draw(stream(1)), whole.draw(stream(1))[:60, :80])
 
 
-def test_field_repeats_itself_and_the_strip_does_not():
+def test_field_is_periodic_and_the_strip_is_not():
     heights = SURFACES["B1"].gaussian_twin(FIELD).draw(stream(1)).astype(float)
     step = np.abs(np.diff(heights, axis=0)).mean()
     assert np.abs(heights[0] - heights[-1]).mean() < 1.5 * step
@@ -248,14 +248,14 @@ def test_field_repeats_itself_and_the_strip_does_not():
     assert np.abs(strip[0] - strip[-1]).mean() > 3 * step
 
 
-def test_strip_of_the_paper_has_its_points():
+def test_strip_of_the_paper_has_150_by_3000_points():
     assert PAPER.shape == (150, 3000)
     for field, strip in zip(PAPER.field_shape, PAPER.shape, strict=True):
         assert field * SPACING >= strip * SPACING + 0.999 * PAPER.margin
     np.testing.assert_allclose(PAPER.wavenumber_steps, 2 * np.pi / (np.array(PAPER.field_shape) * SPACING), rtol=1e-14)
 
 
-def test_streams_draw_different_surfaces():
+def test_different_streams_give_different_surfaces():
     surface = SURFACES["B1"].on(STRIP)
     first, second = (surface.draw(stream(1, "strip", k)) for k in range(2))
     assert np.abs(np.corrcoef(first.ravel(), second.ravel())[0, 1]) < 0.3
@@ -264,7 +264,7 @@ def test_streams_draw_different_surfaces():
 
 def test_grid_too_coarse_for_the_waves_is_refused_with_both_numbers():
     coarse = dataclasses.replace(FIELD, spacing=20e-9)
-    with pytest.raises(ValueError, match=r"cut-off 2.64e[+]08 rad/m lies beyond .* 1.571e[+]08"):
+    with pytest.raises(ValueError, match=r"cut-off 2.64e[+]08 rad/m is beyond .* 1.571e[+]08"):
         RoughSurface(SURFACES["Sub1"].spectrum, IDENTITY, 1.0, coarse)
 
 

@@ -34,7 +34,7 @@ def test_multipliers_of_the_published_surfaces_are_those_of_an_independent_solut
 
 
 @published
-def test_moments_are_those_asked_for(surface):
+def test_density_has_the_given_moments(surface):
     moments = [integral(lambda z, k=k: z**k * surface.density(z)) for k in range(5)]
     np.testing.assert_allclose(moments, [1, 0, 1, surface.skewness, surface.kurtosis], rtol=0, atol=1e-8)
 
@@ -46,7 +46,7 @@ def test_moment_agrees_with_gaussian_quadrature(surface):
 
 
 @given(skewnesses, kurtoses)
-def test_moments_survive_the_round_trip_through_the_multipliers(skewness, kurtosis):
+def test_moments_and_multipliers_are_a_round_trip(skewness, kurtosis):
     density = maxent.solve(skewness, max(kurtosis, skewness**2 + 1.5))
     moments = [density.moment(k) for k in range(5)]
     np.testing.assert_allclose(moments, [1, 0, 1, skewness, max(kurtosis, skewness**2 + 1.5)], rtol=0, atol=1e-9)
@@ -57,7 +57,7 @@ def test_no_other_density_with_these_moments_has_more_entropy(surface):
     heights = np.linspace(-maxent.SUPPORT, maxent.SUPPORT, 20_001)
     weight = surface.density(heights) * (heights[1] - heights[0])
     powers = heights ** np.arange(5)[:, None]
-    # A disturbance of the density that no moment up to the fourth can see.
+    # A disturbance of the density that leaves all moments up to the fourth unchanged.
     ripple = np.sin(2 * heights)
     ripple -= powers.T @ np.linalg.solve((powers * weight) @ powers.T, powers @ (weight * ripple))
     ripple /= np.abs(ripple[weight > 0]).max()
@@ -93,25 +93,25 @@ def test_mirrored_surface_has_the_mirrored_density(surface):
 def test_upper_tail_beyond_the_quantile_is_that_of_the_normal_score(surface, score):
     height = float(surface.density.quantile_of_normal(score))
     tail = integral(surface.density, low=height)
-    # The trapezoids of the cumulative density move a height by step² / 12 · |d ln p / dz|, below 30 here.
+    # The trapezoidal rule of the cumulative density shifts a height by step² / 12 · |d ln p / dz|, below 30 here.
     moved = 30 * 0.005**2 / 12
     np.testing.assert_allclose(np.log(tail), norm.logsf(score), rtol=0, atol=moved * surface.density(height) / tail)
 
 
 def test_quantile_of_a_gaussian_is_the_score_itself():
     score = np.linspace(-8, 8, 65)
-    # The tables hold a standard deviation that is too large by step² / 12.
+    # The standard deviation of the tables is too large by step² / 12.
     np.testing.assert_allclose(maxent.GAUSSIAN.quantile_of_normal(score), score, rtol=1e-5, atol=1e-9)
 
 
 @published
-def test_quantile_rises(surface):
+def test_quantile_function_increases(surface):
     score = np.linspace(-8, 8, 4001)
     assert np.all(np.diff(surface.density.quantile_of_normal(score)) > 0)
 
 
 @pytest.mark.parametrize(("skewness", "kurtosis", "least"), [(1.0, 2.0, "2"), (0.0, 0.5, "1"), (-2.0, 4.9, "5")])
-def test_moments_that_no_density_has_are_refused_with_the_least_kurtosis(skewness, kurtosis, least):
+def test_moments_that_no_density_has_are_refused_with_the_smallest_kurtosis(skewness, kurtosis, least):
     with pytest.raises(ValueError, match=rf"need kurtosis > skewness² \+ 1 = {least}, got kurtosis {kurtosis}"):
         maxent.solve(skewness, kurtosis)
 
@@ -129,19 +129,19 @@ def test_newton_needs_no_more_than_20_steps_for_a_surface(surface):
     assert maxent.solve(surface.skewness, surface.kurtosis, max_iterations=20) == surface.density
 
 
-def test_tails_that_outgrow_the_support_are_refused_instead_of_cut():
+def test_tails_beyond_the_support_are_refused_instead_of_truncated():
     heavy = maxent.solve(-0.5, 4.07)
     assert np.isfinite(heavy.quantile_of_normal(6.0))
     with pytest.raises(ValueError, match="15 rms cover normal scores from -6.23"):
         heavy.quantile_of_normal(-8.0)
 
 
-def test_newton_that_runs_out_of_steps_says_how_far_it_got():
+def test_newton_that_runs_out_of_steps_reports_its_residual():
     with pytest.raises(NotConverged, match=r"skewness -0.78, kurtosis 4.6: residual .* > 1e-10"):
         maxent.solve(-0.78, 4.6, max_iterations=2)
 
 
-def test_upper_tails_that_outgrow_the_support_are_refused_as_well():
+def test_upper_tails_beyond_the_support_are_refused_as_well():
     heavy = maxent.solve(0.5, 4.07)
     assert np.isfinite(heavy.quantile_of_normal(-6.0))
     with pytest.raises(ValueError, match="15 rms cover normal scores from -.* to 6.23 only"):

@@ -14,9 +14,11 @@ from stiction.surface.spectrum import (
     TabulatedSpectrum,
     autocovariance,
     correlation_length,
+    radial_spectrum,
+    ring_means,
 )
 
-#: Flat up to the cut-off: a disc, for which everything is known in closed form.
+#: Flat up to the cut-off: a disc, for which closed forms exist.
 DISC = CutoffSelfAffine(plateau=1e-33, floor=1e-33, corner=1e6, cutoff=1e8)
 published = pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
 spectra = st.builds(
@@ -44,7 +46,7 @@ def radial_moment(spectrum, order):
 
 
 @published
-def test_spectrum_is_a_plateau_then_a_power_law_then_nothing(surface):
+def test_spectrum_is_a_plateau_then_a_power_law_then_zero(surface):
     s = surface.spectrum
     np.testing.assert_allclose(s(np.array([0, 0.5 * s.corner, s.corner])), s.plateau)
     np.testing.assert_allclose(s(s.cutoff), s.floor, rtol=1e-12)
@@ -66,7 +68,7 @@ def test_moment_in_closed_form_equals_quadrature(s, order):
 
 
 @pytest.mark.parametrize("order", [0, 2, 4])
-def test_moment_holds_where_the_power_law_integrates_to_a_logarithm(order):
+def test_moment_is_correct_where_the_power_law_integrates_to_a_logarithm(order):
     slope = -(order + 2)
     s = CutoffSelfAffine(1e-33, 1e-33 * 10.0**slope, 1e7, 1e8)
     np.testing.assert_allclose(s.slope, slope, rtol=1e-14)
@@ -77,14 +79,14 @@ def test_moment_holds_where_the_power_law_integrates_to_a_logarithm(order):
 def test_table_2_with_its_two_corrected_plateaus_gives_the_roughness_of_table_1(name, rms_nm):
     rms = np.sqrt(SURFACES[name].spectrum.variance) * 1e9
     assert float(f"{rms:.3g}") == rms_nm
-    np.testing.assert_allclose(rms * 1e-9, SURFACES[name].rms, rtol=0.03)  # two digits in print, one of four parameters
+    np.testing.assert_allclose(rms * 1e-9, SURFACES[name].rms, rtol=0.03)  # parameters of one or two digits
 
 
 @pytest.mark.parametrize(("name", "rms_nm"), [("B2", 1.20), ("Sub1", 0.0684)])
-def test_table_2_as_printed_contradicts_table_1(name, rms_nm):
+def test_table_2_as_published_contradicts_table_1(name, rms_nm):
     corrected = SURFACES[name].spectrum
-    printed = dataclasses.replace(corrected, plateau=corrected.plateau / 10)
-    rms = np.sqrt(printed.variance)
+    uncorrected = dataclasses.replace(corrected, plateau=corrected.plateau / 10)
+    rms = np.sqrt(uncorrected.variance)
     np.testing.assert_allclose(rms, rms_nm * 1e-9, rtol=5e-3)
     assert rms < 0.5 * SURFACES[name].rms
 
@@ -94,11 +96,11 @@ def test_variance_is_the_integral_over_the_plane_of_wave_numbers(surface):
     s = surface.spectrum
     axis = np.linspace(-1, 1, 2001) * s.cutoff
     plane = s(np.hypot(axis[:, None], axis)).sum() * (axis[1] - axis[0]) ** 2
-    np.testing.assert_allclose(s.variance, plane, rtol=1e-4)  # the cut-off circle runs through the cells of the sum
+    np.testing.assert_allclose(s.variance, plane, rtol=1e-4)  # the cut-off circle crosses cells of the sum
 
 
 @published
-def test_autocovariance_at_no_distance_is_the_variance(surface):
+def test_autocovariance_at_zero_distance_is_the_variance(surface):
     at_zero = autocovariance(surface.spectrum, np.zeros(1))[0]
     np.testing.assert_allclose(at_zero, surface.spectrum.variance, rtol=1e-5)  # 4000 trapezoids, second order
 
@@ -115,12 +117,12 @@ def test_autocovariance_is_the_fourier_transform_of_the_spectrum_in_the_plane(su
     axis = 2 * np.pi * fft.fftfreq(points, spacing)
     along_x = fft.fft2(surface.spectrum(np.hypot(axis[:, None], axis)) * axis[1] ** 2).real[:50, 0]
     radial = autocovariance(surface.spectrum, spacing * np.arange(50))
-    # The cut-off circle runs through the cells of the plane: they miss or add some of the variance at the floor.
+    # The cut-off circle crosses cells of the plane, which miss or add some of the variance at the floor.
     np.testing.assert_allclose(along_x, radial, atol=2e-3 * surface.spectrum.variance)
 
 
 @given(st.floats(0.2, 5))
-def test_squeezing_the_waves_squeezes_the_autocovariance(factor):
+def test_shorter_waves_compress_the_autocovariance(factor):
     squeezed = CutoffSelfAffine(DISC.plateau, DISC.floor, factor * DISC.corner, factor * DISC.cutoff)
     lag = np.linspace(0, 2e-7, 20)
     np.testing.assert_allclose(
@@ -128,11 +130,11 @@ def test_squeezing_the_waves_squeezes_the_autocovariance(factor):
     )
 
 
-def test_heights_farther_apart_than_the_correlation_length_hardly_know_of_each_other():
+def test_heights_farther_apart_than_the_correlation_length_are_nearly_uncorrelated():
     surface = SURFACES["B2"]
     length = correlation_length(surface.spectrum)
     variance = surface.spectrum.variance
-    # Ten points to the shortest wave; the search has steps of half a percent of the corner's wave length.
+    # Ten points per shortest wave; the steps of the search are half a percent of the corner's wavelength.
     beyond = autocovariance(
         surface.spectrum, np.arange(1.02 * length, 5 * length, 0.2 * np.pi / surface.spectrum.cutoff)
     )
@@ -140,12 +142,12 @@ def test_heights_farther_apart_than_the_correlation_length_hardly_know_of_each_o
     np.testing.assert_allclose(autocovariance(surface.spectrum, [length]), 0.01 * variance, rtol=0.05)
 
 
-def test_search_that_ends_before_the_correlation_is_no_correlation_length():
-    with pytest.raises(ValueError, match="m apart still correlate by 0.01 or more"):
+def test_search_that_ends_while_heights_are_correlated_is_an_error():
+    with pytest.raises(ValueError, match="m apart are still correlated by 0.01 or more"):
         correlation_length(SURFACES["B2"].spectrum, reach=0.2)
 
 
-def test_spectrum_all_plateau_decays_the_slowest():
+def test_autocovariance_of_a_pure_plateau_decays_most_slowly():
     spectrum = CutoffSelfAffine(DISC.plateau, DISC.floor, 0.999 * DISC.cutoff, DISC.cutoff)
     # The envelope of the Airy function, 2 (2/π)^½ x^(-3/2), falls to 1 % at x = 29.4.
     assert correlation_length(spectrum) * DISC.cutoff < 29.4 < 4.7 * 2 * np.pi
@@ -182,7 +184,7 @@ def test_no_isotropic_spectrum_has_a_bandwidth_below_three_halves(s):
     assert NayakSummits(s).bandwidth >= 1.5
 
 
-def test_tabulated_spectrum_is_linear_between_its_points_and_nothing_beyond_its_cutoff():
+def test_tabulated_spectrum_is_linear_between_its_points_and_zero_beyond_its_cutoff():
     s = TabulatedSpectrum(np.array([0.0, 1.0, 2.0]), np.array([4.0, 2.0, 1.0]), cutoff=1.75)
     np.testing.assert_array_equal(s(np.array([0, 0.5, 1, 1.5, 1.75, 1.8, 5])), [4, 3, 2, 1.5, 1.25, 0, 0])
 
@@ -196,6 +198,21 @@ def test_tabulated_spectrum_is_linear_between_its_points_and_nothing_beyond_its_
         ({"floor": 0.0}, "0 < floor <= plateau, got 0"),
     ],
 )
-def test_spectrum_that_is_no_spectrum_is_refused_with_its_numbers(change, message):
+def test_impossible_spectrum_is_refused_with_its_numbers(change, message):
     with pytest.raises(ValueError, match=message):
         dataclasses.replace(DISC, **change)
+
+
+@pytest.mark.parametrize("n", [8, 9])
+def test_ring_means_are_plain_means_over_equal_wave_numbers(n):
+    values = np.random.default_rng(1).random((n, n))
+    numbers = np.fft.fftfreq(n) * n
+    radius = np.rint(np.hypot(numbers[:, None], numbers))
+    inside = values < 0.7
+    for counted, found in ((np.ones((n, n), bool), ring_means(values)), (inside, ring_means(values, inside))):
+        for ring, mean in enumerate(found):
+            of_ring = values[(radius == ring) & counted]
+            np.testing.assert_allclose(mean, of_ring.mean() if of_ring.size else 0.0, rtol=1e-14)
+    wavenumber, rings = radial_spectrum(values, 0.5)
+    np.testing.assert_array_equal(wavenumber, 0.5 * np.arange(1, n // 2 + 1))
+    np.testing.assert_array_equal(rings, ring_means(values)[1 : n // 2 + 1])

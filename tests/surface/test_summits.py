@@ -14,8 +14,8 @@ from stiction.surface.field import StripGrid
 from stiction.surface.spectrum import NayakSummits, autocovariance
 from stiction.surface.summits import find_summits
 
-#: Table I, column Sim-G: mean summit radius [µm] and summit density [µm⁻²] as printed, and from an independent
-#: implementation of this reading: heights every 20 nm, eight neighbours, radius = 1 / mean curvature.
+#: Table I, column Sim-G: mean summit radius [µm] and summit density [µm⁻²] as published, and from an independent
+#: implementation of these model choices: heights every 20 nm, eight neighbours, radius = 1 / mean curvature.
 GAUSSIAN_SUMMITS = {
     "B1": ((0.30, 71), (0.312, 72.7)),
     "B2": ((0.56, 29.2), (0.569, 28.6)),
@@ -56,7 +56,7 @@ def test_summits_of_a_rough_surface_are_those_of_plain_numpy():
 
 
 @pytest.mark.parametrize("neighbour", [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)])
-def test_point_level_with_any_neighbour_is_no_summit(neighbour):
+def test_point_as_high_as_a_neighbour_is_no_summit(neighbour):
     z = np.zeros((5, 5))
     z[2, 2] = 1
     assert len(find_summits(z, UNIT)[0]) == 1
@@ -94,7 +94,7 @@ def test_egg_carton_has_one_summit_per_period_with_the_curvature_of_its_differen
 
 
 @pytest.mark.parametrize("view", [np.transpose, np.flipud, np.fliplr])
-def test_turning_a_surface_keeps_its_summits(view):
+def test_rotating_a_surface_keeps_its_summits(view):
     z = SURFACES["B1"].on(STRIP).draw(stream(2))[:, :300]
     before, after = find_summits(z, SPACING), find_summits(view(z), SPACING)
     for one, other in zip(before[:2], after[:2], strict=True):
@@ -110,7 +110,7 @@ def seen_by_the_microscope(surface, count):
 
 
 def nine_point_summits(surface, spacing, count=1_000_000):
-    """Density and mean curvature of Gaussian summits from the joint law of nine heights: no field is drawn."""
+    """Density and mean curvature of Gaussian summits from the joint distribution of nine heights: no field is drawn."""
     place = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]) * spacing
     lag = np.hypot(*(place[:, None] - place).T)
     covariance = autocovariance(surface.spectrum, lag.ravel()).reshape(9, 9)
@@ -124,7 +124,7 @@ def nine_point_summits(surface, spacing, count=1_000_000):
 
 
 @pytest.mark.parametrize("name", SURFACES)
-def test_gaussian_summits_follow_from_the_joint_law_of_nine_heights(name):
+def test_gaussian_summits_follow_from_the_joint_distribution_of_nine_heights(name):
     surface = SURFACES[name]
     drawn, error = mean_with_error(seen_by_the_microscope(surface.gaussian_twin(STRIP), 30))
     expected, expected_error = nine_point_summits(surface, MICROSCOPE)
@@ -136,14 +136,14 @@ def test_gaussian_summits_follow_from_the_joint_law_of_nine_heights(name):
 
 @pytest.mark.parametrize("name", SURFACES)
 def test_gaussian_summits_are_those_of_table_1(name):
-    (printed_radius, printed_density), (radius, density) = GAUSSIAN_SUMMITS[name]
+    (published_radius, published_density), (radius, density) = GAUSSIAN_SUMMITS[name]
     found, error = mean_with_error(seen_by_the_microscope(SURFACES[name].gaussian_twin(STRIP), 30))
     assert abs(found[0] * 1e-12 - density) < 0.05 + ALLOWED * error[0] * 1e-12
     np.testing.assert_allclose(
         1e6 / found[1], radius, rtol=0.01
-    )  # two or three digits, and a sampling error of its own
-    np.testing.assert_allclose(found[0] * 1e-12, printed_density, rtol=0.03)  # the paper saw a single surface
-    np.testing.assert_allclose(1e6 / found[1], printed_radius, rtol=0.06)  # one or two digits in print
+    )  # two or three digits, and the sampling error of that implementation
+    np.testing.assert_allclose(found[0] * 1e-12, published_density, rtol=0.03)  # the paper used a single surface
+    np.testing.assert_allclose(1e6 / found[1], published_radius, rtol=0.06)  # published with one or two digits
 
 
 @pytest.mark.parametrize("name", SURFACES)
@@ -166,7 +166,7 @@ def test_finely_sampled_gaussian_summits_are_those_of_nayak():
     mean, error = mean_with_error(found)
     allowed = 0.01 * mean + ALLOWED * error
     assert np.all(np.abs(mean - (nayak.density, curvature)) < allowed)
-    # What the microscope sees is not Nayak's: a third of the summits is lost between its points.
+    # Summits of the sampled surface differ from Nayak's: a third of the summits is lost between the sampled points.
     coarse = seen_by_the_microscope(dataclasses.replace(fine, grid=STRIP), 5).mean(axis=0)
     assert coarse[0] < 0.75 * nayak.density
     assert coarse[1] < 0.85 * curvature
@@ -179,8 +179,8 @@ def test_density_of_summits_does_not_depend_on_the_roughness():
     np.testing.assert_allclose(other, one * [1, 2], rtol=1e-6)
 
 
-def test_density_counts_only_points_that_have_neighbours_and_the_test_can_tell():
-    # On white noise one point in nine stands above its neighbours.
+def test_density_counts_only_points_with_eight_neighbours_with_a_control_that_fails():
+    # On white noise one point in nine is higher than its neighbours.
     noise = stream(1).standard_normal((400, 30, 30))
     density = np.array([find_summits(z, UNIT)[2] for z in noise])
     assert errors_off(density, 1 / 9) < ALLOWED

@@ -10,9 +10,9 @@ from stiction.surface.spectrum import CutoffSelfAffine
 from stiction.surface.translation import LARGEST_SCORE, Translation, spectrum_of_heights, underlying_spectrum
 
 published = pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
-#: The tables of the heights hold a standard deviation that is off by step² / 12 · |d ln p / dz| in each tail.
+#: The standard deviation of the tabulated heights is off by step² / 12 · |d ln p / dz| in each tail.
 TABLES = 2e-5
-#: The 24 terms of the Hermite series leave out less than this of the variance.
+#: The 24 terms of the Hermite series omit less than this share of the variance.
 SERIES = 5e-6
 #: Width of the rings on which the transforms average [rad m⁻¹].
 RING = 2 * np.pi / (1024 * SPACING)
@@ -33,7 +33,7 @@ def test_coefficients_are_projections_on_hermite_polynomials(surface):
     heights = surface.translation(score)
     for k in range(1, 7):
         hermite = np.polynomial.hermite_e.HermiteE.basis(k)(score) / np.sqrt(np.prod(np.arange(1.0, k + 1)))
-        # 60 Gauss points resolve the bend of the quantile to a few 1e-5.
+        # 60 Gauss points resolve the bend of the quantile function to a few 1e-5.
         np.testing.assert_allclose(
             surface.translation.hermite_coefficients[k - 1], weight @ (heights * hermite), rtol=0, atol=2e-4
         )
@@ -62,7 +62,7 @@ def test_translation_of_gaussian_heights_changes_nothing():
     np.testing.assert_allclose(IDENTITY.autocorrelation(rho), rho, atol=1e-9)
 
 
-def test_field_behind_a_gaussian_surface_has_the_spectrum_of_the_surface():
+def test_field_underlying_a_gaussian_surface_has_the_spectrum_of_the_surface():
     target = SURFACES["B1"].spectrum
     underlying, defect = underlying_spectrum(target, IDENTITY, SPACING)
     zeta = in_band(target, 0.02, 0.98)
@@ -71,7 +71,7 @@ def test_field_behind_a_gaussian_surface_has_the_spectrum_of_the_surface():
 
 
 @published
-def test_equal_points_are_equally_high_and_unrelated_points_are_unrelated(surface):
+def test_autocorrelation_maps_one_to_one_and_zero_to_zero(surface):
     np.testing.assert_allclose(surface.translation.autocorrelation(np.array([0.0, 1.0])), [0, 1], atol=1e-12)
 
 
@@ -88,7 +88,7 @@ def test_underlying_autocorrelation_is_recovered_from_that_of_the_heights(surfac
     rho = np.linspace(-0.5, 1, 31)
     heights = surface.translation.autocorrelation(rho)
     np.testing.assert_allclose(surface.translation.underlying_autocorrelation(heights), rho, atol=1e-10)
-    assert np.all(np.abs(heights) <= np.abs(rho) + 1e-12)  # a translation only loses correlation
+    assert np.all(np.abs(heights) <= np.abs(rho) + 1e-12)  # a translation can only reduce the correlation
 
 
 def test_mirrored_surface_has_the_same_autocorrelation():
@@ -99,26 +99,26 @@ def test_mirrored_surface_has_the_same_autocorrelation():
     np.testing.assert_allclose(mirrored.autocorrelation(rho), surface.translation.autocorrelation(rho), atol=1e-9)
 
 
-def test_skewed_heights_cannot_be_mirror_images_of_each_other():
+def test_skewed_heights_cannot_be_perfectly_anticorrelated():
     translation = SURFACES["Sub2"].translation
     assert translation.autocorrelation(-1.0) > -0.95
-    with pytest.raises(ValueError, match="by -0.8962 or more, got -0.95"):
+    with pytest.raises(ValueError, match="at least -0.8962, got -0.95"):
         translation.underlying_autocorrelation(np.array([0.5, -0.95]))
 
 
-def test_inversion_that_runs_out_of_steps_says_how_far_it_got():
+def test_inversion_that_runs_out_of_steps_reports_its_residual():
     with pytest.raises(NotConverged, match="underlying autocorrelation: residual"):
         SURFACES["B1"].translation.underlying_autocorrelation(0.5, max_iterations=1)
 
 
 def in_band(target, low, high):
-    """Wave numbers between two shares of the cut-off, without the rings that see both sides of the corner."""
+    """Wave numbers between two shares of the cut-off, without the rings that contain both sides of the corner."""
     zeta = target.cutoff * np.linspace(low, high, 150)
     return zeta[np.abs(zeta - target.corner) > 2 * RING]
 
 
 def misfit(surface, underlying, zeta):
-    """Relative error of the spectrum of the heights above a field with this spectrum."""
+    """Relative error of the spectrum of the heights translated from a field with this spectrum."""
     heights = spectrum_of_heights(underlying, surface.translation, SPACING)
     return np.abs(heights(zeta) * surface.spectrum.variance / surface.spectrum(zeta) - 1)
 
@@ -128,7 +128,7 @@ def test_translated_field_has_the_target_spectrum_up_to_its_cutoff(name):
     surface = SURFACES[name]
     band = in_band(surface.spectrum, 0.02, 0.98)
     reached = misfit(surface, surface.underlying, band)
-    assert reached.max() < 0.012  # the mean |ζ| of a narrow ring differs from its number
+    assert reached.max() < 0.012  # the mean |ζ| of a narrow ring differs from its nominal |ζ|
     untreated = misfit(surface, surface.spectrum, band)
     assert np.median(untreated) > 2 * np.median(reached)
 
@@ -157,7 +157,7 @@ def test_underlying_field_has_unit_variance_and_no_negative_power(surface):
     assert surface.underlying(1.001 * surface.spectrum.cutoff) == 0
 
 
-def test_products_of_waves_fill_the_tail_so_that_the_field_holds_less_there_than_the_heights_show():
+def test_products_of_waves_fill_the_tail_so_that_the_field_has_less_power_there_than_the_heights():
     surface = SURFACES["B1"]
     top, flat = in_band(surface.spectrum, 0.5, 0.95), in_band(surface.spectrum, 0.02, 0.2)
     assert np.all(surface.underlying(top) < 0.97 * surface.spectrum(top) / surface.spectrum.variance)
@@ -165,7 +165,7 @@ def test_products_of_waves_fill_the_tail_so_that_the_field_holds_less_there_than
 
 
 @given(st.floats(0.2, 5))
-def test_level_of_the_target_does_not_matter_only_its_shape(factor):
+def test_scale_of_the_target_has_no_effect(factor):
     target = CutoffSelfAffine(1e-33, 1e-35, 3e7, 1.2e8)
     louder = CutoffSelfAffine(factor * target.plateau, factor * target.floor, target.corner, target.cutoff)
     zeta = in_band(target, 0.05, 0.95)

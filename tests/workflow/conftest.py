@@ -1,4 +1,4 @@
-"""The workflow is run as a user runs it: by the command line, into a temporary folder."""
+"""Fixtures that run the workflow as a user does: from the command line, in a temporary folder."""
 
 import os
 import subprocess
@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SMOKE = ROOT / "workflow" / "smoke.yaml"
 
-#: One case with hardly any samples, for tests that look at files and not at numbers.
+#: One case with very few samples, for tests of files rather than of numbers.
 TINY = """
 run: {pairs: [b]}
 pairs: {b: {humidities: [0.88]}}
@@ -21,14 +21,14 @@ contact: {samples: 60, chunks: 2, distance_step_nm: 0.2}
 chaos: {order: 2}
 beam: {samples: 4}
 studies: {plasticity: {strips: 2}, orders: {draws: 1000}, sensitivity: {samples: 10},
-          iteration: {iterations: 1, fields: 2}, readings: {samples: 20, beams: 2}, resampling: {beams: 4}}
+          iteration: {iterations: 1, fields: 2}, variants: {samples: 20, beams: 2}, resampling: {beams: 4}}
 """
-#: All main stages lead to it.
+#: Dataset that depends on all stages of the main line.
 BEAMS = "results/beams/b_rh088_NG.nc"
 
 
 def command(directory, *arguments, configs=(SMOKE,), cores=2):
-    """Arguments of a process that runs Snakemake on the project's Snakefile in ``directory``."""
+    """Arguments of a process that runs Snakemake with the project's Snakefile in ``directory``."""
     words = [sys.executable, "-m", "snakemake", "--snakefile", ROOT / "Snakefile", "--directory", directory]
     words += ["--profile", ROOT / "profiles" / "default", "--cores", cores, *arguments]
     words += ["--configfile", ROOT / "config.yaml", *configs]
@@ -37,7 +37,7 @@ def command(directory, *arguments, configs=(SMOKE,), cores=2):
 
 
 def snakemake(directory, *arguments, configs=(SMOKE,), cores=2, check=True):
-    """Run Snakemake on the project's Snakefile in ``directory``; returns the finished process, output in ``stdout``."""
+    """Run Snakemake with the project's Snakefile in ``directory``; returns the finished process with its output."""
     words = command(directory, *arguments, configs=configs, cores=cores)
     done = subprocess.run(**words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if check and done.returncode:
@@ -55,7 +55,7 @@ def smoke(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def tiny(tmp_path_factory):
-    """File of the tiny configuration."""
+    """Path of the tiny configuration."""
     path = tmp_path_factory.mktemp("config") / "tiny.yaml"
     path.write_text(TINY)
     return path
@@ -70,7 +70,7 @@ def undisturbed(tmp_path_factory, tiny):
 
 
 def datasets(folder):
-    """Content of every file of results that is not a log, a record of the run or a draft, by name."""
+    """Content of every result file by name, without logs, provenance and temporary files."""
     results = Path(folder) / "results"
     kinds = ("nc", "csv", "md", "html", "pdf", "png")
     found = sorted(path for kind in kinds for path in results.rglob(f"*.{kind}"))

@@ -1,4 +1,4 @@
-"""What a run would do, asked many times over: a process that has imported Snakemake forks for every question."""
+"""Planned jobs of many runs: a process that has imported Snakemake forks for every query."""
 
 import csv
 import json
@@ -24,14 +24,14 @@ for line in sys.stdin:
 
 
 class Planner:
-    """Snakemake in one folder, by its command line.
+    """Snakemake in one folder, called by its command line.
 
     Parameters
     ----------
     folder : path
         Working directory, in which the Snakefile is found.
     scratch : path
-        Folder for what is printed.
+        Folder for the printed output.
     """
 
     def __init__(self, folder, scratch):
@@ -42,7 +42,7 @@ class Planner:
         )
 
     def __call__(self, *arguments, config=(), folder=None):
-        """Exit status and all that is printed."""
+        """Exit status and printed output."""
         self.printed.unlink(missing_ok=True)
         command = [*map(str, arguments), "--configfile", "config.yaml", *map(str, config)]
         self.server.stdin.write(json.dumps([str(folder or self.folder), command, str(self.printed)]) + "\n")
@@ -50,7 +50,7 @@ class Planner:
         return int(self.server.stdout.readline()), self.printed.read_text()
 
     def outputs(self, *arguments, config=()):
-        """Every file of the plan: its rule, and whether a run would make it again."""
+        """Rule of every planned file, and whether a run would update the file."""
         status, printed = self("--summary", *arguments, config=config)
         assert status == 0, printed
         table = csv.DictReader(printed[printed.index("output_file\t") :].splitlines(), delimiter="\t")

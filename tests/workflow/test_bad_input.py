@@ -1,4 +1,4 @@
-"""What cannot run stops before it starts, with a sentence that says what to do."""
+"""Invalid input stops a run before its first job, with a message that includes the remedy."""
 
 import os
 import shutil
@@ -21,7 +21,7 @@ WRONG = [
 
 @pytest.fixture(scope="module")
 def planner(tmp_path_factory):
-    """Snakemake, ready to be asked."""
+    """Snakemake in the root folder of the project."""
     planner = Planner(ROOT, tmp_path_factory.mktemp("printed"))
     yield planner
     planner.close()
@@ -43,8 +43,8 @@ def test_a_wrong_configuration_stops_before_the_first_job(planner, tmp_path, ove
     assert not (folder / "results").exists()
 
 
-def test_results_that_cannot_be_written_are_named(planner, tmp_path):
-    # A file in its place stops root as well, whom permissions do not.
+def test_a_results_folder_that_cannot_be_written_is_reported(planner, tmp_path):
+    # A file in place of the folder also stops root, which ignores permissions.
     (tmp_path / "results").write_text("mine")
     status, printed = planner("--directory", tmp_path, "--cores", 1, "results/heights/B1.nc")
     assert status == 1
@@ -52,7 +52,7 @@ def test_results_that_cannot_be_written_are_named(planner, tmp_path):
     assert "Traceback" not in printed
 
 
-def test_a_record_of_runs_that_is_none_is_to_be_deleted_not_left_behind(planner, tmp_path):
+def test_an_unreadable_record_of_runs_is_reported_with_the_advice_to_delete_it(planner, tmp_path):
     (tmp_path / "results").mkdir()
     (tmp_path / "results" / "provenance.json").write_text("[1, 2")
     status, printed = planner("--directory", tmp_path, "--cores", 1, "results/heights/B1.nc")
@@ -62,8 +62,8 @@ def test_a_record_of_runs_that_is_none_is_to_be_deleted_not_left_behind(planner,
     assert "choose another --directory" not in printed
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write where permissions forbid it")
-def test_a_read_only_folder_is_named(planner, tmp_path):
+@pytest.mark.skipif(os.geteuid() == 0, reason="root ignores permissions")
+def test_a_read_only_folder_is_reported(planner, tmp_path):
     (tmp_path / "results").mkdir(mode=0o555)
     status, printed = planner("--directory", tmp_path, "--cores", 1, "results/heights/B1.nc")
     assert status == 1
@@ -71,7 +71,7 @@ def test_a_read_only_folder_is_named(planner, tmp_path):
 
 
 def made(folder, *arguments):
-    """Run make in a folder, without the variables of the make that runs the tests."""
+    """Run make in a folder, without the variables of the make process that runs the tests."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith("MAKE")}
     words = ["make", "-C", folder, *arguments]
     return subprocess.run(words, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
@@ -79,7 +79,7 @@ def made(folder, *arguments):
 
 @pytest.fixture
 def make(tmp_path):
-    """Run make in a folder with nothing but the Makefile and what it installs from."""
+    """Run make in a folder that contains only the Makefile and the files it installs from."""
     for name in ("Makefile", "requirements.lock", "pyproject.toml"):
         shutil.copy2(ROOT / name, tmp_path)
 
@@ -92,7 +92,7 @@ def make(tmp_path):
     return run
 
 
-def test_a_python_that_is_too_old_is_named_with_what_to_write(make, tmp_path):
+def test_an_unsupported_python_version_is_reported_with_the_remedy(make, tmp_path):
     old = tmp_path / "python3.9"
     old.write_text('#!/bin/sh\n[ "$1" = --version ] && echo "Python 3.9.2"\nexit 1\n')
     old.chmod(0o755)
@@ -101,7 +101,7 @@ def test_a_python_that_is_too_old_is_named_with_what_to_write(make, tmp_path):
     assert f"needs Python 3.11 or newer; {old} is Python 3.9.2. Try: make PYTHON=python3" in done.stdout
 
 
-def test_a_missing_lock_file_is_named_with_how_to_get_it_back(make, tmp_path):
+def test_a_missing_lock_file_is_reported_with_the_command_that_restores_it(make, tmp_path):
     (tmp_path / "requirements.lock").unlink()
     done = make("paper")
     assert done.returncode == 2
@@ -109,11 +109,49 @@ def test_a_missing_lock_file_is_named_with_how_to_get_it_back(make, tmp_path):
     assert "git checkout requirements.lock" in done.stdout
 
 
-def test_make_run_without_settings_says_what_it_needs(tmp_path):
-    shutil.copy2(ROOT / "Makefile", tmp_path)
-    (tmp_path / ".venv").mkdir()
-    for name in ("requirements.lock", "pyproject.toml", ".venv/ready"):
-        (tmp_path / name).touch()
+def test_make_run_without_config_is_rejected_with_a_usage_message(tmp_path):
+    ready(tmp_path)
     done = made(tmp_path, "run")
     assert done.returncode == 2
     assert "make run CONFIG=mine.yaml" in done.stdout
+
+
+def ready(folder):
+    """Makefile in a folder whose virtual environment counts as installed."""
+    shutil.copy2(ROOT / "Makefile", folder)
+    (folder / ".venv").mkdir()
+    for name in ("requirements.lock", "pyproject.toml", ".venv/ready"):
+        (folder / name).touch()
+
+
+def test_a_report_without_results_is_rejected_with_the_command_to_run_first(tmp_path):
+    ready(tmp_path)
+    done = made(tmp_path, "report")
+    assert done.returncode == 2
+    assert "run make paper first" in done.stdout
+
+
+@pytest.mark.parametrize("target", ["paper", "smoke", "test"])
+def test_a_space_in_the_path_is_rejected_before_anything_is_installed(tmp_path, target):
+    folder = tmp_path / "my folder"
+    folder.mkdir()
+    shutil.copy2(ROOT / "Makefile", folder)
+    done = made(folder, target)
+    assert done.returncode == 2
+    assert "contains a space" in done.stdout
+    assert [path.name for path in folder.iterdir()] == ["Makefile"]
+
+
+def test_a_space_in_the_name_of_the_configuration_is_rejected(tmp_path):
+    ready(tmp_path)
+    (tmp_path / "my file.yaml").touch()
+    done = made(tmp_path, "run", "CONFIG=my file.yaml")
+    assert done.returncode == 2
+    assert "CONFIG contains a space (my file.yaml): rename the file" in done.stdout
+
+
+def test_a_smoke_run_takes_the_configuration_of_the_user(tmp_path):
+    ready(tmp_path)
+    (tmp_path / "mine.yaml").touch()
+    done = made(tmp_path, "--dry-run", "smoke", "CONFIG=mine.yaml")
+    assert "workflow/smoke.yaml mine.yaml" in done.stdout

@@ -1,4 +1,4 @@
-"""What a change reruns and what it must not: plans over placeholder files, in a copy of the tree."""
+"""Which rules a change reruns and which it must not: plans with placeholder files, in a copy of the source tree."""
 
 # ruff: noqa: E501
 import re
@@ -6,7 +6,6 @@ import shutil
 import subprocess
 from functools import reduce
 from itertools import product
-from pathlib import Path
 
 import pytest
 import yaml
@@ -21,88 +20,88 @@ figures: {humidity: 0.8, pair: b}
 contact: {chunks: 2}
 """
 STUDIES = ("correlation", "mesh", "orders", "sample_sizes", "sensitivity/b_rms", "plasticity/a", "plasticity/b")
-READINGS = (
+VARIANTS = (
     "resampling/a_rh060",
     "resampling/b_rh080",
-    "readings/a_base",
-    "readings/b_base",
-    "readings/a_psd_identified",
+    "variants/a_base",
+    "variants/b_base",
+    "variants/a_psd_identified",
 )
-TARGETS = ["all", *(f"results/studies/{name}.nc" for name in STUDIES + READINGS)]
+TARGETS = ["all", *(f"results/studies/{name}.nc" for name in STUDIES + VARIANTS)]
 
-#: Which rules read the files of which, written by hand.
+#: Rules, and the rules that read their outputs, listed by hand.
 READ_BY = {
-    "heights": "identify spectrum iteration character contact_chunk sensitivity_contact plasticity",
-    "identify": "table_2 reading_contact",
+    "heights": "identification spectrum iteration character contact_chunk sensitivity_contact plasticity",
+    "identification": "table_2 variant_contact",
     "spectrum": "iteration character contact_chunk table_2 correlation sensitivity_contact plasticity checks",
     "character": "table_1 checks",
     "contact_chunk": "contact",
     "contact": "forces fit humidity",
     "forces": "fit chaos table_3 sample_sizes orders mesh resampling checks",
     "sensitivity_contact": "sensitivity",
-    "reading_contact": "reading",
+    "variant_contact": "variant",
     "chaos": "beams orders checks",
     "beams": "table_3 checks",
     "resampling": "checks",
     "checks": "verdict",
 }
 RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())
-#: Of pair b alone.
+#: Rules of pair b only.
 OF_FIGURE = {"sensitivity_contact", "sensitivity", "sample_sizes", "orders", "mesh"}
 
-#: Change in words; overlay; rules that it meets, behind which all readers rerun; rules spared for files it cannot
-#: reach; names of files that stay.
+#: Description of a change; overlay; rules that it affects directly, whose readers rerun as well; rules excepted because
+#: their files do not depend on it; pattern of files that must not rerun.
 MATRIX = [
-    ("kurtosis of one surface", "surfaces: {B1: {kurtosis: 4.5}}", "heights table_1 reading_contact", OF_FIGURE, "B2|Sub1|/b_"),
-    ("radius of its summits", "surfaces: {B1: {mean_summit_radius_um: 0.42}}", "identify table_1", (),
+    ("kurtosis of one surface", "surfaces: {B1: {kurtosis: 4.5}}", "heights table_1 variant_contact", OF_FIGURE, "B2|Sub1|/b_"),
+    ("radius of its summits", "surfaces: {B1: {mean_summit_radius_um: 0.42}}", "identification table_1", (),
      "B2|/b_|a_base"),
-    ("its published spectrum", "surfaces: {B1: {published_psd: {floor_nm4: 0.9}}}", "spectrum reading_contact",
+    ("its published spectrum", "surfaces: {B1: {published_psd: {floor_nm4: 0.9}}}", "spectrum variant_contact",
      OF_FIGURE, "B2|Sub1|/b_|psd_identified"),
-    ("source of its spectrum", "surfaces: {B1: {psd: identified}}", "spectrum reading_contact", OF_FIGURE,
+    ("source of its spectrum", "surfaces: {B1: {psd: identified}}", "spectrum variant_contact", OF_FIGURE,
      "B2|/b_|psd_identified"),
     ("surface in a pair", "pairs: {a: {beam: B2}}",
-     "table_1 table_2 correlation contact_chunk plasticity reading_contact checks", OF_FIGURE,
+     "table_1 table_2 correlation contact_chunk plasticity variant_contact checks", OF_FIGURE,
      "heights|spectrum|/b_"),
-    ("gap of one pair", "pairs: {a: {gap_um: 19}}", "beams resampling reading checks", (), "/b_"),
-    ("one humidity added", "pairs: {a: {humidities: [0.6, 0.7, 0.8]}}", "forces reading table_3 checks", OF_FIGURE,
+    ("gap of one pair", "pairs: {a: {gap_um: 19}}", "beams resampling variant checks", (), "/b_"),
+    ("one humidity added", "pairs: {a: {humidities: [0.6, 0.7, 0.8]}}", "forces variant table_3 checks", OF_FIGURE,
      "/b_|/a_rh060|/a_rh080"),
-    ("one humidity removed", "pairs: {a: {humidities: [0.6]}}", "humidity reading table_3 checks", (), "/b_|/a_rh"),
+    ("one humidity removed", "pairs: {a: {humidities: [0.6]}}", "humidity variant table_3 checks", (), "/b_|/a_rh"),
     ("seed", "seed: 2",
-     "identify iteration character contact_chunk chaos beams sensitivity_contact plasticity orders resampling reading_contact", (), ""),
-    ("van der Waals model", "van_der_waals: dry", "contact_chunk sensitivity_contact plasticity reading_contact", (), ""),
+     "identification iteration character contact_chunk chaos beams sensitivity_contact plasticity orders resampling variant_contact", (), ""),
+    ("van der Waals model", "van_der_waals: dry", "contact_chunk sensitivity_contact plasticity variant_contact", (), ""),
     ("elasticity", "solid: {young_modulus_GPa: 160}",
-     "contact_chunk beams mesh resampling sensitivity_contact plasticity reading_contact checks", (), ""),
-    ("grid of surfaces", "sampling: {spacing_nm: 5}", "identify spectrum reading_contact", (), "heights"),
+     "contact_chunk beams mesh resampling sensitivity_contact plasticity variant_contact checks", (), ""),
+    ("grid of surfaces", "sampling: {spacing_nm: 5}", "identification spectrum variant_contact", (), "heights"),
     ("length of strips", "sampling: {strip_length_um: 7.5}",
-     "character contact_chunk beams resampling sensitivity_contact plasticity reading_contact checks", (),
+     "character contact_chunk beams resampling sensitivity_contact plasticity variant_contact checks", (),
      "heights|identification|spectrum"),
     ("strips of Table I", "character: {strips: 50}", "character", (), "contact|forces"),
-    ("spacing of Table I", "character: {spacing_nm: 10}", "identify character", (), "results/contact|forces"),
-    ("patches of identification", "identification: {patches: 4}", "identify", (), "spectrum|_base"),
-    ("water", "water: {temperature_K: 310}", "forces humidity sensitivity reading", (), "contact"),
-    ("number of samples", "contact: {samples: 5500}", "contact_chunk", (), "studies/(sens|plas|read)"),
+    ("spacing of Table I", "character: {spacing_nm: 10}", "identification character", (), "results/contact|forces"),
+    ("patches of identification", "identification: {patches: 4}", "identification", (), "spectrum|_base"),
+    ("water", "water: {temperature_K: 310}", "forces humidity sensitivity variant", (), "contact"),
+    ("number of samples", "contact: {samples: 5500}", "contact_chunk", (), "studies/(sens|plas|vari)"),
     ("distance step", "contact: {distance_step_nm: 0.1}",
-     "contact_chunk sensitivity_contact plasticity reading_contact", (), "spectrum"),
-    ("chaos order", "chaos: {order: 6}", "chaos reading", (), "forces"),
-    ("beam thickness", "beam: {thickness_um: 2.5}", "beams resampling mesh reading checks", (), "chaos"),
-    ("beam width", "beam: {width_um: 24}", "character contact_chunk beams resampling mesh sensitivity_contact plasticity reading_contact checks",
+     "contact_chunk sensitivity_contact plasticity variant_contact", (), "spectrum"),
+    ("chaos order", "chaos: {order: 6}", "chaos variant", (), "forces"),
+    ("beam thickness", "beam: {thickness_um: 2.5}", "beams resampling mesh variant checks", (), "chaos"),
+    ("beam width", "beam: {width_um: 24}", "character contact_chunk beams resampling mesh sensitivity_contact plasticity variant_contact checks",
      (), "heights|spectrum"),
     ("number of beams", "beam: {samples: 500}", "beams", (), "chaos|studies"),
     ("scatter of beams", "beam: {scatter: 0.03}", "beams", (), "chaos|studies|beams/.*_N?G.nc"),
     ("humidity of the figures", "pairs: {b: {humidities: [0.6, 0.8]}}\nfigures: {humidity: 0.6}",
-     "forces humidity table_3 checks sample_sizes orders mesh sensitivity reading", (), "contact|/b_rh080|/a_"),
+     "forces humidity table_3 checks sample_sizes orders mesh sensitivity variant", (), "contact|/b_rh080|/a_"),
     ("chunks", "contact: {chunks: 7}", "", (), ""),
     ("points along the humidity", "figures: {humidity_points: 5}", "humidity", (), ""),
     ("study: iteration", "studies: {iteration: {fields: 4}}", "iteration", (), ""),
     ("studies", "studies: {sensitivity: {step: 0.1}, plasticity: {strips: 50}, sample_shares: [0.1, 0.2], "
      "orders: {draws: 1000}, mesh: {strips_um: [7.5]}}",
-     "sensitivity_contact plasticity sample_sizes orders mesh", (), "readings"),
+     "sensitivity_contact plasticity sample_sizes orders mesh", (), "variants"),
     ("study: resampling", "studies: {resampling: {beams: 5}}", "resampling", (), ""),
-    ("study: readings", "studies: {readings: {samples: 500}}", "reading_contact", (), ""),
-    ("study: finer elements", "studies: {readings: {strips_per_element: [2, 1]}}", "reading", (), "_base|_element_2"),
+    ("study: variants", "studies: {variants: {samples: 500}}", "variant_contact", (), ""),
+    ("study: finer elements", "studies: {variants: {strips_per_element: [2, 1]}}", "variant", (), "_base|_element_2"),
     ("order of humidities", "pairs: {a: {humidities: [0.8, 0.6]}}", "", (), ""),
 ]  # fmt: skip
-# Of each section one key at least, and what the README promises, are planned every time.
+# The fast tests cover at least one key of each section and the examples of the README; these rows are slow tests.
 FURTHER = {"radius of its summits", "its published spectrum", "length of strips", "spacing of Table I", "distance step"}
 FURTHER |= {"strips of Table I", "humidity of the figures", "scatter of beams", "one humidity removed"}
 FURTHER |= {"study: finer elements", "study: resampling", "order of humidities"}
@@ -110,7 +109,7 @@ ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)
 
 
 def behind(rules):
-    """Rules and all that read their files, at any distance."""
+    """Rules and all rules downstream of them."""
     reached = set(rules)
     while more := set(" ".join(READ_BY.get(rule, "") for rule in reached).split()) - reached:
         reached |= more
@@ -118,7 +117,7 @@ def behind(rules):
 
 
 class Tree:
-    """A copy of the tree under git in which everything is done, with empty files for results."""
+    """Copy of the source tree under git, with empty placeholder files for all results, which are up to date."""
 
     def __init__(self, folder, scratch):
         self.folder = folder
@@ -142,17 +141,17 @@ class Tree:
         assert status == 0, printed
 
     def git(self, *command):
-        """Run git here."""
+        """Run git in the copy."""
         person = ["-c", "user.name=nobody", "-c", "user.email=nobody@example.org"]
         subprocess.run(["git", "-C", self.folder, *person, *command], check=True, capture_output=True)
 
     def append(self, path, text):
-        """Put text at the end of a file."""
+        """Append text to a file."""
         with (self.folder / path).open("a") as file:
             file.write(text)
 
     def rerun(self, *arguments, overlay="{}"):
-        """Files that would be made again: name to rule."""
+        """Files that would be updated: name to rule."""
         self.overlay.write_text(overlay)
         outputs = self.planner.outputs(*TARGETS, *arguments, config=[self.small, self.overlay])
         return {name: rule for name, (rule, again) in outputs.items() if again}
@@ -160,7 +159,7 @@ class Tree:
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory):
-    """The tree with everything done."""
+    """Source tree with all results up to date."""
     tree = Tree(tmp_path_factory.mktemp("tree"), tmp_path_factory.mktemp("scratch"))
     yield tree
     tree.planner.close()
@@ -168,22 +167,22 @@ def done(tmp_path_factory):
 
 @pytest.fixture
 def tree(done):
-    """The tree, put back afterwards."""
+    """Source tree, restored after the test."""
     yield done
     done.git("checkout", "--force", "main")
 
 
 def known(rerun):
-    """Rules that rerun, but those of figures and further tables, which only read."""
+    """Rules that rerun, without those of figures and further tables, which are never read."""
     return RULES & set(rerun.values())
 
 
-def test_nothing_is_left_to_do(tree):
+def test_an_unchanged_tree_reruns_nothing(tree):
     assert tree.rerun() == {}
 
 
 @pytest.mark.parametrize(("overlay", "met", "spared", "stay"), ROWS)
-def test_a_setting_reruns_what_it_meets_and_its_readers_and_no_more(tree, overlay, met, spared, stay):
+def test_a_setting_reruns_the_rules_it_affects_and_their_readers_and_no_others(tree, overlay, met, spared, stay):
     rerun = tree.rerun(overlay=overlay)
     assert known(rerun) == behind(met.split()) - set(spared)
     assert not [name for name in rerun if stay and re.search(stay, name) and rerun[name] in RULES - {"table_3"}]
@@ -199,12 +198,12 @@ def test_adding_a_humidity_runs_no_contact_and_no_surface(tree):
 
 def test_adding_a_humidity_to_the_pair_of_the_figures_draws_no_surface_either(tree):
     rerun = tree.rerun(overlay="pairs: {b: {humidities: [0.7, 0.8]}}")
-    assert {"forces", "chaos", "beams", "resampling", "sensitivity", "reading"} <= known(rerun)
-    drawing = {"heights", "spectrum", "character", "contact_chunk", "sensitivity_contact", "reading_contact"}
+    assert {"forces", "chaos", "beams", "resampling", "sensitivity", "variant"} <= known(rerun)
+    drawing = {"heights", "spectrum", "character", "contact_chunk", "sensitivity_contact", "variant_contact"}
     assert not drawing & known(rerun)
 
 
-def test_neither_cores_nor_order_of_keys_rerun_anything(tree):
+def test_neither_the_number_of_cores_nor_the_order_of_keys_reruns_anything(tree):
     def backwards(value):
         return {key: backwards(value[key]) for key in reversed(value)} if isinstance(value, dict) else value
 
@@ -224,7 +223,7 @@ def test_comments_docstrings_and_touched_files_rerun_nothing(tree):
     assert tree.rerun() == {}
 
 
-def test_a_branch_and_back_reruns_nothing(tree):
+def test_switching_to_another_branch_and_back_reruns_nothing(tree):
     tree.git("checkout", "-b", "other")
     tree.append("src/stiction/streams.py", "\nOTHER = 1\n")
     tree.append("workflow/scripts/heights.py", "\nOTHER = 1\n")
@@ -234,41 +233,84 @@ def test_a_branch_and_back_reruns_nothing(tree):
     assert tree.rerun() == {}
 
 
-# By hand: what a module is for says which rules must and must not care.
+#: Modules, the rules that a change of the module must rerun and those that it must not, listed by hand.
 SPOTS = [
     (
-        "src/stiction/beam/cantilever.py",
-        "beams resampling mesh reading",
-        "heights spectrum contact_chunk contact reading_contact forces chaos",
+        "beam/release",
+        "beams resampling mesh variant",
+        "heights spectrum contact_chunk contact variant_contact forces chaos",
     ),
     (
-        "src/stiction/contact/meniscus.py",
-        "forces sensitivity reading",
-        "heights character contact_chunk contact reading_contact sensitivity_contact",
+        "contact/meniscus",
+        "forces humidity sensitivity variant",
+        "heights character contact_chunk contact variant_contact sensitivity_contact plasticity",
     ),
     (
-        "src/stiction/contact/asperity.py",
-        "contact_chunk sensitivity_contact reading_contact",
-        "heights spectrum identify character",
+        "contact/asperity",
+        "contact_chunk sensitivity_contact variant_contact plasticity",
+        "heights spectrum identification character",
     ),
-    ("src/stiction/surface/identify.py", "identify reading", "heights spectrum character contact_chunk forces beams"),
-    (
-        "src/stiction/report/tables.py",
-        "table_1 table_2 table_3",
-        "heights spectrum character contact forces beams reading",
-    ),
-    ("src/stiction/run/provenance.py", "", " ".join(RULES)),
-    ("src/stiction/run/logs.py", "", " ".join(RULES)),
-    ("src/stiction/config/settings.py", "", " ".join(RULES)),
-    ("src/stiction/study.py", "sensitivity reading", "heights spectrum contact_chunk beams mesh resampling checks"),
-    ("workflow/scripts/contact_chunk.py", "contact_chunk contact forces", "heights spectrum sensitivity reading"),
-    ("workflow/scripts/beams.py", "beams table_3 checks", "chaos mesh forces reading"),
+    ("contact/forcelaw", "forces fit humidity sensitivity variant", "contact_chunk contact sensitivity_contact"),
+    ("surface/identify", "identification variant_contact", "heights spectrum character contact_chunk forces beams"),
+    ("report/tables_surfaces", "table_1 table_2", "heights spectrum character forces beams table_3 variant"),
+    ("report/tables_beams", "table_3", "heights spectrum character forces beams table_1 table_2 variant"),
+    ("run/provenance", "", " ".join(RULES)),
+    ("run/logs", "", " ".join(RULES)),
+    ("config/relations", "", " ".join(RULES)),
+    ("config/plan", "", " ".join(RULES)),
+    ("config/jobs", "", " ".join(RULES)),
+    ("config/files", "", " ".join(RULES)),
+    ("config/merging", "variant_contact", "heights spectrum contact_chunk forces beams"),
+    ("stages/named", "correlation table_1 table_2 table_3 checks", "heights spectrum contact_chunk forces chaos beams"),
+    ("studies/variant_contact", "variant_contact", "heights spectrum contact_chunk plasticity sensitivity_contact"),
+    ("study", "", " ".join(RULES)),
+]
+#: The computation of a stage and the layout of its dataset are in one module, so that a new variable in the dataset is
+#: a change of that module only. It reruns the stage and the readers of its dataset, and nothing else.
+LAYOUTS = {
+    "stages/heights": {
+        "heights",
+        *["identification", "spectrum", "iteration", "character", "contact_chunk", "plasticity"],
+    }
+    | {"sensitivity_contact", "variant_contact"},
+    "stages/identification": {"identification"},
+    "stages/spectrum": {"spectrum", "sensitivity_contact", "variant_contact"},
+    "stages/character": {"character"},
+    "stages/contact": {"contact_chunk", "sensitivity_contact", "variant_contact"},
+    "stages/forces": {"forces"},
+    "stages/chaos": {"chaos"},
+    "stages/beams": {"beams"},
+    "studies/iteration": {"iteration"},
+    "studies/fit": {"fit"},
+    "studies/humidity": {"humidity"},
+    "studies/sensitivity": {"sensitivity"},
+    "studies/plasticity": {"plasticity"},
+    "studies/sample_sizes": {"sample_sizes"},
+    "studies/orders": {"orders"},
+    "studies/mesh": {"mesh"},
+    "studies/correlation": {"correlation"},
+    "studies/resampling": {"resampling"},
+    "studies/variant": {"variant"},
+}
+PLANNED = {"stages/forces", "stages/beams", "studies/sensitivity"}
+LAYOUT_ROWS = [
+    pytest.param(name, stages, id=name, marks=[pytest.mark.slow] * (name not in PLANNED))
+    for name, stages in LAYOUTS.items()
 ]
 
 
-@pytest.mark.parametrize(("path", "must", "must_not"), SPOTS, ids=[Path(spot[0]).name for spot in SPOTS])
-def test_code_reruns_what_it_computes(tree, path, must, must_not):
-    tree.append(path, "\nCHANGED = 1\n")
+@pytest.mark.parametrize(("module", "stages"), LAYOUT_ROWS)
+def test_a_new_variable_in_a_dataset_reruns_its_stage_and_its_readers_and_no_others(tree, module, stages):
+    path = tree.folder / "src" / "stiction" / f"{module}.py"
+    code = path.read_text()
+    assert code.count("return xr.Dataset(") + code.count("return parameters.variables(") == 1
+    path.write_text(re.sub(r"    return (xr\.Dataset|parameters\.variables)\(", r"    more = 1\n    return \1(", code))
+    assert known(tree.rerun()) == behind(stages)
+
+
+@pytest.mark.parametrize(("path", "must", "must_not"), SPOTS, ids=[spot[0] for spot in SPOTS])
+def test_a_changed_module_reruns_the_rules_that_use_it(tree, path, must, must_not):
+    tree.append(f"src/stiction/{path}.py", "\nCHANGED = 1\n")
     rerun = known(tree.rerun())
     assert set(must.split()) <= rerun
     assert not set(must_not.split()) & rerun
@@ -280,7 +322,7 @@ def test_a_figure_style_redraws_all_figures_and_nothing_else(tree):
     assert set(tree.rerun()) == drawn != set()
 
 
-def test_code_that_draws_reruns_no_number(tree):
+def test_a_change_of_the_drawing_code_reruns_no_computation(tree):
     drawing = sorted((tree.folder / "src" / "stiction" / "report").glob("figures*.py"))
     for path in drawing:
         tree.append(path, "\nCHANGED = 1\n")
@@ -292,7 +334,7 @@ IMPORT = re.compile(r"^\s*(?:from (stiction[\w.]*) import (.+)|import (stiction[
 
 
 def imported(path):
-    """Modules of the package that a file imports, read without a parser; as paths."""
+    """Paths of the modules that a file imports, found without a parser."""
     found = set()
     for folder, names, module in IMPORT.findall(path.read_text()):
         words = [name.split(" as ")[0].strip(" ()") for name in names.split(",") if name.strip(" (")]
@@ -303,11 +345,11 @@ def imported(path):
 
 
 def reached(script):
-    """Modules behind a script."""
+    """Modules that a script imports, directly or through other modules."""
     modules = imported(script)
     while more := reduce(set.union, map(imported, modules), set()) - modules:
         modules |= more
-    return modules - {PACKAGE / "progress.py", PACKAGE / "run" / "logs.py"}  # change no number
+    return modules - {PACKAGE / "progress.py", PACKAGE / "run" / "logs.py"}  # do not affect results
 
 
 CODE = sorted(
@@ -326,6 +368,6 @@ def test_every_module_and_script_reruns_its_rules_and_their_readers(tree, path):
         met = {path.stem} & RULES
     else:
         met = {rule for rule, script in scripts.items() if ROOT / path in reached(script)}
-    if "contact" in met:  # chunks are temporary: to gather them anew they are computed anew
+    if "contact" in met:  # chunks are temporary and must be recomputed to be joined
         met |= {"contact_chunk"}
     assert known(tree.rerun()) == behind(met)

@@ -1,4 +1,4 @@
-"""A run that is ended anywhere, in any way, loses what it was at and nothing else."""
+"""An interrupted run loses only the jobs in progress, whenever and however it is interrupted."""
 
 import contextlib
 import fcntl
@@ -14,9 +14,9 @@ import pytest
 import xarray as xr
 from conftest import BEAMS, command, datasets, snakemake
 
-#: Targets that need every stage, without a verdict on so few samples.
+#: Targets that require every stage; without the verdict, because checks may fail with so few samples.
 ALL = ["tables", "figures", "results/checks.csv"]
-#: Stages by the names of their logs; the last has many jobs, so that no run ends before it can be ended.
+#: Stages by the names of their logs; the last has many jobs, so that the run can be interrupted before it finishes.
 STAGES = ["heights", "identification", "spectrum", "character", "iteration", "contact", "forces", "fit", "chaos"]
 STAGES += ["humidity", "beams", "studies", "tables", "checks", "figures"]
 
@@ -37,10 +37,10 @@ def files_of(stage, folder):
 
 
 def logs_of(stage, folder):
-    """When the logs of a stage were last written to, by path."""
+    """Modification times of the logs of a stage, by path."""
     times = {}
     for path in files_of(stage, folder / "results" / "logs"):
-        with contextlib.suppress(FileNotFoundError):  # Snakemake has just removed it, before its job starts
+        with contextlib.suppress(FileNotFoundError):  # Snakemake removes the log before its job starts
             times[path] = path.stat().st_mtime_ns
     return times
 
@@ -59,33 +59,33 @@ def end_in_stage(stage, how, folder, targets, tiny, after=0.0):
                 break
             time.sleep(0.01)
         status = run.wait(60)
-    assert status != 0, f"the run ended before it could be ended in {stage}:\n{(folder / 'printed.txt').read_text()}"
+    assert status != 0, f"the run finished before its interruption in {stage}:\n{(folder / 'printed.txt').read_text()}"
 
 
 def drafts(folder):
-    """Half-written files."""
+    """Partly written temporary files."""
     return [path for path in (folder / "results").rglob(".*") if path.is_file()]
 
 
 def assert_only_whole_files(folder, reference):
-    """Whatever stands under the name of a result is the result."""
+    """Every file with the name of a result has the content of the result."""
     whole = datasets(reference)
     for name, content in datasets(folder).items():
-        # Chunks are gone when a run has ended.
+        # Chunks are temporary and missing from the reference run.
         assert content == whole.get(name, content), f"{name} is half-written"
         if name.endswith(".nc"):
             xr.load_dataset(folder / "results" / name).close()
 
 
 def assert_resumed(folder, reference, targets, tiny):
-    """Started again without a word, the run ends with the files of the undisturbed one, and leaves nothing else."""
+    """Started again without further options, the run gives the files of the undisturbed run and no others."""
     done = snakemake(folder, *targets, configs=[tiny])
     assert "unlock" not in done.stdout
     assert datasets(folder) == datasets(reference)
     assert drafts(folder) == []
 
 
-def test_a_run_killed_in_its_longest_stage_goes_on_without_unlocking(undisturbed, tiny, tmp_path):
+def test_a_run_killed_in_its_longest_stage_resumes_without_unlocking(undisturbed, tiny, tmp_path):
     end_in_stage("contact", signal.SIGKILL, tmp_path, [BEAMS], tiny, after=1.0)
     assert_only_whole_files(tmp_path, undisturbed)
     end_in_stage("beams", signal.SIGTERM, tmp_path, [BEAMS], tiny, after=0.5)
@@ -93,11 +93,11 @@ def test_a_run_killed_in_its_longest_stage_goes_on_without_unlocking(undisturbed
 
 
 @pytest.mark.slow
-def test_a_run_ended_in_every_stage_ends_with_the_same_bytes(everything, tiny, tmp_path):
+def test_a_run_interrupted_in_every_stage_gives_the_same_bytes(everything, tiny, tmp_path):
     moments = cycle((0.0, 0.7, 1.4))
     for stage in STAGES:
         for how in (signal.SIGKILL, signal.SIGTERM):
-            for path in files_of(stage, tmp_path / "results"):  # of jobs that ended earlier
+            for path in files_of(stage, tmp_path / "results"):  # results of earlier jobs
                 path.unlink()
             end_in_stage(stage, how, tmp_path, ALL, tiny, next(moments) if stage != "checks" else 0.0)
             assert_only_whole_files(tmp_path, everything)
@@ -105,15 +105,15 @@ def test_a_run_ended_in_every_stage_ends_with_the_same_bytes(everything, tiny, t
 
 
 @pytest.mark.slow
-def test_a_disk_that_is_full_in_any_stage_is_told_and_leaves_no_half_written_file(everything, tiny, tmp_path):
+def test_a_full_disk_in_any_stage_is_reported_and_leaves_no_partly_written_file(everything, tiny, tmp_path):
     on_small_disk = ["unshare", "--map-root-user", "--mount", "sh", "-c"]
     on_small_disk += [
         'mount -t tmpfs -o size=4k none "$0" && { "$@"; ended=$?; find "$0" -type f -name "*.*"; exit $ended; }'
     ]
     if subprocess.run([*on_small_disk, tmp_path, "true"]).returncode:
-        pytest.skip("a small disk can be mounted neither here nor in a namespace")
+        pytest.skip("mounting a small disk is not permitted on this machine")
     for stage in STAGES:
-        if stage == "checks":  # files beside those folders
+        if stage == "checks":  # its files are not in a folder of their own
             continue
         disk = tmp_path / "results" / stage
         disk.mkdir(parents=True, exist_ok=True)
@@ -129,17 +129,17 @@ def test_a_disk_that_is_full_in_any_stage_is_told_and_leaves_no_half_written_fil
 
 
 def copied(folder, target, stages=()):
-    """A finished run, copied with its record, without the files of some stages."""
+    """Copy of a finished run with Snakemake's record, without the files of some stages."""
     shutil.copytree(folder, target, dirs_exist_ok=True)
     for stage in stages:
         shutil.rmtree(target / "results" / stage)
     return target
 
 
-def test_a_full_disk_is_told_and_leaves_no_half_written_file(undisturbed, tiny, tmp_path):
+def test_a_full_disk_is_reported_and_leaves_no_partly_written_file(undisturbed, tiny, tmp_path):
     folder = copied(undisturbed, tmp_path / "run", ["beams"])
     (folder / "results" / "provenance.json").unlink()
-    full = 17_000  # bytes; every dataset is longer, and nothing else is
+    full = 17_000  # bytes; datasets are longer, all other files are shorter
     done = subprocess.run(
         **command(folder, BEAMS, configs=[tiny]),
         stdout=subprocess.PIPE,
@@ -154,22 +154,22 @@ def test_a_full_disk_is_told_and_leaves_no_half_written_file(undisturbed, tiny, 
 
 
 def truncated(path):
-    """All but the last byte."""
+    """Remove the last byte of a file."""
     path.write_bytes(path.read_bytes()[:-1])
 
 
 def empty(path):
-    """Nothing."""
+    """Make a file empty."""
     path.write_bytes(b"")
 
 
 def foreign(path):
-    """A dataset of something else."""
+    """Replace a file by an unrelated dataset."""
     xr.Dataset({"force": ("x", [1.0, 2.0])}).to_netcdf(path)
 
 
 def of_another_stage(path):
-    """A result, but not this one."""
+    """Replace a file by a result of another stage."""
     shutil.copy2(path.parents[1] / "heights" / "B2.nc", path)
     path.touch()
 
@@ -177,7 +177,7 @@ def of_another_stage(path):
 @pytest.mark.parametrize("spoil", [truncated, pytest.param(foreign, marks=pytest.mark.slow),
                                    pytest.param(empty, marks=pytest.mark.slow),
                                    pytest.param(of_another_stage, marks=pytest.mark.slow)])  # fmt: skip
-def test_a_file_that_is_no_result_is_named_and_never_used(undisturbed, tiny, tmp_path, spoil):
+def test_an_invalid_result_file_is_reported_and_never_used(undisturbed, tiny, tmp_path, spoil):
     folder = copied(undisturbed, tmp_path / "run")
     spoiled = folder / "results" / "chaos" / "b_rh088_NG.nc"
     spoil(spoiled)
@@ -190,11 +190,11 @@ def test_a_file_that_is_no_result_is_named_and_never_used(undisturbed, tiny, tmp
     assert_resumed(folder, undisturbed, [BEAMS], tiny)
 
 
-def test_two_runs_in_one_folder_do_not_meet(undisturbed, tiny, tmp_path):
+def test_a_second_run_in_the_same_folder_is_rejected(undisturbed, tiny, tmp_path):
     folder = copied(undisturbed, tmp_path / "run", ["beams"])
     with (folder / ".snakemake" / "running").open("w") as held:
         fcntl.flock(held, fcntl.LOCK_EX)
         done = snakemake(folder, BEAMS, configs=[tiny], check=False)
     assert done.returncode != 0
-    assert "Another run works in this folder" in done.stdout
+    assert "Another run is using this folder" in done.stdout
     assert not (folder / BEAMS).exists()

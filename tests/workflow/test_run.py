@@ -1,10 +1,15 @@
-"""The main line from end to end, small."""
+"""The main line from end to end, with small samples."""
 
 import csv
 
 import pytest
 from benchmarks import jobs
 from conftest import SMOKE, snakemake
+from numpy.testing import assert_array_equal
+
+from stiction.config import files
+from stiction.stages import forces, storage
+from stiction.study import PairStudy
 
 MINE = """
 run:
@@ -27,7 +32,7 @@ def rows(path):
         return list(csv.DictReader(file))
 
 
-def test_smoke_run_gives_all_tables_and_every_case_of_the_third(smoke):
+def test_smoke_run_gives_all_tables_and_table_3_has_every_case(smoke):
     tables = smoke / "results" / "tables"
     cases = {(r["pair"], r["relative_humidity"], r["model"]) for r in rows(tables / "table_3.csv")}
     assert cases == {("b", rh, model) for rh in ("0.67", "0.88") for model in ("G", "NG", "GEO")}
@@ -45,6 +50,17 @@ def test_adhesion_grows_with_humidity_and_negative_skewness_sticks_more(smoke):
         assert high - low > 4 * (low_error**2 + high_error**2) ** 0.5
 
 
+def test_the_study_of_a_pair_in_python_gives_the_numbers_of_the_workflow(smoke):
+    study = PairStudy.of(files.load(SMOKE), "b")
+    results = smoke / "results"
+    assert_array_equal(
+        study.forces(0.67)[0], forces.vectors(storage.load(results / "forces/b_rh067_NG.nc", "forces"))[0]
+    )
+    for model, scatter in (("NG", 0.0), ("GEO", 0.025)):
+        beams = storage.load(results / f"beams/b_rh067_{model}.nc", "beams")
+        assert_array_equal(study.beams(0.67, scatter)["crack_length"], beams.crack_length)
+
+
 def test_a_second_run_has_nothing_to_do(smoke):
     assert "Nothing to be done" in snakemake(smoke, "-n").stdout
 
@@ -54,16 +70,16 @@ def test_log_of_a_long_job_shows_its_progress(smoke):
     assert "surface pairs: 100%" in log.read_text()
 
 
-def test_no_job_takes_more_than_its_rule_states(smoke):
+def test_no_job_exceeds_the_resources_of_its_rule(smoke):
     measured = list(jobs.measured(smoke / "results"))
     assert sum(number for _, number, *_ in measured) == len(list((smoke / "results" / "logs").rglob("*.log")))
-    for rule, _, seconds, megabytes, memory, minutes in measured:
-        # On a cluster a job has two processes of Snakemake beside its script.
+    for rule, _, seconds, _, megabytes, memory, minutes in measured:
+        # On a cluster, a job runs two processes of Snakemake in addition to its script.
         assert megabytes + 2 * 170 < memory, rule
         assert seconds < 60 * minutes, rule
 
 
-def test_a_surface_and_pair_of_the_user_run_beside_the_others(smoke, overlay):
+def test_a_surface_and_pair_of_the_user_are_added_without_rerunning_others(smoke, overlay):
     done = snakemake(smoke, "tables", configs=(SMOKE, overlay(MINE)))
     for line in done.stdout.splitlines():
         assert "pair b" not in line, "the user's pair must not rerun another"
@@ -71,7 +87,7 @@ def test_a_surface_and_pair_of_the_user_run_beside_the_others(smoke, overlay):
     assert {row["pair"] for row in table} == {"mine"}
     assert {row["experiment_um"] for row in table} == {""}
     residual = next(r for r in rows(smoke / "results" / "tables" / "table_2.csv") if r["surface"] == "Etched")
-    # Search and control have patches of their own.
+    # The identification and its control use separate patches.
     error = float(residual["density_residual_se_percent"]) * 2**0.5
     assert abs(float(residual["density_residual_percent"])) < 4 * error
 
@@ -84,14 +100,14 @@ def test_surfaces_without_summits_and_few_samples_are_tabulated_and_drawn(tmp_pa
         "  published_psd: {plateau_nm4: 14380, floor_nm4: 0.3, corner_rad_per_um: 12, cutoff_rad_per_um: 125}}}\n"
         "pairs: {mine: {beam: Etched, substrate: Etched, gap_um: 10, humidities: [0.7, 0.5]}}\n"
         "figures: {humidity: 0.5, pair: mine}\ncontact: {samples: 20}\nchaos: {order: 1}\nbeam: {samples: 4}\n"
-        "studies: {readings: {samples: 20, beams: 2}}"
+        "studies: {variants: {samples: 20, beams: 2}}"
     )
-    targets = ["results/figures/figure_17.png", "results/tables/table_1.csv", "results/tables/readings.csv"]
+    targets = ["results/figures/figure_17.png", "results/tables/table_1.csv", "results/tables/variants.csv"]
     done = snakemake(tmp_path, "tables", *targets, configs=(SMOKE, mine))
     assert "Table II" not in done.stdout.replace("Table III", "")
     assert not (tmp_path / "results" / "tables" / "table_2.csv").exists()
-    humidities = [row["relative_humidity"] for row in rows(tmp_path / "results" / "tables" / "readings.csv")]
-    assert humidities == ["0.5", "0.7"] * (len(humidities) // 2), "readings begin with the driest air"
+    humidities = [row["relative_humidity"] for row in rows(tmp_path / "results" / "tables" / "variants.csv")]
+    assert humidities == ["0.5", "0.7"] * (len(humidities) // 2), "variants begin with the driest air"
     assert "(nan)" not in (tmp_path / "results" / "tables" / "table_1.md").read_text()
 
 
@@ -102,8 +118,8 @@ def test_surfaces_without_summits_and_few_samples_are_tabulated_and_drawn(tmp_pa
 def test_everything_can_be_computed_and_drawn_for_a_surface_of_the_user(tmp_path, overlay, moments):
     mine = overlay(MINE.replace("skewness: -0.5, kurtosis: 3.6", moments))
     done = snakemake(tmp_path, "all", "--keep-going", configs=(SMOKE, mine), check=False)
-    # With so few samples and so low an order the chaos model may miss its input, and the run says so.
+    # With so few samples and so low an order, checks of the chaos model may fail, which stops the run.
     assert done.returncode == 0 or "checks of the results failed" in done.stdout, done.stdout[-3000:]
     drawn = {path.stem for path in (tmp_path / "results" / "figures").glob("*.pdf")}
-    assert {"figure_05", "figure_13", "figure_15", "figure_18", "figure_19", "readings"} <= drawn
+    assert {"figure_05", "figure_13", "figure_15", "figure_18", "figure_19", "variants"} <= drawn
     assert (tmp_path / "results" / "checks.md").exists()

@@ -1,4 +1,4 @@
-"""Where, on how many cores (2, 4, 1) and in how many chunks (2, 7, 1) a run is computed changes no byte."""
+"""Results are identical byte for byte for any folder, number of cores (2, 4, 1) and number of chunks (2, 7, 1)."""
 
 import json
 import shutil
@@ -18,7 +18,7 @@ def test_a_moved_checkout_gives_the_same_bytes_on_one_core(undisturbed, tiny, tm
     for name in ("Snakefile", "config.yaml"):
         shutil.copy2(ROOT / name, tmp_path)
     for name in ("workflow", "src", "profiles"):
-        # With what is compiled already; numba sees that the sources are the same.
+        # Includes the cache of compiled kernels, which numba accepts because the sources are the same.
         shutil.copytree(ROOT / name, tmp_path / name)
     environment = command(tmp_path)["env"]
     words = [sys.executable, "-m", "snakemake", BEAMS, "--cores", "1", "--configfile", "config.yaml", tiny]
@@ -27,7 +27,7 @@ def test_a_moved_checkout_gives_the_same_bytes_on_one_core(undisturbed, tiny, tm
     assert datasets(tmp_path) == datasets(undisturbed)
 
 
-def test_datasets_carry_settings_but_no_time_or_host(smoke):
+def test_datasets_contain_settings_but_no_time_or_host(smoke):
     paths = sorted((smoke / "results").rglob("*.nc"))
     assert {"beams", "chaos", "character", "contact", "forces", "heights", "spectrum"} <= {p.parent.name for p in paths}
     for path in paths:

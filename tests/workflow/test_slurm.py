@@ -1,6 +1,6 @@
-"""The workflow on a real cluster: a SLURM of this machine alone, as any user, in a private folder, gone afterwards.
+"""The workflow on a real SLURM cluster, which runs on this machine only, as any user, in a temporary folder.
 
-Needs the daemons (apt-get install slurmctld slurmd slurm-client munge) and the plugin (pip install stiction[slurm]).
+Requires the daemons (apt-get install slurmctld slurmd slurm-client munge) and the plugin (pip install stiction[slurm]).
 """
 
 import importlib.util
@@ -24,7 +24,7 @@ PATH = os.pathsep.join([os.environ["PATH"], "/usr/sbin"])
 #: Longest wait for a daemon, a job or a run [s].
 PATIENCE = 120
 
-#: The least that passes every stage of the main line.
+#: Smallest configuration that runs every stage of the main line.
 TINY = """
 pairs:
   b: {humidities: [0.67]}
@@ -66,17 +66,17 @@ PartitionName=main Nodes={host} Default=YES MaxTime=60 State=UP
 
 
 def wait_for(condition, what):
-    """First true value of a condition, asked again and again."""
+    """Poll a condition and return its first true value."""
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
         if found := condition():
             return found
         time.sleep(0.2)
-    pytest.fail(f"waited {PATIENCE} s in vain for {what}")
+    pytest.fail(f"waited {PATIENCE} s for {what}")
 
 
 def free_ports(number):
-    """Ports of this machine that nobody listens on."""
+    """Unused ports of this machine."""
     sockets = [socket.socket() for _ in range(number)]
     for each in sockets:
         each.bind(("127.0.0.1", 0))
@@ -87,7 +87,7 @@ def free_ports(number):
 
 
 class Cluster:
-    """A running SLURM; commands see it through their environment."""
+    """Running SLURM cluster; commands find it through their environment."""
 
     def __init__(self, folder):
         self.folder, self.daemons = folder, []
@@ -97,7 +97,7 @@ class Cluster:
         conf.write_text(CONF.format(folder=folder, host=host, user=user, ports=free_ports(2)))
         for name in ("state", "spool", "bin"):
             (folder / name).mkdir()
-        # The plugin that works inside of a job drops SLURM_CONF.
+        # The plugin that runs inside a job removes SLURM_CONF from the environment.
         srun = folder / "bin" / "srun"
         srun.write_text(f'#!/bin/sh\nSLURM_CONF={conf} exec {shutil.which("srun", path=PATH)} "$@"\n')
         srun.chmod(0o755)
@@ -105,7 +105,7 @@ class Cluster:
         self.environment = inherited | {"SLURM_CONF": str(conf), "PATH": f"{srun.parent}{os.pathsep}{PATH}"}
 
     def rise(self):
-        """Start the daemons; a node is idle afterwards."""
+        """Start the daemons and wait until a node is idle."""
         key = self.folder / "munge.key"
         key.write_bytes(secrets.token_bytes(128))
         key.chmod(0o600)
@@ -119,7 +119,7 @@ class Cluster:
         names = {"socket": "--socket", "seed": "--seed-file"}
         arguments = [f"{names.get(what, f'--{what}-file')}={self.folder / file}" for what, file in files.items()]
         try:
-            # By force, because pytest's folders are closed to others, for whom munged would have a socket open.
+            # --force, because munged requires a folder that other users can access, and pytest's folders are private.
             self.start("munged", "--foreground", "--force", *arguments)
             self.wait_for((self.folder / "munge.socket").exists, "munged")
             self.start("slurmctld", "-D", "-c", "-f", self.folder / "slurm.conf")
@@ -130,7 +130,7 @@ class Cluster:
             raise
 
     def fall(self):
-        """Cancel all jobs and end the daemons."""
+        """Cancel all jobs and stop the daemons."""
         self.cancel(*(job for job, *_ in self.jobs()))
         for daemon in reversed(self.daemons):
             daemon.terminate()
@@ -142,7 +142,7 @@ class Cluster:
                 daemon.wait()
 
     def start(self, program, *arguments):
-        """Start a daemon that lives as long as this object."""
+        """Start a daemon that runs until `fall` stops it."""
         with (self.folder / f"{program}.out").open("w") as out:
             self.daemons.append(
                 subprocess.Popen(
@@ -156,7 +156,7 @@ class Cluster:
             )
 
     def wait_for(self, condition, what):
-        """Wait for a condition as long as all daemons live."""
+        """Wait for a condition while all daemons are running."""
 
         def asked():
             for daemon in self.daemons:
@@ -168,11 +168,11 @@ class Cluster:
         return wait_for(asked, what)
 
     def command(self, *command):
-        """What a command of SLURM prints."""
+        """Output of a SLURM command."""
         return subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=PATIENCE).stdout
 
     def jobs(self, states="PENDING,RUNNING,COMPLETING"):
-        """Number, state and rule of jobs."""
+        """Number, state and rule of each job."""
         lines = self.command("squeue", "-h", "-t", states, "-o", "%i|%T|%k").splitlines()
         return [tuple(line.split("|")) for line in lines]
 
@@ -207,7 +207,7 @@ def cluster(tmp_path_factory):
     cluster = Cluster(tmp_path_factory.mktemp("slurm"))
     try:
         cluster.rise()
-    except pytest.fail.Exception as reason:  # the machine's fault, not the project's
+    except pytest.fail.Exception as reason:  # a problem of the machine, not of the project
         pytest.skip(f"SLURM does not start on this machine: {reason}")
     yield cluster
     cluster.fall()
@@ -229,7 +229,7 @@ def local(tmp_path_factory, configs):
 
 
 def finished(run, folder, patience=2 * PATIENCE):
-    """Wait for the end of a run, which must be a good one."""
+    """Wait for the end of a run, which must succeed, and return its log."""
     try:
         status = run.wait(patience)
     except subprocess.TimeoutExpired:
@@ -240,7 +240,7 @@ def finished(run, folder, patience=2 * PATIENCE):
     return log
 
 
-def test_the_smoke_run_on_a_cluster_gives_the_bytes_of_a_laptop_though_a_job_was_cancelled(cluster, smoke, tmp_path):
+def test_the_smoke_run_on_a_cluster_gives_the_bytes_of_a_local_run_even_if_a_job_is_cancelled(cluster, smoke, tmp_path):
     run = cluster.snakemake(tmp_path, [SMOKE], targets=["all"])
     cancelled = wait_for(lambda: [job for job, *_ in cluster.jobs("RUNNING")], "a job")[0]
     cluster.cancel(cancelled)
@@ -256,7 +256,7 @@ def test_the_smoke_run_on_a_cluster_gives_the_bytes_of_a_laptop_though_a_job_was
 def test_nothing_is_lost_when_snakemake_is_killed_and_started_again(cluster, configs, local, tmp_path):
     gathered = tmp_path / "results" / "contact" / "b_NG.nc"
     run = cluster.snakemake(tmp_path, configs)
-    # A job is done when its temporary inputs are gone; the one at work is what a kill may cost.
+    # A job has finished when its temporary inputs are removed; only the job in progress may be lost by the kill.
     wait_for(
         lambda: gathered.exists() and not any((gathered.parent / "b_NG").glob("*.nc")), "the contact of all samples"
     )
@@ -268,7 +268,7 @@ def test_nothing_is_lost_when_snakemake_is_killed_and_started_again(cluster, con
     assert gathered in before
     finished(cluster.snakemake(tmp_path, configs, "--unlock"), tmp_path)
     log = finished(cluster.snakemake(tmp_path, configs), tmp_path)
-    assert "contact_chunk" not in log.rpartition("Job stats:")[2], "what was there must not run again"
+    assert "contact_chunk" not in log.rpartition("Job stats:")[2], "finished jobs must not rerun"
     again = [path.name for path, time_ in before.items() if path.exists() and path.stat().st_mtime_ns != time_]
-    assert not again, "what was there must not run again"
+    assert not again, "finished jobs must not rerun"
     assert datasets(tmp_path) == local

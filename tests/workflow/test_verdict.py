@@ -1,4 +1,4 @@
-"""The last rules: a run whose results break a law ends with a sentence, and keeps its report."""
+"""The last rules: if a check of the results fails, the run stops with a message and the report is kept."""
 
 import json
 import shutil
@@ -8,7 +8,7 @@ from conftest import snakemake
 
 
 def verdict(folder):
-    """Judge the checks that lie in a folder, without what they were made from."""
+    """Run rule verdict on the checks in a folder, without the datasets behind them."""
     return snakemake(folder, "results/verdict.txt", "--allowed-rules", "verdict", check=False)
 
 
@@ -17,7 +17,7 @@ def test_all_checks_of_the_smoke_run_pass(smoke):
     assert "**FAILED**" not in (smoke / "results" / "checks.md").read_text()
 
 
-def test_a_failed_check_ends_the_run_with_a_sentence_and_the_report_stays(smoke, tmp_path):
+def test_a_failed_check_stops_the_run_with_a_message_and_the_report_is_kept(smoke, tmp_path):
     results = tmp_path / "results"
     results.mkdir()
     report = Path(shutil.copy(smoke / "results" / "checks.csv", results))
@@ -32,7 +32,7 @@ def test_a_failed_check_ends_the_run_with_a_sentence_and_the_report_stays(smoke,
     assert not (results / "verdict.txt").exists()
 
 
-def test_the_run_is_recorded_beside_the_results(smoke):
+def test_the_run_is_recorded_with_the_results(smoke):
     run = json.loads((smoke / "results" / "provenance.json").read_text())[0]
     assert run["config"]["contact"]["samples"] == 200
     assert run["versions"]["snakemake"]

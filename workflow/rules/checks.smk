@@ -1,36 +1,23 @@
-"""The last rules: what was computed is checked against what must hold."""
-
-PUBLISHED = {line.partition(",")[0] for line in Path(printed(3)).read_text(encoding="utf-8").splitlines()}
-SKEWNESS = {pair: [config["surfaces"][config["pairs"][pair][side]]["skewness"] for side in SIDES] for pair in PAIRS}
-# That negative skewness binds is a claim about the paper's own pairs: no surface skewed positively, one negatively.
-SKEWED = [pair for pair in PAIRS if pair in PUBLISHED and max(SKEWNESS[pair]) <= 0 > min(SKEWNESS[pair])]
+"""Last rules: checks of the results."""
 
 
-# Judges nothing: files of a failed rule are removed, and this report must outlive a failure.
+# Succeeds even if checks fail: Snakemake removes the files of a failed rule, and this report must remain.
 rule checks:
     input:
-        spectrum=expand("results/spectrum/{surface}.nc", surface=SURFACES),
-        character=expand("results/character/{surface}_{model}.nc", surface=SURFACES, model=("NG", "G")),
-        forces=[f"results/forces/{case}_{model}.nc" for case, model in LAWS],
-        chaos=[f"results/chaos/{case}_{model}.nc" for case, model in LAWS],
-        beams=[f"results/beams/{case}_{model}.nc" for case, model in OUTCOMES],
-        resampling=[f"results/studies/resampling/{case}.nc" for case in CASES],
+        spectrum=expand("results/spectrum/{surface}.nc", surface=plan.surfaces),
+        character=expand("results/character/{surface}_{model}.nc", surface=plan.surfaces, model=SURFACE_MODELS[::-1]),
+        forces=[f"results/forces/{case}_{model}.nc" for case, model in plan.laws],
+        chaos=[f"results/chaos/{case}_{model}.nc" for case, model in plan.laws],
+        beams=[f"results/beams/{case}_{model}.nc" for case, model in plan.outcomes],
+        resampling=[f"results/studies/resampling/{case}.nc" for case in plan.cases],
     output:
         csv="results/checks.csv",
         markdown="results/checks.md",
     log:
         "results/logs/checks.log",
+    localrule: True
     params:
-        settings={
-            "laws": keys_of(LAWS),
-            "cases": keys_of(OUTCOMES),
-            "resampled": keys_of((case, "NG") for case in CASES),
-            "surfaces": [(surface, model) for surface in SURFACES for model in ("NG", "G")],
-            "targets": {surface: chosen(config["surfaces"][surface], MOMENTS) for surface in SURFACES},
-            "skewed": SKEWED,
-            "sampling": STRIP,
-        }
-        | cantilever_settings(*PAIRS),
+        settings=jobs.checks(plan),
         code=code("checks.py"),
     message:
         "Check the results."
@@ -40,14 +27,16 @@ rule checks:
 
 rule verdict:
     input:
-        "results/checks.csv",
+        checks="results/checks.csv",
     output:
         "results/verdict.txt",
     log:
         "results/logs/verdict.log",
+    localrule: True
     params:
+        settings={},
         code=code("verdict.py"),
     message:
-        "All checks must have passed."
+        "Stop if a check has failed."
     script:
         "../scripts/verdict.py"

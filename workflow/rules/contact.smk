@@ -1,4 +1,4 @@
-"""Sec. III-A: adhesive contact of surface pairs, free of humidity."""
+"""Sec. III-A: adhesive contact of surface pairs, independent of humidity."""
 
 
 rule contact_chunk:
@@ -8,12 +8,10 @@ rule contact_chunk:
         temp("results/contact/{pair}_{model}/{chunk}-of-{number}.nc"),
     log:
         "results/logs/contact/{pair}_{model}/{chunk}-of-{number}.log",
-    threads: 1
     resources:
-        mem_mb=800,
         runtime=30,
     params:
-        settings=contact_settings,
+        settings=lambda w: jobs.contact(plan, w.pair),
         code=code("contact_chunk.py"),
     message:
         "Contact of {wildcards.model} surfaces of pair {wildcards.pair}, chunk {wildcards.chunk} of {wildcards.number}."
@@ -32,10 +30,11 @@ rule contact:
         "results/contact/{pair}_{model}.nc",
     log:
         "results/logs/contact/{pair}_{model}.log",
+    localrule: True
     params:
-        settings=contact_settings,
+        settings=lambda w: jobs.contact(plan, w.pair),
         code=code("contact.py") | code("contact_chunk.py"),
     message:
-        "Gather the contact of {wildcards.model} surfaces of pair {wildcards.pair} (Sec. III-A)."
+        "Join the contact of {wildcards.model} surfaces of pair {wildcards.pair} (Sec. III-A)."
     script:
         "../scripts/contact.py"

@@ -1,67 +1,36 @@
-"""Figures, drawn from datasets only: a change of style reruns nothing but the drawing."""
-
-OTHER_SURFACES = [surface for surface in SURFACES if surface != FIGURE_SURFACE]
-DRAWN = ["05", "07", "08", "09", "10", "11", "12", "14", "15"] + ["11_supplement"] * bool(OTHER_SURFACES)
-# Groups of the report.
-ON_SURFACES, ON_FORCES, ON_BEAMS = "Surfaces (Sec. II)", "Contact forces (Sec. III)", "Beams (Secs. IV and V)"
+"""Figures, drawn from datasets only: a change of style reruns only the figures."""
 
 
 rule figure_05:
     input:
-        forces=f"results/forces/{FIGURE_CASE}_NG.nc",
-        fit=f"results/fit/{FIGURE_CASE}_NG.nc",
+        forces=f"results/forces/{plan.figure_case}_NG.nc",
+        fit=f"results/fit/{plan.figure_case}_NG.nc",
         style=STYLE,
     output:
-        pdf="results/figures/figure_05.pdf",
-        png=report(
-            "results/figures/figure_05.png",
-            caption="../report/figure_05.rst",
-            category=ON_FORCES,
-            labels={"item": "Figure 5", "shows": "a force curve, its law and its parameters"},
-        ),
+        **figure_files("figure_05", ON_FORCES, "a force curve, its force law and its parameters"),
     log:
         "results/logs/figures/figure_05.log",
+    localrule: True
     params:
-        settings=FIGURE,
+        settings=jobs.figure_case(plan),
         code=code("figure_05.py"),
     message:
-        "Figure 5: a force curve and its law."
+        "Figure 5: a force curve and its force law."
     script:
         "../scripts/figure_05.py"
 
 
-rule fit_quality:
-    input:
-        expand("results/fit/{case}_{model}.nc", case=CASES, model=("G", "NG")),
-    output:
-        **table_files("fit_quality", "fit of the force curves by Eq. (12)"),
-    log:
-        "results/logs/tables/fit_quality.log",
-    params:
-        settings={"keys": keys_of(LAWS)},
-        code=code("fit_quality.py"),
-    message:
-        "Errors of Eq. (12) over all samples of every case."
-    script:
-        "../scripts/fit_quality.py"
-
-
 rule figure_07:
     input:
-        heights=expand("results/heights/{surface}.nc", surface=SURFACES),
+        heights=expand("results/heights/{surface}.nc", surface=plan.surfaces),
         style=STYLE,
     output:
-        pdf="results/figures/figure_07.pdf",
-        png=report(
-            "results/figures/figure_07.png",
-            caption="../report/figure_07.rst",
-            category=ON_SURFACES,
-            labels={"item": "Figure 7", "shows": "densities of the heights"},
-        ),
+        **figure_files("figure_07", ON_SURFACES, "densities of the heights"),
     log:
         "results/logs/figures/figure_07.log",
+    localrule: True
     params:
-        settings={"surfaces": SURFACES},
+        settings={"surfaces": plan.surfaces},
         code=code("figure_07.py"),
     message:
         "Figure 7: densities of the heights."
@@ -71,20 +40,15 @@ rule figure_07:
 
 rule figure_08:
     input:
-        characters=expand("results/character/{surface}_NG.nc", surface=SURFACES),
+        characters=expand("results/character/{surface}_NG.nc", surface=plan.surfaces),
         style=STYLE,
     output:
-        pdf="results/figures/figure_08.pdf",
-        png=report(
-            "results/figures/figure_08.png",
-            caption="../report/figure_08.rst",
-            category=ON_SURFACES,
-            labels={"item": "Figure 8", "shows": "simulated surfaces"},
-        ),
+        **figure_files("figure_08", ON_SURFACES, "simulated surfaces"),
     log:
         "results/logs/figures/figure_08.log",
+    localrule: True
     params:
-        settings={"surfaces": SURFACES},
+        settings={"surfaces": plan.surfaces},
         code=code("figure_08.py"),
     message:
         "Figure 8: simulated surfaces."
@@ -94,20 +58,15 @@ rule figure_08:
 
 rule figure_09:
     input:
-        characters=[f"results/character/{FIGURE_SURFACE}_{model}.nc" for model in ("G", "NG")],
+        characters=expand("results/character/{surface}_{model}.nc", surface=plan.figure_surface, model=SURFACE_MODELS),
         style=STYLE,
     output:
-        pdf="results/figures/figure_09.pdf",
-        png=report(
-            "results/figures/figure_09.png",
-            caption="../report/figure_09.rst",
-            category=ON_SURFACES,
-            labels={"item": "Figure 9", "shows": "Gaussian and non-Gaussian profile"},
-        ),
+        **figure_files("figure_09", ON_SURFACES, "Gaussian and non-Gaussian profile"),
     log:
         "results/logs/figures/figure_09.log",
+    localrule: True
     params:
-        settings={"surface": FIGURE_SURFACE},
+        settings={"surface": plan.figure_surface},
         code=code("figure_09.py"),
     message:
         "Figure 9: profiles of {params.settings[surface]}."
@@ -117,23 +76,18 @@ rule figure_09:
 
 rule figure_10:
     input:
-        heights=expand("results/heights/{surface}.nc", surface=SURFACES),
-        spectrum=expand("results/spectrum/{surface}.nc", surface=SURFACES),
-        character=expand("results/character/{surface}_NG.nc", surface=SURFACES),
-        iteration=expand("results/iteration/{surface}.nc", surface=SURFACES),
+        heights=expand("results/heights/{surface}.nc", surface=plan.surfaces),
+        spectrum=expand("results/spectrum/{surface}.nc", surface=plan.surfaces),
+        character=expand("results/character/{surface}_NG.nc", surface=plan.surfaces),
+        iteration=expand("results/iteration/{surface}.nc", surface=plan.surfaces),
         style=STYLE,
     output:
-        pdf="results/figures/figure_10.pdf",
-        png=report(
-            "results/figures/figure_10.png",
-            caption="../report/figure_10.rst",
-            category=ON_SURFACES,
-            labels={"item": "Figure 10", "shows": "spectra of simulated surfaces"},
-        ),
+        **figure_files("figure_10", ON_SURFACES, "spectra of simulated surfaces"),
     log:
         "results/logs/figures/figure_10.log",
+    localrule: True
     params:
-        settings={"surfaces": SURFACES},
+        settings={"surfaces": plan.surfaces},
         code=code("figure_10.py"),
     message:
         "Figure 10: spectra of simulated surfaces."
@@ -143,21 +97,16 @@ rule figure_10:
 
 rule figure_11:
     input:
-        gaussian=expand("results/character/{surface}_G.nc", surface=FIGURE_SURFACE),
-        other=expand("results/character/{surface}_NG.nc", surface=FIGURE_SURFACE),
+        gaussian=expand("results/character/{surface}_G.nc", surface=plan.figure_surface),
+        other=expand("results/character/{surface}_NG.nc", surface=plan.figure_surface),
         style=STYLE,
     output:
-        pdf="results/figures/figure_11.pdf",
-        png=report(
-            "results/figures/figure_11.png",
-            caption="../report/figure_11.rst",
-            category=ON_SURFACES,
-            labels={"item": "Figure 11", "shows": "heights and radii of summits"},
-        ),
+        **figure_files("figure_11", ON_SURFACES, "heights and radii of summits"),
     log:
         "results/logs/figures/figure_11.log",
+    localrule: True
     params:
-        settings={"surfaces": [FIGURE_SURFACE]},
+        settings={"surfaces": [plan.figure_surface]},
         code=code("figure_11.py"),
     message:
         "Figure 11: heights and radii of summits."
@@ -167,21 +116,15 @@ rule figure_11:
 
 use rule figure_11 as figure_11_supplement with:
     input:
-        gaussian=expand("results/character/{surface}_G.nc", surface=OTHER_SURFACES),
-        other=expand("results/character/{surface}_NG.nc", surface=OTHER_SURFACES),
+        gaussian=expand("results/character/{surface}_G.nc", surface=plan.other_surfaces),
+        other=expand("results/character/{surface}_NG.nc", surface=plan.other_surfaces),
         style=STYLE,
     output:
-        pdf="results/figures/figure_11_supplement.pdf",
-        png=report(
-            "results/figures/figure_11_supplement.png",
-            caption="../report/figure_11.rst",
-            category=ON_SURFACES,
-            labels={"item": "Figure 11, supplement", "shows": "heights and radii of summits, other surfaces"},
-        ),
+        **figure_files("figure_11_supplement", ON_SURFACES, "heights and radii of summits, other surfaces", "figure_11"),
     log:
         "results/logs/figures/figure_11_supplement.log",
     params:
-        settings={"surfaces": OTHER_SURFACES},
+        settings={"surfaces": plan.other_surfaces},
         code=code("figure_11.py"),
     message:
         "Figure 11, supplement: heights and radii of summits of the other surfaces."
@@ -189,22 +132,17 @@ use rule figure_11 as figure_11_supplement with:
 
 rule figure_12:
     input:
-        gaussian=expand("results/forces/{case}_G.nc", case=FIGURE_CASES),
-        other=expand("results/forces/{case}_NG.nc", case=FIGURE_CASES),
-        chaos=expand("results/chaos/{case}_NG.nc", case=FIGURE_CASES),
+        gaussian=expand("results/forces/{case}_G.nc", case=plan.figure_cases.values()),
+        other=expand("results/forces/{case}_NG.nc", case=plan.figure_cases.values()),
+        chaos=expand("results/chaos/{case}_NG.nc", case=plan.figure_cases.values()),
         style=STYLE,
     output:
-        pdf="results/figures/figure_12.pdf",
-        png=report(
-            "results/figures/figure_12.png",
-            caption="../report/figure_12.rst",
-            category=ON_FORCES,
-            labels={"item": "Figure 12", "shows": "computed and generated force curves"},
-        ),
+        **figure_files("figure_12", ON_FORCES, "computed and generated force curves"),
     log:
         "results/logs/figures/figure_12.log",
+    localrule: True
     params:
-        settings=section("seed", cases=dict(zip(PAIRS, FIGURE_CASES))),
+        settings={"seed": config["seed"], "cases": plan.figure_cases},
         code=code("figure_12.py"),
     message:
         "Figure 12: computed and generated force curves."
@@ -214,20 +152,15 @@ rule figure_12:
 
 rule figure_14:
     input:
-        beams=f"results/beams/{FIGURE_CASE}_NG.nc",
+        beams=f"results/beams/{plan.figure_case}_NG.nc",
         style=STYLE,
     output:
-        pdf="results/figures/figure_14.pdf",
-        png=report(
-            "results/figures/figure_14.png",
-            caption="../report/figure_14.rst",
-            category=ON_BEAMS,
-            labels={"item": "Figure 14", "shows": "shapes and crack lengths of beams"},
-        ),
+        **figure_files("figure_14", ON_BEAMS, "shapes and crack lengths of beams"),
     log:
         "results/logs/figures/figure_14.log",
+    localrule: True
     params:
-        settings=FIGURE,
+        settings=jobs.figure_case(plan),
         code=code("figure_14.py"),
     message:
         "Figure 14: shapes and crack lengths of beams."
@@ -237,37 +170,54 @@ rule figure_14:
 
 rule figure_15:
     input:
-        beams=expand("results/beams/{case}_{model}.nc", case=CASES, model=MODELS),
-        humidity=expand("results/humidity/{pair}_{model}.nc", pair=PAIRS, model=("G", "NG")),
-        printed=printed(3),
+        beams=[f"results/beams/{case}_{model}.nc" for case, model in plan.outcomes],
+        humidity=expand("results/humidity/{pair}_{model}.nc", pair=plan.pairs, model=SURFACE_MODELS),
+        published=published("table_3"),
         style=STYLE,
     output:
-        pdf="results/figures/figure_15.pdf",
-        png=report(
-            "results/figures/figure_15.png",
-            caption="../report/figure_15.rst",
-            category=ON_BEAMS,
-            labels={"item": "Figure 15", "shows": "adhesion energy over the humidity"},
-        ),
+        **figure_files("figure_15", ON_BEAMS, "adhesion energy over the relative humidity"),
     log:
         "results/logs/figures/figure_15.log",
+    localrule: True
     params:
-        settings={
-            "cases": keys_of(OUTCOMES),
-            "bands": [(pair, model) for pair in PAIRS for model in ("G", "NG")],
-        }
-        | cantilever_settings(*PAIRS),
+        settings=jobs.figure_15(plan),
         code=code("figure_15.py"),
     message:
-        "Figure 15: adhesion energy over the humidity."
+        "Figure 15: adhesion energy over the relative humidity."
     script:
         "../scripts/figure_15.py"
 
 
+rule figure_overview:
+    input:
+        character=f"results/character/{plan.figure_surface}_NG.nc",
+        forces=f"results/forces/{plan.figure_case}_NG.nc",
+        beams=f"results/beams/{plan.figure_case}_NG.nc",
+        released=[f"results/beams/{case}_{model}.nc" for case, model in plan.figure_outcomes],
+        published=published("table_3"),
+        style=STYLE,
+    output:
+        **figure_files("overview", ON_BEAMS, "from surfaces to crack lengths"),
+    log:
+        "results/logs/figures/overview.log",
+    localrule: True
+    params:
+        settings=jobs.figure_overview(plan),
+        code=code("figure_overview.py"),
+    message:
+        "Overview of pair {params.settings[pair]}."
+    script:
+        "../scripts/figure_overview.py"
+
+
 rule figures:
     input:
-        expand("results/figures/figure_{name}.{kind}", name=DRAWN, kind=("pdf", "png")),
+        expand("results/figures/figure_{name}.{kind}", name=["05", "07", "08", "09", "10", "11"], kind=("pdf", "png")),
+        rules.figure_11_supplement.output if plan.other_surfaces else [],
+        expand("results/figures/figure_{name}.{kind}", name=["12", "14", "15"], kind=("pdf", "png")),
+        rules.figure_overview.output,
         rules.fit_quality.output,
         rules.study_figures.input,
+    localrule: True
     message:
         "All figures."

@@ -1,28 +1,20 @@
-"""Figures and tables of the studies beside the main line, from datasets only."""
-
-# Group of the report.
-ON_STUDIES = "Sensitivity, appendices, readings"
-SENSITIVITIES = expand("results/studies/sensitivity/{pair}_{moment}.nc", pair=FIGURE_PAIR, moment=SHIFTED)
-STUDY_FIGURES = ["figure_13", "figure_17", "figure_18", "figure_19", "readings"] + ["figure_16"] * bool(PRESSED_PAIRS)
+"""Figures of the studies, drawn from datasets only."""
 
 
 rule figure_13:
     input:
-        studies=SENSITIVITIES,
-        printed=str(BASE / "workflow" / "resources" / "sensitivity.csv"),
+        studies=expand(
+            "results/studies/sensitivity/{pair}_{moment}.nc", pair=plan.figure_pair, moment=plan.shifted_moments
+        ),
+        published=published("sensitivity"),
         style=STYLE,
     output:
-        pdf="results/figures/figure_13.pdf",
-        png=report(
-            "results/figures/figure_13.png",
-            caption="../report/figure_13.rst",
-            category=ON_STUDIES,
-            labels={"item": "Figure 13", "shows": "sensitivity to the moments of a surface"},
-        ),
+        **figure_files("figure_13", ON_STUDIES, "sensitivity to the moments of a surface"),
     log:
         "results/logs/figures/figure_13.log",
+    localrule: True
     params:
-        settings={"pair": FIGURE_PAIR, "moments": SHIFTED},
+        settings=jobs.figure_13(plan),
         code=code("figure_13.py"),
     message:
         "Figure 13: sensitivity to the moments of a surface."
@@ -30,39 +22,17 @@ rule figure_13:
         "../scripts/figure_13.py"
 
 
-rule table_sensitivity:
-    input:
-        studies=SENSITIVITIES,
-        printed=str(BASE / "workflow" / "resources" / "sensitivity.csv"),
-    output:
-        **table_files("sensitivity", "sensitivity to the moments of a surface"),
-    log:
-        "results/logs/tables/sensitivity.log",
-    params:
-        settings={"pair": FIGURE_PAIR, "moments": SHIFTED},
-        code=code("table_sensitivity.py"),
-    message:
-        "Figure 13 in numbers."
-    script:
-        "../scripts/table_sensitivity.py"
-
-
 rule figure_16:
     input:
-        studies=expand("results/studies/plasticity/{pair}.nc", pair=PRESSED_PAIRS),
+        studies=expand("results/studies/plasticity/{pair}.nc", pair=plan.pressed_pairs),
         style=STYLE,
     output:
-        pdf="results/figures/figure_16.pdf",
-        png=report(
-            "results/figures/figure_16.png",
-            caption="../report/figure_16.rst",
-            category=ON_STUDIES,
-            labels={"item": "Figure 16", "shows": "stress of the touching summits"},
-        ),
+        **figure_files("figure_16", ON_STUDIES, "stress of the touching summits"),
     log:
         "results/logs/figures/figure_16.log",
+    localrule: True
     params:
-        settings={"pairs": PRESSED_PAIRS},
+        settings={"pairs": plan.pressed_pairs},
         code=code("figure_16.py"),
     message:
         "Figure 16: stress of the touching summits."
@@ -73,24 +43,15 @@ rule figure_16:
 rule figure_17:
     input:
         sizes="results/studies/sample_sizes.nc",
-        chaos=expand("results/chaos/{case}_NG.nc", case=CASES),
+        chaos=expand("results/chaos/{case}_NG.nc", case=plan.cases),
         style=STYLE,
     output:
-        pdf="results/figures/figure_17.pdf",
-        png=report(
-            "results/figures/figure_17.png",
-            caption="../report/figure_17.rst",
-            category=ON_STUDIES,
-            labels={"item": "Figure 17", "shows": "convergence in samples and coordinates"},
-        ),
+        **figure_files("figure_17", ON_STUDIES, "convergence in samples and coordinates"),
     log:
         "results/logs/figures/figure_17.log",
+    localrule: True
     params:
-        settings={
-            "cases": [(keys.pair_of(c), keys.humidity_of(c)) for c in CASES],
-            "tolerance": config["chaos"]["dimension_tolerance"],
-        }
-        | FIGURE,
+        settings=jobs.figure_17(plan),
         code=code("figure_17.py"),
     message:
         "Figure 17: convergence in samples and coordinates."
@@ -103,17 +64,12 @@ rule figure_18:
         orders="results/studies/orders.nc",
         style=STYLE,
     output:
-        pdf="results/figures/figure_18.pdf",
-        png=report(
-            "results/figures/figure_18.png",
-            caption="../report/figure_18.rst",
-            category=ON_STUDIES,
-            labels={"item": "Figure 18", "shows": "convergence in the order of the polynomials"},
-        ),
+        **figure_files("figure_18", ON_STUDIES, "convergence in the order of the polynomials"),
     log:
         "results/logs/figures/figure_18.log",
+    localrule: True
     params:
-        settings=FIGURE,
+        settings=jobs.figure_case(plan),
         code=code("figure_18.py"),
     message:
         "Figure 18: convergence in the order of the polynomials."
@@ -127,17 +83,12 @@ rule figure_19:
         correlation="results/studies/correlation.nc",
         style=STYLE,
     output:
-        pdf="results/figures/figure_19.pdf",
-        png=report(
-            "results/figures/figure_19.png",
-            caption="../report/figure_19.rst",
-            category=ON_STUDIES,
-            labels={"item": "Figure 19", "shows": "convergence of the mesh, autocorrelation"},
-        ),
+        **figure_files("figure_19", ON_STUDIES, "convergence of the mesh, autocorrelation"),
     log:
         "results/logs/figures/figure_19.log",
+    localrule: True
     params:
-        settings=FIGURE,
+        settings=jobs.figure_case(plan),
         code=code("figure_19.py"),
     message:
         "Figure 19: convergence of the mesh, autocorrelation."
@@ -145,69 +96,36 @@ rule figure_19:
         "../scripts/figure_19.py"
 
 
-rule figure_readings:
+rule figure_variants:
     input:
-        studies=[f"results/studies/readings/{pair}_{reading}.nc" for pair, reading in STUDIED],
-        printed=printed(3),
+        studies=[f"results/studies/variants/{pair}_{variant}.nc" for pair, variant in plan.studied],
+        published=published("table_3"),
         style=STYLE,
     output:
-        pdf="results/figures/readings.pdf",
-        png=report(
-            "results/figures/readings.png",
-            caption="../report/readings.rst",
-            category=ON_STUDIES,
-            labels={"item": "Readings", "shows": "Table III under other readings of the paper"},
-        ),
+        **figure_files("variants", ON_STUDIES, "Table III under other model choices"),
     log:
-        "results/logs/figures/readings.log",
+        "results/logs/figures/variants.log",
+    localrule: True
     params:
-        settings={"keys": STUDIED},
-        code=code("figure_readings.py"),
+        settings=jobs.table_variants(plan),
+        code=code("figure_variants.py"),
     message:
-        "Crack lengths under other readings of the paper."
+        "Crack lengths under other model choices."
     script:
-        "../scripts/figure_readings.py"
-
-
-rule table_readings:
-    input:
-        studies=[f"results/studies/readings/{pair}_{reading}.nc" for pair, reading in STUDIED],
-        printed=printed(3),
-    output:
-        **table_files("readings", "Table III under other readings of the paper"),
-    log:
-        "results/logs/tables/readings.log",
-    params:
-        settings={"keys": STUDIED},
-        code=code("table_readings.py"),
-    message:
-        "Table III under other readings of the paper."
-    script:
-        "../scripts/table_readings.py"
-
-
-rule table_resampling:
-    input:
-        beams=expand("results/beams/{case}_NG.nc", case=CASES),
-        resampled=expand("results/studies/resampling/{case}.nc", case=CASES),
-    output:
-        **table_files("resampling", "what the chaos model does to the crack length"),
-    log:
-        "results/logs/tables/resampling.log",
-    params:
-        settings={"keys": [(keys.pair_of(case), keys.humidity_of(case)) for case in CASES]},
-        code=code("table_resampling.py"),
-    message:
-        "Crack lengths on laws of the chaos model and of the samples."
-    script:
-        "../scripts/table_resampling.py"
+        "../scripts/figure_variants.py"
 
 
 rule study_figures:
     input:
-        expand("results/figures/{name}.{kind}", name=STUDY_FIGURES, kind=("pdf", "png")),
+        rules.figure_13.output,
+        rules.figure_16.output if plan.pressed_pairs else [],
+        rules.figure_17.output,
+        rules.figure_18.output,
+        rules.figure_19.output,
+        rules.figure_variants.output,
         rules.table_sensitivity.output,
-        rules.table_readings.output,
+        rules.table_variants.output,
         rules.table_resampling.output,
+    localrule: True
     message:
-        "Figures and tables of the studies beside the main line."
+        "Figures and tables of the studies."

@@ -1,15 +1,16 @@
-"""Sec. III-B and App. B: force curves at a humidity, their parameters and the chaos model of these."""
+"""Sec. III-B and App. B: force curves at a humidity, their parameters v and the chaos model of v."""
 
 
 rule forces:
     input:
-        lambda w: f"results/contact/{keys.pair_of(w.case)}_{w.model}.nc",
+        contact=of_case("contact"),
     output:
         "results/forces/{case}_{model}.nc",
     log:
         "results/logs/forces/{case}_{model}.log",
+    localrule: True
     params:
-        settings=lambda w: section("water", humidity=keys.humidity_of(w.case)),
+        settings=lambda w: jobs.forces(plan, w.case),
         code=code("forces.py"),
     message:
         "Force curves of {wildcards.case}, {wildcards.model} (Sec. III-B1)."
@@ -19,13 +20,14 @@ rule forces:
 
 rule chaos:
     input:
-        "results/forces/{case}_{model}.nc",
+        forces="results/forces/{case}_{model}.nc",
     output:
         "results/chaos/{case}_{model}.nc",
     log:
         "results/logs/chaos/{case}_{model}.log",
+    localrule: True
     params:
-        settings=lambda w: section("chaos", "seed"),
+        settings=jobs.chaos(plan),
         code=code("chaos.py"),
     message:
         "Chaos model of the force law of {wildcards.case}, {wildcards.model} (App. B)."
@@ -35,14 +37,15 @@ rule chaos:
 
 rule fit:
     input:
-        contact=lambda w: f"results/contact/{keys.pair_of(w.case)}_{w.model}.nc",
+        contact=of_case("contact"),
         forces="results/forces/{case}_{model}.nc",
     output:
         "results/fit/{case}_{model}.nc",
     log:
         "results/logs/fit/{case}_{model}.log",
+    localrule: True
     params:
-        settings=lambda w: section("water", humidity=keys.humidity_of(w.case)),
+        settings=lambda w: jobs.forces(plan, w.case),
         code=code("fit.py"),
     message:
         "Errors of Eq. (12) in {wildcards.case}, {wildcards.model} (Sec. III-B1)."
@@ -52,19 +55,16 @@ rule fit:
 
 rule humidity:
     input:
-        "results/contact/{pair}_{model}.nc",
+        contact="results/contact/{pair}_{model}.nc",
     output:
         "results/humidity/{pair}_{model}.nc",
     log:
         "results/logs/humidity/{pair}_{model}.log",
+    localrule: True
     params:
-        settings=lambda w: section(
-            "water",
-            points=config["figures"]["humidity_points"],
-            range=[bound(config["pairs"][w.pair]["humidities"]) for bound in (min, max)],
-        ),
+        settings=lambda w: jobs.humidity(plan, w.pair),
         code=code("humidity.py"),
     message:
-        "Adhesion energy of {wildcards.model} surfaces of pair {wildcards.pair} along the humidity."
+        "Adhesion energy of {wildcards.model} surfaces of pair {wildcards.pair} over the relative humidity."
     script:
         "../scripts/humidity.py"

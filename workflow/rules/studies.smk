@@ -1,10 +1,4 @@
-"""Studies beside the main line: Fig. 13, Appendices A to C and other readings of what the paper leaves open."""
-
-
-wildcard_constraints:
-    moment="rms|skewness|kurtosis",
-    side="less|more",
-    reading="base|[a-z_]+_[a-z0-9.-]+",
+"""Studies outside the main line: Fig. 13, Appendices A to C and variants (model choices that the paper leaves open)."""
 
 
 rule sensitivity_contact:
@@ -14,20 +8,10 @@ rule sensitivity_contact:
         "results/studies/sensitivity/contact/{pair}_{moment}_{side}.nc",
     log:
         "results/logs/studies/sensitivity/contact/{pair}_{moment}_{side}.log",
-    threads: 1
     resources:
-        mem_mb=800,
         runtime=30,
     params:
-        settings=lambda w: section(
-            "seed",
-            "sampling",
-            "solid",
-            "van_der_waals",
-            **meeting(w),
-            contact=CONTACT | {"samples": STUDIES["sensitivity"]["samples"]},
-            step=STUDIES["sensitivity"]["step"],
-        ),
+        settings=lambda w: jobs.sensitivity_contact(plan, w.pair),
         code=code("sensitivity_contact.py"),
     message:
         "Contact of pair {wildcards.pair} with {wildcards.side} {wildcards.moment} (Fig. 13)."
@@ -37,13 +21,14 @@ rule sensitivity_contact:
 
 rule sensitivity:
     input:
-        expand("results/studies/sensitivity/contact/{{pair}}_{{moment}}_{side}.nc", side=("less", "more")),
+        contacts=expand("results/studies/sensitivity/contact/{{pair}}_{{moment}}_{side}.nc", side=("less", "more")),
     output:
         "results/studies/sensitivity/{pair}_{moment}.nc",
     log:
         "results/logs/studies/sensitivity/{pair}_{moment}.log",
+    localrule: True
     params:
-        settings=lambda w: section("water", humidities=config["pairs"][w.pair]["humidities"]),
+        settings=lambda w: jobs.sensitivity(plan, w.pair),
         code=code("sensitivity.py"),
     message:
         "Sensitivity of the adhesion of pair {wildcards.pair} to {wildcards.moment} (Fig. 13)."
@@ -58,21 +43,8 @@ rule plasticity:
         "results/studies/plasticity/{pair}.nc",
     log:
         "results/logs/studies/plasticity/{pair}.log",
-    threads: 1
-    resources:
-        mem_mb=800,
-        runtime=10,
     params:
-        settings=lambda w: section(
-            "seed",
-            "sampling",
-            "solid",
-            "van_der_waals",
-            **meeting(w),
-            contact=CONTACT,
-            strips=STUDIES["plasticity"]["strips"],
-            distance_nm=STUDIES["plasticity"]["distance_nm"][w.pair],
-        ),
+        settings=lambda w: jobs.plasticity(plan, w.pair),
         code=code("plasticity.py"),
     message:
         "Stress of the touching summits of pair {wildcards.pair} (App. A)."
@@ -82,13 +54,14 @@ rule plasticity:
 
 rule sample_sizes:
     input:
-        f"results/forces/{FIGURE_CASE}_NG.nc",
+        forces=f"results/forces/{plan.figure_case}_NG.nc",
     output:
         "results/studies/sample_sizes.nc",
     log:
         "results/logs/studies/sample_sizes.log",
+    localrule: True
     params:
-        settings={"shares": STUDIES["sample_shares"], "case": FIGURE_CASE},
+        settings=jobs.sample_sizes(plan),
         code=code("sample_sizes.py"),
     message:
         "Convergence of the adhesion energy in the number of samples (App. B)."
@@ -98,18 +71,14 @@ rule sample_sizes:
 
 rule orders:
     input:
-        forces=f"results/forces/{FIGURE_CASE}_NG.nc",
-        model=f"results/chaos/{FIGURE_CASE}_NG.nc",
+        forces=f"results/forces/{plan.figure_case}_NG.nc",
+        chaos=f"results/chaos/{plan.figure_case}_NG.nc",
     output:
         "results/studies/orders.nc",
     log:
         "results/logs/studies/orders.log",
-    threads: 1
-    resources:
-        mem_mb=800,
-        runtime=10,
     params:
-        settings=section("seed", draws=STUDIES["orders"]["draws"], case=FIGURE_CASE),
+        settings=jobs.orders(plan),
         code=code("orders.py"),
     message:
         "Convergence of the chaos model in the order of its polynomials (App. B)."
@@ -119,13 +88,14 @@ rule orders:
 
 rule mesh:
     input:
-        f"results/forces/{FIGURE_CASE}_NG.nc",
+        forces=f"results/forces/{plan.figure_case}_NG.nc",
     output:
         "results/studies/mesh.nc",
     log:
         "results/logs/studies/mesh.log",
+    localrule: True
     params:
-        settings={"mesh": STUDIES["mesh"], "case": FIGURE_CASE, "pair": FIGURE_PAIR} | cantilever_settings(FIGURE_PAIR),
+        settings=jobs.mesh(plan),
         code=code("mesh.py"),
     message:
         "Convergence of the crack length in the mesh of the beam (App. C)."
@@ -135,13 +105,14 @@ rule mesh:
 
 rule correlation:
     input:
-        expand("results/spectrum/{surface}.nc", surface=SURFACES),
+        spectra=expand("results/spectrum/{surface}.nc", surface=plan.surfaces),
     output:
         "results/studies/correlation.nc",
     log:
         "results/logs/studies/correlation.log",
+    localrule: True
     params:
-        settings={"surfaces": SURFACES},
+        settings={"surfaces": plan.surfaces},
         code=code("correlation.py"),
     message:
         "Autocorrelation of the surfaces (App. C)."
@@ -149,68 +120,53 @@ rule correlation:
         "../scripts/correlation.py"
 
 
-rule reading_contact:
+rule variant_contact:
     input:
-        lambda w: expand(
-            "results/identification/{surface}.nc", surface=reading_contact_settings(w.pair, w.reading)["identified"]
+        identifications=lambda w: expand(
+            "results/identification/{surface}.nc", surface=plan.variant_contact(w.pair, w.variant)["identified"]
         ),
     output:
-        "results/studies/readings/contact/{pair}_{reading}.nc",
+        "results/studies/variants/contact/{pair}_{variant}.nc",
     log:
-        "results/logs/studies/readings/contact/{pair}_{reading}.log",
-    threads: 1
+        "results/logs/studies/variants/contact/{pair}_{variant}.log",
     resources:
-        mem_mb=800,
         runtime=30,
     params:
-        settings=lambda w: reading_contact_settings(w.pair, w.reading),
-        code=code("reading_contact.py"),
+        settings=lambda w: plan.variant_contact(w.pair, w.variant),
+        code=code("variant_contact.py"),
     message:
-        "Contact of pair {wildcards.pair} under reading {wildcards.reading}."
+        "Contact of pair {wildcards.pair} under variant {wildcards.variant}."
     script:
-        "../scripts/reading_contact.py"
+        "../scripts/variant_contact.py"
 
 
-rule reading:
+rule variant:
     input:
-        contact_of_reading,
+        contact=lambda w: f"results/studies/variants/contact/{w.pair}_{plan.contact_under(w.variant)}.nc",
     output:
-        "results/studies/readings/{pair}_{reading}.nc",
+        "results/studies/variants/{pair}_{variant}.nc",
     log:
-        "results/logs/studies/readings/{pair}_{reading}.log",
-    threads: 1
-    resources:
-        mem_mb=800,
-        runtime=10,
+        "results/logs/studies/variants/{pair}_{variant}.log",
     params:
-        settings=reading_settings,
-        code=code("reading.py"),
+        settings=lambda w: jobs.variant(plan, w.pair, w.variant),
+        code=code("variant.py"),
     message:
-        "Crack lengths of pair {wildcards.pair} under reading {wildcards.reading}."
+        "Crack lengths of pair {wildcards.pair} under variant {wildcards.variant}."
     script:
-        "../scripts/reading.py"
+        "../scripts/variant.py"
 
 
 rule resampling:
     input:
-        "results/forces/{case}_NG.nc",
+        forces="results/forces/{case}_NG.nc",
     output:
         "results/studies/resampling/{case}.nc",
     log:
         "results/logs/studies/resampling/{case}.log",
-    threads: 1
-    resources:
-        mem_mb=800,
-        runtime=10,
     params:
-        settings=lambda w: section(
-            "seed",
-            **cantilever_settings(keys.pair_of(w.case)),
-            sampling=STRIP,
-            beams=STUDIES["resampling"]["beams"],
-        ),
+        settings=lambda w: jobs.resampling(plan, w.case),
         code=code("resampling.py"),
     message:
-        "Release the beams of {wildcards.case} on laws of the samples themselves (App. B)."
+        "Release the beams of {wildcards.case} on force laws resampled from the contact samples (App. B)."
     script:
         "../scripts/resampling.py"

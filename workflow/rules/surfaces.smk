@@ -6,8 +6,9 @@ rule heights:
         "results/heights/{surface}.nc",
     log:
         "results/logs/heights/{surface}.log",
+    localrule: True
     params:
-        settings=lambda w: chosen(config["surfaces"][w.surface], MOMENTS),
+        settings=lambda w: jobs.heights(plan, w.surface),
         code=code("heights.py"),
     message:
         "Maximum-entropy height density of {wildcards.surface} (Sec. II-A)."
@@ -15,51 +16,42 @@ rule heights:
         "../scripts/heights.py"
 
 
-rule identify:
+rule identification:
     input:
         heights="results/heights/{surface}.nc",
     output:
         "results/identification/{surface}.nc",
     log:
         "results/logs/identification/{surface}.log",
-    threads: 1
-    resources:
-        mem_mb=800,
-        runtime=10,
     params:
-        settings=lambda w: section("seed", "identification")
-        | {
-            "spacing_nm": config["sampling"]["spacing_nm"],
-            "target_spacing_nm": config["character"]["spacing_nm"],
-            "target": chosen(config["surfaces"][w.surface], SUMMITS),
-        },
-        code=code("identify.py"),
+        settings=lambda w: jobs.identification(plan, w.surface),
+        code=code("identification.py"),
     message:
         "Identify the spectrum of {wildcards.surface} from its summits (Sec. II-C)."
     script:
-        "../scripts/identify.py"
+        "../scripts/identification.py"
+
+
+def identified(wildcards):
+    """Dataset of the identification if the spectrum is identified, otherwise nothing."""
+    source = config["surfaces"][wildcards.surface]["psd"]
+    return "results/identification/{surface}.nc" if source == "identified" else []
 
 
 rule spectrum:
     input:
-        unpack(spectrum_source),
         heights="results/heights/{surface}.nc",
+        identification=identified,
     output:
         "results/spectrum/{surface}.nc",
     log:
         "results/logs/spectrum/{surface}.log",
+    localrule: True
     params:
-        settings=lambda w: {
-            "spacing_nm": config["sampling"]["spacing_nm"],
-            "psd": (
-                config["surfaces"][w.surface]["published_psd"]
-                if config["surfaces"][w.surface]["psd"] == "published"
-                else "identified"
-            ),
-        },
+        settings=lambda w: jobs.spectrum(plan, w.surface),
         code=code("spectrum.py"),
     message:
-        "Spectrum of {wildcards.surface} and of the Gaussian field behind it (Sec. II-B)."
+        "Spectrum of {wildcards.surface} and of the underlying Gaussian field (Sec. II-B)."
     script:
         "../scripts/spectrum.py"
 
@@ -72,17 +64,11 @@ rule iteration:
         "results/iteration/{surface}.nc",
     log:
         "results/logs/iteration/{surface}.log",
-    threads: 1
-    resources:
-        mem_mb=800,
-        runtime=10,
     params:
-        settings=lambda w: section(
-            "seed", iteration=config["studies"]["iteration"], spacing_nm=config["sampling"]["spacing_nm"]
-        ),
+        settings=jobs.iteration(plan),
         code=code("iteration.py"),
     message:
-        "Iterative spectrum of {wildcards.surface}, beside the closed form (Fig. 4)."
+        "Iterative spectrum of {wildcards.surface}, for comparison with the closed form (Fig. 4)."
     script:
         "../scripts/iteration.py"
 
@@ -95,12 +81,8 @@ rule character:
         "results/character/{surface}_{model}.nc",
     log:
         "results/logs/character/{surface}_{model}.log",
-    threads: 1
-    resources:
-        mem_mb=800,
-        runtime=10,
     params:
-        settings=lambda w: section("seed", "sampling", "character", beam={"width_um": config["beam"]["width_um"]}),
+        settings=jobs.character(plan),
         code=code("character.py"),
     message:
         "Statistics of simulated {wildcards.model} surfaces {wildcards.surface} (Table I)."

@@ -1,30 +1,21 @@
-"""App. B: the chaos model of the force law, and its statistics beside those of its input."""
+"""App. B: the chaos model of the force law, and its statistics compared with its input."""
 
-from stiction.chaos import model as chaos
+from stiction.config.units import typed
 from stiction.run.logs import logged
-from stiction.stages import data
-from stiction.streams import stream
-
-#: Draws on which the model is compared with its input.
-DRAWS = 100_000
+from stiction.stages import chaos, storage
 
 
-def main(forces, output, settings, case, model):
-    """Fit the polynomials and draw from them."""
-    forces = data.load(forces, "forces")
-    vectors, wanted = data.vectors(forces), settings["chaos"]
-    fitted = chaos.fit(vectors, float(forces.limit), wanted["order"], wanted["dimension_tolerance"])
-    report = chaos.fit_report(fitted, vectors, DRAWS, stream(settings["seed"], "chaos", case, model))
-    _, rejected = chaos.draw(fitted, DRAWS, stream(settings["seed"], "rejection", case, model))
-    data.save(data.chaos(fitted, report, rejected / (rejected + DRAWS)), output, "chaos", settings)
+def main(job):
+    """Fit the chaos model and compare draws from it with its input."""
+    dataset = chaos.compute(
+        storage.load(job.input.forces, "forces"),
+        job.wildcards.case,
+        job.wildcards.model,
+        typed(chaos.Settings, job.params.settings),
+    )
+    storage.save(dataset, job.output[0], "chaos", job.params.settings)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(
-            snakemake.input[0],
-            snakemake.output[0],
-            snakemake.params.settings,
-            snakemake.wildcards.case,
-            snakemake.wildcards.model,
-        )
+        main(snakemake)

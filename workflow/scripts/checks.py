@@ -1,38 +1,38 @@
-"""Check what was computed against what must hold; judges nothing, so that its report outlives a failure."""
+"""Check the results; succeeds even if checks fail, so that the report remains."""
 
 from itertools import chain
 
-from stiction.config.units import si
+from stiction.config.units import typed
 from stiction.report import checks
+from stiction.run import atomic
 from stiction.run.logs import logged
-from stiction.stages import data
-from stiction.stages.cantilevers import cantilever
+from stiction.stages.cantilevers import Cantilevers, StripLength, cantilever
+from stiction.stages.named import key_of, load_named, model_of, surface_of
+from stiction.stages.spectrum import defect
 
 
-def main(paths, csv, markdown, settings):
-    """Write all checks, passed or not."""
-    names = ("laws", "cases", "surfaces", "resampled")
-    laws, cases, surfaces, resampled = ([tuple(key) for key in settings[name]] for name in names)
-
-    def loaded(stage, keys):
-        return {key: data.load(path, stage) for key, path in zip(keys, paths[stage], strict=True)}
-
-    forces, targets = loaded("forces", laws), settings["targets"]
-    defects = {surface: float(spectrum.defect) for surface, spectrum in loaded("spectrum", targets).items()}
-    beams = {pair: cantilever(settings, pair) for pair in settings["pairs"]}
-    outcomes = loaded("beams", cases)
+def main(job):
+    """Write all checks, whether passed or failed."""
+    settings, targets = job.params.settings, job.params.settings["targets"]
+    sections = typed(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
+    beams = {pair: cantilever(sections, pair) for pair in settings["pairs"]}
+    strip = typed(StripLength, settings["sampling"]).strip_length
+    spectra = load_named(job.input.spectrum, "spectrum")
+    characters = load_named(job.input.character, "character", lambda name: (surface_of(name), model_of(name)))
+    forces, chaoses, outcomes = (load_named(job.input[stage], stage, key_of) for stage in ("forces", "chaos", "beams"))
+    resampled = load_named(job.input.resampling, "resampling", lambda name: (*key_of(name), "NG"))
     found = chain(
-        checks.of_surfaces(loaded("character", surfaces), targets, defects),
-        checks.of_laws(forces, loaded("chaos", laws)),
+        checks.of_surfaces(characters, targets, {name: defect(found) for name, found in spectra.items()}),
+        checks.of_force_laws(forces, chaoses),
         checks.of_trends(forces, settings["skewed"]),
-        checks.of_beams(outcomes, forces, beams, si(settings["sampling"])["strip_length"]),
-        checks.of_resampling(outcomes, loaded("resampling", resampled)),
+        checks.of_beams(outcomes, forces, beams, strip),
+        checks.of_resampling(outcomes, resampled),
     )
     table = checks.table(found)
-    data.save_text(table.to_csv(index=False), csv)
-    data.save_text(checks.markdown(table), markdown)
+    atomic.save_text(table.to_csv(index=False), job.output.csv)
+    atomic.save_text(checks.markdown(table), job.output.markdown)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output.csv, snakemake.output.markdown, snakemake.params.settings)
+        main(snakemake)

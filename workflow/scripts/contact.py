@@ -1,18 +1,15 @@
-"""Sec. III-A: the contact of all samples of a pair, from its chunks."""
-
-import xarray as xr
+"""Sec. III-A: the contact of all samples of a pair, joined from its chunks."""
 
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages import contact, storage
 
 
-def main(chunks, output, settings):
+def main(job):
     """Join the chunks in the order of their samples."""
-    parts = [data.load(chunk, "contact") for chunk in chunks]
-    joined = xr.concat(parts, "sample", data_vars="minimal", coords="minimal", compat="equals", join="exact")
-    data.save(joined, output, "contact", settings)
+    dataset = contact.joined(storage.load_all(job.input, "contact"))
+    storage.save(dataset, job.output[0], "contact", job.params.settings)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output[0], snakemake.params.settings)
+        main(snakemake)

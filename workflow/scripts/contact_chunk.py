@@ -1,26 +1,19 @@
-"""Sec. III-A: contact of a range of surface pairs."""
+"""Sec. III-A: contact of one chunk of the samples of a pair."""
 
+from stiction.config.units import typed
 from stiction.run.logs import logged
-from stiction.stages import data, pairs
+from stiction.stages import contact, storage
 
 
-def main(heights, spectra, output, settings, pair, model, chunk, number):
-    """Draw surface pairs and keep their solid pressure and bearing area."""
-    surfaces = [(data.load(h, "heights"), data.load(s, "spectrum")) for h, s in zip(heights, spectra, strict=True)]
-    total = settings["contact"]["samples"]
-    samples = range(total * chunk // number, total * (chunk + 1) // number)
-    data.save(pairs.contact(surfaces, pair, model, settings, samples), output, "contact", settings)
+def main(job):
+    """Draw surface pairs and compute their solid pressure and bearing area."""
+    surfaces = list(zip(*(storage.load_all(job.input[stage], stage) for stage in ("heights", "spectrum")), strict=True))
+    wanted = typed(contact.Settings, job.params.settings)
+    samples = contact.chunk(wanted.contact.samples, int(job.wildcards.chunk), int(job.wildcards.number))
+    dataset = contact.compute(surfaces, job.wildcards.pair, job.wildcards.model, wanted, samples)
+    storage.save(dataset, job.output[0], "contact", job.params.settings)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(
-            snakemake.input.heights,
-            snakemake.input.spectrum,
-            snakemake.output[0],
-            snakemake.params.settings,
-            snakemake.wildcards.pair,
-            snakemake.wildcards.model,
-            int(snakemake.wildcards.chunk),
-            int(snakemake.wildcards.number),
-        )
+        main(snakemake)

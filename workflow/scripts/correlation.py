@@ -1,24 +1,19 @@
 """App. C, Fig. 19c: autocorrelation of the surfaces."""
 
-import numpy as np
-
+from stiction.config.units import typed
 from stiction.run.logs import logged
-from stiction.stages import cases, data, data_studies
-from stiction.surface.spectrum import autocovariance, correlation_length
-
-#: Distances drawn [m].
-LAG = np.linspace(0, 1e-6, 401)
+from stiction.stages import storage
+from stiction.stages.named import load_named
+from stiction.studies import correlation
 
 
-def main(spectra, output, settings):
+def main(job):
     """Transform the spectra, Eq. (7)."""
-    targets = [cases.target_spectrum(data.load(path, "spectrum")) for path in spectra]
-    covariances = [autocovariance(target, LAG) for target in targets]
-    lengths = [correlation_length(target) for target in targets]
-    dataset = data_studies.correlation(settings["surfaces"], LAG, [c / c[0] for c in covariances], lengths)
-    data.save(dataset, output, "correlation", settings)
+    spectra = load_named(job.input.spectra, "spectrum")
+    dataset = correlation.compute(spectra, typed(correlation.Settings, job.params.settings))
+    storage.save(dataset, job.output[0], "correlation", job.params.settings)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output[0], snakemake.params.settings)
+        main(snakemake)

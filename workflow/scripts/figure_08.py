@@ -3,15 +3,14 @@
 from stiction.report.figures_surfaces import elevation_maps
 from stiction.report.style import save
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages.named import load_named, surface_of
 
 
-def main(characters, outputs, settings):
+def main(job):
     """Draw a piece of every surface."""
-    names = settings["surfaces"]
-    save(elevation_maps({n: data.load(p, "character") for n, p in zip(names, characters, strict=True)}), *outputs)
+    save(elevation_maps(load_named(job.input.characters, "character", surface_of)), *job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input.characters, snakemake.output, snakemake.params.settings)
+        main(snakemake)

@@ -1,17 +1,17 @@
-"""Figure 9: profiles of one surface with either height model."""
+"""Figure 9: profiles of one surface with both height models."""
 
 from stiction.report.figures_surfaces import profiles
 from stiction.report.style import save
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages.named import load_named, model_of
 
 
-def main(characters, outputs, settings):
+def main(job):
     """Draw a Gaussian and a non-Gaussian profile."""
-    models = {m: data.load(p, "character") for m, p in zip(("G", "NG"), characters, strict=True)}
-    save(profiles(settings["surface"], models), *outputs)
+    characters = load_named(job.input.characters, "character", model_of)
+    save(profiles(job.params.settings["surface"], characters), *job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input.characters, snakemake.output, snakemake.params.settings)
+        main(snakemake)

@@ -3,17 +3,17 @@
 from stiction.report.figures_surfaces import spectra
 from stiction.report.style import save
 from stiction.run.logs import logged
-from stiction.stages import data
-
-STAGES = ("heights", "spectrum", "character", "iteration")
+from stiction.stages.named import load_named, surface_of
 
 
-def main(paths, outputs, settings):
-    """Draw the spectra of all surfaces; paths by stage."""
-    columns = [[data.load(path, stage) for path in paths[stage]] for stage in STAGES]
-    save(spectra(dict(zip(settings["surfaces"], zip(*columns, strict=True), strict=True))), *outputs)
+def main(job):
+    """Draw the spectra of all surfaces."""
+    stages = [
+        load_named(job.input[stage], stage, surface_of) for stage in ("heights", "spectrum", "character", "iteration")
+    ]
+    save(spectra({name: tuple(stage[name] for stage in stages) for name in stages[0]}), *job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output, snakemake.params.settings)
+        main(snakemake)

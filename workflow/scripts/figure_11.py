@@ -1,19 +1,17 @@
-"""Figure 11: heights and radii of summits, of one surface or of the others."""
+"""Figure 11: heights and radii of summits, of one surface or several."""
 
 from stiction.report.figures_surfaces import summits
 from stiction.report.style import save
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages.named import load_named, surface_of
 
 
-def main(gaussian, other, outputs, settings):
-    """Draw the joint densities of some surfaces with either height model."""
-    models = [
-        {"G": data.load(g, "character"), "NG": data.load(o, "character")} for g, o in zip(gaussian, other, strict=True)
-    ]
-    save(summits(dict(zip(settings["surfaces"], models, strict=True))), *outputs)
+def main(job):
+    """Draw the joint densities of the surfaces with both height models."""
+    gaussian, other = (load_named(paths, "character", surface_of) for paths in (job.input.gaussian, job.input.other))
+    save(summits({name: {"G": gaussian[name], "NG": other[name]} for name in gaussian}), *job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input.gaussian, snakemake.input.other, snakemake.output, snakemake.params.settings)
+        main(snakemake)

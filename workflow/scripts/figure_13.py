@@ -1,23 +1,22 @@
 """Figure 13: sensitivity of the adhesion energy to the moments of a surface."""
 
-from stiction.report import tables
+from stiction.report import published
 from stiction.report.figures_studies import sensitivities
 from stiction.report.style import save
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages.named import load_named
 
 
-def main(paths, outputs, settings):
-    """Draw the sensitivities to the moments beside those that the paper states."""
-    loaded = {
-        moment: data.load(path, "sensitivity") for moment, path in zip(settings["moments"], paths.studies, strict=True)
-    }
-    stated = tables.published(paths.printed)
+def main(job):
+    """Draw the sensitivities to the moments and the published ones."""
+    settings = job.params.settings
+    studies = load_named(job.input.studies, "sensitivity", lambda name: name.partition("_")[2])
+    stated = published.of_paper(published.read(job.input.published), settings["of_paper"])
     stated = stated[(stated.pair == settings["pair"]) & stated.moment.isin(settings["moments"])]
-    printed = dict(zip(zip(stated.moment, stated.relative_humidity, strict=True), stated.slope, strict=True))
-    save(sensitivities(loaded, printed), *outputs)
+    slopes = dict(zip(zip(stated.moment, stated.relative_humidity, strict=True), stated.slope, strict=True))
+    save(sensitivities(studies, slopes), *job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output, snakemake.params.settings)
+        main(snakemake)

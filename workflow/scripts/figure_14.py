@@ -3,14 +3,14 @@
 from stiction.report.figures_beams import beam_shapes
 from stiction.report.style import save
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages import storage
 
 
-def main(beams, outputs):
+def main(job):
     """Draw the beams of one case."""
-    save(beam_shapes(data.load(beams, "beams")), *outputs)
+    save(beam_shapes(storage.load(job.input.beams, "beams")), *job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input.beams, snakemake.output)
+        main(snakemake)

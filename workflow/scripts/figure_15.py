@@ -1,29 +1,31 @@
-"""Figure 15: adhesion energies over the humidity."""
+"""Figure 15: adhesion energies over the relative humidity."""
 
+from stiction.config.units import typed
+from stiction.report import published
 from stiction.report.figures_beams import adhesion_energies
 from stiction.report.style import save
-from stiction.report.tables import published
 from stiction.run.logs import logged
-from stiction.stages import data
-from stiction.stages.cantilevers import cantilever
+from stiction.stages.cantilevers import Cantilevers, cantilever
+from stiction.stages.named import key_of, load_named, model_of, surface_of
 
 
-def by_pair(keys, paths, stage):
-    """Datasets by pair and by what is left of their keys."""
-    found = {}
-    for (pair, *key), path in zip(keys, paths, strict=True):
-        found.setdefault(pair, {})[tuple(key) if len(key) > 1 else key[0]] = data.load(path, stage)
-    return found
+def main(job):
+    """Draw the energies of all pairs with the published and measured ones."""
+    settings = job.params.settings
+    beams = load_named(job.input.beams, "beams", key_of)
+    bands = load_named(job.input.humidity, "humidity", lambda name: (surface_of(name), model_of(name)))
+    sections = typed(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
+    pairs = {pair: (cantilever(sections, pair), *_of(pair, beams, bands)) for pair in settings["pairs"]}
+    known = published.of_paper(published.read(job.input.published), settings["of_paper"])
+    save(adhesion_energies(pairs, known), *job.output)
 
 
-def main(paths, outputs, settings):
-    """Draw the energies of all pairs beside print and experiment."""
-    released = by_pair(settings["cases"], paths.beams, "beams")
-    bands = by_pair(settings["bands"], paths.humidity, "humidity")
-    pairs = {pair: (cantilever(settings, pair), released[pair], bands[pair]) for pair in settings["pairs"]}
-    save(adhesion_energies(pairs, published(paths.printed)), *outputs)
+def _of(pair, beams, bands):
+    """Beams of one pair by humidity and model, and its humidity bands by model."""
+    released = {(humidity, model): found for (name, humidity, model), found in beams.items() if name == pair}
+    return released, {model: band for (name, model), band in bands.items() if name == pair}
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output, snakemake.params.settings)
+        main(snakemake)

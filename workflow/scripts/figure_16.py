@@ -3,15 +3,14 @@
 from stiction.report.figures_studies import summit_stresses
 from stiction.report.style import save
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages.named import load_named
 
 
-def main(studies, outputs, settings):
+def main(job):
     """Draw the pairs side by side."""
-    loaded = {pair: data.load(path, "plasticity") for pair, path in zip(settings["pairs"], studies, strict=True)}
-    save(summit_stresses(loaded), *outputs)
+    save(summit_stresses(load_named(job.input.studies, "plasticity")), *job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input.studies, snakemake.output, snakemake.params.settings)
+        main(snakemake)

@@ -3,18 +3,19 @@
 from stiction.report.figures_studies import sample_convergence
 from stiction.report.style import save
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages import storage
+from stiction.stages.chaos import chaos_model
+from stiction.stages.named import key_of, load_named
 
 
-def main(paths, outputs, settings):
-    """Draw the densities of one case and Err^DR of all."""
-    cases = map(tuple, settings["cases"])
-    errors = {
-        case: data.load(path, "chaos").dimension_error.values for case, path in zip(cases, paths.chaos, strict=True)
-    }
-    save(sample_convergence(data.load(paths.sizes, "sample_sizes"), errors, settings["tolerance"]), *outputs)
+def main(job):
+    """Draw the densities of one case and Err^DR of all cases."""
+    models = load_named(job.input.chaos, "chaos", key_of)
+    errors = {(pair, humidity): chaos_model(found).dimension_error for (pair, humidity, _), found in models.items()}
+    sizes = storage.load(job.input.sizes, "sample_sizes")
+    save(sample_convergence(sizes, errors, job.params.settings["tolerance"]), *job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output, snakemake.params.settings)
+        main(snakemake)

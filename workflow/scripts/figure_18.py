@@ -1,16 +1,16 @@
-"""Figure 18: convergence of the chaos model in the order of its polynomials."""
+"""Figure 18: convergence of the marginals in the order of the polynomials."""
 
 from stiction.report.figures_studies import order_convergence
 from stiction.report.style import save
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages import storage
 
 
-def main(orders, outputs):
-    """Draw the marginals and their distances."""
-    save(order_convergence(data.load(orders, "orders")), *outputs)
+def main(job):
+    """Draw the marginals of one case."""
+    save(order_convergence(storage.load(job.input.orders, "orders")), *job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input.orders, snakemake.output)
+        main(snakemake)

@@ -1,18 +1,16 @@
-"""Table of the fit by Eq. (12) over all cases."""
+"""Errors of Eq. (12) over all samples of every case."""
 
-from stiction.report import tables
-from stiction.report.tables_fit import fit_quality, markdown_fit
+from stiction.report.tables import save
+from stiction.report.tables_beams import fit_quality
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages.named import key_of, load_named
 
 
-def main(fits, output, settings):
-    """Collect the errors of all cases."""
-    keys = map(tuple, settings["keys"])
-    table = fit_quality({key: data.load(path, "fit") for key, path in zip(keys, fits, strict=True)})
-    tables.save(table, markdown_fit(table), output)
+def main(job):
+    """Summarise the errors of every case."""
+    save(fit_quality(load_named(job.input.fits, "fit", key_of)), job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output, snakemake.params.settings)
+        main(snakemake)

@@ -1,18 +1,16 @@
 """Sec. II-A: the maximum-entropy height density of one surface."""
 
-from stiction.config.units import si
+from stiction.config.units import typed
 from stiction.run.logs import logged
-from stiction.stages import data
-from stiction.surface import maxent
+from stiction.stages import heights, storage
 
 
-def main(output, settings):
-    """Solve for the density that has the moments of the surface."""
-    moments = si(settings)
-    density = maxent.solve(moments["skewness"], moments["kurtosis"])
-    data.save(data.heights(density, moments), output, "heights", settings)
+def main(job):
+    """Solve for the maximum-entropy density with the moments of the surface."""
+    dataset = heights.compute(typed(heights.Settings, job.params.settings))
+    storage.save(dataset, job.output[0], "heights", job.params.settings)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.output[0], snakemake.params.settings)
+        main(snakemake)

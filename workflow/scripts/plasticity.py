@@ -1,40 +1,18 @@
-"""App. A, Fig. 16: stress of every summit of a pair that touches at a small distance."""
+"""App. A, Fig. 16: stress of every touching summit of a pair at a small distance."""
 
-import numpy as np
-
-from stiction.config.units import si
-from stiction.contact.asperity import hertz_maximum_stress, reduced_modulus
-from stiction.progress import progress
+from stiction.config.units import typed
 from stiction.run.logs import logged
-from stiction.stages import data, data_studies, pairs
+from stiction.stages import storage
 from stiction.studies import plasticity
-from stiction.surface.summits import find_summits
 
 
-def main(heights, spectra, output, settings, pair):
+def main(job):
     """Find the touching summits of all strips and the share of their area that yields."""
-    surfaces = [(data.load(h, "heights"), data.load(s, "spectrum")) for h, s in zip(heights, spectra, strict=True)]
-    meeting = pairs.surface_pair(surfaces, "NG", settings)
-    streams = pairs.streams_of_sides(settings["seed"], pair)
-    distance, found = si({"distance_nm": settings["distance_nm"]})["distance"], []
-    for k in progress(range(settings["strips"]), "strips"):
-        height, curvature, _ = find_summits(meeting.draw(*streams(k)), meeting.beam.grid.spacing * meeting.every)
-        interference, radius = plasticity.touching(height, curvature, distance)
-        found.append((interference, radius, np.full(len(radius), k)))
-    interference, radius, strip = np.hstack(found)
-    summits = {"interference": interference, "radius": radius, "strip": strip.astype(int)}
-    summits["stress"] = hertz_maximum_stress(interference, radius, reduced_modulus(**si(settings["solid"])))
-    area = plasticity.contact_area(interference, radius)
-    share = plasticity.plastic_share(area, summits["stress"], summits["strip"], settings["strips"])
-    data.save(data_studies.plasticity(summits, share, distance), output, "plasticity", settings)
+    surfaces = list(zip(*(storage.load_all(job.input[stage], stage) for stage in ("heights", "spectrum")), strict=True))
+    dataset = plasticity.compute(surfaces, job.wildcards.pair, typed(plasticity.Settings, job.params.settings))
+    storage.save(dataset, job.output[0], "plasticity", job.params.settings)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(
-            snakemake.input.heights,
-            snakemake.input.spectrum,
-            snakemake.output[0],
-            snakemake.params.settings,
-            snakemake.wildcards.pair,
-        )
+        main(snakemake)

@@ -1,28 +1,19 @@
-"""App. B: release beams on force laws of the samples themselves, as a reference for the chaos model."""
+"""App. B: release beams on force laws resampled from the contact samples, to assess the chaos model."""
 
-from functools import partial
-
-from stiction.beam.montecarlo import Experiment, columns, simulate
-from stiction.chaos import model as chaos
-from stiction.config.cases import pair_of
-from stiction.progress import progress
+from stiction.config.units import typed
 from stiction.run.logs import logged
-from stiction.stages import data, data_studies
-from stiction.stages.cantilevers import cantilever, points
-from stiction.streams import stream
+from stiction.stages import storage
+from stiction.studies import resampling
 
 
-def main(forces, output, settings, case):
-    """Draw the laws of every beam from the samples, with replacement."""
-    forces = data.load(forces, "forces")
-    vectors, limit = data.vectors(forces), float(forces.limit)
-    beam, number = cantilever(settings, pair_of(case)), settings["beams"]
-    experiment = Experiment(beam, points(settings), lambda rng, n: chaos.resample_laws(vectors, limit, n, rng))
-    released = simulate(experiment, range(number), partial(stream, settings["seed"], "resampling", case))
-    outcomes = list(progress(released, "beams", total=number))
-    data.save(data_studies.resampling(columns(outcomes)), output, "resampling", settings)
+def main(job):
+    """Draw the force laws of every beam from the samples, with replacement, and release the beam."""
+    dataset = resampling.compute(
+        storage.load(job.input.forces, "forces"), job.wildcards.case, typed(resampling.Settings, job.params.settings)
+    )
+    storage.save(dataset, job.output[0], "resampling", job.params.settings)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input[0], snakemake.output[0], snakemake.params.settings, snakemake.wildcards.case)
+        main(snakemake)

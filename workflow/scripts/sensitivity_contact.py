@@ -1,31 +1,21 @@
-"""Fig. 13: contact of a pair whose beam surface has a little less or a little more of one moment."""
+"""Fig. 13: contact of a pair with one moment of the beam's surface slightly decreased or increased."""
 
-from stiction.config.units import si
+from stiction.config.units import typed
 from stiction.run.logs import logged
-from stiction.stages import cases, data, pairs
-from stiction.studies import sensitivity
+from stiction.stages import storage
+from stiction.studies import sensitivity_contact
 
 
-def main(heights, spectra, output, settings, wildcards):
-    """Draw the same samples, in the sense of their random numbers, with a shifted moment."""
-    beam, substrate = [
-        (data.load(h, "heights"), data.load(s, "spectrum")) for h, s in zip(heights, spectra, strict=True)
-    ]
-    moments = {name: float(beam[0][name]) for name in cases.MOMENTS}
-    less, more = sensitivity.shifted(moments[wildcards.moment], settings["step"])
-    moments[wildcards.moment] = less if wildcards.side == "less" else more
-    # ASSUME: the spectrum of the heights keeps its shape when a moment changes.
-    shape = cases.surface(moments, cases.target_spectrum(beam[1]), si(settings["sampling"])["spacing"])
-    contact = pairs.contact((shape, substrate), wildcards.pair, "NG", settings)
-    data.save(contact.assign(moment=moments[wildcards.moment]), output, "contact", settings)
+def main(job):
+    """Draw samples with the same random numbers for both values of the shifted moment."""
+    surfaces = list(zip(*(storage.load_all(job.input[stage], stage) for stage in ("heights", "spectrum")), strict=True))
+    wanted = typed(sensitivity_contact.Settings, job.params.settings)
+    dataset = sensitivity_contact.compute(
+        surfaces, job.wildcards.pair, job.wildcards.moment, job.wildcards.side, wanted
+    )
+    storage.save(dataset, job.output[0], "contact", job.params.settings)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(
-            snakemake.input.heights,
-            snakemake.input.spectrum,
-            snakemake.output[0],
-            snakemake.params.settings,
-            snakemake.wildcards,
-        )
+        main(snakemake)

@@ -1,27 +1,19 @@
-"""Sec. II-B: the spectrum of the Gaussian field behind a non-Gaussian surface."""
+"""Sec. II-B: the spectrum of the Gaussian field underlying a non-Gaussian surface."""
 
-from stiction.config.units import si
+from stiction.config.units import typed
 from stiction.run.logs import logged
-from stiction.stages import cases, data
-from stiction.surface.spectrum import CutoffSelfAffine
+from stiction.stages import spectrum, storage
 
 
-def main(heights, identification, output, settings):
-    """Take Eq. (7) as published or as identified and invert the translation."""
-    if settings["psd"] == "identified":
-        target = cases.target_spectrum(data.load(identification, "identification"))
-    else:
-        target = CutoffSelfAffine(**si(settings["psd"]))
-    density = cases.density(data.load(heights, "heights"), "NG")
-    spacing = si({"spacing_nm": settings["spacing_nm"]})["spacing"]
-    data.save(cases.spectrum(density, target, spacing), output, "spectrum", settings)
+def main(job):
+    """Take the published or the identified parameters of Eq. (7) and invert the translation."""
+    identification = storage.load(job.input.identification, "identification") if job.input.identification else None
+    dataset = spectrum.compute(
+        storage.load(job.input.heights, "heights"), identification, typed(spectrum.Settings, job.params.settings)
+    )
+    storage.save(dataset, job.output[0], "spectrum", job.params.settings)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(
-            snakemake.input.heights,
-            snakemake.input.get("identification"),
-            snakemake.output[0],
-            snakemake.params.settings,
-        )
+        main(snakemake)

@@ -1,18 +1,20 @@
 """Table I: statistics of the simulated surfaces."""
 
-from stiction.report import tables
+from stiction.report import published
+from stiction.report.tables import save
+from stiction.report.tables_surfaces import table_1
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages.named import load_named, model_of, surface_of
 
 
-def main(paths, output, settings):
-    """Compare simulated, printed and measured statistics."""
-    keys = map(tuple, settings["keys"])
-    loaded = {key: data.load(path, "character") for key, path in zip(keys, paths.characters, strict=True)}
-    table = tables.table_1(loaded, settings["measured"], tables.published(paths.printed))
-    tables.save(table, tables.markdown_1(table), output)
+def main(job):
+    """Compare simulated, published and measured statistics."""
+    settings = job.params.settings
+    characters = load_named(job.input.characters, "character", lambda name: (surface_of(name), model_of(name)))
+    known = published.of_paper(published.read(job.input.published), settings["of_paper"])
+    save(table_1(characters, settings["measured"], known), job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output, snakemake.params.settings)
+        main(snakemake)

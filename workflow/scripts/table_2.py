@@ -1,19 +1,21 @@
 """Table II: published and identified spectra."""
 
-from stiction.report import tables
+from stiction.report import published
+from stiction.report.tables import save
+from stiction.report.tables_surfaces import table_2
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages.named import load_named
 
 
-def main(paths, output, settings):
+def main(job):
     """Compare the parameters of Eq. (7)."""
-    names = settings["surfaces"]
-    found = {n: data.load(p, "identification") for n, p in zip(names, paths.identifications, strict=True)}
-    spectra = {n: data.load(p, "spectrum") for n, p in zip(names, paths.spectra, strict=True)}
-    table = tables.table_2(found, spectra, tables.published(paths.printed))
-    tables.save(table, tables.markdown_2(table), output)
+    settings = job.params.settings
+    found = load_named(job.input.identifications, "identification")
+    spectra = load_named(job.input.spectra, "spectrum")
+    known = published.of_paper(published.read(job.input.published), settings["of_paper"])
+    save(table_2(found, spectra, known, settings["sources"]), job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output, snakemake.params.settings)
+        main(snakemake)

@@ -1,19 +1,17 @@
-"""What the chaos model does to the crack length: laws drawn from it beside laws of the samples themselves."""
+"""Effect of the chaos model on the crack length, compared with resampled force laws."""
 
-from stiction.report import tables, tables_studies
+from stiction.report.tables import save
+from stiction.report.tables_beams import resampling
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages.named import key_of, load_named
 
 
-def main(paths, output, settings):
-    """Compare the two for every case of model NG."""
-    keys = [tuple(key) for key in settings["keys"]]
-    beams = {key: data.load(path, "beams") for key, path in zip(keys, paths.beams, strict=True)}
-    resampled = {key: data.load(path, "resampling") for key, path in zip(keys, paths.resampled, strict=True)}
-    table = tables_studies.resampling(beams, resampled)
-    tables.save(table, tables_studies.markdown_resampling(table), output)
+def main(job):
+    """Compare both for every case of model NG."""
+    beams = load_named(job.input.beams, "beams", lambda name: key_of(name)[:2])
+    save(resampling(beams, load_named(job.input.resampled, "resampling", key_of)), job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output, snakemake.params.settings)
+        main(snakemake)

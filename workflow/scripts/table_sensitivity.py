@@ -1,19 +1,20 @@
 """Figure 13 in numbers."""
 
-from stiction.report import tables, tables_studies
+from stiction.report import published
+from stiction.report.tables import save
+from stiction.report.tables_studies import sensitivity
 from stiction.run.logs import logged
-from stiction.stages import data
+from stiction.stages.named import load_named
 
 
-def main(paths, output, settings):
-    """Put the sensitivities beside those that the paper states."""
-    loaded = {
-        moment: data.load(path, "sensitivity") for moment, path in zip(settings["moments"], paths.studies, strict=True)
-    }
-    table = tables_studies.sensitivity(loaded, settings["pair"], tables.published(paths.printed))
-    tables.save(table, tables_studies.markdown_sensitivity(table), output)
+def main(job):
+    """Compare the sensitivities with the published ones."""
+    settings = job.params.settings
+    studies = load_named(job.input.studies, "sensitivity", lambda name: name.partition("_")[2])
+    known = published.of_paper(published.read(job.input.published), settings["of_paper"])
+    save(sensitivity(studies, settings["pair"], known), job.output)
 
 
 if __name__ == "__main__":
     with logged(snakemake.log[0]):
-        main(snakemake.input, snakemake.output, snakemake.params.settings)
+        main(snakemake)

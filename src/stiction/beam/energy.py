@@ -1,20 +1,23 @@
-"""What a crack length says about adhesion: energy of an S-shaped beam and its release (Sec. IV, Eq. 13).
+"""Adhesion energy from a crack length: elastic energy of an S-shaped beam and its release rate (Sec. IV, Eq. 13).
 
-The beam is clamped at the height h and flat on the substrate beyond the crack length l; a beam is a
-`stiction.beam.cantilever.Beam`.
+The beam is clamped at the height h and flat on the substrate beyond the crack length l.
 """
 
-#: Crack lengths follow adhesion energies to this power: l_s ~ Γ^(-1/4), Eq. (13).
+import numpy as np
+
+from stiction.beam.cantilever import Beam
+
+#: Power with which the crack length depends on the adhesion energy: l_s ~ Γ^(-1/4), Eq. (13).
 CRACK_LENGTH_POWER = -1 / 4
 
 
-def s_shape_energy(crack_length, beam):
+def s_shape_energy(crack_length: float | np.ndarray, beam: Beam) -> float | np.ndarray:
     """Elastic energy of an S-shaped beam, 6 EI h² / l³ [J]; crack length l [m], any shape."""
     return 6 * beam.bending_stiffness * beam.gap**2 / crack_length**3
 
 
-def adhesion_energy(crack_length, beam):
-    r"""Apparent adhesion energy from a crack length, Eq. (13): what the S-shape releases per area of new crack.
+def apparent_adhesion_energy(crack_length: float | np.ndarray, beam: Beam) -> float | np.ndarray:
+    r"""Apparent adhesion energy Γ from a crack length, Eq. (13): energy release rate of the S-shape.
 
     .. math:: \Gamma = \frac{3}{2} E \frac{h^2 t^3}{l_s^4} = -\frac{1}{w} \frac{dU}{dl_s}
 
@@ -31,14 +34,13 @@ def adhesion_energy(crack_length, beam):
 
     Examples
     --------
-    >>> from stiction.beam.cantilever import Beam
     >>> beam = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200)
-    >>> round(float(adhesion_energy(710e-6, beam)) * 1e3, 2)  # mJ/m²
+    >>> round(float(apparent_adhesion_energy(710e-6, beam)) * 1e3, 2)  # mJ/m²
     6.81
     """
     return 1.5 * beam.young_modulus * beam.gap**2 * beam.thickness**3 / crack_length**4
 
 
-def arrest_length(energy, beam):
-    """Crack length [m] at which an S-shaped beam meets the adhesion energy [J m⁻²], Eq. (13) inverted; any shape."""
+def arrest_length(energy: float | np.ndarray, beam: Beam) -> float | np.ndarray:
+    """Crack length [m] of an S-shaped beam at the adhesion energy Γ [J m⁻²], Eq. (13) inverted; any shape."""
     return (energy / (1.5 * beam.young_modulus * beam.gap**2 * beam.thickness**3)) ** CRACK_LENGTH_POWER

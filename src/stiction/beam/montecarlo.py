@@ -1,22 +1,21 @@
-"""Monte Carlo over beams: random force laws, random dimensions, one release each (Sec. III-C and IV, Figs. 14 and 15).
+"""Monte Carlo over beams: random force laws, random dimensions, one release each (Secs. III-C and IV, Figs. 14 and 15).
 
-A beam is known by its number: the same number gives the same result in every order, batch and number of threads.
+A beam is identified by its number: its result does not depend on the order, the batch or the number of threads.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stiction.beam.cantilever import Beam, EndState, crack_length, end_state, release
-from stiction.beam.energy import adhesion_energy, arrest_length
+from stiction.beam.cantilever import Beam
+from stiction.beam.energy import apparent_adhesion_energy
+from stiction.beam.release import EndState, released_beam
 from stiction.contact import forcelaw
 
 #: Dimensions that scatter in the model GEO, in the order in which they are drawn.
 SCATTERED = ("thickness", "length", "width", "gap")
-#: The artificial load leaves this part of the crack length that Eq. (13) expects of the mean adhesion.
-START = 1 / 3
 
 
 @dataclass(frozen=True)
@@ -24,8 +23,9 @@ class Experiment:
     """One case: the nominal beam, its random substrate and the scatter of its dimensions."""
 
     beam: Beam  #: nominal dimensions
-    points: int  #: force laws along the beam, N_p
-    draw_laws: Callable  #: ``draw_laws(rng, n)`` -> (n, 4) rows [f_max, d_max, a_left, a_right], SI
+    points: int  #: number of force laws along the beam, N_p
+    #: ``draw_laws(n, rng)`` -> (n, 4) rows [f_max, d_max, a_left, a_right], SI
+    draw_laws: Callable[[int, np.random.Generator], np.ndarray]
     scatter: float = 0.0  #: relative standard deviation of each dimension [-]; 0 in models G and NG
 
     def __post_init__(self):
@@ -37,19 +37,19 @@ class Experiment:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How one beam ended."""
+    """Result of one beam."""
 
-    sample: int  #: its number
+    sample: int  #: number of the beam
     state: EndState
     crack_length: float  #: l_s, up to the first contact [m]; the length of the beam if it is free
-    #: Γ of Eq. (13) [J m⁻²], an adhesion energy for an S-shape only. ASSUME: of nominal dimensions, as in experiments.
+    #: Γ of Eq. (13) [J m⁻²], an adhesion energy for an S-shape only. ASSUME: nominal dimensions, as in experiments.
     energy: float
     deflection: np.ndarray  #: of the nodes (elements + 1,) [m]
     imbalance: float  #: largest unbalanced force [N]
     iterations: int
 
 
-def scattered_beam(beam, scatter, rng):
+def scattered_beam(beam: Beam, scatter: float, rng: np.random.Generator) -> Beam:
     """Beam with normally distributed thickness, length, width and gap of relative standard deviation ``scatter``.
 
     ASSUME: the four dimensions are independent; the mesh keeps its number of elements and points.
@@ -60,10 +60,10 @@ def scattered_beam(beam, scatter, rng):
     )
 
 
-def release_beam(experiment, sample, rng):
+def release_beam(experiment: Experiment, sample: int, rng: np.random.Generator) -> Outcome:
     """Draw the laws, then the dimensions, of one beam and release it.
 
-    The laws come first, so that models with and without geometric scatter share them.
+    The laws are drawn first, so that models with and without geometric scatter share them.
 
     Parameters
     ----------
@@ -71,56 +71,48 @@ def release_beam(experiment, sample, rng):
     sample : int
         Number of the beam.
     rng : numpy.random.Generator
-        The stream of this beam.
-
-    Returns
-    -------
-    Outcome
+        Stream of this beam.
 
     Raises
     ------
     NotConverged
-        If the beam finds no equilibrium.
+        If no equilibrium is found.
     """
-    laws = experiment.draw_laws(rng, experiment.points)
+    laws = experiment.draw_laws(experiment.points, rng)
     beam = scattered_beam(experiment.beam, experiment.scatter, rng)
-    expected = min(arrest_length(forcelaw.energy(laws).mean(), beam), beam.length)
-    end = release(beam, laws, START * expected)
-    crack = crack_length(beam, laws, end.deflection)
+    end = released_beam(beam, laws, forcelaw.energy(laws).mean())
     return Outcome(
         sample=sample,
-        state=end_state(beam, laws, end.deflection),
-        crack_length=crack,
-        energy=adhesion_energy(crack, experiment.beam),
-        deflection=end.deflection[:, 0],
-        imbalance=end.imbalance,
-        iterations=end.iterations,
+        state=end.state,
+        crack_length=end.crack_length,
+        energy=apparent_adhesion_energy(end.crack_length, experiment.beam),
+        deflection=end.equilibrium.deflection[:, 0],
+        imbalance=end.equilibrium.imbalance,
+        iterations=end.equilibrium.iterations,
     )
 
 
-def simulate(experiment, samples, stream, threads=1):
-    """Release many beams; yields their outcomes in the order of ``samples`` as they get done.
+def simulate(
+    experiment: Experiment, samples: Iterable[int], stream: Callable[[int], np.random.Generator], threads: int = 1
+) -> Iterator[Outcome]:
+    """Release many beams; yields their outcomes in the order of ``samples`` as they become available.
 
     Parameters
     ----------
     experiment : Experiment
     samples : iterable of int
-        Numbers of the beams, for instance one chunk of all.
+        Numbers of the beams, for example one chunk of all.
     stream : callable
         ``stream(k)`` is the numpy.random.Generator of beam k.
     threads : int
-        Beams that are in work at once; no result depends on it.
-
-    Yields
-    ------
-    Outcome
+        Number of beams computed at a time; the results do not depend on it.
     """
     with ThreadPoolExecutor(threads) as pool:
         yield from pool.map(lambda k: _numbered(experiment, k, stream(k)), samples)
 
 
 def _numbered(experiment, sample, rng):
-    """`release_beam`, whose errors name the beam."""
+    """`release_beam`, with the number of the beam added to any error."""
     try:
         return release_beam(experiment, sample, rng)
     except (ValueError, RuntimeError) as error:
@@ -128,14 +120,14 @@ def _numbered(experiment, sample, rng):
         raise
 
 
-def columns(outcomes, shapes=0):
-    """Outcomes as arrays over the samples, without gaps: whoever averages energies selects ``state`` first.
+def columns(outcomes: Sequence[Outcome], shapes: int = 0) -> dict[str, np.ndarray]:
+    """Outcomes as arrays over the samples, of all end states: select by ``state`` before averaging energies.
 
     Parameters
     ----------
     outcomes : sequence of Outcome, n of them
     shapes : int
-        Number of beams, from the first on, whose deflection is kept.
+        Number of beams, counted from the first, whose deflection is kept.
 
     Returns
     -------

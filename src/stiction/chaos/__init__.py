@@ -1,0 +1,1 @@
+"""Polynomial chaos model of the force laws (Sec. III-B2, App. B)."""

@@ -1,0 +1,1 @@
+"""Configuration: files, schema, checks, units, and the settings of every job."""

@@ -1,18 +1,15 @@
-"""Keys of cases, which name their files, and changes of single keys of the configuration.
-
-Apart from `stiction.config.settings`, so that a change of what is said about wrong settings reruns nothing.
-"""
+"""Names of cases, which are used in file names."""
 
 import re
 
-#: A case as it stands in paths: name of the pair, two to four decimals of the relative humidity.
+#: Pattern of a case in paths: name of the pair, two to four decimals of the relative humidity.
 CASE = "[A-Za-z][A-Za-z0-9]*_rh0[0-9]{2,4}"
-#: What a humidity must do for that, in words.
+#: Requirement on a humidity, as part of an error message.
 NAMEABLE = "have at most 4 decimals, which name its files"
 
 
-def case_id(pair, humidity):
-    """Name of a pair at a relative humidity [-], safe in paths and wildcards.
+def case_id(pair: str, humidity: float) -> str:
+    """Name of the case of a pair at a relative humidity [-], safe in paths and wildcards.
 
     Raises
     ------
@@ -30,13 +27,13 @@ def case_id(pair, humidity):
     return f"{pair}_rh{text.replace('.', '')}"
 
 
-def humidity_of(case):
+def humidity_of(case: str) -> float:
     """Relative humidity [-] of a case.
 
     Raises
     ------
     ValueError
-        If ``case`` is not what `case_id` returns.
+        If `case_id` returns no such name.
 
     Examples
     --------
@@ -46,8 +43,8 @@ def humidity_of(case):
     return _parted(case)[1]
 
 
-def pair_of(case):
-    """Name of the pair of a case; raises as `humidity_of`.
+def pair_of(case: str) -> str:
+    """Name of the pair of a case; raises the errors of `humidity_of`.
 
     Examples
     --------
@@ -66,14 +63,7 @@ def _parted(case):
     return pair, humidity
 
 
-def decimals(humidity):
-    """Humidity with two to four decimals, ``None`` if these do not hold it."""
+def decimals(humidity: float) -> str | None:
+    """Humidity with two to four decimals as text; ``None`` if four decimals are not exact."""
     texts = (f"{humidity:.{places}f}" for places in (2, 3, 4))
     return next((text for text in texts if float(text) == humidity), None)
-
-
-def merged(base, overlay):
-    """Mapping ``base`` changed key by key, as Snakemake does; lists and numbers are replaced whole."""
-    if not (isinstance(base, dict) and isinstance(overlay, dict)):
-        return overlay
-    return base | {key: merged(base.get(key), value) for key, value in overlay.items()}

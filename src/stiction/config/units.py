@@ -1,6 +1,11 @@
-"""Units at the border: entries of the configuration, whose keys carry units, in SI. Nothing else converts."""
+"""Settings as typed, frozen objects in SI units; units are converted only here.
+
+Keys of the configuration carry their units (``gap_um``); fields of the objects do not (``gap``).
+"""
 
 import re
+from dataclasses import is_dataclass
+from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 _FACTORS = {
     "nm": 1e-9,
@@ -11,19 +16,57 @@ _FACTORS = {
     "GPa": 1e9,
     "K": 1.0,
 }
+#: Lengths of the configuration are in two units: nanometres in a micrometre.
+NM_PER_UM = 1e3
 _UNIT = re.compile("_(" + "|".join(sorted(_FACTORS, key=len, reverse=True)) + ")$")
 
+T = TypeVar("T")
 
-def si(entry):
-    """Convert a section: ``{"gap_um": 20}`` becomes ``{"gap": 2e-5}``; keys without a unit stay as they are.
+
+def typed(kind: type[T], section: dict[str, Any]) -> T:
+    """Section of the configuration, or settings of a job, as a frozen dataclass in SI.
+
+    Fields that are dataclasses, or dicts of dataclasses, are built from nested sections; lists become tuples.
+
+    Parameters
+    ----------
+    kind : type
+        Dataclass whose fields are named like the keys, without units.
+    section : dict
+        Plain numbers, strings, lists and dicts.
+
+    Raises
+    ------
+    TypeError
+        If a key of the section is not a field, or a field without default has no key.
 
     Examples
     --------
-    >>> si({"temperature_K": 300, "samples": 5})
-    {'temperature': 300.0, 'samples': 5}
+    >>> from dataclasses import make_dataclass
+    >>> Water = make_dataclass("Water", [("temperature", float), ("samples", int)])
+    >>> typed(Water, {"temperature_K": 300, "samples": 5})
+    Water(temperature=300.0, samples=5)
     """
-    converted = {}
-    for key, value in entry.items():
+    kinds = get_type_hints(kind)
+    values = {}
+    for key, value in section.items():
         unit = _UNIT.search(key)
-        converted[key[: unit.start()] if unit else key] = value * _FACTORS[unit[1]] if unit else value
-    return converted
+        name = key[: unit.start()] if unit else key
+        values[name] = _converted(value, kinds.get(name), _FACTORS[unit[1]] if unit else None)
+    return kind(**values)
+
+
+def _converted(value, kind, factor):
+    """Value of one key in SI units, converted to the type of its field."""
+    if isinstance(value, dict):
+        return _section(value, kind)
+    if isinstance(value, list | tuple):
+        return tuple(value) if factor is None else tuple(item * factor for item in value)
+    return value if factor is None else value * factor
+
+
+def _section(value, kind):
+    """Section as the dataclass, or the dict of dataclasses, given by a type."""
+    if get_origin(kind) is dict:
+        return {name: typed(get_args(kind)[1], entry) for name, entry in value.items()}
+    return typed(next(option for option in (kind, *get_args(kind)) if is_dataclass(option)), value)

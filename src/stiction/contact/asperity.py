@@ -1,4 +1,4 @@
-r"""Contact of one sphere with a flat: Hertz and, with a Dugdale attraction, Maugis (Sec. III-A2).
+r"""Contact of a sphere with a flat: Hertz and, with a Dugdale attraction, Maugis (Sec. III-A2).
 
 Forces are positive in repulsion, interferences positive in overlap. Maugis' theory is written in
 
@@ -6,43 +6,61 @@ Forces are positive in repulsion, interferences positive in overlap. Maugis' the
           \bar\delta = \frac{\delta}{(\pi^2 w^2 R/K^2)^{1/3}}, \quad
           \lambda = 2\sigma_0 \left(\frac{R}{\pi w K^2}\right)^{1/3}, \quad K = \tfrac43 E' ;
 
-λ → 0 is DMT, λ → ∞ is JKR. ASSUME: where several states share an interference, the sphere is in that with the largest
-contact, as on the way out.
+λ → 0 is DMT, λ → ∞ is JKR. ASSUME: where several states have the same interference, the sphere is in the one of
+largest contact, as during separation.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple, Protocol
 
+import numba
 import numpy as np
 
+from stiction.surface.summits import is_summit, mean_curvature
 
-def reduced_modulus(young_modulus, poisson_ratio):
+
+class Attraction(Protocol):
+    """Attraction of two flats as a constant stress over a short range (Dugdale): what Maugis' theory needs of it."""
+
+    @property
+    def work_of_adhesion(self) -> float:
+        """Work per area w to separate the flats [J m⁻²]."""
+
+    @property
+    def stress(self) -> float:
+        """Tension σ₀ within the range, positive [Pa]."""
+
+
+def reduced_modulus(young_modulus: float, poisson_ratio: float) -> float:
     """Modulus E' of two equal bodies, below Eq. (14) [Pa]."""
     return young_modulus / (2 * (1 - poisson_ratio**2))
 
 
-def hertz_force(interference, radius, modulus):
+def hertz_force(interference: float | np.ndarray, radius: float | np.ndarray, modulus: float) -> float | np.ndarray:
     """Elastic force of a sphere on a flat [N]; interference [m], radius [m], reduced modulus [Pa]."""
     return 4 / 3 * modulus * np.sqrt(radius) * np.maximum(interference, 0) ** 1.5
 
 
-def hertz_maximum_stress(interference, radius, modulus):
+def hertz_maximum_stress(
+    interference: float | np.ndarray, radius: float | np.ndarray, modulus: float
+) -> float | np.ndarray:
     """Largest contact stress, Eq. (14) [Pa]; interference [m], radius [m], reduced modulus [Pa]."""
     return 2 / np.pi * modulus * np.sqrt(np.maximum(interference, 0) / radius)
 
 
-def transition_parameter(radius, modulus, attraction):
+def transition_parameter(radius: float, modulus: float, attraction: Attraction) -> float:
     """Maugis' λ of a sphere of ``radius`` [m] [-]."""
     stiffness = 4 / 3 * modulus
     return 2 * attraction.stress * (radius / (np.pi * attraction.work_of_adhesion * stiffness**2)) ** (1 / 3)
 
 
-def interference_scale(radius, modulus, attraction):
-    """Interference that is 1 in Maugis' units [m]."""
+def interference_scale(radius: float, modulus: float, attraction: Attraction) -> float:
+    """Unit of the interference in Maugis' theory [m]."""
     return (np.pi**2 * attraction.work_of_adhesion**2 * radius / (4 / 3 * modulus) ** 2) ** (1 / 3)
 
 
-def maugis_in_contact(spread, transition):
+def maugis_in_contact(spread: np.ndarray, transition: float) -> tuple[np.ndarray, np.ndarray]:
     """State of a sphere in contact, in closed form.
 
     Parameters
@@ -65,28 +83,30 @@ def maugis_in_contact(spread, transition):
     return load, a**2 - 4 / 3 * transition * a * u
 
 
-def maugis_apart(adhesive_radius, transition):
-    """State of a sphere held by the attraction alone: P̄ and δ̄ for the radius c̄, (n,) [-]."""
+def maugis_apart(
+    adhesive_radius: float | np.ndarray, transition: float
+) -> tuple[float | np.ndarray, float | np.ndarray]:
+    """State of a sphere without contact, held by the attraction only: P̄ and δ̄ for the radius c̄, (n,) [-]."""
     c = adhesive_radius
     load = -0.5 * np.pi * transition * c**2
     return load, 0.5 * c**2 - 8 / (3 * np.pi) * transition * c - 2 / (np.pi * transition)
 
 
-def touching_radius(transition):
-    """Adhesive radius c̄ at which the sphere comes to touch: the limit m → ∞ of the closure [-]."""
+def touching_radius(transition: float) -> float:
+    """Adhesive radius c̄ at first contact: the limit m → ∞ of the closure [-]."""
     quadratic, linear = 0.25 * np.pi * transition, 4 / 3 * transition**2 * (0.5 * np.pi - 1)
     return 2 / (linear + np.sqrt(linear**2 + 4 * quadratic))
 
 
-def maugis_branch(transition, points=6000):
+def maugis_branch(transition: float, points: int = 6000) -> tuple[np.ndarray, np.ndarray]:
     """Loads and interferences from deep contact to separation, ordered by interference.
 
     Returns
     -------
     load, interference : (n,) arrays
-        P̄ and δ̄ of the stable states [-]; the first is the one at which the sphere snaps off.
+        P̄ and δ̄ of the stable states [-]; the first is the point of snap-off.
     """
-    # Deep contact has a small spread; there the closure cancels to u³, so it starts at 1e-2 (δ̄ ~ 1e3 for any λ here).
+    # Deep contact has a small spread, where the closure suffers cancellation to u³: 1e-2 is δ̄ ~ 1e3 for any λ here.
     spread = np.geomspace(1e-2, 1e4, points)
     touching = touching_radius(transition)
     radius = np.linspace(touching, min(touching, 8 * transition / (3 * np.pi)), points)
@@ -95,15 +115,68 @@ def maugis_branch(transition, points=6000):
     return load[fold::-1], interference[fold::-1]
 
 
+class Asperity(Protocol):
+    """Elastic sphere on a flat; interchangeable models of one asperity."""
+
+    def force(self, interference: float | np.ndarray, radius: float) -> float | np.ndarray:
+        """Force [N] of a sphere of this radius [m] at interferences (n,) [m]."""
+
+    def add_forces(self, heights: np.ndarray, spacing: float, step: float, force: np.ndarray) -> None:
+        """Add the force of all summits of an equivalent surface on a flat.
+
+        Parameters
+        ----------
+        heights : (n1, n2) float32 array
+            [m]
+        spacing : float
+            Of the points [m].
+        step : float
+            Of the distances [m].
+        force : (n,) float64 array
+            Receives the sum at the distances ``step * arange(n)`` [N].
+
+        Raises
+        ------
+        ValueError
+            If a summit is outside the range of the model.
+        """
+
+
+@dataclass(frozen=True)
+class HertzAsperity:
+    """An `Asperity` without attraction."""
+
+    modulus: float  #: reduced modulus E' [Pa]
+
+    def force(self, interference: float | np.ndarray, radius: float) -> float | np.ndarray:
+        """Elastic force, see `Asperity`."""
+        return hertz_force(interference, radius, self.modulus)
+
+    def add_forces(self, heights: np.ndarray, spacing: float, step: float, force: np.ndarray) -> None:
+        """Add the elastic force of all summits, see `Asperity`."""
+        _add_hertz(heights, spacing, step, self.modulus, force)
+
+
+class TableScales(NamedTuple):
+    """Scales of a sphere of radius 1 m and spacing of a `MaugisTable`."""
+
+    log_transition: float  #: ln λ of that sphere [-]
+    interference: float  #: unit of the interference in Maugis' theory [m]
+    force: float  #: πw [N]
+    first: float  #: ln λ of the first row [-]
+    log_step: float  #: of ln λ [-]
+    root_step: float  #: of √(δ̄ - δ̄_min) [-]
+
+
 @dataclass(frozen=True)
 class MaugisTable:
-    """Load of a sphere for any radius and interference, tabulated over ln λ and √(δ̄ - δ̄_min).
+    """An `Asperity` with attraction: its load tabulated over ln λ and √(δ̄ - δ̄_min).
 
-    The root removes the vertical tangent with which the load leaves the point of snap-off.
+    The square root removes the vertical tangent of the load at the point of snap-off.
     """
 
     modulus: float  #: reduced modulus E' [Pa]
-    attraction: object  #: van der Waals :class:`~stiction.contact.vanderwaals.Attraction`
+    attraction: Attraction
 
     #: Range of λ and of √(δ̄ - δ̄_min), and their numbers of points.
     transitions = (0.03, 6.0, 128)
@@ -115,35 +188,93 @@ class MaugisTable:
         return [maugis_branch(x) for x in np.geomspace(low, high, n)]
 
     @cached_property
-    def snap_off(self):
+    def snap_off(self) -> np.ndarray:
         """Interference δ̄_min of every tabulated λ, (n_λ,) [-]."""
         return np.array([interference[0] for _, interference in self._branches])
 
     @cached_property
-    def load(self):
+    def load(self) -> np.ndarray:
         """Load P̄, (n_λ, n_root) [-]."""
         root = np.linspace(*self.roots)
         return np.array([np.interp(root, np.sqrt(delta - delta[0]), load) for load, delta in self._branches])
 
     @property
-    def dimensional(self):
-        """Scales of a sphere of radius 1 m and the spacing of the table.
-
-        ln λ [-], interference [m] and force πw [N]; first ln λ and its step, step of the root [-].
-        """
+    def scales(self) -> TableScales:
+        """Scales to make the table dimensional."""
         low, high, n = self.transitions
-        return (
-            float(np.log(transition_parameter(1.0, self.modulus, self.attraction))),
-            float(interference_scale(1.0, self.modulus, self.attraction)),
-            float(np.pi * self.attraction.work_of_adhesion),
-            float(np.log(low)),
-            float(np.log(high / low) / (n - 1)),
-            float(self.roots[1] / (self.roots[2] - 1)),
+        return TableScales(
+            log_transition=float(np.log(transition_parameter(1.0, self.modulus, self.attraction))),
+            interference=float(interference_scale(1.0, self.modulus, self.attraction)),
+            force=float(np.pi * self.attraction.work_of_adhesion),
+            first=float(np.log(low)),
+            log_step=float(np.log(high / low) / (n - 1)),
+            root_step=float(self.roots[1] / (self.roots[2] - 1)),
         )
 
-    def force(self, interference, radius):
-        """Force of one sphere, exactly [N]; 0 beyond snap-off. Interference (n,) [m], radius [m]."""
+    def force(self, interference: float | np.ndarray, radius: float) -> float | np.ndarray:
+        """Force of one sphere without interpolation in λ [N]; 0 beyond snap-off. Interference (n,) [m], radius [m]."""
         load, delta = maugis_branch(transition_parameter(radius, self.modulus, self.attraction), 20000)
         scaled = np.asarray(interference) / interference_scale(radius, self.modulus, self.attraction)
         held = np.interp(np.sqrt(np.maximum(scaled - delta[0], 0)), np.sqrt(delta - delta[0]), load)
         return np.pi * self.attraction.work_of_adhesion * radius * np.where(scaled < delta[0], 0.0, held)
+
+    def add_forces(self, heights: np.ndarray, spacing: float, step: float, force: np.ndarray) -> None:
+        """Add the force of all summits by interpolation in the table, see `Asperity`."""
+        outside = _add_maugis(heights, spacing, step, self.scales, self.snap_off, self.load, force)
+        if outside:
+            raise ValueError(
+                f"{outside} summits are outside the table of Maugis' λ {self.transitions} or interference: "
+                "rms, spectrum or modulus are out of range"
+            )
+
+
+def asperity(modulus: float, attraction: Attraction | None) -> Asperity:
+    """Model of one asperity of reduced modulus E' [Pa]: Maugis with attraction, Hertz without."""
+    return HertzAsperity(modulus) if attraction is None else MaugisTable(modulus, attraction)
+
+
+@numba.njit(cache=True, nogil=True)
+def _add_hertz(heights, spacing, step, modulus, force):
+    """Add the Hertz force of every summit at the distances ``step * arange(n)`` [N]."""
+    for i in range(1, heights.shape[0] - 1):
+        for j in range(1, heights.shape[1] - 1):
+            if heights[i, j] > 0 and is_summit(heights, i, j):
+                factor = 4 / 3 * modulus / np.sqrt(mean_curvature(heights, i, j, spacing))
+                for k in range(min(int(heights[i, j] / step) + 1, len(force))):
+                    overlap = max(heights[i, j] - k * step, 0.0)
+                    force[k] += factor * overlap * np.sqrt(overlap)
+
+
+@numba.njit(cache=True, nogil=True)
+def _add_maugis(heights, spacing, step, scales, snap_off, load, force):
+    """Add the Maugis force of every summit, by interpolation in the table; returns the number of summits outside it."""
+    outside = 0
+    for i in range(1, heights.shape[0] - 1):
+        for j in range(1, heights.shape[1] - 1):
+            z = np.float64(heights[i, j])
+            if z <= 0 or not is_summit(heights, i, j):
+                continue
+            radius = 1 / mean_curvature(heights, i, j, spacing)
+            third = radius ** (1 / 3)
+            place = (scales.log_transition + np.log(third) - scales.first) / scales.log_step
+            row = int(np.floor(place))
+            if row < 0 or row >= len(snap_off) - 1:
+                outside += 1
+                continue
+            share = place - row
+            low, high = load[row], load[row + 1]
+            inverse = 1 / (scales.interference * third)
+            deepest = (1 - share) * snap_off[row] + share * snap_off[row + 1]
+            weight = scales.force * radius
+            last = min(int(np.floor((z - deepest / inverse) / step)), len(force) - 1)
+            for k in range(last + 1):
+                root = np.sqrt(max((z - k * step) * inverse - deepest, 0.0)) / scales.root_step
+                cell = int(root)
+                if cell >= len(low) - 1:
+                    outside += 1
+                    continue
+                part = root - cell
+                below = low[cell] + part * (low[cell + 1] - low[cell])
+                above = high[cell] + part * (high[cell + 1] - high[cell])
+                force[k] += weight * ((1 - share) * below + share * above)
+    return outside

@@ -1,19 +1,21 @@
 r"""Apparent adhesive contact force of one piece of surface and its parameters (Sec. III-B1).
 
-Convention, as everywhere: a force per unit area ``f(d)`` [Pa] of the distance ``d`` [m] between mean planes is positive
-where the surfaces repel and negative where they attract. Two row formats carry it through the package:
+Convention: a force per unit area ``f(d)`` [Pa] at the distance ``d`` [m] between mean planes is positive in repulsion
+and negative in attraction. The package uses two row formats:
 
 * a **vector** v = [e, f_max, d_max, d_limit] of Eq. (11), in J m⁻², Pa, m, m;
-* a **law** [f_max, d_max, a_left, a_right] of Eq. (12), in Pa, m, m⁻¹, m⁻¹.
+* a **force law**, or law, [f_max, d_max, a_left, a_right] of Eq. (12), in Pa, m, m⁻¹, m⁻¹.
 
 The threshold ``f_limit`` that defines ``d_limit`` is one number for all samples of a case.
 """
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 from numba import njit
 
-#: A curve has died out where it falls below this part of its depth; the energy cut off beyond is a similar part of e.
-DEAD = 1e-4
+#: A curve has decayed where it is below this share of its depth; the energy neglected beyond is a similar share of e.
+DECAYED = 1e-4
 
 
 # Sec. III-A: the curve of one sample
@@ -21,7 +23,7 @@ DEAD = 1e-4
 
 @njit(cache=True, nogil=True)
 def _node(values, index, left):
-    """Value at a node of a uniform grid: ``left`` before its first node, 0 behind its last."""
+    """Value at a node of a uniform grid: ``left`` before its first node, 0 beyond its last."""
     if index < 0:
         return left
     return values[index] if index < values.size else 0.0
@@ -29,7 +31,7 @@ def _node(values, index, left):
 
 @njit(cache=True, nogil=True)
 def _add_interpolated(values, offset, left, factor, out):
-    """Add ``factor`` times a curve, linear between nodes, to ``out``, which starts ``offset`` steps into it."""
+    """Add ``factor`` times a curve, linear between nodes, to ``out``, which starts ``offset`` steps into the curve."""
     first = int(np.floor(offset))
     weight = offset - first
     for i in range(out.size):
@@ -38,10 +40,18 @@ def _add_interpolated(values, offset, left, factor, out):
 
 
 @njit(cache=True, nogil=True)
-def apparent_force(solid, bearing, starts, step, shift, tension, out):
+def apparent_force(
+    solid: np.ndarray,
+    bearing: np.ndarray,
+    starts: tuple[float, float, float],
+    step: float,
+    shift: float,
+    tension: float,
+    out: np.ndarray,
+) -> None:
     r"""Force of solid contact and water film, :math:`f(d) = p_s(d) - \sigma A(d - h_C)`, written to ``out``.
 
-    Curves are linear between nodes. Behind its last node either input is zero, before its first the bearing area is 1.
+    Curves are linear between nodes. Either input is zero beyond its last node; the bearing area is 1 before its first.
 
     Parameters
     ----------
@@ -64,14 +74,16 @@ def apparent_force(solid, bearing, starts, step, shift, tension, out):
         If ``out`` begins before ``solid``, whose pressure is unknown there.
     """
     offset = (starts[2] - starts[0]) / step
-    if offset < -1e-6:  # rounding of aligned grids is no node outside
+    if offset < -1e-6:  # aligned grids may differ by rounding
         raise ValueError("the curve begins at a distance where the solid pressure is not known")
     out[:] = 0.0
     _add_interpolated(solid, offset, solid[0], 1.0, out)
     _add_interpolated(bearing, (starts[2] - shift - starts[1]) / step, 1.0, -tension, out)
 
 
-def humid_curves(solid, bearing, starts, step, film):
+def humid_curves(
+    solid: np.ndarray, bearing: np.ndarray, starts: tuple[float, float], step: float, film: tuple[float, float]
+) -> tuple[np.ndarray, Callable[[int], np.ndarray]]:
     """Curves f(d) of all samples under one water film.
 
     Parameters
@@ -88,7 +100,7 @@ def humid_curves(solid, bearing, starts, step, film):
     Returns
     -------
     distance : (n_d,) float64
-        From the first node of ``solid`` to where neither input acts any more [m].
+        From the first node of ``solid`` to where both inputs have vanished [m].
     curve : callable
         ``curve(k)`` is the force of sample k (n_d,) [Pa]; the next call overwrites it.
     """
@@ -122,12 +134,12 @@ def _reach(force, start, level):
         if force[i] >= level:
             return i
     raise ValueError(
-        "the force does not rise to zero or to f_limit on its grid: the air is too dry, or steps are too long"
+        "the force does not rise to zero or to f_limit on its grid: the air is too dry or the steps are too long"
     )
 
 
 @njit(cache=True, nogil=True)
-def extremum(distance, force):
+def extremum(distance: np.ndarray, force: np.ndarray) -> tuple[float, float]:
     """Distance d_max [m] and size f_max [Pa] of the largest attraction, by a parabola through the lowest three nodes.
 
     Parameters
@@ -138,13 +150,13 @@ def extremum(distance, force):
     Raises
     ------
     ValueError
-        If the curve never attracts, or is lowest at an end of its grid.
+        If the curve has no attraction, or its minimum is at an end of its grid.
     """
     i = np.argmin(force)
     if not force[i] < 0:
-        raise ValueError("the force attracts nowhere")
+        raise ValueError("the force is nowhere attractive")
     if i == 0 or i == force.size - 1:
-        raise ValueError("the force is lowest at an end of its grid")
+        raise ValueError("the minimum of the force is at an end of its grid")
     slope = 0.5 * (force[i + 1] - force[i - 1])
     bend = force[i + 1] - 2 * force[i] + force[i - 1]
     offset = -slope / bend if bend > 0 else 0.0
@@ -153,29 +165,29 @@ def extremum(distance, force):
 
 @njit(cache=True, nogil=True)
 def _mean_attraction(left, right):
-    """Mean of -f where it attracts, 0 elsewhere, over a step in which f is linear [Pa]."""
+    """Mean of max(-f, 0) over a step in which f is linear [Pa]."""
     if left * right < 0:
         return 0.5 * min(left, right) ** 2 / abs(left - right)
     return max(-0.5 * (left + right), 0.0)
 
 
 @njit(cache=True, nogil=True)
-def adhesion_energy(distance, force):
-    """Energy e to separate: integral of the attraction from the zero crossing on, by trapezoids [J m⁻²].
+def adhesion_energy(distance: np.ndarray, force: np.ndarray) -> float:
+    """Adhesion energy e (work of separation): integral of the attraction beyond the zero crossing [J m⁻²].
 
     Parameters as in `extremum`.
 
-    ASSUME: a lone high asperity can make the curve repel once more beyond its minimum (4 % of the samples of pair b at
-    RH 0.44). Only the attractive parts count there: the net integral may be negative, and e must not (App. B).
+    ASSUME: a single high asperity can make the curve repulsive again beyond its minimum (4 % of the samples of pair b
+    at RH 0.44). Only the attractive parts are integrated: the net integral may be negative, and e must not (App. B).
 
     Raises
     ------
     ValueError
-        If the curve never repels, or has not died out at the end of its grid.
+        If the curve has no repulsion, or has not decayed at the end of its grid.
     """
     lowest = np.argmin(force)
-    if not abs(force[-1]) <= -DEAD * force[lowest]:
-        raise ValueError("the force has not died out at the end of its grid")
+    if not abs(force[-1]) <= -DECAYED * force[lowest]:
+        raise ValueError("the force has not decayed at the end of its grid")
     energy = 0.0
     for j in range(_reach(force, lowest, 0.0), force.size - 1):
         energy += _mean_attraction(force[j], force[j + 1]) * (distance[j + 1] - distance[j])
@@ -183,19 +195,19 @@ def adhesion_energy(distance, force):
 
 
 @njit(cache=True, nogil=True)
-def limit_distance(distance, force, limit):
+def limit_distance(distance: np.ndarray, force: np.ndarray, limit: float) -> float:
     """Distance d_limit left of the minimum at which the force first reaches ``limit`` [m]; parameters as in `extremum`.
 
     Raises
     ------
     ValueError
-        If it never does.
+        If the force does not reach it.
     """
     return _crossing(distance, force, _reach(force, np.argmin(force), limit), limit)
 
 
 def _each_sample(evaluate, curve, samples):
-    """Evaluate the curves one after the other; an error names the sample (samples, ...)."""
+    """Evaluate the curves one by one (samples, ...); the message of an error contains the number of the sample."""
     rows = []
     for k in range(samples):
         force = curve(k)
@@ -207,18 +219,18 @@ def _each_sample(evaluate, curve, samples):
     return np.array(rows)
 
 
-def parametrise(distance, curve, samples):
-    """Parameters of all sampled curves, Eq. (11), each found between the grid points.
+def parametrise(distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int) -> tuple[np.ndarray, float]:
+    """Parameters of all sampled curves, Eq. (11), interpolated between the grid points.
 
-    The curves are asked for twice, because f_limit is only known after all have been seen: the memory needed does not
-    grow with their number.
+    Every curve is computed twice, because f_limit depends on all curves; the memory thus does not grow with their
+    number.
 
     Parameters
     ----------
     distance : (n_d,) float64
         Uniform grid [m].
     curve : callable
-        ``curve(k)`` is the force of sample k on the grid, (n_d,) float64 [Pa]; may reuse its memory.
+        ``curve(k)`` is the force of sample k on the grid, (n_d,) float64 [Pa]; the memory may be reused.
     samples : int
         Number of samples m.
 
@@ -232,7 +244,8 @@ def parametrise(distance, curve, samples):
     Raises
     ------
     ValueError
-        If a curve never attracts, is cut off by its grid or does not reach f_limit; names the sample.
+        If a curve has no attraction, is truncated by its grid or does not reach f_limit; the message contains the
+        number of the sample.
     """
     wells = _each_sample(lambda f: (*extremum(distance, f), adhesion_energy(distance, f)), curve, samples)
     d_max, f_max, e = wells.T
@@ -241,7 +254,7 @@ def parametrise(distance, curve, samples):
     return np.column_stack([e, f_max, d_max, d_limit]), f_limit
 
 
-def adhesion_energies(distance, curve, samples):
+def adhesion_energies(distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int) -> np.ndarray:
     """Energies e of all sampled curves (m,) [J m⁻²]; parameters and errors as in `parametrise`."""
     return _each_sample(lambda f: adhesion_energy(distance, f), curve, samples)
 
@@ -256,20 +269,20 @@ def _left_steepness(vectors, f_limit):
 
 
 def _right_range(vectors, f_limit):
-    """Share of e / f_max that is left to the branch d > d_max, equal to 1.5 / a_right (n,) [m]."""
+    """Contribution of the branch d > d_max to e / f_max, equal to 1.5 / a_right (n,) [m]."""
     e, f_max, _, _ = vectors.T
     return e / f_max - 0.5 / _left_steepness(vectors, f_limit)
 
 
-def admissible(vectors, f_limit):
-    """Whether vectors (n, 4) have a law of Eq. (12), that is a_right > 0; (n,) bool.
+def admissible(vectors: np.ndarray, f_limit: float) -> np.ndarray:
+    """Whether vectors (n, 4) have a force law of Eq. (12), that is a_right > 0; (n,) bool.
 
-    The branch d < d_max alone holds the energy 0.5 f_max / a_left; a vector whose e is smaller has no law.
+    The branch d < d_max alone has the energy 0.5 f_max / a_left; a vector with smaller e has no force law.
     """
     return _right_range(vectors, f_limit) > 0
 
 
-def coefficients(vectors, f_limit):
+def coefficients(vectors: np.ndarray, f_limit: float) -> np.ndarray:
     r"""Coefficients of Eq. (12) that reproduce the vectors.
 
     .. math:: a_\mathrm{left} = \frac{\ln(1 + \sqrt{1 + f_\mathrm{limit} / f_\mathrm{max}})}
@@ -303,12 +316,12 @@ def coefficients(vectors, f_limit):
     if not np.all(reach > 0):
         worst = int(np.argmin(reach))
         raise ValueError(
-            f"vector {worst} has no law: e = {vectors[worst, 0]:.3g} J/m² is less than its left branch holds"
+            f"vector {worst} has no law: e = {vectors[worst, 0]:.3g} J/m² is less than the energy of its left branch"
         )
     return np.column_stack([vectors[:, 1], vectors[:, 2], _left_steepness(vectors, f_limit), 1.5 / reach])
 
 
-def pressure(law, distance):
+def pressure(law: np.ndarray, distance: float | np.ndarray) -> float | np.ndarray:
     """Force per unit area of Eq. (12) [Pa]; laws (..., 4) and distance [m] broadcast."""
     f_max, d_max, a_left, a_right = np.moveaxis(np.asarray(law), -1, 0)
     separation = distance - d_max
@@ -316,16 +329,22 @@ def pressure(law, distance):
     return f_max * decay * (decay - 2)
 
 
-def energy(law):
-    """Integral e of the attraction of Eq. (12); laws (..., 4) [J m⁻²]."""
+def energy(law: np.ndarray) -> float | np.ndarray:
+    """Adhesion energy e of Eq. (12), the integral of its attraction; laws (..., 4) [J m⁻²]."""
     f_max, _, a_left, a_right = np.moveaxis(np.asarray(law), -1, 0)
     return f_max * (1.5 / a_right + 0.5 / a_left)
 
 
-def fit_errors(distance, curve, samples, vectors, f_limit):
-    """Relative errors of Eq. (12) against the curves that it stands for.
+def fit_errors(
+    distance: np.ndarray,
+    curve: Callable[[int], np.ndarray],
+    samples: Sequence[int],
+    vectors: np.ndarray,
+    f_limit: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Relative errors of Eq. (12) with respect to the curves.
 
-    The energy e is one of the four numbers that fix a law: its error is rounding.
+    The energy e is one of the four parameters of a law, so that its error is due to rounding.
 
     Parameters
     ----------

@@ -5,7 +5,7 @@ import numpy as np
 from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
 
 
-def laplace_pressure(humidity, temperature):
+def laplace_pressure(humidity: float | np.ndarray, temperature: float) -> float | np.ndarray:
     r"""Pressure of condensed water relative to the vapour, Eq. (8).
 
     .. math:: \Delta P = \mathcal{R} T \ln \mathrm{RH} \, / \, V_m
@@ -25,7 +25,7 @@ def laplace_pressure(humidity, temperature):
     Raises
     ------
     ValueError
-        If RH leaves (0, 1); at RH = 1 the meniscus grows without bound.
+        If RH is not in (0, 1); at RH = 1 the meniscus grows without bound.
 
     Examples
     --------
@@ -34,15 +34,15 @@ def laplace_pressure(humidity, temperature):
     """
     humidity = np.asarray(humidity, float)
     if not np.all((humidity > 0) & (humidity < 1)):
-        raise ValueError(f"relative humidity must lie in (0, 1), got {humidity}")
+        raise ValueError(f"relative humidity must be in (0, 1), got {humidity}")
     return GAS_CONSTANT * temperature * np.log(humidity) / WATER_MOLAR_VOLUME
 
 
-def kelvin_radius(humidity, temperature):
+def kelvin_radius(humidity: float | np.ndarray, temperature: float) -> float | np.ndarray:
     """Mean radius of curvature of the meniscus, Eq. (9); negative [m]."""
     return WATER_SURFACE_ENERGY / laplace_pressure(humidity, temperature)
 
 
-def meniscus_height(humidity, temperature):
+def meniscus_height(humidity: float | np.ndarray, temperature: float) -> float | np.ndarray:
     """Widest gap bridged by water between perfectly wetting flats, h_C = -2 r_K [m]."""
     return -2 * kelvin_radius(humidity, temperature)

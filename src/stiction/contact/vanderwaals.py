@@ -1,6 +1,7 @@
 """Van der Waals attraction of two half spaces as a Dugdale stress (Sec. III-A1).
 
-ASSUME: it acts through water, in which the touching summits stand; a setting, see the study of the readings.
+ASSUME: the attraction acts through water, which surrounds the touching summits; the medium is a setting and one of the
+variants.
 """
 
 from dataclasses import dataclass
@@ -11,34 +12,44 @@ from stiction.constants import HAMAKER_CONSTANT, MOLECULAR_DISTANCE
 
 
 @dataclass(frozen=True)
-class Attraction:
-    """Constant stress up to a cut-off distance; none at all if the Hamaker constant is 0."""
+class DugdaleAttraction:
+    """Constant stress up to a cut-off distance; a `stiction.contact.asperity.Attraction`."""
 
     hamaker_constant: float  #: ℌ [J]
 
+    def __post_init__(self):
+        if not self.hamaker_constant > 0:
+            raise ValueError(f"need a positive Hamaker constant, got {self.hamaker_constant:.3g} J")
+
     @property
-    def equilibrium_distance(self):
-        """Distance D₀ at which two half spaces feel no force [m]."""
+    def equilibrium_distance(self) -> float:
+        """Distance D₀ at which the force between two half spaces vanishes [m]."""
         return (2 / 15) ** (1 / 6) * MOLECULAR_DISTANCE
 
     @property
-    def work_of_adhesion(self):
+    def work_of_adhesion(self) -> float:
         """Work per area ω_vdW to separate two half spaces, Eq. (10) [J m⁻²]."""
         return self.hamaker_constant / (16 * np.pi * self.equilibrium_distance**2)
 
     @property
-    def range(self):
+    def range(self) -> float:
         """Distance h_vdW beyond which the stress vanishes [m]."""
         return 0.97 * 2 ** (1 / 6) * MOLECULAR_DISTANCE
 
     @property
-    def stress(self):
+    def stress(self) -> float:
         """Tension -σ_vdW = ω_vdW / h_vdW within the range, positive [Pa]."""
         return self.work_of_adhesion / self.range
 
 
-def attraction(through):
-    """Attraction of polysilicon through ``"water"`` or ``"dry"`` air, or ``"none"``; ValueError for anything else."""
+def attraction(through: str) -> DugdaleAttraction | None:
+    """Attraction of polysilicon through ``"water"`` or ``"dry"`` air; ``None`` for ``"none"``.
+
+    Raises
+    ------
+    ValueError
+        For any other medium.
+    """
     if through not in ("none", *HAMAKER_CONSTANT):
         raise ValueError(f"attraction acts through {', '.join(HAMAKER_CONSTANT)} or none, got {through!r}")
-    return Attraction(0.0 if through == "none" else HAMAKER_CONSTANT[through])
+    return None if through == "none" else DugdaleAttraction(HAMAKER_CONSTANT[through])

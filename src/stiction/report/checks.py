@@ -1,32 +1,42 @@
-"""What a finished study must show: laws that its datasets are checked against, each with its numbers.
+"""Checks of the results of a finished study, each with its numbers.
 
-A statistical law holds beyond, a target is met within, 4 standard errors. With the few hundred comparisons of a study
-that raises one false alarm in about a hundred seeds; a seed that passes passes always.
+Inequalities must hold by more than 4 standard errors, targets must be met within 4. With the few hundred comparisons of
+a study, this gives one false alarm in about a hundred seeds; for a given seed the outcome is always the same.
 """
 
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
+from os import PathLike
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 from scipy.stats import norm, t
 
-from stiction.beam.cantilever import allowed_imbalance
+from stiction.beam.cantilever import Beam
+from stiction.beam.equilibrium import allowed_imbalance
 from stiction.contact.forcelaw import admissible
 from stiction.estimates import jackknife, mean_with_error
-from stiction.report.tables import surface_statistics
-from stiction.stages.data import ended, vectors
+from stiction.models import SURFACE_MODELS, surface_model
+from stiction.report.format import TO_MJ, TO_UM, with_error
+from stiction.report.tables_surfaces import surface_statistics
+from stiction.stages.forces import vectors
+from stiction.stages.releases import ended
 
+#: A case: pair, relative humidity and model.
+Case = tuple[str, float, str]
+#: Standard errors by which an inequality must hold and within which a target must be met.
 ALLOWED = 4
-#: ASSUME: from this relative humidity on, just below the driest experiment, energies grow with it. Where menisci are
-#: less than a nanometre high, beyond what continuous water can claim, those of the model can fall.
+#: ASSUME: from this relative humidity on, just below the driest experiment, energies grow with it. In drier air menisci
+#: are less than a nanometre high: water is no continuum at this scale, and the energy of the model can decrease.
 DRY = 0.4
-#: The chaos model may miss the mean of its input by this part of the standard deviation, that by this part of itself,
-#: and correlations by this much: kernels around log v widen the tails of v.
+#: Tolerances of the chaos model: mean, in standard deviations; standard deviation, relative; correlations, absolute.
+#: They are not zero because kernels around log v widen the tails of v.
 MEAN_OFF, SPREAD_OFF, CORRELATION_OFF = 0.02, 0.15, 0.05
-#: Part of the mean crack length that the chaos model may take from it or add to it.
+#: Tolerance of the chaos model: mean crack length, relative.
 LENGTH_OFF = 0.01
-#: Share of draws that may lack a force law: of non-Gaussian surfaces, and beyond that of the samples themselves.
+#: Largest share of draws without a force law, non-Gaussian surfaces; largest difference from the share of the samples.
 REJECTED, REJECTED_OFF = 0.05, 0.02
 
 
@@ -34,35 +44,37 @@ REJECTED, REJECTED_OFF = 0.05, 0.02
 class Check:
     """One comparison."""
 
-    law: str  #: what must hold
-    case: str  #: of what
+    name: str  #: what must hold
+    case: str  #: surface, or pair with model and humidity
     passed: bool
-    said: str  #: sentence with the numbers
+    message: str  #: sentence with the numbers
 
 
 def _energy(forces):
     """Energies of the samples (m,) [mJ m⁻²]."""
-    return forces.adhesion_energy.values * 1e3
+    return TO_MJ * forces.adhesion_energy.values
 
 
-def energy_grows(case, drier, more_humid):
-    """More water binds more: the same pairs of surfaces at two humidities, datasets of stage forces."""
+def energy_grows(case: str, drier: xr.Dataset, more_humid: xr.Dataset) -> Check:
+    """Energy grows with humidity; datasets of stage forces for the same pairs of surfaces at two humidities."""
     growth, error = mean_with_error(_energy(more_humid) - _energy(drier))
-    said = f"mean adhesion energy grows by {growth:.4g} ± {error:.2g} mJ/m²"
-    return Check("energy grows with humidity", case, bool(growth > ALLOWED * error), said)
+    message = f"mean adhesion energy grows by {with_error(growth, error)} mJ/m²"
+    return Check("energy grows with humidity", case, bool(growth > ALLOWED * error), message)
 
 
-def skewness_binds(case, gaussian, non_gaussian):
-    """Negatively skewed surfaces, whose high summits are missing, hold tighter than their Gaussian twins."""
+def skewness_increases_adhesion(case: str, gaussian: xr.Dataset, non_gaussian: xr.Dataset) -> Check:
+    """Negatively skewed surfaces, which lack high summits, adhere more strongly than Gaussian ones."""
     more, error = mean_with_error(_energy(non_gaussian) - _energy(gaussian))
-    said = f"non-Gaussian surfaces hold by {more:.4g} ± {error:.2g} mJ/m² more than Gaussian ones"
-    return Check("negative skewness binds", case, bool(more > ALLOWED * error), said)
+    message = (
+        f"mean adhesion energy is {with_error(more, error)} mJ/m² higher on non-Gaussian surfaces than on Gaussian ones"
+    )
+    return Check("negative skewness increases adhesion", case, bool(more > ALLOWED * error), message)
 
 
-def scatter_falls(case, weaker, stronger):
-    """Relative scatter of the energy does not grow with the energy: more summits share the load.
+def scatter_falls(case: str, weaker: xr.Dataset, stronger: xr.Dataset) -> Check:
+    """Relative scatter of the energy does not grow with the energy, because more summits share the load.
 
-    Meant for non-Gaussian surfaces: where Gaussian ones hardly hold, the scatter of a few summits stays as it is.
+    For non-Gaussian surfaces only: where Gaussian ones hardly adhere, few summits touch and the scatter stays constant.
     """
 
     def change(means):
@@ -71,11 +83,13 @@ def scatter_falls(case, weaker, stronger):
 
     x, y = _energy(weaker), _energy(stronger)
     rise, error = jackknife(change, np.column_stack([x, x**2, y, y**2]))
-    said = f"standard deviation / mean changes by {rise:+.4f} ± {error:.2g}"
-    return Check("scatter does not grow with energy", case, bool(rise < ALLOWED * error), said)
+    message = f"standard deviation / mean changes by {with_error(rise, error, '+')}"
+    return Check("scatter does not grow with energy", case, bool(rise < ALLOWED * error), message)
 
 
-def moments_meet_targets(case, character, wanted, defect):
+def moments_meet_targets(
+    case: str, character: xr.Dataset, targets: Mapping[str, float], defect: float
+) -> Iterator[Check]:
     """Rms, skewness and kurtosis of drawn surfaces, one check each.
 
     Parameters
@@ -83,34 +97,36 @@ def moments_meet_targets(case, character, wanted, defect):
     case : str
     character : xarray.Dataset
         Stage character.
-    wanted : dict
+    targets : dict
         rms_nm, skewness and kurtosis.
     defect : float
-        Share of the variance that the translation could not place within the band of the spectrum [-].
+        Share of the variance that no Gaussian field provides within the band of the spectrum [-].
     """
     values, errors = surface_statistics(character)
-    # The error of few strips is itself uncertain: as improbable a deviation as 4 standard errors of many.
+    # The error of few strips is itself uncertain: allow a deviation as improbable as 4 standard errors of many strips.
     allowed = t.isf(norm.sf(ALLOWED), character.sizes["strip"] - 1)
-    for name, target in wanted.items():
+    for name, target in targets.items():
         off, error = values[name] - target, errors[name]
         within = allowed * error + (defect * target if name == "rms_nm" else 0)
-        said = f"{name} is {values[name]:.4g} ± {error:.2g}, wanted {target:.4g}, allowed ± {within:.2g}"
-        yield Check("drawn surfaces have their moments", case, bool(abs(off) <= within), said)
+        message = f"{name} is {with_error(values[name], error)}, target {target:.4g}, allowed ± {within:.2g}"
+        yield Check("drawn surfaces have the target moments", case, bool(abs(off) <= within), message)
 
 
-def vectors_are_possible(case, forces):
+def vectors_are_possible(case: str, forces: xr.Dataset) -> Check:
     """Every v of Eq. (11) obeys e > 0, 0 < f_max <= f_limit and d_limit < d_max."""
-    e, f_max, d_max, d_limit = vectors(forces).T
-    good = (e > 0) & (f_max > 0) & (f_max <= float(forces.limit)) & (d_limit < d_max)
-    said = f"{np.sum(~good)} of {len(good)} samples break a constraint"
-    return Check("v respects its constraints", case, bool(good.all()), said)
+    found, limit = vectors(forces)
+    e, f_max, d_max, d_limit = found.T
+    good = (e > 0) & (f_max > 0) & (f_max <= limit) & (d_limit < d_max)
+    message = f"{np.sum(~good)} of {len(good)} samples violate a constraint"
+    return Check("v obeys its constraints", case, bool(good.all()), message)
 
 
-def chaos_reproduces_input(case, chaos, samples):
-    """Means, standard deviations and correlations of draws from the chaos model are those of its input.
+def chaos_reproduces_input(case: str, chaos: xr.Dataset, samples: int) -> Check:
+    """Means, standard deviations and correlations of draws from the chaos model equal those of its input.
 
-    Vectors without a force law are on neither side. Of so many samples, 4 standard errors are allowed beside the
-    tolerances. Quantiles are told: kernels around log v move the far one of a skewed energy outwards.
+    Neither side includes vectors without a force law. The tolerances are widened by 4 standard errors of this number of
+    samples. The 99 % quantile is reported but not checked: kernels around log v move it outwards where the energy
+    is skewed.
     """
     (mean, spread, _, far), (drawn_mean, drawn_spread, _, drawn_far) = (
         chaos.statistics.sel(source=source).values for source in ("input", "chaos")
@@ -122,60 +138,66 @@ def chaos_reproduces_input(case, chaos, samples):
         np.max(np.abs(drawn_correlation - correlation)),
     )
     limits = np.array([MEAN_OFF, SPREAD_OFF, CORRELATION_OFF]) + ALLOWED / np.sqrt(samples)
-    said = (
+    message = (
         f"means off by up to {off[0]:.3f} standard deviations (allowed {limits[0]:.3f}), "
         f"standard deviations by {100 * off[1]:.1f} % (allowed {100 * limits[1]:.1f} %), "
         f"correlations by {off[2]:.3f} (allowed {limits[2]:.3f}), "
         f"99 % quantile of ē by {(drawn_far[0] - far[0]) / spread[0]:+.2f} standard deviations"
     )
-    return Check("chaos model reproduces its input", case, bool(np.all(np.less_equal(off, limits))), said)
+    return Check("chaos model reproduces its input", case, bool(np.all(np.less_equal(off, limits))), message)
 
 
-def crack_lengths_are_kept(case, beams, resampled):
-    """Beams on laws of the chaos model stop where those on laws of the samples themselves do, in the mean."""
-    (length, error), (target, its_error) = (
-        mean_with_error(1e6 * end.crack_length.values[ended(end, "S-shape")]) for end in (beams, resampled)
+def chaos_keeps_crack_length(case: str, beams: xr.Dataset, resampled: xr.Dataset) -> Check:
+    """Mean crack length of beams on laws of the chaos model equals that of beams on laws of the samples themselves."""
+    (length, error), (target, target_error) = (
+        mean_with_error(TO_UM * end.crack_length.values[ended(end, "S-shape")]) for end in (beams, resampled)
     )
-    allowed = LENGTH_OFF * target + ALLOWED * np.hypot(error, its_error)
-    said = f"{length:.1f} ± {error:.2g} µm, on the samples {target:.1f} ± {its_error:.2g} µm, allowed ± {allowed:.2g}"
-    return Check("chaos model keeps the crack length", case, bool(abs(length - target) <= allowed), said)
+    allowed = LENGTH_OFF * target + ALLOWED * np.hypot(error, target_error)
+    message = (
+        f"{with_error(length, error)} µm, on laws of the samples {with_error(target, target_error)} µm, "
+        f"allowed ± {allowed:.2g} µm"
+    )
+    return Check("chaos model keeps the crack length", case, bool(abs(length - target) <= allowed), message)
 
 
-def few_draws_rejected(case, chaos, forces, limit):
-    """Draws that Eq. (12) cannot follow are at most ``limit``, and as frequent as such samples.
+def few_draws_rejected(case: str, chaos: xr.Dataset, forces: xr.Dataset, limit: float) -> Check:
+    """Draws without a force law of Eq. (12) are at most the share ``limit``, and as frequent as such samples.
 
-    ASSUME: no limit for Gaussian surfaces: dry, many of their samples hold too little for Eq. (12), which is a result.
+    ASSUME: no limit for Gaussian surfaces: in dry air many of their samples adhere too weakly for Eq. (12); this is a
+    result of the model, not a fault of the draws.
     """
     rejected, n = float(chaos.rejected), forces.sizes["sample"]
-    without = float(np.mean(~admissible(vectors(forces), float(forces.limit))))
+    without = float(np.mean(~admissible(*vectors(forces))))
     error = np.sqrt(max(without * (1 - without), 1 / n) / n)
     passed = rejected <= limit + ALLOWED * error and abs(rejected - without) <= REJECTED_OFF + ALLOWED * error
-    said = f"{100 * rejected:.2f} % of the draws have no force law, {100 * without:.2f} % of the samples"
-    return Check("few draws are rejected", case, passed, said)
+    message = f"{100 * rejected:.2f} % of the draws have no force law, {100 * without:.2f} % of the samples"
+    return Check("few draws are rejected", case, passed, message)
 
 
-def beams_are_in_balance(case, outcomes, limit, beam, strip):
-    """No beam was left before it found its equilibrium.
+def beams_are_in_equilibrium(case: str, outcomes: xr.Dataset, limit: float, beam: Beam, strip: float) -> Check:
+    """Every beam is in equilibrium.
 
     Parameters
     ----------
-    case : str
-    outcomes : xarray.Dataset
+    case
+    outcomes
         Stage beams.
-    limit : float
+    limit
         Largest pull-off pressure f_limit [Pa].
-    beam : stiction.beam.cantilever.Beam
+    beam
         Nominal dimensions.
-    strip : float
+    strip
         Length of a strip [m].
     """
     allowed = allowed_imbalance(beam, limit * beam.width * strip)
     unbalanced = int(np.sum(~(outcomes.imbalance.values <= allowed)))
-    said = f"{unbalanced} of {outcomes.sizes['sample']} beams are off by more than {allowed:.2g} N"
-    return Check("beams found their equilibrium", case, unbalanced == 0, said)
+    message = f"{unbalanced} of {outcomes.sizes['sample']} beams have a residual force of more than {allowed:.2g} N"
+    return Check("beams are in equilibrium", case, unbalanced == 0, message)
 
 
-def of_surfaces(characters, targets, defects):
+def of_surfaces(
+    characters: Mapping[tuple[str, str], xr.Dataset], targets: Mapping[str, Mapping], defects: Mapping[str, float]
+) -> Iterator[Check]:
     """All checks of drawn surfaces.
 
     Parameters
@@ -185,23 +207,23 @@ def of_surfaces(characters, targets, defects):
     targets : dict
         Surface to rms_nm, skewness and kurtosis.
     defects : dict
-        Surface to the share of variance that its spectrum could not place.
+        Surface to the share of the variance that no Gaussian field provides.
     """
     for (surface, model), character in characters.items():
         wanted = targets[surface] if model == "NG" else targets[surface] | {"skewness": 0.0, "kurtosis": 3.0}
         yield from moments_meet_targets(f"{surface} {model}", character, wanted, defects[surface])
 
 
-def of_laws(forces, chaoses):
+def of_force_laws(forces: Mapping[Case, xr.Dataset], chaoses: Mapping[Case, xr.Dataset]) -> Iterator[Check]:
     """All checks of single cases: samples, chaos model and rejection; dicts of datasets by (pair, humidity, model)."""
     for key, samples in forces.items():
-        case, chaos = _name(*key), chaoses[key]
+        case, chaos = _case(*key), chaoses[key]
         yield vectors_are_possible(case, samples)
         yield chaos_reproduces_input(case, chaos, samples.sizes["sample"])
         yield few_draws_rejected(case, chaos, samples, REJECTED if key[2] == "NG" else 1.0)
 
 
-def of_trends(forces, skewed):
+def of_trends(forces: Mapping[Case, xr.Dataset], skewed: Collection[str]) -> Iterator[Check]:
     """All comparisons between cases.
 
     Parameters
@@ -209,28 +231,27 @@ def of_trends(forces, skewed):
     forces : dict
         (pair, humidity, model) to the dataset of stage forces.
     skewed : collection of str
-        Pairs of which no surface is skewed positively and one is negatively.
+        Pairs of the paper of which no surface is skewed positively and at least one negatively.
     """
     for pair, model in sorted({(pair, model) for pair, _, model in forces}):
         rising = sorted(humidity for p, humidity, m in forces if (p, m) == (pair, model))
         for low, high in pairwise(rising):
-            case, drier, humid = (
-                f"{_name(pair, low, model)} to {high:g}",
-                forces[pair, low, model],
-                forces[pair, high, model],
-            )
+            case = f"{_case(pair, low, model)} to {high:g}"
+            drier, more_humid = (forces[pair, humidity, model] for humidity in (low, high))
             if low >= DRY:
-                yield energy_grows(case, drier, humid)
+                yield energy_grows(case, drier, more_humid)
             if model == "NG" and pair in skewed:
-                yield scatter_falls(case, drier, humid)
+                yield scatter_falls(case, drier, more_humid)
     for pair, humidity, model in forces:
         if model == "NG" and pair in skewed:
-            twins = (forces[pair, humidity, twin] for twin in ("G", "NG"))
-            yield skewness_binds(f"{pair}, RH {humidity:g}", *twins)
+            both = (forces[pair, humidity, which] for which in SURFACE_MODELS)
+            yield skewness_increases_adhesion(f"{pair}, RH {humidity:g}", *both)
 
 
-def of_beams(outcomes, forces, beams, strip):
-    """Balance of the beams of every case.
+def of_beams(
+    outcomes: Mapping[Case, xr.Dataset], forces: Mapping[Case, xr.Dataset], beams: Mapping[str, Beam], strip: float
+) -> Iterator[Check]:
+    """Equilibrium of the beams of every case.
 
     Parameters
     ----------
@@ -242,12 +263,12 @@ def of_beams(outcomes, forces, beams, strip):
         Length of a strip [m].
     """
     for (pair, humidity, model), released in outcomes.items():
-        limit = float(forces[pair, humidity, "G" if model == "G" else "NG"].limit)
-        yield beams_are_in_balance(_name(pair, humidity, model), released, limit, beams[pair], strip)
+        limit = float(forces[pair, humidity, surface_model(model)].limit)
+        yield beams_are_in_equilibrium(_case(pair, humidity, model), released, limit, beams[pair], strip)
 
 
-def of_resampling(outcomes, resampled):
-    """What the chaos model does to crack lengths, wherever two beams stick at least.
+def of_resampling(outcomes: Mapping[Case, xr.Dataset], resampled: Mapping[Case, xr.Dataset]) -> Iterator[Check]:
+    """Effect of the chaos model on crack lengths, of cases in which at least two beams stick.
 
     Parameters
     ----------
@@ -256,34 +277,39 @@ def of_resampling(outcomes, resampled):
     """
     for key, reference in resampled.items():
         if min(ended(beams, "S-shape").sum() for beams in (outcomes[key], reference)) >= 2:
-            yield crack_lengths_are_kept(_name(*key), outcomes[key], reference)
+            yield chaos_keeps_crack_length(_case(*key), outcomes[key], reference)
 
 
-def _name(pair, humidity, model):
-    """A case in words."""
+def _case(pair, humidity, model):
+    """A case as text."""
     return f"{pair} {model}, RH {humidity:g}"
 
 
-def table(checks):
+def table(checks: Iterable[Check]) -> pd.DataFrame:
     """Checks as a frame, one row each."""
     return pd.DataFrame([vars(check) for check in checks])
 
 
-def verdict(table):
+def read(path: str | PathLike) -> pd.DataFrame:
+    """Checks of a file that was written from `table`."""
+    return pd.read_csv(path, dtype={"passed": bool}, keep_default_na=False)
+
+
+def verdict(table: pd.DataFrame) -> str:
     """One sentence about all checks and one for each that failed."""
     failed = table[~table.passed]
     if failed.empty:
         return f"All {len(table)} checks of the results passed."
-    faults = [f"{row.law}: {row.case}: {row.said}" for row in failed.itertuples()]
+    faults = [f"{row.name}: {row.case}: {row.message}" for row in failed.itertuples(index=False)]
     return f"{len(failed)} of {len(table)} checks of the results failed. " + "; ".join(faults)
 
 
-def markdown(table):
-    """Checks for reading: the verdict, a count for each law, then every number."""
-    counts = table.groupby("law", sort=False).passed.agg(["sum", "count"]).reset_index()
-    counts.columns = ["law", "passed", "of"]
+def markdown(table: pd.DataFrame) -> str:
+    """Checks for reading: the verdict, counts by name, then the numbers of every check."""
+    counts = table.groupby("name", sort=False).passed.agg(["sum", "count"]).reset_index()
+    counts.columns = ["check", "passed", "of"]
     parts = ["# Checks of the results", verdict(table), counts.to_markdown(index=False)]
-    for law, rows in table.groupby("law", sort=False):
-        lines = [f"- {'' if row.passed else '**FAILED** '}{row.case}: {row.said}" for row in rows.itertuples()]
-        parts.append(f"## {law[0].upper()}{law[1:]}\n\n" + "\n".join(lines))
+    for name, rows in table.groupby("name", sort=False):
+        lines = [f"- {'' if row.passed else '**FAILED** '}{row.case}: {row.message}" for row in rows.itertuples()]
+        parts.append(f"## {name[0].upper()}{name[1:]}\n\n" + "\n".join(lines))
     return "\n\n".join(parts) + "\n"

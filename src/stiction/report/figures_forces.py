@@ -1,19 +1,25 @@
 """Figures of the force laws (Secs. III-B and IV-B): 5 and 12."""
 
+from collections.abc import Mapping
+
 import numpy as np
+import xarray as xr
 from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 
 from stiction.contact import forcelaw
-from stiction.report.style import DOUBLE, MJ, MODELS, MPA, NM, SINGLE, letter, panels, styled
-from stiction.stages.data import vectors
+from stiction.models import SURFACE_MODELS
+from stiction.report.format import TO_MJ, TO_MPA, TO_NM
+from stiction.report.style import DOUBLE, MODELS, SINGLE, letter, panels, styled
+from stiction.stages.forces import vectors
 
-#: Curves that stand out of the crowd in Figure 12.
+#: Number of highlighted curves in Figure 12.
 _HIGHLIGHTED = 20
-#: A curve is followed until this part of the largest attraction is left.
+#: A curve is drawn until its attraction has decayed to this share of the largest attraction.
 _FOLLOWED = 0.01
 #: Range of the forces in Figure 12, relative to the largest attraction of a pair.
 _RANGE = np.array([-1.1, 0.6])
-#: Curves are shown once more, enlarged, if their attraction stays below this part of the largest one of the pair.
+#: Curves are also shown enlarged if their attraction stays below this share of the largest attraction of the pair.
 _SHALLOW = 0.2
 _DOTTED = {"color": "0.3", "linestyle": ":", "linewidth": 0.8}
 
@@ -21,7 +27,7 @@ _DOTTED = {"color": "0.3", "linestyle": ":", "linewidth": 0.8}
 # Figure 5
 
 
-def typical(fit, kept):
+def typical(fit: xr.Dataset, kept: int) -> int:
     """Number of the sample, among the first ``kept``, whose law has the median error of these."""
     # ASSUME: the paper's typical curve is one of median error.
     errors = fit.curve_error.sel(sample=slice(0, kept - 1))
@@ -29,7 +35,7 @@ def typical(fit, kept):
 
 
 @styled
-def fitted_curve(forces, fit):
+def fitted_curve(forces: xr.Dataset, fit: xr.Dataset) -> Figure:
     """Figure 5: a typical force curve, its law by Eq. (12) and the four components of v, Eq. (11).
 
     Parameters
@@ -38,17 +44,19 @@ def fitted_curve(forces, fit):
         Stages forces and fit of one case.
     """
     k = typical(fit, forces.sizes["curve"])
-    vector, limit = vectors(forces)[k], float(forces.limit)
+    samples, limit = vectors(forces)
+    vector = samples[k]
     law = forcelaw.coefficients(vector[None], limit)[0]
     far = law[1] + np.log(2 / _FOLLOWED) / law[3]
     distance = np.linspace(vector[3] - 0.35 * (far - vector[3]), far, 500)
-    pressure = MPA * forcelaw.pressure(law, distance)
+    pressure = TO_MPA * forcelaw.pressure(law, distance)
     figure, ((panel,),) = panels(1, 1, (SINGLE, 2.7))
     panel.axhline(0, color="black", linewidth=0.6)
-    panel.fill_between(NM * distance, np.minimum(pressure, 0), 0, color=MODELS["NG"]["color"], alpha=0.18, linewidth=0)
-    panel.plot(NM * forces.distance, MPA * forces.force[k], color="0.55", linewidth=2.5, label="contact")
-    panel.plot(NM * distance, pressure, "k--", label="Eq. (12)")
-    panel.set(xlim=NM * distance[[0, -1]], ylim=MPA * np.array([-1.2 * law[0], 1.3 * limit]))
+    shade = {"color": MODELS["NG"]["color"], "alpha": 0.18, "linewidth": 0}
+    panel.fill_between(TO_NM * distance, np.minimum(pressure, 0), 0, **shade)
+    panel.plot(TO_NM * forces.distance, TO_MPA * forces.force[k], color="0.55", linewidth=2.5, label="contact")
+    panel.plot(TO_NM * distance, pressure, "k--", label="Eq. (12)")
+    panel.set(xlim=TO_NM * distance[[0, -1]], ylim=TO_MPA * np.array([-1.2 * law[0], 1.3 * limit]))
     panel.set(xlabel=r"distance $\bar d$ [nm]", ylabel=r"force per area $\bar f$ [MPa]")
     _components(panel, vector, limit)
     error = 100 * float(fit.curve_error.sel(sample=k))
@@ -58,13 +66,13 @@ def fitted_curve(forces, fit):
 
 def _components(panel, vector, limit):
     """Mark f_limit and the four components of v, each with its value."""
-    energy, f_max, d_max, d_limit = vector * [MJ, MPA, NM, NM]
+    energy, f_max, d_max, d_limit = vector * [TO_MJ, TO_MPA, TO_NM, TO_NM]
     left, right = panel.get_xlim()
-    panel.plot([left, d_limit, d_limit], [MPA * limit, MPA * limit, 0], **_DOTTED)
+    panel.plot([left, d_limit, d_limit], [TO_MPA * limit, TO_MPA * limit, 0], **_DOTTED)
     panel.plot([d_max, d_max, right], [0, -f_max, -f_max], **_DOTTED)
-    panel.plot([d_limit, d_max], [MPA * limit, -f_max], "ko", markersize=3)
+    panel.plot([d_limit, d_max], [TO_MPA * limit, -f_max], "ko", markersize=3)
     note = {"textcoords": "offset points", "fontsize": 7}
-    panel.annotate(rf"$\bar f_\mathrm{{limit}}$ = {MPA * limit:.3g} MPa", (left, MPA * limit), (3, 3), **note)
+    panel.annotate(rf"$\bar f_\mathrm{{limit}}$ = {TO_MPA * limit:.3g} MPa", (left, TO_MPA * limit), (3, 3), **note)
     panel.annotate(rf"$\bar d_\mathrm{{limit}}$ = {d_limit:.3g} nm", (d_limit, 0), (-3, -9), ha="right", **note)
     panel.annotate(rf"$\bar d_\mathrm{{max}}$ = {d_max:.3g} nm", (d_max, 0), (-8, 4), **note)
     panel.annotate(rf"$\bar f_\mathrm{{max}}$ = {f_max:.3g} MPa", (right, -f_max), (-3, 3), ha="right", **note)
@@ -78,7 +86,7 @@ def _components(panel, vector, limit):
 
 
 @styled
-def force_curves(pairs):
+def force_curves(pairs: Mapping[str, tuple[xr.Dataset, xr.Dataset, np.ndarray]]) -> Figure:
     """Figure 12: force curves of Gaussian and of non-Gaussian surfaces, and those that the chaos model generates.
 
     Parameters
@@ -92,27 +100,27 @@ def force_curves(pairs):
         distance = np.linspace(*window, 400)
         generated = forcelaw.pressure(laws[:, None], distance)
         depth = max(depth, -generated.min())
-        crowds = [(forces.distance.values, forces.force.values) for forces in (gaussian, other)]
-        for panel, crowd in zip(row, [*crowds, (distance, generated)], strict=True):
-            _crowd(panel, *crowd, 2 * depth)
-        row[0].set(xlim=NM * np.array(window), ylim=MPA * depth * _RANGE)
+        populations = [(forces.distance.values, forces.force.values) for forces in (gaussian, other)]
+        for panel, population in zip(row, [*populations, (distance, generated)], strict=True):
+            _curves(panel, *population, 2 * depth)
+        row[0].set(xlim=TO_NM * np.array(window), ylim=TO_MPA * depth * _RANGE)
         row[0].set_ylabel(r"force per area $\bar f$ [MPa]")
         _enlarged(row[0], gaussian, depth)
     for panel in axes[-1]:
         panel.set_xlabel(r"distance $\bar d$ [nm]")
-    kinds = (MODELS["G"]["label"], MODELS["NG"]["label"], "generated")
+    kinds = (*(MODELS[model]["label"] for model in SURFACE_MODELS), "generated")
     letter(axes, [f"pair {pair}, {kind}" for pair in pairs for kind in kinds])
     return figure
 
 
 def _enlarged(panel, forces, depth):
-    """Attraction of shallow curves once more, enlarged in the space that they leave below themselves."""
+    """Enlarged attraction of shallow curves, in the space below them."""
     deepest = -float(forces.force.min())
     if deepest < _SHALLOW * depth:
         below = (-deepest / depth - _RANGE[0]) / np.ptp(_RANGE)
         inset = panel.inset_axes([0.28, 0.13, 0.66, below - 0.16])
-        _crowd(inset, forces.distance.values, forces.force.values, deepest)
-        inset.set(xlim=NM * np.array(_window(forces)[0]), ylim=MPA * deepest * _RANGE)
+        _curves(inset, forces.distance.values, forces.force.values, deepest)
+        inset.set(xlim=TO_NM * np.array(_window(forces)[0]), ylim=TO_MPA * deepest * _RANGE)
         inset.locator_params(nbins=4)
         inset.tick_params(labelsize=6, pad=2)
         inset.text(0.94, 0.06, "enlarged", ha="right", fontsize=6, transform=inset.transAxes)
@@ -127,9 +135,9 @@ def _window(*cases):
     return (first - 0.05 * (last - first), last), depth
 
 
-def _crowd(panel, distance, curves, highest):
-    """Draw curves up to a force: all of them faintly, the first ones strongly."""
-    lines = [np.column_stack([NM * distance, MPA * f])[f < highest] for f in curves]
+def _curves(panel, distance, curves, highest):
+    """Draw curves up to a force: the first ones highlighted, the others faint."""
+    lines = [np.column_stack([TO_NM * distance, TO_MPA * f])[f < highest] for f in curves]
     panel.add_collection(LineCollection(lines, color="0.75", linewidth=0.3, rasterized=True))
     panel.add_collection(LineCollection(lines[:_HIGHLIGHTED], color=MODELS["NG"]["color"], linewidth=0.6))
     panel.axhline(0, color="black", linewidth=0.5)

@@ -1,55 +1,77 @@
 """Figures of the surfaces (Secs. II and IV-A): 7 to 11."""
 
+from collections.abc import Mapping
+
 import numpy as np
+import xarray as xr
 from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from stiction.estimates import mean_with_error
-from stiction.report.style import DOUBLE, MODELS, NM, OUTLINED, SINGLE, UM, handles, letter, panels, plain_log, styled
+from stiction.models import SURFACE_MODELS
+from stiction.report.format import TO_NM, TO_UM
+from stiction.report.style import (
+    DOUBLE,
+    MODELS,
+    OUTLINED,
+    SINGLE,
+    columns_of_panels,
+    handles,
+    letter,
+    letter_lines,
+    panels,
+    plain_log,
+    styled,
+)
 
 #: Bins along either axis of the joint density of summits.
 _BINS = 40
-_SIDE_BY_SIDE = ("G", "NG")
 
 
 # Figure 7
 
 
 @styled
-def height_densities(heights):
-    """Figure 7: maximum-entropy density of the heights beside the Gaussian one, linear above and logarithmic below.
+def height_densities(heights: Mapping[str, xr.Dataset]) -> Figure:
+    """Figure 7: maximum-entropy density of the heights and the Gaussian one, linear above and logarithmic below.
 
     Parameters
     ----------
     heights : dict
         Surface to the dataset of stage heights.
     """
-    figure, axes = panels(2, len(heights), (DOUBLE / 4 * len(heights) + 0.2, 3.4), sharex="col")
-    for column, dataset in zip(axes.T, heights.values(), strict=True):
+    figure, columns, lines = columns_of_panels(len(heights), 2, _width, 3.4, sharex="col")
+    for column, dataset in zip(columns, heights.values(), strict=True):
         for panel in column:
             _density(panel, dataset)
         column[1].set_yscale("log")
-        column[1].set_ylim(1e-6 * float(dataset.density.max()) / (NM * float(dataset.rms)), None)
+        column[1].set_ylim(1e-6 * float(dataset.density.max()) / (TO_NM * float(dataset.rms)), None)
         column[1].set_xlabel("height $z$ [nm]")
-    for panel in axes[:, 0]:
+    for panel in np.concatenate([line[:, 0] for line in lines]):
         panel.set_ylabel("density $p_Z$ [nm$^{-1}$]")
-    letter(axes, [*heights, *heights])
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    letter_lines(lines, heights)
+    figure.legend(*columns[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return figure
 
 
 def _density(panel, heights):
     """Both densities of one surface."""
-    rms, z = NM * float(heights.rms), heights.height.values
+    rms, z = TO_NM * float(heights.rms), heights.height.values
     panel.plot(rms * z, np.exp(-(z**2) / 2) / np.sqrt(2 * np.pi) / rms, **MODELS["G"])
     panel.plot(rms * z, heights.density.values / rms, **MODELS["NG"] | {"label": "maximum entropy"})
+
+
+def _width(columns):
+    """Width of a figure with this number of columns [in]."""
+    return DOUBLE / 4 * columns + 0.2
 
 
 # Figures 8 and 9
 
 
 @styled
-def elevation_maps(characters):
+def elevation_maps(characters: Mapping[str, xr.Dataset]) -> Figure:
     """Figure 8: a piece of every simulated surface, seen from above.
 
     Parameters
@@ -61,8 +83,8 @@ def elevation_maps(characters):
     rows = -(-len(characters) // columns)
     figure, axes = panels(rows, columns, (SINGLE * columns, 2.9 * rows))
     for panel, dataset in zip(axes.flat, characters.values(), strict=False):
-        extent = [0, UM * float(dataset.x[-1] + dataset.x[1]), 0, UM * float(dataset.y[-1] + dataset.y[1])]
-        image = panel.imshow(NM * dataset.elevation.values.T, origin="lower", extent=extent)
+        extent = [0, TO_UM * float(dataset.x[-1] + dataset.x[1]), 0, TO_UM * float(dataset.y[-1] + dataset.y[1])]
+        image = panel.imshow(TO_NM * dataset.elevation.values.T, origin="lower", extent=extent)
         figure.colorbar(image, ax=panel, label="height $z$ [nm]", shrink=0.9)
         panel.set(xlabel="$x_1$ [µm]", ylabel="$x_2$ [µm]")
     letter(axes.flat[: len(characters)], list(characters))
@@ -72,8 +94,8 @@ def elevation_maps(characters):
 
 
 @styled
-def profiles(name, characters):
-    """Figure 9: one profile of a Gaussian and of a non-Gaussian surface that stem from the same random numbers.
+def profiles(name: str, characters: Mapping[str, xr.Dataset]) -> Figure:
+    """Figure 9: one profile of a Gaussian and of a non-Gaussian surface made from the same random numbers.
 
     Parameters
     ----------
@@ -83,14 +105,14 @@ def profiles(name, characters):
         Model (G, NG) to the dataset of stage character.
     """
     figure, axes = panels(2, 1, (SINGLE, 2.8), sharex=True, sharey=True)
-    for (panel,), model in zip(axes, _SIDE_BY_SIDE, strict=True):
+    for (panel,), model in zip(axes, SURFACE_MODELS, strict=True):
         dataset = characters[model]
         middle = dataset.sizes["y"] // 2
         panel.axhline(0, color="0.7", linewidth=0.6)
-        panel.plot(UM * dataset.x, NM * dataset.elevation[:, middle], color=MODELS[model]["color"])
-        panel.set(ylabel="height $z$ [nm]", xlim=UM * dataset.x[[0, -1]])
+        panel.plot(TO_UM * dataset.x, TO_NM * dataset.elevation[:, middle], color=MODELS[model]["color"])
+        panel.set(ylabel="height $z$ [nm]", xlim=TO_UM * dataset.x[[0, -1]])
     axes[-1, 0].set_xlabel("$x_1$ [µm]")
-    letter(axes, [f"{name}, {MODELS[model]['label']}" for model in _SIDE_BY_SIDE])
+    letter(axes, [f"{name}, {MODELS[model]['label']}" for model in SURFACE_MODELS])
     return figure
 
 
@@ -102,25 +124,26 @@ _CLOSED = {"color": "black", "linestyle": "--", "linewidth": 0.8, "label": "clos
 
 
 @styled
-def spectra(surfaces):
-    """Figure 10: target spectrum, closed form and iterative algorithm; relation to the target; error by iteration.
+def spectra(surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Dataset]]) -> Figure:
+    """Figure 10: target spectrum, closed form and iterative algorithm; ratio to the target; error by iteration.
 
     Parameters
     ----------
     surfaces : dict
         Surface to its datasets of stages heights, spectrum, character (non-Gaussian) and iteration.
     """
-    figure, axes = panels(3, len(surfaces), (DOUBLE / 4 * len(surfaces) + 0.2, 5.4), height_ratios=[1.3, 1, 1])
-    for column, datasets in zip(axes.T, surfaces.values(), strict=True):
+    figure, columns, lines = columns_of_panels(len(surfaces), 3, _width, 5.4, height_ratios=[1.3, 1, 1])
+    for column, datasets in zip(columns, surfaces.values(), strict=True):
         _spectra(column[0], *datasets)
         _relations(column[1], *datasets)
         _misfits(column[2], datasets[3])
     names = ("spectrum $s_Z$ [nm$^4$]", "spectrum / target [–]", "mean error per ring [%]")
-    for panel, name in zip(axes[:, 0], names, strict=True):
-        panel.set_ylabel(name)
-    letter(axes, [*surfaces] * 3)
-    figure.legend(*handles(axes[0, 0], axes[1, 0]), loc="outside upper center", ncols=min(4, len(surfaces)))
-    figure.legend(*handles(axes[2, 0]), loc="outside lower center", ncols=min(3, len(surfaces) + 1))
+    for line in lines:
+        for panel, name in zip(line[:, 0], names, strict=True):
+            panel.set_ylabel(name)
+    letter_lines(lines, surfaces)
+    figure.legend(*handles(columns[0, 0], columns[0, 1]), loc="outside upper center", ncols=min(4, len(surfaces)))
+    figure.legend(*handles(columns[0, 2]), loc="outside lower center", ncols=min(3, len(surfaces) + 1))
     return figure
 
 
@@ -130,38 +153,37 @@ def _spectra(panel, heights, spectrum, character, iteration):
     target = spectrum.wavenumber[1:], variance * spectrum.target[1:]
     last = iteration.wavenumber, variance * iteration.periodogram[-1].mean("field")
     drawn = character.wavenumber, character.periodogram.mean("field")
-    looks = {"color": "0.75", "linewidth": 2.5, "label": "target"}, _DRAWN, _ITERATED
-    for (zeta, density), look in zip((target, drawn, last), looks, strict=True):
-        panel.loglog(zeta / UM, density * NM**4, **look)
-    panel.set_ylim(0.05 * NM**4 * float(target[1][-2]), None)
+    styles = {"color": "0.75", "linewidth": 2.5, "label": "target"}, _DRAWN, _ITERATED
+    for (zeta, density), style in zip((target, drawn, last), styles, strict=True):
+        panel.loglog(zeta / TO_UM, density * TO_NM**4, **style)
+    panel.set_ylim(0.05 * TO_NM**4 * float(target[1][-2]), None)
     panel.set_xlabel(r"wave number $\zeta$ [rad/µm]")
 
 
 def _relations(panel, heights, spectrum, character, iteration):
-    """Spectra of :func:`_spectra` over the target, with two standard errors, and what the closed form lets expect."""
+    """Spectra of :func:`_spectra` over the target, with two standard errors, and the expected closed form."""
     zeta, target = _whole_rings(spectrum)
     panel.axhline(1, color="0.75", linewidth=2.5)
     drawn = character.periodogram.sel(wavenumber=slice(0, zeta[-1])) / float(heights.rms) ** 2
     drawn = drawn / np.interp(drawn.wavenumber, zeta, target)
-    for relation, look in ((drawn, _DRAWN), (iteration.periodogram[-1] / iteration.target, _ITERATED)):
+    for relation, style in ((drawn, _DRAWN), (iteration.periodogram[-1] / iteration.target, _ITERATED)):
         mean, error = mean_with_error(relation.transpose("field", "wavenumber"))
-        panel.fill_between(
-            relation.wavenumber / UM, mean - 2 * error, mean + 2 * error, color=look["color"], alpha=0.25, linewidth=0
-        )
-        panel.plot(relation.wavenumber / UM, mean, **look)
-    panel.plot(zeta / UM, spectrum.achieved[1 : len(zeta) + 1] / target, **_CLOSED)
+        band = {"color": style["color"], "alpha": 0.25, "linewidth": 0}
+        panel.fill_between(relation.wavenumber / TO_UM, mean - 2 * error, mean + 2 * error, **band)
+        panel.plot(relation.wavenumber / TO_UM, mean, **style)
+    panel.plot(zeta / TO_UM, spectrum.achieved[1 : len(zeta) + 1] / target, **_CLOSED)
     panel.set(xscale="log", xlabel=r"wave number $\zeta$ [rad/µm]")
 
 
 def _whole_rings(spectrum):
-    """Wave numbers and target of the rings that neither contain 0 nor are cut by the cut-off."""
+    """Wave numbers and target of the rings that neither contain 0 nor cross the cut-off."""
     zeta, target = spectrum.wavenumber.values, spectrum.target.values
     inside = (zeta > 0) & (zeta + zeta[1] / 2 <= float(spectrum.cutoff))
     return zeta[inside], target[inside]
 
 
 def _misfits(panel, iteration):
-    """Error of the iterated spectra, beside that of the closed form and that of a right spectrum by sampling."""
+    """Error of the iterated spectra, of the closed form, and that of a correct spectrum due to sampling."""
     number = iteration.iteration
     panel.plot(number, 100 * iteration.misfit, **_ITERATED | {"marker": "o", "label": "iterated"})
     panel.plot(number, 100 * iteration.sampling_misfit, color="0.5", linestyle="-.", label="sampling alone")
@@ -175,7 +197,7 @@ def _misfits(panel, iteration):
 
 
 @styled
-def summits(characters):
+def summits(characters: Mapping[str, Mapping[str, xr.Dataset]]) -> Figure:
     """Figure 11: joint density of heights and radii of summits, Gaussian on the left, non-Gaussian on the right.
 
     Parameters
@@ -185,7 +207,7 @@ def summits(characters):
     """
     figure, axes = panels(len(characters), 2, (1.4 * SINGLE, 2.2 * len(characters)), sharex="row", sharey="row")
     for row, models in zip(axes, characters.values(), strict=True):
-        points = [_summits(models[model]) for model in _SIDE_BY_SIDE]
+        points = [_summits(models[model]) for model in SURFACE_MODELS]
         edges = [np.histogram_bin_edges(np.concatenate(both), _BINS) for both in zip(*points, strict=True)]
         densities = [np.histogram2d(*both, edges, density=True)[0] for both in points]
         shades = LogNorm(min(d[d > 0].min() for d in densities), np.max(densities))
@@ -197,18 +219,18 @@ def summits(characters):
             _mean_radius(panel, 1 / np.mean(10 ** -both[1]))
         row[0].set_ylabel("summit radius [µm]")
         figure.colorbar(image, ax=row, label="density [nm$^{-1}$ decade$^{-1}$]")
-    letter(axes, [f"{name}, {MODELS[model]['label']}" for name in characters for model in _SIDE_BY_SIDE])
+    letter(axes, [f"{name}, {MODELS[model]['label']}" for name in characters for model in SURFACE_MODELS])
     return figure
 
 
 def _summits(character):
     """Heights [nm] and decimal logarithms of the radii [µm] of the summits kept."""
-    return NM * character.summit_height.values, -np.log10(character.summit_curvature.values / UM)
+    return TO_NM * character.summit_height.values, -np.log10(character.summit_curvature.values / TO_UM)
 
 
 def _mean_radius(panel, radius):
     """Mark one over the mean curvature [µm], the radius of Table I."""
     panel.axhline(radius, color="black", linestyle="--", linewidth=0.8, path_effects=OUTLINED)
     number = f"{radius:#.2g}".rstrip(".")
-    place, look = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
-    panel.annotate(f"{number} µm", (0.96, radius), (0, 3), place, "offset points", **look)
+    place, style = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
+    panel.annotate(f"{number} µm", (0.96, radius), (0, 3), place, "offset points", **style)

@@ -1,57 +1,144 @@
-"""What all figures share: style, sizes, labels, and files that are equal byte for byte whenever the data are.
+"""Common to all figures: style, sizes, labels and files; equal data give files that are equal byte for byte.
 
-The figures themselves stand in ``figures_surfaces``, ``figures_forces`` and ``figures_beams``: functions of datasets
-that return a matplotlib figure.
+The figures themselves are in the modules ``figures_*``: functions of datasets that return a matplotlib figure.
 """
 
 import io
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 from string import ascii_lowercase
 
 import numpy as np
 from matplotlib import style
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from stiction.stages.data import save_bytes
+from stiction.run.atomic import save_bytes
 
 STYLE = Path(__file__).with_name("stiction.mplstyle")
 #: Widths of one and of two columns of the journal [in].
 SINGLE, DOUBLE = 3.5, 7.16
-#: Factors from SI to the units of the axes.
-NM, UM, MPA, MJ = 1e9, 1e6, 1e-6, 1e3
+#: Largest number of columns of panels side by side.
+_ABREAST = 4
 
-#: How the height models look, in every figure in which they meet.
+#: Style of the models in every figure.
 MODELS = {
     "G": {"color": "#E69F00", "linestyle": "--", "label": "Gaussian"},
     "NG": {"color": "#0072B2", "linestyle": "-", "label": "non-Gaussian"},
     "GEO": {"color": "#0072B2", "linestyle": "-", "label": "non-Gaussian, scattered geometry"},
 }
 
+#: Colour of published values.
+PUBLISHED = "#D55E00"
+_MARKERS = ("o", "s", "^", "v", "D", "P", "X", "<", ">")
+_DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (1, 3)), (0, (4, 4)))
+
 #: White outline of text that lies on data.
 OUTLINED = [withStroke(linewidth=1.8, foreground="white")]
 
-#: Decorator of a function that draws: the style of the study, whatever the user's own settings are.
+#: Decorator of a function that draws: the style of the study, independent of the user's own settings.
 styled = style.context(STYLE, after_reset=True)
 
 
-def panels(rows, columns, size, **shared):
+def marker(k: int) -> str:
+    """Marker of curve number ``k``; markers and `dashes` repeat after different numbers of curves."""
+    return _MARKERS[k % len(_MARKERS)]
+
+
+def dashes(k: int) -> str | tuple:
+    """Line style of curve number ``k``."""
+    return _DASHES[k % len(_DASHES)]
+
+
+def panels(rows: int, columns: int, size: tuple[float, float], **shared) -> tuple[Figure, np.ndarray]:
     """New figure of ``size`` (width, height) [in] and its axes (rows, columns), ``shared`` as in Figure.subplots."""
     figure = Figure(figsize=size, layout="constrained")
     return figure, figure.subplots(rows, columns, squeeze=False, **shared)
 
 
-def letter(axes, names=None):
+def columns_of_panels(
+    count: int, rows: int, width: float, height: float, **shared
+) -> tuple[Figure, np.ndarray, list[np.ndarray]]:
+    """New figure with one column of ``rows`` panels for each of ``count`` subjects, at most four columns side by side.
+
+    Parameters
+    ----------
+    count, rows : int
+    width : callable
+        Width of the figure [in] by the number of columns.
+    height : float
+        [in] of one line of columns.
+    shared
+        As in Figure.subplots, of one line of columns.
+
+    Returns
+    -------
+    figure : Figure
+    columns : (count, rows) array of Axes
+    lines : list of (rows, n) arrays of Axes
+        The panels as they are arranged, line by line.
+    """
+    many = -(-count // _ABREAST)
+    across = -(-count // many)
+    size = width(across), height * many
+    if many == 1 or rows == 1:
+        figure, axes = panels(rows * many, across, size, **shared)
+        lines = np.split(axes, many)
+    else:
+        figure = Figure(figsize=size, layout="constrained")
+        lines = [part.subplots(rows, across, squeeze=False, **shared) for part in figure.subfigures(many, 1)]
+    lines[-1], unused = np.split(lines[-1], [count - across * (many - 1)], axis=1)
+    for panel in unused.flat:
+        panel.remove()
+    return figure, np.concatenate([line.T for line in lines]), lines
+
+
+def legends(figure: Figure, options: Mapping[Axes, dict], most: int = 6) -> None:
+    """A legend in each panel with at most ``most`` curves, and one below the figure for the curves of all other panels.
+
+    Parameters
+    ----------
+    figure : Figure
+    options : dict
+        Panel to the options of its legend.
+    most : int
+    """
+    crowded = [panel for panel in options if len(handles(panel)[0]) > most]
+    for panel, chosen in options.items():
+        if panel not in crowded:
+            panel.legend(**chosen)
+    if crowded:
+        figure.legend(*handles(*crowded), loc="outside lower center", ncols=6)
+
+
+def humidity_axis(panel: Axes) -> None:
+    """Keep the axis of the relative humidity within 0 and 1, where a margin would exceed them."""
+    left, right = panel.get_xlim()
+    if left < 0 or right > 1:
+        panel.set_xlim(max(left, 0), min(right, 1))
+
+
+def letter(axes: Iterable[Axes], names: Sequence[str] | None = None) -> None:
     """Title panels (a), (b), ... in reading order, each with its name."""
     axes = np.ravel(axes)
     for mark, panel, name in zip(_marks(len(axes)), axes, names or [""] * len(axes), strict=True):
         panel.set_title(f"({mark}) {name}".rstrip(), loc="left")
 
 
-def handles(*panels):
+def letter_lines(lines: Sequence[np.ndarray], names: Sequence[str]) -> None:
+    """Title the panels of all lines of `columns_of_panels`, each with the name of its column."""
+    names = iter(names)
+    titles = [name for line in lines for name in list(islice(names, line.shape[1])) * line.shape[0]]
+    letter(np.concatenate([line.ravel() for line in lines]), titles)
+
+
+def handles(*panels: Axes) -> tuple[list, list[str]]:
     """Handles and labels of the curves of some panels, each label once."""
     found = {}
     for panel in panels:
@@ -65,7 +152,7 @@ def _marks(count):
     return [(letters[k // 26 - 1] if k >= 26 else "") + letters[k % 26] for k in range(count)]
 
 
-def plain_log(axis):
+def plain_log(axis: Axis) -> None:
     """Label a logarithmic axis that spans few decades by plain numbers 1, 2, 5."""
     axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axis.set_major_formatter("{x:g}")
@@ -73,7 +160,7 @@ def plain_log(axis):
 
 
 def _write_pdf(figure, content):
-    # Without the date of drawing, a drawing is a function of its data.
+    # No creation date: equal data give equal files.
     FigureCanvasPdf(figure).print_pdf(content, metadata={"CreationDate": None})
 
 
@@ -85,10 +172,10 @@ _WRITERS = {".pdf": _write_pdf, ".png": _write_png}
 
 
 @styled
-def save(figure, *paths):
-    """Write a figure as PDF or PNG, whatever each path ends with; equal figures give equal bytes."""
-    # The layout is settled once and the canvases are written directly: savefig would do both anew for every file, and
-    # start the layout from the last one.
+def save(figure: Figure, *paths: str | Path) -> None:
+    """Write a figure as PDF or PNG, by the suffix of each path; equal figures give equal bytes."""
+    # The layout is computed once and the canvases are written directly: savefig would compute it again for every file,
+    # starting from the previous layout.
     if (layout := figure.get_layout_engine()) is not None:
         layout.execute(figure)
         figure.set_layout_engine("none")
@@ -96,5 +183,5 @@ def save(figure, *paths):
     for path in paths:
         content = io.BytesIO()
         _WRITERS[Path(path).suffix](figure, content)
-        figure.dpi = resolution  # a PDF leaves 72
+        figure.dpi = resolution  # writing a PDF sets it to 72
         save_bytes(content.getvalue(), path)

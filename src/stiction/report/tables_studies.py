@@ -1,14 +1,18 @@
-"""Tables of the studies beside the main line, each number with its standard error."""
+"""Tables of the sensitivity (Fig. 13) and of Table III under other model choices, with standard errors."""
+
+from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
+from stiction.analysis import variants as comparison
 from stiction.estimates import mean_with_error
-from stiction.report.tables import percent
-from stiction.stages.data import ended
-from stiction.studies import variants as choices
+from stiction.report.format import MISSING, UM, percent, with_error
+from stiction.report.published import value
+from stiction.report.tables import Table
+from stiction.studies.variant import cases_of
 
-UM = 1e-6
 _LABELS = {
     "van_der_waals": "vdW: {}",
     "psd": "PSD: {}",
@@ -19,19 +23,22 @@ _LABELS = {
 }
 
 
-def reading_label(name):
-    """Name of a reading in words.
+def variant_label(name: str) -> str:
+    """Label of a variant.
 
     Examples
     --------
-    >>> reading_label("poisson_ratio_0.18"), reading_label("base")
+    >>> variant_label("poisson_ratio_0.18"), variant_label("base")
     ('ν = 0.18', 'base')
     """
-    key, _, value = name.rpartition("_")
-    return _LABELS[key].format(value) if key else name
+    key, _, chosen = name.rpartition("_")
+    return _LABELS[key].format(chosen) if key else name
 
 
-def sensitivity(datasets, pair, printed):
+# Sensitivity, Fig. 13
+
+
+def sensitivity(datasets: Mapping[str, xr.Dataset], pair: str, published: pd.DataFrame) -> Table:
     """Fig. 13 in numbers.
 
     Parameters
@@ -39,138 +46,84 @@ def sensitivity(datasets, pair, printed):
     datasets : dict
         Moment to the dataset of study sensitivity.
     pair : str
-    printed : pandas.DataFrame
-        The numbers that the paper states.
+    published : pandas.DataFrame
+        The published slopes of the mean, rows of the paper's own pairs.
     """
-    rows = []
-    for moment, dataset in datasets.items():
-        for statistic in dataset.statistic.values:
-            chosen = dataset.sel(statistic=statistic)
-            for humidity, slope, error in zip(
-                dataset.humidity.values, chosen.slope.values, chosen.standard_error.values, strict=True
-            ):
-                match = printed[
-                    (printed.pair == pair)
-                    & (printed.moment == moment)
-                    & np.isclose(printed.relative_humidity, humidity)
-                    & (statistic == "mean")
-                ]
-                row = {"pair": pair, "relative_humidity": humidity, "statistic": statistic, "moment": moment}
-                row |= {"slope": slope, "slope_se": error}
-                rows.append(row | {"published": float(match.slope.iloc[0]) if len(match) else np.nan})
-    return pd.DataFrame(rows)
-
-
-def markdown_sensitivity(table):
-    """Fig. 13 for reading: one row per statistic and humidity, one column per moment."""
-    printed = ["" if np.isnan(slope) else f" ({slope:+g})" for slope in table.published]
-    values = [with_error(row.slope, row.slope_se, "+") for row in table.itertuples()]
-    cells = table.assign(cell=list(map(str.__add__, values, printed)))
-    wide = cells.pivot_table("cell", ["statistic", "relative_humidity"], "moment", "first", sort=False)
+    frame = pd.DataFrame([row for moment in datasets for row in _slopes(datasets[moment], pair, moment, published)])
     caption = (
         "Fig. 13: normalised sensitivity (|x|/y) dy/dx of mean and standard deviation y of the meso-scale adhesion "
-        "energy to a moment x of the beam's surface, ± standard error (printed value)."
+        "energy to a moment x of the beam's surface, ± standard error (published value)."
     )
-    return caption + "\n\n" + wide.reset_index().to_markdown(index=False) + "\n"
-
-
-def with_error(value, error, sign=""):
-    """Value ± standard error as text, to the first digit of the error, or to the second if the first is 1; – for NaN.
-
-    Examples
-    --------
-    >>> with_error(57.82009, 0.19801), with_error(-4.9, 0.042, "+")
-    ('57.82 ± 0.20', '-4.90 ± 0.04')
-    """
-    if np.isnan(value):
-        return "–"
-    if not error > 0:
-        return f"{value:{sign}g} ± {error:g}"
-    first = int(np.floor(np.log10(error)))
-    digits = max(0, (error < 2 * 10.0**first) - first)
-    return f"{value:{sign}.{digits}f} ± {error:.{digits}f}"
-
-
-def resampling(beams, resampled):
-    """Crack lengths of model NG under laws drawn from the chaos model and from the samples themselves.
-
-    Both rest on the same pairs of surfaces: their difference has the standard errors of the beams alone.
-
-    Parameters
-    ----------
-    beams, resampled : dict
-        (pair, humidity) to the datasets of stage beams and of study resampling.
-    """
-    rows = []
-    for (pair, humidity), released in beams.items():
-        (chaos, chaos_error), (samples, samples_error) = map(_crack_length, (released, resampled[pair, humidity]))
-        row = {"pair": pair, "relative_humidity": humidity, "chaos_um": chaos, "chaos_se_um": chaos_error}
-        row |= {"samples_um": samples, "samples_se_um": samples_error, "difference_percent": percent(chaos, samples)}
-        rows.append(row | {"difference_se_percent": 100 * np.hypot(chaos_error, samples_error) / samples})
-    return pd.DataFrame(rows)
-
-
-def _crack_length(beams):
-    """Mean crack length of the S-shaped beams and its standard error over beams; NaN of less than two [µm]."""
-    stuck = beams.crack_length.values[ended(beams, "S-shape")] / UM
-    return mean_with_error(stuck) if len(stuck) >= 2 else (np.nan, np.nan)
-
-
-def markdown_resampling(table):
-    """The comparison for reading."""
-    rows = [
-        {
-            "pair": row.pair,
-            "RH": f"{row.relative_humidity:g}",
-            "l_s, chaos model [µm]": with_error(row.chaos_um, row.chaos_se_um),
-            "l_s, samples [µm]": with_error(row.samples_um, row.samples_se_um),
-            "difference [%]": with_error(row.difference_percent, row.difference_se_percent, "+"),
-        }
-        for row in table.itertuples()
-    ]
-    caption = (
-        "What the chaos model does to the crack length, model NG: mean under laws drawn from it, and under laws of the "
-        "sampled pairs themselves, drawn with replacement; ± standard error over beams."
+    known = ["" if np.isnan(slope) else f" ({slope:+g})" for slope in frame.published]
+    values = [with_error(row.slope, row.slope_se, "+") for row in frame.itertuples()]
+    texts = frame.assign(
+        cell=list(map(str.__add__, values, known)), relative_humidity=frame.relative_humidity.map("{:g}".format)
     )
-    return caption + "\n\n" + pd.DataFrame(rows).to_markdown(index=False) + "\n"
+    wide = texts.pivot_table("cell", ["statistic", "relative_humidity"], "moment", "first", sort=False)
+    return Table(frame, caption, wide.reset_index().rename_axis(columns=None))
 
 
-def cases_of(dataset):
-    """Every case of a dataset of study readings: (humidity, `stiction.studies.variants.Reading`)."""
-    for k, humidity in enumerate(dataset.humidity.values):
-        chosen = dataset.isel(humidity=k)
-        yield (
-            float(humidity),
-            choices.Reading(chosen.adhesion_energy.values, chosen.crack_length.values, ended(chosen, "S-shape")),
-        )
+def _slopes(dataset, pair, moment, published):
+    """Slopes of mean and standard deviation at every humidity."""
+    for statistic in dataset.statistic.values:
+        chosen = dataset.sel(statistic=statistic)
+        points = zip(dataset.humidity.values, chosen.slope.values, chosen.standard_error.values, strict=True)
+        for humidity, slope, error in points:
+            case = {"pair": pair, "relative_humidity": humidity}
+            known = value(published, "slope", moment=moment, **case) if statistic == "mean" else np.nan
+            row = case | {"statistic": statistic, "moment": moment, "slope": slope, "slope_se": error}
+            yield row | {"published": known}
 
 
-def readings(datasets, printed):
-    """Table III, model NG, under several readings of the paper: one row per pair, reading and humidity.
+# Model choices
+
+
+def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataFrame) -> Table:
+    """Table III, model NG, under other model choices: one row of numbers per pair, variant and humidity.
+
+    The text for reading summarises each variant: its effect at the lowest and highest humidity, and the deviation
+    over all humidities.
 
     Parameters
     ----------
     datasets : dict
-        (pair, reading) to the dataset of study readings; each pair has the reading ``base``.
-    printed : pandas.DataFrame
-        Table III as published.
+        (pair, variant) to the dataset of study variants; each pair has the variant ``base``.
+    published : pandas.DataFrame
+        Table III as published, rows of the paper's own pairs.
     """
-    rows = []
-    for (pair, name), dataset in datasets.items():
-        for (humidity, case), (_, base) in zip(cases_of(dataset), cases_of(datasets[pair, "base"]), strict=True):
-            match = printed[(printed.pair == pair) & np.isclose(printed.relative_humidity, humidity)]
-            row = {"pair": pair, "reading": name, "relative_humidity": humidity}
-            rows.append(row | _effect(case, base) | _compared(case, match))
-    return pd.DataFrame(rows)
+    frame = pd.DataFrame([row for key in datasets for row in _rows(key, datasets, published)])
+    groups = dict(list(frame.groupby(["pair", "variant"], sort=False)))
+    removed = {key: _removed(group, groups[key[0], "base"]) for key, group in groups.items()}
+    for k, column in enumerate(("removed_percent", "removed_se_percent")):
+        frame[column] = [100 * removed[key][k] for key in zip(frame.pair, frame.variant, strict=True)]
+    cells = [_summary(key, group) for key, group in frame.groupby(["pair", "variant"], sort=False)]
+    caption = (
+        "Table III, model NG, under other model choices: change of the mean crack length and of the mean meso-scale "
+        "energy against the base variant, at the lowest and at the highest humidity; root mean square over the "
+        "humidities of the deviation from the published and from the measured crack length; ± standard error. Removed: "
+        "share of the mean square deviation from the published length that the variant removes; negative: that it adds."
+    )
+    return Table(frame, caption, pd.DataFrame(cells))
+
+
+def _rows(key, datasets, published):
+    """One variant of a pair at every humidity."""
+    pair, name = key
+    for (humidity, case), (_, base) in zip(cases_of(datasets[key]), cases_of(datasets[pair, "base"]), strict=True):
+        known = {
+            column: value(published, column, pair=pair, relative_humidity=humidity) for column in ("ng", "experiment")
+        }
+        row = {"pair": pair, "variant": name, "relative_humidity": humidity}
+        yield row | _effect(case, base) | _compared(case, published=known["ng"], experiment=known["experiment"])
 
 
 def _effect(case, base):
-    """What a reading does to one case."""
-    length, own, common = choices.crack_length_with_errors(case)
-    shift, shift_error = choices.shift(case, base)
-    reference, _ = choices.mean_crack_length(base)
+    """Effect of a variant on one case."""
+    length, own, common = comparison.crack_length_with_errors(case)
+    shift, shift_error = comparison.shift(case, base)
+    reference, _ = comparison.mean_crack_length(base)
     energy, energy_error = mean_with_error(case.energy)
-    energy_shift, energy_shift_error = choices.energy_shift(case, base)
+    energy_shift, energy_shift_error = comparison.energy_shift(case, base)
     return {
         "crack_length_um": length / UM,
         "crack_length_se_um": np.hypot(own, common) / UM,
@@ -186,53 +139,41 @@ def _effect(case, base):
     }
 
 
-def _compared(case, match):
-    """Deviation of a case from the printed and the measured crack length."""
-    length = choices.mean_crack_length(case)[0] / UM
+def _compared(case, **references):
+    """Deviations of a case from the published and the measured crack length [µm]."""
+    length = comparison.mean_crack_length(case)[0] / UM
     row = {}
-    for column, name in (("ng", "published"), ("experiment", "experiment")):
-        reference = float(match[column].iloc[0]) if len(match) else np.nan
+    for name, reference in references.items():
         row |= {f"{name}_um": reference, f"{name}_deviation_percent": percent(length, reference)}
     return row
 
 
-def markdown_readings(table):
-    """Summary for reading: effect at the lowest and highest humidity, deviation over all humidities."""
-    groups = dict(list(table.groupby(["pair", "reading"], sort=False)))
-    rows = [_summary(*key, group, groups[key[0], "base"]) for key, group in groups.items()]
-    caption = (
-        "Table III, model NG, under other readings of the paper: change of the mean crack length and of the mean "
-        "meso-scale energy against the base reading, at the lowest and at the highest humidity; root mean square over "
-        "the humidities of the deviation from the printed and from the measured crack length; ± standard error. "
-        "Removed: share of the mean square deviation from print that vanishes with the reading; negative: that it adds."
-    )
-    return caption + "\n\n" + pd.DataFrame(rows).to_markdown(index=False) + "\n"
-
-
-def _summary(pair, name, group, base):
-    """One row of the summary."""
-    row = {"pair": pair, "reading": reading_label(name)}
-    for which, end in (("low RH", group.iloc[0]), ("high RH", group.iloc[-1])):
+def _summary(key, group):
+    """One variant of a pair as text."""
+    pair, name = key
+    base, first = name == "base", group.iloc[0]
+    row = {"pair": pair, "variant": variant_label(name)}
+    for which, end in (("low RH", first), ("high RH", group.iloc[-1])):
         for title, column in (("Δl_s", "shift"), ("Δē", "meso_energy_shift")):
             change = with_error(end[f"{column}_percent"], end[f"{column}_se_percent"], "+")
-            row[f"{title} [%], {which}"] = "–" if name == "base" else change
-    for title, column in (("print", "published_um"), ("experiment", "experiment_um")):
+            row[f"{title} [%], {which}"] = MISSING if base else change
+    for title, column in (("published", "published_um"), ("experiment", "experiment_um")):
         rms = _rms_deviation(group, column)
-        row[f"rms dev. from {title} [%]"] = with_error(*(100 * x for x in rms)) if rms else "–"
-    return row | {"removed [%]": "–" if name == "base" else _removed(group, base)}
+        row[f"rms dev. from {title} [%]"] = with_error(*(100 * x for x in rms)) if rms else MISSING
+    removed = with_error(first.removed_percent, first.removed_se_percent, "+")
+    return row | {"removed [%]": MISSING if base else removed}
 
 
 def _removed(group, base):
-    """Share of the mean square deviation from print that a reading removes, as text [%]."""
+    """Share of the mean square deviation from the published length that a variant removes, with its error [-]."""
     known = (group.published_um.notna() & group.crack_length_um.notna()).values & base.crack_length_um.notna().values
-    if not known.any():
-        return "–"
+    if not known.any() or group is base:
+        return np.nan, np.nan
     here, there = group[known], base[known]
     lengths = [of.crack_length_um.values for of in (here, there)]
     errors = [here.shift_se_percent.values / 100 * lengths[1]]
     errors += [there[f"crack_length_{part}_se_um"].values for part in ("beams", "pairs")]
-    share, error = choices.removed_share(*lengths, here.published_um.values, errors)
-    return with_error(100 * share, 100 * error, "+")
+    return comparison.removed_share(*lengths, here.published_um.values, errors)
 
 
 def _rms_deviation(group, column):
@@ -241,4 +182,4 @@ def _rms_deviation(group, column):
     if not len(known):
         return None
     errors = known.crack_length_beams_se_um, known.crack_length_pairs_se_um
-    return choices.rms_deviation(known.crack_length_um, *errors, known[column])
+    return comparison.rms_deviation(known.crack_length_um, *errors, known[column])

@@ -1,0 +1,1 @@
+"""Running the workflow: fingerprints of the code, provenance, logs, locks and compilation."""

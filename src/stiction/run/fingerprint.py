@@ -1,7 +1,7 @@
-"""Fingerprint of a script and of all code of the package behind it: what Snakemake does not see by itself.
+"""Fingerprint of a script and of all modules of the package that it imports; Snakemake does not track these modules.
 
-The fingerprint is a parameter of every rule, so that a changed module reruns the rules whose scripts import it,
-directly or through other modules. This module needs the standard library alone.
+The fingerprint is a parameter of every rule, so that a change of a module reruns the rules whose scripts import it,
+directly or through other modules. This module uses only the standard library.
 """
 
 import ast
@@ -10,17 +10,17 @@ from functools import cache
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1]
-#: Modules that change no number.
-SILENT = {"stiction.progress", "stiction.run.logs"}
-#: Fields of a syntax tree that say nothing about what the code does.
+#: Modules that do not affect any result: they report progress and errors, or reject a configuration.
+SILENT = {"stiction.progress", "stiction.run.logs", "stiction.config.messages", "stiction.config.relations"}
+#: Fields of a syntax tree that do not affect what the code does.
 _WITHOUT_MEANING = {"kind", "type_comment", "type_ignores"}
 
 
-def fingerprint(script):
-    """Hash the meaning of a script and of every module of the package that it imports, at any distance.
+def fingerprint(script: str | Path) -> dict[str, str]:
+    """Hash a script and every module of the package that it imports, directly or through other modules.
 
-    Comments, docstrings and layout do not count, nor do the modules of ``SILENT``, so that they rerun nothing. All
-    versions of Python give the same hashes.
+    The hashes do not depend on comments, docstrings and formatting, and the modules in ``SILENT`` are left out, so that
+    such changes rerun nothing. All versions of Python give the same hashes.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def fingerprint(script):
     Returns
     -------
     dict
-        Name of the script and of modules to the first 8 hex digits of their hashes, sorted.
+        Names of the script and the modules, sorted, mapped to the first 8 hex digits of their hashes.
     """
     reached, open_files = {}, [Path(script)]
     while open_files:
@@ -42,7 +42,7 @@ def fingerprint(script):
 
 
 def _name(path):
-    """Dotted name of a module of the package, file name of a script."""
+    """Dotted name of a module of the package; file name of a script."""
     if not path.is_relative_to(PACKAGE) or path.parent.name == "scripts":
         return path.name
     return ".".join(("stiction", *path.relative_to(PACKAGE).with_suffix("").parts))
@@ -56,23 +56,24 @@ def _read(path, _modified):
     return hashlib.sha256(canonical(tree).encode()).hexdigest()[:8], imports
 
 
-def imported(node):
-    """Files of the package that an import statement names; none for any other node."""
+def imported(node: ast.AST) -> list[Path]:
+    """Files of the package that an import statement refers to; empty for any other node."""
     if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "stiction":
         names = [(*node.module.split("."), alias.name) for alias in node.names]
     elif isinstance(node, ast.Import):
         names = [alias.name.split(".") for alias in node.names if alias.name.startswith("stiction.")]
     else:
         return []
-    # A name is a module, or something in the module before it.
+    # The last part is a module, or an object defined in the module named by the parts before it.
     paths = [[PACKAGE.joinpath(*parts[1:end]).with_suffix(".py") for end in (None, -1)] for parts in map(list, names)]
     return [path for both in paths for path in both if path != PACKAGE.with_suffix(".py") and path.is_file()]
 
 
-def canonical(node):
-    """Syntax tree as text that is the same in every version of Python, without docstrings.
+def canonical(node: object) -> str:
+    """Syntax tree without docstrings as text that is the same in every version of Python.
 
-    `ast.dump` is not: versions differ in whether they print empty fields, and in how they split formatted strings.
+    The output of `ast.dump` is not: versions differ in whether they print empty fields and in how they split formatted
+    strings.
     """
     if isinstance(node, list):
         return f"[{','.join(map(canonical, node))}]"
@@ -93,7 +94,7 @@ def _has_docstring(node):
 
 
 def _joined(values):
-    """Parts of a formatted string, with neighbouring texts joined and empty ones left out."""
+    """Parts of a formatted string, with adjacent literals joined and empty literals left out."""
     joined = []
     for value in values:
         text = isinstance(value, ast.Constant)

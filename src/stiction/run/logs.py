@@ -1,25 +1,26 @@
-"""What a job leaves behind while it works: progress, errors and what it took, in its log."""
+"""The log of a job: progress, warnings, errors, run time and peak memory."""
 
 import contextlib
 import resource
 import sys
 import time
 import traceback
+from collections.abc import Iterator
 from pathlib import Path
 
 
 @contextlib.contextmanager
-def logged(path):
-    """Send warnings, progress and the traceback of an error to a log; the terminal gets the error's one line.
+def logged(path: str | Path) -> Iterator[None]:
+    """Write warnings, progress and the traceback of an error to a log; print one line about the error on the terminal.
 
-    The last line of the log of a job that succeeded tells how long it worked and its peak of memory.
+    The log of a successful job ends with its run time and peak memory.
     """
     start, failure = time.perf_counter(), None
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     Path(path).touch()
-    # A full disk takes no more lines of a log; the terminal still gets its own.
-    what_fits = contextlib.suppress(OSError)
-    with what_fits, Path(path).open("w", buffering=1, encoding="utf-8") as log, contextlib.redirect_stderr(log):
+    # On a full disk the log is incomplete, but the line about the error is still printed on the terminal.
+    full_disk = contextlib.suppress(OSError)
+    with full_disk, Path(path).open("w", buffering=1, encoding="utf-8") as log, contextlib.redirect_stderr(log):
         try:
             yield
         except Exception as error:
@@ -31,9 +32,9 @@ def logged(path):
         sys.exit(failure)
 
 
-def peak_memory():
+def peak_memory() -> float:
     """Largest resident memory of this process so far [MB]."""
-    status = Path("/proc/self/status")  # where there is one, it counts this program alone; the other count inherits
+    status = Path("/proc/self/status")  # Linux; getrusage would include the peak of the parent process
     counted = dict(line.split(":", 1) for line in status.read_text().splitlines()) if status.exists() else {}
     if "VmHWM" in counted:
         return int(counted["VmHWM"].split()[0]) / 1024

@@ -1,4 +1,4 @@
-"""A record of every run: when, where, with which code, libraries and configuration."""
+"""Record of every run: date, machine, code, libraries and configuration."""
 
 import datetime
 import json
@@ -8,37 +8,38 @@ import subprocess
 from importlib import metadata
 from pathlib import Path
 
-#: Libraries that a result may depend on.
+from stiction.run.atomic import save_text
+
+#: Libraries on which results may depend.
 LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4", "pandas", "matplotlib", "snakemake")
 
 
-def record(path, checkout, config):
-    """Append a run that starts now to the record of runs, which it reads and replaces whole.
+def record(path: str | Path, checkout: str | Path, config: dict) -> None:
+    """Append the run that is starting to the record of runs; the file is replaced atomically.
 
     Parameters
     ----------
     path : path
-        JSON file, a list of runs, oldest first.
+        JSON file with a list of runs, oldest first.
     checkout : path
-        Folder of the code.
+        Folder that contains the code.
     config : dict
         Complete configuration of the run.
 
     Raises
     ------
     ValueError
-        If the file is there and holds no list of runs.
+        If the file exists and is not a list of runs.
+    DataError
+        If the file cannot be written.
     """
     path = Path(path)
-    runs = _recorded(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    draft = path.with_name(f".{path.name}")
-    draft.write_text(json.dumps([*runs, _run(checkout, config)], indent=1, sort_keys=True) + "\n", encoding="utf-8")
-    draft.replace(path)
+    runs = [*_recorded(path), _run(checkout, config)]
+    save_text(json.dumps(runs, indent=1, sort_keys=True) + "\n", path)
 
 
 def _recorded(path):
-    """Runs in a record, none if there is no record."""
+    """Runs in a record; empty if there is no record."""
     if not path.exists():
         return []
     try:
@@ -46,26 +47,42 @@ def _recorded(path):
     except ValueError as reason:
         raise ValueError(f"{path} cannot be read ({reason}); delete it") from reason
     if not isinstance(runs, list):
-        raise ValueError(f"{path} holds no list of runs; delete it")
+        raise ValueError(f"{path} does not contain a list of runs; delete it")
     return runs
 
 
 def _run(checkout, config):
-    """When, where and with what a run starts."""
+    """Date, machine, code, libraries and configuration of a run that is starting."""
     return {
         "started": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-        "versions": {"python": platform.python_version()} | {name: metadata.version(name) for name in LIBRARIES},
+        "versions": {"python": platform.python_version()} | {name: _version(name) for name in LIBRARIES},
         "git": git_state(checkout),
         "machine": {"host": platform.node(), "system": platform.platform(), "cpu": _cpu(), "cores": os.cpu_count()},
         "config": config,
     }
 
 
-def git_state(checkout):
-    """Commit of a checkout and whether its files differ from it; ``None`` where there is no git or no commit."""
+def _version(library):
+    """Version of a library; ``None`` if it is not installed, e.g. Snakemake where only the package is used."""
+    try:
+        return metadata.version(library)
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def git_state(checkout: str | Path) -> dict | None:
+    """Commit of a checkout and whether files differ from the commit; ``None`` without git or without a commit.
+
+    The checkout may belong to another user, which git by itself refuses.
+    """
     try:
         commit, changes = (
-            subprocess.run(["git", "-C", checkout, *command], capture_output=True, text=True, check=True).stdout
+            subprocess.run(
+                ["git", "-c", f"safe.directory={Path(checkout).resolve()}", "-C", checkout, *command],
+                capture_output=True,
+                text=True,
+                check=True,
+            ).stdout
             for command in (["rev-parse", "HEAD"], ["status", "--porcelain"])
         )
     except (OSError, subprocess.CalledProcessError):
@@ -74,7 +91,7 @@ def git_state(checkout):
 
 
 def _cpu():
-    """Name of the processor as far as the system tells."""
+    """Name of the processor, if the system reports it."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:

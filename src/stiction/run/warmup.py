@@ -1,11 +1,12 @@
-"""Compile every kernel once and cache it: ``python -m stiction.run.warmup``, before jobs run side by side."""
+"""Compile and cache all kernels before jobs run in parallel: ``python -m stiction.run.warmup``."""
 
 import numpy as np
 
-from stiction.beam.cantilever import Beam, release
+from stiction.beam.cantilever import Beam
+from stiction.beam.release import release
 from stiction.chaos import model as chaos
 from stiction.contact import forcelaw
-from stiction.contact.asperity import MaugisTable, reduced_modulus
+from stiction.contact.asperity import asperity, reduced_modulus
 from stiction.contact.pair import SurfacePair
 from stiction.contact.vanderwaals import attraction
 from stiction.streams import stream
@@ -16,13 +17,13 @@ from stiction.surface.summits import find_summits
 from stiction.surface.translation import Translation
 
 
-def main():
-    """Run every compiled path on a small problem."""
+def main() -> None:
+    """Run all kernels on a small problem."""
     rng = stream(0)
     grid = StripGrid(1e-6, 1e-6, 1e-8, 0.0)
     surface = RoughSurface(CutoffSelfAffine(1, 0.1, 1e7, 1e8), Translation(maxent.GAUSSIAN), 1e-9, grid)
     for through in ("water", "none"):
-        pair = SurfacePair(surface, surface, MaugisTable(reduced_modulus(164e9, 0.23), attraction(through)), 1e-10)
+        pair = SurfacePair(surface, surface, asperity(reduced_modulus(164e9, 0.23), attraction(through)), 1e-10)
         heights = pair.draw(rng, rng)
         solid, bearing = pair.contact(heights)
     find_summits(heights, 1e-8)
@@ -31,7 +32,7 @@ def main():
     forcelaw.parametrise(distance, curve, 1)
     vectors = np.exp(0.1 * rng.standard_normal((50, 4))) * [7e-3, 2e6, 8e-9, 4e-9]
     model = chaos.fit(vectors, 2e6, 2, 1e-9)
-    laws, _ = chaos.draw_laws(model, 200, rng)
+    laws = chaos.draw_laws(model, 200, rng)
     release(Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200), laws, 300e-6)
 
 

@@ -1,17 +1,74 @@
-"""Beams from the configuration."""
+"""Nominal beams from the settings of a job."""
+
+from dataclasses import dataclass
+from typing import Protocol
 
 from stiction.beam.cantilever import Beam
-from stiction.config.units import si
 
 
-def cantilever(settings, pair):
-    """The nominal beam of a pair, from sections beam, solid and pairs."""
-    entry = si(settings["beam"])
-    sizes = {key: entry[key] for key in ("length", "width", "thickness", "elements")}
-    gap, young_modulus = si(settings["pairs"][pair])["gap"], si(settings["solid"])["young_modulus"]
-    return Beam(**sizes, gap=gap, young_modulus=young_modulus)
+@dataclass(frozen=True)
+class Stiffness:
+    """The part of section ``solid`` on which beams depend."""
+
+    young_modulus: float  #: E [Pa]
 
 
-def points(settings):
-    """Number of force laws along a beam, N_p, from sections beam and sampling."""
-    return round(si(settings["beam"])["length"] / si(settings["sampling"])["strip_length"])
+@dataclass(frozen=True)
+class Dimensions:
+    """Nominal cantilever and its mesh."""
+
+    length: float  #: L [m]
+    width: float  #: w [m]
+    thickness: float  #: t [m]
+    elements: int  #: N_e
+    samples: int | None = None  #: number of beams
+
+
+@dataclass(frozen=True)
+class Gap:
+    """The part of a pair's section on which beams depend."""
+
+    gap: float  #: h [m]
+    humidities: tuple[float, ...] = ()  #: [-]
+
+
+@dataclass(frozen=True)
+class StripLength:
+    """The part of section ``sampling`` on which beams depend."""
+
+    strip_length: float  #: l_meso [m]
+
+
+class Settings(Protocol):
+    """Sections of the settings of any job with beams."""
+
+    solid: Stiffness
+    beam: Dimensions
+    pairs: dict[str, Gap]
+
+
+@dataclass(frozen=True)
+class Cantilevers:
+    """Settings of a job that needs only the nominal beams of some pairs."""
+
+    solid: Stiffness
+    beam: Dimensions
+    pairs: dict[str, Gap]
+
+
+def cantilever(settings: Settings, pair: str) -> Beam:
+    """Nominal beam of a pair."""
+    size = settings.beam
+    return Beam(
+        length=size.length,
+        width=size.width,
+        thickness=size.thickness,
+        young_modulus=settings.solid.young_modulus,
+        gap=settings.pairs[pair].gap,
+        elements=size.elements,
+    )
+
+
+def strips_along(beam: Dimensions, sampling: StripLength) -> int:
+    """Number of force laws along a beam, N_p."""
+    return round(beam.length / sampling.strip_length)

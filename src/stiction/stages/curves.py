@@ -1,19 +1,35 @@
-"""Force curves from datasets: the way back from the files of stage contact."""
+"""Force curves at a humidity from the dataset of stage contact; shared by several stages, not a stage itself."""
 
-from stiction.contact.forcelaw import humid_curves
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.contact import forcelaw
 from stiction.contact.meniscus import laplace_pressure, meniscus_height
+from stiction.stages.contact import tables
 
 
-def force_curves(contact, humidity, temperature):
-    """Distance (n_d,) [m] and ``curve(k)``, the force of sample k (n_d,) [Pa]; see `stiction.contact.forcelaw`.
+@dataclass(frozen=True)
+class Water:
+    """Condensed water."""
 
-    Parameters
-    ----------
-    contact : Dataset
-        Stage contact.
-    humidity, temperature : float
-        Relative humidity [-] and absolute temperature of the water [K].
-    """
+    temperature: float  #: T [K]
+
+
+def force_curves(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, Callable[[int], np.ndarray]]:
+    """Distance (n_d,) [m] and ``curve(k)``, force of sample k [Pa], from `stiction.contact.forcelaw.humid_curves`."""
+    temperature = water.temperature
     film = float(meniscus_height(humidity, temperature)), -float(laplace_pressure(humidity, temperature))
-    starts = float(contact.distance[0]), float(contact.height[0])
-    return humid_curves(contact.solid_pressure.values, contact.bearing_area.values, starts, float(contact.step), film)
+    return forcelaw.humid_curves(*tables(contact), film)
+
+
+def energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
+    """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
+    return forcelaw.adhesion_energies(*force_curves(contact, humidity, water), contact.sizes["sample"])
+
+
+def vectors(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, float]:
+    """Vectors v of Eq. (11) of all samples at a relative humidity (m, 4) [SI], and f_limit [Pa]."""
+    return forcelaw.parametrise(*force_curves(contact, humidity, water), contact.sizes["sample"])

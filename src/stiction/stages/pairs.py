@@ -1,55 +1,59 @@
-"""Pairs of rough surfaces that meet, from the configuration and from datasets.
+"""Pairs of rough surfaces in contact, from the datasets of stages heights and spectrum.
 
-Apart from `stiction.stages.cases`, so that a change of the contact reruns nothing that is done to single surfaces.
+Separate from `stiction.stages.contact`, because studies use the same pairs for other purposes.
 """
 
-from stiction.config.units import si
-from stiction.contact.asperity import MaugisTable, reduced_modulus
-from stiction.contact.pair import SurfacePair, contact_of_samples
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import xarray as xr
+
+from stiction.contact.asperity import asperity, reduced_modulus
+from stiction.contact.pair import SurfacePair
 from stiction.contact.vanderwaals import attraction
-from stiction.progress import progress
-from stiction.stages import data
-from stiction.stages.cases import SIDES, rough_surface, strip_grid
+from stiction.models import SIDES
+from stiction.stages.surfaces import Sampling, Width, rough_surface
 from stiction.streams import stream
 
 
-def asperity(solid, van_der_waals):
-    """Force of one asperity, from section solid and the kind of van der Waals attraction."""
-    return MaugisTable(reduced_modulus(**si(solid)), attraction(van_der_waals))
+@dataclass(frozen=True)
+class Solid:
+    """Elastic constants of both bodies."""
+
+    young_modulus: float  #: E [Pa]
+    poisson_ratio: float  #: ν [-]
 
 
-def surface_pair(surfaces, model, settings):
-    """Pair of surfaces from two (heights, spectrum) datasets, beam first, and the settings of stage contact."""
-    grid = strip_grid(settings["sampling"], si(settings["beam"])["width"])
+@dataclass(frozen=True)
+class Contact:
+    """Discretisation of the contact (Sec. III-A)."""
+
+    distance_step: float  #: step of the distance between the mean planes [m]
+    every: int  #: n: contact is computed on every n-th point of the grid
+    samples: int | None = None  #: number of surface pairs
+
+
+class Settings(Protocol):
+    """Sections of the settings of any job that draws pairs of surfaces."""
+
+    sampling: Sampling
+    solid: Solid
+    van_der_waals: str
+    contact: Contact
+    beam: Width
+
+
+def surface_pair(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], model: str, settings: Settings) -> SurfacePair:
+    """Pair of surfaces from two (heights, spectrum) datasets, that of the beam first."""
+    grid = settings.sampling.strips(settings.beam.width)
     beam, substrate = (rough_surface(heights, spectrum, model, grid) for heights, spectrum in surfaces)
-    solid = asperity(settings["solid"], settings["van_der_waals"])
-    contact = si(settings["contact"])
-    return SurfacePair(beam, substrate, solid, contact["distance_step"], contact["every"])
+    modulus = reduced_modulus(settings.solid.young_modulus, settings.solid.poisson_ratio)
+    solid = asperity(modulus, attraction(settings.van_der_waals))
+    return SurfacePair(beam, substrate, solid, settings.contact.distance_step, settings.contact.every)
 
 
-def streams_of_sides(seed, pair):
-    """Streams of the two surfaces of one sample of a pair: ``(sample) -> beam's, substrate's``."""
+def streams_of_sides(seed: int, pair: str) -> Callable[[int], tuple[np.random.Generator, ...]]:
+    """Streams of the two surfaces of one sample of a pair: ``(sample) -> (beam, substrate)``."""
     return lambda sample: tuple(stream(seed, "contact", pair, side, sample) for side in SIDES)
-
-
-def contact(surfaces, pair, model, settings, samples=None):
-    """Stage contact: solid pressure and bearing area of the sampled pairs, free of humidity (Sec. III-A).
-
-    Parameters
-    ----------
-    surfaces : tuple
-        Datasets (heights, spectrum) of the beam's and of the substrate's surface.
-    pair : str
-        Part of the addresses of random numbers.
-    model : str
-        ``NG``, or ``G`` for surfaces with Gaussian heights.
-    settings : dict
-        Sections seed, sampling, solid, van_der_waals, contact and the width of the beam.
-    samples : range, optional
-        Numbers of the samples; all by default.
-    """
-    meeting = surface_pair(surfaces, model, settings)
-    samples = range(settings["contact"]["samples"]) if samples is None else samples
-    streams = streams_of_sides(settings["seed"], pair)
-    curves = contact_of_samples(meeting, streams, progress(samples, "surface pairs"))
-    return data.contact(*curves, meeting.distances, samples)

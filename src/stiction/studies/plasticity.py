@@ -1,53 +1,72 @@
-"""Whether contact stays elastic: stress and contact area of every touching summit (App. A)."""
+"""Study plasticity (App. A, Fig. 16): stress of every touching summit of a pair at a small distance."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 
-from stiction.constants import HARDNESS
-from stiction.estimates import jackknife
+from stiction.analysis import plasticity
+from stiction.contact.asperity import hertz_maximum_stress, reduced_modulus
+from stiction.progress import progress
+from stiction.stages.pairs import Contact, Solid, streams_of_sides, surface_pair
+from stiction.stages.surfaces import Sampling, Width
+from stiction.surface.summits import find_summits
 
-#: Share of the hardness at which a sphere starts to yield (Tabor); paper, App. A.
-ONSET = 0.6
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the stresses depend on apart from the surfaces."""
+
+    seed: int
+    sampling: Sampling
+    solid: Solid
+    van_der_waals: str
+    contact: Contact
+    beam: Width
+    surfaces: tuple[str, ...]  #: names of the two surfaces; they do not affect the results
+    strips: int  #: number of pairs of strips
+    distance: float  #: between the mean planes [m]
 
 
-def touching(height, curvature, distance):
-    """Summits that reach a flat: interference δ [m] and radius R [m], (n_touching,) each.
+def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
+    """Find the touching summits of all strips and the share of their contact area that yields."""
+    meeting = surface_pair(surfaces, "NG", settings)
+    streams = streams_of_sides(settings.seed, pair)
+    found = []
+    for k in progress(range(settings.strips), "strips"):
+        height, curvature, _ = find_summits(meeting.draw(*streams(k)), meeting.beam.grid.spacing * meeting.every)
+        interference, radius = plasticity.touching(height, curvature, settings.distance)
+        found.append((interference, radius, np.full(len(radius), k)))
+    interference, radius, strip = np.hstack(found)
+    modulus = reduced_modulus(settings.solid.young_modulus, settings.solid.poisson_ratio)
+    stress = hertz_maximum_stress(interference, radius, modulus)
+    area = plasticity.contact_area(interference, radius)
+    share = plasticity.plastic_share(area, stress, strip.astype(int), settings.strips)
+    summits = {"interference": interference, "radius": radius, "stress": stress, "strip": strip.astype(int)}
+    return layout(summits, share, settings.distance)
+
+
+def layout(summits: dict[str, np.ndarray], share: tuple[float, float], distance: float) -> xr.Dataset:
+    """Stress of every touching summit and the share of the contact area that yields.
 
     Parameters
     ----------
-    height, curvature : (n,) arrays
-        Of all summits [m], [m⁻¹].
+    summits : dict
+        interference [m], radius [m], stress [Pa], strip, (n,) each.
+    share : tuple
+        A_P / A and its standard error [-].
     distance : float
-        Of the flat from the mean plane [m].
+        Between the mean planes [m].
     """
-    reaching = height > distance
-    return height[reaching] - distance, 1 / curvature[reaching]
-
-
-def contact_area(interference, radius):
-    """Hertz' contact area of a sphere, π R δ [m²]; interference [m], radius [m]."""
-    return np.pi * radius * interference
-
-
-def yields(stress):
-    """Whether a summit with this largest stress [Pa] deforms irreversibly."""
-    return stress > ONSET * HARDNESS
-
-
-def plastic_share(area, stress, strip, strips):
-    """Ratio A_P / A of the contact area that yields to all contact area, with its jackknife standard error.
-
-    Both are NaN if not even two strips are touched: without contact there is no such ratio.
-
-    Parameters
-    ----------
-    area, stress : (n,) arrays
-        Of all touching summits [m²], [Pa].
-    strip : (n,) int array
-        Number of the strip on which each stands, from 0.
-    strips : int
-        Number of strips, the independent samples.
-    """
-    if len(np.unique(strip)) < 2:
-        return np.nan, np.nan
-    sums = [np.bincount(strip, weights, strips) for weights in (area * yields(stress), area)]
-    return jackknife(lambda mean: mean[0] / mean[1], np.column_stack(sums) / np.sum(area))
+    units = {"interference": "m", "radius": "m", "stress": "Pa"}
+    columns = {name: ("summit", np.asarray(summits[name], np.float32), {"units": unit}) for name, unit in units.items()}
+    return xr.Dataset(
+        columns
+        | {
+            "strip": ("summit", np.asarray(summits["strip"], np.int32)),
+            "plastic_share": ((), share[0], {"units": "1", "long_name": "A_P / A"}),
+            "plastic_share_error": ((), share[1], {"units": "1"}),
+            "separation": ((), distance, {"units": "m"}),
+        }
+    )

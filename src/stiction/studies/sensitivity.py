@@ -1,66 +1,53 @@
-r"""What the moments of a surface do to the adhesion energy (Sec. IV-B, Fig. 13).
+"""Study sensitivity (Fig. 13): adhesion energies of a pair at two values of one moment of the beam's surface."""
 
-A sensitivity of y to x is normalised as :math:`(|x|/y) \, dy/dx`: the relative change of y for an increase of x by its
-own size. An increase of a negative skewness brings it closer to zero.
-"""
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 
-from stiction.estimates import jackknife
+from stiction.analysis.sensitivity import energy_sensitivity
+from stiction.stages.curves import Water, energies
+from stiction.studies.sensitivity_contact import moment
 
-
-def shifted(moment, step):
-    """Values of a moment below and above, on both sides of it by the relative ``step``; increasing, (2,)."""
-    return moment - abs(moment) * step, moment + abs(moment) * step
-
-
-def normalised_slope(values, at):
-    """Central difference of ln y over ln |x|, with the sign of an increase of x [-]; exact for a power law.
-
-    Parameters
-    ----------
-    values : sequence of two arrays of one shape
-        y at the two values of x; positive.
-    at : sequence of two floats
-        The two values of x, of one sign.
-
-    Raises
-    ------
-    ValueError
-        If x has no relative change: zero lies between its values.
-
-    Examples
-    --------
-    >>> round(float(normalised_slope((1.1**3, 0.9**3), (-1.1, -0.9))), 3)  # y = |x|³ at x = -1
-    -3.0
-    """
-    if not at[0] * at[1] > 0:
-        raise ValueError(f"a sensitivity to a moment between {at[0]:.3g} and {at[1]:.3g} cannot be normalised")
-    return np.sign(at[0]) * np.log(values[1] / values[0]) / np.log(at[1] / at[0])
+_STATISTICS = ("mean", "standard deviation")
 
 
-def energy_sensitivity(energies, at):
-    """Normalised sensitivity of mean and standard deviation of the adhesion energy, with jackknife standard errors.
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the sensitivity depends on apart from the contact."""
+
+    water: Water
+    humidities: tuple[float, ...]  #: [-]
+
+
+def compute(contacts: Sequence[xr.Dataset], settings: Settings) -> xr.Dataset:
+    """Compare samples drawn with the same random numbers at the two values of the moment."""
+    at = [moment(contact) for contact in contacts]
+    found = np.array([[energies(contact, h, settings.water) for h in settings.humidities] for contact in contacts])
+    return layout(found, at, energy_sensitivity(found.swapaxes(1, 2), at), settings.humidities)
+
+
+def layout(energies: np.ndarray, at: Sequence[float], estimate: tuple, humidities: Sequence[float]) -> xr.Dataset:
+    """Adhesion energies at two values of one moment, and sensitivities of their mean and standard deviation.
 
     Parameters
     ----------
-    energies : (2, n, ...) array
-        Energies of n samples at the two values of the moment [J m⁻²]; sample k of both is one surface in two shapes.
-    at : sequence of two floats
-        The two values of the moment.
-
-    Returns
-    -------
-    slopes, errors : (2, ...) arrays
-        Of the mean and of the standard deviation [-].
+    energies : (2, n_rh, m) array
+        Adhesion energies e [J m⁻²].
+    at : (2,) array
+        Values of the moment [SI].
+    estimate : tuple
+        Normalised slopes and standard errors, (2, n_rh) each [-].
+    humidities : sequence
+        Relative humidities RH [-].
     """
-    energies = np.asarray(energies, float)
-    powers = np.stack([energies, energies**2])
-    samples = np.moveaxis(powers, 2, 0)
-
-    def slopes(means):
-        first, second = means.reshape(samples.shape[1:])
-        statistics = np.stack([first, np.sqrt(second - first**2)], axis=1)
-        return normalised_slope(statistics, at)
-
-    return jackknife(slopes, samples.reshape(len(samples), -1))
+    slopes, errors = estimate
+    return xr.Dataset(
+        {
+            "adhesion_energy": (("moment", "humidity", "sample"), energies, {"units": "J m-2"}),
+            "slope": (("statistic", "humidity"), slopes, {"units": "1", "long_name": "(|x|/y) dy/dx"}),
+            "standard_error": (("statistic", "humidity"), errors, {"units": "1"}),
+        },
+        coords={"moment": list(at), "humidity": list(humidities), "statistic": list(_STATISTICS)},
+    )

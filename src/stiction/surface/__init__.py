@@ -1,0 +1,1 @@
+"""Random rough surfaces (Sec. II): density of the heights, spectrum, simulation, summits and identification."""

@@ -7,7 +7,8 @@ import numba
 import numpy as np
 from scipy import fft
 
-from stiction.surface.translation import LARGEST_SCORE, Translation
+from stiction.surface.spectrum import Spectrum, radial_spectrum
+from stiction.surface.translation import LARGEST_SCORE, TranslationMap
 
 
 @dataclass(frozen=True)
@@ -16,8 +17,8 @@ class StripGrid:
 
     length: float  #: along the beam, l_meso [m]
     width: float  #: across the beam, w [m]
-    spacing: float  #: distance of grid points [m]
-    margin: float  #: least distance between opposite edges of a strip around the period of its field [m]
+    spacing: float  #: of the grid points [m]
+    margin: float  #: smallest distance between opposite edges of a strip across the period of its field [m]
 
     def __post_init__(self):
         if not 0 < self.spacing <= min(self.length, self.width):
@@ -26,30 +27,31 @@ class StripGrid:
             )
 
     @property
-    def shape(self):
+    def shape(self) -> tuple[int, int]:
         """Points of the strip (along the beam, across)."""
         return round(self.length / self.spacing), round(self.width / self.spacing)
 
     @property
-    def field_shape(self):
-        """Points of the periodic field, convenient for the FFT."""
+    def field_shape(self) -> tuple[int, int]:
+        """Points of the periodic field, of a size that is fast in the FFT."""
         return tuple(fft.next_fast_len(n + round(self.margin / self.spacing), real=True) for n in self.shape)
 
     @property
-    def wavenumber_steps(self):
+    def wavenumber_steps(self) -> tuple[float, float]:
         """Δζ₁, Δζ₂ of the field [rad m⁻¹]."""
         return tuple(2 * np.pi / (n * self.spacing) for n in self.field_shape)
 
 
 @dataclass(frozen=True)
 class RoughSurface:
-    """A stationary surface: underlying Gaussian spectrum, translation and rms; draws strips of itself.
+    """A stationary rough surface: underlying Gaussian spectrum, translation and rms.
 
-    ASSUME: the rms of Table I rules the heights, Table II only the shape of the spectrum, 2.5 % off in rms at most.
+    ASSUME: the rms of Table I sets the heights, Table II only the shape of the spectrum; they differ by 2.5 % in rms at
+    most.
     """
 
-    underlying: object  #: spectrum of the Gaussian field, callable with ``cutoff``; only its shape counts
-    translation: Translation  #: Eq. (5)
+    underlying: Spectrum  #: of the Gaussian field; its scale has no effect
+    translation: TranslationMap  #: Eq. (5)
     rms: float  #: [m]
     grid: StripGrid
 
@@ -57,7 +59,7 @@ class RoughSurface:
         nyquist = np.pi / self.grid.spacing
         if not self.underlying.cutoff <= nyquist:
             raise ValueError(
-                f"cut-off {self.underlying.cutoff:.4g} rad/m lies beyond the grid's Nyquist number {nyquist:.4g} rad/m"
+                f"cut-off {self.underlying.cutoff:.4g} rad/m is beyond the grid's Nyquist number {nyquist:.4g} rad/m"
             )
 
     @cached_property
@@ -66,8 +68,8 @@ class RoughSurface:
 
         Position in the (ζ₂, ζ₁) array and amplitude, (n,) int and float32, and the number of rows ζ₂ of that array.
 
-        Their order depends on the size of the field, not on its spacing: the same stream draws the same surface on a
-        finer grid.
+        The order of the waves depends on the size of the field, not on its spacing, so that the same stream gives the
+        same surface on a finer grid.
         """
         n1, n2 = self.grid.field_shape
         step1, step2 = self.grid.wavenumber_steps
@@ -76,18 +78,18 @@ class RoughSurface:
             min(int(self.underlying.cutoff / step2), (n2 - 1) // 2),
         )
         k2, k1 = np.mgrid[0 : far2 + 1, -far1 : far1 + 1]
-        # A wave with ζ₂ > 0 also stands for its mirror image: half the variance each, twice the height.
+        # A wave with ζ₂ > 0 also represents its mirror image: half of the variance each, twice the amplitude.
         share = np.where(k2 == 0, 1.0, 0.5) * self.underlying(np.hypot(k1 * step1, k2 * step2))
         variance = share / np.sum(share * np.where(k2 == 0, 1, 4))
         inside = np.hypot(k1 * step1, k2 * step2) <= self.underlying.cutoff
         return (k2 * n1 + k1 % n1)[inside], np.sqrt(variance[inside]).astype(np.float32), far2 + 1
 
     @cached_property
-    def table(self):
+    def table(self) -> np.ndarray:
         """Heights of equally spaced normal scores, (n,) float32 [m]."""
         return (self.rms * self.translation.table).astype(np.float32)
 
-    def draw_scores(self, rng):
+    def draw_scores(self, rng: np.random.Generator) -> np.ndarray:
         """Draw one strip of the standard Gaussian field u, Eq. (4); (n1, n2) float32 [-]."""
         position, amplitude, columns = self._modes
         n1, n2 = self.grid.field_shape
@@ -98,17 +100,17 @@ class RoughSurface:
         rows, across = self.grid.shape
         return fft.irfft(along.T[:rows], n=n2, axis=1, norm="forward")[:, :across]
 
-    def draw(self, rng):
+    def draw(self, rng: np.random.Generator) -> np.ndarray:
         """Draw one strip of heights z = rms · g(u), Eq. (5); (n1, n2) float32 [m]."""
         heights = np.zeros(self.grid.shape, np.float32)
         add_heights(self.draw_scores(rng), self.table, heights)
         return heights
 
 
-# Scores come as windows of a field or as whole fields: one signature serves both, so that one compilation is cached.
+# Scores may be a window of a field: one explicit signature for windows and whole fields is compiled and cached once.
 @numba.njit("void(float32[:, :], float32[::1], float32[:, ::1])", cache=True, nogil=True)
-def add_heights(scores, table, heights):
-    """Add the heights that belong to normal scores, by interpolation in a table over ±``LARGEST_SCORE``."""
+def add_heights(scores: np.ndarray, table: np.ndarray, heights: np.ndarray) -> None:
+    """Add the heights of normal scores, by interpolation in a table over ±``LARGEST_SCORE``."""
     scale = np.float32((len(table) - 1) / (2 * LARGEST_SCORE))
     offset = np.float32((len(table) - 1) / 2)
     last = np.float32(len(table) - 1.001)
@@ -120,13 +122,13 @@ def add_heights(scores, table, heights):
             heights[i, j] += table[k] + fraction * (table[k + 1] - table[k])
 
 
-def radial_periodogram(heights, spacing):
+def radial_periodogram(heights: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
     """Spectrum of one periodic field, averaged over rings of equal |ζ|; convention of `stiction.surface.spectrum`.
 
     Parameters
     ----------
     heights : (n, n) array
-        A whole period [m].
+        One period [m].
     spacing : float
         [m]
 
@@ -136,16 +138,4 @@ def radial_periodogram(heights, spacing):
         From the first ring around 0 to the Nyquist number [rad m⁻¹], [m⁴].
     """
     step = 2 * np.pi / (len(heights) * spacing)
-    return ring_means(np.abs(fft.fft2(heights) / heights.size) ** 2 / step**2, step)
-
-
-def ring_means(values, step):
-    """Means over rings of equal |ζ| of values (n, n) at the wave numbers of an FFT, ``step`` [rad m⁻¹] apart.
-
-    Returns as `radial_periodogram`.
-    """
-    n = len(values)
-    axis = fft.fftfreq(n, 1 / n)
-    ring = np.rint(np.hypot(axis[:, None], axis)).astype(int).ravel()
-    mean = np.bincount(ring, values.ravel()) / np.bincount(ring)
-    return step * np.arange(1, n // 2 + 1), mean[1 : n // 2 + 1]
+    return radial_spectrum(np.abs(fft.fft2(heights) / heights.size) ** 2 / step**2, step)

@@ -1,5 +1,6 @@
 """Identification of the spectrum from the statistics of the summits (Sec. II-C)."""
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,75 +8,78 @@ from scipy.optimize import least_squares
 
 from stiction.errors import NotConverged
 from stiction.estimates import jackknife
-from stiction.surface.field import RoughSurface
+from stiction.surface.field import RoughSurface, StripGrid
 from stiction.surface.spectrum import CutoffSelfAffine, NayakSummits
 from stiction.surface.summits import find_summits
-from stiction.surface.translation import underlying_spectrum
+from stiction.surface.translation import TranslationMap, underlying_spectrum
 
-#: Flattest and steepest power law and lowest corner (as a share of the cut-off) among which is searched.
+#: Range of the search: exponent of the power law, with its sign reversed, and corner relative to the cut-off [-].
 _SLOPES = (1.0, 40.0)
 _CORNERS = (0.01, 0.95)
-#: Step of both logarithms in a difference quotient: wide enough that the count of summits changes by many.
+#: Step of both logarithms in a difference quotient: large enough to change many summits.
 _STEP = 0.04
-#: Change of the logarithms below which the search ends, and evaluations after which it is given up.
+#: Change of the logarithms below which the search ends, and largest number of its iterations.
 _TOLERANCE, _MAX_EVALUATIONS = 1e-4, 40
 
 
 @dataclass(frozen=True)
 class SummitTarget:
-    """What the microscope reported of a surface, at the distance of its points."""
+    """Measured statistics of a surface, at the sampling interval of the microscope."""
 
     rms: float  #: [m]
     mean_radius: float  #: 1 / mean curvature [m]
     density: float  #: [m⁻²]
-    spacing: float  #: distance of the measured points [m]
+    spacing: float  #: of the measured points [m]
 
     @property
-    def cutoff(self):
+    def cutoff(self) -> float:
         """Cut-off of the spectrum [rad m⁻¹].
 
         ASSUME: three targets fix three of the four parameters of Eq. (7); the fourth is the Nyquist number of the
-        microscope, which saw nothing finer.
+        microscope, which does not resolve finer roughness.
         """
         return np.pi / self.spacing
 
 
 @dataclass(frozen=True)
 class Identification:
-    """The spectrum found and how well its surfaces meet the target."""
+    """Identified spectrum and the statistics of its surfaces, to compare with the target."""
 
     spectrum: CutoffSelfAffine
-    evaluations: int
-    mean_radius: float  #: of the summits of surfaces that were not used in the search [m]
+    evaluations: int  #: number of spectra whose surfaces were simulated in the search
+    mean_radius: float  #: of summits, on surfaces that were not used in the search [m]
     density: float  #: of these summits [m⁻²]
     mean_radius_error: float  #: standard error [m]
     density_error: float  #: standard error [m⁻²]
 
 
-def identify(target, translation, grid, rngs, control):
+def identify(
+    target: SummitTarget,
+    translation: TranslationMap,
+    grid: StripGrid,
+    rngs: Callable[[], Iterable[np.random.Generator]],
+    control: Callable[[], Iterable[np.random.Generator]],
+) -> Identification:
     """Fit corner and slope to radius and density of simulated summits; the plateau follows from the rms.
 
-    Every trial spectrum draws its surfaces from the same streams, so the simulated statistics are smooth functions of
-    the parameters. Where no spectrum of the form of Eq. (7) reaches both (Sub2), the result is the best compromise.
+    The surfaces of every trial spectrum are drawn from the same streams, so that the simulated statistics are smooth
+    functions of the parameters. If no spectrum of the form of Eq. (7) matches both targets (Sub2), the result is the
+    least-squares compromise.
 
     Parameters
     ----------
     target : SummitTarget
-    translation : Translation
+    translation : TranslationMap
     grid : StripGrid
-        Patch of surface, without margin; its spacing divides that of the target.
+        Patch of surface, without margin; the spacing of the target is a multiple of its spacing.
     rngs, control : callable
-        Make the streams of the patches, one each, the same at every call: those of the search, and others, two at
-        least, on which the result is judged.
-
-    Returns
-    -------
-    Identification
+        Return the streams of the patches, one per patch and the same at every call: ``rngs`` those of the search,
+        ``control`` at least two others, on which the result is tested.
 
     Raises
     ------
     NotConverged
-        If the search does not come to rest.
+        If the search does not converge.
     """
 
     def simulated(parameters, streams):
@@ -83,9 +87,14 @@ def identify(target, translation, grid, rngs, control):
         surface = RoughSurface(underlying, translation, target.rms, grid)
         return _summits_per_area(surface, target.spacing, streams)
 
+    known = {}
+
     def misfit(parameters):
-        radius, density = _radius_and_density(simulated(parameters, rngs()).mean(axis=0))
-        return np.log([radius / target.mean_radius, density / target.density])
+        key = tuple(parameters)
+        if key not in known:
+            radius, density = _radius_and_density(simulated(parameters, rngs()).mean(axis=0))
+            known[key] = np.log([radius / target.mean_radius, density / target.density])
+        return known[key]
 
     def slopes(parameters):
         there = [misfit(parameters + step) for step in _STEP * np.eye(2)]
@@ -96,7 +105,7 @@ def identify(target, translation, grid, rngs, control):
     if not fit.success:
         raise NotConverged("identified spectrum, gradient of the misfit", fit.optimality, _TOLERANCE, fit.nfev)
     values, errors = jackknife(_radius_and_density, simulated(fit.x, control()))
-    return Identification(_spectrum(fit.x, target), fit.nfev, *map(float, (*values, *errors)))
+    return Identification(_spectrum(fit.x, target), len(known), *map(float, (*values, *errors)))
 
 
 def _spectrum(parameters, target):
@@ -109,7 +118,7 @@ def _spectrum(parameters, target):
 
 
 def _start(target):
-    """Corner and slope, on a coarse lattice, whose continuous Gaussian summits come closest (Nayak)."""
+    """Point of a coarse lattice whose summits on a continuous Gaussian surface (Nayak) are closest to the target."""
     corners, slopes = (np.log(np.geomspace(*ends, 30)[1:-1]) for ends in (_CORNERS, _SLOPES))
     lattice = [(corner, slope) for corner in corners for slope in slopes]
 

@@ -1,19 +1,21 @@
 """The iterative algorithm of Fig. 4: correct a Gaussian spectrum until its translated fields have the target spectrum.
 
-It stands here for comparison; surfaces are drawn from the closed form of :mod:`stiction.surface.translation`.
+For comparison only: surfaces are drawn from the closed form of :mod:`stiction.surface.translation`.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 from scipy import fft
 
-from stiction.surface.field import RoughSurface, radial_periodogram, ring_means
-from stiction.surface.spectrum import TabulatedSpectrum
+from stiction.surface.field import RoughSurface, StripGrid, radial_periodogram
+from stiction.surface.spectrum import CutoffSelfAffine, Spectrum, TabulatedSpectrum, radial_spectrum
+from stiction.surface.translation import TranslationMap
 
 
-def target_rings(target, grid):
-    """Target spectrum s_Z of unit variance, averaged over the rings on which a periodic field of ``grid`` is judged.
+def target_rings(target: Spectrum, grid: StripGrid) -> tuple[np.ndarray, np.ndarray]:
+    """Target spectrum s_Z of unit variance, averaged over the rings of the periodogram of a field of ``grid``.
 
     Returns
     -------
@@ -23,26 +25,28 @@ def target_rings(target, grid):
     step = grid.wavenumber_steps[0]
     axis = step * fft.fftfreq(grid.shape[0], 1 / grid.shape[0])
     square = target(np.hypot(axis[:, None], axis))
-    wavenumber, spectrum = ring_means(square / (square.sum() * step**2), step)
+    wavenumber, spectrum = radial_spectrum(square / (square.sum() * step**2), step)
     inside = wavenumber <= target.cutoff
     return wavenumber[inside], spectrum[inside]
 
 
-def iterate(target, translation, grid, fields, rng):
-    r"""Iterations of Fig. 4, without end.
+def iterate(
+    target: CutoffSelfAffine, translation: TranslationMap, grid: StripGrid, fields: int, rng: np.random.Generator
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    r"""Iterations of Fig. 4, as an infinite generator.
 
     .. math:: s_{Z_G}^{(i+1)} = s_{Z_G}^{(i)} \, s_Z / s_Z^{(i)}
 
     Parameters
     ----------
     target : CutoffSelfAffine
-        Spectrum s_Z of the heights; only its shape counts.
-    translation : Translation
+        Spectrum s_Z of the heights; its scale has no effect.
+    translation : TranslationMap
         Eq. (5).
     grid : StripGrid
         Periodic square without margin.
     fields : int
-        Fields drawn anew for each estimate s_Z^(i).
+        Number of new fields drawn for each estimate s_Z^(i).
     rng : numpy.random.Generator
 
     Yields
@@ -56,20 +60,20 @@ def iterate(target, translation, grid, fields, rng):
     spectrum = TabulatedSpectrum(wavenumber, target(wavenumber) / target.variance, target.cutoff)
     while True:
         surface = RoughSurface(spectrum, translation, 1.0, grid)
-        # DEPARTS: averages over rings and fields; the raw periodogram of one field, as Fig. 4 reads, has only noise
-        # to divide by noise.
+        # DEPARTS: averages over rings and fields; with the raw periodogram of one field, as in Fig. 4, noise would be
+        # divided by noise.
         drawn = [radial_periodogram(surface.draw(rng), grid.spacing)[1] for _ in range(fields)]
         periodograms = np.array(drawn)[:, : len(wavenumber)]
         yield spectrum.density, periodograms
         spectrum = replace(spectrum, density=spectrum.density * wanted / periodograms.mean(axis=0))
 
 
-def misfit(spectrum, wanted):
+def misfit(spectrum: np.ndarray, wanted: np.ndarray) -> float | np.ndarray:
     """Error |ln(s / s_Z)| of a spectrum (..., n), the mean over its rings [-]."""
     return np.abs(np.log(spectrum / wanted)).mean(axis=-1)
 
 
-def sampling_misfit(periodograms):
-    """`misfit` to expect of a right spectrum that is estimated from periodograms (..., fields, n) [-]."""
+def sampling_misfit(periodograms: np.ndarray) -> float | np.ndarray:
+    """Expected `misfit` of an exact spectrum that is estimated from periodograms (..., fields, n) [-]."""
     deviation = periodograms.std(axis=-2, ddof=1) / periodograms.mean(axis=-2)
     return np.sqrt(2 / np.pi / periodograms.shape[-2]) * deviation.mean(axis=-1)

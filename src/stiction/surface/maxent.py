@@ -9,12 +9,12 @@ from scipy.special import ndtri_exp
 
 from stiction.errors import NotConverged
 
-#: Heights beyond this many rms carry no probability that the moments could see (B1 needs 10).
+#: Heights beyond this many rms have a negligible share in the moments (B1 needs 10).
 SUPPORT = 15.0
 _HEIGHTS = np.linspace(-SUPPORT, SUPPORT, 6001)
 _STEP = _HEIGHTS[1] - _HEIGHTS[0]
 _POWERS = _HEIGHTS ** np.arange(1, 5)[:, None]
-#: A mode farther out than this belongs to no rough surface: the moments lie next to the line without solution.
+#: A more distant mode is unphysical for a rough surface: the moments are close to the line without solution.
 _FARTHEST_MODE = 5.0
 
 
@@ -25,37 +25,37 @@ class HeightDensity:
     multipliers: tuple[float, float, float, float]  #: λ₁ … λ₄ [-]
 
     @cached_property
-    def log_normalisation(self):
+    def log_normalisation(self) -> float:
         """Multiplier λ₀ [-]."""
         return _log_partition(np.asarray(self.multipliers))[0]
 
-    def __call__(self, height):
+    def __call__(self, height: float | np.ndarray) -> float | np.ndarray:
         """Probability density at the standardised ``height``, any shape [-]."""
         exponent = np.polynomial.polynomial.polyval(height, (self.log_normalisation, *self.multipliers))
         return np.exp(-exponent)
 
-    def moment(self, order):
+    def moment(self, order: int) -> float:
         """Moment of the standardised height, Eq. (1) [-]."""
         return float(np.sum(_HEIGHTS**order * self(_HEIGHTS)) * _STEP)
 
     @cached_property
     def _normal_score(self):
-        """Heights (n,) and the normal scores u = Φ⁻¹(C_Z(z)) that they have, (n,)."""
+        """Heights (n,) and their normal scores u = Φ⁻¹(C_Z(z)), (n,)."""
         panels = 0.5 * (self(_HEIGHTS[1:]) + self(_HEIGHTS[:-1])) * _STEP
         below = np.log(np.maximum(np.cumsum(panels)[:-1], 1e-300))
-        # The upper tail rules the contact: 1 - CDF would round it away.
+        # The upper tail governs the contact; it would be lost to rounding in 1 - CDF.
         above = np.log(np.maximum(np.cumsum(panels[::-1])[::-1][1:], 1e-300))
         score = np.where(below < above, ndtri_exp(np.minimum(below, 0)), -ndtri_exp(np.minimum(above, 0)))
         inside = (np.abs(score) < 9) & np.r_[True, np.diff(score) > 0]
         return _HEIGHTS[1:-1][inside], score[inside]
 
-    def quantile_of_normal(self, score):
+    def quantile_of_normal(self, score: float | np.ndarray) -> np.ndarray:
         """Height C_Z⁻¹(Φ(u)) of the normal score u, Eq. (5); any shape, |u| <= 8 [-].
 
         Raises
         ------
         ValueError
-            If the tails are so heavy that a score belongs to a height beyond ``SUPPORT``.
+            If the tails are so heavy that a score corresponds to a height beyond ``SUPPORT``.
         """
         height, known = self._normal_score
         if np.any((score < known[0]) | (score > known[-1])):
@@ -70,7 +70,7 @@ class HeightDensity:
 GAUSSIAN = HeightDensity((0.0, 0.5, 0.0, 0.0))
 
 
-def solve(skewness, kurtosis, tolerance=1e-10, max_iterations=100):
+def solve(skewness: float, kurtosis: float, tolerance: float = 1e-10, max_iterations: int = 100) -> HeightDensity:
     """Find the density of largest entropy with mean 0, variance 1 and these moments: Newton on the convex dual.
 
     Parameters
@@ -81,16 +81,12 @@ def solve(skewness, kurtosis, tolerance=1e-10, max_iterations=100):
         Largest error of the four moments [-].
     max_iterations : int
 
-    Returns
-    -------
-    HeightDensity
-
     Raises
     ------
     ValueError
-        If no density has these moments, or none of the form of Eq. (3) that belongs to a surface.
+        If no density has these moments, or none of the form of Eq. (3) that describes a surface.
     NotConverged
-        If Newton's method stalls.
+        If Newton's method does not converge.
 
     Examples
     --------
@@ -147,7 +143,7 @@ def _line_search(multipliers, step, objective, target):
 
 
 def _belongs_to_a_surface(multipliers):
-    """Tell whether the density dies out from its modes on: one that rises again (λ₄ < 0) does so far away as well."""
+    """Whether all extrema of the density are near the mean; one that rises again (λ₄ < 0) also has a distant one."""
     slope = np.polynomial.Polynomial([multipliers[0], *(np.arange(2, 5) * multipliers[1:])])
     roots = slope.trim(1e-12).roots()
     return np.abs(roots[np.abs(roots.imag) < 1e-9].real).max() < _FARTHEST_MODE
@@ -156,5 +152,5 @@ def _belongs_to_a_surface(multipliers):
 def _no_solution(skewness, kurtosis):
     return ValueError(
         f"no maximum-entropy density for skewness {skewness} with kurtosis {kurtosis}: near skewness 0 a kurtosis > 3 "
-        "would need a second mode far away; lower the kurtosis or enlarge the skewness"
+        "would need a second, distant mode; decrease the kurtosis or increase the skewness"
     )

@@ -4,13 +4,27 @@ Convention, used everywhere: wave numbers are angular [rad m⁻¹] and
 
 .. math:: m_2 = \iint s_Z(\zeta) \, d\zeta_1 d\zeta_2 ,
 
-so ``s_Z`` is in m⁴ and no :math:`2\pi` appears outside this module. (Table II follows it; Eq. (4) does not.)
+so ``s_Z`` is in m⁴ and no :math:`2\pi` appears outside this module. Table II
+follows this convention; Eq. (4) does not.
 """
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
+from scipy import fft
 from scipy.special import j0
+
+
+class Spectrum(Protocol):
+    """An isotropic spectrum; all classes with this signature are interchangeable."""
+
+    @property
+    def cutoff(self) -> float:
+        """Wave number beyond which there is no roughness [rad m⁻¹]."""
+
+    def __call__(self, wavenumber: float | np.ndarray) -> float | np.ndarray:
+        """s_Z at |ζ| [m⁴], shape of ``wavenumber`` [rad m⁻¹]."""
 
 
 @dataclass(frozen=True)
@@ -29,16 +43,16 @@ class CutoffSelfAffine:
             raise ValueError(f"need 0 < floor <= plateau, got {self.floor:.4g}, {self.plateau:.4g} m⁴")
 
     @property
-    def slope(self):
+    def slope(self) -> float:
         """Exponent of the power law [-]; negative."""
         return np.log(self.floor / self.plateau) / np.log(self.cutoff / self.corner)
 
-    def __call__(self, wavenumber):
+    def __call__(self, wavenumber: float | np.ndarray) -> float | np.ndarray:
         """s_Z at |ζ| [m⁴], shape of ``wavenumber`` [rad m⁻¹]."""
         decay = np.maximum(wavenumber / self.corner, 1.0) ** self.slope
         return np.where(wavenumber <= self.cutoff, self.plateau * decay, 0.0)
 
-    def moment(self, order):
+    def moment(self, order: int) -> float:
         r"""Radial moment ∫ s_Z ζ^(order+1) dζ [m⁴ (rad m⁻¹)^(order+2)], in closed form."""
         power = order + 2
         flat = self.corner**power / power
@@ -48,32 +62,32 @@ class CutoffSelfAffine:
         return self.plateau * (flat + self.corner**power * tail)
 
     @property
-    def variance(self):
+    def variance(self) -> float:
         """Second moment m₂ of the heights [m²]."""
         return 2 * np.pi * self.moment(0)
 
 
 @dataclass(frozen=True)
 class TabulatedSpectrum:
-    """A spectrum known at equally spaced wave numbers; none beyond its cut-off."""
+    """A spectrum tabulated at equally spaced wave numbers; zero beyond its cut-off."""
 
-    wavenumber: np.ndarray  #: |ζ|, (n,); below its first the density stays as it is [rad m⁻¹]
+    wavenumber: np.ndarray  #: |ζ|, (n,); below the first the density is constant [rad m⁻¹]
     density: np.ndarray  #: s_Z, (n,) [m⁴] or, for unit variance, [m²]
     cutoff: float  #: no roughness beyond [rad m⁻¹]
 
-    def __call__(self, wavenumber):
+    def __call__(self, wavenumber: float | np.ndarray) -> float | np.ndarray:
         """s_Z at |ζ|, shape of ``wavenumber`` [rad m⁻¹], in the unit of ``density``."""
         return np.where(wavenumber <= self.cutoff, np.interp(wavenumber, self.wavenumber, self.density), 0.0)
 
 
 @dataclass(frozen=True)
 class NayakSummits:
-    """Summits of a continuous Gaussian surface (Nayak): where the identification of a PSD starts."""
+    """Summits of a continuous Gaussian surface (Nayak): starting point of the identification of a PSD."""
 
     spectrum: CutoffSelfAffine
 
     @property
-    def profile_moments(self):
+    def profile_moments(self) -> tuple[float, float, float]:
         """Profile spectral moments m₀ [m²], m₂ [-], m₄ [m⁻²]."""
         return (
             2 * np.pi * self.spectrum.moment(0),
@@ -82,33 +96,33 @@ class NayakSummits:
         )
 
     @property
-    def bandwidth(self):
+    def bandwidth(self) -> float:
         """Parameter α = m₀ m₄ / m₂² [-]; at least 1.5."""
         m0, m2, m4 = self.profile_moments
         return m0 * m4 / m2**2
 
     @property
-    def density(self):
+    def density(self) -> float:
         """Summits per area [m⁻²]."""
         _, m2, m4 = self.profile_moments
         return m4 / (6 * np.pi * np.sqrt(3) * m2)
 
     @property
-    def mean_curvature(self):
+    def mean_curvature(self) -> float:
         """Mean curvature of the summits [m⁻¹]."""
         return 8 / 3 * np.sqrt(self.profile_moments[2] / np.pi)
 
 
-def autocovariance(spectrum, lag, panels=4000):
+def autocovariance(spectrum: Spectrum, lag: np.ndarray, panels: int = 4000) -> np.ndarray:
     """Autocovariance r_Z(τ) = 2π ∫ s_Z J₀(ζτ) ζ dζ of an isotropic spectrum.
 
     Parameters
     ----------
-    spectrum : callable with ``cutoff`` [rad m⁻¹]
+    spectrum : Spectrum
     lag : (n,) array
         Distances τ [m].
     panels : int
-        Trapezoids up to the cut-off.
+        Number of trapezoids up to the cut-off.
 
     Returns
     -------
@@ -121,19 +135,48 @@ def autocovariance(spectrum, lag, panels=4000):
     return 2 * np.pi * j0(np.outer(lag, zeta)) @ (weights * zeta * spectrum(zeta))
 
 
-def correlation_length(spectrum, threshold=0.01, reach=6.0):
-    """Distance l^m beyond which r_Z < ``threshold`` · m₂ for good (Sec. III) [m].
+def correlation_length(spectrum: CutoffSelfAffine, threshold: float = 0.01, reach: float = 6.0) -> float:
+    """Distance l^m beyond which r_Z remains below ``threshold`` · m₂ (Sec. III) [m].
 
-    Searched up to ``reach`` wave lengths of the corner; the slowest decay, that of a spectrum all plateau, ends at 4.7.
+    Searched up to ``reach`` wavelengths of the corner; the slowest decay, that of a pure plateau, needs 4.7.
 
     Raises
     ------
     ValueError
-        If the search ends before the correlation does.
+        If the heights are still correlated at the end of the search.
     """
     lag = np.linspace(0, reach * 2 * np.pi / spectrum.corner, 1201)
     covariance = autocovariance(spectrum, lag, panels=1500)
     last = np.flatnonzero(covariance >= threshold * covariance[0])[-1]
     if last == len(lag) - 1:
-        raise ValueError(f"heights {lag[-1]:.3g} m apart still correlate by {threshold:g} or more: search farther")
+        raise ValueError(f"heights {lag[-1]:.3g} m apart are still correlated by {threshold:g} or more: increase reach")
     return float(lag[last])
+
+
+def ring_means(values: np.ndarray, inside: np.ndarray | None = None) -> np.ndarray:
+    """Means over rings of equal |ζ| of values (n, n) at the wave numbers of an FFT.
+
+    Parameters
+    ----------
+    values : (n, n) array
+    inside : (n, n) bool array, optional
+        Wave numbers included in the means; all by default.
+
+    Returns
+    -------
+    (n_rings,) float64
+        Mean at |ζ| = 0, 1, 2, ... steps of the wave number; 0 for an empty ring.
+    """
+    axis = fft.fftfreq(len(values), 1 / len(values))
+    counted = np.ones(values.shape, bool) if inside is None else inside
+    ring = np.rint(np.hypot(axis[:, None], axis)).astype(int)[counted]
+    return np.bincount(ring, values[counted]) / np.maximum(np.bincount(ring), 1)
+
+
+def radial_spectrum(values: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Wave number [rad m⁻¹] and `ring_means` from the first ring around 0 to the Nyquist number, (n // 2,) each.
+
+    ``values`` (n, n) are at the wave numbers of an FFT, ``step`` [rad m⁻¹] apart.
+    """
+    rings = len(values) // 2
+    return step * np.arange(1, rings + 1), ring_means(values)[1 : rings + 1]

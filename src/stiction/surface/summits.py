@@ -1,12 +1,12 @@
-"""Summits of a sampled surface: where bodies touch, and what Table I reports of a surface."""
+"""Summits of a sampled surface: the asperities in contact and the statistics of Table I."""
 
 import numba
 import numpy as np
 
 
 @numba.njit(cache=True, nogil=True, inline="always")
-def is_summit(z, i, j):
-    """Tell whether an inner point stands strictly above its eight neighbours."""
+def is_summit(z: np.ndarray, i: int, j: int) -> bool:
+    """Whether an inner point is strictly higher than its eight neighbours."""
     h = z[i, j]
     return (
         h > z[i, j - 1]
@@ -21,7 +21,7 @@ def is_summit(z, i, j):
 
 
 @numba.njit(cache=True, nogil=True, inline="always")
-def mean_curvature(z, i, j, spacing):
+def mean_curvature(z: np.ndarray, i: int, j: int, spacing: float) -> float:
     """Mean of the two three-point second differences, positive on a summit [m⁻¹]."""
     h = np.float64(z[i, j])
     return (4 * h - z[i, j - 1] - z[i, j + 1] - z[i - 1, j] - z[i + 1, j]) / (2 * spacing * spacing)
@@ -39,22 +39,22 @@ def _collect(z, spacing, height, curvature):
     return count
 
 
-def find_summits(heights, spacing):
-    """Find all summits inside a surface.
+def find_summits(heights: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """Find all summits of a surface, except on its edge.
 
     Parameters
     ----------
     heights : (n1, n2) array
         [m]
     spacing : float
-        Distance of the points [m].
+        Of the points [m].
 
     Returns
     -------
     height, curvature : (n,) arrays
         Of each summit [m], [m⁻¹].
     density : float
-        Summits per area in which a summit could stand [m⁻²].
+        Number of summits per area in which a summit is possible [m⁻²].
     """
     z = np.ascontiguousarray(heights, np.float32)
     inner = (z.shape[0] - 2) * (z.shape[1] - 2)

@@ -1,41 +1,57 @@
 """From a Gaussian field to the heights of a non-Gaussian one and back (Sec. II-B2).
 
 A surface of unit variance is z = g(u), with u a standard Gaussian field and g = C_Z⁻¹ ∘ Φ, Eq. (5). In orthonormal
-Hermite polynomials g = Σ c_k h_k, so the autocorrelation of z is Σ c_k² ρ^k, with ρ that of u. Solved for ρ, this gives
-the spectrum of u without sampling.
+Hermite polynomials g = Σ c_k h_k, so the autocorrelation of z is Σ c_k² ρ^k, where ρ is the autocorrelation of u.
+Solving for ρ gives the spectrum of u without sampling.
 
-DEPARTS: Fig. 4 iterates with the periodogram of one surface, whose noise stays in s_ZG; this is where it tends to.
+DEPARTS: Fig. 4 iterates with the periodogram of one surface, whose noise remains in s_ZG; the closed form is the
+noise-free limit of that iteration.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from scipy import fft
 
 from stiction.errors import NotConverged
 from stiction.surface.maxent import HeightDensity
-from stiction.surface.spectrum import TabulatedSpectrum
+from stiction.surface.spectrum import Spectrum, TabulatedSpectrum, ring_means
 
-#: Normal scores beyond these do not occur: probability 1e-15.
+#: Largest normal score considered; the probability of a larger one is 1e-15.
 LARGEST_SCORE = 8.0
 _SCORES = np.linspace(-LARGEST_SCORE, LARGEST_SCORE, 4097)
 _TERMS = 24
 
 
+class TranslationMap(Protocol):
+    """A monotone map g of Eq. (5) from normal scores to standardised heights."""
+
+    @property
+    def table(self) -> np.ndarray:
+        """Heights g(u) at equally spaced scores in ±``LARGEST_SCORE``, (n,) [-]."""
+
+    def autocorrelation(self, underlying: np.ndarray) -> np.ndarray:
+        """Autocorrelation of the heights, for that of the Gaussian field, any shape [-]."""
+
+    def underlying_autocorrelation(self, autocorrelation: np.ndarray) -> np.ndarray:
+        """Inverse of `autocorrelation`, any shape [-]."""
+
+
 @dataclass(frozen=True)
 class Translation:
-    """The map g of Eq. (5) for standardised heights."""
+    """The `TranslationMap` of a height density: g = C_Z⁻¹ ∘ Φ, Eq. (5)."""
 
     density: HeightDensity
 
     @cached_property
-    def table(self):
+    def table(self) -> np.ndarray:
         """Heights g(u) at equally spaced scores in ±``LARGEST_SCORE``, (4097,) [-]."""
         return self.density.quantile_of_normal(_SCORES)
 
     @cached_property
-    def hermite_coefficients(self):
+    def hermite_coefficients(self) -> np.ndarray:
         """Coefficients c₁ … c₂₄ on orthonormal Hermite polynomials, (24,) [-]."""
         weights = np.exp(-(_SCORES**2) / 2) * (_SCORES[1] - _SCORES[0]) / np.sqrt(2 * np.pi) * self.table
         previous, current = np.zeros_like(_SCORES), np.ones_like(_SCORES)
@@ -45,28 +61,30 @@ class Translation:
             coefficients.append(weights @ current)
         return np.array(coefficients)
 
-    def __call__(self, score):
+    def __call__(self, score: float | np.ndarray) -> float | np.ndarray:
         """Standardised height g(u), Eq. (5), any shape [-]."""
         return np.interp(score, _SCORES, self.table)
 
-    def autocorrelation(self, underlying):
-        """Autocorrelation Σ c_k² ρ^k of the heights, for that of the Gaussian field, any shape [-]."""
+    def autocorrelation(self, underlying: float | np.ndarray) -> float | np.ndarray:
+        """Autocorrelation Σ c_k² ρ^k of the heights from that of the Gaussian field, any shape [-]."""
         return np.polynomial.polynomial.polyval(underlying, self._series)
 
-    def underlying_autocorrelation(self, autocorrelation, tolerance=1e-12, max_iterations=50):
+    def underlying_autocorrelation(
+        self, autocorrelation: float | np.ndarray, tolerance: float = 1e-12, max_iterations: int = 50
+    ) -> np.ndarray:
         """Invert :meth:`autocorrelation` by Newton's method, any shape [-].
 
         Raises
         ------
         ValueError
-            If a correlation lies below what the translation can reach.
+            If an autocorrelation is below the lowest that the translation can produce.
         NotConverged
-            If Newton's method stalls.
+            If Newton's method does not converge.
         """
         lowest = self.autocorrelation(-1.0)
         if np.min(autocorrelation) < lowest:
             raise ValueError(
-                f"heights of this surface correlate by {lowest:.4g} or more, got {np.min(autocorrelation):.4g}"
+                f"autocorrelations of this surface are at least {lowest:.4g}, got {np.min(autocorrelation):.4g}"
             )
         slope = np.polynomial.polynomial.polyder(self._series)
         rho = np.array(autocorrelation, float)
@@ -83,55 +101,56 @@ class Translation:
         return np.r_[0.0, power / power.sum()]
 
 
-def underlying_spectrum(target, translation, spacing, points=1024):
-    """Spectrum s_ZG of the Gaussian field behind a surface with spectrum ``target``.
+def underlying_spectrum(
+    target: Spectrum, translation: TranslationMap, spacing: float, points: int = 1024
+) -> tuple[TabulatedSpectrum, float]:
+    """Spectrum s_ZG of the Gaussian field underlying a surface with spectrum ``target``.
 
     Parameters
     ----------
-    target : CutoffSelfAffine
-        Spectrum s_Z of the heights; only its shape counts.
+    target : Spectrum
+        Spectrum s_Z of the heights; its scale has no effect.
     translation : Translation
     spacing : float
-        Grid on which the field will be sampled [m]; the cut-off must lie below its Nyquist number.
+        Grid on which the field will be sampled [m]; the cut-off must be below its Nyquist number.
     points : int
-        Side of the periodic square on which the transforms are made.
+        Points along each side of the periodic square of the transforms.
 
     Returns
     -------
     spectrum : TabulatedSpectrum
         Radial, of unit variance [m²].
     defect : float
-        Share of the variance that no Gaussian field provides: negative parts of s_ZG, parts beyond the cut-off [-].
+        Share of the variance that no Gaussian field can represent: negative s_ZG, and s_ZG beyond the cut-off [-].
     """
-    zeta, index, cell = _square(spacing, points)
+    zeta, cell = _square(spacing, points)
     correlation = fft.fft2(target(zeta)).real
     rho = translation.underlying_autocorrelation(correlation / correlation[0, 0])
     wanted = fft.ifft2(rho).real / cell
     possible = np.where(zeta <= target.cutoff, np.maximum(wanted, 0), 0)
     defect = np.abs(wanted - possible).sum() * cell
-    return _radial(possible / (possible.sum() * cell), zeta, index, target.cutoff), float(defect)
+    return _radial(possible / (possible.sum() * cell), zeta, target.cutoff), float(defect)
 
 
-def spectrum_of_heights(underlying, translation, spacing, points=1024):
+def spectrum_of_heights(
+    underlying: Spectrum, translation: TranslationMap, spacing: float, points: int = 1024
+) -> TabulatedSpectrum:
     """Spectrum of the translated field, of unit variance: the inverse of `underlying_spectrum`."""
-    zeta, index, cell = _square(spacing, points)
+    zeta, cell = _square(spacing, points)
     correlation = fft.fft2(underlying(zeta)).real
     heights = fft.ifft2(translation.autocorrelation(correlation / correlation[0, 0])).real / cell
-    return _radial(heights, zeta, index, np.inf)
+    return _radial(heights, zeta, np.inf)
 
 
 def _square(spacing, points):
-    """Wave numbers |ζ| (n, n) of a periodic square, the ring each belongs to, and Δζ²."""
+    """Wave numbers |ζ| (n, n) of a periodic square and Δζ²."""
     axis = 2 * np.pi * fft.fftfreq(points, spacing)
-    zeta = np.hypot(axis[:, None], axis)
-    return zeta, np.rint(zeta / axis[1]).astype(int), axis[1] ** 2
+    return np.hypot(axis[:, None], axis), axis[1] ** 2
 
 
-def _radial(spectrum, zeta, index, cutoff):
-    """Average a spectrum over rings, up to the Nyquist number; rings cut by the cut-off count their inner part."""
-    inside = (zeta <= cutoff).ravel()
-    ring = index.ravel()[inside]
-    mean = np.bincount(ring, spectrum.ravel()[inside]) / np.maximum(np.bincount(ring), 1)
+def _radial(spectrum, zeta, cutoff):
+    """Average a spectrum over rings up to the Nyquist number, over the part of each ring within the cut-off."""
+    mean = ring_means(spectrum, zeta <= cutoff)
     rings = min(len(mean), len(zeta) // 2)
     wavenumber = zeta[0, 1] * np.arange(rings)
     return TabulatedSpectrum(wavenumber, mean[:rings], cutoff if np.isfinite(cutoff) else wavenumber[-1])

@@ -1,0 +1,44 @@
+"""Settings of Sphinx; `make docs` builds docs/_build/html without a network."""
+
+import shutil
+import sys
+from pathlib import Path
+
+DOCS = Path(__file__).parent
+sys.path[:0] = [str(DOCS / "_ext"), str(DOCS.parent / "src")]
+
+import stiction  # noqa: E402
+
+project = "stiction"
+author = "The stiction developers"
+project_copyright = "2026, The stiction developers"
+release = stiction.__version__
+
+extensions = ["myst_parser", "mathml", "plain", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon"]
+exclude_patterns = ["_build", "templates", "tables"]
+templates_path = ["_templates"]
+
+myst_enable_extensions = ["dollarmath", "amsmath"]
+myst_heading_anchors = 3
+html_math_renderer = "mathml"
+
+autosummary_generate = True
+# Otherwise pages of removed modules would remain.
+shutil.rmtree(DOCS / "_api", ignore_errors=True)
+autodoc_member_order = "bysource"
+# Parameters are described in their docstrings, in words.
+autodoc_typehints = "none"
+napoleon_google_docstring = False
+napoleon_use_param = False
+napoleon_use_rtype = False
+default_role = "py:obj"
+nitpick_ignore = [("py:class", "enum.IntEnum"), ("py:obj", "ast.dump")]
+# Public names are described where they are defined.
+nitpick_ignore += [("py:obj", f"stiction.{name}") for name in stiction.__all__]
+
+html_theme = "furo"
+html_title = f"stiction {release}"
+html_static_path = ["_static"]
+html_css_files = ["stiction.css"]
+html_copy_source = False
+html_show_sphinx = False

@@ -1,0 +1,171 @@
+"""The numbers that README and docs quote, as text, from the tables in ``docs/tables``.
+
+Each number has one name, defined here; ``{{ name }}`` in ``docs/templates`` inserts it. Each function takes frames and
+returns ``{name: text}``, without reading or writing a file (except `frame`).
+"""
+
+import numpy as np
+import pandas as pd
+
+from stiction.report.format import with_error
+
+MJ = 1e3  # mJ/m² in J/m²
+
+
+def numbers(tables):
+    """All numbers, from a dict of the name of each table to its frame."""
+    found = crack_lengths(tables["table_3"]) | deviations(tables["table_3"]) | energies(tables["table_3"])
+    found |= surfaces(tables["table_1"]) | identification(tables["table_2"]) | fits(tables["fit_quality"])
+    found |= (
+        variants(tables["variants"])
+        | removed(tables["variants"])
+        | slopes(tables["sensitivity"])
+        | chaos(tables["resampling"])
+    )
+    return found | studies(tables["studies"]) | checks(tables["checks"])
+
+
+def crack_lengths(table_3):
+    """``l_b_044_NG``: mean ± standard deviation [µm], with the share of beams included if not all."""
+    return {f"l_{_case(row)}_{row.model}": crack_length(row) for row in table_3.itertuples()} | {
+        f"std_{_case(row)}_{row.model}": f"{row.crack_length_std_um:.2g}" for row in table_3.itertuples()
+    }
+
+
+def crack_length(row):
+    """Crack length of one row of Table III as text."""
+    if np.isnan(row.crack_length_um):
+        return "all stick at the tip only" if row.share_arc == 1 else "–"
+    share = "" if row.share_s_shape == 1 else f" ({100 * row.share_s_shape:.2g} % of beams)"
+    return f"{row.crack_length_um:.0f} ± {row.crack_length_std_um:.0f}{share}"
+
+
+def readme_table(table_3, pair="b"):
+    """Crack lengths of one pair over the humidity: measured, published, computed. Markdown."""
+    lines = [
+        "| RH | measured | published, GEO | computed, G | computed, NG | computed, GEO |",
+        "|---|---|---|---|---|---|",
+    ]
+    for humidity, rows in table_3[table_3.pair == pair].groupby("relative_humidity"):
+        row = {model: next(rows[rows.model == model].itertuples()) for model in ("G", "NG", "GEO")}
+        cells = [f"{humidity:.2f}", f"{row['GEO'].experiment_um:.0f} ± {row['GEO'].experiment_std_um:.0f}"]
+        cells += [f"{row['GEO'].published_um:.0f} ± {row['GEO'].published_std_um:.0f}"]
+        lines.append(f"| {' | '.join(cells + list(map(crack_length, row.values())))} |")
+    return "\n".join(lines)
+
+
+def deviations(table_3):
+    """``published_a``: range of the deviations of model NG [%]; ``measured_rms_a``: root mean square [%]."""
+    found = {}
+    for pair, rows in table_3[table_3.model == "NG"].groupby("pair"):
+        off = rows.deviation_percent
+        found[f"published_{pair}"] = f"{off.min():+.0f} to {off.max():+.0f}"
+        found[f"measured_rms_{pair}"] = f"{np.sqrt(np.mean(rows.experiment_deviation_percent**2)):.1f}"
+    return found
+
+
+def energies(table_3):
+    """``e_b_044_NG``: mean ē [mJ/m²], ``cv_…``: its scatter [%], ``gain_b_044``: NG over G; samples without a law."""
+    found = {}
+    for row in table_3.itertuples():
+        name = f"{_case(row)}_{row.model}"
+        found[f"e_{name}"] = f"{MJ * row.meso_energy_J_per_m2:.3g}"
+        found[f"cv_{name}"] = f"{100 * row.meso_energy_cv:.0f}"
+        found[f"lawless_{name}"] = f"{100 * row.share_without_law:.2g}"
+        found[f"lawful_{name}"] = f"{100 * (row.meso_energy_lawful_J_per_m2 / row.meso_energy_J_per_m2 - 1):.0f}"
+    by_model = {model: rows for model, rows in table_3.groupby("model")}
+    for gaussian, other in zip(by_model["G"].itertuples(), by_model["NG"].itertuples(), strict=True):
+        found[f"gain_{_case(other)}"] = f"{other.meso_energy_J_per_m2 / gaussian.meso_energy_J_per_m2:.0f}"
+    below = by_model["NG"][by_model["NG"].adhesion_energy_J_per_m2 < by_model["NG"].meso_energy_J_per_m2]
+    found["arrest_below_mean"] = _listed(
+        f"pair {row.pair} at RH {row.relative_humidity:.2f}" for row in below.itertuples()
+    )
+    return found
+
+
+def surfaces(table_1):
+    """``radius_B2_NG`` [µm], ``summits_B2_NG`` [µm⁻²] and, with ``published_`` before the name, those of the paper."""
+    found = {}
+    for row in table_1.itertuples():
+        name = f"{row.surface}_{row.column}"
+        found[f"radius_{name}"] = f"{row.mean_summit_radius_um:.2f}"
+        found[f"summits_{name}"] = f"{row.summit_density_per_um2:.0f}"
+        found[f"published_radius_{name}"] = f"{row.mean_summit_radius_um_published:g}"
+        found[f"published_summits_{name}"] = f"{row.summit_density_per_um2_published:g}"
+    return found
+
+
+def identification(table_2):
+    """``identified_B1``: larger of the deviations of radius and density [%]."""
+    rows = table_2[table_2.psd == "identified"]
+    off = np.maximum(rows.radius_residual_percent.abs(), rows.density_residual_percent.abs())
+    found = {f"identified_{surface}": f"{value:.1f}" for surface, value in zip(rows.surface, off, strict=True)}
+    return found | {"identified_but_Sub2": f"{off[rows.surface != 'Sub2'].max():.1f}"}
+
+
+def fits(fit_quality):
+    """Range over the cases of the mean error of Eq. (12), model NG [%]."""
+    error = fit_quality[fit_quality.model == "NG"].curve_error_percent
+    return {"fit_least": f"{error.min():.0f}", "fit_most": f"{error.max():.0f}"}
+
+
+def variants(table):
+    """``shift_spacing_nm_5_a``: largest change of a mean crack length by a variant [%], and its humidity."""
+    found = {}
+    for (pair, name), rows in table[table.variant != "base"].groupby(["pair", "variant"]):
+        row = rows.loc[rows.shift_percent.abs().idxmax()] if rows.shift_percent.notna().any() else rows.iloc[0]
+        found[f"shift_{name}_{pair}"] = f"{abs(row.shift_percent):.1f}"
+        found[f"shift_{name}_{pair}_at"] = f"{row.relative_humidity:.2f}"
+    return found
+
+
+def removed(table):
+    """``removed_spacing_nm_5_a``: share of the deviation from the published lengths that a variant removes [%]."""
+    first = table[table.variant != "base"].groupby(["pair", "variant"]).first()
+    return {
+        f"removed_{name}_{pair}": with_error(row.removed_percent, row.removed_se_percent)
+        for (pair, name), row in first.iterrows()
+    }
+
+
+def slopes(sensitivity):
+    """``slope_skewness_044``: sensitivity of the mean ē ± standard error; ``published_slope_…``."""
+    found = {}
+    for row in sensitivity[sensitivity.statistic == "mean"].itertuples():
+        name = f"{row.moment}_{_digits(row.relative_humidity)}"
+        found[f"slope_{name}"] = f"{row.slope:.2f} ± {row.slope_se:.2f}"
+        found[f"published_slope_{name}"] = "–" if np.isnan(row.published) else f"{row.published:g}"
+    return found
+
+
+def chaos(resampling):
+    """Largest difference of a mean crack length between laws of the chaos model and of the samples [%]."""
+    return {"chaos_most": f"{resampling.difference_percent.abs().max():.1f}"}
+
+
+def studies(table):
+    """Scalars of the studies by name, as written by `update.scalars`."""
+    return {row.name: row.text for row in table.itertuples(index=False)}
+
+
+def checks(table):
+    """``checks`` and ``checks_passed``: number of checks and of those that passed."""
+    return {"checks": f"{len(table)}", "checks_passed": f"{int(table.passed.sum())}"}
+
+
+def _case(row):
+    return f"{row.pair}_{_digits(row.relative_humidity)}"
+
+
+def _digits(humidity):
+    return f"{humidity:.2f}".replace(".", "")
+
+
+def _listed(parts):
+    parts = list(parts)
+    return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts) or "no case"
+
+
+def frame(path):
+    """A table in CSV; text columns stay text."""
+    return pd.read_csv(path, keep_default_na=True, dtype={"pair": str, "name": str, "text": str})

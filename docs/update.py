@@ -1,0 +1,220 @@
+"""Bring README and docs up to date with a run: ``python docs/update.py results``, part of ``make docs``.
+
+1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
+   and ``docs/pictures``. Otherwise those from an earlier run are kept.
+2. ``docs/results.json`` receives the numbers quoted by the pages and a checksum of each source table.
+3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted, and the block between
+   the markers in ``README.md`` is rewritten.
+
+Steps 2 and 3 depend on ``docs`` alone: ``tests/test_docs.py`` repeats them and compares.
+"""
+
+import hashlib
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from PIL import Image
+
+from stiction.analysis.convergence import sampling_distance
+from stiction.contact import forcelaw
+from stiction.stages.storage import load
+
+sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "tests")]
+import quoted  # noqa: E402
+from benchmarks import jobs  # noqa: E402
+
+DOCS = Path(__file__).parent
+ROOT = DOCS.parent
+#: Tables whose numbers are quoted; their Markdown files are also shown.
+TABLES = ("table_1", "table_2", "table_3", "fit_quality", "sensitivity", "variants", "resampling")
+#: Pictures that pages show, by their width there [pixels].
+PICTURES = {
+    "overview": 1400,
+    "figure_05": 700,
+    "figure_07": 900,
+    "figure_10": 1100,
+    "figure_12": 1100,
+    "figure_13": 1000,
+    "figure_14": 1100,
+    "figure_15": 1100,
+    "figure_16": 1000,
+    "figure_17": 1000,
+    "figure_18": 1000,
+    "figure_19": 1100,
+    "variants": 1100,
+}
+#: Largest picture [bytes].
+LARGEST = 150_000
+NOTE = "<!-- Written by docs/update.py from docs/templates/{name}: edit that file, then run make docs. -->"
+
+
+def main(results):
+    """Update everything, and print a message if the numbers of an earlier run are kept."""
+    reason = unfinished(results)
+    if reason:
+        print(f"{reason}: the docs keep their present numbers")  # noqa: T201
+    else:
+        collect(results)
+    for path, text in pages().items():
+        path.write_text(text, encoding="utf-8")
+
+
+# 1. From a run to docs/tables and docs/pictures
+
+
+def unfinished(results):
+    """Why a folder does not hold a finished run of the paper by this code; empty if it does."""
+    if not (results / "verdict.txt").exists():
+        return f"{results} holds no finished run"
+    plan = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--snakefile",
+        ROOT / "Snakefile",
+        "--directory",
+        results.resolve().parent,
+    ]
+    plan += ["--workflow-profile", ROOT / "profiles" / "default", "--dry-run"]
+    done = subprocess.run(list(map(str, plan)), cwd=ROOT, capture_output=True, text=True)
+    finished = "Nothing to be done" in done.stdout + done.stderr
+    return "" if finished else f"{results} is not up to date with config.yaml and the code, see make paper ARGS=-n"
+
+
+def collect(results):
+    """Copy tables, pictures and scalars of the studies of a run."""
+    for name in TABLES:
+        for kind in ("csv", "md"):
+            shutil.copyfile(results / "tables" / f"{name}.{kind}", DOCS / "tables" / f"{name}.{kind}")
+    shutil.copyfile(results / "checks.csv", DOCS / "tables" / "checks.csv")
+    pd.DataFrame((scalars(results / "studies") | timing(results)).items(), columns=["name", "text"]).to_csv(
+        DOCS / "tables" / "studies.csv", index=False
+    )
+    (DOCS / "tables" / "jobs.md").write_text(jobs.table(results), encoding="utf-8")
+    for name, width in PICTURES.items():
+        if (picture := results / "figures" / f"{name}.png").exists():
+            shrink(picture, DOCS / "pictures" / f"{name}.png", width)
+
+
+def scalars(studies):
+    """Single numbers of the studies that have no table: name to text."""
+    found = {}
+    for path in sorted((studies / "plasticity").glob("*.nc")):
+        study = load(path, "plasticity")
+        share, error = 100 * float(study.plastic_share), 100 * float(study.plastic_share_error)
+        found[f"plastic_{path.stem}"] = f"{share:.2g} ± {error:.1g} %" if share > 0 else "0 %"
+    sizes, orders, mesh, correlation = (
+        load(studies / f"{name}.nc", name) for name in ("sample_sizes", "orders", "mesh", "correlation")
+    )
+    total, half = (int(size) for size in sizes["size"].values[[-1, -2]])
+    found["samples"], found["samples_distance"] = str(total), f"{sampling_distance(total):.3f}"
+    found["half"], found["half_distance"] = str(half), f"{float(sizes.distance.sel(size=half)):.3f}"
+    found |= {f"order_{k}": str(order) if order else "none" for k, order in enumerate(orders.converged_order.values, 1)}
+    found["orders"] = str(int(orders.order[-1]))
+    of_paper = np.isclose(mesh.element_length, 7.5e-6) & np.isclose(mesh.point_distance, 1.5e-6)
+    excess = mesh.energy.values[of_paper][0] / forcelaw.energy(mesh.law.values) - 1
+    found["mesh_excess"] = f"{100 * excess:.1f}"
+    for name, length in zip(correlation.surface.values, correlation.correlation_length.values, strict=True):
+        found[f"correlation_{name}"] = f"{1e6 * float(length):.2f}"
+    return found
+
+
+def timing(results):
+    """Number, time and memory of the jobs of a run, and the machine: name to text."""
+    measured = list(jobs.measured(results))
+    _, number, longest, seconds, megabytes, *_ = zip(*measured, strict=True)
+    machine = json.loads((results / "provenance.json").read_text(encoding="utf-8"))[-1]["machine"]
+    return {
+        "jobs": str(sum(number)),
+        "job_minutes": f"{sum(seconds) / 60:.1f}",
+        "job_longest": f"{max(longest):.0f}",
+        "job_memory": f"{max(megabytes):.0f}",
+        "cpu": " ".join(machine["cpu"].split()),
+        "cores": str(machine["cores"]),
+    }
+
+
+def shrink(picture, smaller, width):
+    """Copy of a picture with few colours and at most ``width`` pixels across, small enough for a repository."""
+    with Image.open(picture) as image:
+        flat = Image.new("RGB", image.size, "white")
+        flat.paste(image, mask=image.convert("RGBA").getchannel("A"))
+    for scale in (1, 0.85, 0.7, 0.6, 0.5):
+        across = min(flat.width, round(scale * width))
+        resized = flat.resize((across, round(flat.height * across / flat.width)), Image.Resampling.LANCZOS)
+        resized.quantize(64, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(smaller, optimize=True)
+        if smaller.stat().st_size <= LARGEST:
+            return
+    raise ValueError(f"{picture} stays above {LARGEST} bytes")
+
+
+# 2. and 3. From docs/tables to results.json, the pages and the README
+
+
+def pages():
+    """Path to text of every file that is written from ``docs/tables`` and ``docs/templates``."""
+    numbers = quoted_numbers()
+    texts = {DOCS / "results.json": json.dumps(record(numbers), indent=1, ensure_ascii=False, sort_keys=True) + "\n"}
+    for template in sorted((DOCS / "templates").glob("*.md")):
+        body = filled(template.read_text(encoding="utf-8"), numbers)
+        texts[DOCS / template.name] = NOTE.format(name=template.name) + "\n\n" + body
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    block = quoted.readme_table(quoted.frame(DOCS / "tables" / "table_3.csv"))
+    return texts | {ROOT / "README.md": replaced(readme, "crack lengths", block)}
+
+
+def quoted_numbers():
+    """Every number that may be quoted, by name."""
+    frames = {name: quoted.frame(DOCS / "tables" / f"{name}.csv") for name in (*TABLES, "studies", "checks")}
+    return quoted.numbers(frames)
+
+
+def record(numbers):
+    """Numbers quoted by the pages, and checksums of their source tables."""
+    quoted_names = {name for text in templates() for name in re.findall(r"{{ (\w+) }}", text)}
+    files = sorted((DOCS / "tables").glob("*.csv"))
+    return {
+        "numbers": {name: numbers[name] for name in sorted(quoted_names)},
+        "tables": {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
+    }
+
+
+def templates():
+    """Text of all templates."""
+    return [path.read_text(encoding="utf-8") for path in sorted((DOCS / "templates").glob("*.md"))]
+
+
+def filled(template, numbers):
+    """Template with ``{{ name }}`` replaced by a number and ``{{ table: name }}`` by a table with its caption."""
+    with_tables = re.sub(r"{{ table: (\w+) }}", lambda match: shown(DOCS / "tables" / f"{match[1]}.md"), template)
+    return re.sub(r"{{ (\w+) }}", lambda match: numbers[match[1]], with_tables)
+
+
+def shown(path):
+    """Markdown table in which values and errors stay on one line."""
+    return path.read_text(encoding="utf-8").strip().replace(" ± ", "\N{NO-BREAK SPACE}±\N{NO-BREAK SPACE}")
+
+
+def replaced(text, name, block):
+    """Text with everything between the markers of a block replaced.
+
+    Raises
+    ------
+    ValueError
+        If the text does not have both markers once.
+    """
+    begin, end = f"<!-- begin: {name} -->", f"<!-- end: {name} -->"
+    if (text.count(begin), text.count(end)) != (1, 1):
+        raise ValueError(f"need {begin} and {end} once each")
+    head, rest = text.split(begin)
+    return f"{head}{begin}\n{block}\n{end}{rest.split(end)[1]}"
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,53 @@
+"""Validity of elastic contact: stress and contact area of every touching summit (App. A)."""
+
+import numpy as np
+
+from stiction.constants import HARDNESS
+from stiction.estimates import jackknife
+
+#: Share of the hardness at which a sphere starts to yield (Tabor); paper, App. A.
+ONSET = 0.6
+
+
+def touching(height: np.ndarray, curvature: np.ndarray, distance: float) -> tuple[np.ndarray, np.ndarray]:
+    """Summits in contact with a flat: interference δ [m] and radius R [m], (n_touching,) each.
+
+    Parameters
+    ----------
+    height, curvature : (n,) arrays
+        Of all summits [m], [m⁻¹].
+    distance : float
+        Of the flat from the mean plane [m].
+    """
+    reaching = height > distance
+    return height[reaching] - distance, 1 / curvature[reaching]
+
+
+def contact_area(interference: np.ndarray, radius: np.ndarray) -> np.ndarray:
+    """Hertzian contact area of a sphere, π R δ [m²]; interference [m], radius [m]."""
+    return np.pi * radius * interference
+
+
+def yields(stress: float | np.ndarray) -> bool | np.ndarray:
+    """Whether a summit with this largest stress [Pa] yields."""
+    return stress > ONSET * HARDNESS
+
+
+def plastic_share(area: np.ndarray, stress: np.ndarray, strip: np.ndarray, strips: int) -> tuple[float, float]:
+    """Plastic share A_P / A of the contact area, with its jackknife standard error.
+
+    Both are NaN if fewer than two strips have a touching summit.
+
+    Parameters
+    ----------
+    area, stress : (n,) arrays
+        Of all touching summits [m²], [Pa].
+    strip : (n,) int array
+        Number of the strip of each summit, from 0.
+    strips : int
+        Number of strips, the independent samples.
+    """
+    if len(np.unique(strip)) < 2:
+        return np.nan, np.nan
+    sums = [np.bincount(strip, weights, strips) for weights in (area * yields(stress), area)]
+    return jackknife(lambda mean: mean[0] / mean[1], np.column_stack(sums) / np.sum(area))

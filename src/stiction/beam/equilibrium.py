@@ -1,0 +1,348 @@
+"""Equilibrium of a beam in contact: Euler-Bernoulli elements, Newton's method with dashpots (Sec. III-C).
+
+Inside the compiled code the slope is multiplied by the element length, so that every degree of freedom is a length and
+every residual a force.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from stiction.beam.cantilever import Beam
+from stiction.errors import NotConverged
+
+#: Largest unbalanced force of an equilibrium, in units of a point's mean pull-off force f_max w l_quad (about 1e-4 N).
+TOLERANCE = 1e-6
+#: Rounding of the bending forces, in units of 12 EI/l_e³ h: added to the tolerance, as a lower bound of the residual.
+ROUNDING = 64 * np.finfo(float).eps
+#: Largest number of Newton steps; a crack that opens over most of the beam takes about 1000.
+MAX_ITERATIONS = 20_000
+
+#: Beyond d_max + REACH / a_right a law is below 1e-12 f_max and is neglected.
+REACH = 30.0
+#: Largest change of a distance in one step, as a share of the length 1/a of its law; more where the point is far off.
+STEP = 0.6
+#: Elements ahead of the crack front that move with it in every step; the others follow in every WHOLE-th step.
+AHEAD, WHOLE = 6, 64
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A beam in equilibrium."""
+
+    deflection: np.ndarray  #: [u, u'] of every node, (elements + 1, 2) [m, -]
+    imbalance: float  #: largest unbalanced force [N]
+    iterations: int  #: Newton steps
+
+
+class _Mesh(NamedTuple):
+    """Mesh, stiffness and load of a beam as the compiled code uses them."""
+
+    hermite: np.ndarray  # Hermite functions at the points of an element, (points per element, 4)
+    points_per_element: int
+    stiffness: float  # EI / l_e³ [N/m]
+    gap: float  # [m]
+    area: float  # of one point, w l_quad [m²]
+    load: float  # uniform load times l_e [N]
+    tip_force: float  # [N]
+
+
+class _System(NamedTuple):
+    """The linear system of one Newton step: upper band, right-hand side, and position of each point on its law."""
+
+    band: np.ndarray  # (2 nodes + 3, 4) [N/m]; row i holds A[i, i:i+4]
+    force: np.ndarray  # (2 nodes + 3,): unbalanced force [N], after the solution the step [m]
+    stretch: np.ndarray  # a (d - d_max) of every point [-]
+
+
+def hermite(s: float | np.ndarray) -> np.ndarray:
+    """Hermite functions at the relative position ``s`` in an element, (..., 4) [-]; for [u, l u'] of its two ends.
+
+    >>> hermite(0.5).tolist()
+    [0.5, 0.125, 0.5, -0.125]
+    """
+    s = np.asarray(s, float)
+    return np.stack([1 - 3 * s**2 + 2 * s**3, s - 2 * s**2 + s**3, 3 * s**2 - 2 * s**3, s**3 - s**2], -1)
+
+
+@njit(cache=True, nogil=True)
+def _add_element(u, system, mesh, element):
+    """Add bending force, stiffness and load of one element."""
+    i, k, load = 2 * element, mesh.stiffness, mesh.load
+    band, force = system.band, system.force
+    band[i, 0] += 12 * k
+    band[i, 1] += 6 * k
+    band[i, 2] -= 12 * k
+    band[i, 3] += 6 * k
+    band[i + 1, 0] += 4 * k
+    band[i + 1, 1] -= 6 * k
+    band[i + 1, 2] += 2 * k
+    band[i + 2, 0] += 12 * k
+    band[i + 2, 1] -= 6 * k
+    band[i + 3, 0] += 4 * k
+    rise = 6 * k * (u[i] - u[i + 2])
+    shear = 2 * rise + 6 * k * (u[i + 1] + u[i + 3])
+    force[i] += load / 2 - shear
+    force[i + 1] += load / 12 - rise - k * (4 * u[i + 1] + 2 * u[i + 3])
+    force[i + 2] += load / 2 + shear
+    force[i + 3] -= load / 12 + rise + k * (2 * u[i + 1] + 4 * u[i + 3])
+
+
+@njit(cache=True, nogil=True)
+def _add_open_part(u, system, mesh, first):
+    """Add the beam from the clamp to node ``first``: without contact, a single long element is exact."""
+    i, k, load = 2 * first, mesh.stiffness, mesh.load
+    system.band[i, 0] += 12 * k / first**3
+    system.band[i, 1] -= 6 * k / first**2
+    system.band[i + 1, 0] += 4 * k / first
+    system.force[i] += load * first / 2 - 12 * k / first**3 * u[i] + 6 * k / first**2 * u[i + 1]
+    system.force[i + 1] += -load * first**2 / 12 + 6 * k / first**2 * u[i] - 4 * k / first * u[i + 1]
+
+
+@njit(cache=True, nogil=True)
+def _hold(system, node):
+    """Fix a node in the assembled system, before its solution."""
+    for i in range(2 * node, 2 * node + 2):
+        for k in range(1, 4):
+            system.band[i, k] = 0.0
+            if i >= k:
+                system.band[i - k, k] = 0.0
+        system.band[i, 0] = 1.0
+        system.force[i] = 0.0
+
+
+@njit(cache=True, nogil=True)
+def _add_points(u, laws, system, mesh, element, viscosity):
+    """Add force and tangent of the contact points of one element, Eq. (12), with a dashpot at each within reach."""
+    i, points = 2 * element, mesh.points_per_element
+    for p in range(points):
+        r = element * points + p
+        n = mesh.hermite[p]
+        distance = mesh.gap - (n[0] * u[i] + n[1] * u[i + 1] + n[2] * u[i + 2] + n[3] * u[i + 3])
+        a = laws[r, 2] if distance < laws[r, 1] else laws[r, 3]
+        t = a * (distance - laws[r, 1])
+        system.stretch[r] = t
+        if t < REACH:
+            x = np.exp(-t)
+            push = laws[r, 0] * mesh.area * x * (x - 2)
+            k = 2 * a * laws[r, 0] * mesh.area * x * (x - 1) + viscosity / (1 + max(t, 0.0)) ** 2
+            for row in range(4):
+                system.force[i + row] -= n[row] * push
+                for column in range(row, 4):
+                    system.band[i + row, column - row] += k * n[row] * n[column]
+
+
+@njit(cache=True, nogil=True)
+def _assemble(u, laws, system, mesh, window, viscosity):
+    """Assemble the elements ``window`` = (first, last); returns the largest unbalanced force [N]."""
+    first, last = window
+    rows = slice(2 * first, 2 * last + 2)
+    system.band[rows] = 0.0
+    system.force[rows] = 0.0
+    for element in range(first, last):
+        _add_element(u, system, mesh, element)
+        _add_points(u, laws, system, mesh, element, viscosity)
+    if first > 0:
+        _add_open_part(u, system, mesh, first)
+    else:
+        _hold(system, 0)
+    if 2 * last + 2 < u.size:
+        _hold(system, last)
+    else:
+        system.force[2 * last] += mesh.tip_force
+    return np.abs(system.force[rows]).max()
+
+
+@njit(cache=True, nogil=True)
+def _solve(band, x, start, stop):
+    """Solve rows [start, stop) of a symmetric system by LDLᵀ, in place; returns False if it is not positive definite.
+
+    Entries beyond ``stop`` are zero, so that the last rows need no special treatment.
+    """
+    for i in range(start, stop):
+        if not band[i, 0] > 0:
+            return False
+        band[i, 0] = 1 / band[i, 0]
+        for k in range(1, 4):
+            m = band[i, k] * band[i, 0]
+            for j in range(k, 4):
+                band[i + k, j - k] -= m * band[i, j]
+            x[i + k] -= m * x[i]
+    for i in range(stop - 1, start - 1, -1):
+        x[i] = band[i, 0] * (x[i] - band[i, 1] * x[i + 1] - band[i, 2] * x[i + 2] - band[i, 3] * x[i + 3])
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _largest_move(laws, system, mesh, window):
+    """Largest change of distance in the solved step, relative to the allowed change [-]."""
+    points, step, move = mesh.points_per_element, system.force, 0.0
+    for element in range(window[0], window[1]):
+        i = 2 * element
+        for p in range(points):
+            r = element * points + p
+            t = system.stretch[r]
+            if t < REACH:
+                n = mesh.hermite[p]
+                change = n[0] * step[i] + n[1] * step[i + 1] + n[2] * step[i + 2] + n[3] * step[i + 3]
+                a = laws[r, 2] if t < 0 else laws[r, 3]
+                move = max(move, a * abs(change) / (1 + max(t, 0.0)))
+    return move / STEP
+
+
+@njit(cache=True, nogil=True)
+def _step(u, laws, system, mesh, window):
+    """Solve and take the step unless it is too long; returns its relative length (`_largest_move`) [-], or infinity."""
+    rows = slice(2 * window[0], 2 * window[1] + 2)
+    if not _solve(system.band, system.force, rows.start, rows.stop):
+        return np.inf
+    move = _largest_move(laws, system, mesh, window)
+    if move <= 2:
+        u[rows] += system.force[rows]
+    return move
+
+
+@njit(cache=True, nogil=True)
+def _open(u, laws, mesh, first):
+    """First element, from ``first`` on, with a point within reach of its law."""
+    points, elements = mesh.points_per_element, u.size // 2 - 1
+    while first < elements:
+        distance = mesh.gap - u[2 * first + 2]  # at the end of the element, where an open crack is narrowest
+        for r in range(first * points, (first + 1) * points):
+            if laws[r, 3] * (distance - laws[r, 1]) < REACH:
+                return first
+        first += 1
+    return first
+
+
+@njit(cache=True, nogil=True)
+def _front(stretch, points, element, elements):
+    """First element, from ``element`` on, with a point closer than d_max."""
+    while element < elements:
+        for r in range(element * points, (element + 1) * points):
+            if stretch[r] <= 0:
+                return element
+        element += 1
+    return element
+
+
+@njit(cache=True, nogil=True)
+def _fill_open_part(u, mesh, first):
+    """Deflect the nodes between the clamp and ``first``: the cubic to that node and the deflection by the load."""
+    end, slope = u[2 * first], u[2 * first + 1] * first
+    bow = mesh.load * first**4 / (24 * mesh.stiffness)
+    for node in range(first):
+        s = node / first
+        u[2 * node] = end * s**2 * (3 - 2 * s) + slope * s**2 * (s - 1) + bow * (s * (1 - s)) ** 2
+        rate = 6 * end * s * (1 - s) + slope * s * (3 * s - 2) + 2 * bow * s * (1 - s) * (1 - 2 * s)
+        u[2 * node + 1] = rate / first
+
+
+@njit(cache=True, nogil=True)
+def _relax(u, laws, mesh, tolerance, max_iterations):
+    """Relax the beam to its next equilibrium, in place; returns the largest unbalanced force [N] and the Newton steps.
+
+    Dashpots at the contact points make the beam creep downhill, so that the crack cannot jump over a place of arrest.
+    Their viscosity [N/m] keeps the tangent positive definite and the steps short, and vanishes where it is not needed:
+    the last steps are plain Newton. The open part of the crack is condensed; elements far ahead of the crack front are
+    updated only in every WHOLE-th step.
+    """
+    elements, points = u.size // 2 - 1, mesh.points_per_element
+    system = _System(np.zeros((u.size + 3, 4)), np.zeros(u.size + 3), np.full(laws.shape[0], -1.0))
+    steepest = 0.5 * np.max(laws[:, 0] * laws[:, 3]) * mesh.area if laws.size else 0.0
+    viscosity, first, front, residual, settled = steepest, 0, 0, np.inf, False
+    for iteration in range(max_iterations):
+        first = _open(u, laws, mesh, first)
+        front = _front(system.stretch, points, max(first, front), elements)
+        whole = settled or iteration % WHOLE == 0
+        window = (first, elements if whole else min(front + AHEAD, elements))
+        residual = _assemble(u, laws, system, mesh, window, viscosity)
+        settled = residual <= tolerance
+        if settled and whole:
+            _fill_open_part(u, mesh, first)
+            if _open(u, laws, mesh, 0) >= first:
+                return residual, iteration
+            first = 0  # the crack has closed again
+        elif not settled:
+            move = _step(u, laws, system, mesh, window)
+            viscosity = max(viscosity, 0.01 * steepest * (move > 1)) * min(max(move, 0.25), 4.0)
+    return residual, max_iterations
+
+
+def _points(beam, laws):
+    """Hermite functions at the points of an element, (points per element, 4) [-].
+
+    Raises
+    ------
+    ValueError
+        If a coefficient is negative or not finite, or the number of laws is no multiple of the number of elements.
+    """
+    points, rest = divmod(len(laws), beam.elements)
+    if rest:
+        raise ValueError(f"{len(laws)} laws do not spread evenly over {beam.elements} elements")
+    broken = ~np.all(np.isfinite(laws) & (laws >= 0), axis=1)
+    if broken.any():
+        raise ValueError(f"law {broken.argmax()} has a negative or no value: {laws[broken.argmax()]}")
+    return hermite((np.arange(points) + 0.5) / max(points, 1))
+
+
+def _mesh(beam, laws, load, tip_force):
+    """Mesh of a beam for the compiled code."""
+    functions, l_e = _points(beam, laws), beam.element_length
+    points = len(functions)
+    area = beam.width * l_e / max(points, 1)
+    stiffness = beam.bending_stiffness / l_e**3
+    return _Mesh(functions, points, stiffness, float(beam.gap), area, float(load) * l_e, float(tip_force))
+
+
+def allowed_imbalance(beam: Beam, pull: float) -> float:
+    """Tolerance for the unbalanced force [N] of a beam with the mean pull-off force ``pull`` per point [N]."""
+    return TOLERANCE * pull + ROUNDING * 12 * (beam.bending_stiffness / beam.element_length**3) * beam.gap
+
+
+def equilibrate(
+    beam: Beam,
+    laws: np.ndarray,
+    start: np.ndarray,
+    load: float = 0.0,
+    tip_force: float = 0.0,
+    max_iterations: int = MAX_ITERATIONS,
+) -> Equilibrium:
+    """Relax from a deflection downhill to the next equilibrium on the substrate (Sec. III-C).
+
+    Parameters
+    ----------
+    beam : Beam
+    laws : (points, 4) float64
+        Rows [f_max, d_max, a_left, a_right], SI; (0, 4) without contact.
+    start : (elements + 1, 2) array
+        Deflection [m] and slope [-] of the nodes.
+    load, tip_force : float
+        Uniform load [N/m] and force on the free end [N], positive towards the substrate.
+    max_iterations : int
+        Largest number of Newton steps.
+
+    Raises
+    ------
+    ValueError
+        If a coefficient is negative or not finite, or the number of laws is no multiple of the number of elements.
+    NotConverged
+        If no equilibrium is found.
+    """
+    laws = np.ascontiguousarray(laws, float)
+    mesh = _mesh(beam, laws, load, tip_force)
+    tolerance = allowed_imbalance(beam, laws[:, 0].mean() * mesh.area if len(laws) else 0.0)
+    scale = np.array([1, beam.element_length])
+    u = (np.asarray(start, float) * scale).ravel()
+    imbalance, iterations = _relax(u, laws, mesh, tolerance, max_iterations)
+    if not imbalance <= tolerance:
+        raise NotConverged("equilibrium of the beam [N]", imbalance, tolerance, iterations)
+    return Equilibrium(u.reshape(-1, 2) / scale, imbalance, iterations)
+
+
+def distances(beam: Beam, laws: np.ndarray, deflection: np.ndarray) -> np.ndarray:
+    """Distance to the substrate at the point of each law, (points,) [m]."""
+    ends = deflection * [1, beam.element_length]
+    return beam.gap - (np.hstack([ends[:-1], ends[1:]]) @ _points(beam, laws).T).ravel()

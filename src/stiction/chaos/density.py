@@ -1,0 +1,159 @@
+"""Kernel density of the coordinates η and its conditional quantiles (App. B-B, step i)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from scipy.special import ndtr
+
+
+@dataclass(frozen=True)
+class KernelDensity:
+    """Mixture of equal Gaussian kernels."""
+
+    centres: np.ndarray  #: centres of the m kernels (N_g, m)
+    bandwidth: float  #: standard deviation of a kernel, the same for all coordinates
+
+    def draw(self, n: int, rng: np.random.Generator) -> np.ndarray:
+        """Draw n points (n, N_g)."""
+        dimension, m = self.centres.shape
+        return self.centres[:, rng.integers(m, size=n)].T + self.bandwidth * rng.standard_normal((n, dimension))
+
+
+def silverman_bandwidth(samples: int, dimension: int) -> float:
+    """Silverman's bandwidth for coordinates of unit variance [-].
+
+    Examples
+    --------
+    >>> round(silverman_bandwidth(5000, 3), 3)
+    0.287
+    """
+    return (4 / (samples * (dimension + 2))) ** (1 / (dimension + 4))
+
+
+def kernel_density(eta: np.ndarray) -> KernelDensity:
+    """Kernel density of coordinates η (m, N_g), scaled to preserve their mean 0 and covariance I exactly.
+
+    Centres and bandwidth s are both divided by √(1 + s²) (Soize and Ghanem, J. Comput. Phys. 321, 2016).
+    """
+    # DEPARTS: unscaled kernels, as in App. B, would inflate every variance by s²: 8 % at m = 5000 and N_g = 3.
+    bandwidth = silverman_bandwidth(*eta.shape)
+    shrink = 1 / np.sqrt(1 + bandwidth**2)
+    return KernelDensity(np.ascontiguousarray(eta.T * shrink), float(bandwidth * shrink))
+
+
+@njit(cache=True, nogil=True)
+def _kernel_weights(given, centres, bandwidth, weights):
+    """Weight of each kernel (m,) given the preceding coordinates ``given`` (k,)."""
+    weights[:] = 0.0
+    for j in range(given.size):
+        for i in range(weights.size):
+            distance = (given[j] - centres[j, i]) / bandwidth
+            weights[i] += distance * distance
+    nearest = weights.min()
+    for i in range(weights.size):
+        weights[i] = np.exp(0.5 * (nearest - weights[i]))
+
+
+@njit(cache=True, nogil=True)
+def _bin_linearly(points, weights, start, step, bins):
+    """Split each weight between the two nearest nodes of a grid."""
+    bins[:] = 0.0
+    for i in range(points.size):
+        position = (points[i] - start) / step
+        cell = int(position)
+        upper = (position - cell) * weights[i]
+        bins[cell] += weights[i] - upper
+        bins[cell + 1] += upper
+
+
+@njit(cache=True, nogil=True)
+def _smooth(bins, taps, masses):
+    """Probability of each cell (n + taps - 1,): convolution of ``bins`` (n,) with the taps."""
+    masses[:] = 0.0
+    for t in range(taps.size):
+        for i in range(bins.size):
+            masses[i + t] += taps[t] * bins[i]
+    masses /= masses.sum()
+
+
+@njit(cache=True, nogil=True)
+def _invert(masses, start, step, probabilities, quantiles):
+    """Quantiles at increasing probabilities of a density that is linear within each cell, sloped as its neighbours."""
+    cell, below = 1, masses[0]
+    for i in range(probabilities.size):
+        while below + masses[cell] < probabilities[i] and cell < masses.size - 2:
+            below += masses[cell]
+            cell += 1
+        rest = max(probabilities[i] - below, 0.0)
+        mass = masses[cell]
+        tilt = 0.5 * (masses[cell + 1] - masses[cell - 1])
+        tilt = min(max(tilt, -mass), mass)  # the density must not become negative
+        left = mass - 0.5 * tilt  # rest = left t + tilt t² / 2, solved in the form without cancellation
+        part = 2 * rest / (left + np.sqrt(left * left + 2 * tilt * rest)) if rest > 0 else 0.0
+        quantiles[i] = start + (cell + part) * step
+
+
+@njit(cache=True, nogil=True)
+def _quantile_rows(given, centres, bandwidth, grid, taps, probabilities, rows):
+    """Fill ``rows`` (r, n) of `conditional_quantiles`; ``grid`` is (first node, step, number of nodes)."""
+    start, step, count = grid
+    coordinate = given.shape[1]
+    weights = np.empty(centres.shape[1])
+    bins, masses = np.empty(count), np.empty(count + taps.size - 1)
+    edge = start - 0.5 * taps.size * step
+    for r in range(given.shape[0]):
+        _kernel_weights(given[r], centres, bandwidth, weights)
+        _bin_linearly(centres[coordinate], weights, start, step, bins)
+        _smooth(bins, taps, masses)
+        _invert(masses, edge, step, probabilities, rows[r])
+
+
+def _taps(deviation, step):
+    """Probability of cells of width ``step`` around 0 under a Gaussian kernel, up to 6 deviations (2 R + 1,)."""
+    reach = int(np.ceil(6 * deviation / step))
+    edges = (np.arange(-reach, reach + 2) - 0.5) * step
+    return np.diff(ndtr(edges / deviation))
+
+
+def conditional_quantiles(density: KernelDensity, given: np.ndarray, probabilities: np.ndarray) -> np.ndarray:
+    """Quantiles of coordinate k + 1 of a density, conditional on the first k coordinates.
+
+    The weighted kernels are binned on a grid of an eighth of the bandwidth and smoothed there: the probabilities of the
+    quantiles agree with the sum over all kernels within 3e-4.
+
+    Parameters
+    ----------
+    density : KernelDensity
+        Density of N_g > k coordinates.
+    given : (r, k) float64
+        Values of the first k coordinates; k = 0 for the first coordinate.
+    probabilities : (n,) float64
+        Increasing, at least 1e-7 away from 0 and 1.
+
+    Returns
+    -------
+    (r, n) float64
+    """
+    points = density.centres[given.shape[1]]
+    step = density.bandwidth / 8
+    # Linear binning adds a variance of step² / 6 on average; it is subtracted from that of the kernel.
+    taps = _taps(np.sqrt(density.bandwidth**2 - step**2 / 6), step)
+    grid = (float(points.min()), float(step), int(np.ptp(points) / step) + 2)
+    rows = np.empty((len(given), len(probabilities)))
+    _quantile_rows(np.ascontiguousarray(given), density.centres, density.bandwidth, grid, taps, probabilities, rows)
+    return rows
+
+
+def quantile_tables(density: KernelDensity, probabilities: np.ndarray) -> list[np.ndarray]:
+    """Conditional quantiles of all coordinates on a tensor grid of probabilities: the inverse Rosenblatt transform.
+
+    Table k, of shape (n,) * k, holds η_k at the probabilities ξ_1, ..., ξ_k.
+    """
+    n = len(probabilities)
+    given, tables = np.empty((1, 0)), []
+    for k in range(1, len(density.centres) + 1):
+        rows = conditional_quantiles(density, given, probabilities)
+        tables.append(rows.reshape((n,) * k))
+        given = np.column_stack([np.repeat(given, n, axis=0), rows.ravel()])
+    return tables

@@ -1,0 +1,178 @@
+"""Error messages about a configuration: key, value, allowed values and a suggestion.
+
+The messages do not affect the results: `stiction.run.fingerprint` leaves this module out.
+"""
+
+import difflib
+import re
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from jsonschema import Draft202012Validator, validators
+
+
+class ConfigError(ValueError):
+    """Invalid configuration; one line per problem."""
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """One line per problem; each begins with the key."""
+        return self.args
+
+    def __str__(self):
+        return "\n".join(self.problems)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Problem with one key."""
+
+    path: tuple  #: keys and list indices from the root
+    message: str  #: continues the sentence that begins with the path
+
+    def __str__(self):
+        return f"{dotted(self.path)} {self.message}"
+
+
+def schema_problems(config: object, schema: dict) -> list[Problem]:
+    """Problems of single keys, found with the schema."""
+    try:
+        return [problem for error in _Strict(schema).iter_errors(config) for problem in _explained(error, schema)]
+    except (ValueError, RecursionError) as reason:
+        # Each error of jsonschema prints the value, and Python cannot print very long integers or very deep nesting.
+        return [Problem((), f"cannot be printed ({reason}): must contain short numbers and few levels of nesting")]
+
+
+def _is_number(_, value):
+    """Whether a value is a finite real number; truth values, NaN and infinities are not."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e300
+
+
+def _is_integer(_, value):
+    """Whether a value is written as a whole number: 5000 is, 5000.0 is not."""
+    return _is_number(_, value) and isinstance(value, int)
+
+
+_Strict = validators.extend(
+    Draft202012Validator,
+    type_checker=Draft202012Validator.TYPE_CHECKER.redefine_many({"number": _is_number, "integer": _is_integer}),
+)
+
+
+def _explained(error, schema):
+    """Problems that correspond to one error of jsonschema."""
+    path, value = tuple(error.absolute_path), error.instance
+    if "propertyNames" in error.absolute_schema_path:
+        return [
+            Problem(
+                (*path, value),
+                f"is not a valid name, must be letters and digits, starting with a letter{_name_hint(value)}",
+            )
+        ]
+    if error.validator == "required":
+        missing = [(*path, key) for key in error.validator_value if key not in value]
+        return [Problem(key, f"is missing, must be {_allowed(_entry(schema, key))}") for key in missing]
+    if error.validator == "additionalProperties":
+        known = list(error.schema["properties"])
+        return [Problem((*path, key), _unknown(key, value[key], known)) for key in value if key not in known]
+    return [Problem(path, f"is {shown(value)}, must be {_allowed(error.schema)}{_hint(value, error.schema)}")]
+
+
+def _entry(schema, path):
+    """Part of the schema that describes the key at ``path``; the path contains no list indices."""
+    for key in path:
+        schema = schema.get("properties", {}).get(key) or schema["additionalProperties"]
+    return schema
+
+
+#: Keywords of the schema in words.
+_KINDS = {"array": "a list", "integer": "a whole number", "number": "a number", "object": "a section", "string": "text"}
+_BOUNDS = {"exclusiveMinimum": "above", "minimum": "at least", "exclusiveMaximum": "below", "maximum": "at most"}
+
+
+def _allowed(entry):
+    """Allowed values of a schema entry in words, with description and unit."""
+    words = [f"one of {', '.join(entry['enum'])}" if "enum" in entry else _KINDS[entry["type"]]]
+    words.append(" and ".join(f"{word} {entry[bound]}" for bound, word in _BOUNDS.items() if bound in entry))
+    if entry.get("properties"):
+        words.append(f"with the keys {', '.join(entry['properties'])}")
+    if "minItems" in entry or "minProperties" in entry:
+        words.append("with at least one entry")
+    return f"{' '.join(filter(None, words))}: {entry['description']}"
+
+
+def _unknown(key, value, known):
+    """Message about a key that is not in the schema."""
+    with_unit = [name for name in known if name.startswith(f"{key}_")]
+    question = _question(with_unit) or did_you_mean(key, known)
+    unit = " Keys carry their unit." if with_unit else ""
+    return f"is unknown (value {shown(value)}), must be one of {', '.join(known)}{question}{unit}"
+
+
+def did_you_mean(word: object, known: Iterable[str]) -> str:
+    """Suggest the known name that is most similar to ``word``; empty if there is none."""
+    return _question(difflib.get_close_matches(str(word), known, n=1))
+
+
+def _question(meant):
+    """Suggest the first entry of ``meant``; empty if there is none."""
+    return f"; did you mean {meant[0]}?" if meant else ""
+
+
+def _hint(value, entry):
+    """Likely cause of a value of the wrong type; may be empty."""
+    if value is None:
+        return "; there is no value after the key"
+    if isinstance(value, bool):
+        return "; YAML reads yes, no, on, off, true and false as truth values"
+    if entry["type"] == "array" and not isinstance(value, list):
+        return f"; write [{value}]"
+    if isinstance(value, str):
+        return did_you_mean(value.lower(), entry["enum"]) if "enum" in entry else _number_hint(value, entry)
+    if isinstance(value, float) and entry["type"] == "integer" and value.is_integer():
+        return f"; write it without a decimal point: {value:.15g}"
+    return ""
+
+
+def _number_hint(text, entry):
+    """How to write a number that YAML read as text."""
+    parts = re.fullmatch(r"([-+]?\d+(?:[.,]\d*)?)(?:[eE]([-+]?\d{1,2}))?\s*([^\W\d][^%]*)?", text)
+    if entry["type"] not in ("number", "integer") or not parts:
+        return ""
+    mantissa, exponent, unit = parts[1].replace(",", "."), parts[2], parts[3]
+    value = float(f"{mantissa}e{exponent or 0}")
+    whole = entry["type"] == "integer" and value.is_integer()
+    written = f"{value:.15g}" if whole else f"{float(mantissa)}e{int(exponent):+d}" if exponent else mantissa
+    if exponent and not unit:
+        return f"; YAML reads {text} as text, write {written}"
+    return f"; write {written} without quotes, unit or decimal comma"
+
+
+def _name_hint(name):
+    """Likely reason why YAML did not read a name as text."""
+    if isinstance(name, bool):
+        return "; YAML reads yes, no, on, off, true and false as truth values"
+    return ", at most 32 characters" if isinstance(name, str) else "; YAML read it as something other than text"
+
+
+def dotted(path: tuple) -> str:
+    """Path as in ``pairs.a.humidities[1]``."""
+    text = "".join(f"[{key}]" if type(key) is int else f".{_plain(key)}" for key in path)
+    return text.removeprefix(".") or "configuration"
+
+
+def _plain(key):
+    """Key as it is if it is a single word, otherwise its Python representation."""
+    return key if isinstance(key, str) and re.fullmatch(r"\w+", key) else shown(key)
+
+
+def shown(value: object) -> str:
+    """Value as one short line."""
+    text = repr(value)
+    return text if len(text) <= 100 else f"{text[:80]} …"
+
+
+def duplicates(items: Iterable) -> list:
+    """Items that occur more than once."""
+    return [item for item, count in Counter(items).items() if count > 1]

@@ -1,0 +1,219 @@
+"""Plan of a configuration: the surfaces, cases, variants and figures to be computed.
+
+The rules of the workflow and the library use the same plan and therefore the same cases.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from stiction.analysis.sensitivity import shifted
+from stiction.config.cases import case_id, pair_of
+from stiction.config.files import paper
+from stiction.config.merging import merged
+from stiction.config.relations import heights_have_a_density
+from stiction.models import BEAM_MODELS, SIDES, SURFACE_MODELS
+
+#: Keys of the measured statistics of a surface: moments of the heights and summit statistics.
+MOMENTS = ("rms_nm", "skewness", "kurtosis")
+SUMMITS = ("mean_summit_radius_um", "summit_density_per_um2")
+#: Key that a variant changes, and its section; the source of the spectrum is a key of each surface.
+_CHANGED = {"van_der_waals": None, "psd": None, "every": "contact", "spacing_nm": "sampling", "poisson_ratio": "solid"}
+#: Keys that define the beam that the paper measured and simulated.
+_OF_BEAM = {"beam": ("length_um", "width_um", "thickness_um"), "solid": ("young_modulus_GPa",)}
+
+
+def chosen(section: dict[str, Any], names: Iterable[str]) -> dict[str, Any]:
+    """Section reduced to the named keys, as far as it contains them."""
+    return {name: section[name] for name in names if name in section}
+
+
+def _same(section, other, only=None, but=()):
+    """Whether two sections agree in some keys, by default in all; ``False`` if the other section is ``None``."""
+    if other is None:
+        return False
+    keys = only or {*section, *other} - set(but)
+    return all(section.get(key) == other.get(key) for key in keys)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Names of everything that is computed for one configuration."""
+
+    config: dict  #: complete and valid
+
+    @property
+    def pairs(self) -> list[str]:
+        """Pairs that run."""
+        return self.config["run"]["pairs"]
+
+    def sides(self, pair: str) -> list[str]:
+        """Names of the surfaces of a pair, that of the beam first."""
+        return [self.config["pairs"][pair][side] for side in SIDES]
+
+    @cached_property
+    def surfaces(self) -> list[str]:
+        """Surfaces of the pairs that run, in the order of the configuration."""
+        met = {name for pair in self.pairs for name in self.sides(pair)}
+        return [name for name in self.config["surfaces"] if name in met]
+
+    @cached_property
+    def measured(self) -> list[str]:
+        """Surfaces with measured summits, whose spectrum can therefore be identified."""
+        return [name for name in self.surfaces if all(key in self.config["surfaces"][name] for key in SUMMITS)]
+
+    @cached_property
+    def cases(self) -> list[str]:
+        """Every pair at each of its humidities."""
+        return [case_id(pair, humidity) for pair in self.pairs for humidity in self.config["pairs"][pair]["humidities"]]
+
+    @cached_property
+    def laws(self) -> list[tuple[str, str]]:
+        """Case and model of all force laws."""
+        return [(case, model) for case in self.cases for model in SURFACE_MODELS]
+
+    @cached_property
+    def outcomes(self) -> list[tuple[str, str]]:
+        """Case and model of all beams."""
+        return [(case, model) for case in self.cases for model in BEAM_MODELS]
+
+    # Comparison with published values
+
+    @cached_property
+    def paper_surfaces(self) -> list[str]:
+        """Surfaces of the paper: measured statistics and published spectrum as in its case study."""
+        known = paper()["surfaces"]
+        return [name for name in self.surfaces if _same(self.config["surfaces"][name], known.get(name), but=["psd"])]
+
+    @cached_property
+    def paper_pairs(self) -> list[str]:
+        """Pairs of the paper: same surfaces, gap and beam."""
+        known = paper()
+        beam = all(_same(self.config[section], known[section], only=keys) for section, keys in _OF_BEAM.items())
+        return [
+            pair
+            for pair in self.pairs
+            if beam
+            and _same(self.config["pairs"][pair], known["pairs"].get(pair), but=["humidities"])
+            and set(self.sides(pair)) <= set(self.paper_surfaces)
+        ]
+
+    # Figures that show one pair, one case or one humidity
+
+    @property
+    def figure_pair(self) -> str:
+        """Pair of the figures: that of the configuration if it runs, otherwise the first that runs."""
+        wanted = self.config["figures"]["pair"]
+        return wanted if wanted in self.pairs else self.pairs[0]
+
+    @property
+    def figure_case(self) -> str:
+        """Case of the figures: their pair at their humidity."""
+        return case_id(self.figure_pair, self.config["figures"]["humidity"])
+
+    @property
+    def figure_cases(self) -> dict[str, str]:
+        """Case of every pair at the humidity of the figures, by pair."""
+        return {pair: case_id(pair, self.config["figures"]["humidity"]) for pair in self.pairs}
+
+    @property
+    def figure_surface(self) -> str:
+        """Surface of the beam in the pair of the figures."""
+        return self.config["pairs"][self.figure_pair]["beam"]
+
+    @property
+    def figure_outcomes(self) -> list[tuple[str, str]]:
+        """Case and model of the beams of the pair of the figures on non-Gaussian surfaces."""
+        return [(case, model) for case, model in self.outcomes if pair_of(case) == self.figure_pair and model != "G"]
+
+    @property
+    def other_surfaces(self) -> list[str]:
+        """All surfaces except that of the figures."""
+        return [name for name in self.surfaces if name != self.figure_surface]
+
+    # Studies
+
+    @property
+    def pressed_pairs(self) -> list[str]:
+        """Pairs whose plasticity is studied."""
+        return [pair for pair in self.pairs if pair in self.config["studies"]["plasticity"]["distance_nm"]]
+
+    @cached_property
+    def shifted_moments(self) -> list[str]:
+        """Moments of the surface of the figures for which a sensitivity is computed: those that can be shifted."""
+        return ["rms", *filter(self._can_be_shifted, ("skewness", "kurtosis"))]
+
+    def _can_be_shifted(self, moment):
+        """Whether surfaces with the moment slightly decreased and slightly increased exist."""
+        shape = chosen(self.config["surfaces"][self.figure_surface], ("skewness", "kurtosis"))
+        at = shifted(shape[moment], self.config["studies"]["sensitivity"]["step"])
+        exists = not any(heights_have_a_density(**shape | {moment: value}) for value in at)
+        return at[0] * at[1] > 0 and exists
+
+    # Variants: one changed model choice each, where the paper leaves the choice open
+
+    @cached_property
+    def finer_beams(self) -> dict[str, dict]:
+        """Changes of the variants that refine only the mesh; surfaces and contact are those of the base."""
+        length, strip = self.config["beam"]["length_um"], self.config["sampling"]["strip_length_um"]
+        strips = self.config["studies"]["variants"]["strips_per_element"]
+        meshes = {f"strips_per_element_{n}": round(length / (strip * n)) for n in strips}
+        same = self.config["beam"]["elements"]
+        return {name: {"elements": elements} for name, elements in meshes.items() if elements != same}
+
+    @cached_property
+    def variants(self) -> dict[str, dict]:
+        """Changes of every variant, ``base`` first."""
+        wanted = self.config["studies"]["variants"]
+        changes = {
+            f"{key}_{value}": {section: {key: value}} if section else {key: value}
+            for key, section in _CHANGED.items()
+            for value in wanted[key]
+        }
+        return {"base": {}} | changes | {name: {"beam": mesh} for name, mesh in self.finer_beams.items()}
+
+    def surface_under(self, variant: str, surface: str) -> dict:
+        """Description of a surface under a variant, from which it is drawn."""
+        entry, psd = self.config["surfaces"][surface], self._psd_under(variant, surface)
+        used = [*MOMENTS, "published_psd"] if psd == "published" else MOMENTS
+        return chosen(entry, used) | {"psd": psd}
+
+    def _psd_under(self, variant, surface):
+        """Source of the spectrum of a surface: that of the variant where available, otherwise unchanged."""
+        entry = self.config["surfaces"][surface]
+        known = {"published": "published_psd" in entry, "identified": surface in self.measured}
+        wanted = self.variants[variant].get("psd", entry["psd"])
+        return wanted if known[wanted] else entry["psd"]
+
+    def variant_contact(self, pair: str, variant: str) -> dict:
+        """Settings of the contact of a pair without the variant, and the changes of the variant."""
+        contact = chosen(self.config["contact"], ("distance_step_nm", "every"))
+        base = chosen(self.config, ("seed", "sampling", "solid", "van_der_waals")) | {
+            "contact": contact | {"samples": self.config["studies"]["variants"]["samples"]},
+            "beam": chosen(self.config["beam"], ["width_um"]),
+            "pairs": {pair: chosen(self.config["pairs"][pair], SIDES)},
+            "surfaces": {name: self.surface_under(variant, name) for name in self.sides(pair)},
+        }
+        changes = {key: change for key, change in self.variants[variant].items() if key != "psd"}
+        identified = sorted(name for name, entry in base["surfaces"].items() if entry["psd"] == "identified")
+        return {"base": base, "changes": changes, "identified": identified}
+
+    def contact_under(self, variant: str) -> str:
+        """Variant whose contact a variant starts from: a finer beam meets the surfaces of the base."""
+        return "base" if variant in self.finer_beams else variant
+
+    def _under(self, pair, variant):
+        """Settings of the contact of a pair under a variant."""
+        found = self.variant_contact(pair, variant)
+        return merged(found["base"], found["changes"])
+
+    @cached_property
+    def studied(self) -> list[tuple[str, str]]:
+        """Pairs and their variants, without those that change nothing for the pair."""
+        return [
+            (pair, variant)
+            for pair in self.pairs
+            for variant in self.variants
+            if variant == "base" or self._under(pair, variant) != self._under(pair, "base")
+        ]

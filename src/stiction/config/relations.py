@@ -1,0 +1,319 @@
+"""Relations between the keys of a configuration, and the validation of a whole configuration.
+
+The schema bounds every key on its own. Conditions between keys are the relations below: functions of the values that
+return ``None``, or the end of the error message about the offending key. Values keep the units of their keys.
+"""
+
+import functools
+import itertools
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+from stiction.config.cases import NAMEABLE, decimals
+from stiction.config.messages import ConfigError, Problem, did_you_mean, dotted, duplicates, schema_problems, shown
+from stiction.config.units import NM_PER_UM, typed
+from stiction.errors import NotConverged
+from stiction.numbers import is_multiple
+from stiction.surface import maxent
+from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
+from stiction.surface.translation import LARGEST_SCORE
+
+
+@functools.cache
+def schema() -> dict:
+    """JSON schema of the configuration: ``schema.yaml`` next to this module."""
+    return yaml.safe_load(Path(__file__).with_name("schema.yaml").read_text(encoding="utf-8"))
+
+
+def validate(config: dict) -> None:
+    """Check a configuration against the schema and the relations between its keys.
+
+    Parameters
+    ----------
+    config : dict
+        Complete configuration.
+
+    Raises
+    ------
+    ConfigError
+        If the configuration is invalid; one line per problem: full key, value, allowed values.
+    """
+    faults = schema_problems(config, schema())
+    problems = faults + _broken_relations(config, [fault.path for fault in faults])
+    if problems:
+        raise ConfigError(*dict.fromkeys(map(str, problems)))
+
+
+_RELATIONS = []
+
+
+def relation(*keys: str) -> Callable:
+    """Register a relation between keys; it is only checked for values that the schema accepts.
+
+    The values are the arguments of the relation, in order; error messages are about the first key. In a key, ``*``
+    stands for each name in a section or each index of a list in turn, the same in all keys, and ``#`` for the list of
+    names in a section.
+    """
+
+    def register(holds):
+        _RELATIONS.append((keys, holds))
+        return holds
+
+    return register
+
+
+def _broken_relations(config, faults):
+    """Violated relations between keys that are valid on their own."""
+    cases = ((holds, paths) for keys, holds in _RELATIONS for paths in _spelled_out(keys, config))
+    return [problem for holds, paths in cases for problem in _checked(holds, paths, config, faults)]
+
+
+def _spelled_out(keys, config):
+    """Paths of the keys, for each combination of the members that ``*`` stands for."""
+    paths = [tuple(key.split(".")) for key in keys]
+    sections = list(dict.fromkeys(path[: path.index("*")] for path in paths if "*" in path))
+    choices = itertools.product(*(_members(config, section) for section in sections))
+    return [[_chosen(path, dict(zip(sections, choice, strict=True))) for path in paths] for choice in choices]
+
+
+def _chosen(path, members):
+    """Path in which ``*`` is replaced by the chosen member of its section."""
+    if "*" not in path:
+        return path
+    depth = path.index("*")
+    return (*path[:depth], members[path[:depth]], *path[depth + 1 :])
+
+
+def _members(config, path):
+    """Names in a section or indices of a list; empty if there is neither."""
+    try:
+        found = _value(config, path)
+    except (KeyError, TypeError):
+        return []
+    return range(len(found)) if isinstance(found, list) else _names(found)
+
+
+def _checked(holds, paths, config, faults):
+    """Problem, if any, of one relation at the values of the paths."""
+    if any(_overlap(path, fault) for path in paths for fault in faults):
+        return []
+    try:
+        values = [_value(config, path) for path in paths]
+    except KeyError:  # an optional key that is not given
+        return []
+    message = holds(*values)
+    if message is None:
+        return []
+    return [Problem(paths[0], f"is {shown(values[0])}, {message}{_given(paths[1:], values[1:])}")]
+
+
+def _given(paths, values):
+    """The other values of a violated relation."""
+    others = [f"{dotted(path)} = {shown(value)}" for path, value in zip(paths, values, strict=True) if path[-1] != "#"]
+    return f" (given {', '.join(others)})" if others else ""
+
+
+def _overlap(path, fault):
+    """Whether a fault lies at, above or below a path."""
+    depth = min(len(path), len(fault))
+    return path[:depth] == fault[:depth]
+
+
+def _value(config, path):
+    """Value at a path."""
+    for key in path:
+        config = _names(config) if key == "#" else config[key]
+    return config
+
+
+def _names(section):
+    """Names in a section; empty if it is not a section."""
+    return [name for name in section if isinstance(name, str)] if isinstance(section, dict) else []
+
+
+@relation("run.pairs")
+def selection_has_no_duplicates(names):
+    """Each pair runs only once."""
+    repeated = duplicates(names)
+    return f"must list each pair once; {shown(repeated[0])} is listed twice" if repeated else None
+
+
+@relation("run.pairs", "pairs.#")
+@relation("studies.plasticity.distance_nm", "pairs.#")
+def selected_pairs_exist(names, pairs):
+    """Only defined pairs can run."""
+    refusals = ((name, name_is_defined(name, pairs)) for name in names)
+    return next((f"{message}; {shown(name)} is not" for name, message in refusals if message), None)
+
+
+@relation("pairs.*.beam", "surfaces.#")
+@relation("pairs.*.substrate", "surfaces.#")
+@relation("figures.pair", "pairs.#")
+def name_is_defined(name, defined):
+    """References must be to defined names."""
+    return None if name in defined else f"must be one of {', '.join(defined)}{did_you_mean(name, defined)}"
+
+
+@relation("pairs.*.humidities")
+def cases_have_unique_names(humidities):
+    """Each humidity of a pair has a unique name."""
+    nameless = [humidity for humidity in humidities if not decimals(humidity)]
+    if nameless:
+        return f"must each {NAMEABLE}; {nameless[0]} has more"
+    repeated = duplicates(humidities)
+    return f"must list each humidity once; {repeated[0]} is listed twice" if repeated else None
+
+
+@relation("figures.humidity")
+def humidity_of_the_figures_has_a_name(humidity):
+    """The humidity of the figures must be valid in the name of a case."""
+    return None if decimals(humidity) else f"must {NAMEABLE}"
+
+
+@relation("surfaces.*.kurtosis", "surfaces.*.skewness")
+def heights_have_a_density(kurtosis, skewness):
+    """Densities with these moments exist, including the maximum-entropy density of Eq. (3)."""
+    if kurtosis <= skewness**2 + 1:
+        return f"must be above skewness² + 1 = {skewness**2 + 1:.6g}"
+    try:
+        density = maxent.solve(skewness, kurtosis)
+        density.quantile_of_normal(np.array([-LARGEST_SCORE, LARGEST_SCORE]))
+    except (ValueError, NotConverged) as reason:
+        return f"must allow a maximum-entropy density of the heights: {reason}"
+    return None
+
+
+@relation("surfaces.*.published_psd.corner_rad_per_um", "surfaces.*.published_psd.cutoff_rad_per_um")
+def corner_lies_below_the_cutoff(corner, cutoff):
+    """Roughness decays between the corner and the cut-off, Eq. (7)."""
+    return None if corner < cutoff else "must be below the cut-off"
+
+
+@relation("surfaces.*.published_psd.floor_nm4", "surfaces.*.published_psd.plateau_nm4")
+def spectrum_falls(floor, plateau):
+    """The exponent of the power law in Eq. (7) is negative."""
+    return None if floor < plateau else "must be below the plateau"
+
+
+@relation("surfaces.*.published_psd.cutoff_rad_per_um", "sampling.spacing_nm")
+def grid_carries_the_roughness(cutoff, spacing):
+    """The cut-off lies within the Nyquist number of the grid."""
+    nyquist = math.pi / spacing * NM_PER_UM
+    return None if cutoff <= nyquist else f"must be at most the Nyquist number of the grid, {nyquist:.6g} rad/µm"
+
+
+@relation("studies.variants.spacing_nm.*", "surfaces.*.published_psd.cutoff_rad_per_um")
+def other_grid_carries_the_roughness(spacing, cutoff):
+    """The cut-off lies within the Nyquist number of the grid of a variant."""
+    largest = math.pi / cutoff * NM_PER_UM
+    return None if spacing <= largest else f"must be at most {largest:.6g} nm, for the Nyquist number of the grid"
+
+
+@relation("studies.variants.spacing_nm.*", "character.spacing_nm", "surfaces.*.psd")
+def other_grid_carries_an_identified_spectrum(spacing, coarse, psd):
+    """The cut-off of an identified spectrum is the Nyquist number of the grid of Table I."""
+    return None if spacing <= coarse or psd == "published" else "must be at most that of Table I"
+
+
+@relation("identification.patch_um", "surfaces.*.published_psd")
+@relation("sampling.strip_length_um", "surfaces.*.published_psd")
+@relation("sampling.margin_um", "surfaces.*.published_psd")
+def length_exceeds_the_correlation(length, psd):
+    """Strips are samples of the field, and opposite edges of a strip are uncorrelated."""
+    try:
+        bound = _correlation_length(**psd)
+    except ValueError:
+        return None  # no spectrum or no decaying spectrum, which other relations report
+    return None if length > bound else f"must be above the correlation length of the surface, {bound:.3g} µm"
+
+
+@functools.cache
+def _correlation_length(**psd):
+    """Correlation length of a published spectrum [µm]."""
+    return 1e6 * correlation_length(typed(CutoffSelfAffine, psd))
+
+
+@relation("sampling.strip_length_um", "sampling.spacing_nm", "contact.every")
+@relation("beam.width_um", "sampling.spacing_nm", "contact.every")
+def strip_is_whole_on_the_grid(side, spacing, every):
+    """Both sides of a strip are multiples of the distance between contact points."""
+    step = spacing * every
+    whole = is_multiple(side * NM_PER_UM, step)
+    return None if whole else f"must be a whole number of contact points {step:g} nm apart"
+
+
+@relation("studies.variants.spacing_nm.*", "contact.every", "sampling.strip_length_um", "beam.width_um")
+@relation("studies.variants.every.*", "sampling.spacing_nm", "sampling.strip_length_um", "beam.width_um")
+def strip_is_whole_under_a_variant(changed, other, *sides):
+    """As above, for the step in grid points times the grid spacing, either of which a variant may change."""
+    whole = all(is_multiple(side * NM_PER_UM, changed * other) for side in sides)
+    return None if whole else "must divide both sides of a strip into whole contact points"
+
+
+@relation("identification.patch_um", "sampling.spacing_nm")
+def patch_is_whole_on_the_grid(side, spacing):
+    """The side of a patch is a multiple of the grid spacing."""
+    whole = is_multiple(side * NM_PER_UM, spacing)
+    return None if whole else f"must be a whole number of grid spacings of {spacing} nm"
+
+
+@relation("character.spacing_nm", "sampling.spacing_nm")
+def summits_are_sought_on_the_grid(coarse, spacing):
+    """Table I is sampled at every n-th height of the grid."""
+    return None if is_multiple(coarse, spacing) else f"must be a multiple of the grid spacing of {spacing} nm"
+
+
+@relation("character.spacing_nm", "identification.patch_um")
+@relation("character.spacing_nm", "sampling.strip_length_um")
+@relation("character.spacing_nm", "beam.width_um")
+def strip_can_hold_a_summit(coarse, side):
+    """A summit has eight neighbours."""
+    return None if 3 * coarse <= side * NM_PER_UM else f"must be at most a third of a side of {side} µm"
+
+
+@relation("contact.chunks", "contact.samples")
+def chunks_are_not_empty(chunks, samples):
+    """Every chunk contains at least one sample."""
+    return None if chunks <= samples else "must be at most the number of samples"
+
+
+@relation("chaos.order", "contact.samples")
+def samples_carry_the_chaos(order, samples):
+    """There are no more polynomials in four variables, App. B, than samples to fit them."""
+    carried = next(n for n in itertools.count(order, -1) if math.comb(n + 4, 4) <= samples)
+    return None if order == carried else f"must be at most {carried}, or {math.comb(order + 4, 4)} samples are needed"
+
+
+@relation("beam.length_um", "sampling.strip_length_um", "beam.elements")
+def strips_fill_the_elements(length, strip, elements):
+    """Every element contains the same whole number of strips, its integration points (Fig. 6)."""
+    if is_multiple(length, strip * elements):
+        return None
+    return f"must be a multiple of strip_length x elements = {strip * elements:.6g} µm: whole strips on each element"
+
+
+@relation("studies.variants.strips_per_element.*", "beam.length_um", "sampling.strip_length_um")
+def strips_fill_finer_elements(strips, length, strip):
+    """As above, for a variant; at least two elements."""
+    if is_multiple(length, strip * strips) and length > 1.5 * strip * strips:
+        return None
+    return "must divide the strips along the beam into whole elements, at least two"
+
+
+@relation("studies.mesh.elements_um", "studies.mesh.strips_um", "beam.length_um")
+def a_mesh_is_whole(elements, strips, length):
+    """At least one mesh of Figure 19 is possible; lengths that do not fill each other and the beam are left out."""
+    fitting = (is_multiple(length, element) and is_multiple(element, strip) for element in elements for strip in strips)
+    return None if any(fitting) else "must include a divisor of the beam that is a multiple of one of the strips"
+
+
+@relation("pairs.*.gap_um", "beam.length_um")
+@relation("beam.width_um", "beam.length_um")
+@relation("beam.thickness_um", "beam.length_um")
+def beam_is_slender(size, length):
+    """The beam is longer than it is wide, thick and deflected (Euler-Bernoulli)."""
+    return None if size < length else "must be below the length of the beam"

@@ -1,0 +1,132 @@
+"""The model in one picture: a rough surface, its force curves, released beams, and crack lengths over the humidity."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+
+from stiction.contact import forcelaw
+from stiction.report.format import TO_MPA, TO_NM, TO_UM
+from stiction.report.published import rows
+from stiction.report.style import MODELS, PUBLISHED, humidity_axis, letter, panels, styled
+from stiction.stages.forces import vectors
+from stiction.stages.releases import ended
+
+_SIZE = 7.2, 2.2
+_COLOUR = MODELS["NG"]["color"]
+#: Largest side of the piece of surface [m].
+_PIECE = 5e-6
+#: Number of highlighted force curves.
+_HIGHLIGHTED = 8
+#: A force curve is drawn until its attraction has decayed to the first share of the largest attraction, and up to the
+#: second share of it in repulsion.
+_FOLLOWED, _REPULSION = 0.02, 0.6
+#: Shift of published and computed markers from their humidity [-].
+_APART = 0.012
+
+
+@styled
+def overview(
+    pair: str,
+    character: xr.Dataset,
+    forces: xr.Dataset,
+    beams: xr.Dataset,
+    released: Mapping[tuple[float, str], xr.Dataset],
+    published: pd.DataFrame,
+) -> Figure:
+    """From surface to crack length: (a) surface, (b) force curves, (c) shapes of beams, (d) crack lengths.
+
+    Parameters
+    ----------
+    pair : str
+        The pair of panel (d).
+    character
+        Stage character of a simulated surface.
+    forces, beams
+        Stages forces and beams of one case.
+    released : dict
+        (humidity, model) to the dataset of stage beams of the pair; models NG, GEO or both.
+    published
+        Table III as published, rows of the paper's own pairs.
+    """
+    figure, (axes,) = panels(1, 4, _SIZE, width_ratios=(1.5, 1, 1, 1.12))
+    surface, curves, shapes, lengths = axes
+    _surface(figure, surface, character)
+    _forces(curves, forces)
+    _shapes(shapes, beams)
+    _lengths(lengths, released, rows(published, pair=pair))
+    letter(axes, ["rough surface", "adhesive force", "released beams", "crack length"])
+    return figure
+
+
+def _surface(figure, panel, character):
+    """A square piece of the surface, seen from above."""
+    spacing = float(character.x[1] - character.x[0])
+    points = min(int(_PIECE / spacing), *character.elevation.shape)
+    side = TO_UM * points * spacing
+    elevation = TO_NM * character.elevation.values[:points, :points].T
+    low, high = np.quantile(elevation, (0.002, 0.998))
+    image = panel.imshow(elevation, origin="lower", extent=(0, side, 0, side), vmin=low, vmax=high)
+    panel.set(xlabel="$x_1$ [µm]", ylabel="$x_2$ [µm]")
+    figure.colorbar(image, ax=panel, label="height $z$ [nm]", fraction=0.06, pad=0.02, shrink=0.9)
+
+
+def _forces(panel, forces):
+    """Force curves of some pieces of the two surfaces, some highlighted, and the law of one of them by Eq. (12)."""
+    distance, force = forces.distance.values, forces.force.values
+    deepest = -force.min(axis=1)
+    lines = [np.column_stack([TO_NM * distance, TO_MPA * f])[f < _REPULSION * deepest.max()] for f in force]
+    panel.axhline(0, color="black", linewidth=0.5)
+    panel.add_collection(LineCollection(lines, color="0.8", linewidth=0.3, rasterized=True))
+    panel.add_collection(LineCollection(lines[:_HIGHLIGHTED], color=_COLOUR, linewidth=0.6))
+    vector, limit = vectors(forces)
+    # ASSUME: the curve of median energy is the typical one.
+    k = int(np.argsort(vector[: len(force), 0])[len(force) // 2])
+    law = forcelaw.coefficients(vector[k][None], limit)[0]
+    attracting = distance[(force < -_FOLLOWED * deepest.max()).any(axis=0)]
+    first, last = attracting[[0, -1]]
+    first -= 0.1 * (last - first)
+    near = np.linspace(first, last, 400)
+    pressure = forcelaw.pressure(law, near)
+    below = pressure < _REPULSION * deepest.max()
+    panel.plot(TO_NM * near[below], TO_MPA * pressure[below], color="black", linestyle="--", label="Eq. (12)")
+    panel.set(xlim=(TO_NM * first, TO_NM * last), ylim=TO_MPA * deepest.max() * np.array([-1.08, _REPULSION]))
+    panel.set(xlabel=r"distance $\bar d$ [nm]", ylabel=r"force per area $\bar f$ [MPa]")
+    panel.legend(loc="lower right")
+
+
+def _shapes(panel, beams):
+    """Shapes of the first beams, one S-shaped beam highlighted."""
+    deflection, x = TO_UM * beams.deflection.values, TO_UM * beams.node.values
+    panel.plot(x, deflection.T, color="0.75", linewidth=0.4, rasterized=True)
+    for k in np.flatnonzero(ended(beams, "S-shape")[: len(deflection)])[:1]:
+        panel.plot(x, deflection[k], color=_COLOUR, linewidth=1.6)
+    ground = deflection.max()
+    panel.axhspan(ground, 1.1 * ground, color="0.35")
+    panel.text(x[-1] / 2, 1.05 * ground, "substrate", color="white", ha="center", va="center", fontsize=6)
+    panel.set(xlabel="position [µm]", ylabel="deflection [µm]", xlim=x[[0, -1]], ylim=(1.1 * ground, -0.06 * ground))
+
+
+def _lengths(panel, released, published):
+    """Crack length over the humidity: measured, published and computed here, mean ± standard deviation."""
+    if len(published):
+        measured = published.experiment, published.experiment_std
+        style = {"fmt": "D", "color": "black", "markersize": 3, "zorder": 4, "label": "experiment"}
+        panel.errorbar(published.relative_humidity, *measured, **style)
+        style = {"color": PUBLISHED, "markerfacecolor": "white", "fmt": "^:", "zorder": 3, "label": "published"}
+        panel.errorbar(published.relative_humidity + _APART, published.geo, published.geo_std, **style)
+    # Model GEO, scattered dimensions, where it was computed.
+    model = "GEO" if any(which == "GEO" for _, which in released) else "NG"
+    points = sorted(key for key in released if key[1] == model)
+    stuck = [TO_UM * released[key].crack_length.values[ended(released[key], "S-shape")] for key in points]
+    cases = zip((humidity for humidity, _ in points), stuck, strict=True)
+    bars = [(humidity, found.mean(), found.std(ddof=1)) for humidity, found in cases if len(found) > 1]
+    humidity, mean, deviation = np.reshape(bars, (-1, 3)).T
+    panel.errorbar(humidity - _APART, mean, deviation, fmt="o-", color=_COLOUR, markersize=3, label="computed here")
+    panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$ [µm]")
+    panel.margins(y=0.12)
+    humidity_axis(panel)
+    panel.legend()

@@ -1,0 +1,69 @@
+"""Units of tables and axes, and numbers as text: with a standard error, as a deviation, or alone."""
+
+import numpy as np
+
+#: Units in SI: a quantity divided by its unit is the number of a table.
+NM, UM, PER_UM2 = 1e-9, 1e-6, 1e12
+#: Factors from SI to the units of axes, mJ m⁻² among them; exact in single precision, in which most data are stored.
+TO_NM, TO_UM, TO_MPA, TO_GPA, TO_MJ = 1e9, 1e6, 1e-6, 1e-9, 1e3
+
+#: Text of a missing number.
+MISSING = "–"
+
+
+def percent(value: float, reference: float) -> float:
+    """Deviation from a reference [%]; NaN without one.
+
+    Examples
+    --------
+    >>> round(percent(710, 700), 2), percent(710, 0)
+    (1.43, nan)
+    """
+    return 100 * (value / reference - 1) if reference else np.nan
+
+
+def number(value: float, form: str) -> str:
+    """Text of a number in a format such as ``+.1f``; – for NaN; zero has no minus sign.
+
+    Examples
+    --------
+    >>> number(-0.04, "+.1f"), number(-1.25, ".3g"), number(float("nan"), "g")
+    ('+0.0', '-1.25', '–')
+    """
+    if np.isnan(value):
+        return MISSING
+    text = format(value, form)
+    return text if float(text) else format(0.0, form)
+
+
+def with_error(value: float, error: float, sign: str = "") -> str:
+    """Value ± standard error as text, to the first digit of the error, or to the second if the first is 1; – for NaN.
+
+    Examples
+    --------
+    >>> with_error(57.82009, 0.19801), with_error(-4.9, 0.042, "+")
+    ('57.82 ± 0.20', '-4.90 ± 0.04')
+    """
+    if np.isnan(value):
+        return MISSING
+    if not error > 0:
+        return f"{number(value, f'{sign}g')} ± {number(error, 'g')}"
+    digits = _decimals(error)
+    return f"{number(value, f'{sign}.{digits}f')} ± {error:.{digits}f}"
+
+
+def error_alone(error: float) -> str:
+    """A standard error as text, with the same digits as after ± in `with_error`.
+
+    Examples
+    --------
+    >>> error_alone(0.0417), error_alone(12.3), error_alone(float("nan"))
+    ('0.04', '12', '–')
+    """
+    return with_error(error, error).partition(" ")[0]
+
+
+def _decimals(error):
+    """Decimals of a value with this error: to its first digit, or to its second if the first is 1."""
+    first = int(np.floor(np.log10(error)))
+    return max(0, (error < 2 * 10.0**first) - first)

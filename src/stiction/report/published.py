@@ -1,0 +1,49 @@
+"""The published tables, with the measurements, as frames; the CSV files are in workflow/resources.
+
+The first column identifies the surface or pair of a row. A user's own surface or pair may have a name of the paper.
+Tables and figures compare all rows that they receive, so that callers first select the rows with `of_paper`.
+"""
+
+from collections.abc import Iterable
+from os import PathLike
+
+import numpy as np
+import pandas as pd
+
+
+def read(path: str | PathLike) -> pd.DataFrame:
+    """Published table of a file; lines that begin with # are comments."""
+    return pd.read_csv(path, comment="#", keep_default_na=False, na_values=[""])
+
+
+def of_paper(published: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
+    """Rows of the surfaces or pairs of these names: those that are as in the paper.
+
+    Examples
+    --------
+    >>> of_paper(pd.DataFrame({"pair": ["a", "b"], "ng": [716, 1031]}), ["b", "mine"]).ng.tolist()
+    [1031]
+    """
+    return published[published.iloc[:, 0].isin(list(names))]
+
+
+def rows(published: pd.DataFrame, /, **key: str | float) -> pd.DataFrame:
+    """Rows whose columns hold the values of ``key``; numbers may differ by rounding."""
+    found = np.ones(len(published), bool)
+    for column, value in key.items():
+        held = published[column]
+        found &= (held == value if isinstance(value, str) else np.isclose(held.astype(float), value)).astype(bool)
+    return published[found]
+
+
+def value(published: pd.DataFrame, column: str, /, **key: str | float) -> float:
+    """Number of a column in the first row of `rows`; NaN without a row.
+
+    Examples
+    --------
+    >>> table = pd.DataFrame({"pair": ["a", "a"], "relative_humidity": [0.45, 0.6], "ng": [716, 569]})
+    >>> value(table, "ng", pair="a", relative_humidity=0.6), value(table, "ng", pair="b")
+    (569.0, nan)
+    """
+    match = rows(published, **key)
+    return float(match[column].iloc[0]) if len(match) else np.nan

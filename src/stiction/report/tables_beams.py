@@ -1,0 +1,212 @@
+"""Tables of force laws and beams: Table III compared with the published one, the fit by Eq. (12), the chaos model."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from stiction.beam.energy import CRACK_LENGTH_POWER
+from stiction.contact.forcelaw import admissible
+from stiction.estimates import mean_on_shared_samples, mean_with_error
+from stiction.models import surface_model
+from stiction.report.format import TO_MJ, UM, error_alone, number, percent, with_error
+from stiction.report.published import value
+from stiction.report.tables import Table
+from stiction.stages.forces import vectors
+from stiction.stages.releases import STATES, ended
+
+#: A case: pair, relative humidity and model.
+Case = tuple[str, float, str]
+#: Columns of the published Table III: mean and standard deviation of each model.
+_PUBLISHED = {"NG": ("ng", "ng_std"), "GEO": ("geo", "geo_std")}
+
+
+# Table III
+
+
+def table_3(beams: Mapping[Case, xr.Dataset], forces: Mapping[Case, xr.Dataset], published: pd.DataFrame) -> Table:
+    """Table III: crack lengths and adhesion energies of released beams.
+
+    Parameters
+    ----------
+    beams, forces : dict
+        (pair, humidity, model) to the datasets of stages beams and forces; beams of model GEO have the forces of NG.
+    published : pandas.DataFrame
+        The published table, rows of the paper's own pairs.
+    """
+    frame = pd.DataFrame([_row_3(key, beams[key], forces[*key[:2], surface_model(key[2])], published) for key in beams])
+    caption = (
+        "Table III: crack length of the S-shaped beams, mean ± standard deviation over the beams; se: standard error of"
+        " the mean, over beams and sampled pairs of surfaces; deviations from the published and from the measured "
+        "length."
+    )
+    return Table(frame, caption, pd.DataFrame([_cells_3(row) for _, row in frame.iterrows()]))
+
+
+def _row_3(key, beams, forces, published):
+    """One case: computed, published and measured.
+
+    ASSUME: averages are over S-shaped beams; crack length and energy of any other end state are not meaningful.
+    """
+    pair, humidity, model = key
+    case = {"pair": pair, "relative_humidity": humidity}
+    row = case | {"model": model} | _simulated(beams, forces)
+    for name, columns in (("published", _PUBLISHED.get(model)), ("experiment", ("experiment", "experiment_std"))):
+        known = [value(published, column, **case) for column in columns] if columns else [np.nan, np.nan]
+        row |= dict(zip((f"{name}_um", f"{name}_std_um"), known, strict=True))
+    for name, reference in (("deviation", "published_um"), ("experiment_deviation", "experiment_um")):
+        row[f"{name}_percent"] = percent(row["crack_length_um"], row[reference])
+    # The bias error of the paper: the absolute deviation of its own model NG from experiment.
+    bias = value(published, "bias_error_percent", **case) if model == "NG" else np.nan
+    return row | {"published_bias_error_percent": bias}
+
+
+def _simulated(beams, forces):
+    """Crack length and energies of one case; errors are over beams and over the sampled pairs that all beams share."""
+    stuck, meso = ended(beams, "S-shape"), forces.adhesion_energy.values
+    quantities = {
+        "crack_length": ("um", beams.crack_length.values[stuck] / UM, CRACK_LENGTH_POWER),
+        "adhesion_energy": ("J_per_m2", beams.adhesion_energy.values[stuck], 1),
+    }
+    row = {}
+    for name, (unit, values, power) in quantities.items():
+        mean = spread = error = np.nan
+        if len(values) >= 2:
+            mean, *errors = mean_on_shared_samples(values, meso, power)
+            spread, error = values.std(ddof=1), np.hypot(*errors)
+        row |= {f"{name}_{unit}": mean, f"{name}_std_{unit}": spread, f"{name}_se_{unit}": error}
+    mean, error = mean_with_error(meso)
+    row |= {"meso_energy_J_per_m2": mean, "meso_energy_se_J_per_m2": error, "meso_energy_cv": meso.std(ddof=1) / mean}
+    # Beams are released only on samples that have a force law of Eq. (12).
+    lawful = admissible(*vectors(forces))
+    row |= {"share_without_law": float(np.mean(~lawful)), "meso_energy_lawful_J_per_m2": meso[lawful].mean()}
+    return row | {_share(state): float(ended(beams, state).mean()) for state in STATES}
+
+
+def _share(state):
+    """Name of the column with the share of an end state."""
+    return f"share_{state.lower().replace('-', '_')}"
+
+
+def _cells_3(row):
+    """One case as text."""
+    return {
+        "pair": row.pair,
+        "RH": f"{row.relative_humidity:g}",
+        "model": row.model,
+        "l_s [µm]": with_error(row.crack_length_um, row.crack_length_std_um),
+        "se": error_alone(row.crack_length_se_um),
+        "published": with_error(row.published_um, row.published_std_um),
+        "dev. published [%]": number(row.deviation_percent, "+.1f"),
+        "experiment": with_error(row.experiment_um, row.experiment_std_um),
+        "dev. exp. [%]": number(row.experiment_deviation_percent, "+.0f"),
+        "published bias [%]": number(row.published_bias_error_percent, "g"),
+        "Γ [mJ/m²]": number(TO_MJ * row.adhesion_energy_J_per_m2, ".3g"),
+        "ē [mJ/m²]": number(TO_MJ * row.meso_energy_J_per_m2, ".3g"),
+        "cv(ē)": number(row.meso_energy_cv, ".3f"),
+        "S/arc/free [%]": "/".join(f"{100 * row[_share(state)]:.3g}" for state in STATES),
+    }
+
+
+# Fit by Eq. (12), Fig. 5
+
+
+def fit_quality(fits: Mapping[Case, xr.Dataset]) -> Table:
+    """Relative errors of curve and energy by Eq. (12) over all samples, one row per case and model.
+
+    Parameters
+    ----------
+    fits : dict
+        (pair, humidity, model) to the dataset of stage fit.
+    """
+    frame = pd.DataFrame([_row_fit(key, fit) for key, fit in fits.items()])
+    caption = (
+        "Fit by Eq. (12): relative error of the curve for d ≥ d_limit, mean ± standard error, and of the energy ē."
+    )
+    return Table(frame, caption, pd.DataFrame([_cells_fit(row) for row in frame.itertuples()]))
+
+
+def _row_fit(key, fit):
+    """Case, share of samples without a law, and errors of those with one."""
+    row = dict(zip(("pair", "relative_humidity", "model"), key, strict=True))
+    curve, energy = 100 * fit.curve_error.values, 100 * fit.energy_error.values
+    mean, error = mean_with_error(curve)
+    return row | {
+        "samples": len(curve),
+        "share_without_law": float(fit.without_law),
+        "curve_error_percent": mean,
+        "curve_error_se_percent": error,
+        "curve_error_median_percent": np.median(curve),
+        "curve_error_95_percent": np.quantile(curve, 0.95),
+        "energy_error_max_percent": energy.max(),
+    }
+
+
+def _cells_fit(row):
+    """One case as text."""
+    return {
+        "pair": row.pair,
+        "RH": f"{row.relative_humidity:g}",
+        "model": row.model,
+        "curve [%]": with_error(row.curve_error_percent, row.curve_error_se_percent),
+        "median [%]": f"{row.curve_error_median_percent:.2f}",
+        "95 % of samples below [%]": f"{row.curve_error_95_percent:.1f}",
+        "ē at most [%]": f"{row.energy_error_max_percent:.0e}",
+        "without law [%]": f"{100 * row.share_without_law:.2g}",
+    }
+
+
+# Chaos model, App. B
+
+
+def resampling(
+    beams: Mapping[tuple[str, float], xr.Dataset], resampled: Mapping[tuple[str, float], xr.Dataset]
+) -> Table:
+    """Crack lengths of model NG under laws drawn from the chaos model and from the samples themselves.
+
+    Both use the same pairs of surfaces, so that the standard error of their difference is that of the beams alone.
+
+    Parameters
+    ----------
+    beams, resampled : dict
+        (pair, humidity) to the datasets of stage beams and of study resampling.
+    """
+    frame = pd.DataFrame([_row_resampling(key, beams[key], resampled[key]) for key in beams])
+    caption = (
+        "Effect of the chaos model on the crack length, model NG: mean under laws drawn from it, and under laws of the "
+        "sampled pairs themselves, drawn with replacement; ± standard error over beams."
+    )
+    return Table(frame, caption, pd.DataFrame([_cells_resampling(row) for row in frame.itertuples()]))
+
+
+def _row_resampling(key, beams, resampled):
+    """One case: both crack lengths and their difference."""
+    (chaos, chaos_error), (samples, samples_error) = map(_crack_length, (beams, resampled))
+    return {
+        "pair": key[0],
+        "relative_humidity": key[1],
+        "chaos_um": chaos,
+        "chaos_se_um": chaos_error,
+        "samples_um": samples,
+        "samples_se_um": samples_error,
+        "difference_percent": percent(chaos, samples),
+        "difference_se_percent": 100 * np.hypot(chaos_error, samples_error) / samples,
+    }
+
+
+def _crack_length(beams):
+    """Mean crack length of the S-shaped beams and its standard error over beams; NaN for fewer than two [µm]."""
+    stuck = beams.crack_length.values[ended(beams, "S-shape")] / UM
+    return mean_with_error(stuck) if len(stuck) >= 2 else (np.nan, np.nan)
+
+
+def _cells_resampling(row):
+    """One case as text."""
+    return {
+        "pair": row.pair,
+        "RH": f"{row.relative_humidity:g}",
+        "l_s, chaos model [µm]": with_error(row.chaos_um, row.chaos_se_um),
+        "l_s, samples [µm]": with_error(row.samples_um, row.samples_se_um),
+        "difference [%]": with_error(row.difference_percent, row.difference_se_percent, "+"),
+    }

@@ -1,0 +1,185 @@
+"""Tables I and II compared with the published ones: statistics and spectra of the surfaces."""
+
+from collections.abc import Mapping
+from itertools import chain
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from stiction.estimates import jackknife
+from stiction.report.format import NM, PER_UM2, UM, number, percent, with_error
+from stiction.report.published import rows, value
+from stiction.report.tables import Table
+from stiction.stages.parameters import spectrum_of
+from stiction.surface.spectrum import CutoffSelfAffine
+
+#: Statistics of Table I and their titles for reading.
+_STATISTICS = {
+    "rms_nm": "rms [nm]",
+    "skewness": "skewness",
+    "kurtosis": "kurtosis",
+    "mean_summit_radius_um": "summit radius [µm]",
+    "summit_density_per_um2": "summits [µm⁻²]",
+}
+#: Parameters of Eq. (7) in the order of its class, with the unit of each column in SI.
+_PARAMETERS = {
+    "plateau_nm4": NM**4,
+    "floor_nm4": NM**4,
+    "corner_rad_per_um": 1 / UM,
+    "cutoff_rad_per_um": 1 / UM,
+}
+
+
+# Table I
+
+
+def surface_statistics(character: xr.Dataset) -> tuple[dict[str, float], dict[str, float]]:
+    """Statistics of Table I of simulated strips and their standard errors, in the units of the table."""
+
+    def estimate(mean):
+        m1, m2, m3, m4, density, curvature = mean
+        variance = m2 - m1**2
+        third = m3 - 3 * m1 * m2 + 2 * m1**3
+        fourth = m4 - 4 * m1 * m3 + 6 * m1**2 * m2 - 3 * m1**4
+        rms = np.sqrt(variance)
+        return np.array([rms / NM, third / rms**3, fourth / rms**4, 1 / curvature / UM, density / PER_UM2])
+
+    columns = [
+        character.power.values,
+        character.summit_density.values[:, None],
+        character.mean_curvature.values[:, None],
+    ]
+    values, errors = jackknife(estimate, np.hstack(columns))
+    return dict(zip(_STATISTICS, values, strict=True)), dict(zip(_STATISTICS, errors, strict=True))
+
+
+def table_1(
+    characters: Mapping[tuple[str, str], xr.Dataset], measured: Mapping[str, Mapping], published: pd.DataFrame
+) -> Table:
+    """Table I: simulated statistics of the surfaces.
+
+    Parameters
+    ----------
+    characters : dict
+        (surface, model) to the dataset of stage character.
+    measured : dict
+        Surface to its section of the configuration, with the measured statistics (AFM).
+    published : pandas.DataFrame
+        The published table, rows of the paper's own surfaces.
+    """
+    frame = pd.DataFrame([_row_1(*key, characters[key], measured[key[0]], published) for key in characters])
+    titles = {"surface": "surface", "column": "model"} | _STATISTICS
+    cells = [[row.surface, row.column, *(_cell_1(row, name) for name in _STATISTICS)] for _, row in frame.iterrows()]
+    caption = "Table I: simulated value ± standard error (published value)."
+    return Table(frame, caption, pd.DataFrame(cells, columns=list(titles.values())))
+
+
+def _row_1(surface, model, character, measured, published):
+    """One surface with one height model."""
+    values, errors = surface_statistics(character)
+    row = {"surface": surface, "column": model}
+    for name in _STATISTICS:
+        known = value(published, name, surface=surface, column=model)
+        row |= {
+            name: values[name],
+            f"{name}_se": errors[name],
+            f"{name}_published": known,
+            f"{name}_afm": measured.get(name, np.nan),
+            f"{name}_deviation_percent": percent(values[name], known),
+        }
+    return row
+
+
+def _cell_1(row, name):
+    """Value ± standard error (published value) as text."""
+    known = row[f"{name}_published"]
+    return with_error(row[name], row[f"{name}_se"]) + (f" ({known:g})" if np.isfinite(known) else "")
+
+
+# Table II
+
+
+def table_2(
+    identifications: Mapping[str, xr.Dataset],
+    spectra: Mapping[str, xr.Dataset],
+    published: pd.DataFrame,
+    sources: Mapping[str, str],
+) -> Table:
+    """Table II: published and identified parameters of Eq. (7), and deviations of their surfaces from the target.
+
+    The rms of published parameters is that of the spectrum alone; radius and density are those of surfaces that were
+    not used to identify it.
+
+    Parameters
+    ----------
+    identifications, spectra : dict
+        Surface to the datasets of stages identification and spectrum.
+    published : pandas.DataFrame
+        The published table, with corrected plateaus, rows of the paper's own surfaces.
+    sources : dict
+        Surface to the source of the spectrum in use, whose defect is in ``spectra``: ``published`` or
+        ``identified``.
+    """
+    defects = {surface: {source: 100 * float(spectra[surface].defect)} for surface, source in sources.items()}
+    rows_of = (_rows_2(surface, found, published, defects[surface]) for surface, found in identifications.items())
+    frame = pd.DataFrame(chain.from_iterable(rows_of))
+    caption = (
+        "Table II: parameters of Eq. (7), as published (with corrected plateaus) and as identified from the summits; "
+        "deviations from the measured (AFM) rms, summit radius and density, on surfaces not used to identify; defect: "
+        "share of the variance that no Gaussian field provides, of the spectrum in use."
+    )
+    return Table(frame, caption, pd.DataFrame([_cells_2(row) for _, row in frame.iterrows()]))
+
+
+def _rows_2(surface, found, published, defects):
+    """Published parameters of a surface, if any, and the identified ones; the defect of those in use."""
+    match = rows(published, surface=surface)
+    if len(match):
+        known = match[list(_PARAMETERS)].iloc[0].to_dict()
+        as_printed = {"plateau_nm4_as_printed": float(match.plateau_nm4_as_printed.iloc[0])}
+        yield (
+            {"surface": surface, "psd": "published"}
+            | _shape(known, found, defects.get("published", np.nan))
+            | as_printed
+        )
+    spectrum = spectrum_of(found)
+    identified = {name: getattr(spectrum, name.split("_")[0]) / unit for name, unit in _PARAMETERS.items()}
+    row = {"surface": surface, "psd": "identified"} | _shape(identified, found, defects.get("identified", np.nan))
+    yield row | _residuals(found)
+
+
+def _shape(parameters, found, defect):
+    """Parameters of Eq. (7) in the units of the table, the deviation of their rms from the measured one, the defect."""
+    shape = CutoffSelfAffine(**{name.split("_")[0]: parameters[name] * unit for name, unit in _PARAMETERS.items()})
+    residual = percent(np.sqrt(shape.variance), float(found.target_rms))
+    return parameters | {"rms_residual_percent": residual, "gaussian_defect_percent": defect}
+
+
+def _residuals(found):
+    """Deviations of radius and density from the measured ones after identification, with standard errors [%]."""
+    row = {}
+    for column, name in (("radius", "mean_radius"), ("density", "summit_density")):
+        target = float(found[f"target_{name}"])
+        row[f"{column}_residual_percent"] = percent(float(found[name]), target)
+        row[f"{column}_residual_se_percent"] = 100 * float(found[f"{name}_error"]) / target
+    return row
+
+
+def _cells_2(row):
+    """One spectrum as text."""
+    residuals = {
+        f"{name} off by [%]": with_error(row[f"{name}_residual_percent"], row[f"{name}_residual_se_percent"], "+")
+        for name in ("radius", "density")
+    }
+    return {
+        "surface": row.surface,
+        "psd": row.psd,
+        "s⁰ [nm⁴]": f"{row.plateau_nm4:.4g}",
+        "s¹ [nm⁴]": f"{row.floor_nm4:.3g}",
+        "ζ₀ [rad/µm]": f"{row.corner_rad_per_um:.3g}",
+        "ζ_max [rad/µm]": f"{row.cutoff_rad_per_um:.3g}",
+        "rms off by [%]": number(row.rms_residual_percent, "+.2f"),
+        **residuals,
+        "defect [%]": number(row.gaussian_defect_percent, ".2g"),
+    }

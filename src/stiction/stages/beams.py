@@ -1,0 +1,55 @@
+"""Stage beams (Secs. III-C and IV): press beams down, release them and find where their cracks arrest."""
+
+import numpy as np
+import xarray as xr
+
+from stiction.config.cases import pair_of
+from stiction.stages import releases
+from stiction.stages.cantilevers import cantilever
+from stiction.stages.chaos import chaos_model
+
+#: Number of beam shapes stored for Fig. 14.
+_KEPT = 100
+
+#: Everything that the beams of a case depend on apart from the force laws.
+Settings = releases.Settings
+
+
+def compute(chaos: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
+    """Release all beams of a case; models NG and GEO have the same force laws.
+
+    Parameters
+    ----------
+    chaos : Dataset
+        Dataset of stage chaos.
+    case : str
+        Name of the case, part of the addresses of random numbers.
+    settings : Settings
+    """
+    return layout(
+        releases.released(chaos_model(chaos), case, settings, shapes=_KEPT), cantilever(settings, pair_of(case)).nodes
+    )
+
+
+def layout(columns: dict[str, np.ndarray], nodes: np.ndarray) -> xr.Dataset:
+    """Dataset of the end state of every beam of a case and of the shapes of the first beams.
+
+    Parameters
+    ----------
+    columns : dict
+        Arrays of `stiction.beam.montecarlo.columns`.
+    nodes : (n,) array
+        Nominal positions of the nodes [m].
+    """
+    flags = {"flag_values": np.arange(3, dtype=np.int8), "flag_meanings": " ".join(releases.STATES)}
+    return xr.Dataset(
+        {
+            "state": ("sample", np.asarray(columns["state"], np.int8), flags),
+            "crack_length": ("sample", columns["crack_length"], {"units": "m"}),
+            "adhesion_energy": ("sample", columns["energy"], {"units": "J m-2", "long_name": "Eq. (13), S-shape only"}),
+            "imbalance": ("sample", columns["imbalance"], {"units": "N"}),
+            "iterations": ("sample", columns["iterations"]),
+            "deflection": (("beam", "node"), np.asarray(columns["deflection"], np.float32), {"units": "m"}),
+        },
+        coords={"sample": columns["sample"], "node": ("node", nodes, {"units": "m"})},
+    )

@@ -1,0 +1,56 @@
+"""Release of the beams of a case, shared by stage beams and the studies that release beams.
+
+Separate from `stiction.stages.beams`, so that a change of the dataset of that stage does not rerun the studies.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from stiction.beam.montecarlo import Experiment, columns, simulate
+from stiction.chaos.model import ChaosModel, draw_laws
+from stiction.config.cases import pair_of
+from stiction.progress import progress
+from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever, strips_along
+from stiction.streams import stream
+
+#: End states of a beam, in the order of `stiction.beam.release.EndState`.
+STATES = ("S-shape", "arc", "free")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the beams of a case depend on apart from the force laws."""
+
+    seed: int
+    solid: Stiffness
+    beam: Dimensions
+    pairs: dict[str, Gap]
+    sampling: StripLength
+    samples: int  #: number of beams
+    scatter: float  #: relative standard deviation of each dimension [-]
+
+
+def released(model: ChaosModel, case: str, settings: Settings, threads: int = 1, shapes: int = 0) -> dict:
+    """Release beams of a case on force laws drawn from a chaos model; arrays of `stiction.beam.montecarlo.columns`."""
+    address = partial(stream, settings.seed, "beams", case)
+    return released_on(partial(draw_laws, model), case, settings, address, threads, shapes)
+
+
+def released_on(
+    draw: Callable, case: str, settings: Settings, address: Callable, threads: int = 1, shapes: int = 0
+) -> dict:
+    """Release beams of a case on force laws drawn by ``draw(n, rng)``; ``address(k)`` returns the stream of beam k."""
+    number = settings.samples
+    strips = strips_along(settings.beam, settings.sampling)
+    experiment = Experiment(cantilever(settings, pair_of(case)), strips, draw, settings.scatter)
+    outcomes = simulate(experiment, range(number), address, threads)
+    return columns(list(progress(outcomes, "beams", total=number)), shapes)
+
+
+def ended(beams: xr.Dataset, state: str) -> np.ndarray:
+    """Whether each beam of a dataset ended in the given state, ``S-shape``, ``arc`` or ``free``; (n,) bool."""
+    return beams.state.values == STATES.index(state)

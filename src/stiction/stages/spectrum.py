@@ -1,0 +1,76 @@
+"""Stage spectrum (Sec. II-B): Eq. (7) and the spectrum of the Gaussian field underlying a non-Gaussian surface."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.stages import parameters
+from stiction.stages.heights import density
+from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
+from stiction.surface.translation import Translation, spectrum_of_heights, underlying_spectrum
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that a spectrum depends on apart from the height density."""
+
+    spacing: float  #: of the grid on which the surface will be drawn [m]
+    psd: CutoffSelfAffine | str  #: spectrum of the heights, used up to a factor, or ``identified``
+
+
+def compute(heights: xr.Dataset, identification: xr.Dataset | None, settings: Settings) -> xr.Dataset:
+    """Take the published or the identified parameters of Eq. (7) and invert the translation.
+
+    Parameters
+    ----------
+    heights, identification : Dataset
+        Datasets of the stages of these names; ``identification`` is ignored if the settings contain the spectrum.
+    settings : Settings
+
+    Returns
+    -------
+    Dataset
+        Parameters of Eq. (7); target spectrum of the heights, spectrum of the Gaussian field and achieved spectrum of
+        the heights, all of unit variance; share of the variance that no Gaussian field can provide.
+    """
+    target = parameters.spectrum_of(identification) if settings.psd == "identified" else settings.psd
+    translation = Translation(density(heights, "NG"))
+    underlying, defect = underlying_spectrum(target, translation, settings.spacing)
+    return layout(target, underlying, spectrum_of_heights(underlying, translation, settings.spacing), defect)
+
+
+def layout(
+    target: CutoffSelfAffine, underlying: TabulatedSpectrum, achieved: TabulatedSpectrum, defect: float
+) -> xr.Dataset:
+    """Dataset of Eq. (7), the spectrum of the underlying Gaussian field and the achieved spectrum of the heights.
+
+    The three spectra have unit variance and are given at the wave numbers of ``underlying``.
+    """
+    zeta = underlying.wavenumber
+    unit = {"units": "m2"}
+    return parameters.variables(target).assign(
+        target=("wavenumber", target(zeta) / target.variance, unit),
+        underlying=("wavenumber", underlying.density, unit),
+        achieved=("wavenumber", achieved(zeta), unit),
+        defect=((), defect, {"units": "1", "long_name": "share of the variance that no Gaussian field provides"}),
+        wavenumber=("wavenumber", zeta, {"units": "rad m-1"}),
+    )
+
+
+def underlying(spectrum: xr.Dataset, model: str) -> CutoffSelfAffine | TabulatedSpectrum:
+    """Spectrum of the Gaussian field underlying a surface; for model ``G`` it is the spectrum of the heights."""
+    target = parameters.spectrum_of(spectrum)
+    if model == "G":
+        return target
+    return TabulatedSpectrum(spectrum.wavenumber.values, spectrum.underlying.values, target.cutoff)
+
+
+def achieved(spectrum: xr.Dataset, wavenumber: np.ndarray) -> np.ndarray:
+    """Spectrum of the drawn heights, of unit variance, at wave numbers (n,) [rad m⁻¹]; (n,) [m²]."""
+    return np.interp(wavenumber, spectrum.wavenumber, spectrum.achieved)
+
+
+def defect(spectrum: xr.Dataset) -> float:
+    """Share of the variance that no Gaussian field provides [-]."""
+    return float(spectrum.defect)

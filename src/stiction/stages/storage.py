@@ -1,0 +1,64 @@
+"""Result files: written atomically and labelled with stage, name and settings."""
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from stiction.run.atomic import DataError, replacing
+
+
+def save(dataset: xr.Dataset, path: str | Path, stage: str, settings: dict[str, Any]) -> None:
+    """Write a dataset atomically, labelled with its stage, its name and the settings from which it was computed.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+    path : str or Path
+    stage : str
+        Name of the stage; :func:`load` checks it, and that the file has the name under which it was written.
+    settings : dict
+        Plain numbers, strings, lists and dicts; neither time nor machine, so that equal settings give equal files.
+
+    Raises
+    ------
+    DataError
+        If the disk is full or the folder cannot be written.
+    """
+    path = Path(path)
+    origin = {"stage": stage, "name": path.stem, "settings": json.dumps(settings, sort_keys=True)}
+    labelled = dataset.assign_attrs(Conventions="CF-1.10", **origin)
+    encoding = {name: {"zlib": True, "complevel": 1} for name, values in labelled.items() if values.size > 10_000}
+    with replacing(path) as draft:
+        draft.write_bytes(bytes(labelled.nbytes + 2**16))  # detects a full disk; HDF5 would not name the cause
+        labelled.to_netcdf(draft, engine="netcdf4", encoding=encoding)
+
+
+def load(path: str | Path, stage: str) -> xr.Dataset:
+    """Read the dataset of a stage completely into memory.
+
+    Raises
+    ------
+    DataError
+        If the file is truncated, was not written by `save`, or belongs to another stage or case.
+    """
+    wanted = stage, Path(path).stem
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
+            found = dataset.attrs.get("stage"), dataset.attrs.get("name")
+            loaded = dataset.load()
+    except (OSError, ValueError, RuntimeError) as error:
+        raise DataError(
+            f"{path} cannot be read ({error}); delete it and start again, it will be computed anew"
+        ) from error
+    if found != wanted:
+        held = "{} of {}".format(*found) if all(found) else "no result of this study"
+        raise DataError(f"{path} holds {held}, not {stage} of {wanted[1]}; delete it and start again")
+    return loaded
+
+
+def load_all(paths: Iterable[str | Path], stage: str) -> list[xr.Dataset]:
+    """Datasets of a stage in the order of their files; raises the errors of `load`."""
+    return [load(path, stage) for path in paths]

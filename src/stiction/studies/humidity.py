@@ -1,0 +1,56 @@
+"""Stage humidity (Fig. 15): distribution of the adhesion energy of a strip along a fine axis of humidities."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.estimates import mean_with_error
+from stiction.progress import progress
+from stiction.stages.curves import Water, energies
+
+#: Median and bounds of the band.
+_PROBABILITIES = np.array([0.05, 0.5, 0.95])
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the energies depend on apart from the contact."""
+
+    water: Water
+    points: int  #: number of humidities
+    range: tuple[float, float]  #: lowest and highest humidity [-]
+
+
+def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Compute the energy of every sample at every humidity; store mean and quantiles."""
+    humidities = np.linspace(*settings.range, settings.points)
+    found = np.array([energies(contact, float(h), settings.water) for h in progress(humidities, "humidities")])
+    return layout(humidities, _PROBABILITIES, found)
+
+
+def layout(humidity: np.ndarray, probabilities: np.ndarray, energies: np.ndarray) -> xr.Dataset:
+    """Dataset of the distribution of the adhesion energy e over the samples, along the relative humidity.
+
+    Parameters
+    ----------
+    humidity : (n,) array
+        Relative humidity RH [-].
+    probabilities : (k,) array
+        Probabilities of the stored quantiles [-].
+    energies : (n, m) array
+        Adhesion energies e of all samples [J m⁻²].
+    """
+    unit = {"units": "J m-2"}
+    mean, error = mean_with_error(energies.T)
+    return xr.Dataset(
+        {
+            "energy_mean": ("humidity", mean, unit),
+            "energy_mean_error": ("humidity", error, unit | {"long_name": "standard error of the mean"}),
+            "energy_quantile": (("probability", "humidity"), np.quantile(energies, probabilities, axis=1), unit),
+        },
+        coords={
+            "humidity": ("humidity", humidity, {"units": "1"}),
+            "probability": ("probability", probabilities, {"units": "1"}),
+        },
+    )

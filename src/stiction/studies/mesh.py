@@ -1,0 +1,94 @@
+"""Study mesh (App. C, Fig. 19): crack length on one force law for meshes of increasing fineness."""
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis.mesh import Arrest, arrest_on_uniform_ground, whole_meshes
+from stiction.contact import forcelaw
+from stiction.progress import progress
+from stiction.stages import forces as stage_forces
+from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, cantilever
+
+
+@dataclass(frozen=True)
+class Meshes:
+    """Meshes of the study; combinations that do not fill each other and the beam are left out."""
+
+    elements: tuple[float, ...]  #: lengths of the elements [m]
+    strips: tuple[float, ...]  #: distances of the contact points [m]
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the study depends on apart from the forces."""
+
+    mesh: Meshes
+    case: str
+    pair: str
+    solid: Stiffness
+    beam: Dimensions
+    pairs: dict[str, Gap]
+
+
+def compute(forces: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Release beams on uniform ground with increasingly fine meshes.
+
+    Raises
+    ------
+    ValueError
+        If no mesh resolves the crack.
+    """
+    distance, curves = stage_forces.curves(forces)
+    energies = stage_forces.energies(forces)[: len(curves)]
+    # ASSUME: the single realisation of the paper is a typical one: of the stored curves, that with the median energy.
+    sample = int(np.argsort(energies)[len(energies) // 2])
+    samples, limit = stage_forces.vectors(forces)
+    law = forcelaw.coefficients(samples[[sample]], limit)[0]
+    beam = cantilever(settings, settings.pair)
+    arrests = {}
+    for element, point in progress(whole_meshes(beam.length, settings.mesh.elements, settings.mesh.strips), "meshes"):
+        ground = replace(beam, elements=round(beam.length / element)), law, round(beam.length / point)
+        try:
+            arrests[element, point] = arrest_on_uniform_ground(*ground)
+        except ValueError as reason:  # the crack is too short for the elements
+            warnings.warn(f"left out: {reason}", stacklevel=2)
+    if not arrests:
+        raise ValueError("no mesh of studies.mesh resolves the crack: take shorter elements")
+    return layout([*arrests], [*arrests.values()], law, (distance, curves[sample]))
+
+
+def layout(
+    meshes: Sequence, arrests: Sequence[Arrest], law: np.ndarray, curve: tuple[np.ndarray, np.ndarray]
+) -> xr.Dataset:
+    """Crack length and energy on uniform ground for meshes of increasing fineness.
+
+    Parameters
+    ----------
+    meshes : sequence of pairs
+        Length of the elements and distance of the contact points [m].
+    arrests : sequence of Arrest
+    law : (4,) array
+        Force law of the ground, Eq. (12) [SI].
+    curve : tuple
+        Distance (n_d,) [m] and force (n_d,) [Pa] of the sample that the force law approximates.
+    """
+    elements, points = np.transpose(meshes)
+    distance, force = curve
+    return xr.Dataset(
+        {
+            "element_length": ("mesh", elements, {"units": "m"}),
+            "point_distance": ("mesh", points, {"units": "m", "long_name": "l_meso"}),
+            "crack_length": ("mesh", [a.crack_length for a in arrests], {"units": "m"}),
+            "energy": ("mesh", [a.energy for a in arrests], {"units": "J m-2", "long_name": "Eq. (13)"}),
+            "law": ("coefficient", law, {"units": "SI"}),
+            "force": ("distance", force, {"units": "Pa"}),
+        },
+        coords={
+            "coefficient": ["f_max", "d_max", "a_left", "a_right"],
+            "distance": ("distance", distance, {"units": "m"}),
+        },
+    )

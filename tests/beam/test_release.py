@@ -1,0 +1,181 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from beams import E_BAR, PAPER, scattered_laws, uniform_laws
+from numpy.testing import assert_allclose
+
+from stiction.beam.energy import apparent_adhesion_energy, arrest_length
+from stiction.beam.release import EndState, crack_length, end_state, holding_load, release, released_beam, s_shape
+from stiction.contact import forcelaw
+
+
+def released_crack(beam, laws, start=None):
+    start = start or arrest_length(forcelaw.energy(laws).mean(), beam) / 3
+    return crack_length(beam, laws, release(beam, laws, start).deflection)
+
+
+def test_the_artificial_load_bends_the_beam_to_the_s_shape():
+    crack, beam = 300e-6, PAPER
+    nodes = beam.nodes <= crack
+    u, slope = s_shape(beam, beam.gap, crack)[nodes].T
+    quartic = np.polynomial.Polynomial.fit(beam.nodes[nodes], u, 4)
+    assert_allclose(
+        beam.bending_stiffness * quartic.deriv(4)(0.5 * crack), holding_load(beam, crack), rtol=1e-6
+    )  # EI u⁗ = q
+    assert_allclose(quartic.deriv()(beam.nodes[nodes]), slope, atol=1e-9)
+    assert_allclose([quartic(0), quartic(crack)], [0, beam.gap], atol=1e-6 * beam.gap)
+    assert_allclose(quartic.deriv()([0, crack]), 0, atol=1e-9)
+    assert_allclose(quartic.deriv(2)(crack), 0, atol=1e-6 * quartic.deriv(2)(0))
+
+
+def test_crack_length_is_where_a_straight_beam_crosses_d_max():
+    laws = uniform_laws(1000)
+    place = 432.1e-6
+    slope = 1e-5
+    deflection = np.stack([PAPER.gap - 8e-9 + slope * (PAPER.nodes - place), np.full(201, slope)], axis=-1)
+    assert_allclose(crack_length(PAPER, laws, deflection), place, rtol=1e-9)
+
+
+def test_a_uniform_law_arrests_the_crack_at_eq_13():
+    energy = apparent_adhesion_energy(released_crack(PAPER, uniform_laws(1000)), PAPER)
+    assert_allclose(energy, E_BAR, rtol=0.025)  # App. C: mesh of the paper
+
+
+def test_the_arrest_follows_the_fourth_root_of_the_energy():
+    # Eq. (13): 16 times the energy, half the length; both deviate by the 2 % of App. C, with the same sign
+    cracks = [released_crack(PAPER, uniform_laws(1000, e, 2e6 * e / E_BAR)) for e in (E_BAR / 2, 8 * E_BAR)]
+    assert_allclose(cracks[0] / cracks[1], 2, rtol=0.02)
+
+
+def test_distance_from_eq_13_shrinks_with_the_root_of_the_range_of_the_law():
+    # At constant energy the stiffness k of the ground scales with range⁻², its length (4 EI/k)^(1/4) with √range.
+    beam = replace(PAPER, elements=3200)
+    exact = arrest_length(E_BAR, beam)
+    offsets = [released_crack(beam, uniform_laws(6400, reach=reach)) - exact for reach in (1.0, 0.25)]
+    assert offsets[0] < 0
+    assert_allclose(offsets[0] / offsets[1], 2, rtol=0.05)
+
+
+def test_crack_length_converges_with_the_elements():
+    cracks = [released_crack(replace(PAPER, elements=n), uniform_laws(5 * n)) for n in (200, 400, 800, 1600)]
+    errors = np.abs(np.array(cracks[:3]) - cracks[3])
+    assert np.all(errors[1:] < errors[:2] / 8)  # at least third order
+    assert errors[0] < 2e-6
+
+
+def test_crack_length_converges_with_the_square_of_the_quadrature_spacing():
+    cracks = [released_crack(PAPER, uniform_laws(200 * n)) for n in (5, 10, 50)]
+    assert_allclose((cracks[0] - cracks[2]) / (cracks[1] - cracks[2]), 4, rtol=0.15)  # midpoint rule
+
+
+@pytest.mark.parametrize("variation", [0.0, 0.8])
+def test_the_arrest_does_not_depend_on_the_start(variation):
+    laws = scattered_laws(np.random.default_rng(5), 1000, variation) if variation else uniform_laws(1000)
+    cracks = [released_crack(PAPER, laws, start) for start in (150e-6, 200e-6, 240e-6, 300e-6)]
+    assert_allclose(cracks, cracks[0], rtol=1e-7)  # tolerance on forces: 1e-6 of a pull-off force
+
+
+def test_a_start_beyond_the_arrest_is_never_the_result():
+    laws = scattered_laws(np.random.default_rng(5), 1000, 0.8)
+    assert_allclose(released_crack(PAPER, laws, 900e-6), released_crack(PAPER, laws), rtol=1e-7)
+
+
+@pytest.mark.parametrize(("toughness", "stops"), [(6.0, True), (1.5, False)])
+def test_the_crack_stops_at_the_first_place_with_enough_adhesion(toughness, stops):
+    # From 500 to 600 µm the S-shape releases (710/500)⁴ = 4.1 to 2.0 times the energy that holds it at 710 µm.
+    laws = uniform_laws(1000)
+    tough = slice(333, 400)
+    laws[tough] = uniform_laws(1, toughness * E_BAR, toughness * 2e6)
+    crack = released_crack(PAPER, laws, 200e-6)
+    assert_allclose(crack, 500e-6 if stops else arrest_length(E_BAR, PAPER), rtol=0.015)
+
+
+def test_scattered_laws_arrest_the_crack_earlier_than_their_mean():
+    rng = np.random.default_rng(7)
+    mean = released_crack(PAPER, uniform_laws(1000, 7e-3))
+    for variation in (0.1, 0.8):
+        cracks = [released_crack(PAPER, scattered_laws(rng, 1000, variation)) for _ in range(20)]
+        standard_error = np.std(cracks, ddof=1) / np.sqrt(20)
+        assert mean - np.mean(cracks) > 4 * standard_error
+
+
+def scaled(laws, force=1.0, distance=1.0):
+    return laws * [force, distance, 1 / distance, 1 / distance]
+
+
+def test_the_shape_does_not_depend_on_the_width():
+    laws = scattered_laws(np.random.default_rng(8), 1000, 0.5)
+    narrow, wide = (release(replace(PAPER, width=w), laws, 240e-6).deflection for w in (30e-6, 90e-6))
+    assert_allclose(wide, narrow, atol=1e-15)  # tolerance of the equilibrium: 1e-6 of nanometres
+
+
+def test_deflection_does_not_change_if_stiffness_and_adhesion_grow_alike():
+    laws = scattered_laws(np.random.default_rng(9), 1000, 0.5)
+    soft = release(PAPER, laws, 240e-6).deflection
+    hard = release(replace(PAPER, young_modulus=5 * 164e9), scaled(laws, force=5), 240e-6).deflection
+    assert_allclose(hard, soft, atol=1e-15)
+
+
+def test_deflection_scales_with_the_dimensions():
+    laws, k = scattered_laws(np.random.default_rng(10), 1000, 0.5), 3.0
+    small = release(PAPER, laws, 240e-6).deflection
+    lengths = {name: k * getattr(PAPER, name) for name in ("length", "width", "thickness", "gap")}
+    large = release(replace(PAPER, **lengths), scaled(laws, distance=k), k * 240e-6).deflection
+    assert_allclose(large, small * [k, 1], atol=1e-14)
+
+
+@pytest.mark.parametrize(("share", "state"), [(0.4, EndState.S_SHAPE), (0.6, EndState.ARC)])
+def test_end_states_are_separated_by_half_the_slope_of_an_arc(share, state):
+    laws, crack = uniform_laws(1000), 432.1e-6
+    slope = share * 1.5 * PAPER.gap / crack
+    deflection = np.stack([PAPER.gap - 8e-9 + slope * (PAPER.nodes - crack), np.full(201, slope)], axis=-1)
+    assert end_state(PAPER, laws, deflection) is state
+
+
+def test_strong_adhesion_ends_s_shaped():
+    laws = uniform_laws(1000)
+    assert end_state(PAPER, laws, release(PAPER, laws, 240e-6).deflection) is EndState.S_SHAPE
+
+
+def test_a_short_crack_is_still_an_s_shape():
+    laws = uniform_laws(1000, 200 * E_BAR, 200 * 2e6)
+    deflection = release(PAPER, laws, 60e-6).deflection
+    assert crack_length(PAPER, laws, deflection) < 200e-6
+    assert end_state(PAPER, laws, deflection) is EndState.S_SHAPE
+
+
+def test_adhesion_below_eq_13_of_the_whole_beam_leaves_an_arc():
+    energy = apparent_adhesion_energy(PAPER.length, PAPER) / 3
+    laws = uniform_laws(1000, energy, 2e6 * energy / E_BAR)
+    deflection = release(PAPER, laws, 500e-6).deflection
+    assert end_state(PAPER, laws, deflection) is EndState.ARC
+    s = PAPER.nodes / PAPER.length
+    arc = PAPER.gap * s**2 * (3 - s) / 2  # cantilever with a force at its tip
+    assert_allclose(deflection[:, 0], arc, atol=2e-3 * PAPER.gap)  # the last point is 0.05 % before the tip
+    assert_allclose(deflection[-1, 1], 1.5 * PAPER.gap / PAPER.length, rtol=2e-3)
+
+
+def test_weak_adhesion_leaves_the_beam_free_and_straight():
+    laws = uniform_laws(1000, 1e-8, 3.0)
+    end = release(PAPER, laws, 500e-6)
+    assert end_state(PAPER, laws, end.deflection) is EndState.FREE
+    assert crack_length(PAPER, laws, end.deflection) == PAPER.length
+    assert_allclose(end.deflection[:, 0], 0, atol=1e-6 * PAPER.gap)
+
+
+def test_a_crack_shorter_than_the_elements_is_an_error():
+    laws = uniform_laws(50, 1e6 * E_BAR, 1e6 * 2e6)
+    with pytest.raises(ValueError, match="do not resolve a crack"):
+        release(replace(PAPER, elements=10), laws, 400e-6)
+
+
+@pytest.mark.parametrize("energy", [E_BAR, 1e-8])  # a crack on the beam, and one that would be longer than it
+def test_a_beam_is_released_from_a_third_of_its_expected_crack_length_or_of_its_own_length(energy):
+    laws = uniform_laws(1000, energy, 2e6 * energy / E_BAR)
+    end = released_beam(PAPER, laws, energy)
+    started = release(PAPER, laws, min(arrest_length(energy, PAPER), PAPER.length) / 3)
+    assert_allclose(end.equilibrium.deflection, started.deflection, rtol=0, atol=0)
+    assert end.equilibrium.iterations == started.iterations
+    assert end.crack_length == crack_length(PAPER, laws, started.deflection)
+    assert end.state is end_state(PAPER, laws, started.deflection)

@@ -1,0 +1,112 @@
+"""Settings of jobs: what they contain, what they must not contain, and that the stages accept them."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from stiction import studies
+from stiction.config import jobs
+from stiction.config.files import load
+from stiction.config.merging import merged
+from stiction.config.plan import Plan
+from stiction.config.units import typed
+from stiction.stages import beams, chaos, character, contact, forces, heights, identification, spectrum
+from stiction.stages.cantilevers import Cantilevers
+from stiction.studies import (
+    correlation,
+    fit,
+    humidity,
+    iteration,
+    mesh,
+    orders,
+    plasticity,
+    resampling,
+    sample_sizes,
+    sensitivity,
+    sensitivity_contact,
+    variant,
+    variant_contact,
+)
+
+PLAN = Plan(load())
+#: Stage and the settings of one of its jobs.
+JOBS = {
+    heights: jobs.heights(PLAN, "B2"),
+    identification: jobs.identification(PLAN, "B2"),
+    spectrum: jobs.spectrum(PLAN, "B2"),
+    iteration: jobs.iteration(PLAN),
+    character: jobs.character(PLAN),
+    contact: jobs.contact(PLAN, "b"),
+    forces: jobs.forces(PLAN, "b_rh067"),
+    fit: jobs.forces(PLAN, "b_rh067"),
+    chaos: jobs.chaos(PLAN),
+    humidity: jobs.humidity(PLAN, "b"),
+    beams: jobs.beams(PLAN, "b_rh067", "GEO"),
+    sensitivity_contact: jobs.sensitivity_contact(PLAN, "b"),
+    sensitivity: jobs.sensitivity(PLAN, "b"),
+    plasticity: jobs.plasticity(PLAN, "b"),
+    sample_sizes: jobs.sample_sizes(PLAN),
+    orders: jobs.orders(PLAN),
+    mesh: jobs.mesh(PLAN),
+    correlation: {"surfaces": PLAN.surfaces},
+    resampling: jobs.resampling(PLAN, "b_rh067"),
+    variant_contact: PLAN.variant_contact("b", "base")["base"],
+    variant: jobs.variant(PLAN, "b", "base"),
+}
+each_job = pytest.mark.parametrize(
+    ("stage", "settings"), JOBS.items(), ids=[stage.__name__.rpartition(".")[2] for stage in JOBS]
+)
+
+
+@each_job
+def test_a_stage_takes_exactly_the_settings_of_its_jobs(stage, settings):
+    found = typed(stage.Settings, settings)
+    assert set(vars(found)) == {key.removesuffix("_nm") for key in settings}
+
+
+@each_job
+def test_settings_are_plain_so_that_snakemake_compares_them(stage, settings):  # noqa: ARG001
+    assert json.loads(json.dumps(settings)) == settings
+
+
+def test_settings_of_contact_do_not_depend_on_humidity_gap_and_chunks():
+    other = {"pairs": {"b": {"humidities": [0.5], "gap_um": 10}}, "contact": {"chunks": 7}}
+    dry = Plan(load(other | {"water": {"temperature_K": 310}}))
+    assert jobs.contact(dry, "b") == jobs.contact(PLAN, "b")
+    assert dry.variant_contact("b", "base") == PLAN.variant_contact("b", "base")
+    assert jobs.plasticity(dry, "b") == jobs.plasticity(PLAN, "b")
+
+
+def test_only_model_geo_has_scattered_dimensions():
+    assert jobs.beams(PLAN, "b_rh067", "GEO")["scatter"] == 0.025
+    assert jobs.beams(PLAN, "b_rh067", "NG")["scatter"] == jobs.beams(PLAN, "b_rh067", "G")["scatter"] == 0
+
+
+def test_a_variant_of_the_mesh_changes_only_the_number_of_elements():
+    base, finer = (jobs.variant(PLAN, "b", name) for name in ("base", "strips_per_element_2"))
+    assert finer == merged(base, {"beam": {"elements": 500}})
+    assert base["beam"]["samples"] == PLAN.config["studies"]["variants"]["beams"]
+
+
+def test_si_values_are_those_of_the_paper():
+    beam = typed(Cantilevers, jobs.cantilevers(PLAN, "b")).beam
+    assert (beam.length, beam.thickness) == pytest.approx((1500e-6, 2.6e-6), rel=1e-15)
+    wanted = typed(contact.Settings, jobs.contact(PLAN, "b"))
+    assert wanted.sampling.strips(wanted.beam.width).shape == (150, 3000)
+    assert wanted.solid.young_modulus == pytest.approx(164e9)
+
+
+def test_negative_skewness_is_checked_only_for_pairs_without_positive_skewness():
+    assert jobs.skewed(PLAN, PLAN.paper_pairs) == ["a", "b", "c"]
+    other = Plan(load({"surfaces": {"Sub1": {"skewness": 0.3, "kurtosis": 3.2}}}))
+    assert jobs.skewed(other, other.pairs) == ["c"]
+    assert jobs.checks(other)["skewed"] == ["c"]
+
+
+def test_every_stage_and_study_is_tested_here():
+    folders = [module.__name__.rpartition(".")[0] for module in JOBS]
+    assert set(folders) == {"stiction.stages", "stiction.studies"}
+    names = {module.__name__.rpartition(".")[2] for module in JOBS if module.__name__.startswith("stiction.studies")}
+    files = Path(studies.__file__).parent.glob("[!_]*.py")
+    assert names == {path.stem for path in files}

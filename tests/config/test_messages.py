@@ -1,0 +1,181 @@
+"""A key that the schema rejects is reported with its value and the allowed values, whatever the value is."""
+
+import copy
+import math
+import re
+from functools import reduce
+
+import jsonschema
+import pytest
+from configurations import LEAVES, NUMBERS, PAPER, SCHEMA, changed, entries, problems, replaced, without
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from wrong_configurations import UNKNOWN, UNNAMEABLE, WRONG, WRONG_VALUES
+
+from stiction.config.merging import merged
+
+
+@pytest.mark.parametrize(
+    ("overlay", "key", "value", "message"), WRONG_VALUES, ids=[f"{row[1]}={row[2]}" for row in WRONG_VALUES]
+)
+def test_a_wrong_value_is_rejected_in_one_line_with_key_value_and_what_is_allowed(overlay, key, value, message):
+    (line,) = problems(changed(overlay))
+    assert line.startswith(f"{key} is {value}, must ")
+    assert message in line
+
+
+@pytest.mark.parametrize(("overlay", "key", "message"), UNKNOWN, ids=[row[1] for row in UNKNOWN])
+def test_an_unknown_key_is_rejected_in_one_line_with_the_known_ones(overlay, key, message):
+    (line,) = problems(changed(overlay))
+    assert line.startswith(f"{key} is unknown (value ")
+    assert message in line
+
+
+@pytest.mark.parametrize("name", UNNAMEABLE)
+@pytest.mark.parametrize("section", ["surfaces", "pairs"])
+def test_a_name_that_is_not_safe_in_file_names_is_rejected(section, name):
+    entry = next(iter(PAPER[section].values()))
+    (line,) = problems(merged(PAPER, {section: {name: entry}}))
+    assert line.startswith(section)
+    assert "is not a valid name, must be letters and digits" in line
+    assert ("YAML" in line) == (not isinstance(name, str))
+
+
+def test_there_are_at_least_sixty_wrong_configurations():
+    assert len(WRONG) + len(UNKNOWN) >= 60
+
+
+@pytest.mark.parametrize("leaf", [leaf for leaf in LEAVES if leaf.required], ids=str)
+def test_a_missing_key_is_named_with_what_it_must_be(leaf):
+    (line,) = problems(without(leaf.path))
+    assert line.startswith(f"{leaf} is missing, must be ")
+    assert line.endswith(leaf.entry["description"])
+
+
+@pytest.mark.parametrize("section", PAPER)
+def test_a_missing_section_is_named(section):
+    (line,) = problems(without((section,)))
+    assert line.startswith(f"{section} is missing, must be ")
+
+
+@pytest.mark.parametrize("leaf", NUMBERS, ids=str)
+@pytest.mark.parametrize("junk", [None, True, False, "1.0", "", [1], {}, math.nan, math.inf, -math.inf, 10**400])
+def test_no_number_is_replaced_by_something_else(leaf, junk):
+    (line,) = problems(replaced(leaf.path, junk))
+    assert line.startswith(f"{leaf} is ")
+    assert leaf.entry["description"] in line
+
+
+@pytest.mark.parametrize("leaf", NUMBERS, ids=str)
+def test_a_number_is_rejected_outside_its_bounds_and_not_inside(leaf):
+    refusal = re.compile(rf"{re.escape(str(leaf))} is .*: {re.escape(leaf.entry['description'])}$")
+    for side, outward in (("inimum", -1), ("aximum", 1)):
+        closed = f"m{side}" in leaf.entry
+        bound = leaf.entry[f"m{side}" if closed else f"exclusiveM{side}"]
+        step = outward if leaf.entry["type"] == "integer" else outward * 1e-6 * max(1, abs(bound))
+        values = (bound - step, bound, bound + step)
+        refused = [any(map(refusal.match, problems(replaced(leaf.path, value)))) for value in values]
+        assert refused == [False, not closed, True]
+
+
+def test_the_schema_is_a_valid_json_schema():
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+
+
+def test_every_section_rejects_unknown_keys():
+    sections = [entry for entry in entries(SCHEMA) if entry["type"] == "object"]
+    assert len(sections) > 10
+    for section in sections:
+        assert section["additionalProperties"] is False or "propertyNames" in section
+
+
+UNITS = {
+    "_nm": "[nm]",
+    "_um": "[µm]",
+    "_nm4": "[nm⁴]",
+    "_rad_per_um": "[rad/µm]",
+    "_per_um2": "[1/µm²]",
+    "_GPa": "[GPa]",
+    "_K": "[K]",
+}
+
+
+@pytest.mark.parametrize("leaf", LEAVES, ids=str)
+def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
+    # The last key on the path with a unit; the keys below it are names chosen by the user.
+    units = [UNITS[suffix] for key in leaf.path for suffix in sorted(UNITS, key=len) if key.endswith(suffix)][-1:]
+    text = "string" in (leaf.entry["type"], leaf.entry.get("items", {}).get("type"))
+    assert leaf.entry["description"].endswith(tuple(units or (["[name]", "[choice]"] if text else ["[-]"])))
+
+
+@pytest.mark.parametrize("config", [None, [], 5, "seed: 1", {}, {None: 1}, math.nan, True])
+def test_objects_other_than_configurations_are_rejected(config):
+    lines = problems(config)
+    assert lines
+    assert all(" must be " in line for line in lines)
+
+
+UNPRINTABLE = {
+    "number": 10**5000,
+    "item": [10**5000],
+    "key": {10**5000: 1},
+    "value": {"x": 10**5000},
+    "depth": reduce(lambda inner, _: [inner], range(100_000), 0),
+}
+
+
+@pytest.mark.parametrize("junk", UNPRINTABLE)
+@pytest.mark.parametrize("path", [("seed",), ("beam",), ("beam", "elements"), ("van_der_waals",), ("surfaces", "B1")])
+def test_values_that_python_cannot_print_are_rejected(path, junk):
+    (line,) = problems(replaced(path, UNPRINTABLE[junk]))
+    assert "cannot be printed" in line
+
+
+FUZZ = settings(max_examples=250, suppress_health_check=[HealthCheck.too_slow])
+JUNK = st.recursive(
+    st.one_of(
+        st.none(),
+        st.booleans(),
+        st.integers(),
+        st.floats(),
+        st.text(max_size=5),
+        st.dates(),
+        st.sampled_from([10**400, "B1", "a", "1e-3", 5000.0, 0.65, 1e-320, 1e308, "published", "identified"]),
+    ),
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(
+            st.text(max_size=3) | st.integers() | st.none() | st.booleans() | st.floats(), inner, max_size=3
+        )
+    ),
+    max_leaves=5,
+)
+
+
+@st.composite
+def mutilated(draw):
+    """The paper's configuration with up to four errors: values replaced or scaled, keys removed or added."""
+    config = {"root": copy.deepcopy(PAPER)}
+    for _ in range(draw(st.integers(1, 4))):
+        section, key = config, "root"
+        while isinstance(section[key], dict) and section[key] and draw(st.integers(0, 9)):
+            section = section[key]
+            key = draw(st.sampled_from(list(section)))
+        accident = draw(st.sampled_from(["replace", "scale", "lose", "add"]))
+        if accident == "scale" and isinstance(section[key], int | float) and abs(section[key]) < 1e300:
+            section[key] = section[key] * draw(st.floats(0, 10))
+        elif accident == "lose" and section is not config:
+            del section[key]
+        elif accident == "add" and isinstance(section[key], dict):
+            section[key][draw(st.text(max_size=3) | st.integers() | st.none())] = draw(JUNK)
+        else:
+            section[key] = draw(JUNK)
+    return config["root"]
+
+
+@FUZZ
+@given(mutilated())
+def test_any_configuration_runs_or_is_rejected_in_lines_that_name_a_key(config):
+    for line in problems(config):
+        assert re.match(r"\S.* (is|cannot) .*must ", line)
+        assert "\n" not in line

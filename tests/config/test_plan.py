@@ -1,0 +1,97 @@
+"""Plan of a configuration, compared with counts and names found by hand."""
+
+import pytest
+
+from stiction.config.files import load
+from stiction.config.plan import Plan
+from stiction.models import surface_model
+
+PAPER = Plan(load())
+#: A pair like the paper's pair a under another name.
+LIKE_A = {"beam": "B1", "substrate": "Sub1", "gap_um": 20, "humidities": [0.5]}
+
+
+def plan(**changes):
+    return Plan(load(changes))
+
+
+def test_the_paper_has_three_pairs_four_surfaces_and_eighteen_cases():
+    assert PAPER.pairs == ["a", "b", "c"]
+    assert PAPER.surfaces == ["B1", "B2", "Sub1", "Sub2"] == PAPER.measured
+    assert len(PAPER.cases) == 18
+    assert PAPER.cases[:2] == ["a_rh045", "a_rh060"]
+    assert len(PAPER.laws) == 36
+    assert len(PAPER.outcomes) == 54
+    assert PAPER.sides("b") == ["B2", "Sub1"]
+
+
+@pytest.mark.parametrize(("model", "surfaces"), [("G", "G"), ("NG", "NG"), ("GEO", "NG")])
+def test_beams_with_scattered_dimensions_have_non_gaussian_surfaces(model, surfaces):
+    assert surface_model(model) == surfaces
+
+
+def test_only_surfaces_of_pairs_that_run_are_drawn():
+    assert plan(run={"pairs": ["b"]}).surfaces == ["B2", "Sub1"]
+    assert plan(run={"pairs": ["b"]}).other_surfaces == ["Sub1"]
+
+
+def test_figures_show_the_pair_of_the_configuration_or_the_first_that_runs():
+    assert (PAPER.figure_pair, PAPER.figure_case, PAPER.figure_surface) == ("b", "b_rh065", "B2")
+    other = plan(run={"pairs": ["c", "a"]})
+    assert (other.figure_pair, other.figure_case, other.figure_surface) == ("c", "c_rh065", "B1")
+    assert other.figure_cases == {"c": "c_rh065", "a": "a_rh065"}
+
+
+def test_a_moment_that_is_zero_has_no_sensitivity():
+    assert PAPER.shifted_moments == ["rms", "skewness", "kurtosis"]
+    gaussian = plan(surfaces={"B2": {"skewness": 0, "kurtosis": 3}})
+    assert "skewness" not in gaussian.shifted_moments
+    assert gaussian.shifted_moments[0] == "rms"
+
+
+def test_every_model_choice_is_a_variant_and_the_base_comes_first():
+    names = "base van_der_waals_dry van_der_waals_none psd_identified every_2 spacing_nm_5 poisson_ratio_0.18"
+    assert list(PAPER.variants) == [*names.split(), "poisson_ratio_0.28", "strips_per_element_2"]
+    assert PAPER.variants["spacing_nm_5"] == {"sampling": {"spacing_nm": 5}}
+    assert PAPER.variants["strips_per_element_2"] == {"beam": {"elements": 500}}
+    assert len(PAPER.studied) == 27
+
+
+def test_a_variant_that_changes_nothing_about_a_pair_is_left_out():
+    identified = plan(surfaces={name: {"psd": "identified"} for name in PAPER.surfaces})
+    assert ("a", "psd_identified") not in identified.studied
+    assert ("a", "base") in identified.studied
+    assert ("a", "psd_identified") in PAPER.studied
+    assert "strips_per_element_5" not in plan(studies={"variants": {"strips_per_element": [5]}}).variants
+
+
+def test_a_variant_uses_an_identified_spectrum_only_where_summits_were_measured():
+    settings = PAPER.variant_contact("a", "psd_identified")
+    assert settings["identified"] == ["B1", "Sub1"]
+    assert "published_psd" not in settings["base"]["surfaces"]["B1"]
+    assert PAPER.variant_contact("a", "base")["identified"] == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "known"),
+    [
+        ({}, ["a", "b", "c"]),
+        ({"pairs": {"a": {"humidities": [0.5]}}, "van_der_waals": "dry"}, ["a", "b", "c"]),
+        ({"water": {"temperature_K": 310}}, ["a", "b", "c"]),
+        ({"surfaces": {"B1": {"psd": "identified"}}}, ["a", "b", "c"]),
+        ({"surfaces": {"B1": {"kurtosis": 4.5}}}, ["b"]),
+        ({"pairs": {"a": {"beam": "B2"}}}, ["b", "c"]),
+        ({"pairs": {"b": {"gap_um": 10}}}, ["a", "c"]),
+        ({"beam": {"thickness_um": 2.0}}, []),
+        ({"solid": {"young_modulus_GPa": 150}}, []),
+        ({"run": {"pairs": ["pair"]}, "pairs": {"pair": LIKE_A}}, []),
+    ],
+)
+def test_only_pairs_of_the_paper_are_compared_with_published_values(changes, known):
+    assert plan(**changes).paper_pairs == known
+
+
+def test_a_redefined_surface_is_not_one_of_the_paper():
+    assert PAPER.paper_surfaces == PAPER.surfaces
+    assert plan(surfaces={"Sub1": {"rms_nm": 0.2}}).paper_surfaces == ["B1", "B2", "Sub2"]
+    assert plan(surfaces={"B1": {"published_psd": {"floor_nm4": 0.9}}}).paper_surfaces == ["B2", "Sub1", "Sub2"]

@@ -1,0 +1,150 @@
+"""Relations between keys: violations are reported with all values; values at the limit of a relation are valid."""
+
+import copy
+import re
+
+import pytest
+from configurations import LEAVES, NUMBERS, PAPER, ROOT, SCHEMA, changed, problems, without
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from wrong_configurations import WRONG_RELATIONS
+
+from stiction.chaos.model import MAX_ORDER
+
+FUZZ = settings(max_examples=250, suppress_health_check=[HealthCheck.too_slow])
+
+
+def test_the_case_study_of_the_paper_is_valid():
+    assert problems(PAPER) == ()
+
+
+@pytest.mark.parametrize(
+    ("overlay", "key", "value", "message"), WRONG_RELATIONS, ids=[f"{row[1]}={row[2]}" for row in WRONG_RELATIONS]
+)
+def test_a_violated_relation_is_rejected_in_one_line_with_key_value_and_what_is_allowed(overlay, key, value, message):
+    (line,) = problems(changed(overlay))
+    assert line.startswith(f"{key} is {value}, must ")
+    assert message in line
+
+
+@pytest.mark.parametrize(
+    "overlay",
+    [
+        (ROOT / "workflow/smoke.yaml").read_text(encoding="utf-8"),
+        "surfaces: {Mine: {rms_nm: 2, skewness: -0.5, kurtosis: 3.5, psd: identified, mean_summit_radius_um: 0.5, "
+        "summit_density_per_um2: 30}}\npairs: {d: {beam: Mine, substrate: Sub2, gap_um: 3.5, humidities: [0.675]}}\n"
+        "run: {pairs: [d]}",
+        "surfaces: {B1: {skewness: 0, kurtosis: 3}}",
+        "surfaces: {B1: {skewness: 0, kurtosis: 2}}",
+        "surfaces: {B1: {kurtosis: 1.7}}",
+        "surfaces: {B1: {psd: identified}}",
+        "surfaces: {B1: {published_psd: {cutoff_rad_per_um: 314.159}}}",
+        "surfaces: {B1: {published_psd: {corner_rad_per_um: 137.9, floor_nm4: 524}}}",
+        "sampling: {margin_um: 0.9}",
+        "sampling: {strip_length_um: 1.25}\nstudies: {variants: {every: []}}",
+        "sampling: {spacing_nm: 5}",
+        "character: {spacing_nm: 10}",
+        "character: {spacing_nm: 500}",
+        "identification: {patch_um: 0.9}",
+        "contact: {every: 2}",
+        "studies: {variants: {every: [3, 10], spacing_nm: [7.5, 11.71875]}}",
+        "studies: {variants: {every: [], spacing_nm: []}}",
+        "studies: {mesh: {elements_um: [7, 30], strips_um: [4, 3]}}",
+        "contact: {chunks: 5000}",
+        "contact: {samples: 1820}",
+        "chaos: {order: 1}",
+        "beam: {elements: 1000}",
+        "beam: {scatter: 0}",
+        "beam: {length_um: 21, width_um: 20.98, elements: 7}",
+        "pairs: {a: {humidities: [0.0001, 0.9999, 0.5]}}",
+        "pairs: {a: {substrate: B1}}",
+        "van_der_waals: none",
+        "run: {pairs: [c, a]}",
+    ],
+)
+def test_values_at_the_limit_of_a_relation_are_valid(overlay):
+    assert problems(changed(overlay)) == ()
+
+
+def test_all_problems_are_found_at_once_and_each_only_once():
+    lines = problems(
+        changed(
+            "surfaces: {B1: {rms_nm: -1}, B2: {kurtosis: 1.5}}\npairs: {a: {beam: B9, gap: 3}}\n"
+            "contact: {chunks: 1.0}\nchaos: {order: 20}"
+        )
+    )
+    keys = {line.split()[0] for line in lines}
+    expected = {
+        "surfaces.B1.rms_nm",
+        "surfaces.B2.kurtosis",
+        "pairs.a.beam",
+        "pairs.a.gap",
+        "contact.chunks",
+        "chaos.order",
+    }
+    assert (keys, len(lines)) == (expected, 6)
+
+
+def test_two_missing_keys_are_named_once_each():
+    config = without(("beam", "width_um"))
+    del config["beam"]["samples"]
+    assert [line.split()[0] for line in problems(config)] == ["beam.width_um", "beam.samples"]
+
+
+@pytest.mark.parametrize("overlay", ["beam: 5", "surfaces: {B1: {published_psd: {plateau_nm4: x}}}", "pairs: {a: 1}"])
+def test_no_relation_is_checked_for_a_key_that_is_invalid_or_inside_an_invalid_section(overlay):
+    assert len(problems(changed(overlay))) == 1
+
+
+def test_references_are_checked_against_all_validly_named_entries():
+    lines = problems(changed("surfaces: {1: {}}\npairs: {a: {beam: B9}}\nfigures: {pair: d}"))
+    assert "figures.pair is 'd', must be one of a, b, c" in lines
+    assert "pairs.a.beam is 'B9', must be one of B1, B2, Sub1, Sub2" in lines
+
+
+def test_an_identified_spectrum_needs_its_targets_and_a_published_one_its_parameters():
+    identified = without(("surfaces", "B1", "mean_summit_radius_um"))
+    identified["surfaces"]["B1"]["psd"] = "identified"
+    (line,) = problems(identified)
+    assert line.startswith("surfaces.B1.mean_summit_radius_um is missing")
+    (line,) = problems(without(("surfaces", "B1", "published_psd")))
+    assert line.startswith("surfaces.B1.published_psd is missing")
+
+
+def test_the_highest_order_is_that_of_the_chaos_model():
+    assert SCHEMA["properties"]["chaos"]["properties"]["order"]["maximum"] == MAX_ORDER
+
+
+def within(entry):
+    """Values that the schema allows."""
+    if "enum" in entry:
+        return st.sampled_from(entry["enum"])
+    if entry["type"] == "integer":
+        return st.integers(entry["minimum"], entry["maximum"])
+    return st.floats(
+        entry.get("minimum", entry.get("exclusiveMinimum")),
+        entry.get("maximum", entry.get("exclusiveMaximum")),
+        exclude_min="exclusiveMinimum" in entry,
+        exclude_max="exclusiveMaximum" in entry,
+    )
+
+
+SCALARS = NUMBERS + [leaf for leaf in LEAVES if "enum" in leaf.entry]
+
+
+@FUZZ
+@given(
+    st.lists(
+        st.sampled_from(SCALARS).flatmap(lambda leaf: st.tuples(st.just(leaf.path), within(leaf.entry))), max_size=8
+    )
+)
+def test_values_within_the_schema_can_only_violate_relations(values):
+    config = copy.deepcopy(PAPER)
+    for path, value in values:
+        section = config
+        for key in path[:-1]:
+            section = section[key]
+        section[path[-1]] = value
+    for line in problems(config):
+        assert re.match(r"[\w.\[\]]+ is .*, must ", line)
+        assert not any(leaf.entry["description"] in line for leaf in SCALARS)

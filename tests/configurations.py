@@ -1,0 +1,89 @@
+"""The paper's configuration with single changes, and the problems reported for the result."""
+
+import copy
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+from unittest.mock import patch
+
+import yaml
+
+from stiction.config.files import read
+from stiction.config.merging import merged
+from stiction.config.messages import ConfigError
+from stiction.config.relations import schema, validate
+from stiction.surface import maxent
+
+ROOT = Path(__file__).parents[1]
+PAPER = read(ROOT / "config.yaml")
+SCHEMA = schema()
+SOLVED_ONCE = cache(maxent.solve)  # the tests validate thousands of configurations with the same densities
+
+
+def changed(overlay):
+    """The paper's configuration under an overlay in YAML."""
+    return merged(PAPER, yaml.safe_load(overlay))
+
+
+def problems(config):
+    """Problems of a configuration, one line each; empty if it is valid."""
+    try:
+        with patch.object(maxent, "solve", SOLVED_ONCE):
+            validate(config)
+    except ConfigError as error:
+        return error.problems
+    return ()
+
+
+class Leaf(NamedTuple):
+    """A key that holds a value."""
+
+    path: tuple
+    entry: dict  # its part of the schema
+    required: bool
+
+    def __str__(self):
+        return ".".join(self.path)
+
+
+def leaves(config, schema, path=(), required=True):
+    """All keys of a configuration that hold a value."""
+    if schema["type"] != "object":
+        return [Leaf(path, schema, required)]
+    found = []
+    for key, value in config.items():
+        entry = schema.get("properties", {}).get(key) or schema["additionalProperties"]
+        found += leaves(value, entry, (*path, key), key in schema.get("required", ()))
+    return found
+
+
+def entries(schema):
+    """Every part of the schema that describes a section or a value."""
+    inside = [*schema.get("properties", {}).values()]
+    inside += [schema[key] for key in ("additionalProperties", "items") if isinstance(schema.get(key), dict)]
+    return [schema, *(entry for part in inside for entry in entries(part))]
+
+
+def replaced(path, value):
+    """The paper's configuration with another value at a path."""
+    config = copy.deepcopy(PAPER)
+    section = config
+    for key in path[:-1]:
+        section = section[key]
+    section[path[-1]] = value
+    return config
+
+
+def without(path):
+    """The paper's configuration without the key at a path."""
+    config = replaced(path, None)
+    section = config
+    for key in path[:-1]:
+        section = section[key]
+    del section[path[-1]]
+    return config
+
+
+# One surface, pair or variant represents all.
+LEAVES = list({id(leaf.entry): leaf for leaf in reversed(leaves(PAPER, SCHEMA))}.values())[::-1]
+NUMBERS = [leaf for leaf in LEAVES if leaf.entry["type"] in ("number", "integer")]

@@ -1,0 +1,69 @@
+"""A study small enough for tests: pair b on narrow strips, each stage computed once and by hand, without files."""
+
+from functools import cache
+
+from stiction.config import jobs
+from stiction.config.files import load
+from stiction.config.plan import Plan
+from stiction.config.units import typed
+from stiction.stages import chaos, contact, forces, heights, spectrum
+
+PLAN = Plan(
+    load(
+        {
+            "run": {"pairs": ["b"]},
+            "contact": {"samples": 20},
+            "beam": {"samples": 3, "width_um": 6, "elements": 200},
+            "chaos": {"order": 2},
+            "character": {"strips": 3},
+            "identification": {"patches": 2, "patch_um": 2},
+            "studies": {
+                "iteration": {"iterations": 2, "fields": 2},
+                "sensitivity": {"samples": 4},
+                "plasticity": {"strips": 4},
+                "orders": {"draws": 2000},
+                "resampling": {"beams": 3},
+                "mesh": {"elements_um": [15, 7.5], "strips_um": [7.5, 1.5]},
+                "variants": {"samples": 20, "beams": 2},
+            },
+        }
+    )
+)
+SEED = PLAN.config["seed"]
+CASE, HUMIDITY = "b_rh067", 0.67
+
+
+def settings_of(module, plain):
+    """The settings of a stage or study from those of its job."""
+    return typed(module.Settings, plain)
+
+
+@cache
+def heights_of(surface):
+    return heights.compute(settings_of(heights, jobs.heights(PLAN, surface)))
+
+
+@cache
+def spectrum_of(surface):
+    return spectrum.compute(heights_of(surface), None, settings_of(spectrum, jobs.spectrum(PLAN, surface)))
+
+
+@cache
+def surfaces():
+    """Datasets (heights, spectrum) of both surfaces of pair b."""
+    return tuple((heights_of(name), spectrum_of(name)) for name in ("B2", "Sub1"))
+
+
+@cache
+def contact_of_pair():
+    return contact.compute(surfaces(), "b", "NG", settings_of(contact, jobs.contact(PLAN, "b")))
+
+
+@cache
+def forces_of_case():
+    return forces.compute(contact_of_pair(), settings_of(forces, jobs.forces(PLAN, CASE)))
+
+
+@cache
+def chaos_of_case():
+    return chaos.compute(forces_of_case(), CASE, "NG", settings_of(chaos, jobs.chaos(PLAN)))

@@ -1,0 +1,270 @@
+"""Stages from their inputs to their files and back, on small studies."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import small
+from numpy.testing import assert_allclose, assert_array_equal
+from published import SURFACES
+from vectors import sampled_vectors
+
+from stiction.beam.montecarlo import Experiment, release_beam
+from stiction.chaos.model import draw, draw_laws, fit, fit_report
+from stiction.config import jobs
+from stiction.contact.forcelaw import parametrise
+from stiction.stages import (
+    beams,
+    chaos,
+    character,
+    curves,
+    forces,
+    heights,
+    identification,
+    parameters,
+    releases,
+    spectrum,
+    storage,
+)
+from stiction.stages.cantilevers import cantilever, strips_along
+from stiction.stages.surfaces import FIELD, rough_surface
+from stiction.streams import stream
+from stiction.surface.field import StripGrid, radial_periodogram
+from stiction.surface.identify import Identification
+from stiction.surface.maxent import GAUSSIAN
+from stiction.surface.spectrum import CutoffSelfAffine
+from stiction.surface.summits import find_summits
+
+B2 = SURFACES["B2"]
+
+
+@pytest.fixture
+def through_a_file(tmp_path):
+    """The dataset that comes back from the file of another."""
+
+    def through(dataset):
+        storage.save(dataset, tmp_path / "name.nc", "stage", {})
+        return storage.load(tmp_path / "name.nc", "stage")
+
+    return through
+
+
+# Heights and spectrum
+
+
+def test_heights_have_the_density_of_the_moments_of_the_surface(through_a_file):
+    found = through_a_file(small.heights_of("B2"))
+    assert heights.density(found, "NG").multipliers == pytest.approx(B2.density.multipliers, rel=1e-14)
+    assert heights.density(found, "G") == GAUSSIAN
+    assert heights.moments(found) == heights.Settings(B2.rms, B2.skewness, B2.kurtosis)
+    assert_allclose(found.density, B2.density(found.height.values), rtol=1e-12)
+    assert_allclose(found.density.sum() * 0.02, 1, rtol=1e-6)
+    assert_allclose((found.density * found.height**3).sum() * 0.02, B2.skewness, rtol=1e-4)
+
+
+def test_spectrum_is_the_published_one_and_the_field_behind_it(through_a_file):
+    found = through_a_file(small.spectrum_of("B2"))
+    assert parameters.spectrum_of(found) == B2.published_psd
+    assert float(found.defect) == pytest.approx(B2.defect, rel=1e-12)
+    behind = spectrum.underlying(found, "NG")
+    assert_array_equal(behind.wavenumber, B2.underlying.wavenumber)
+    assert_allclose(behind.density, B2.underlying.density, rtol=1e-12)
+    assert behind.cutoff == B2.published_psd.cutoff
+    assert spectrum.underlying(found, "G") == B2.published_psd
+
+
+def test_spectra_have_unit_variance_and_the_heights_get_what_was_asked_for():
+    found = small.spectrum_of("B2")
+    zeta = found.wavenumber.values
+    for name in ("target", "underlying", "achieved"):
+        # Isotropic: the variance is 2π ∫ ζ s dζ. Rings of the grid integrate it to a few percent.
+        assert_allclose(2 * np.pi * np.trapezoid(zeta * found[name], zeta), 1, rtol=0.05)
+    inside = zeta < 0.5 * B2.published_psd.cutoff
+    assert_allclose(spectrum.achieved(found, zeta[inside]), found.target[inside], rtol=0.05)
+    assert np.abs(found.underlying / found.target - 1).max() > 0.1
+    # No Gaussian field provides all of it.
+    assert np.abs(found.achieved / found.target - 1).max() > 1e-3
+    assert_array_equal(spectrum.achieved(found, zeta), found.achieved)
+    between = 0.5 * (zeta[3] + zeta[4])
+    assert spectrum.achieved(found, between) == pytest.approx(float(found.achieved[3:5].mean()))
+
+
+def test_an_identified_spectrum_comes_from_its_stage_and_a_published_one_does_not():
+    other = CutoffSelfAffine(plateau=1e-32, floor=1e-36, corner=2e7, cutoff=1e8)
+    settings = spectrum.Settings(10e-9, "identified")
+    identified = spectrum.compute(small.heights_of("B2"), parameters.variables(other), settings)
+    assert parameters.spectrum_of(identified) == other
+    assert spectrum.underlying(identified, "NG").cutoff == other.cutoff
+
+
+def test_identification_finds_what_the_surface_was_asked_for(through_a_file):
+    settings = small.settings_of(identification, jobs.identification(small.PLAN, "B2"))
+    found = through_a_file(identification.compute(small.heights_of("B2"), "B2", settings))
+    target = found.target_mean_radius, found.target_summit_density, found.target_rms
+    assert tuple(map(float, target)) == (B2.mean_summit_radius, B2.summit_density, B2.rms)
+    # Two patches of 2 µm hold some 160 summits.
+    assert abs(found.mean_radius - B2.mean_summit_radius) < 5 * found.mean_radius_error
+    assert abs(found.summit_density - B2.summit_density) < 5 * found.summit_density_error
+    assert parameters.spectrum_of(found).variance == pytest.approx(B2.rms**2, rel=1e-9)
+
+
+def test_identification_searches_on_patches_with_streams_of_their_own(monkeypatch):
+    asked = []
+    found = Identification(B2.published_psd, 7, 1.0, 2.0, 0.1, 0.2)
+    monkeypatch.setattr(identification, "identify", lambda *asked_for: asked.extend(asked_for) or found)
+    settings = small.settings_of(identification, jobs.identification(small.PLAN, "B2"))
+    dataset = identification.compute(small.heights_of("B2"), "B2", settings)
+    target, translation, grid, *streams = asked
+    assert target.spacing == pytest.approx(20e-9)
+    assert translation.density.multipliers == pytest.approx(B2.density.multipliers, rel=1e-14)
+    assert grid == StripGrid(2e-6, 2e-6, 10e-9, margin=0.0)
+    for rngs, address in zip(streams, ((), ("control",)), strict=True):
+        drawn = [rng.random() for rng in rngs()]
+        assert drawn == [stream(small.SEED, "identification", "B2", *address, k).random() for k in range(2)]
+        assert drawn == [rng.random() for rng in rngs()]
+    numbers = [dataset.mean_radius, dataset.mean_radius_error, dataset.summit_density, dataset.summit_density_error]
+    assert [*map(float, numbers), int(dataset.evaluations)] == [1.0, 0.1, 2.0, 0.2, 7]
+
+
+# Character
+
+
+@pytest.fixture(scope="module")
+def of_strips():
+    settings = small.settings_of(character, jobs.character(small.PLAN))
+    return character.compute(small.heights_of("B2"), small.spectrum_of("B2"), "B2", "NG", settings), settings
+
+
+def test_strips_have_the_moments_and_summits_of_the_drawn_heights(of_strips):
+    found, settings = of_strips
+    surface = rough_surface(*small.surfaces()[0], "NG", settings.sampling.strips(6e-6))
+    for k in range(3):
+        z = surface.draw(stream(small.SEED, "character", "B2", k))[::2, ::2].astype(float)
+        assert_allclose(found.power[k], [np.mean(z**order) for order in (1, 2, 3, 4)], rtol=1e-6)
+        height, curvature, density = find_summits(z.astype(np.float32), 20e-9)
+        assert_allclose(found.summit_density[k], density, rtol=1e-12)
+        assert_allclose(found.mean_curvature[k], curvature.mean(), rtol=1e-6)
+        if k == 0:
+            assert_allclose(found.summit_height[: len(height)], height, rtol=1e-6)
+    assert_allclose(found.summit_height[-len(height) :], height, rtol=1e-6)
+    assert_allclose(found.summit_curvature[-len(height) :], curvature, rtol=1e-6)
+
+
+def test_strips_look_like_the_surface(of_strips):
+    power = of_strips[0].power.mean("strip")
+    assert abs(power[0]) < 0.2 * B2.rms
+    assert power[1] == pytest.approx(B2.rms**2, rel=0.3)
+    assert power[2] < 0
+
+
+def test_spectrum_and_picture_are_of_periodic_fields(of_strips, through_a_file):
+    found = through_a_file(of_strips[0])
+    field = rough_surface(*small.surfaces()[0], "NG", StripGrid(FIELD, FIELD, 10e-9, margin=0.0))
+    for k in (0, 7):
+        z = field.draw(stream(small.SEED, "character", "B2", "field", k))
+        zeta, density = radial_periodogram(z, 10e-9)
+        assert_allclose(found.periodogram[k], density, rtol=1e-5)
+        if k == 0:
+            assert_array_equal(found.elevation, z[:300, :300])
+    assert_allclose(found.wavenumber, zeta)
+    assert found.periodogram.sizes["field"] == 8
+    assert_allclose(found.x, np.arange(300) * 10e-9)
+
+
+# Forces and chaos
+
+
+def test_forces_are_those_of_the_curves_at_the_humidity(through_a_file):
+    found = through_a_file(small.forces_of_case())
+    distance, curve = curves.force_curves(small.contact_of_pair(), small.HUMIDITY, curves.Water(300))
+    vectors, limit = forces.vectors(found)
+    expected, expected_limit = parametrise(distance, curve, 20)
+    assert_array_equal(vectors, expected)
+    assert limit == expected_limit
+    assert_array_equal(found.distance, distance)
+    for k in (0, 19):
+        assert_allclose(found.force[k], curve(k), rtol=1e-6)
+        # Pull-off is the strongest attraction, at its distance.
+        assert found.pull_off[k] == pytest.approx(-float(found.force[k].min()), rel=1e-2)
+    assert np.all(found.limit_distance < found.pull_off_distance)
+
+
+def test_chaos_model_draws_what_the_fitted_one_does(through_a_file):
+    found = through_a_file(small.chaos_of_case())
+    fitted = fit(*forces.vectors(small.forces_of_case()), 2, small.PLAN.config["chaos"]["dimension_tolerance"])
+    laws = [draw_laws(model, 50, np.random.default_rng(1)) for model in (fitted, chaos.chaos_model(found))]
+    assert_array_equal(*laws)
+    assert_array_equal(found.dimension_error, fitted.dimension_error)
+    assert_array_equal(found.truncation_error, fitted.truncation_error)
+
+
+def test_chaos_reports_draws_of_its_own_addresses(monkeypatch):
+    monkeypatch.setattr(chaos, "_DRAWS", 500)
+    # Of so little energy that some draws have no law.
+    samples = sampled_vectors(200) * [0.3, 1, 1, 1]
+    limit = samples[:, 1].max()
+    settings = small.settings_of(chaos, jobs.chaos(small.PLAN))
+    found = chaos.compute(forces.layout(samples, limit, np.zeros(1), np.zeros((1, 1))), small.CASE, "G", settings)
+    model = chaos.chaos_model(found)
+    statistics, correlations = fit_report(model, samples, 500, stream(small.SEED, "chaos", small.CASE, "G"))
+    assert_allclose(found.statistics, statistics, rtol=1e-12)
+    assert_allclose(found.correlation, correlations, rtol=1e-12)
+    _, rejected = draw(model, 500, stream(small.SEED, "rejection", small.CASE, "G"))
+    assert rejected > 0
+    assert float(found.rejected) == rejected / (500 + rejected)
+    assert found.limit == limit
+
+
+# Beams
+
+
+def of_beams(model="NG"):
+    return small.settings_of(beams, jobs.beams(small.PLAN, small.CASE, model))
+
+
+def by_hand(k, settings):
+    """Beam k, released from the streams and settings of its case."""
+    model = chaos.chaos_model(small.chaos_of_case())
+    nominal = cantilever(settings, "b")
+    experiment = Experiment(nominal, 1000, lambda n, rng: draw_laws(model, n, rng), settings.scatter)
+    return release_beam(experiment, k, stream(small.SEED, "beams", small.CASE, k))
+
+
+@pytest.mark.parametrize("model", ["NG", "GEO"])
+def test_beams_are_released_from_streams_of_their_own(through_a_file, model):
+    settings = of_beams(model)
+    found = through_a_file(beams.compute(small.chaos_of_case(), small.CASE, settings))
+    assert_array_equal(found.sample, range(3))
+    for k in (0, 2):
+        beam = by_hand(k, settings)
+        assert found.state[k] == beam.state
+        assert found.crack_length[k] == beam.crack_length
+        assert found.adhesion_energy[k] == beam.energy
+        assert found.imbalance[k] == beam.imbalance
+        assert found.iterations[k] == beam.iterations
+        assert_allclose(found.deflection[k], beam.deflection, rtol=1e-6, atol=1e-15)
+    assert_allclose(found.node, np.linspace(0, 1500e-6, 201), atol=1e-15)
+
+
+def test_the_nominal_beam_is_that_of_the_settings():
+    beam = cantilever(of_beams(), "b")
+    assert (beam.length, beam.width, beam.thickness, beam.gap) == pytest.approx((1500e-6, 6e-6, 2.6e-6, 20e-6))
+    assert beam.young_modulus == pytest.approx(164e9)
+    assert strips_along(of_beams().beam, of_beams().sampling) == 1000
+
+
+def test_no_scatter_is_model_ng_and_scatter_is_not():
+    ng, geo = (beams.compute(small.chaos_of_case(), small.CASE, of_beams(model)) for model in ("NG", "GEO"))
+    none = beams.compute(small.chaos_of_case(), small.CASE, replace(of_beams("GEO"), scatter=0))
+    assert_array_equal(none.crack_length, ng.crack_length)
+    assert np.all(geo.crack_length != ng.crack_length)
+
+
+def test_ended_selects_beams_by_the_name_of_their_state():
+    nodes, zeros = np.linspace(0, 1, 3), np.zeros(4)
+    columns = dict.fromkeys(("crack_length", "energy", "imbalance", "iterations"), zeros)
+    found = beams.layout(columns | {"sample": range(4), "state": [0, 1, 2, 0], "deflection": np.zeros((1, 3))}, nodes)
+    assert_array_equal(releases.ended(found, "S-shape"), [True, False, False, True])
+    assert_array_equal(releases.ended(found, "arc"), [False, True, False, False])
+    assert_array_equal(releases.ended(found, "free"), [False, False, True, False])
+    assert found.state.attrs["flag_meanings"] == "S-shape arc free"

@@ -1,0 +1,101 @@
+import os
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from stiction.run import atomic
+from stiction.stages import storage
+from stiction.stages.named import key_of, load_named
+
+
+def dataset():
+    return xr.Dataset({"x": ("sample", np.linspace(0, 1, 20_000), {"units": "m"})})
+
+
+def test_a_dataset_is_read_as_it_was_written_with_its_settings(tmp_path):
+    storage.save(dataset(), tmp_path / "x.nc", "forces", {"seed": 1, "water": {"temperature_K": 300}})
+    loaded = storage.load(tmp_path / "x.nc", "forces")
+    np.testing.assert_array_equal(loaded.x, dataset().x)
+    assert loaded.attrs["settings"] == '{"seed": 1, "water": {"temperature_K": 300}}'
+
+
+def test_equal_data_give_equal_bytes(tmp_path):
+    for name, settings in (("one", {"b": 1, "a": 2}), ("two", {"a": 2, "b": 1})):
+        storage.save(dataset(), tmp_path / name / "a.nc", "forces", settings)
+    assert (tmp_path / "one" / "a.nc").read_bytes() == (tmp_path / "two" / "a.nc").read_bytes()
+
+
+def test_a_file_of_another_stage_is_rejected_by_name(tmp_path):
+    storage.save(dataset(), tmp_path / "x.nc", "forces", {})
+    with pytest.raises(storage.DataError, match=r"x\.nc holds forces of x, not beams of x"):
+        storage.load(tmp_path / "x.nc", "beams")
+
+
+def test_a_file_of_another_case_is_rejected_by_name(tmp_path):
+    storage.save(dataset(), tmp_path / "b_rh067_NG.nc", "forces", {})
+    (tmp_path / "b_rh067_NG.nc").rename(tmp_path / "b_rh088_NG.nc")
+    with pytest.raises(storage.DataError, match=r"holds forces of b_rh067_NG, not forces of b_rh088_NG"):
+        storage.load(tmp_path / "b_rh088_NG.nc", "forces")
+
+
+@pytest.mark.parametrize("size", [0, 100, 5000])
+def test_a_truncated_file_is_rejected_by_name(tmp_path, size):
+    storage.save(dataset(), tmp_path / "x.nc", "forces", {})
+    whole = (tmp_path / "x.nc").read_bytes()
+    assert len(whole) > 5000
+    (tmp_path / "x.nc").write_bytes(whole[:size])
+    with pytest.raises(storage.DataError, match=r"x\.nc cannot be read"):
+        storage.load(tmp_path / "x.nc", "forces")
+
+
+def test_a_foreign_file_is_rejected(tmp_path):
+    dataset().to_netcdf(tmp_path / "x.nc")
+    with pytest.raises(storage.DataError, match="no result of this study"):
+        storage.load(tmp_path / "x.nc", "forces")
+
+
+def test_a_failed_write_leaves_the_old_file_and_no_temporary_file(tmp_path):
+    storage.save(dataset(), tmp_path / "x.nc", "forces", {})
+    before = (tmp_path / "x.nc").read_bytes()
+    unwritable = xr.Dataset({"x": ("sample", np.array([object()], object))})
+    with pytest.raises((TypeError, ValueError)):
+        storage.save(unwritable, tmp_path / "x.nc", "forces", {})
+    assert (tmp_path / "x.nc").read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
+
+
+def test_a_folder_that_cannot_be_created_is_reported_by_name(tmp_path):
+    (tmp_path / "results").write_text("mine")  # also stops root, which ignores permissions
+    with pytest.raises(storage.DataError, match=r"folder .*results cannot be written .*; make it writable"):
+        storage.save(dataset(), tmp_path / "results" / "x.nc", "forces", {})
+
+
+def test_a_disk_error_on_closing_a_file_leaves_no_temporary_file(tmp_path, monkeypatch):
+    def fail(_):
+        raise OSError("input/output error")
+
+    monkeypatch.setattr(os, "fsync", fail)
+    with pytest.raises(storage.DataError, match=r"x\.txt cannot be written \(input/output error\)"):
+        atomic.save_text("Δ", tmp_path / "x.txt")
+    assert not list(tmp_path.iterdir())
+
+
+def test_files_have_the_permissions_that_the_user_gives_all_files(tmp_path):
+    before = os.umask(0o027)
+    try:
+        storage.save(dataset(), tmp_path / "x.nc", "forces", {})
+        atomic.save_text("Δ", tmp_path / "x.txt")
+    finally:
+        os.umask(before)
+    assert {path.stat().st_mode & 0o777 for path in tmp_path.iterdir()} == {0o640}
+    assert (tmp_path / "x.txt").read_bytes() == b"\xce\x94"
+
+
+def test_datasets_are_keyed_by_the_names_of_their_files(tmp_path):
+    for name in ("b_rh067_NG", "a_rh060_G"):
+        storage.save(dataset(), tmp_path / f"{name}.nc", "forces", {})
+    paths = [tmp_path / "a_rh060_G.nc", tmp_path / "b_rh067_NG.nc"]
+    assert list(load_named(paths, "forces")) == ["a_rh060_G", "b_rh067_NG"]
+    assert list(load_named(paths, "forces", key_of)) == [("a", 0.6, "G"), ("b", 0.67, "NG")]
+    assert [found.attrs["name"] for found in storage.load_all(reversed(paths), "forces")] == ["b_rh067_NG", "a_rh060_G"]

@@ -1,0 +1,184 @@
+"""README and docs agree with the results they quote; links are valid; the pages build without warnings."""
+
+import importlib
+import importlib.util
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+import stiction
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted(DOCS.glob("*.md"))]
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+#: Brackets and # in code are not links or headings.
+CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
+
+each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+
+
+def module(path):
+    """Import a module that is not part of the package."""
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    loaded = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(loaded)
+    return loaded
+
+
+update, quoted = (module(DOCS / f"{name}.py") for name in ("update", "quoted"))
+
+
+# Numbers and tables
+
+
+@pytest.mark.parametrize("path", update.pages(), ids=lambda path: path.name)
+def test_numbers_and_tables_are_those_of_the_results_that_the_docs_name(path):
+    assert path.read_text(encoding="utf-8") == update.pages()[path], f"{path.name} is out of date: run make docs"
+
+
+def test_another_result_changes_the_table_of_the_readme():
+    table = quoted.frame(DOCS / "tables" / "table_3.csv")
+    assert quoted.readme_table(table.assign(crack_length_um=table.crack_length_um + 1)) != quoted.readme_table(table)
+
+
+def test_the_readme_table_shows_what_table_3_holds():
+    table = quoted.frame(DOCS / "tables" / "table_3.csv").set_index(["pair", "relative_humidity", "model"])
+    row = table.loc["b", 0.67, "NG"]
+    cell = f"{row.crack_length_um:.0f} ± {row.crack_length_std_um:.0f}"
+    line = next(line for line in (ROOT / "README.md").read_text(encoding="utf-8").splitlines() if line[:6] == "| 0.67")
+    assert line.split(" | ")[4] == cell
+
+
+def test_folders_without_a_finished_run_of_the_paper_change_nothing(tmp_path):
+    assert "no finished run" in update.unfinished(tmp_path)
+    (tmp_path / "verdict.txt").touch()
+    (tmp_path / "provenance.json").write_text('[{"config": {"seed": 1}}]')
+    assert "not that of config.yaml" in update.unfinished(tmp_path)
+
+
+def test_markers_are_needed_once_each():
+    text = "a <!-- begin: x -->old<!-- end: x --> b"
+    assert update.replaced(text, "x", "new") == "a <!-- begin: x -->\nnew\n<!-- end: x --> b"
+    with pytest.raises(ValueError, match="once each"):
+        update.replaced(text + text, "x", "new")
+
+
+# Pictures and links
+
+
+def test_pictures_are_small_and_all_are_shown():
+    shown = {Path(link).name for page in PAGES for link in links(page) if link.endswith(".png")}
+    pictures = list((DOCS / "pictures").iterdir())
+    assert {path.name for path in pictures} == shown
+    assert max(path.stat().st_size for path in pictures) <= update.LARGEST
+
+
+def links(page):
+    """Targets of all links and pictures of a page."""
+    return LINK.findall(CODE.sub("", page.read_text(encoding="utf-8")))
+
+
+def anchors(page):
+    """Anchors of the headings of a page, as GitHub and MyST name them."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def faults(page):
+    """Invalid links of a page."""
+    for link in links(page):
+        name, _, anchor = link.partition("#")
+        target = (page.parent / name).resolve() if name else page
+        if ":" in name or not target.is_file() or (anchor and anchor not in anchors(target)):
+            yield link
+
+
+@each_page
+def test_links_lead_somewhere(page):
+    assert not list(faults(page))
+
+
+def test_a_link_that_leads_nowhere_is_found(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text("# A title (here)\n[a](page.md#a-title-here) [b](#nowhere) [c](missing.md) `[d](code.md)`\n")
+    assert list(faults(page)) == ["#nowhere", "missing.md"]
+
+
+def test_every_page_is_reached_from_the_readme():
+    reached = {Path(link.partition("#")[0]).name for link in links(ROOT / "README.md")}
+    assert {page.name for page in DOCS.glob("*.md")} - {"index.md"} <= reached
+
+
+# Pages about the code
+
+
+def test_the_map_of_the_code_names_every_folder_and_its_tests():
+    table = re.findall(r"^\| `(\w+)` .* \| (.*) \|$", (DOCS / "code.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert {name for name, _ in table} == {
+        path.parent.name for path in (ROOT / "src" / "stiction").glob("*/__init__.py")
+    }
+    for _, tests in table:
+        assert all((ROOT / folder).is_dir() for folder in re.findall("`(.+?)`", tests))
+
+
+def test_the_map_of_the_code_names_every_module_of_the_physics():
+    named = set(re.findall(r"^\| `(\w+\.\w+)`", (DOCS / "code.md").read_text(encoding="utf-8"), re.MULTILINE))
+    folders = {name.partition(".")[0] for name in named}
+    files = (ROOT / "src" / "stiction").glob("*/[!_]*.py")
+    assert {f"{path.parent.name}.{path.stem}" for path in files if path.parent.name in folders} == named
+
+
+def blocks(language):
+    """Blocks of code of all pages in one language."""
+    pages = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
+    return re.findall(rf"^```{language}\n(.*?)^```", pages, re.MULTILINE | re.DOTALL)
+
+
+def test_python_examples_use_names_that_exist():
+    for block in blocks("python"):
+        compile(block, "example", "exec")
+        assert all(hasattr(stiction, name) for name in re.findall(r"\bstiction\.(\w+)\(", block)), block
+        for place, names in re.findall(r"^from (stiction[.\w]*) import (.*)$", block, re.MULTILINE):
+            assert all(hasattr(importlib.import_module(place), name) for name in names.split(", ")), block
+
+
+def test_every_public_name_is_described():
+    table = (DOCS / "python.md").read_text(encoding="utf-8").partition("## Public names")[2]
+    assert set(stiction.__all__) <= set(re.findall(r"`(\w+)`", table))
+
+
+def test_yaml_examples_are_configurations_that_can_run(tmp_path):
+    for block in blocks("yaml"):
+        path = tmp_path / "mine.yaml"
+        path.write_text(block, encoding="utf-8")
+        assert stiction.load(path)["run"]["pairs"] == ["mine"]
+
+
+def test_citation_changelog_and_package_name_the_same_version():
+    newest = re.search(r"^## (\S+)", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)[1]
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert citation["version"] == newest == stiction.__version__
+    assert citation["license"] == "BSD-3-Clause"
+    assert "BSD 3-Clause" in (ROOT / "LICENSE").read_text(encoding="utf-8")
+
+
+# The build
+
+
+@pytest.mark.skipif(
+    not all(map(importlib.util.find_spec, ("sphinx", "myst_parser", "furo"))),
+    reason="Sphinx, MyST and Furo are not installed: pip install '.[docs]'",
+)
+def test_docs_build_without_a_warning_and_without_a_network(tmp_path):
+    command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-E", "-d", tmp_path / "tree"]
+    built = subprocess.run([*map(str, command), DOCS, tmp_path / "html"], capture_output=True, text=True, check=False)
+    assert built.returncode == 0, built.stderr
+    page = (tmp_path / "html" / "python.html").read_text(encoding="utf-8")
+    assert "<msub>" in page
+    assert not re.findall(r'(?:src|href)="(?:https?:)?//(?!pradyunsg|github)[^"]*\.(?:js|css)', page)

@@ -1,0 +1,54 @@
+"""Public names ``stiction.name``: complete, fast to import, and visible to editors."""
+
+import ast
+import importlib
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import stiction
+
+ROOT = Path(__file__).parents[1]
+PLACES = {name: place.rpartition(".")[::2] for name, place in stiction._PLACES.items()}
+
+
+@pytest.mark.parametrize("name", stiction.__all__)
+def test_every_public_name_is_what_its_module_defines(name):
+    module, attribute = PLACES[name]
+    value = getattr(stiction, name)
+    assert value is getattr(importlib.import_module(f"stiction.{module}"), attribute)
+    assert value.__module__ == f"stiction.{module}", "defined elsewhere"
+    assert value.__doc__
+    assert name in dir(stiction)
+
+
+def test_an_unknown_name_raises_the_usual_attribute_error():
+    with pytest.raises(AttributeError, match="module 'stiction' has no attribute 'relase'"):
+        stiction.relase  # noqa: B018
+
+
+def test_editors_see_the_names_and_places_of_the_table():
+    tree = ast.parse(Path(stiction.__file__).read_text(encoding="utf-8"))
+    (shown,) = (node for node in tree.body if isinstance(node, ast.If))
+    seen = {
+        alias.asname or alias.name: (node.module.removeprefix("stiction."), alias.name)
+        for node in shown.body
+        for alias in node.names
+    }
+    assert seen == PLACES
+
+
+def test_importing_the_package_imports_none_of_its_modules():
+    code = "import sys, stiction; dir(stiction); print(*sorted(m for m in sys.modules if m.startswith('stiction.')))"
+    code += "; assert not {'typing', 'numpy', 'yaml'} & set(sys.modules)"
+    path = f"import sys; sys.path.insert(0, {str(ROOT / 'src')!r}); "
+    done = subprocess.run([sys.executable, "-c", path + code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []
+
+
+def test_the_version_is_that_of_the_project():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert stiction.__version__ == project["version"]

@@ -1,0 +1,19 @@
+"""Table III under other model choices."""
+
+from stiction.report import published
+from stiction.report.tables import save
+from stiction.report.tables_studies import variants
+from stiction.run.logs import logged
+from stiction.stages.named import load_named
+
+
+def main(job):
+    """Compare every variant with the base and with the published and measured crack lengths."""
+    loaded = load_named(job.input.studies, "variant", lambda name: tuple(name.split("_", 1)))
+    known = published.of_paper(published.read(job.input.published), job.params.settings["of_paper"])
+    save(variants(loaded, known), job.output)
+
+
+if __name__ == "__main__":
+    with logged(snakemake.log[0]):
+        main(snakemake)

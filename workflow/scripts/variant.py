@@ -1,0 +1,19 @@
+"""Crack lengths of a pair under one variant, i.e. one changed model choice, from its contact."""
+
+from stiction.config.units import typed
+from stiction.run.logs import logged
+from stiction.stages import storage
+from stiction.studies import variant
+
+
+def main(job):
+    """Run the stages after contact at all humidities."""
+    dataset = variant.compute(
+        storage.load(job.input.contact, "contact"), job.wildcards.pair, typed(variant.Settings, job.params.settings)
+    )
+    storage.save(dataset, job.output[0], "variant", job.params.settings)
+
+
+if __name__ == "__main__":
+    with logged(snakemake.log[0]):
+        main(snakemake)
