@@ -55,10 +55,11 @@ def test_the_readme_table_shows_what_table_3_holds():
 
 
 def test_folders_without_a_finished_run_of_the_paper_change_nothing(tmp_path):
-    assert "no finished run" in update.unfinished(tmp_path)
-    (tmp_path / "verdict.txt").touch()
-    (tmp_path / "provenance.json").write_text('[{"config": {"seed": 1}}]')
-    assert "not that of config.yaml" in update.unfinished(tmp_path)
+    results = tmp_path / "results"
+    results.mkdir()
+    assert "no finished run" in update.unfinished(results)
+    (results / "verdict.txt").touch()
+    assert "not up to date with config.yaml and the code" in update.unfinished(results)
 
 
 def test_markers_are_needed_once_each():
