@@ -574,7 +574,6 @@ MUTANTS = {
     "stages.named": [
         ("key(Path(path).stem)", "Path(path).stem"),
         ("return (*key, model) if model else key", "return key"),
-        ('name.rpartition("_")[2]', 'name.partition("_")[2]'),
     ],
 }
 

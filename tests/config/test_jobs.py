@@ -110,3 +110,12 @@ def test_every_stage_and_study_is_tested_here():
     names = {module.__name__.rpartition(".")[2] for module in JOBS if module.__name__.startswith("stiction.studies")}
     files = Path(studies.__file__).parent.glob("[!_]*.py")
     assert names == {path.stem for path in files}
+
+
+def test_the_axis_of_humidities_runs_from_the_driest_to_the_most_humid():
+    assert jobs.humidity(PLAN, "b")["range"] == [0.44, 0.92]
+
+
+def test_the_sensitivity_has_its_own_number_of_samples():
+    samples = jobs.sensitivity_contact(PLAN, "b")["contact"]["samples"]
+    assert samples == PLAN.config["studies"]["sensitivity"]["samples"] != PLAN.config["contact"]["samples"]

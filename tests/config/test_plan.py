@@ -95,3 +95,16 @@ def test_a_redefined_surface_is_not_one_of_the_paper():
     assert PAPER.paper_surfaces == PAPER.surfaces
     assert plan(surfaces={"Sub1": {"rms_nm": 0.2}}).paper_surfaces == ["B1", "B2", "Sub2"]
     assert plan(surfaces={"B1": {"published_psd": {"floor_nm4": 0.9}}}).paper_surfaces == ["B2", "Sub1", "Sub2"]
+
+
+def test_cases_are_those_of_the_pairs_that_run():
+    assert {case[0] for case in plan(run={"pairs": ["b"]}).cases} == {"b"}
+
+
+def test_a_surface_without_summits_keeps_its_published_spectrum_under_every_variant():
+    known = PAPER.config["surfaces"]["B1"]
+    bare = {key: known[key] for key in ("rms_nm", "skewness", "kurtosis", "psd", "published_psd")}
+    mine = plan(run={"pairs": ["mine"]}, surfaces={"Bare": bare}, pairs={"mine": LIKE_A | {"beam": "Bare"}})
+    settings = mine.variant_contact("mine", "psd_identified")
+    assert settings["base"]["surfaces"]["Bare"]["psd"] == "published"
+    assert settings["identified"] == ["Sub1"]

@@ -99,3 +99,12 @@ def test_datasets_are_keyed_by_the_names_of_their_files(tmp_path):
     assert list(load_named(paths, "forces")) == ["a_rh060_G", "b_rh067_NG"]
     assert list(load_named(paths, "forces", key_of)) == [("a", 0.6, "G"), ("b", 0.67, "NG")]
     assert [found.attrs["name"] for found in storage.load_all(reversed(paths), "forces")] == ["b_rh067_NG", "a_rh060_G"]
+
+
+def test_a_file_is_replaced_and_never_overwritten_while_it_is_read(tmp_path):
+    path = tmp_path / "x.txt"
+    atomic.save_text("old", path)
+    with path.open() as reader:
+        atomic.save_text("new", path)
+        assert reader.read() == "old"
+    assert path.read_text() == "new"
