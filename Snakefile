@@ -10,8 +10,8 @@ BASE = Path(workflow.basedir)
 # Jobs use the code next to this file, because the fingerprint of that code decides what reruns.
 SOURCE = str(BASE / "src")
 sys.path.insert(0, SOURCE)
-PATHS = [SOURCE, *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
-os.environ["PYTHONPATH"] = os.pathsep.join(dict.fromkeys(PATHS))
+PATHS = [SOURCE, *filter(None, dict(os.environ).get("PYTHONPATH", "").split(os.pathsep))]
+os.environ.update(PYTHONPATH=os.pathsep.join(dict.fromkeys(PATHS)))
 
 
 configfile: str(BASE / "config.yaml")

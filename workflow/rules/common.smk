@@ -40,6 +40,12 @@ def code(script):
     return fingerprint(BASE / "workflow" / "scripts" / script)
 
 
+def identified(wildcards):
+    """Dataset of the identification if the spectrum is identified, otherwise nothing."""
+    source = config["surfaces"][wildcards.surface]["psd"]
+    return "results/identification/{surface}.nc" if source == "identified" else []
+
+
 def surfaces_of_pair(wildcards):
     """Datasets of the surfaces of beam and substrate, in this order."""
     return {

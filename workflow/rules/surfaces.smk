@@ -32,12 +32,6 @@ rule identification:
         "../scripts/identification.py"
 
 
-def identified(wildcards):
-    """Dataset of the identification if the spectrum is identified, otherwise nothing."""
-    source = config["surfaces"][wildcards.surface]["psd"]
-    return "results/identification/{surface}.nc" if source == "identified" else []
-
-
 rule spectrum:
     input:
         heights="results/heights/{surface}.nc",
