@@ -12,10 +12,14 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
+from queue import Queue
 
 ROOT = Path(__file__).parents[1]
-PATIENCE = 180  # [s] if the tests of a mutant take longer, the mutant counts as detected
+#: A mutant counts as detected if its tests take this many times as long as without it, and at least that long [s].
+PATIENCE = 4, 120
 
 #: Tests of modules that have no test file of their name: names of test files are unique.
 TESTS = {
@@ -600,15 +604,15 @@ class Copy:
         for name in ("pyproject.toml", "config.yaml"):
             shutil.copy(ROOT / name, self.folder)
 
-    def tests(self, module, cache):
-        """Run the tests of a module; the name of the first that fails, empty if all pass."""
+    def tests(self, module, cache, limit=None):
+        """Run the tests of a module, at most for a time [s]; the name of the first that fails, empty if all pass."""
         files = [tests_of(module), source_of(module)]
         command = [sys.executable, "-B", "-m", "pytest", "-x", "--tb=no", "-p", "no:cacheprovider", *files]
         environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), "OMP_NUM_THREADS": "1"}
         environment["PYTHONPATH"] = str(self.folder / "src")
         try:
             done = subprocess.run(
-                command, cwd=self.folder, env=environment, capture_output=True, text=True, timeout=PATIENCE
+                command, cwd=self.folder, env=environment, capture_output=True, text=True, timeout=limit
             )
         except subprocess.TimeoutExpired:
             return "its tests do not end"
@@ -617,7 +621,7 @@ class Copy:
         lines = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
         return lines[0] if lines else f"pytest ended with {done.returncode}"
 
-    def notice(self, module, old, new):
+    def notice(self, module, old, new, limit):
         """Name of the test that detects a mutant; empty if none does."""
         path = self.folder / source_of(module)
         text = path.read_text(encoding="utf-8")
@@ -626,7 +630,7 @@ class Copy:
         kept = path.stat()
         try:
             path.write_text(text.replace(old, new), encoding="utf-8")
-            return self.tests(module, self.cache)
+            return self.tests(module, self.cache, limit)
         finally:
             path.write_text(text, encoding="utf-8")
             os.utime(path, ns=(kept.st_atime_ns, kept.st_mtime_ns))
@@ -642,25 +646,44 @@ def chosen(modules):
     return mutants
 
 
+def detected(module, mutants, copies):
+    """Mutants of a module and the names of the tests that detect them; the tests must pass without a mutant.
+
+    Copies of the project are taken from a queue and put back, so that each is used by one thread at a time.
+    """
+    copy = copies.get()
+    try:
+        start = time.monotonic()
+        if failed := copy.tests(module, copy.warm):
+            return [((module, "", ""), f"FAILED without a mutant: {failed}")]
+        copy.warm.mkdir(exist_ok=True)
+        limit = max(PATIENCE[0] * (time.monotonic() - start), PATIENCE[1])
+        return [((module, old, new), copy.notice(module, old, new, limit)) for _, old, new in mutants]
+    finally:
+        copies.put(copy)
+
+
 def main():
     parser = argparse.ArgumentParser(description="Introduce small errors and count those that no test detects.")
     parser.add_argument("modules", nargs="*", metavar="module", help="of src/stiction; all by default")
     modules = parser.parse_args().modules or list(MUTANTS)
     if unknown := set(modules) - set(MUTANTS):
         parser.error(f"no mutants of {', '.join(sorted(unknown))}; there are some of {', '.join(MUTANTS)}")
-    mutants, survivors = chosen(modules), []
-    with tempfile.TemporaryDirectory() as folder:
-        copy = Copy(Path(folder))
-        for module in modules:
-            if failed := copy.tests(module, copy.warm):
-                sys.exit(f"the tests of {module} must pass before it is broken: {failed}")
-        copy.warm.mkdir(exist_ok=True)
-        for module, old, new in mutants:
-            test = copy.notice(module, old, new)
-            survivors += [] if test else [(module, old, new)]
-            print(f"{'caught  ' if test else 'SURVIVED'} {module}: {old!r} -> {new!r}  {test}", flush=True)  # noqa: T201
-    caught = len(mutants) - len(survivors)
-    print(f"{caught} of {len(mutants)} mutants caught, {100 * caught / len(mutants):.0f} %")  # noqa: T201
+    mutants, results = chosen(modules), []
+    workers = min(len(modules), os.cpu_count())
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(workers) as pool:
+        copies = Queue()
+        for worker in range(workers):
+            copies.put(Copy(Path(folder) / str(worker)))
+        tasks = [pool.submit(detected, name, [m for m in mutants if m[0] == name], copies) for name in modules]
+        for task in as_completed(tasks):
+            for (module, old, new), test in task.result():
+                print(f"{'caught  ' if test else 'SURVIVED'} {module}: {old!r} -> {new!r}  {test}", flush=True)  # noqa: T201
+                results.append(test)
+    if broken := [test for test in results if "without a mutant" in test]:
+        sys.exit("\n".join(broken))
+    caught = sum(map(bool, results))
+    print(f"{caught} of {len(mutants)} mutants caught, {100 * caught / len(mutants):.1f} %")  # noqa: T201
     sys.exit(caught < 0.99 * len(mutants))
 
 
