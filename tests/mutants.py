@@ -193,7 +193,7 @@ MUTANTS = {
         ("if attraction is None else", "if attraction is not None else"),
         ("before=self.further[0]", "before=self.further[1]"),
         ("row += scales.before", "row += 0"),
-        ("row, share = len(snap_off) - 2, 1.0", "row, share = len(snap_off) - 2, 0.0"),
+        ("row, share = len(snap_off) - 2, 1.0", "row, share = 0, 1.0"),
         ("return a * (a**2 - 2 * transition * width)", "return a * (a**2 - transition * width)"),
         ("width**2 * (width + transition) - 1.5", "width**2 * (width - transition) - 1.5"),
         ("weight * deep_load((z - k * step) * inverse, transition)", "weight * deep_load(z * inverse, transition)"),
@@ -371,9 +371,19 @@ MUTANTS = {
         ("return normalised(config)", "return config"),
         ("for key in sorted(value)}", "for key in value}"),
         ('sorted(pair["humidities"])', 'pair["humidities"]'),
+    ],
+    "config.reading": [
         ("for key in duplicates(", "for key in set("),
         ("if not isinstance(content, dict)", "if content is None"),
         ('key.tag != "tag:yaml.org,2002:merge"', "key.tag"),
+        ('.count(b"\\n") + 1', '.count(b"\\n")'),
+        ('"is empty" if content is None', '"is empty" if content'),
+        ("if pattern.fullmatch(text) and", "if False and"),
+        ("mark.line + 1", "mark.line"),
+        ("taken = option in options", "taken = taken or option in options"),
+        ("if taken and equals", "if False"),
+        ("equals and name.isidentifier()", "name.isidentifier()"),
+        ("return 2 if found else 0", "return 0"),
     ],
     "config.relations": [
         ("if kurtosis <= skewness**2 + 1", "if kurtosis < skewness**2 + 1"),
@@ -387,7 +397,7 @@ MUTANTS = {
         ("if needed <= memory.LARGEST", "if needed <= 100 * memory.LARGEST"),
         ("_too_large(length + margin, width + margin, spacing)", "_too_large(length, width, spacing)"),
         ("force[0] >= _SAFE * force[1]", "force[0] >= -_SAFE * force[1]"),
-        ("{*pair[\"humidities\"], shown_humidity}", "{shown_humidity}"),
+        ('{*pair["humidities"], shown_humidity}', "{shown_humidity}"),
         ("step = spacing * every", "step = spacing"),
         ("if 3 * coarse <= side", "if 2 * coarse <= side"),
         ("return None if chunks <= samples", "return None if chunks < samples"),
@@ -479,7 +489,7 @@ MUTANTS = {
         ('"identification", surface, *address)', '"identification", *address)'),
         ("if length <= bound", "if length <= 0.9 * bound"),
         ("    refuse_long_correlation(surface, found.spectrum", "    (surface, found.spectrum"),
-        ('identification[f"{name}_error"])', 'identification[name])'),
+        ('identification[f"{name}_error"])', "identification[name])"),
         ("StripGrid(patch, patch, settings.spacing,", "StripGrid(patch, patch, settings.target_spacing,"),
     ],
     "stages.character": [
@@ -635,7 +645,7 @@ class Copy:
     def __init__(self, folder):
         self.folder, self.warm, self.cache = folder / "project", folder / "warm", folder / "cache"
         ignored = shutil.ignore_patterns("__pycache__", "benchmarks")
-        for name in ("src", "tests", "workflow"):
+        for name in ("src", "tests", "workflow", "profiles"):
             shutil.copytree(ROOT / name, self.folder / name, ignore=ignored)
         for name in ("pyproject.toml", "config.yaml"):
             shutil.copy(ROOT / name, self.folder)

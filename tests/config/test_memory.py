@@ -20,7 +20,8 @@ from stiction.surface.translation import Translation
 
 length, width, spacing = (float(word) for word in sys.argv[1:])
 psd = CutoffSelfAffine(1e-32, 1e-36, 1e7, 0.9 * np.pi / spacing)
-z = RoughSurface(psd, Translation(GAUSSIAN), 1e-9, StripGrid(length, width, spacing, 0.0)).draw(np.random.default_rng(1))
+grid = StripGrid(length, width, spacing, 0.0)
+z = RoughSurface(psd, Translation(GAUSSIAN), 1e-9, grid).draw(np.random.default_rng(1))
 if length == width:
     radial_periodogram(z, spacing)
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
@@ -64,4 +65,4 @@ def test_the_largest_field_of_a_configuration_counts(overlay, size):
 
 
 def test_the_fields_of_spectra_have_the_size_of_the_stages():
-    assert 1e-6 * memory.FIELD_UM == pytest.approx(FIELD)
+    assert pytest.approx(FIELD) == 1e-6 * memory.FIELD_UM

@@ -3,7 +3,7 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 from scipy.integrate import quad
@@ -316,6 +316,8 @@ def test_deep_contact_of_a_small_hard_sphere_is_hertz(interference):
 
 
 @given(st.floats(5, 12), st.floats(-9, -6.5))
+@example(10.9, -6.5)
+@example(10.5, -6.8)
 def test_any_solid_and_any_height_of_a_summit_have_the_force_of_the_exact_solution(log_modulus, log_height):
     solid, height = MaugisTable(10**log_modulus, WATER.attraction), 10**log_height
     radius, spacing, step = 3e-7, 10e-9, height / 40
@@ -329,7 +331,7 @@ def test_any_solid_and_any_height_of_a_summit_have_the_force_of_the_exact_soluti
     snap = maugis_branch(transition_parameter(radius, solid.modulus, WATER.attraction))[1][0]
     near = np.abs((height - step * np.arange(60)) / interference_scale(radius, solid.modulus, WATER.attraction) - snap)
     # Single precision of heights; interpolation between rows of λ. The load is vertical at snap-off.
-    np.testing.assert_allclose(total[near > 0.02], exact[near > 0.02], rtol=3e-3, atol=0.03 * pull)
+    np.testing.assert_allclose(total[near > 0.02], exact[near > 0.02], rtol=5e-4, atol=0.03 * pull)
 
 
 @pytest.mark.parametrize("count", [1, 3])

@@ -83,7 +83,9 @@ def test_humidity_outside_the_open_interval_is_refused_with_its_value(humidity):
 def test_density_and_surface_tension_are_the_tabulated_ones(celsius, density, tension):
     # Kell's temperatures are those of IPTS-68, up to 0.026 K higher at 100 °C: 0.02 kg/m³.
     assert tabulated_density(celsius + 273.15) == pytest.approx(density, abs=0.02)
-    assert 1e3 * tabulated_surface_tension(celsius + 273.15) == pytest.approx(tension, abs=0.006)  # rounding of the table
+    assert 1e3 * tabulated_surface_tension(celsius + 273.15) == pytest.approx(
+        tension, abs=0.006
+    )  # rounding of the table
 
 
 def test_water_at_300_kelvin_is_exactly_that_of_the_paper():

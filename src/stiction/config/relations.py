@@ -128,7 +128,9 @@ def _checked(holds, paths, config, faults):
 def _given(paths, values):
     """The other values of a violated relation, except lists of names and whole sections of the configuration."""
     given = ((path, value) for path, value in zip(paths, values, strict=True) if path[-1] != "#")
-    others = [f"{dotted(path)} = {shown(value)}" for path, value in given if len(path) > 1 or not isinstance(value, dict)]
+    others = [
+        f"{dotted(path)} = {shown(value)}" for path, value in given if len(path) > 1 or not isinstance(value, dict)
+    ]
     return f" (given {', '.join(others)})" if others else ""
 
 
@@ -246,7 +248,7 @@ def length_exceeds_the_correlation(length, psd):
     return None if length > bound else f"must be above the correlation length of the surface, {bound:.3g} µm"
 
 
-#: The correlation length that is estimated from summits exceeds that of the identified spectrum by this factor at most.
+#: The correlation length estimated from summits exceeds that of the identified spectrum by this factor at most.
 _AT_MOST = 1.5
 
 
@@ -393,7 +395,9 @@ def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature
         forces = _estimated(tuple(map(_summit_source, both)), elastic, temperature, humidities)
     except (ValueError, ArithmeticError):
         return "must have surfaces and a solid for which the adhesion can be estimated; some value is far out of range"
-    stuck = [(at, *force) for at, force in zip(humidities, forces, strict=True) if not force[0] >= _SAFE * force[1] >= 0]
+    stuck = [
+        (at, *force) for at, force in zip(humidities, forces, strict=True) if not force[0] >= _SAFE * force[1] >= 0
+    ]
     if not stuck:
         return None
     humidity, repulsion, pull = stuck[0]
@@ -455,6 +459,6 @@ def _too_large(length, width, spacing):
     if needed <= memory.LARGEST:
         return None
     return (
-        f"must leave fields within {1e-3 * memory.LARGEST:g} GB of memory: {length:g} x {width:g} µm every {spacing:g} nm "
-        f"take {1e-3 * needed:.3g} GB"
+        f"must leave fields within {1e-3 * memory.LARGEST:g} GB of memory: {length:g} x {width:g} µm every "
+        f"{spacing:g} nm take {1e-3 * needed:.3g} GB"
     )

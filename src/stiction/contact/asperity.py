@@ -106,8 +106,8 @@ def maugis_branch(transition: float, points: int = 6000) -> tuple[np.ndarray, np
     load, interference : (n,) arrays
         P̄ and δ̄ of the stable states [-]; the first is the point of snap-off.
     """
-    # The spread falls with the depth of contact; the closure loses digits to cancellation there. This end is deeper than
-    # δ̄ = 1e3 for any λ.
+    # The spread falls with the depth of contact; the closure loses digits to cancellation there. This end is deeper
+    # than δ̄ = 1e3 for any λ.
     spread = np.geomspace(min(1e-2, 0.1 / transition), 1e4, points)
     touching = touching_radius(transition)
     radius = np.linspace(touching, min(touching, 8 * transition / (3 * np.pi)), points)
@@ -122,8 +122,8 @@ def deep_load(interference: float, transition: float) -> float:
 
     To leading order in the spread u = s/ā,
 
-    .. math:: \tfrac23 \lambda s^2 (s + \lambda) = \bar a, \quad \bar\delta = \bar a^2 - \tfrac43 \lambda s, \quad
-              \bar P = \bar a^3 - 2 \lambda \bar a s .
+    .. math:: \tfrac23 \lambda s^2 (s + \lambda) = \bar a, \quad \bar\delta = \bar a^2 - \tfrac43 \lambda s,
+              \quad \bar P = \bar a^3 - 2 \lambda \bar a s .
 
     This is JKR for λ ≫ s and, but for a constant of the size of the pull-off force, Hertz for λ → 0. For δ̄ > 800 and
     λ > 0.01 it exceeds the load of Maugis by less than 1.1 πwR, 5e-5 of the load.
@@ -263,7 +263,7 @@ class MaugisTable:
         if sharp:
             raise ValueError(
                 f"{sharp} summits are too sharp: their Maugis' λ is below {self.rows[0]:.2g}, a radius below "
-                f"{1e9 * (self.rows[0] / np.exp(self.scales.log_transition)) ** 3:.2g} nm, where a solid is no continuum"
+                f"{1e9 * (self.rows[0] / np.exp(self.scales.log_transition)) ** 3:.2g} nm, beyond any continuum"
             )
 
 
@@ -286,7 +286,7 @@ def _add_hertz(heights, spacing, step, modulus, force):
 
 @numba.njit(cache=True, nogil=True)
 def _add_maugis(heights, spacing, step, scales, snap_off, load, force):
-    """Add the Maugis force of every summit, by interpolation in the table; returns the number of summits before it."""
+    """Add the Maugis force of every summit, by interpolation in the table; returns the number of too sharp ones."""
     sharp = 0
     for i in range(1, heights.shape[0] - 1):
         for j in range(1, heights.shape[1] - 1):

@@ -11,7 +11,6 @@ from stiction.stages.identification import misfits, refuse_long_correlation
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 from stiction.surface.translation import Translation, spectrum_of_heights, underlying_spectrum
 
-
 #: Largest ratio, or smallest inverse ratio, of identified to measured radius and density of summits. ASSUME: 2; beyond,
 #: contact would be computed for surfaces that do not resemble the measured one.
 RESEMBLES = 2.0
@@ -77,9 +76,9 @@ def refuse_misuse(identification: xr.Dataset, use: Use) -> None:
     ratios = {word: 1 + off for word, (off, _) in misfits(identification).items()}
     if not all(1 / RESEMBLES <= ratio <= RESEMBLES for ratio in ratios.values()):
         raise ValueError(
-            f"no spectrum of the form of Eq. (7) has the summits of surface {use.surface}: at best {ratios['radius']:.3g} "
-            f"times the radius surfaces.{use.surface}.mean_summit_radius_um and {ratios['density']:.3g} times the density "
-            f"surfaces.{use.surface}.summit_density_per_um2"
+            f"no spectrum of the form of Eq. (7) has the summits of surface {use.surface}: at best "
+            f"{ratios['radius']:.3g} times the radius surfaces.{use.surface}.mean_summit_radius_um and "
+            f"{ratios['density']:.3g} times the density surfaces.{use.surface}.summit_density_per_um2"
         )
 
 
