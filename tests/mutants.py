@@ -154,11 +154,15 @@ MUTANTS = {
         ("if is_multiple(length, e) and", "if is_multiple(length, p) and"),
     ],
     "contact.meniscus": [
-        ("np.log(humidity) / WATER_MOLAR_VOLUME", "np.log10(humidity) / WATER_MOLAR_VOLUME"),
+        ("np.log(humidity) / molar_volume", "np.log10(humidity) / molar_volume"),
         ("GAS_CONSTANT * temperature *", "GAS_CONSTANT *"),
         ("return -2 * kelvin_radius", "return -kelvin_radius"),
         ("(humidity < 1))", "(humidity <= 1))"),
-        ("WATER_SURFACE_ENERGY / laplace_pressure", "-WATER_SURFACE_ENERGY / laplace_pressure"),
+        ("surface_energy(temperature) / laplace_pressure", "WATER_SURFACE_ENERGY / laplace_pressure"),
+        ("(1 - 0.625 * tau)", "(1 - 0.6 * tau)"),
+        ("tabulated_density(_REFERENCE) / tabulated_density(temperature)", "1.0"),
+        ("_REFERENCE = 300.0", "_REFERENCE = 298.15"),
+        ("16.945176", "16.95176"),
     ],
     "contact.vanderwaals": [
         ("(2 / 15) ** (1 / 6)", "(2 / 15) ** (1 / 3)"),
@@ -191,6 +195,31 @@ MUTANTS = {
         ("weight = scales.force * radius", "weight = scales.force"),
         ("part * (low[cell + 1] - low[cell])", "(1 - part) * (low[cell + 1] - low[cell])"),
         ("if attraction is None else", "if attraction is not None else"),
+        ("before=self.further[0]", "before=self.further[1]"),
+        ("row += scales.before", "row += 0"),
+        ("row, share = len(snap_off) - 2, 1.0", "row, share = 0, 1.0"),
+        ("return a * (a**2 - 2 * transition * width)", "return a * (a**2 - transition * width)"),
+        ("width**2 * (width + transition) - 1.5", "width**2 * (width - transition) - 1.5"),
+        ("weight * deep_load((z - k * step) * inverse, transition)", "weight * deep_load(z * inverse, transition)"),
+        ("transition = np.exp(scales.log_transition) * third", "transition = np.exp(scales.log_transition)"),
+        ("min(1e-2, 0.1 / transition)", "1e-2"),
+    ],
+    "contact.estimate": [
+        ("rms**2 / moments[0] * moment", "rms / moments[0] * moment"),
+        ("(3 / 8 / mean_radius) ** 2", "(3 / 8 / mean_radius)"),
+        ("np.sqrt(3) * density), m4)", "np.sqrt(3) / density), m4)"),
+        ("return 3 / 8 * np.sqrt(np.pi / self.m4)", "return 3 / 8 * np.sqrt(1 / self.m4)"),
+        ("return 4 * np.sqrt(self.m0 / (np.pi * alpha))", "return np.sqrt(self.m0 / (np.pi * alpha))"),
+        ("(1 - 0.8968 / alpha)", "(1 + 0.8968 / alpha)"),
+        ("return surface.summit_density * ", "return "),
+        ("ndtr((height - distance) / rms)", "ndtr((distance - height) / rms)"),
+        ("float(-curve.min())", "float(curve.max())"),
+    ],
+    "config.memory": [
+        ("_PER_POINT * (1e3 * length_um / spacing_nm)", "_PER_POINT * (1e3 * length_um)"),
+        ('config["beam"]["width_um"] + sampling["margin_um"]', 'config["beam"]["width_um"]'),
+        ("return max(USUAL, ", "return min(USUAL, "),
+        ("for spacing in spacings]", "for spacing in spacings[:1]]"),
     ],
     "contact.pair": [
         ("count[k] = higher / heights.size", "count[k] = higher"),
@@ -346,9 +375,19 @@ MUTANTS = {
         ("return normalised(config)", "return config"),
         ("for key in sorted(value)}", "for key in value}"),
         ('sorted(pair["humidities"])', 'pair["humidities"]'),
+    ],
+    "config.reading": [
         ("for key in duplicates(", "for key in set("),
         ("if not isinstance(content, dict)", "if content is None"),
         ('key.tag != "tag:yaml.org,2002:merge"', "key.tag"),
+        ('.count(b"\\n") + 1', '.count(b"\\n")'),
+        ('"is empty" if content is None', '"is empty" if content'),
+        ("if pattern.fullmatch(text) and", "if False and"),
+        ("mark.line + 1", "mark.line"),
+        ("taken = option in options", "taken = taken or option in options"),
+        ("if taken and equals", "if False"),
+        ("equals and name.isidentifier()", "name.isidentifier()"),
+        ("return 2 if found else 0", "return 0"),
     ],
     "config.relations": [
         ("if kurtosis <= skewness**2 + 1", "if kurtosis < skewness**2 + 1"),
@@ -358,6 +397,11 @@ MUTANTS = {
         ("largest = math.pi / cutoff", "largest = 2 * math.pi / cutoff"),
         ("return None if spacing <= coarse or", "return None if spacing >= coarse or"),
         ("return None if length > bound", "return None if length > 0.5 * bound"),
+        ("length * _AT_MOST < bound", "length * 10 * _AT_MOST < bound"),
+        ("if needed <= memory.LARGEST", "if needed <= 100 * memory.LARGEST"),
+        ("_too_large(length + margin, width + margin, spacing)", "_too_large(length, width, spacing)"),
+        ("force[0] >= _SAFE * force[1]", "force[0] >= -_SAFE * force[1]"),
+        ('{*pair["humidities"], shown_humidity}', "{shown_humidity}"),
         ("step = spacing * every", "step = spacing"),
         ("if 3 * coarse <= side", "if 2 * coarse <= side"),
         ("return None if chunks <= samples", "return None if chunks < samples"),
@@ -433,6 +477,9 @@ MUTANTS = {
         ("target(zeta) / target.variance", "target(zeta)"),
         ('density(heights, "NG")', 'density(heights, "G")'),
         ('if model == "G":', 'if model == "NG":'),
+        ('"sampling.margin_um": use.margin}', '"sampling.margin_um": use.strip_length}'),
+        ("1 / RESEMBLES <= ratio <= RESEMBLES", "1 / RESEMBLES <= ratio"),
+        ('settings.psd == "identified" and settings.identified', "False"),
         ("spectrum.underlying.values, target.cutoff)", "spectrum.target.values, target.cutoff)"),
         ("spectrum.wavenumber, spectrum.achieved)", "spectrum.wavenumber, spectrum.target)"),
         ("spectrum_of_heights(underlying, translation, settings.spacing), defect)", "underlying, defect)"),
@@ -444,6 +491,9 @@ MUTANTS = {
         ),
         ('patches(), patches("control"))', "patches(), patches())"),
         ('"identification", surface, *address)', '"identification", *address)'),
+        ("if length <= bound", "if length <= 0.9 * bound"),
+        ("    refuse_long_correlation(surface, found.spectrum", "    (surface, found.spectrum"),
+        ('identification[f"{name}_error"])', "identification[name])"),
         ("StripGrid(patch, patch, settings.spacing,", "StripGrid(patch, patch, settings.target_spacing,"),
     ],
     "stages.character": [
@@ -599,7 +649,7 @@ class Copy:
     def __init__(self, folder):
         self.folder, self.warm, self.cache = folder / "project", folder / "warm", folder / "cache"
         ignored = shutil.ignore_patterns("__pycache__", "benchmarks")
-        for name in ("src", "tests", "workflow"):
+        for name in ("src", "tests", "workflow", "profiles"):
             shutil.copytree(ROOT / name, self.folder / name, ignore=ignored)
         for name in ("pyproject.toml", "config.yaml"):
             shutil.copy(ROOT / name, self.folder)
