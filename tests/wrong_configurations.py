@@ -100,6 +100,16 @@ WRONG_RELATIONS = [
     ("surfaces: {B1: {kurtosis: 1.6}}", "surfaces.B1.kurtosis", "1.6", "skewness² + 1 = 1.6084 (given surfaces.B1."),
     ("surfaces: {B1: {skewness: 0}}", "surfaces.B1.kurtosis", "4.6", "maximum-entropy"),
     ("surfaces: {B1: {skewness: 1.0e-3}}", "surfaces.B1.kurtosis", "4.6", "surfaces.B1.skewness = 0.001"),
+    ("surfaces: {B1: {skewness: -0.1, kurtosis: 3.5}}", "surfaces.B1.kurtosis", "3.5",
+     "near that of a maximum-entropy density of the heights: no maximum-entropy density has moments within 2.45 "
+     "standard errors (0.055 and 0.11) of skewness -0.1 and kurtosis 3.5; at this skewness the largest kurtosis is "
+     "3.026"),
+    ("pairs: {b: {gap_um: 0.317}}", "pairs.b.gap_um", "0.317",
+     "at least 0.3173 µm, 20 times the height of the water film, 12.463 nm, plus the rms of the surfaces, 3.4 nm (given"
+     " pairs.b.humidities = [0.44, 0.55, 0.67, 0.8, 0.88, 0.92], water.temperature_K = 300, pairs.b.beam = 'B2', "
+     "pairs.b.substrate = 'Sub1')"),
+    ("pairs: {a: {humidities: [0.9999]}}", "pairs.a.gap_um", "20", "at least 207.9 µm"),
+    ("figures: {humidity: 0.9902}\nrun: {pairs: [a, b]}", "pairs.c.gap_um", "2", "figures.humidity = 0.9902"),
     ("surfaces: {B1: {published_psd: {corner_rad_per_um: 138}}}", "surfaces.B1.published_psd.corner_rad_per_um", "138",
      "below the cut-off (given surfaces.B1.published_psd.cutoff_rad_per_um = 138)"),
     ("surfaces: {B1: {published_psd: {floor_nm4: 525}}}", "surfaces.B1.published_psd.floor_nm4", "525", "plateau"),

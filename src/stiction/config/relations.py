@@ -16,11 +16,15 @@ import yaml
 from stiction.config.cases import NAMEABLE, decimals
 from stiction.config.messages import ConfigError, Problem, did_you_mean, dotted, duplicates, schema_problems, shown
 from stiction.config.units import NM_PER_UM, typed
+from stiction.contact.meniscus import meniscus_height
 from stiction.errors import NotConverged
 from stiction.numbers import is_multiple
-from stiction.surface import maxent
+from stiction.surface.feasible import nearest_feasible
 from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
-from stiction.surface.translation import LARGEST_SCORE
+
+#: ASSUME: smallest gap in units of film height and roughness. The model takes the range of the force laws as short
+#: compared with the gap: with a film of half the gap, Eq. (13) gives half of the adhesion energy.
+APART = 20
 
 
 @functools.cache
@@ -112,8 +116,9 @@ def _checked(holds, paths, config, faults):
 
 
 def _given(paths, values):
-    """The other values of a violated relation."""
-    others = [f"{dotted(path)} = {shown(value)}" for path, value in zip(paths, values, strict=True) if path[-1] != "#"]
+    """The other values of a violated relation, except lists of names and whole sections."""
+    pairs = zip(paths, values, strict=True)
+    others = [f"{dotted(path)} = {shown(value)}" for path, value in pairs if path[-1] != "#" and len(path) > 1]
     return f" (given {', '.join(others)})" if others else ""
 
 
@@ -176,14 +181,13 @@ def humidity_of_the_figures_has_a_name(humidity):
 
 @relation("surfaces.*.kurtosis", "surfaces.*.skewness")
 def heights_have_a_density(kurtosis, skewness):
-    """Densities with these moments exist, including the maximum-entropy density of Eq. (3)."""
+    """A density has these moments, and a maximum-entropy density of Eq. (3) these or moments near them."""
     if kurtosis <= skewness**2 + 1:
         return f"must be above skewness² + 1 = {skewness**2 + 1:.6g}"
     try:
-        density = maxent.solve(skewness, kurtosis)
-        density.quantile_of_normal(np.array([-LARGEST_SCORE, LARGEST_SCORE]))
+        nearest_feasible(skewness, kurtosis)
     except (ValueError, NotConverged) as reason:
-        return f"must allow a maximum-entropy density of the heights: {reason}"
+        return f"must be near that of a maximum-entropy density of the heights: {reason}"
     return None
 
 
@@ -309,6 +313,21 @@ def a_mesh_is_whole(elements, strips, length):
     """At least one mesh of Figure 19 is possible; lengths that do not fill each other and the beam are left out."""
     fitting = (is_multiple(length, element) and is_multiple(element, strip) for element in elements for strip in strips)
     return None if any(fitting) else "must include a divisor of the beam that is a multiple of one of the strips"
+
+
+@relation(
+    "pairs.*.gap_um", "pairs.*.humidities", "water.temperature_K", "pairs.*.beam", "pairs.*.substrate", "surfaces"
+)
+@relation("pairs.*.gap_um", "figures.humidity", "water.temperature_K", "pairs.*.beam", "pairs.*.substrate", "surfaces")
+def beam_is_apart_from_the_film(gap, humidities, temperature, beam, substrate, surfaces):
+    """Along most of a crack, the beam is far from the water film and the hills of the substrate."""
+    if not {beam, substrate} <= set(surfaces):
+        return None  # an undefined surface, which another relation reports
+    film = 1e9 * float(np.max(meniscus_height(humidities, temperature)))
+    rms = math.hypot(*(surfaces[name]["rms_nm"] for name in (beam, substrate)))
+    least = APART * (film + rms) / NM_PER_UM
+    found = f"{APART} times the height of the water film, {film:.5g} nm, plus the rms of the surfaces, {rms:.3g} nm"
+    return None if gap >= least else f"must be at least {least:.4g} µm, {found}"
 
 
 @relation("pairs.*.gap_um", "beam.length_um")
