@@ -10,9 +10,9 @@ PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 ORDER = """
 constants errors streams estimates numbers models progress
 surface: maxent spectrum translation feasible field iteration summits identify
-contact: meniscus vanderwaals asperity pair forcelaw
+contact: meniscus vanderwaals asperity pair forcelaw bounds
 chaos: coordinates density polynomials model
-beam: cantilever energy equilibrium release resolution montecarlo
+beam: cantilever energy foundation equilibrium release resolution montecarlo
 analysis: plasticity sensitivity convergence mesh variants
 run: fingerprint logs folder atomic provenance warmup
 config: units cases merging messages relations files plan jobs

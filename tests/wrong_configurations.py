@@ -106,10 +106,13 @@ WRONG_RELATIONS = [
      "3.026"),
     ("pairs: {b: {gap_um: 0.317}}", "pairs.b.gap_um", "0.317",
      "at least 0.3173 µm, 20 times the height of the water film, 12.463 nm, plus the rms of the surfaces, 3.4 nm (given"
-     " pairs.b.humidities = [0.44, 0.55, 0.67, 0.8, 0.88, 0.92], water.temperature_K = 300, pairs.b.beam = 'B2', "
-     "pairs.b.substrate = 'Sub1')"),
+     " pairs.b.humidities = [0.44, 0.55, 0.67, 0.8, 0.88, 0.92], run.pairs = ['a', 'b', 'c'], water.temperature_K = "
+     "300, pairs.b.beam = 'B2', pairs.b.substrate = 'Sub1')"),
     ("pairs: {a: {humidities: [0.9999]}}", "pairs.a.gap_um", "20", "at least 207.9 µm"),
-    ("figures: {humidity: 0.9902}\nrun: {pairs: [a, b]}", "pairs.c.gap_um", "2", "figures.humidity = 0.9902"),
+    ("figures: {humidity: 0.9902}", "pairs.c.gap_um", "2", "figures.humidity = 0.9902"),
+    ("surfaces: {B2: {kurtosis: 1.5777}}", "sampling.strip_length_um", "1.5",
+     "at most 1.27 µm to resolve the cracks of pair b at RH 0.44 (given beam.thickness_um = 2.6, solid.young_modulus"),
+    ("beam: {thickness_um: 1}\nrun: {pairs: [a]}", "sampling.strip_length_um", "1.5", "at most 1.15 µm"),
     ("surfaces: {B1: {published_psd: {corner_rad_per_um: 138}}}", "surfaces.B1.published_psd.corner_rad_per_um", "138",
      "below the cut-off (given surfaces.B1.published_psd.cutoff_rad_per_um = 138)"),
     ("surfaces: {B1: {published_psd: {floor_nm4: 525}}}", "surfaces.B1.published_psd.floor_nm4", "525", "plateau"),

@@ -5,7 +5,7 @@ import pytest
 from beams import PAPER, scattered_laws, uniform_laws
 
 from stiction.analysis.mesh import arrest_on_uniform_ground, finer_mesh, resolution, rigid_energy, whole_meshes
-from stiction.beam.resolution import ELEMENT, STRIP, foundation_length
+from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
 from stiction.contact import forcelaw
 
 LAW = uniform_laws(1)[0]

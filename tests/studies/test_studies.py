@@ -11,8 +11,9 @@ from vectors import sampled_vectors
 
 from stiction.analysis.sensitivity import energy_sensitivity
 from stiction.beam.energy import apparent_adhesion_energy
+from stiction.beam.foundation import ELEMENT, foundation_length
 from stiction.beam.montecarlo import Experiment, release_beam
-from stiction.beam.resolution import ELEMENT, foundation_length, resolved
+from stiction.beam.resolution import resolved
 from stiction.chaos.model import draw_laws, fit, resample_laws, truncated
 from stiction.config import jobs
 from stiction.config.cases import case_id

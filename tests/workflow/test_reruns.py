@@ -72,7 +72,7 @@ MATRIX = [
     ("elasticity", "solid: {young_modulus_GPa: 160}",
      "contact_chunk beams mesh resampling sensitivity_contact plasticity variant_contact checks", (), ""),
     ("grid of surfaces", "sampling: {spacing_nm: 5}", "identification spectrum variant_contact", (), "heights"),
-    ("length of strips", "sampling: {strip_length_um: 7.5}",
+    ("length of strips", "sampling: {strip_length_um: 2.5}",
      "character contact_chunk beams resampling sensitivity_contact plasticity variant_contact checks", (),
      "heights|identification|spectrum"),
     ("strips of Table I", "character: {strips: 50}", "character", (), "contact|forces"),

@@ -8,8 +8,8 @@ import numpy as np
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
+from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
 from stiction.beam.release import EndState, released_beam
-from stiction.beam.resolution import ELEMENT, STRIP, foundation_length
 from stiction.contact.forcelaw import adhesion_energy, energy, pressure
 from stiction.numbers import is_multiple
 

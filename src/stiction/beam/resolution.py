@@ -1,8 +1,4 @@
-"""Elements and strips that resolve the end of a crack (Sec. III-C, App. C).
-
-Behind the front of a crack a beam lies on the force laws as on an elastic foundation; its deflection decays within the
-foundation length. Elements and strips that are longer hold the front and make cracks too short.
-"""
+"""Elements that resolve the cracks on given force laws (Sec. III-C, App. C)."""
 
 from dataclasses import replace
 
@@ -10,30 +6,13 @@ import numpy as np
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
+from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
 from stiction.beam.release import START
 from stiction.contact import forcelaw
 
-#: Largest length of a strip and of an element, in foundation lengths. Up to these the crack on a uniform law is within
-#: ``ACCURACY`` of that on a fine mesh: `tests/beam/test_resolution.py`.
-STRIP, ELEMENT = 0.7, 2.2
-#: Largest relative error of the length of a crack on a mesh of these lengths.
-ACCURACY = 0.01
 #: Elements along the crack from which a beam is released: `stiction.beam.release.release` needs two, and halves that
 #: crack once for a beam that adheres much more strongly than its mean law.
 ALONG_START = 4
-
-
-def foundation_length(beam: Beam, laws: np.ndarray) -> float:
-    r"""Foundation length of a beam on force laws [m].
-
-    .. math:: l_f = \left( \frac{E t^3}{12 \, a_\mathrm{left} f_\mathrm{max}} \right)^{1/4}
-        = \left( \frac{4 E I}{k w} \right)^{1/4}, \quad k = 4 \, a_\mathrm{left} f_\mathrm{max}
-
-    with the slope k of Eq. (12) at f = 0. Its mean over the laws (n, 4) is taken, because several strips lie within a
-    foundation length.
-    """
-    stiffness = 4 * np.mean(laws[:, 0] * laws[:, 2])
-    return float((4 * beam.bending_stiffness / (stiffness * beam.width)) ** 0.25)
 
 
 def resolved(beam: Beam, points: int, laws: np.ndarray) -> Beam:

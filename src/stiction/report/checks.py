@@ -18,7 +18,7 @@ from stiction.analysis.mesh import resolution, rigid_energy
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.beam.equilibrium import allowed_imbalance
-from stiction.beam.resolution import ACCURACY
+from stiction.beam.foundation import ACCURACY
 from stiction.config.cases import case_id
 from stiction.contact.forcelaw import admissible, coefficients, energy
 from stiction.errors import NotConverged

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis.mesh import Arrest, arrest_on_uniform_ground, whole_meshes
-from stiction.beam.resolution import ELEMENT, STRIP, foundation_length
+from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
 from stiction.contact import forcelaw
 from stiction.errors import NotConverged
 from stiction.progress import progress

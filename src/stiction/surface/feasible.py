@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize_scalar
-from scipy.stats import chi2
 
 from stiction.errors import NotConverged
 from stiction.surface import maxent
@@ -20,7 +19,7 @@ from stiction.surface.translation import LARGEST_SCORE
 SAMPLE = 2000
 #: Largest distance of the substituted moments from the measured ones [standard errors]: if the measured ones are an
 #: estimate of feasible ones, their distance from these is larger with a probability of 5 %.
-LARGEST_DISTANCE = float(np.sqrt(chi2.isf(0.05, 2)))
+LARGEST_DISTANCE = float(np.sqrt(-2 * np.log(0.05)))
 
 #: Kurtosis above skewness² + 1 that is feasible at any skewness of a surface.
 _FEASIBLE = 0.5
