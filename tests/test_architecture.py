@@ -9,10 +9,10 @@ PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 #: Folders and their modules, in the order in which they may import: from modules above or to the left.
 ORDER = """
 constants errors streams estimates numbers models progress
-surface: maxent spectrum translation field iteration summits identify
-contact: meniscus vanderwaals asperity estimate pair forcelaw
+surface: maxent spectrum translation feasible field iteration summits identify
+contact: meniscus vanderwaals asperity estimate pair forcelaw bounds
 chaos: coordinates density polynomials model
-beam: cantilever energy equilibrium release montecarlo
+beam: cantilever energy foundation equilibrium release resolution montecarlo
 analysis: plasticity sensitivity convergence mesh variants
 run: fingerprint logs folder atomic provenance warmup
 config: units cases merging messages reading memory relations files plan jobs

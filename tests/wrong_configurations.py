@@ -101,6 +101,19 @@ WRONG_RELATIONS = [
     ("surfaces: {B1: {kurtosis: 1.6}}", "surfaces.B1.kurtosis", "1.6", "skewness² + 1 = 1.6084 (given surfaces.B1."),
     ("surfaces: {B1: {skewness: 0}}", "surfaces.B1.kurtosis", "4.6", "maximum-entropy"),
     ("surfaces: {B1: {skewness: 1.0e-3}}", "surfaces.B1.kurtosis", "4.6", "surfaces.B1.skewness = 0.001"),
+    ("surfaces: {B1: {skewness: -0.1, kurtosis: 3.5}}", "surfaces.B1.kurtosis", "3.5",
+     "near that of a maximum-entropy density of the heights: no maximum-entropy density has moments within 2.45 "
+     "standard errors (0.055 and 0.11) of skewness -0.1 and kurtosis 3.5; at this skewness the largest kurtosis is "
+     "3.026"),
+    ("pairs: {b: {gap_um: 0.317}}", "pairs.b.gap_um", "0.317",
+     "at least 0.3173 µm, 20 times the height of the water film, 12.463 nm, plus the rms of the surfaces, 3.4 nm (given"
+     " pairs.b.humidities = [0.44, 0.55, 0.67, 0.8, 0.88, 0.92], run.pairs = ['a', 'b', 'c'], water.temperature_K = "
+     "300, pairs.b.beam = 'B2', pairs.b.substrate = 'Sub1')"),
+    ("pairs: {a: {humidities: [0.9999]}}", "pairs.a.gap_um", "20", "at least 207.9 µm"),
+    ("figures: {humidity: 0.9902}", "pairs.c.gap_um", "2", "figures.humidity = 0.9902"),
+    ("surfaces: {B2: {kurtosis: 1.5777}}", "sampling.strip_length_um", "1.5",
+     "at most 1.27 µm to resolve the cracks of pair b at RH 0.44 (given beam.thickness_um = 2.6, solid.young_modulus"),
+    ("beam: {thickness_um: 1}\nrun: {pairs: [a]}", "sampling.strip_length_um", "1.5", "at most 1.15 µm"),
     ("surfaces: {B1: {published_psd: {corner_rad_per_um: 138}}}", "surfaces.B1.published_psd.corner_rad_per_um", "138",
      "below the cut-off (given surfaces.B1.published_psd.cutoff_rad_per_um = 138)"),
     ("surfaces: {B1: {published_psd: {floor_nm4: 525}}}", "surfaces.B1.published_psd.floor_nm4", "525", "plateau"),
@@ -155,8 +168,8 @@ WRONG_RELATIONS = [
     ("beam: {elements: 2000}", "beam.length_um", "1500", "multiple of strip_length x elements = 3000 µm"),
     ("pairs: {a: {gap_um: 1000}}\nbeam: {length_um: 900}", "pairs.a.gap_um", "1000", "below the length of the beam"),
     ("beam: {width_um: 1500}\nstudies: {variants: {spacing_nm: []}}", "beam.width_um", "1500", "below the length"),
-    ("pairs: {b: {beam: Sub1}}", "run.pairs[1]", "'b'", "a solid stiff enough for its humidities: at"),
-    ("surfaces: {B2: {rms_nm: 0.3}}", "run.pairs[1]", "'b'", "MPa, is not below a third of the repulsion"),
+    ("pairs: {b: {beam: Sub1}}\nbeam: {thickness_um: 8}", "run.pairs[1]", "'b'", "a solid stiff enough for its humidities: at"),
+    ("surfaces: {B2: {rms_nm: 0.3}}\nbeam: {thickness_um: 8}", "run.pairs[1]", "'b'", "MPa, is not below a third of the repulsion"),
     ("run: {pairs: [c]}\nsolid: {young_modulus_GPa: 0.1}", "run.pairs[0]", "'c'", "must have surfaces rough enough"),
     ("sampling: {margin_um: 1000}\nstudies: {variants: {spacing_nm: []}}", "sampling.spacing_nm", "10",
      "within 8 GB of memory: 1001.5 x 1030 µm every 10 nm take 619 GB (given sampling.strip_length_um = 1.5,"),

@@ -10,6 +10,7 @@ from published import SURFACES
 from vectors import sampled_vectors
 
 from stiction.beam.montecarlo import Experiment, release_beam
+from stiction.beam.resolution import resolved
 from stiction.chaos.model import draw, draw_laws, fit, fit_report
 from stiction.config import jobs
 from stiction.config.merging import merged
@@ -31,6 +32,7 @@ from stiction.stages import (
 from stiction.stages.cantilevers import cantilever, strips_along
 from stiction.stages.surfaces import FIELD, rough_surface
 from stiction.streams import stream
+from stiction.surface.feasible import nearest_feasible
 from stiction.surface.field import StripGrid, radial_periodogram
 from stiction.surface.identify import Identification, SummitTarget
 from stiction.surface.maxent import GAUSSIAN
@@ -52,6 +54,26 @@ def through_a_file(tmp_path):
 
 
 # Heights and spectrum
+
+
+def test_infeasible_moments_are_replaced_by_the_nearest_ones_and_both_are_stated(through_a_file):
+    measured = heights.Settings(2e-9, -0.1, 3.05)
+    nearest = nearest_feasible(-0.1, 3.05)
+    with pytest.warns(
+        UserWarning, match=r"skewness -0.1 and kurtosis 3.05; the heights have .* -0.103 and 3.028, 0.21"
+    ):
+        found = through_a_file(heights.compute(measured))
+    assert heights.moments(found) == heights.Settings(2e-9, nearest.skewness, nearest.kurtosis)
+    assert heights.measured(found) == (-0.1, 3.05, nearest.distance)
+    density = heights.density(found, "NG")
+    assert_allclose([density.moment(3), density.moment(4)], nearest[:2], rtol=1e-9)
+
+
+def test_feasible_moments_leave_no_trace_of_a_substitution():
+    found = small.heights_of("B2")
+    assert "distance" not in found
+    assert heights.measured(found) == (B2.skewness, B2.kurtosis, 0.0)
+    assert heights.substitution(found) == ""
 
 
 def test_heights_have_the_density_of_the_moments_of_the_surface(through_a_file):
@@ -304,6 +326,32 @@ def test_beams_are_released_from_streams_of_their_own(through_a_file, model):
         assert found.iterations[k] == beam.iterations
         assert_allclose(found.deflection[k], beam.deflection, rtol=1e-6, atol=1e-15)
     assert_allclose(found.node, np.linspace(0, 1500e-6, 201), atol=1e-15)
+
+
+def test_elements_follow_the_force_laws_of_the_case(through_a_file):
+    settings = replace(of_beams("GEO"), refined=True)
+    coarse = replace(settings, beam=replace(settings.beam, elements=2))
+    model = chaos.chaos_model(small.chaos_of_case())
+    laws = draw_laws(model, 10_000, stream(small.SEED, "beams", small.CASE, "mesh"))
+    nominal = resolved(cantilever(coarse, "b"), 1000, laws)
+    assert nominal.elements > 2
+    found = through_a_file(beams.compute(small.chaos_of_case(), small.CASE, coarse))
+    assert_allclose(found.node, nominal.nodes, atol=1e-15)
+    experiment = Experiment(nominal, 1000, lambda n, rng: draw_laws(model, n, rng), settings.scatter)
+    last = release_beam(experiment, 2, stream(small.SEED, "beams", small.CASE, 2))
+    assert found.crack_length[2] == last.crack_length
+    fine = replace(settings, beam=replace(settings.beam, elements=500))
+    kept = beams.compute(small.chaos_of_case(), small.CASE, fine)
+    unrefined = beams.compute(small.chaos_of_case(), small.CASE, replace(fine, refined=False))
+    assert_array_equal(kept.crack_length, unrefined.crack_length)
+    assert kept.sizes["node"] == 501
+
+
+def test_a_refusal_of_the_strips_names_the_case():
+    settings = replace(of_beams(), refined=True, sampling=replace(of_beams().sampling, strip_length=7.5e-6))
+    with pytest.raises(ValueError, match="strips of 7.5 µm do not resolve a crack") as refusal:
+        beams.compute(small.chaos_of_case(), small.CASE, settings)
+    assert refusal.value.__notes__ == ["in case b_rh067"]
 
 
 def test_the_nominal_beam_is_that_of_the_settings():

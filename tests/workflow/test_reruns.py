@@ -31,7 +31,7 @@ TARGETS = ["all", *(f"results/studies/{name}.nc" for name in STUDIES + VARIANTS)
 
 #: Rules, and the rules that read their outputs, listed by hand.
 READ_BY = {
-    "heights": "identification spectrum iteration character contact_chunk sensitivity_contact plasticity",
+    "heights": "identification spectrum iteration character contact_chunk sensitivity_contact plasticity table_1 checks",
     "identification": "table_2 variant_contact",
     "spectrum": "iteration character contact_chunk table_2 correlation sensitivity_contact plasticity checks",
     "character": "table_1 checks",
@@ -73,7 +73,7 @@ MATRIX = [
     ("elasticity", "solid: {young_modulus_GPa: 160}",
      "contact_chunk beams mesh resampling sensitivity_contact plasticity variant_contact checks", (), ""),
     ("grid of surfaces", "sampling: {spacing_nm: 5}", "identification spectrum variant_contact", (), "heights"),
-    ("length of strips", "sampling: {strip_length_um: 7.5}",
+    ("length of strips", "sampling: {strip_length_um: 2.5}",
      "character contact_chunk beams resampling sensitivity_contact plasticity variant_contact checks", (),
      "heights|identification|spectrum"),
     ("strips of Table I", "character: {strips: 50}", "character", (), "contact|forces"),

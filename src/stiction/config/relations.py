@@ -12,12 +12,15 @@ from pathlib import Path
 
 import numpy as np
 import yaml
+from scipy.special import ndtri
 
+from stiction.beam.foundation import STRIP, decay_length, ground_stiffness
 from stiction.config import memory
 from stiction.config.cases import NAMEABLE, decimals
 from stiction.config.messages import ConfigError, Problem, did_you_mean, dotted, duplicates, schema_problems, shown
 from stiction.config.units import NM_PER_UM, typed
 from stiction.contact.asperity import asperity, reduced_modulus
+from stiction.contact.bounds import least_law
 from stiction.contact.estimate import ProfileMoments, repulsion_and_attraction
 from stiction.contact.meniscus import laplace_pressure, meniscus_height
 from stiction.contact.vanderwaals import attraction
@@ -25,9 +28,15 @@ from stiction.errors import NotConverged
 from stiction.models import SIDES
 from stiction.numbers import is_multiple
 from stiction.surface import maxent
+from stiction.surface.feasible import nearest_feasible
 from stiction.surface.identify import SummitTarget, estimated_spectrum
 from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
-from stiction.surface.translation import LARGEST_SCORE
+
+#: ASSUME: smallest gap in units of film height and roughness. The model takes the range of the force laws as short
+#: compared with the gap: with a film of half the gap, Eq. (13) gives half of the adhesion energy.
+APART = 20
+#: Normal scores of equally probable heights; score that one of 10 strips with 450 000 points each exceeds.
+_SCORES, _HIGHEST = ndtri((np.arange(200) + 0.5) / 200), 5.0
 
 
 @functools.cache
@@ -69,8 +78,8 @@ def relation(*keys: str) -> Callable:
     """Register a relation between keys; it is only checked for values that the schema accepts.
 
     The values are the arguments of the relation, in order; error messages are about the first key. In a key, ``*``
-    stands for each name in a section or each index of a list in turn, the same in all keys, and ``#`` for the list of
-    names in a section.
+    stands for each name in a section or each index of a list in turn, the same in all keys, ``#`` for the list of
+    names in a section, and ``@`` for the name of a section.
     """
 
     def register(holds):
@@ -126,8 +135,8 @@ def _checked(holds, paths, config, faults):
 
 
 def _given(paths, values):
-    """The other values of a violated relation, except lists of names and whole sections of the configuration."""
-    given = ((path, value) for path, value in zip(paths, values, strict=True) if path[-1] != "#")
+    """The other values of a violated relation, except names and whole sections of the configuration."""
+    given = ((path, value) for path, value in zip(paths, values, strict=True) if path[-1] not in "#@")
     others = [
         f"{dotted(path)} = {shown(value)}" for path, value in given if len(path) > 1 or not isinstance(value, dict)
     ]
@@ -141,9 +150,9 @@ def _overlap(path, fault):
 
 
 def _value(config, path):
-    """Value at a path."""
-    for key in path:
-        config = _names(config) if key == "#" else config[key]
+    """Value at a path; ``#`` stands for the names in a section, ``@`` for the name of the section itself."""
+    for before, key in zip((None, *path), path, strict=False):
+        config = _names(config) if key == "#" else before if key == "@" else config[key]
     return config
 
 
@@ -193,14 +202,13 @@ def humidity_of_the_figures_has_a_name(humidity):
 
 @relation("surfaces.*.kurtosis", "surfaces.*.skewness")
 def heights_have_a_density(kurtosis, skewness):
-    """Densities with these moments exist, including the maximum-entropy density of Eq. (3)."""
+    """A density has these moments, and a maximum-entropy density of Eq. (3) these or moments near them."""
     if kurtosis <= skewness**2 + 1:
         return f"must be above skewness² + 1 = {skewness**2 + 1:.6g}"
     try:
-        density = maxent.solve(skewness, kurtosis)
-        density.quantile_of_normal(np.array([-LARGEST_SCORE, LARGEST_SCORE]))
+        nearest_feasible(skewness, kurtosis)
     except (ValueError, NotConverged) as reason:
-        return f"must allow a maximum-entropy density of the heights: {reason}"
+        return f"must be near that of a maximum-entropy density of the heights: {reason}"
     return None
 
 
@@ -354,6 +362,63 @@ def a_mesh_is_whole(elements, strips, length):
     """At least one mesh of Figure 19 is possible; lengths that do not fill each other and the beam are left out."""
     fitting = (is_multiple(length, element) and is_multiple(element, strip) for element in elements for strip in strips)
     return None if any(fitting) else "must include a divisor of the beam that is a multiple of one of the strips"
+
+
+#: Keys of a pair, of the water and of the surfaces that meet: the last arguments of the next two relations.
+_MEETING = ("run.pairs", "pairs.*.@", "water.temperature_K", "pairs.*.beam", "pairs.*.substrate", "surfaces")
+
+
+@relation("pairs.*.gap_um", "pairs.*.humidities", *_MEETING)
+@relation("pairs.*.gap_um", "figures.humidity", *_MEETING)
+def beam_is_apart_from_the_film(gap, humidities, running, pair, temperature, *meeting):
+    """Along most of a crack, the beam of a pair that runs is far from the water film and the hills of the substrate."""
+    sides = _sides(*meeting) if pair in running else []
+    if not sides:
+        return None
+    film = 1e9 * float(np.max(meniscus_height(humidities, temperature)))
+    rms = math.hypot(*(side["rms_nm"] for side in sides))
+    least = APART * (film + rms) / NM_PER_UM
+    found = f"{APART} times the height of the water film, {film:.5g} nm, plus the rms of the surfaces, {rms:.3g} nm"
+    return None if gap >= least else f"must be at least {least:.4g} µm, {found}"
+
+
+@relation("sampling.strip_length_um", "beam.thickness_um", "solid.young_modulus_GPa", "pairs.*.humidities", *_MEETING)
+def strips_resolve_the_crack(strip, thickness, modulus, humidities, running, pair, temperature, *meeting):
+    """Strips are short enough for the force laws of a pair that runs, as far as known without computing its contact.
+
+    Strips that pass may still be refused after the contact, by `stiction.beam.resolution.resolved`.
+    """
+    sides = _sides(*meeting) if pair in running else []
+    shapes = [_shape(side["skewness"], side["kurtosis"]) for side in sides]
+    if not sides or None in shapes:
+        return None
+    (beam, substrate), highest = zip(*shapes, strict=True)
+    rms = np.array([1e-9 * side["rms_nm"] for side in sides])
+    heights, top = np.add.outer(rms[0] * np.array(beam), rms[1] * np.array(substrate)), float(rms @ highest)
+    bending = 1e9 * modulus * (1e-6 * thickness) ** 3 / 12
+    for humidity in humidities:
+        film = float(meniscus_height(humidity, temperature)), -float(laplace_pressure(humidity, temperature))
+        f_max, a_left = least_law(heights, top, film)
+        longest = 1e6 * STRIP * decay_length(bending, ground_stiffness(f_max, a_left)) if f_max else math.inf
+        if strip > longest:
+            return f"must be at most {longest:.3g} µm to resolve the cracks of pair {pair} at RH {humidity:g}"
+    return None
+
+
+def _sides(beam, substrate, surfaces):
+    """Sections of the surfaces of a pair; empty if one is not defined, which another relation reports."""
+    return [surfaces[name] for name in (beam, substrate)] if {beam, substrate} <= set(surfaces) else []
+
+
+@functools.cache
+def _shape(skewness, kurtosis):
+    """Equally probable heights and the highest one, in units of the rms; ``None`` without a density, as above."""
+    try:
+        moments = nearest_feasible(skewness, kurtosis)
+    except (ValueError, NotConverged):
+        return None
+    density = maxent.solve(moments.skewness, moments.kurtosis)
+    return tuple(density.quantile_of_normal(_SCORES)), float(density.quantile_of_normal(_HIGHEST))
 
 
 @relation("pairs.*.gap_um", "beam.length_um")
