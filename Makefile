@@ -55,7 +55,7 @@ run: $(VENV)/ready
 
 report: $(VENV)/ready
 	@test -e results/verdict.txt || { echo "there are no results for a report yet: run make paper first"; exit 2; }
-	$(SNAKEMAKE) --report results/report.html $(ARGS) $(MINE)
+	$(SNAKEMAKE) --report results/report.html --report-stylesheet $(CURDIR)/workflow/report/style.css $(ARGS) $(MINE)
 
 test: lint
 	$(BIN)/python -m stiction.run.warmup
