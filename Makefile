@@ -107,8 +107,7 @@ lock:
 	@{ echo '# Pinned dependencies for Python 3.11 to 3.14, from pyproject.toml by `make lock`.'; cat requirements.lock; } \
 	  > requirements.lock.new && mv requirements.lock.new requirements.lock
 
-# Keeps .snakemake with results/: without its record of settings and code, Snakemake compares only modification times
-# and would accept old results for new settings.
+# Keeps .snakemake with results/: without its record of the code, Snakemake would accept results of other code.
 clean:
 	rm -rf $(VENV)
 

@@ -33,6 +33,12 @@ def test_a_dataset_names_the_settings_of_all_stages_before(files):
     assert labels.read("contact/b_NG.nc").before == files
 
 
+def test_the_order_of_keys_does_not_change_a_label():
+    one, other = ({"b": 1, "a": {"d": 1, "c": 2}}, {"a": {"c": 2, "d": 1}, "b": 1})
+    labelled = [labels.Label("s", "x", settings, {"f": settings}).attributes for settings in (one, other)]
+    assert labelled[0] == labelled[1]
+
+
 @pytest.mark.usefixtures("files")
 def test_chunks_of_a_dataset_leave_no_trace():
     for chunk in ("0-of-2", "1-of-2"):
@@ -125,8 +131,8 @@ def test_a_failed_job_records_no_checksum(tmp_path, monkeypatch):
 
 
 def test_the_summary_has_one_line_per_folder():
-    found = {"a/2.nc": "cannot be read", "b/1.nc": "is foreign", "a/1.nc": "holds forces", "a/3.nc": "cannot be read"}
+    found = {"a/z.nc": "cannot be read", "a/b/1.nc": "is foreign", "a/1.nc": "holds forces", "a/a.nc": "cannot be read"}
     assert list(kept.summary(found)) == [
         "a/1.nc holds forces; this run does not use it (nor 2 more of this folder).",
-        "b/1.nc is foreign; this run does not use it.",
+        "a/b/1.nc is foreign; this run does not use it.",
     ]

@@ -45,6 +45,7 @@ def code(script):
     return fingerprint(BASE / "workflow" / "scripts" / script)
 
 
+@cache
 def settings_of(path):
     """Settings of the job that writes a dataset; ``None`` if this configuration has no such job."""
     for rule in workflow.rules:

@@ -82,7 +82,8 @@ def damaged(logs: str | Path) -> Iterator[tuple[str, str]]:
 
 def summary(unusable: Mapping[str, str]) -> Iterator[str]:
     """One line about the first file of each folder that a run cannot use, with the number of its other files."""
-    folders = groupby(sorted(unusable), key=lambda path: Path(path).parent)
-    for _, (first, *others) in folders:
+    paths = sorted(map(Path, unusable), key=lambda path: (path.parent, path.name))
+    for _, files in groupby(paths, key=lambda path: path.parent):
+        first, *others = map(Path.as_posix, files)
         more = f" (nor {len(others)} more of this folder)" if others else ""
         yield f"{first} {unusable[first]}; this run does not use it{more}."
