@@ -48,9 +48,9 @@ def code(script):
 @cache
 def settings_of(path):
     """Settings of the job that writes a dataset; ``None`` if this configuration has no such job."""
-    for rule in workflow.rules:
-        if rule.output and (found := rule.output[0].match(path)):
-            settings = rule.params.settings
+    for written_by in workflow.rules:
+        if written_by.output and (found := written_by.output[0].match(path)):
+            settings = written_by.params.settings
             try:
                 return settings(SimpleNamespace(**found.groupdict())) if callable(settings) else settings
             except KeyError:  # of a surface, pair or variant that this configuration does not contain
