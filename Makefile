@@ -62,7 +62,7 @@ run: $(VENV)/ready
 report: $(VENV)/ready
 	@test -e results/verdict.txt || { echo "there are no results for a report yet: run make paper first"; exit 2; }
 	$(CHECKED)
-	$(SNAKEMAKE) --report results/report.html $(ARGS) $(MINE)
+	$(SNAKEMAKE) --report results/report.html --report-stylesheet $(CURDIR)/workflow/report/style.css $(ARGS) $(MINE)
 
 test: lint
 	$(BIN)/python -m stiction.run.warmup
@@ -114,8 +114,7 @@ lock:
 	@{ echo '# Pinned dependencies for Python 3.11 to 3.14, from pyproject.toml by `make lock`.'; cat requirements.lock; } \
 	  > requirements.lock.new && mv requirements.lock.new requirements.lock
 
-# Keeps .snakemake with results/: without its record of settings and code, Snakemake compares only modification times
-# and would accept old results for new settings.
+# Keeps .snakemake with results/: without its record of the code, Snakemake would accept results of other code.
 clean:
 	rm -rf $(VENV)
 

@@ -28,7 +28,9 @@ TESTS = {
     "report.tables_beams": "report",
     "report.tables_studies": "report",
     "report.style": "report",
+    "report.figures_beams": "report/test_style.py",
     "run.atomic": "stages/test_storage.py",
+    "run.labels": "run/test_kept.py",
     "stages.curves": "stages/test_stage_curves.py",
     "stages.pairs": "stages/test_stage_pairs.py",
     "stages.named": "stages/test_storage.py",
@@ -36,7 +38,7 @@ TESTS = {
     "models": "config/test_plan.py",
 }
 #: Stages and studies whose tests are in one file each.
-STAGES = "heights spectrum identification character forces chaos releases beams cantilevers"
+STAGES = "heights spectrum surfaces identification character forces chaos releases beams cantilevers"
 STUDIES = "sensitivity_contact sensitivity plasticity fit humidity iteration sample_sizes orders mesh correlation"
 STUDIES += " resampling variant variant_contact"
 TESTS |= {f"stages.{name}": "stages/test_stages.py" for name in STAGES.split()}
@@ -239,6 +241,8 @@ MUTANTS = {
         ("third = radius ** (1 / 3)", "third = radius ** (1 / 2)"),
         ("share = place - row", "share = 1 - place + row"),
         ("weight = scales.force * radius", "weight = scales.force"),
+        ("if z <= 0 or not", "if z <= -1e-9 or not"),
+        ("if heights[i, j] > 0 and", "if heights[i, j] > 0.5e-9 and"),
         ("part * (low[cell + 1] - low[cell])", "(1 - part) * (low[cell + 1] - low[cell])"),
         ("if attraction is None else", "if attraction is not None else"),
         ("before=self.further[0]", "before=self.further[1]"),
@@ -396,6 +400,7 @@ MUTANTS = {
     "report.tables_surfaces": [
         ("third / rms**3", "third / rms**2"),
         ("1 / curvature / UM", "curvature * UM"),
+        ("100 * float(spectra[surface].defect)", "-100 * float(spectra[surface].defect)"),
         ("{source: 100 * float(spectra[surface].defect)}", '{"published": 100 * float(spectra[surface].defect)}'),
     ],
     "report.tables_beams": [
@@ -407,7 +412,12 @@ MUTANTS = {
     ],
     "report.style": [
         ("return _MARKERS[k % len(_MARKERS)]", "return _MARKERS[k]"),
-        ("panel.set_xlim(max(left, 0), min(right, 1))", "pass"),
+        ("max(left - short, 0), min(right + short, 1)", "left - short, right + short"),
+        ("panel.set_xlim(max(left - short, 0)", "panel.set_xlim(max(left, 0)"),
+    ],
+    "report.figures_beams": [
+        ("2 * weakest, *map(_reach, released.values()))", "2 * weakest)"),
+        ("1.1 * (energies.mean() + energies.std())", "energies.mean()"),
     ],
     "report.checks": [
         ("abs(found.error) <= accuracy", "found.error <= accuracy"),
@@ -419,6 +429,7 @@ MUTANTS = {
         ("if stuck.sum() < 2", "if stuck.sum() < 0"),
         ("distance <= LARGEST_DISTANCE, message", "True, message"),
         ('used = heights[surface] if model == "NG"', 'used = targets[surface] if model == "NG"'),
+        ('+ (defect * target if name == "rms_nm" else 0)', '- (defect * target if name == "rms_nm" else 0)'),
         (
             'return pd.read_csv(path, dtype={"passed": bool}, keep_default_na=False)',
             'return pd.read_csv(path, comment="#")',
@@ -522,7 +533,23 @@ MUTANTS = {
     ],
     "stages.storage": [
         ("if found != wanted", "if found[0] != wanted[0]"),
+        ("labels.made_from(inputs, stage", "labels.made_from((), stage"),
+    ],
+    "run.labels": [
         ("sort_keys=True", "sort_keys=False"),
+        ("{} if found.stage == stage else", "{} if found.stage != stage else"),
+        ("before |= found.before |", "before |="),
+        ("except (OSError, RuntimeError) as error", "except RuntimeError as error"),
+    ],
+    "run.kept": [
+        ("if found.name != path.stem", "if False"),
+        ("_first(found.settings, settings)", "_first(settings, settings)"),
+        ("in found.before.items()", "in ()"),
+        ("expected(file) or {}", "expected(file) or stored"),
+        ("json.loads(json.dumps(wanted))", "wanted"),
+        ("{*found, *wanted}", "{*found}"),
+        (".hexdigest() != checksum", ".hexdigest() is None"),
+        ("(path.parent, path.name)", "path.as_posix()"),
     ],
     "run.atomic": [
         ("        draft.unlink(missing_ok=True)\n\n\ndef save_text", "        pass\n\n\ndef save_text"),
@@ -552,6 +579,11 @@ MUTANTS = {
         ("spectrum.underlying.values, target.cutoff)", "spectrum.target.values, target.cutoff)"),
         ("spectrum.wavenumber, spectrum.achieved)", "spectrum.wavenumber, spectrum.target)"),
         ("spectrum_of_heights(underlying, translation, settings.spacing), defect)", "underlying, defect)"),
+        ("return float(spectrum.defect)", "return -float(spectrum.defect)"),
+    ],
+    "stages.surfaces": [
+        ("self.spacing, self.margin)", "self.spacing, 0.5 * self.margin)"),
+        ("moments(heights).rms, grid)", "1.1 * moments(heights).rms, grid)"),
     ],
     "stages.identification": [
         (

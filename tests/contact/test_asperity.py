@@ -274,6 +274,16 @@ def test_force_of_a_surface_with_one_summit_is_that_of_a_sphere(model):
     )
 
 
+@pytest.mark.parametrize("model", [HertzAsperity(POLYSILICON), WATER], ids=["Hertz", "Maugis"])
+@pytest.mark.parametrize(("height", "feels"), [(-0.1e-9, False), (0.1e-9, True)])
+def test_summits_below_the_mean_plane_feel_nothing(model, height, feels):
+    radius, spacing = 3e-7, 10e-9
+    x = spacing * np.arange(-3, 4)
+    force = np.zeros(20)
+    model.add_forces((height - (x[:, None] ** 2 + x**2) / (2 * radius)).astype(np.float32), spacing, 0.05e-9, force)
+    assert np.any(force != 0) == feels
+
+
 def test_another_attraction_of_the_same_work_and_stress_gives_the_same_asperity():
     found = attraction("water")
     other = SimpleNamespace(work_of_adhesion=found.work_of_adhesion, stress=found.stress)

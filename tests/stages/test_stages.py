@@ -30,7 +30,7 @@ from stiction.stages import (
     storage,
 )
 from stiction.stages.cantilevers import cantilever, strips_along
-from stiction.stages.surfaces import FIELD, rough_surface
+from stiction.stages.surfaces import FIELD, Sampling, rough_surface
 from stiction.streams import stream
 from stiction.surface.feasible import nearest_feasible
 from stiction.surface.field import StripGrid, radial_periodogram
@@ -376,3 +376,12 @@ def test_ended_selects_beams_by_the_name_of_their_state():
     assert_array_equal(releases.ended(found, "arc"), [False, True, False, False])
     assert_array_equal(releases.ended(found, "free"), [False, False, True, False])
     assert found.state.attrs["flag_meanings"] == "S-shape arc free"
+
+
+def test_strips_have_the_margin_spacing_and_length_of_the_configuration():
+    assert Sampling(7.5e-9, 1.5e-6, 1e-6).strips(30e-6) == StripGrid(1.5e-6, 30e-6, 7.5e-9, margin=1e-6)
+
+
+def test_the_defect_is_the_share_of_the_variance_that_is_missing():
+    found = small.spectrum_of("B2")
+    assert spectrum.defect(found) == float(found.defect) > 0

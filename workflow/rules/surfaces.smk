@@ -2,6 +2,8 @@
 
 
 rule heights:
+    input:
+        planned,
     output:
         "results/heights/{surface}.nc",
     log:

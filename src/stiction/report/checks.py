@@ -24,7 +24,7 @@ from stiction.contact.forcelaw import admissible, coefficients, energy
 from stiction.errors import NotConverged
 from stiction.estimates import jackknife, mean_with_error
 from stiction.models import SURFACE_MODELS, surface_model
-from stiction.report.format import TO_MJ, TO_UM, with_error
+from stiction.report.format import TO_MJ, TO_UM, number, with_error
 from stiction.report.tables_surfaces import surface_statistics
 from stiction.stages.forces import vectors
 from stiction.stages.heights import measured, substitution
@@ -174,7 +174,7 @@ def chaos_reproduces_input(case: str, chaos: xr.Dataset, samples: int) -> Check:
         f"means off by up to {off[0]:.3f} standard deviations (allowed {limits[0]:.3f}), "
         f"standard deviations by {100 * off[1]:.1f} % (allowed {100 * limits[1]:.1f} %), "
         f"correlations by {off[2]:.3f} (allowed {limits[2]:.3f}), "
-        f"99 % quantile of ē by {(drawn_far[0] - far[0]) / spread[0]:+.2f} standard deviations"
+        f"99 % quantile of ē by {number((drawn_far[0] - far[0]) / spread[0], '+.2f')} standard deviations"
     )
     return Check("chaos model reproduces its input", case, bool(np.all(np.less_equal(off, limits))), message)
 
