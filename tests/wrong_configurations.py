@@ -94,6 +94,8 @@ WRONG_VALUES = [
     ("surfaces: {B1: {published_psd: }}", "surfaces.B1.published_psd", "None", GONE),
 ]  # fmt: skip
 
+#: Smooth surfaces under a beam whose strips are short enough.
+SMOOTH = "pairs: {b: {beam: Sub1}}\nbeam: {thickness_um: 8}"
 # As above, for relations between keys
 WRONG_RELATIONS = [
     ("surfaces: {B1: {skewness: -0.5, kurtosis: 1.25}}", "surfaces.B1.kurtosis", "1.25",
@@ -168,8 +170,8 @@ WRONG_RELATIONS = [
     ("beam: {elements: 2000}", "beam.length_um", "1500", "multiple of strip_length x elements = 3000 µm"),
     ("pairs: {a: {gap_um: 1000}}\nbeam: {length_um: 900}", "pairs.a.gap_um", "1000", "below the length of the beam"),
     ("beam: {width_um: 1500}\nstudies: {variants: {spacing_nm: []}}", "beam.width_um", "1500", "below the length"),
-    ("pairs: {b: {beam: Sub1}}\nbeam: {thickness_um: 8}", "run.pairs[1]", "'b'", "a solid stiff enough for its humidities: at"),
-    ("surfaces: {B2: {rms_nm: 0.3}}\nbeam: {thickness_um: 8}", "run.pairs[1]", "'b'", "MPa, is not below a third of the repulsion"),
+    (SMOOTH, "run.pairs[1]", "'b'", "a solid stiff enough for its humidities: at"),
+    ("surfaces: {B2: {rms_nm: 0.3}}\nbeam: {thickness_um: 8}", "run.pairs[1]", "'b'", "MPa, is not below a third of"),
     ("run: {pairs: [c]}\nsolid: {young_modulus_GPa: 0.1}", "run.pairs[0]", "'c'", "must have surfaces rough enough"),
     ("sampling: {margin_um: 1000}\nstudies: {variants: {spacing_nm: []}}", "sampling.spacing_nm", "10",
      "within 8 GB of memory: 1001.5 x 1030 µm every 10 nm take 619 GB (given sampling.strip_length_um = 1.5,"),
