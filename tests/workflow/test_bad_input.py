@@ -182,8 +182,10 @@ BAD_FILES = {
 }
 
 
-@pytest.mark.parametrize("content", BAD_FILES.values(), ids=BAD_FILES)
-@pytest.mark.parametrize("target", ["run", "paper", "smoke", "figures", "report"])
+EVERY_TARGET = [(target, b"- seed\n") for target in ("paper", "smoke", "figures", "report")]
+
+
+@pytest.mark.parametrize(("target", "content"), [*(("run", content) for content in BAD_FILES.values()), *EVERY_TARGET])
 def test_a_file_that_snakemake_would_misread_is_rejected_in_one_line_before_it_starts(tmp_path, target, content):
     installed(tmp_path)
     (tmp_path / "mine.yaml").write_bytes(content)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 from snakemake.logging import logger
 
-from stiction.config import cases, files, jobs, memory, relations
+from stiction.config import cases, files, jobs, memory, messages, relations
 from stiction.config.plan import Plan
 from stiction.models import BEAM_MODELS, SURFACE_MODELS, surface_model
 from stiction.run import folder, kept, provenance
@@ -29,7 +29,7 @@ try:
     for file in workflow.configfiles:  # Snakemake silently uses the last of duplicate keys
         files.read(file)
     relations.validate(config)
-except files.ConfigError as error:
+except messages.ConfigError as error:
     raise WorkflowError(f"The configuration is invalid:\n{error}")
 
 config.update(files.normalised(config))
