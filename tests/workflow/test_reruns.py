@@ -1,6 +1,7 @@
 """Which rules a change reruns and which it must not: plans with placeholder files, in a copy of the source tree."""
 
 # ruff: noqa: E501
+import os
 import re
 import shutil
 import subprocess
@@ -116,6 +117,10 @@ def behind(rules):
     return reached
 
 
+#: Dataset larger than the files whose contents Snakemake compares by default.
+LARGE = "results/contact/a_NG.nc"
+
+
 class Tree:
     """Copy of the source tree under git, with empty placeholder files for all results, which are up to date."""
 
@@ -136,6 +141,7 @@ class Tree:
             path = folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.touch()
+        (folder / LARGE).write_bytes(bytes(2_000_000))
         touched = [*TARGETS, "--touch", "--forceall", "--scheduler", "greedy", "--no-hooks"]
         status, printed = self.planner(*touched, config=[self.small])
         assert status == 0, printed
@@ -221,6 +227,18 @@ def test_comments_docstrings_and_touched_files_rerun_nothing(tree):
     for path in tree.folder.glob("workflow/resources/*"):
         path.touch()
     assert tree.rerun() == {}
+
+
+@pytest.mark.parametrize(("content", "rerun"), [(0, set()), (1, behind(READ_BY["contact"].split()) - OF_FIGURE)])
+def test_a_large_file_counts_as_changed_by_its_content_and_not_by_its_time(tree, content, rerun):
+    path = tree.folder / LARGE
+    before = path.stat()
+    path.write_bytes(bytes([content]) * before.st_size)
+    try:
+        assert known(tree.rerun()) == rerun
+    finally:
+        path.write_bytes(bytes(before.st_size))
+        os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
 
 
 def test_switching_to_another_branch_and_back_reruns_nothing(tree):
