@@ -14,7 +14,7 @@ contact: meniscus vanderwaals asperity pair forcelaw
 chaos: coordinates density polynomials model
 beam: cantilever energy equilibrium release montecarlo
 analysis: plasticity sensitivity convergence mesh variants
-run: fingerprint logs folder atomic provenance warmup
+run: fingerprint logs folder atomic provenance warmup forkserver hooks
 config: units cases merging messages relations files plan jobs
 stages: storage named heights parameters identification spectrum surfaces character pairs contact curves forces chaos
 stages: cantilevers releases beams
