@@ -19,6 +19,8 @@ BIN := $(VENV)/bin
 SNAKEMAKE := $(BIN)/snakemake
 SMOKE := --configfile config.yaml workflow/smoke.yaml
 MINE := $(if $(CONFIG),--configfile config.yaml $(CONFIG))
+# The tests of a file share what they compute.
+WORKERS := --numprocesses auto --maxprocesses 4 --dist loadfile
 EMPTY :=
 SPACE := $(EMPTY) $(EMPTY)
 
@@ -59,11 +61,11 @@ report: $(VENV)/ready
 
 test: lint
 	$(BIN)/python -m stiction.run.warmup
-	$(BIN)/python -m pytest $(ARGS)
+	$(BIN)/python -m pytest $(WORKERS) $(ARGS)
 
 test-all: lint
 	$(BIN)/python -m stiction.run.warmup
-	$(BIN)/python -m pytest -m "not cluster" $(ARGS)
+	$(BIN)/python -m pytest $(WORKERS) -m "not cluster" $(ARGS)
 
 lint: $(VENV)/ready
 	$(BIN)/ruff format --check src tests workflow docs
