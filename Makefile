@@ -21,6 +21,8 @@ SMOKE := --configfile config.yaml workflow/smoke.yaml
 MINE := $(if $(CONFIG),--configfile config.yaml $(CONFIG))
 # Snakemake reads files and settings before the Snakefile can check them.
 CHECKED = $(if $(CONFIG)$(findstring -C,$(ARGS))$(findstring --config,$(ARGS)),@$(BIN)/python -m stiction.config.reading $(CONFIG) -- $(ARGS))
+# The tests of a file share what they compute.
+WORKERS := --numprocesses auto --maxprocesses 4 --dist loadfile
 EMPTY :=
 SPACE := $(EMPTY) $(EMPTY)
 
@@ -66,11 +68,11 @@ report: $(VENV)/ready
 
 test: lint
 	$(BIN)/python -m stiction.run.warmup
-	$(BIN)/python -m pytest $(ARGS)
+	$(BIN)/python -m pytest $(WORKERS) $(ARGS)
 
 test-all: lint
 	$(BIN)/python -m stiction.run.warmup
-	$(BIN)/python -m pytest -m "not cluster" $(ARGS)
+	$(BIN)/python -m pytest $(WORKERS) -m "not cluster" $(ARGS)
 
 lint: $(VENV)/ready
 	$(BIN)/ruff format --check src tests workflow docs

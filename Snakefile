@@ -48,8 +48,11 @@ onstart:
         raise WorkflowError(f"results/ cannot be used: {reason}. Make it writable or choose another --directory.")
     except (RuntimeError, ValueError) as error:
         raise WorkflowError(str(error))
+    hooks.limit_timers(workflow.scheduler)
     # Kernels are compiled and cached before jobs run in parallel, because two jobs could corrupt a shared cache entry.
-    shell("{sys.executable:q} -m stiction.run.warmup")
+    # The server of local jobs does it; the jobs of a cluster run on other machines.
+    if not (workflow.local_exec and hooks.fork_jobs()):
+        shell("{sys.executable:q} -m stiction.run.warmup")
 
 
 rule all:

@@ -1,7 +1,24 @@
 """Settings of all tests."""
 
+import fcntl
+import os
+from pathlib import Path
+
 from hypothesis import settings
 
 # No deadline, because machines are shared and timings vary; the same examples in every run.
 settings.register_profile("steady", deadline=None, derandomize=True)
 settings.load_profile("steady")
+
+if "PYTEST_XDIST_WORKER" in os.environ:
+    from numba.core.caching import IndexDataCacheFile
+
+    save = IndexDataCacheFile.save
+
+    def save_alone(cache, key, data):
+        """Save a compiled kernel while no other worker does; two at once could exchange their machine code."""
+        with Path(__file__).open() as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            save(cache, key, data)
+
+    IndexDataCacheFile.save = save_alone

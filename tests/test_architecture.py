@@ -14,7 +14,7 @@ contact: meniscus vanderwaals asperity estimate pair forcelaw bounds
 chaos: coordinates density polynomials model
 beam: cantilever energy foundation equilibrium release resolution montecarlo
 analysis: plasticity sensitivity convergence mesh variants
-run: fingerprint logs folder atomic labels kept provenance warmup
+run: fingerprint logs folder atomic labels kept provenance warmup forkserver hooks
 config: units cases merging messages reading memory relations files plan jobs
 stages: storage named heights parameters identification spectrum surfaces character pairs contact curves forces chaos
 stages: cantilevers releases beams

@@ -1,6 +1,8 @@
 """Fixtures that run the workflow as a user does: from the command line, in a temporary folder."""
 
+import fcntl
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -46,27 +48,49 @@ def snakemake(directory, *arguments, configs=(SMOKE,), cores=2, check=True):
 
 
 @pytest.fixture(scope="session")
-def smoke(tmp_path_factory):
+def shared(tmp_path_factory):
+    """Make a folder once for all processes of pytest-xdist: ``shared(name, fill)``; tests must not write into it."""
+    root = tmp_path_factory.getbasetemp()
+    root = root.parent if "PYTEST_XDIST_WORKER" in os.environ else root
+
+    def folder(name, fill):
+        path, filled = root / name, root / f"{name}.filled"
+        with (root / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not filled.exists():
+                shutil.rmtree(path, ignore_errors=True)
+                path.mkdir()
+                fill(path)
+                filled.touch()
+        return path
+
+    return folder
+
+
+@pytest.fixture(scope="session")
+def smoke(shared):
     """Folder of a finished smoke run: one pair, two humidities, all three models."""
-    folder = tmp_path_factory.mktemp("smoke")
-    snakemake(folder)
-    return folder
+    return shared("smoke", snakemake)
 
 
 @pytest.fixture(scope="session")
-def tiny(tmp_path_factory):
+def tiny(shared):
     """Path of the tiny configuration."""
-    path = tmp_path_factory.mktemp("config") / "tiny.yaml"
-    path.write_text(TINY)
-    return path
+    return shared("config", lambda folder: (folder / "tiny.yaml").write_text(TINY)) / "tiny.yaml"
 
 
 @pytest.fixture(scope="session")
-def undisturbed(tmp_path_factory, tiny):
+def undisturbed(shared, tiny):
     """Folder of a finished run of one tiny case."""
-    folder = tmp_path_factory.mktemp("undisturbed")
-    snakemake(folder, BEAMS, configs=[tiny])
-    return folder
+    return shared("undisturbed", lambda folder: snakemake(folder, BEAMS, configs=[tiny]))
+
+
+def copied(folder, target, stages=()):
+    """Copy of a finished run with Snakemake's record, without the files of some stages."""
+    shutil.copytree(folder, target, dirs_exist_ok=True)
+    for stage in stages:
+        shutil.rmtree(target / "results" / stage)
+    return target
 
 
 def datasets(folder):

@@ -9,7 +9,12 @@ from pathlib import Path
 
 SERVER = """
 import json, os, sys
+from pathlib import Path
 import jsonschema, numba, scipy.integrate, scipy.interpolate, scipy.optimize, scipy.stats, snakemake.cli, xarray
+from stiction.run.fingerprint import fingerprint
+
+for script in Path("workflow", "scripts").resolve().glob("*.py"):  # kept for files that do not change
+    fingerprint(script)
 
 for line in sys.stdin:
     folder, arguments, path = json.loads(line)
@@ -37,9 +42,9 @@ class Planner:
     def __init__(self, folder, scratch):
         self.folder, self.printed = folder, Path(scratch) / "printed.txt"
         environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
-        self.server = subprocess.Popen(
-            [sys.executable, "-c", SERVER], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
-        )
+        environment["PYTHONPATH"] = str(Path(folder) / "src")
+        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+        self.server = subprocess.Popen([sys.executable, "-c", SERVER], **pipes, cwd=folder, env=environment)
 
     def __call__(self, *arguments, config=(), folder=None):
         """Exit status and printed output."""

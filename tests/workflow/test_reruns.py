@@ -5,12 +5,14 @@ import ast
 import base64
 import contextlib
 import json
+import os
 import re
 import shutil
 import subprocess
 from functools import reduce
 from itertools import product
 
+import numpy as np
 import pytest
 import xarray as xr
 import yaml
@@ -124,6 +126,10 @@ def behind(rules):
     return reached
 
 
+#: Dataset larger than the files whose contents Snakemake compares by default.
+LARGE = "results/contact/a_NG.nc"
+
+
 class Tree:
     """Copy of the source tree under git, with placeholder files for all results, which are up to date."""
 
@@ -155,7 +161,8 @@ class Tree:
         assert status == 0, printed
 
     def label(self):
-        """Replace the placeholders of datasets by datasets without numbers, each with its settings and its inputs."""
+        """Replace the placeholders by datasets with settings and inputs but without numbers, except for `LARGE`."""
+        noise = np.frombuffer(np.random.default_rng(0).bytes(2_000_000), np.uint8)  # cannot be compressed
         records = {}
         for path in (self.folder / ".snakemake" / "metadata").iterdir():
             records[base64.urlsafe_b64decode(path.name).decode()] = json.loads(path.read_text())
@@ -167,7 +174,8 @@ class Tree:
                 (settings,) = [text for text in record["params"] if ".py'" not in text]
                 stage = "contact" if "/contact/" in name else record["rule"]
                 with contextlib.chdir(self.folder):
-                    storage.save(xr.Dataset(), name, stage, ast.literal_eval(settings), record["input"])
+                    content = xr.Dataset({"noise": ("byte", noise)} if name == LARGE else {})
+                    storage.save(content, name, stage, ast.literal_eval(settings), record["input"])
 
     def git(self, *command):
         """Run git in the copy."""
@@ -250,6 +258,19 @@ def test_comments_docstrings_and_touched_files_rerun_nothing(tree):
     for path in tree.folder.glob("workflow/resources/*"):
         path.touch()
     assert tree.rerun() == {}
+
+
+@pytest.mark.parametrize(("changed", "rerun"), [(0, set()), (1, behind(READ_BY["contact"].split()) - OF_FIGURE)])
+def test_a_large_file_counts_as_changed_by_its_content_and_not_by_its_time(tree, changed, rerun):
+    path = tree.folder / LARGE
+    before, content = path.stat(), path.read_bytes()
+    middle = len(content) // 2  # among the numbers
+    path.write_bytes(content[:middle] + bytes([content[middle] ^ changed]) + content[middle + 1 :])
+    try:
+        assert known(tree.rerun()) == rerun
+    finally:
+        path.write_bytes(content)
+        os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
 
 
 def test_switching_to_another_branch_and_back_reruns_nothing(tree):

@@ -15,7 +15,7 @@ from itertools import cycle
 import netCDF4
 import pytest
 import xarray as xr
-from conftest import BEAMS, command, datasets, snakemake
+from conftest import BEAMS, command, copied, datasets, snakemake
 
 #: Targets that require every stage; without the verdict, because checks may fail with so few samples.
 ALL = ["tables", "figures", "results/checks.csv"]
@@ -25,11 +25,9 @@ STAGES += ["humidity", "beams", "studies", "tables", "checks", "figures"]
 
 
 @pytest.fixture(scope="session")
-def everything(tmp_path_factory, tiny):
+def everything(shared, tiny):
     """Folder of a finished run of all stages of one tiny case."""
-    folder = tmp_path_factory.mktemp("everything")
-    snakemake(folder, *ALL, configs=[tiny])
-    return folder
+    return shared("everything", lambda folder: snakemake(folder, *ALL, configs=[tiny]))
 
 
 def files_of(stage, folder):
@@ -129,14 +127,6 @@ def test_a_full_disk_in_any_stage_is_reported_and_leaves_no_partly_written_file(
         assert str(disk) not in done.stdout.splitlines()[-1], "a file stayed on the full disk"
         assert_only_whole_files(tmp_path, everything)
     assert_resumed(tmp_path, everything, ALL, tiny)
-
-
-def copied(folder, target, stages=()):
-    """Copy of a finished run with Snakemake's record, without the files of some stages."""
-    shutil.copytree(folder, target, dirs_exist_ok=True)
-    for stage in stages:
-        shutil.rmtree(target / "results" / stage)
-    return target
 
 
 def test_a_full_disk_is_reported_and_leaves_no_partly_written_file(undisturbed, tiny, tmp_path):

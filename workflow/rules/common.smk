@@ -8,7 +8,7 @@ from snakemake.logging import logger
 from stiction.config import cases, files, jobs, memory, messages, relations
 from stiction.config.plan import Plan
 from stiction.models import BEAM_MODELS, SURFACE_MODELS, surface_model
-from stiction.run import folder, kept, provenance
+from stiction.run import folder, hooks, kept, provenance
 from stiction.run.atomic import DataError
 from stiction.run.fingerprint import fingerprint
 
@@ -24,6 +24,8 @@ wildcard_constraints:
     side="less|more",
     variant="base|[a-z_]+_[a-z0-9.-]+",
 
+
+hooks.compare_without_pandas()
 
 try:
     for file in workflow.configfiles:  # Snakemake silently uses the last of duplicate keys

@@ -1,0 +1,201 @@
+"""Jobs as forks of a process that has imported every library and loaded every kernel.
+
+A new interpreter spends about a second on imports and compiled kernels before a job can begin; a fork of a process that
+has done so begins within hundredths of a second. `Server` starts that process, ``python -m stiction.run.forkserver``,
+and asks it to run scripts. The process has a single thread, because only then a fork is safe.
+"""
+
+import ctypes
+import gc
+import importlib
+import os
+import pkgutil
+import select
+import signal
+import socket
+import subprocess
+import sys
+import traceback
+import types
+from pathlib import Path
+from typing import NoReturn
+
+PACKAGE = Path(__file__).parents[1]
+#: Command that starts the process of a `Server`. With -P, no file in the working directory is imported as a library.
+COMMAND = [sys.executable, "-P", "-m", "stiction.run.forkserver"]
+#: Modules that jobs import only when they start, read, write or draw.
+LATE = (
+    "snakemake.iocontainers",
+    "snakemake.logging",
+    "netCDF4",
+    "matplotlib.backends.backend_agg",
+    "matplotlib.backends.backend_pdf",
+    "matplotlib.style",
+    "pandas.io.formats.csvs",
+    "pandas.io.formats.html",
+    "tabulate",
+)
+_READY = b"ready"
+_PR_SET_PDEATHSIG = 1  # linux/prctl.h
+
+
+class Server:
+    """Process that runs scripts in forks of itself; it ends with the process that started it.
+
+    Parameters
+    ----------
+    environment : dict
+        Environment of the process and of all scripts.
+
+    Raises
+    ------
+    ConnectionError
+        If the process ends before it is ready.
+    """
+
+    def __init__(self, environment: dict[str, str]):
+        self.environment = environment
+        self._requests, theirs = _channel()
+        with theirs:
+            words = [*COMMAND, str(theirs.fileno())]
+            self.process = subprocess.Popen(words, env=environment, pass_fds=[theirs.fileno()])
+        if self._requests.recv(len(_READY)) != _READY:
+            self.close()
+            raise ConnectionError("the server of jobs ended before it was ready")
+
+    def run(self, script: str | Path) -> int:
+        """Run a script as ``python script`` does and wait for its end.
+
+        Returns
+        -------
+        int
+            Exit status, negative if a signal ended the script, as in ``subprocess``.
+
+        Raises
+        ------
+        BrokenPipeError
+            If the server had ended before.
+        ConnectionError
+            If the server ended while the script was running; its scripts are killed with it.
+        """
+        reply, theirs = _channel()
+        with reply:
+            with theirs:
+                socket.send_fds(self._requests, [os.fsencode(script)], [theirs.fileno()])
+            status = reply.recv(64)
+        if not status:
+            raise ConnectionError("the server of jobs ended")
+        return int(status)
+
+    def close(self) -> None:
+        """End the server and the scripts that it runs."""
+        self._requests.close()
+        self.process.wait()
+
+
+def _channel():
+    """Pair of sockets that keep the limits of messages."""
+    return socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+
+
+def main() -> None:
+    """Serve requests on the socket whose number is the argument; each child runs its script and ends."""
+    requests = socket.socket(fileno=int(sys.argv[1]))
+    preload()
+    # Ctrl-C reaches the children, which must have ended before the server does.
+    interrupt = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    requests.send(_READY)
+    if script := serve(requests):
+        signal.signal(signal.SIGINT, interrupt)
+        become(script)
+
+
+def preload() -> None:
+    """Import all modules of the package and what jobs import late; load the compiled kernels, compiled if necessary."""
+    for module in pkgutil.walk_packages([str(PACKAGE)], "stiction."):
+        importlib.import_module(module.name)
+    for name in LATE:
+        importlib.import_module(name)
+    importlib.import_module("stiction.run.warmup").main()
+    gc.collect()
+    gc.freeze()  # the collector of a child would otherwise write to, and thereby copy, every page that it shares
+
+
+def serve(requests: socket.socket) -> str | None:
+    """Fork for every request; returns the script in each child, and ``None`` once the other side has closed.
+
+    Parameters
+    ----------
+    requests : socket
+        Each message is the path of a script, with a socket for the exit status.
+    """
+    running = {}  # pipe that a child holds open until it ends: its process and the socket for its status
+    server = os.getpid()
+    while True:
+        ready, _, _ = select.select([requests, *running], [], [])
+        for ended in set(ready) - {requests}:
+            child, reply = running.pop(ended)
+            _, status = os.waitpid(child, 0)
+            with reply:
+                reply.send(b"%d" % os.waitstatus_to_exitcode(status))
+            os.close(ended)
+        if requests in ready:
+            message, descriptors, _, _ = socket.recv_fds(requests, 65536, 1)
+            if not message:
+                return None
+            reply = socket.socket(fileno=descriptors[0])
+            lasting, held = os.pipe()
+            child = os.fork()
+            if child == 0:
+                _end_with(server)
+                for other in (requests, reply, *(other for _, other in running.values())):
+                    other.close()
+                return os.fsdecode(message)
+            os.close(held)
+            running[lasting] = child, reply
+
+
+def _end_with(server):
+    """Let the kernel kill this process when the server ends, even if the server is killed."""
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != server:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+def become(script: str) -> NoReturn:
+    """Run a script in this process as ``python script`` does, then end the process.
+
+    The interpreter is not taken down, which would copy all memory shared with the server and take longer than most
+    scripts; functions registered with ``atexit`` are not called.
+    """
+    sys.argv[:] = [script]
+    sys.path.insert(0, str(Path(script).parent))
+    module = types.ModuleType("__main__")
+    module.__file__ = script
+    sys.modules["__main__"] = module
+    status = 0
+    try:
+        exec(compile(Path(script).read_bytes(), script, "exec"), module.__dict__)
+    except BaseException as error:
+        status = _status(error)
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
+    os._exit(status)
+
+
+def _status(error):
+    """Exit status after an exception that a script does not catch; prints what the interpreter prints."""
+    if isinstance(error, SystemExit) and isinstance(error.code, int | None):
+        return (error.code or 0) & 0xFF
+    if isinstance(error, SystemExit):
+        print(error.code, file=sys.stderr)  # noqa: T201
+        return 1
+    traceback.print_exception(error.with_traceback(error.__traceback__.tb_next))  # without the frame of this module
+    if isinstance(error, KeyboardInterrupt):
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        signal.raise_signal(signal.SIGINT)
+    return 1
+
+
+if __name__ == "__main__":
+    main()

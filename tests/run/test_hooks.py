@@ -1,0 +1,273 @@
+"""Snakemake with the changes of a run: the same jobs, the same messages, one timer."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import threading
+import time
+from types import SimpleNamespace
+
+import pandas
+import pytest
+from snakemake import persistence
+from snakemake.persistence.file import FilePersistence
+from snakemake.scheduling.job_scheduler import JobScheduler
+from snakemake.script import PythonScript
+
+from stiction.run import forkserver, hooks
+
+ROOT = forkserver.Path(__file__).parents[2]
+BARE = "from stiction.run import forkserver; forkserver.preload = lambda: None; forkserver.main()"
+SNAKEFILE = """
+import os, sys
+from stiction.run import forkserver, hooks
+
+forkserver.COMMAND = [sys.executable, "-P", "-c", {bare!r}]
+
+onstart:
+    if config["changed"]:
+        hooks.limit_timers(workflow.scheduler)
+        print("forked:", hooks.fork_jobs(), flush=True)
+
+onerror:
+    print("timers limited:", "_schedule_reevalutation" in vars(workflow.scheduler), flush=True)
+
+rule all:
+    input:
+        expand("{{name}}.json", name=["plain", "threads"]),
+        expand("{{way}}.failed", way=["message", "error", "signal"]),
+
+rule plain:
+    input: "Snakefile"
+    output: "plain.json"
+    params: settings=dict(number=1.5, text="words")
+    log: "plain.log"
+    resources: mem_mb=17
+    script: "dump.py"
+
+rule threads:
+    output: "threads.json"
+    threads: 2
+    script: "dump.py"
+
+rule fails:  # one after the other, so that their messages do not mix
+    output: "{{way}}.failed"
+    resources: terminal=1
+    script: "fail.py"
+"""
+DUMP = """
+import json, os, sys
+job = {name: repr(getattr(snakemake, name)) for name in
+       ("input", "output", "params", "wildcards", "threads", "resources", "log", "config", "rule", "scriptdir")}
+found = {"job": job, "environment": dict(os.environ), "folder": os.getcwd(), "path": sys.path, "file": __file__}
+json.dump(found | {"parent": os.getppid()}, open(snakemake.output[0], "w"), sort_keys=True)
+"""
+FAIL = """
+import os, sys, time
+way = snakemake.wildcards.way
+open(snakemake.output[0], "w").write("half")
+if way == "message":
+    sys.exit("DataError: a sentence")
+if way == "signal":
+    os.kill(os.getpid(), 9)
+raise ValueError(way)
+"""
+
+
+def ran(folder, changed):
+    """Standard output of a run of a small workflow, with or without the changes to Snakemake."""
+    folder.mkdir(exist_ok=True)
+    for name, text in (("Snakefile", SNAKEFILE.format(bare=BARE)), ("dump.py", DUMP), ("fail.py", FAIL)):
+        (folder / name).write_text(text)
+    words = [sys.executable, "-m", "snakemake", "--cores", "2", "--resources", "terminal=1", "--keep-going"]
+    words += ["--config", f"changed={int(changed)}"]
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "src")}
+    done = subprocess.run(
+        words, cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+    )
+    assert done.returncode == 1, done.stdout
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory):
+    """Results and output of the same workflow, in the same folder, without and with the changes."""
+    folder = tmp_path_factory.mktemp("workflow")
+    found = []
+    for changed in (False, True):
+        output = ran(folder, changed)
+        found.append(
+            (output, {name: json.loads((folder / f"{name}.json").read_text()) for name in ("plain", "threads")})
+        )
+        assert not list(folder.glob("*.failed")), "Snakemake must remove the outputs of failed jobs"
+        for path in folder.glob("*.json"):
+            path.unlink()
+    return found
+
+
+#: Variables set by the shell through which Snakemake starts an interpreter, and what differs between the two runs.
+DIFFERENT = {"SHLVL", "PWD", "OLDPWD", "_", "config", "parent"}
+
+
+def surroundings(found):
+    """What jobs found, without ``DIFFERENT``."""
+    if isinstance(found, list):
+        return [re.sub("cache/tmp[a-z0-9_]+/", "cache/", path) for path in found]  # of this run
+    if not isinstance(found, dict):
+        return found
+    return {key: surroundings(value) for key, value in found.items() if key not in DIFFERENT}
+
+
+def test_a_forked_job_gets_what_a_job_in_a_new_interpreter_gets(both):
+    (_, slow), (output, forked) = both
+    assert "forked: True" in output
+    assert surroundings(forked) == surroundings(slow)
+
+
+def test_a_job_with_several_threads_starts_as_a_new_interpreter(both):
+    _, (_, forked) = both
+    assert forked["plain"]["environment"]["OMP_NUM_THREADS"] == "1"
+    assert forked["threads"]["environment"]["OMP_NUM_THREADS"] == "2"
+    assert forked["plain"]["parent"] != forked["threads"]["parent"]
+
+
+def messages(output):
+    """Printed lines about failed jobs, without numbers, times, paths and commands."""
+    lines = [line for line in output.splitlines() if re.search("Error|failed|exit status|signal|Removing", line)]
+    lines = [re.sub(r"Command '.*?'|Command \[.*?\]", "Command", line) for line in lines]
+    return sorted(re.sub(r"jobid: \d+|tmp\w+|\d+ of|line \d+|-?\d+|died with.*|returned.*", "", line) for line in lines)
+
+
+def test_a_failed_job_is_reported_as_without_the_changes(both):
+    (slow, _), (forked, _) = both
+    assert messages(forked) == messages(slow)
+    assert "DataError: a sentence" in forked
+    assert forked.count("Traceback") == slow.count("Traceback")
+
+
+def test_the_scheduler_of_this_version_of_snakemake_is_changed(both):
+    (slow, _), (forked, _) = both
+    assert "timers limited: True" in forked
+    assert "timers limited: False" in slow
+
+
+def scheduler():
+    """The parts of a scheduler that timers use, with the method of Snakemake."""
+    found = SimpleNamespace(_open_jobs=threading.Semaphore(0))
+    found._schedule_reevalutation = JobScheduler._schedule_reevalutation.__get__(found)
+    return found
+
+
+@pytest.mark.parametrize(("changed", "woken"), [(True, 1), (False, 20)])
+def test_a_scheduler_is_woken_once_per_timer(changed, woken):
+    found = scheduler()
+    if changed:
+        hooks.limit_timers(found)
+    for _ in range(20):
+        found._schedule_reevalutation(0.2)
+    timers = [each for each in threading.enumerate() if isinstance(each, threading.Timer)]
+    assert len(timers) == woken
+    assert all(timer.daemon == changed for timer in timers), "Snakemake waits for timers at its end"
+    time.sleep(1)
+    assert [found._open_jobs.acquire(blocking=False) for _ in range(21)].count(True) == woken
+    found._schedule_reevalutation(0.2)
+    assert found._open_jobs.acquire(timeout=10), "a timer must follow the one that has ended"
+
+
+def test_an_unknown_scheduler_remains_as_it_is():
+    unknown = SimpleNamespace(_open_jobs=threading.Semaphore(0))
+    hooks.limit_timers(unknown)
+    assert not hasattr(unknown, "_schedule_reevalutation")
+
+
+VALUES = (1, -0.5, True, None, "text", [1, "two"], {"b": 2, "a": {1}}, (1,), object(), ROOT)
+
+
+def test_parameters_compare_the_same_without_the_import_of_pandas(monkeypatch):
+    records = persistence.PersistenceBase
+    known = records._serialize_param_pandas
+    monkeypatch.setattr(records, "_serialize_param_pandas", known)
+    hooks.compare_without_pandas()
+    record = object.__new__(FilePersistence)
+    frame = pandas.DataFrame({"column": [1, 2]})
+    assert record._serialize_param_pandas(frame) == known(record, frame)
+    expected = [known(record, value) for value in VALUES]
+    monkeypatch.delitem(sys.modules, "pandas")
+    assert [record._serialize_param_pandas(value) for value in VALUES] == expected
+    assert "pandas" not in sys.modules
+
+
+def test_unknown_records_of_parameters_remain_as_they_are(monkeypatch):
+    monkeypatch.delattr(persistence, "PersistenceBase")
+    hooks.compare_without_pandas()
+    assert not hasattr(persistence, "PersistenceBase")
+
+
+@pytest.fixture
+def untouched(monkeypatch):
+    """Snakemake's way to start a script, to which it is restored."""
+    monkeypatch.setattr(PythonScript, "execute_script", PythonScript.execute_script)
+    monkeypatch.setattr(forkserver, "COMMAND", [sys.executable, "-c", "raise SystemExit(1)"])
+    return PythonScript.execute_script
+
+
+def another(self, fname, debug):
+    """A way to start scripts that is not known."""
+
+
+def test_jobs_start_as_before_if_the_server_does_not_start(untouched):
+    assert not hooks.fork_jobs()
+    assert PythonScript.execute_script is untouched
+
+
+def test_jobs_start_as_before_if_snakemake_starts_them_in_an_unknown_way(monkeypatch):
+    monkeypatch.setattr(forkserver, "COMMAND", [sys.executable, "-P", "-c", BARE])
+    monkeypatch.setattr(PythonScript, "execute_script", another)
+    assert not hooks.fork_jobs()
+    assert PythonScript.execute_script is another
+
+
+def test_jobs_start_as_before_where_forks_are_not_safe(untouched, monkeypatch):
+    monkeypatch.setattr(forkserver, "COMMAND", [sys.executable, "-P", "-c", BARE])
+    monkeypatch.setattr(hooks.sys, "platform", "darwin")
+    assert not hooks.fork_jobs()
+    assert PythonScript.execute_script is untouched
+
+
+class Stopped:
+    """Server that has ended."""
+
+    environment = hooks.environment(1, hooks.tempfile.gettempdir())
+
+    def __init__(self, _environment):
+        pass
+
+    def run(self, _script):
+        raise BrokenPipeError
+
+
+def test_jobs_start_as_before_once_the_server_has_ended(monkeypatch):
+    def execute_script(self, fname, edit=False):
+        started.append((self, fname, edit))
+
+    started, job = [], SimpleNamespace(**PLAIN, threads=1, resources={})
+    monkeypatch.setattr(PythonScript, "execute_script", execute_script)
+    monkeypatch.setattr(hooks, "Server", Stopped)
+    assert hooks.fork_jobs()
+    PythonScript.execute_script(job, "job.py")
+    assert started == [(job, "job.py", False)]
+
+
+PLAIN = {"container_img": None, "conda_env": None, "env_modules": None, "shadow_dir": None, "bench_record": None}
+SPECIAL = [{name: "set"} for name in PLAIN]
+SPECIAL += [{"threads": 2}, {"resources": {"tmpdir": "/elsewhere"}}, {"resources": {"shell_exec": "zsh"}}]
+
+
+@pytest.mark.parametrize(("special", "plain"), [({}, True), *((each, False) for each in SPECIAL)], ids=str)
+def test_only_scripts_with_the_surroundings_of_the_server_are_forked(special, plain):
+    folder = hooks.tempfile.gettempdir()
+    server = SimpleNamespace(environment=hooks.environment(1, folder))
+    script = SimpleNamespace(**PLAIN | {"threads": 1, "resources": {"tmpdir": folder}} | special)
+    assert hooks._plain(script, server) == plain
