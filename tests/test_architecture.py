@@ -12,7 +12,7 @@ constants errors streams estimates numbers models progress
 surface: maxent spectrum translation field iteration summits identify
 contact: meniscus vanderwaals asperity pair forcelaw
 chaos: coordinates density polynomials model
-beam: cantilever energy equilibrium release montecarlo
+beam: cantilever tension energy equilibrium release montecarlo
 analysis: plasticity sensitivity convergence mesh variants
 run: fingerprint logs folder atomic provenance warmup
 config: units cases merging messages relations files plan jobs
