@@ -119,6 +119,7 @@ MUTANTS = {
         ("ONSET = 0.6", "ONSET = 1.6"),
         ("np.pi * radius * interference", "2 * np.pi * radius * interference"),
         ("height[reaching] - distance", "height[reaching]"),
+        ("yields(stress, hardness)", "yields(stress)"),
     ],
     "stages.pairs": [
         (
@@ -155,7 +156,9 @@ MUTANTS = {
     "contact.meniscus": [
         ("np.log(humidity) / WATER_MOLAR_VOLUME", "np.log10(humidity) / WATER_MOLAR_VOLUME"),
         ("GAS_CONSTANT * temperature *", "GAS_CONSTANT *"),
-        ("return -2 * kelvin_radius", "return -kelvin_radius"),
+        ("return -wetting * kelvin_radius", "return -2 * kelvin_radius"),
+        ("np.cos(contact_angles[0]) + np.cos(contact_angles[1])", "2 * np.cos(contact_angles[0])"),
+        ("if not wetting > 0", "if not wetting > -1"),
         ("(humidity < 1))", "(humidity <= 1))"),
         ("WATER_SURFACE_ENERGY / laplace_pressure", "-WATER_SURFACE_ENERGY / laplace_pressure"),
     ],
@@ -164,7 +167,8 @@ MUTANTS = {
         ("(16 * np.pi *", "(12 * np.pi *"),
         ("0.97 * 2 ** (1 / 6)", "0.97 * 2 ** (1 / 3)"),
         ("self.work_of_adhesion / self.range", "self.work_of_adhesion * self.range"),
-        ('None if through == "none"', 'None if through == "dry"'),
+        ('if through == "none":', 'if through == "dry":'),
+        ("if hamaker_constant is None else hamaker_constant", ""),
     ],
     "contact.asperity": [
         ("(2 * (1 - poisson_ratio**2))", "(2 * (1 + poisson_ratio**2))"),
@@ -190,6 +194,18 @@ MUTANTS = {
         ("weight = scales.force * radius", "weight = scales.force"),
         ("part * (low[cell + 1] - low[cell])", "(1 - part) * (low[cell + 1] - low[cell])"),
         ("if attraction is None else", "if attraction is not None else"),
+    ],
+    "contact.solids": [
+        ("(2 * other / (one + other))", "(other / (one + other))"),
+        ("(2 * other / (one + other))", "(2 * one / (one + other))"),
+        ("return min(first.hardness", "return max(first.hardness"),
+        ("np.sqrt(medium)) ** 2)", "np.sqrt(medium)) ** 1)"),
+        ("if not vacuum > medium", "if not vacuum >= medium"),
+        ("* second.hamaker_constant[medium])", "* first.hamaker_constant[medium])"),
+        ("-1 < self.poisson_ratio <= 0.5", "-1 <= self.poisson_ratio <= 0.6"),
+        ("0 <= self.contact_angle <= np.pi", "0 <= self.contact_angle"),
+        ("return first.contact_angle, second", "return first.contact_angle, first"),
+        ('"hardness": self.hardness} | constants', '"hardness": self.hardness}'),
     ],
     "contact.pair": [
         ("count[k] = higher / heights.size", "count[k] = higher"),

@@ -10,7 +10,7 @@ PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 ORDER = """
 constants errors streams estimates numbers models progress
 surface: maxent spectrum translation field iteration summits identify
-contact: meniscus vanderwaals asperity pair forcelaw
+contact: meniscus vanderwaals asperity solids pair forcelaw
 chaos: coordinates density polynomials model
 beam: cantilever tension energy equilibrium release montecarlo
 analysis: plasticity sensitivity convergence mesh variants
