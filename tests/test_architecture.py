@@ -14,6 +14,7 @@ contact: meniscus vanderwaals asperity solids pair forcelaw
 chaos: coordinates density polynomials model
 beam: cantilever tension energy equilibrium release montecarlo
 analysis: plasticity sensitivity convergence mesh variants
+devices: arcs bridges tail risk stoppers chart budget limits
 run: fingerprint logs folder atomic provenance warmup
 config: units cases merging messages relations files plan jobs
 stages: storage named heights parameters identification spectrum surfaces character pairs contact curves forces chaos
