@@ -29,7 +29,7 @@ def tensed(stress, beam=HALF):
 def tensed_element(pull):
     """Matrix and unbalanced force of one element by the compiled code, for random unknowns."""
     u, band, force = np.random.default_rng(1).standard_normal(4), np.zeros((4, 4)), np.zeros(4)
-    tension.add_element.py_func(u, band, force, pull, 0)
+    tension.add_tension.py_func(u, band, force, pull, 0)
     matrix = np.zeros((4, 4))
     for k in range(4):
         rows = np.arange(4 - k)
@@ -64,7 +64,7 @@ def test_the_open_part_is_one_element_with_the_stiffness_of_its_end():
     u, band, force = np.zeros(12), np.zeros((12, 4)), np.zeros(12)
     first, stiffness, load, kl = 5, 3.0, 0.7, 2.5
     u[10:] = 0.3, -0.2
-    tension.add_open_part.py_func(u, band, force, first, kl, stiffness, load)
+    tension.add_open_part_in_tension.py_func(u, band, force, first, kl, stiffness, load)
     f, c, m, _ = tension.end_stiffness(kl)
     matrix = np.array([[f / first**3, -c / first**2], [-c / first**2, m / first]]) * stiffness
     assert_allclose([band[10, 0], band[10, 1], band[11, 0]], [matrix[0, 0], matrix[0, 1], matrix[1, 1]], rtol=1e-14)
@@ -80,7 +80,7 @@ def test_the_deflection_of_the_open_part_solves_its_equation(kl):
     first, stiffness, load = 30, 3.0, 1e-3
     u = np.zeros(62)
     u[60:] = 0.9, 0.05
-    tension.fill_open_part.py_func(u, first, kl, stiffness, load)
+    tension.fill_open_part_in_tension.py_func(u, first, kl, stiffness, load)
     s, q = np.arange(30) / first, load * first**4 / stiffness
 
     def terms(s):
@@ -150,7 +150,7 @@ def test_the_deflection_of_a_free_beam_under_tension_is_that_of_the_closed_form(
     c1, c2 = np.linalg.solve(system, [load / n, -(load * end + tip_force)])
     u = c1 * (np.cosh(k * x) - 1) / k**2 + c2 * (np.sinh(k * x) - k * x) / k**2 - load * x**2 / (2 * n)
     slope = c1 * np.sinh(k * x) / k + c2 * (np.cosh(k * x) - 1) / k - load * x / n
-    accuracy = 3e-5 if k * end < tension.SMALL else 1e-6  # rounding of this test: 1e-16 e^kL
+    accuracy = 3e-5 if k * end < tension.SLACK else 1e-6  # rounding of this test: 1e-16 e^kL
     for values, expected in zip(found.T, (u, slope), strict=True):
         assert_allclose(values, expected, atol=accuracy * np.abs(expected).max())
 

@@ -38,7 +38,7 @@ def test_a_power_law_between_beams_on_rough_ground_predicts_those_that_were_left
         ends = [released_beam(beam, laws, float(forcelaw.energy(laws).mean())) for laws in grounds]
         lengths.append(np.mean([end.crack_length for end in ends]))
     middle = np.all(dimensions == [2.6e-6, 20e-6], axis=1)
-    law, error = chart.tested_power_law(*dimensions.T, np.array(lengths), middle)
+    law, error = chart.checked_power_law(*dimensions.T, np.array(lengths), middle)
     assert 0 < error < chart.ALLOWED
     assert_allclose([law.thickness_power, law.gap_power], [0.75, 0.5], atol=0.06)
 
@@ -46,7 +46,7 @@ def test_a_power_law_between_beams_on_rough_ground_predicts_those_that_were_left
 def test_a_length_that_is_no_power_law_is_refused():
     bent = eq_13(*GRID) * (1 + 0.05 * (GRID[0] == 3e-6))
     with pytest.raises(ValueError, match=r"errs by [34]\.\d% .* more than 1%"):
-        chart.tested_power_law(*GRID, bent, GRID[0] == 3e-6)
+        chart.checked_power_law(*GRID, bent, GRID[0] == 3e-6)
 
 
 def test_the_error_is_the_largest_of_the_beams_that_were_left_out():

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from stiction.beam import tension
 from stiction.beam.cantilever import Beam
+from stiction.beam.tension import SLACK, add_open_part_in_tension, add_tension, fill_open_part_in_tension
 from stiction.errors import NotConverged
 
 #: Largest unbalanced force of an equilibrium, in units of a point's mean pull-off force f_max w l_quad (about 1e-4 N).
@@ -147,11 +147,11 @@ def _assemble(u, laws, system, mesh, window, viscosity):
         _add_element(u, system, mesh, element)
         if mesh.decay > 0:
             pull = mesh.stiffness * mesh.decay**2
-            tension.add_element(u, system.band, system.force, pull, 2 * element)
+            add_tension(u, system.band, system.force, pull, 2 * element)
         _add_points(u, laws, system, mesh, element, viscosity)
     if first > 0 and mesh.decay > 0:
         kl = first * mesh.decay
-        tension.add_open_part(u, system.band, system.force, first, kl, mesh.stiffness, mesh.load)
+        add_open_part_in_tension(u, system.band, system.force, first, kl, mesh.stiffness, mesh.load)
     elif first > 0:
         _add_open_part(u, system, mesh, first)
     else:
@@ -239,8 +239,8 @@ def _front(stretch, points, element, elements):
 @njit(cache=True, nogil=True)
 def _fill_open_part(u, mesh, first):
     """Deflect the nodes between the clamp and ``first``: the cubic to that node and the deflection by the load."""
-    if first * mesh.decay > tension.SMALL:
-        tension.fill_open_part(u, first, first * mesh.decay, mesh.stiffness, mesh.load)
+    if first * mesh.decay > SLACK:
+        fill_open_part_in_tension(u, first, first * mesh.decay, mesh.stiffness, mesh.load)
         return
     end, slope = u[2 * first], u[2 * first + 1] * first
     bow = mesh.load * first**4 / (24 * mesh.stiffness)

@@ -18,7 +18,7 @@ from stiction.beam.cantilever import Beam
 
 #: Below this kL, differences of hyperbolic functions lose digits to rounding. The forces then use their series, and the
 #: deflection of the open part, to 1e-5 of the gap, that without tension.
-SMALL = 0.03
+SLACK = 0.03
 
 
 @njit(cache=True, nogil=True)
@@ -33,13 +33,13 @@ def end_stiffness(kl: float) -> tuple[float, float, float, float]:
     [12.0, 6.0, 4.0, 2.0]
     """
     mean = np.tanh(kl / 2) / (kl / 2)
-    force = 12 / (1 - kl**2 / 10 + 17 * kl**4 / 1680) if kl < SMALL else kl**2 / (1 - mean)
+    force = 12 / (1 - kl**2 / 10 + 17 * kl**4 / 1680) if kl < SLACK else kl**2 / (1 - mean)
     coupling = force * mean / 2
     return force, coupling, coupling / 2 + 1 / mean, coupling / 2 - 1 / mean
 
 
 @njit(cache=True, nogil=True)
-def add_element(u: np.ndarray, band: np.ndarray, force: np.ndarray, pull: float, i: int) -> None:
+def add_tension(u: np.ndarray, band: np.ndarray, force: np.ndarray, pull: float, i: int) -> None:
     """Add tension to force and stiffness of the element whose unknowns start at row ``i``; ``pull`` is N/l_e [N/m]."""
     n = pull / 30
     band[i, 0] += 36 * n
@@ -61,7 +61,7 @@ def add_element(u: np.ndarray, band: np.ndarray, force: np.ndarray, pull: float,
 
 
 @njit(cache=True, nogil=True)
-def add_open_part(
+def add_open_part_in_tension(
     u: np.ndarray, band: np.ndarray, force: np.ndarray, first: int, kl: float, stiffness: float, load: float
 ) -> None:
     """Add the beam from the clamp to node ``first``, where kL is ``kl``, as one exact element.
@@ -80,8 +80,8 @@ def add_open_part(
 
 
 @njit(cache=True, nogil=True)
-def fill_open_part(u: np.ndarray, first: int, kl: float, stiffness: float, load: float) -> None:
-    """Deflect the nodes between the clamp and node ``first``; parameters as in `add_open_part`, kL >= 0.03.
+def fill_open_part_in_tension(u: np.ndarray, first: int, kl: float, stiffness: float, load: float) -> None:
+    """Deflect the nodes between the clamp and node ``first``; parameters as in `add_open_part_in_tension`, kL >= 0.03.
 
     The deflection is written about the middle of the open part, so that every hyperbolic function is divided by the
     largest one.

@@ -73,7 +73,7 @@ def largest_error(law: PowerLaw, thickness: np.ndarray, gap: np.ndarray, length:
     return float(np.max(np.abs(law(thickness, gap) / length - 1)))
 
 
-def tested_power_law(
+def checked_power_law(
     thickness: np.ndarray, gap: np.ndarray, length: np.ndarray, test: np.ndarray
 ) -> tuple[PowerLaw, float]:
     """Power law through the beams that are not in ``test`` (n,) bool, and its `largest_error` at those that are.
