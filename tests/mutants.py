@@ -409,7 +409,8 @@ MUTANTS = {
         ("(2 * stiffness * kl**2)", "(2 * stiffness * kl)"),
         ("slope / 2 * sh + odd", "slope / 2 * ch + odd"),
         ("return moment**2 / (2 * beam.width", "return moment**2 / (beam.width"),
-        ("np.sqrt(6 / pull)", "np.sqrt(60 / pull)"),
+        ("_HALVINGS = 60", "_HALVINGS = 6"),
+        ("beam) / pull)", "beam) / pull) ** 0.9"),
         ("return 2 * beam.bending_stiffness * beam.gap", "return beam.bending_stiffness * beam.gap"),
     ],
     "beam.equilibrium": [

@@ -75,23 +75,6 @@ def test_nothing_remains_if_all_is_known_and_everything_if_nothing_is():
     assert_allclose([exact.remaining(("a",)), exact.remaining(("b",))], [2, 0], atol=1e-9)
 
 
-def test_three_joint_shifts_of_a_beam_are_the_sum_of_single_ones():
-    shifts, step = {"thickness": 0.06, "gap": 0.12, "young_modulus": 0.1}, 0.03
-
-    def scaled(factors):
-        return crack_lengths(80, **{name: getattr(PAPER, name) * np.exp(shift) for name, shift in factors.items()})
-
-    slopes, errors = np.transpose(
-        [budget.log_slope(np.mean, scaled({x: -step}), scaled({x: step}), 2 * step) for x in shifts]
-    )
-    found = Budget(tuple(shifts), slopes, np.eye(3))
-    joint, joint_error = budget.log_slope(np.mean, scaled({}), scaled(shifts), 1.0)
-    error = np.hypot(joint_error, np.linalg.norm(errors * list(shifts.values())))
-    assert abs(joint - np.log(found.shifted(shifts))) < 4 * error
-    assert abs(joint - 0.06 * slopes[0]) > 4 * error  # control: without gap and modulus
-    assert np.all(np.abs(slopes - [0.79, 0.5, 0.26]) < 4 * errors + 0.03)  # Eq. (13), and a little more for more places
-
-
 def test_common_random_numbers_make_slopes_of_few_devices_exact():
     rng, n = np.random.default_rng(2), 40
     base = 700e-6 * np.exp(0.025 * rng.standard_normal(n))
@@ -139,3 +122,20 @@ def test_a_choice_of_the_model_is_a_ratio():
 def test_a_budget_is_checked_at_once(slopes, covariance, message):
     with pytest.raises(ValueError, match=message):
         Budget(("a", "b"), slopes, covariance)
+
+
+def test_three_joint_shifts_of_a_beam_are_the_sum_of_single_ones():
+    shifts, step = {"thickness": 0.06, "gap": 0.12, "young_modulus": 0.1}, 0.03
+
+    def scaled(factors):
+        return crack_lengths(80, **{name: getattr(PAPER, name) * np.exp(shift) for name, shift in factors.items()})
+
+    slopes, errors = np.transpose(
+        [budget.log_slope(np.mean, scaled({x: -step}), scaled({x: step}), 2 * step) for x in shifts]
+    )
+    found = Budget(tuple(shifts), slopes, np.eye(3))
+    joint, joint_error = budget.log_slope(np.mean, scaled({}), scaled(shifts), 1.0)
+    error = np.hypot(joint_error, np.linalg.norm(errors * list(shifts.values())))
+    assert abs(joint - np.log(found.shifted(shifts))) < 4 * error
+    assert abs(joint - 0.06 * slopes[0]) > 4 * error  # control: without gap and modulus
+    assert np.all(np.abs(slopes - [0.79, 0.5, 0.26]) < 4 * errors + 0.03)  # Eq. (13), and a little more for more places

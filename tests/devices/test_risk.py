@@ -24,36 +24,6 @@ def true_length(share):
     return MEDIAN * np.exp(SPREAD * ndtri(share))
 
 
-# Long beams and beams that are cut
-
-
-def released(laws, points):
-    """End state and crack length of the beam cut to some points of its ground."""
-    beam = replace(PAPER, length=points * 1.5e-6, elements=points // 5)
-    end = released_beam(beam, laws[:points], float(forcelaw.energy(laws).mean()))
-    return end.state is EndState.S_SHAPE, end.crack_length
-
-
-def foundation(laws):
-    """l_f = (E t³ / (12 a_left f_max))^(1/4) of the mean law [m]."""
-    return (PAPER.young_modulus * PAPER.thickness**3 / (12 * np.mean(laws[:, 0] * laws[:, 2]))) ** 0.25
-
-
-def test_one_monte_carlo_of_long_beams_answers_all_lengths():
-    n, grounds = 240, [scattered_laws(stream(5, "cut", k), 1000, 0.3) for k in range(240)]
-    s_shaped, cracks = np.transpose([released(laws, 1000) for laws in grounds])
-    sticking = risk.sticking_lengths(cracks, s_shaped == 1, foundation(np.concatenate(grounds)))
-    predicted, neglected, found = [], [], []
-    for share in (0.05, 0.5, 0.95):
-        points = 5 * round(np.quantile(sticking, share) / 7.5e-6)
-        predicted.append(risk.stuck_share(np.array([points * 1.5e-6]), sticking)[0][0])
-        neglected.append(np.mean(cracks < points * 1.5e-6))
-        found.append(np.mean([released(laws, points)[0] for laws in grounds]))
-    error = np.sqrt(np.multiply(predicted, 1 - np.array(predicted)) / n)
-    assert np.all(np.abs(np.subtract(found, predicted)) < 3 * error)
-    assert neglected[1] - found[1] > 3 * error[1]  # control: without the hold of 2 l_f the shares differ
-
-
 # Shares and their bounds
 
 
@@ -199,3 +169,33 @@ def test_the_fit_of_few_beams_is_the_brute_force_of_many():
     assert abs(estimates.mean() - whole.estimate) < 4 * error
     assert abs(np.quantile(cracks, 1e-2) - whole.estimate) > 4 * error  # control
     assert_allclose(estimates.std(ddof=1), np.mean([part.error for part in parts]), rtol=3 / np.sqrt(18))
+
+
+# Long beams and beams that are cut
+
+
+def released(laws, points):
+    """End state and crack length of the beam cut to some points of its ground."""
+    beam = replace(PAPER, length=points * 1.5e-6, elements=points // 5)
+    end = released_beam(beam, laws[:points], float(forcelaw.energy(laws).mean()))
+    return end.state is EndState.S_SHAPE, end.crack_length
+
+
+def foundation(laws):
+    """l_f = (E t³ / (12 a_left f_max))^(1/4) of the mean law [m]."""
+    return (PAPER.young_modulus * PAPER.thickness**3 / (12 * np.mean(laws[:, 0] * laws[:, 2]))) ** 0.25
+
+
+def test_one_monte_carlo_of_long_beams_answers_all_lengths():
+    n, grounds = 240, [scattered_laws(stream(5, "cut", k), 1000, 0.3) for k in range(240)]
+    s_shaped, cracks = np.transpose([released(laws, 1000) for laws in grounds])
+    sticking = risk.sticking_lengths(cracks, s_shaped == 1, foundation(np.concatenate(grounds)))
+    predicted, neglected, found = [], [], []
+    for share in (0.05, 0.5, 0.95):
+        points = 5 * round(np.quantile(sticking, share) / 7.5e-6)
+        predicted.append(risk.stuck_share(np.array([points * 1.5e-6]), sticking)[0][0])
+        neglected.append(np.mean(cracks < points * 1.5e-6))
+        found.append(np.mean([released(laws, points)[0] for laws in grounds]))
+    error = np.sqrt(np.multiply(predicted, 1 - np.array(predicted)) / n)
+    assert np.all(np.abs(np.subtract(found, predicted)) < 3 * error)
+    assert neglected[1] - found[1] > 3 * error[1]  # control: without the hold of 2 l_f the shares differ

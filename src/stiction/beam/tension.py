@@ -12,13 +12,14 @@ node.
 
 import numpy as np
 from numba import njit
-from scipy.optimize import brentq
 
 from stiction.beam.cantilever import Beam
 
 #: Below this kL, differences of hyperbolic functions lose digits to rounding. The forces then use their series, and the
 #: deflection of the open part, to 1e-5 of the gap, that without tension.
 SLACK = 0.03
+#: Iterations for the crack length; each at least halves its error, because the coupling grows with kL at most linearly.
+_HALVINGS = 60
 
 
 @njit(cache=True, nogil=True)
@@ -124,17 +125,11 @@ def release_rate(crack_length: float | np.ndarray, beam: Beam) -> float | np.nda
 
 def arrest_length(energy: float | np.ndarray, beam: Beam) -> float | np.ndarray:
     """Crack length of an S-shape under tension at the adhesion energy Γ [J m⁻²], `release_rate` inverted; any shape."""
-    return np.vectorize(_arrest_length)(energy, beam)
-
-
-def _arrest_length(energy, beam):
-    """`arrest_length` of one energy, between its values without tension and for a moment of (6 + ks) EI h / s²."""
-    pull = np.sqrt(2 * beam.width * energy / beam.bending_stiffness) / beam.gap  # coupling / s² at arrest
-    shortest = np.sqrt(6 / pull)
-    longest = (beam.decay + np.sqrt(beam.decay**2 + 24 * pull)) / (2 * pull)
-    return brentq(
-        lambda s: np.log(release_rate(s, beam) / energy), 0.999 * shortest, 1.001 * longest, xtol=1e-15, rtol=1e-14
-    )
+    pull = np.sqrt(2 * beam.width * energy / beam.bending_stiffness) / beam.gap
+    crack = np.sqrt(6 / pull)
+    for _ in range(_HALVINGS):
+        crack = np.sqrt(_coupling(crack, beam) / pull)
+    return crack
 
 
 def holding_load(beam: Beam, crack: float) -> float:

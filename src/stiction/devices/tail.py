@@ -60,7 +60,7 @@ def fit_tail(lengths: np.ndarray) -> TailFit:
     return TailFit(float(intercept), float(slope), len(lengths))
 
 
-def scaled_errors(samples: int, share: float, rng: np.random.Generator, repeats: int = 4000) -> np.ndarray:
+def scaled_errors(samples: int, share: float, rng: np.random.Generator, repeats: int = 2000) -> np.ndarray:
     """Errors of fitted logarithms of a length, in units of the true slope and of the fitted one; (2, repeats).
 
     For a distribution that is lognormal at its end, the fit is equivariant, so that the errors do not depend on the
