@@ -1,4 +1,4 @@
-"""Water condensed between two surfaces, perfectly wetting in the paper (Sec. III-A1, capillary forces)."""
+"""Water condensed between perfectly wetting surfaces (Sec. III-A1, capillary forces)."""
 
 import numpy as np
 
