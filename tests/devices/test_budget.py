@@ -95,6 +95,12 @@ def test_the_error_of_a_slope_is_the_scatter_of_repeated_studies():
     assert abs(slopes.mean() - 1) < 4 * slopes.std() / np.sqrt(300)
 
 
+def test_the_error_of_a_mean_of_small_differences_is_its_standard_error():
+    changes = np.random.default_rng(4).standard_normal(15)
+    found = budget.log_slope(np.mean, np.ones(15), 1 + 1e-6 * changes, 1e-6, groups=15)
+    assert_allclose(found, [changes.mean(), changes.std(ddof=1) / np.sqrt(15)], rtol=1e-4)
+
+
 def test_the_measurement_with_the_largest_gain_is_named():
     whole = budget.joined([SURFACE, BEAM])
     groups = {"the thickness": ("thickness",), "the scan of B2": SURFACE.names, "the gap": ("gap",)}

@@ -107,6 +107,13 @@ def test_standard_errors_are_the_scatter_of_repeated_studies(samples, share):
     )
 
 
+def test_the_sampled_estimate_is_the_quantile_of_evenly_spaced_lengths():
+    # Steps at i/n, between which the weights of Harrell and Davis have the mean p: 1000 p + 1/2 on average.
+    found = risk.safe_length(np.arange(1.0, 1001.0), 0.02, stream(0))
+    assert_allclose(found.estimate, 20.5, atol=0.02)
+    assert_allclose(found.error, np.sqrt(1000 * 0.02 * 0.98), rtol=0.01)  # binomial
+
+
 def test_the_larger_the_share_the_longer_the_beam_and_the_bound_is_below_the_estimate():
     sticking = lognormal(np.random.default_rng(6), 2000)
     found = [risk.safe_length(sticking, share, stream(1)) for share in (1e-4, 1e-3, 1e-2, 4e-2)]

@@ -62,6 +62,11 @@ def test_a_sum_of_exponentials_draws_the_lowest_order_statistics():
             assert abs(below - level) < 4 * np.sqrt(2 * level * (1 - level) / 3000)
 
 
+def test_simulated_errors_have_no_bias_within_the_fitted_part():
+    errors, _ = tail.scaled_errors(400, 0.02, np.random.default_rng(5), 20_000)
+    assert errors_off(errors, 0) < ALLOWED + 0.002 * np.sqrt(20_000) / errors.std()  # Blom's positions err by 0.002
+
+
 def test_a_heavier_end_is_not_a_line_and_the_fit_follows_its_lowest_part():
     # Control of the method: the fit uses the end only, so that a second mode far above does not change it.
     rng = np.random.default_rng(4)

@@ -10,7 +10,7 @@ from enum import StrEnum
 import numpy as np
 from scipy.special import betainc, betaincinv
 
-from stiction.devices.tail import fit_tail, scaled_errors
+from stiction.devices.tail import TAIL, fit_tail, scaled_errors
 
 #: Length behind the end of a crack that a beam needs to stick, in foundation lengths.
 HOLD = 2.0
@@ -151,9 +151,9 @@ def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator) ->
     ValueError
         If the share is out of range, there are too few devices for a fit, or too many of their lengths are unknown.
     """
+    if not 0 < share <= TAIL:
+        raise ValueError(f"a safe length needs a share in (0, {TAIL}], got {share}")
     fitted = fit_tail(sticking)
-    if not 0 < share <= 0.05:
-        raise ValueError(f"a safe length needs a share in (0, 0.05], got {share}")
     n = len(sticking)
     if n >= samples_for(share):
         ordered = np.sort(sticking)
