@@ -12,10 +12,14 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
+from queue import Queue
 
 ROOT = Path(__file__).parents[1]
-PATIENCE = 180  # [s] if the tests of a mutant take longer, the mutant counts as detected
+#: A mutant counts as detected if its tests take this many times as long as without it, and at least that long [s].
+PATIENCE = 4, 120
 
 #: Tests of modules that have no test file of their name: names of test files are unique.
 TESTS = {
@@ -27,7 +31,9 @@ TESTS = {
     "beam.equilibrium": "beam",
     "beam.energy": "beam",
     "beam.release": "beam",
+    "report.figures_beams": "report/test_style.py",
     "run.atomic": "stages/test_storage.py",
+    "run.labels": "run/test_kept.py",
     "stages.curves": "stages/test_stage_curves.py",
     "stages.pairs": "stages/test_stage_pairs.py",
     "stages.named": "stages/test_storage.py",
@@ -35,7 +41,7 @@ TESTS = {
     "models": "config/test_plan.py",
 }
 #: Stages and studies whose tests are in one file each.
-STAGES = "heights spectrum identification character forces chaos releases beams cantilevers"
+STAGES = "heights spectrum surfaces identification character forces chaos releases beams cantilevers"
 STUDIES = "sensitivity_contact sensitivity plasticity fit humidity iteration sample_sizes orders mesh correlation"
 STUDIES += " resampling variant variant_contact"
 TESTS |= {f"stages.{name}": "stages/test_stages.py" for name in STAGES.split()}
@@ -54,6 +60,46 @@ MUTANTS = {
         ("largest + np.log(total * _STEP)", "largest + np.log(total)"),
         (".max() < _FARTHEST_MODE", ".max() < 100 * _FARTHEST_MODE"),
         ("known[0]) | (score > known[-1])", "known[0]) | (score > 2 * known[-1])"),
+    ],
+    "surface.feasible": [
+        ("-2 * np.log(0.05)", "-np.log(0.05)"),
+        ("return float(low)", "return float(high) + 0.01"),
+        ("np.diag([6.0, 24.0])", "np.diag([24.0, 6.0])"),
+        ("/ heights\n", "/ np.sqrt(heights)\n"),
+        ("return Moments(skewness, kurtosis, 0.0)", "return Moments(skewness, min(kurtosis, 3.0), 0.0)"),
+        ("inverse = np.linalg.inv(covariance)", "inverse = np.diag(1 / errors**2)"),
+        ("np.sqrt(off @ inverse @ off)", "off @ inverse @ off"),
+        (
+            "best = minimize_scalar(\n        lambda trial: on_border(trial).distance",
+            "best = minimize_scalar(\n        lambda trial: -on_border(trial).distance",
+        ),
+        ("if found.distance > LARGEST_DISTANCE", "if found.distance > 100 * LARGEST_DISTANCE"),
+        ("np.array([-LARGEST_SCORE, LARGEST_SCORE])", "np.array([-5.0, 5.0])"),
+        ("        _solve(skewness, kurtosis)  # raises", "        pass  # raises"),
+    ],
+    "beam.foundation": [
+        ("STRIP, ELEMENT = 0.7, 2.2", "STRIP, ELEMENT = 1.0, 2.2"),
+        ("STRIP, ELEMENT = 0.7, 2.2", "STRIP, ELEMENT = 0.7, 3.5"),
+        ("(4 * bending / stiffness) ** 0.25", "(bending / stiffness) ** 0.25"),
+        ("return 4 * a_left * f_max", "return 2 * a_left * f_max"),
+        ("np.mean(ground_stiffness", "np.max(ground_stiffness"),
+    ],
+    "beam.resolution": [
+        ("if strip > allowed:", "if False:"),
+        ("allowed = min(STRIP * length, element)", "allowed = element"),
+        ("element = min(ELEMENT * length, start / ALONG_START)", "element = ELEMENT * length"),
+        ("element = min(ELEMENT * length, start / ALONG_START)", "element = start / ALONG_START"),
+        ("range(beam.elements, points + 1)", "range(1, points + 1)"),
+        ("if points % n == 0 and", "if"),
+        (
+            "arrest_length(forcelaw.energy(laws).mean(), beam), beam.length)",
+            "arrest_length(forcelaw.energy(laws).mean(), beam), np.inf)",
+        ),
+    ],
+    "contact.bounds": [
+        ("heights > highest - height", "heights > highest + height"),
+        ("tension * float", "0.5 * tension * float"),
+        ("np.log(1 + np.sqrt(2)) / highest", "np.log(1 + np.sqrt(3)) / highest"),
     ],
     "surface.spectrum": [
         ("np.log(self.floor / self.plateau)", "np.log(self.plateau / self.floor)"),
@@ -148,6 +194,12 @@ MUTANTS = {
         ("first = far[-1] + 1", "first = far[0] + 1"),
     ],
     "analysis.mesh": [
+        ("max(2, ceil(2 * beam.length", "max(1, ceil(2 * beam.length"),
+        ("ceil(2 * beam.length / points / (STRIP * length))", "ceil(beam.length / points / (STRIP * length))"),
+        ("ELEMENT * length) / 2", "ELEMENT * length)"),
+        ("self.used.crack_length / self.fine.crack_length - 1", "self.fine.crack_length / self.used.crack_length - 1"),
+        ("self.fine.energy / float(energy(self.law))", "self.used.energy / float(energy(self.law))"),
+        ("for law in laws) / len(laws)", "for law in laws)"),
         ("!= EndState.S_SHAPE", "== EndState.FREE"),
         ("apparent_adhesion_energy(end.crack_length, beam))", "0.0)"),
         ("if is_multiple(length, e) and is_multiple(e, p)", "if is_multiple(length, e)"),
@@ -248,8 +300,8 @@ MUTANTS = {
         ("key=lambda row: row[2])", "key=lambda row: row[0])"),
     ],
     "devices.limits": [
-        ("STRIP, ELEMENT = 0.7, 2.2", "STRIP, ELEMENT = 2.7, 2.2"),
-        ("STRIP, ELEMENT = 0.7, 2.2", "STRIP, ELEMENT = 0.7, 7.2"),
+        ("if strip <= STRIP * foundation and", "if"),
+        ("and element <= ELEMENT * foundation", ""),
         ("PLASTIC = 0.02", "PLASTIC = 0.2"),
         ("FILMS = 20.0", "FILMS = 10.0"),
         ("(film + rms):", "film:"),
@@ -268,13 +320,17 @@ MUTANTS = {
         ("        stubby_beam(crack_length, thickness),\n", ""),
     ],
     "contact.meniscus": [
-        ("np.log(humidity) / WATER_MOLAR_VOLUME", "np.log10(humidity) / WATER_MOLAR_VOLUME"),
+        ("np.log(humidity) / molar_volume", "np.log10(humidity) / molar_volume"),
         ("GAS_CONSTANT * temperature *", "GAS_CONSTANT *"),
         ("return -wetting * kelvin_radius", "return -2 * kelvin_radius"),
         ("np.cos(contact_angles[0]) + np.cos(contact_angles[1])", "2 * np.cos(contact_angles[0])"),
         ("if not wetting > 0", "if not wetting > -1"),
         ("(humidity < 1))", "(humidity <= 1))"),
-        ("WATER_SURFACE_ENERGY / laplace_pressure", "-WATER_SURFACE_ENERGY / laplace_pressure"),
+        ("surface_energy(temperature) / laplace_pressure", "WATER_SURFACE_ENERGY / laplace_pressure"),
+        ("(1 - 0.625 * tau)", "(1 - 0.6 * tau)"),
+        ("tabulated_density(_REFERENCE) / tabulated_density(temperature)", "1.0"),
+        ("_REFERENCE = 300.0", "_REFERENCE = 298.15"),
+        ("16.945176", "16.95176"),
     ],
     "contact.vanderwaals": [
         ("(2 / 15) ** (1 / 6)", "(2 / 15) ** (1 / 3)"),
@@ -306,8 +362,35 @@ MUTANTS = {
         ("third = radius ** (1 / 3)", "third = radius ** (1 / 2)"),
         ("share = place - row", "share = 1 - place + row"),
         ("weight = scales.force * radius", "weight = scales.force"),
+        ("if z <= 0 or not", "if z <= -1e-9 or not"),
+        ("if heights[i, j] > 0 and", "if heights[i, j] > 0.5e-9 and"),
         ("part * (low[cell + 1] - low[cell])", "(1 - part) * (low[cell + 1] - low[cell])"),
         ("if attraction is None else", "if attraction is not None else"),
+        ("before=self.further[0]", "before=self.further[1]"),
+        ("row += scales.before", "row += 0"),
+        ("row, share = len(snap_off) - 2, 1.0", "row, share = 0, 1.0"),
+        ("return a * (a**2 - 2 * transition * width)", "return a * (a**2 - transition * width)"),
+        ("width**2 * (width + transition) - 1.5", "width**2 * (width - transition) - 1.5"),
+        ("weight * deep_load((z - k * step) * inverse, transition)", "weight * deep_load(z * inverse, transition)"),
+        ("transition = np.exp(scales.log_transition) * third", "transition = np.exp(scales.log_transition)"),
+        ("min(1e-2, 0.1 / transition)", "1e-2"),
+    ],
+    "contact.estimate": [
+        ("rms**2 / moments[0] * moment", "rms / moments[0] * moment"),
+        ("(3 / 8 / mean_radius) ** 2", "(3 / 8 / mean_radius)"),
+        ("np.sqrt(3) * density), m4)", "np.sqrt(3) / density), m4)"),
+        ("return 3 / 8 * np.sqrt(np.pi / self.m4)", "return 3 / 8 * np.sqrt(1 / self.m4)"),
+        ("return 4 * np.sqrt(self.m0 / (np.pi * alpha))", "return np.sqrt(self.m0 / (np.pi * alpha))"),
+        ("(1 - 0.8968 / alpha)", "(1 + 0.8968 / alpha)"),
+        ("return surface.summit_density * ", "return "),
+        ("ndtr((height - distance) / rms)", "ndtr((distance - height) / rms)"),
+        ("float(-curve.min())", "float(curve.max())"),
+    ],
+    "config.memory": [
+        ("_PER_POINT * (1e3 * length_um / spacing_nm)", "_PER_POINT * (1e3 * length_um)"),
+        ('config["beam"]["width_um"] + sampling["margin_um"]', 'config["beam"]["width_um"]'),
+        ("return max(USUAL, ", "return min(USUAL, "),
+        ("for spacing in spacings]", "for spacing in spacings[:1]]"),
     ],
     "contact.solids": [
         ("(2 * other / (one + other))", "(other / (one + other))"),
@@ -475,6 +558,7 @@ MUTANTS = {
     "report.tables_surfaces": [
         ("third / rms**3", "third / rms**2"),
         ("1 / curvature / UM", "curvature * UM"),
+        ("100 * float(spectra[surface].defect)", "-100 * float(spectra[surface].defect)"),
         ("{source: 100 * float(spectra[surface].defect)}", '{"published": 100 * float(spectra[surface].defect)}'),
     ],
     "report.tables_beams": [
@@ -486,9 +570,24 @@ MUTANTS = {
     ],
     "report.style": [
         ("return _MARKERS[k % len(_MARKERS)]", "return _MARKERS[k]"),
-        ("panel.set_xlim(max(left, 0), min(right, 1))", "pass"),
+        ("max(left - short, 0), min(right + short, 1)", "left - short, right + short"),
+        ("panel.set_xlim(max(left - short, 0)", "panel.set_xlim(max(left, 0)"),
+    ],
+    "report.figures_beams": [
+        ("2 * weakest, *map(_reach, released.values()))", "2 * weakest)"),
+        ("1.1 * (energies.mean() + energies.std())", "energies.mean()"),
     ],
     "report.checks": [
+        ("abs(found.error) <= accuracy", "found.error <= accuracy"),
+        ("tolerance = accuracy / abs(CRACK_LENGTH_POWER)", "tolerance = 40 * accuracy"),
+        ("energies.max() * found.excess", "2 * energies.max() * found.excess"),
+        ("bool(low <= gamma <= high)", "bool(gamma <= high)"),
+        ('elements=released.sizes["node"] - 1', "elements=beams[pair].elements"),
+        ("if case_id(pair, humidity) in on_mesh_of_paper else ACCURACY", "if True else ACCURACY"),
+        ("if stuck.sum() < 2", "if stuck.sum() < 0"),
+        ("distance <= LARGEST_DISTANCE, message", "True, message"),
+        ('used = heights[surface] if model == "NG"', 'used = targets[surface] if model == "NG"'),
+        ('+ (defect * target if name == "rms_nm" else 0)', '- (defect * target if name == "rms_nm" else 0)'),
         (
             'return pd.read_csv(path, dtype={"passed": bool}, keep_default_na=False)',
             'return pd.read_csv(path, comment="#")',
@@ -500,11 +599,26 @@ MUTANTS = {
         ("return normalised(config)", "return config"),
         ("for key in sorted(value)}", "for key in value}"),
         ('sorted(pair["humidities"])', 'pair["humidities"]'),
+    ],
+    "config.reading": [
         ("for key in duplicates(", "for key in set("),
         ("if not isinstance(content, dict)", "if content is None"),
         ('key.tag != "tag:yaml.org,2002:merge"', "key.tag"),
+        ('.count(b"\\n") + 1', '.count(b"\\n")'),
+        ('"is empty" if content is None', '"is empty" if content'),
+        ("if pattern.fullmatch(text) and", "if False and"),
+        ("mark.line + 1", "mark.line"),
+        ("taken = option in options", "taken = taken or option in options"),
+        ("if taken and equals", "if False"),
+        ("equals and name.isidentifier()", "name.isidentifier()"),
+        ("return 2 if found else 0", "return 0"),
     ],
     "config.relations": [
+        ("return None if gap >= least", "return None if gap >= 0.5 * least"),
+        ("np.max(meniscus_height(humidities", "np.min(meniscus_height(humidities"),
+        ("        if strip > longest:", "        if strip > 2 * longest:"),
+        ('before if key == "@"', 'key if key == "@"'),
+        ("(1e-6 * thickness) ** 3 / 12", "(1e-6 * thickness) ** 2 / 12"),
         ("if kurtosis <= skewness**2 + 1", "if kurtosis < skewness**2 + 1"),
         ("return None if corner < cutoff", "return None if corner <= cutoff"),
         ("return None if floor < plateau", "return None if floor <= plateau"),
@@ -512,6 +626,11 @@ MUTANTS = {
         ("largest = math.pi / cutoff", "largest = 2 * math.pi / cutoff"),
         ("return None if spacing <= coarse or", "return None if spacing >= coarse or"),
         ("return None if length > bound", "return None if length > 0.5 * bound"),
+        ("length * _AT_MOST < bound", "length * 10 * _AT_MOST < bound"),
+        ("if needed <= memory.LARGEST", "if needed <= 100 * memory.LARGEST"),
+        ("_too_large(length + margin, width + margin, spacing)", "_too_large(length, width, spacing)"),
+        ("force[0] >= _SAFE * force[1]", "force[0] >= -_SAFE * force[1]"),
+        ('{*pair["humidities"], shown_humidity}', "{shown_humidity}"),
         ("step = spacing * every", "step = spacing"),
         ("if 3 * coarse <= side", "if 2 * coarse <= side"),
         ("return None if chunks <= samples", "return None if chunks < samples"),
@@ -542,6 +661,10 @@ MUTANTS = {
         ("tuple(item * factor for item in value)", "tuple(value)"),
     ],
     "config.plan": [
+        ("and humidity_of(case) <= max", "and humidity_of(case) >= 0 * max"),
+        ("and all(self._has_heights_of_paper(name) for name in self.sides(pair))", ""),
+        ("else SUMMITS\n", "else ()\n"),
+        ("exists = all(is_feasible", "exists = any(is_feasible"),
         (
             "[case_id(pair, humidity) for pair in self.pairs",
             '[case_id(pair, humidity) for pair in self.config["pairs"]',
@@ -557,6 +680,8 @@ MUTANTS = {
         ('if key != "psd"}', "}"),
     ],
     "config.jobs": [
+        ("return {} if plan.has_mesh_of_paper(case) else", "return {} if False else"),
+        ("if not plan.has_mesh_of_paper(case_id(pair, h))", "if plan.has_mesh_of_paper(case_id(pair, h))"),
         ('section["scatter"] if model == "GEO" else 0', 'section["scatter"]'),
         ("[min(humidities), max(humidities)]", "[max(humidities), min(humidities)]"),
         ("if max(values) <= 0 > min(values)]", "if min(values) < 0]"),
@@ -566,7 +691,23 @@ MUTANTS = {
     ],
     "stages.storage": [
         ("if found != wanted", "if found[0] != wanted[0]"),
+        ("labels.made_from(inputs, stage", "labels.made_from((), stage"),
+    ],
+    "run.labels": [
         ("sort_keys=True", "sort_keys=False"),
+        ("{} if found.stage == stage else", "{} if found.stage != stage else"),
+        ("before |= found.before |", "before |="),
+        ("except (OSError, RuntimeError) as error", "except RuntimeError as error"),
+    ],
+    "run.kept": [
+        ("if found.name != path.stem", "if False"),
+        ("_first(found.settings, settings)", "_first(settings, settings)"),
+        ("in found.before.items()", "in ()"),
+        ("expected(file) or {}", "expected(file) or stored"),
+        ("json.loads(json.dumps(wanted))", "wanted"),
+        ("{*found, *wanted}", "{*found}"),
+        (".hexdigest() != checksum", ".hexdigest() is None"),
+        ("(path.parent, path.name)", "path.as_posix()"),
     ],
     "run.atomic": [
         ("        draft.unlink(missing_ok=True)\n\n\ndef save_text", "        pass\n\n\ndef save_text"),
@@ -578,7 +719,10 @@ MUTANTS = {
         ("float(meniscus_height(humidity, temperature)),", "0.5 * float(meniscus_height(humidity, temperature)),"),
     ],
     "stages.heights": [
-        ("maxent.solve(settings.skewness, settings.kurtosis)", "maxent.solve(-settings.skewness, settings.kurtosis)"),
+        ("used = replace(settings, skewness=found.skewness, kurtosis=found.kurtosis)", "used = settings"),
+        ("_measured(settings, found.distance)", "_measured(used, found.distance)"),
+        ("    if not found.distance:\n", "    if False:\n"),
+        ("maxent.solve(found.skewness, found.kurtosis)", "maxent.solve(-found.skewness, found.kurtosis)"),
         ('if model == "NG" else GAUSSIAN', 'if model == "G" else GAUSSIAN'),
         ("float(heights.skewness), float(heights.kurtosis))", "float(heights.kurtosis), float(heights.skewness))"),
         ("np.linspace(-6, 6, 601)", "np.linspace(-3, 6, 601)"),
@@ -587,9 +731,17 @@ MUTANTS = {
         ("target(zeta) / target.variance", "target(zeta)"),
         ('density(heights, "NG")', 'density(heights, "G")'),
         ('if model == "G":', 'if model == "NG":'),
+        ('"sampling.margin_um": use.margin}', '"sampling.margin_um": use.strip_length}'),
+        ("1 / RESEMBLES <= ratio <= RESEMBLES", "1 / RESEMBLES <= ratio"),
+        ('settings.psd == "identified" and settings.identified', "False"),
         ("spectrum.underlying.values, target.cutoff)", "spectrum.target.values, target.cutoff)"),
         ("spectrum.wavenumber, spectrum.achieved)", "spectrum.wavenumber, spectrum.target)"),
         ("spectrum_of_heights(underlying, translation, settings.spacing), defect)", "underlying, defect)"),
+        ("return float(spectrum.defect)", "return -float(spectrum.defect)"),
+    ],
+    "stages.surfaces": [
+        ("self.spacing, self.margin)", "self.spacing, 0.5 * self.margin)"),
+        ("moments(heights).rms, grid)", "1.1 * moments(heights).rms, grid)"),
     ],
     "stages.identification": [
         (
@@ -598,6 +750,9 @@ MUTANTS = {
         ),
         ('patches(), patches("control"))', "patches(), patches())"),
         ('"identification", surface, *address)', '"identification", *address)'),
+        ("if length <= bound", "if length <= 0.9 * bound"),
+        ("    refuse_long_correlation(surface, found.spectrum", "    (surface, found.spectrum"),
+        ('identification[f"{name}_error"])', "identification[name])"),
         ("StripGrid(patch, patch, settings.spacing,", "StripGrid(patch, patch, settings.target_spacing,"),
     ],
     "stages.character": [
@@ -622,6 +777,9 @@ MUTANTS = {
         ('("scale", "mean", "variance", "axes"))', '("mean", "scale", "variance", "axes"))'),
     ],
     "stages.releases": [
+        ("    if settings.refined:\n", "    if not settings.refined:\n"),
+        ('draw(_LAWS, address("mesh"))', "draw(_LAWS, address(0))"),
+        ('error.add_note(f"in case {case}")', "pass"),
         ('"beams", case)', '"beam", case)'),
         ("draw, settings.scatter)", "draw)"),
         ("range(number), address, threads)", "range(1, number + 1), address, threads)"),
@@ -629,9 +787,10 @@ MUTANTS = {
         ("beams.state.values == STATES", "beams.state.values >= STATES"),
     ],
     "stages.beams": [
+        ('columns["deflection"].shape[1] - 1', "settings.beam.elements"),
         ("case, settings, shapes=_KEPT)", "case, settings, shapes=1)"),
         ('columns["energy"], {"units"', 'columns["crack_length"], {"units"'),
-        ("pair_of(case)).nodes", "pair_of(case)).nodes[::-1]"),
+        ("elements=elements).nodes", "elements=elements).nodes[::-1]"),
         ('" ".join(releases.STATES)', '" ".join(releases.STATES[::-1])'),
     ],
     "stages.cantilevers": [
@@ -707,13 +866,14 @@ MUTANTS = {
     ],
     "studies.resampling": [
         ('"resampling", case)', '"beams", case)'),
-        ("samples=settings.beams, scatter=0)", "samples=settings.beams, scatter=0.01)"),
+        ("samples=settings.beams, scatter=0,", "samples=settings.beams, scatter=0.01,"),
         ('np.asarray(columns["state"], np.int8)', 'np.ones_like(columns["state"])'),
     ],
     "studies.variant": [
         ("energies.append(vectors[:, 0])", "energies.append(vectors[:, 1])"),
         ("samples=number, scatter=0", "samples=number, scatter=0.01"),
-        ("case_id(pair, humidity), beams)", "case_id(pair, humidities[0]), beams)"),
+        ("case_id(pair, humidity), refined)", "case_id(pair, humidities[0]), refined)"),
+        ("refined=humidity in settings.refined", "refined=False"),
         ("settings.chaos.order, settings", "1, settings"),
         ('releases.ended(chosen, "S-shape")', 'releases.ended(chosen, "arc")'),
     ],
@@ -753,20 +913,20 @@ class Copy:
     def __init__(self, folder):
         self.folder, self.warm, self.cache = folder / "project", folder / "warm", folder / "cache"
         ignored = shutil.ignore_patterns("__pycache__", "benchmarks")
-        for name in ("src", "tests", "workflow"):
+        for name in ("src", "tests", "workflow", "profiles"):
             shutil.copytree(ROOT / name, self.folder / name, ignore=ignored)
         for name in ("pyproject.toml", "config.yaml"):
             shutil.copy(ROOT / name, self.folder)
 
-    def tests(self, module, cache):
-        """Run the tests of a module; the name of the first that fails, empty if all pass."""
+    def tests(self, module, cache, limit=None):
+        """Run the tests of a module, at most for a time [s]; the name of the first that fails, empty if all pass."""
         files = [tests_of(module), source_of(module)]
         command = [sys.executable, "-B", "-m", "pytest", "-x", "--tb=no", "-p", "no:cacheprovider", *files]
         environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), "OMP_NUM_THREADS": "1"}
         environment["PYTHONPATH"] = str(self.folder / "src")
         try:
             done = subprocess.run(
-                command, cwd=self.folder, env=environment, capture_output=True, text=True, timeout=PATIENCE
+                command, cwd=self.folder, env=environment, capture_output=True, text=True, timeout=limit
             )
         except subprocess.TimeoutExpired:
             return "its tests do not end"
@@ -775,7 +935,7 @@ class Copy:
         lines = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
         return lines[0] if lines else f"pytest ended with {done.returncode}"
 
-    def notice(self, module, old, new):
+    def notice(self, module, old, new, limit):
         """Name of the test that detects a mutant; empty if none does."""
         path = self.folder / source_of(module)
         text = path.read_text(encoding="utf-8")
@@ -784,7 +944,7 @@ class Copy:
         kept = path.stat()
         try:
             path.write_text(text.replace(old, new), encoding="utf-8")
-            return self.tests(module, self.cache)
+            return self.tests(module, self.cache, limit)
         finally:
             path.write_text(text, encoding="utf-8")
             os.utime(path, ns=(kept.st_atime_ns, kept.st_mtime_ns))
@@ -800,25 +960,44 @@ def chosen(modules):
     return mutants
 
 
+def detected(module, mutants, copies):
+    """Mutants of a module and the names of the tests that detect them; the tests must pass without a mutant.
+
+    Copies of the project are taken from a queue and put back, so that each is used by one thread at a time.
+    """
+    copy = copies.get()
+    try:
+        start = time.monotonic()
+        if failed := copy.tests(module, copy.warm):
+            return [((module, "", ""), f"FAILED without a mutant: {failed}")]
+        copy.warm.mkdir(exist_ok=True)
+        limit = max(PATIENCE[0] * (time.monotonic() - start), PATIENCE[1])
+        return [((module, old, new), copy.notice(module, old, new, limit)) for _, old, new in mutants]
+    finally:
+        copies.put(copy)
+
+
 def main():
     parser = argparse.ArgumentParser(description="Introduce small errors and count those that no test detects.")
     parser.add_argument("modules", nargs="*", metavar="module", help="of src/stiction; all by default")
     modules = parser.parse_args().modules or list(MUTANTS)
     if unknown := set(modules) - set(MUTANTS):
         parser.error(f"no mutants of {', '.join(sorted(unknown))}; there are some of {', '.join(MUTANTS)}")
-    mutants, survivors = chosen(modules), []
-    with tempfile.TemporaryDirectory() as folder:
-        copy = Copy(Path(folder))
-        for module in modules:
-            if failed := copy.tests(module, copy.warm):
-                sys.exit(f"the tests of {module} must pass before it is broken: {failed}")
-        copy.warm.mkdir(exist_ok=True)
-        for module, old, new in mutants:
-            test = copy.notice(module, old, new)
-            survivors += [] if test else [(module, old, new)]
-            print(f"{'caught  ' if test else 'SURVIVED'} {module}: {old!r} -> {new!r}  {test}", flush=True)  # noqa: T201
-    caught = len(mutants) - len(survivors)
-    print(f"{caught} of {len(mutants)} mutants caught, {100 * caught / len(mutants):.0f} %")  # noqa: T201
+    mutants, results = chosen(modules), []
+    workers = min(len(modules), os.cpu_count())
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(workers) as pool:
+        copies = Queue()
+        for worker in range(workers):
+            copies.put(Copy(Path(folder) / str(worker)))
+        tasks = [pool.submit(detected, name, [m for m in mutants if m[0] == name], copies) for name in modules]
+        for task in as_completed(tasks):
+            for (module, old, new), test in task.result():
+                print(f"{'caught  ' if test else 'SURVIVED'} {module}: {old!r} -> {new!r}  {test}", flush=True)  # noqa: T201
+                results.append(test)
+    if broken := [test for test in results if "without a mutant" in test]:
+        sys.exit("\n".join(broken))
+    caught = sum(map(bool, results))
+    print(f"{caught} of {len(mutants)} mutants caught, {100 * caught / len(mutants):.1f} %")  # noqa: T201
     sys.exit(caught < 0.99 * len(mutants))
 
 

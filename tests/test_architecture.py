@@ -9,14 +9,14 @@ PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 #: Folders and their modules, in the order in which they may import: from modules above or to the left.
 ORDER = """
 constants errors streams estimates numbers models progress
-surface: maxent spectrum translation field iteration summits identify
-contact: meniscus vanderwaals asperity solids pair forcelaw
+surface: maxent spectrum translation feasible field iteration summits identify
+contact: meniscus vanderwaals asperity solids estimate pair forcelaw bounds
 chaos: coordinates density polynomials model
-beam: cantilever tension energy equilibrium release montecarlo
+beam: cantilever tension energy foundation equilibrium release resolution montecarlo
 analysis: plasticity sensitivity convergence mesh variants
 devices: arcs bridges tail risk stoppers chart budget limits
-run: fingerprint logs folder atomic provenance warmup
-config: units cases merging messages relations files plan jobs
+run: fingerprint logs folder atomic labels kept provenance warmup
+config: units cases merging messages reading memory relations files plan jobs
 stages: storage named heights parameters identification spectrum surfaces character pairs contact curves forces chaos
 stages: cantilevers releases beams
 studies: iteration fit humidity sensitivity_contact sensitivity plasticity sample_sizes orders mesh correlation

@@ -45,7 +45,8 @@ WRONG_VALUES = [
     ("beam: {scatter: -0.01}", "beam.scatter", "-0.01", "at least 0 and below 0.2"),
     ("beam: {scatter: 0.2}", "beam.scatter", "0.2", "below 0.2"),
     ("figures: {humidity: 1.0}", "figures.humidity", "1.0", "above 0 and below 1"),
-    ("studies: {sensitivity: {step: 0}}", "studies.sensitivity.step", "0", "above 0 and at most 0.5"),
+    ("studies: {sensitivity: {step: 0}}", "studies.sensitivity.step", "0", "at least 0.001 and at most 0.5"),
+    ("studies: {sensitivity: {step: 1.0e-12}}", "studies.sensitivity.step", "1e-12", "far above single precision"),
     ("studies: {plasticity: {distance_nm: {a: -1}}}", "studies.plasticity.distance_nm.a", "-1", "[nm]"),
     ("studies: {sample_shares: [0]}", "studies.sample_shares[0]", "0", "above 0 and at most 1"),
     ("studies: {variants: {psd: [measured]}}", "studies.variants.psd[0]", "'measured'", "one of published, identified"),
@@ -93,6 +94,8 @@ WRONG_VALUES = [
     ("surfaces: {B1: {published_psd: }}", "surfaces.B1.published_psd", "None", GONE),
 ]  # fmt: skip
 
+#: Smooth surfaces under a beam whose strips are short enough.
+SMOOTH = "pairs: {b: {beam: Sub1}}\nbeam: {thickness_um: 8}"
 # As above, for relations between keys
 WRONG_RELATIONS = [
     ("surfaces: {B1: {skewness: -0.5, kurtosis: 1.25}}", "surfaces.B1.kurtosis", "1.25",
@@ -100,6 +103,19 @@ WRONG_RELATIONS = [
     ("surfaces: {B1: {kurtosis: 1.6}}", "surfaces.B1.kurtosis", "1.6", "skewness² + 1 = 1.6084 (given surfaces.B1."),
     ("surfaces: {B1: {skewness: 0}}", "surfaces.B1.kurtosis", "4.6", "maximum-entropy"),
     ("surfaces: {B1: {skewness: 1.0e-3}}", "surfaces.B1.kurtosis", "4.6", "surfaces.B1.skewness = 0.001"),
+    ("surfaces: {B1: {skewness: -0.1, kurtosis: 3.5}}", "surfaces.B1.kurtosis", "3.5",
+     "near that of a maximum-entropy density of the heights: no maximum-entropy density has moments within 2.45 "
+     "standard errors (0.055 and 0.11) of skewness -0.1 and kurtosis 3.5; at this skewness the largest kurtosis is "
+     "3.026"),
+    ("pairs: {b: {gap_um: 0.317}}", "pairs.b.gap_um", "0.317",
+     "at least 0.3173 µm, 20 times the height of the water film, 12.463 nm, plus the rms of the surfaces, 3.4 nm (given"
+     " pairs.b.humidities = [0.44, 0.55, 0.67, 0.8, 0.88, 0.92], run.pairs = ['a', 'b', 'c'], water.temperature_K = "
+     "300, pairs.b.beam = 'B2', pairs.b.substrate = 'Sub1')"),
+    ("pairs: {a: {humidities: [0.9999]}}", "pairs.a.gap_um", "20", "at least 207.9 µm"),
+    ("figures: {humidity: 0.9902}", "pairs.c.gap_um", "2", "figures.humidity = 0.9902"),
+    ("surfaces: {B2: {kurtosis: 1.5777}}", "sampling.strip_length_um", "1.5",
+     "at most 1.27 µm to resolve the cracks of pair b at RH 0.44 (given beam.thickness_um = 2.6, solid.young_modulus"),
+    ("beam: {thickness_um: 1}\nrun: {pairs: [a]}", "sampling.strip_length_um", "1.5", "at most 1.15 µm"),
     ("surfaces: {B1: {published_psd: {corner_rad_per_um: 138}}}", "surfaces.B1.published_psd.corner_rad_per_um", "138",
      "below the cut-off (given surfaces.B1.published_psd.cutoff_rad_per_um = 138)"),
     ("surfaces: {B1: {published_psd: {floor_nm4: 525}}}", "surfaces.B1.published_psd.floor_nm4", "525", "plateau"),
@@ -110,6 +126,8 @@ WRONG_RELATIONS = [
      "surfaces.Sub1.published_psd ="),
     ("sampling: {margin_um: 0.75}", "sampling.margin_um", "0.75", "above the correlation length of the surface,"),
     ("identification: {patch_um: 0.75}", "identification.patch_um", "0.75", "above the correlation length of the"),
+    ("surfaces: {B2: {psd: identified, mean_summit_radius_um: 5, summit_density_per_um2: 2}}\nrun: {pairs: [a]}",
+     "sampling.margin_um", "1", "must be above the correlation length of the surface, estimated as 1.9 µm from its"),
     ("identification: {patch_um: 5.005}", "identification.patch_um", "5.005", "whole number of grid spacings of 10 nm"),
     ("beam: {width_um: 30.005}\nstudies: {variants: {every: []}}", "beam.width_um", "30.005",
      "whole number of contact points 10 nm apart"),
@@ -151,7 +169,14 @@ WRONG_RELATIONS = [
     ("beam: {elements: 300}", "beam.length_um", "1500", "multiple of strip_length x elements = 450 µm"),
     ("beam: {elements: 2000}", "beam.length_um", "1500", "multiple of strip_length x elements = 3000 µm"),
     ("pairs: {a: {gap_um: 1000}}\nbeam: {length_um: 900}", "pairs.a.gap_um", "1000", "below the length of the beam"),
-    ("beam: {width_um: 1500}", "beam.width_um", "1500", "below the length of the beam"),
+    ("beam: {width_um: 1500}\nstudies: {variants: {spacing_nm: []}}", "beam.width_um", "1500", "below the length"),
+    (SMOOTH, "run.pairs[1]", "'b'", "a solid stiff enough for its humidities: at"),
+    ("surfaces: {B2: {rms_nm: 0.3}}\nbeam: {thickness_um: 8}", "run.pairs[1]", "'b'", "MPa, is not below a third of"),
+    ("run: {pairs: [c]}\nsolid: {young_modulus_GPa: 0.1}", "run.pairs[0]", "'c'", "must have surfaces rough enough"),
+    ("sampling: {margin_um: 1000}\nstudies: {variants: {spacing_nm: []}}", "sampling.spacing_nm", "10",
+     "within 8 GB of memory: 1001.5 x 1030 µm every 10 nm take 619 GB (given sampling.strip_length_um = 1.5,"),
+    ("identification: {patch_um: 200}", "identification.patch_um", "200", "200 x 200 µm every 10 nm take 24.4 GB"),
+    ("studies: {variants: {spacing_nm: [0.5]}}", "studies.variants.spacing_nm[0]", "0.5", "2.5 x 31 µm every 0.5 nm"),
     ("beam: {thickness_um: 1000, length_um: 900}", "beam.thickness_um", "1000", "below the length of the beam"),
 ]  # fmt: skip
 

@@ -2,9 +2,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from beams import PAPER, uniform_laws
+from beams import PAPER, scattered_laws, uniform_laws
 
-from stiction.analysis.mesh import arrest_on_uniform_ground, whole_meshes
+from stiction.analysis.mesh import arrest_on_uniform_ground, finer_mesh, resolution, rigid_energy, whole_meshes
+from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
 from stiction.contact import forcelaw
 
 LAW = uniform_laws(1)[0]
@@ -32,3 +33,35 @@ def test_meshes_divide_the_beam_evenly():
     assert meshes == [(15.0, 7.5), (7.5, 7.5), (15.0, 3.0)]
     with pytest.raises(ValueError, match="no elements of"):
         whole_meshes(30.0, [4.0], [1.0])
+
+
+@pytest.mark.parametrize("factor", [1e-2, 1, 100])
+def test_the_finer_mesh_is_twice_as_fine_as_the_one_in_use_and_as_the_law_calls_for(factor):
+    law = uniform_laws(1, factor * forcelaw.energy(LAW), factor * LAW[0])[0]
+    beam, points = finer_mesh(PAPER, law, 1000)
+    length = foundation_length(PAPER, law[None])
+    assert points % 1000 == points % beam.elements == 0
+    assert 2 * beam.element_length <= min(PAPER.element_length, ELEMENT * length)
+    assert 2 * PAPER.length / points <= min(PAPER.length / 1000, STRIP * length) * (1 + 1e-12)
+    assert points <= 2000 * (1 + PAPER.length / 1000 / (STRIP * length))
+
+
+def test_error_of_the_mesh_is_that_against_a_very_fine_one():
+    law = uniform_laws(1, 60 * forcelaw.energy(LAW), 60 * LAW[0])[0]
+    fine = arrest_on_uniform_ground(replace(PAPER, elements=4000), law, 8000)
+    found = resolution(PAPER, law, 1000)
+    error = found.used.crack_length / fine.crack_length - 1
+    assert abs(error) > 0.03  # elements of 6 foundation lengths
+    assert found.error == pytest.approx(error, abs=0.004)  # a quarter of 1 %, and rounding
+    assert found.excess == pytest.approx(fine.energy / forcelaw.energy(law), abs=0.016)
+
+
+def test_a_stiff_beam_has_the_energy_of_a_single_law_and_less_than_the_mean_of_laws_at_several_distances():
+    # The trapezoidal rule on 20000 nodes and the tail beyond 20 / a_right
+    assert rigid_energy(LAW[None]) == pytest.approx(forcelaw.energy(LAW), rel=1e-5)
+    weaker = np.stack([LAW, LAW * [0.2, 1, 1, 1]])
+    assert rigid_energy(weaker) == pytest.approx(forcelaw.energy(weaker).mean(), rel=1e-5)
+    apart = np.stack([LAW, LAW + [0, 3e-9, 0, 0]])
+    assert rigid_energy(apart) < 0.7 * forcelaw.energy(LAW)
+    scattered = scattered_laws(np.random.default_rng(4), 200, 0.5)
+    assert rigid_energy(scattered) < forcelaw.energy(scattered).mean()

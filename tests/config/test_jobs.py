@@ -1,6 +1,7 @@
 """Settings of jobs: what they contain, what they must not contain, and that the stages accept them."""
 
 import json
+from dataclasses import MISSING, fields
 from pathlib import Path
 
 import pytest
@@ -34,7 +35,7 @@ PLAN = Plan(load())
 JOBS = {
     heights: jobs.heights(PLAN, "B2"),
     identification: jobs.identification(PLAN, "B2"),
-    spectrum: jobs.spectrum(PLAN, "B2"),
+    spectrum: jobs.spectrum(Plan(load({"surfaces": {"B2": {"psd": "identified"}}})), "B2"),
     iteration: jobs.iteration(PLAN),
     character: jobs.character(PLAN),
     contact: jobs.contact(PLAN, "b"),
@@ -62,7 +63,8 @@ each_job = pytest.mark.parametrize(
 @each_job
 def test_a_stage_takes_exactly_the_settings_of_its_jobs(stage, settings):
     found = typed(stage.Settings, settings)
-    assert set(vars(found)) == {key.removesuffix("_nm") for key in settings}
+    optional = {field.name for field in fields(found) if field.default is not MISSING}
+    assert set(vars(found)) - optional == {key.removesuffix("_nm") for key in settings} - optional
 
 
 @each_job
@@ -87,6 +89,17 @@ def test_a_variant_of_the_mesh_changes_only_the_number_of_elements():
     base, finer = (jobs.variant(PLAN, "b", name) for name in ("base", "strips_per_element_2"))
     assert finer == merged(base, {"beam": {"elements": 500}})
     assert base["beam"]["samples"] == PLAN.config["studies"]["variants"]["beams"]
+
+
+def test_elements_follow_the_force_laws_except_on_the_mesh_of_the_paper():
+    other = Plan(load({"pairs": {"b": {"humidities": [0.67, 0.95]}}}))
+    assert "refined" not in jobs.beams(other, "b_rh067", "GEO")
+    assert jobs.beams(other, "b_rh095", "GEO")["refined"] is True
+    assert "refined" not in jobs.resampling(other, "b_rh067")
+    assert jobs.resampling(other, "b_rh095")["refined"] is True
+    assert jobs.variant(other, "b", "strips_per_element_2")["refined"] == [0.95]
+    assert "refined" not in jobs.variant(PLAN, "b", "base")
+    assert set(jobs.checks(other)["on_mesh_of_paper"]) == {*PLAN.cases} - {*PLAN.cases[6:12]} | {"b_rh067"}
 
 
 def test_si_values_are_those_of_the_paper():

@@ -108,3 +108,41 @@ def test_a_surface_without_summits_keeps_its_published_spectrum_under_every_vari
     settings = mine.variant_contact("mine", "psd_identified")
     assert settings["base"]["surfaces"]["Bare"]["psd"] == "published"
     assert settings["identified"] == ["Sub1"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "known"),
+    [
+        ({}, "abc"),
+        ({"run": {"pairs": ["c"]}}, "abc"),
+        ({"pairs": {"b": {"humidities": [0.3, 0.92]}}}, "abc"),
+        ({"van_der_waals": "dry", "sampling": {"spacing_nm": 5}, "solid": {"poisson_ratio": 0.3}}, "abc"),
+        ({"surfaces": {"B1": {"psd": "identified"}}}, "abc"),
+        ({"surfaces": {"B1": {"summit_density_per_um2": 70}}}, "abc"),
+        ({"surfaces": {"B1": {"psd": "identified", "summit_density_per_um2": 70}}}, "b"),
+        ({"surfaces": {"B2": {"rms_nm": 3.0}}}, "ac"),
+        ({"surfaces": {"Sub2": {"published_psd": {"floor_nm4": 0.3}}}}, "ab"),
+        ({"pairs": {"b": {"gap_um": 10}}}, "ac"),
+        ({"beam": {"width_um": 20}}, "abc"),
+        ({"beam": {"elements": 500}}, ""),
+        ({"beam": {"thickness_um": 2.0}}, ""),
+        ({"sampling": {"strip_length_um": 1.25}, "studies": {"variants": {"every": []}}}, ""),
+    ],
+)
+def test_only_beams_and_strips_of_the_paper_have_its_mesh(changes, known):
+    found = plan(**changes)
+    cases = {"a": "a_rh090", "b": "b_rh092", "c": "c_rh090"}
+    assert "".join(pair for pair, case in cases.items() if found.has_mesh_of_paper(case)) == known
+
+
+def test_the_mesh_of_the_paper_ends_at_its_highest_humidity_and_its_own_pairs():
+    mine = plan(pairs={"mine": LIKE_A})
+    assert PAPER.has_mesh_of_paper("b_rh065")
+    assert not PAPER.has_mesh_of_paper("b_rh093")
+    assert not mine.has_mesh_of_paper("mine_rh050")
+
+
+def test_moments_are_shifted_from_feasible_ones():
+    border = plan(surfaces={"B2": {"skewness": -0.3, "kurtosis": 3.5}})
+    assert border.shifted_moments == ["rms"]  # on the border, less skewness or more kurtosis is infeasible
+    assert plan(surfaces={"B2": {"skewness": -0.3, "kurtosis": 2.9}}).shifted_moments == PAPER.shifted_moments

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from beams import PAPER, uniform_laws
 
+from stiction.beam.foundation import foundation_length
 from stiction.beam.release import crack_length, release
 from stiction.devices import limits
 
@@ -80,7 +81,7 @@ def test_a_beam_beyond_all_limits_has_all_warnings():
 
 def test_within_the_mesh_rule_a_uniform_law_arrests_the_crack_within_one_percent_of_a_fine_mesh():
     laws = uniform_laws(1)[0]
-    foundation = (PAPER.young_modulus * PAPER.thickness**3 / (12 * laws[0] * laws[2])) ** 0.25
+    foundation = foundation_length(PAPER, laws[None])
 
     def crack(elements, points):
         ground = np.tile(laws, (points, 1))

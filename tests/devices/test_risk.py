@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.special import ndtri
 from scipy.stats import binom
 
+from stiction.beam.foundation import foundation_length
 from stiction.beam.release import EndState, released_beam
 from stiction.contact import forcelaw
 from stiction.devices import arcs, risk
@@ -188,15 +189,10 @@ def released(laws, points):
     return end.state is EndState.S_SHAPE, end.crack_length
 
 
-def foundation(laws):
-    """l_f = (E t³ / (12 a_left f_max))^(1/4) of the mean law [m]."""
-    return (PAPER.young_modulus * PAPER.thickness**3 / (12 * np.mean(laws[:, 0] * laws[:, 2]))) ** 0.25
-
-
 def test_one_monte_carlo_of_long_beams_answers_all_lengths():
     n, grounds = 240, [scattered_laws(stream(5, "cut", k), 1000, 0.3) for k in range(240)]
     s_shaped, cracks = np.transpose([released(laws, 1000) for laws in grounds])
-    sticking = risk.sticking_lengths(cracks, s_shaped == 1, foundation(np.concatenate(grounds)))
+    sticking = risk.sticking_lengths(cracks, s_shaped == 1, foundation_length(PAPER, np.concatenate(grounds)))
     predicted, neglected, found = [], [], []
     for share in (0.05, 0.5, 0.95):
         points = 5 * round(np.quantile(sticking, share) / 7.5e-6)

@@ -1,5 +1,7 @@
 """Every check passes on data that satisfy it, and has a control that fails."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -8,6 +10,7 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.equilibrium import ROUNDING, TOLERANCE
 from stiction.report import checks
 from stiction.stages import forces as stage_forces
+from stiction.stages import heights
 from stiction.streams import stream
 
 BEAM = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200)
@@ -161,6 +164,96 @@ def test_chaos_model_may_change_a_crack_length_by_one_per_cent_plus_errors():
     assert not checks.chaos_keeps_crack_length("b", released(700), released(700 * 1.026)).passed
 
 
+def laws(mean, scatter=0.1, strength=1.0):
+    """Samples of v whose forces are stronger by a factor; d_max is the same in all, so that a stiff beam has ē."""
+    found = forces(mean, scatter)
+    return found.assign({name: strength * found[name] for name in ("adhesion_energy", "pull_off", "limit")})
+
+
+def cracks(gamma, stuck=50, elements=200, error=0.01):
+    """Beams with this energy of Eq. (13) [mJ/m²], of which some end S-shaped."""
+    energies = 1e-3 * gamma * (1 + error * stream(3, "cracks").standard_normal(50))
+    state = np.where(np.arange(50) < stuck, 0, 1)
+    return xr.Dataset(
+        {"adhesion_energy": ("sample", energies), "state": ("sample", state), "imbalance": ("sample", np.zeros(50))},
+        coords={"node": np.linspace(0, BEAM.length, elements + 1)},
+    )
+
+
+def of_mesh(outcomes, samples, beam=BEAM, accuracy=0.01):
+    return list(checks.crack_is_resolved("b", outcomes, samples, beam, STRIP, accuracy))
+
+
+def test_elements_much_longer_than_the_foundation_length_fail_by_name_and_shorter_ones_pass():
+    mesh, energy = of_mesh(cracks(7.2), laws(7))
+    assert mesh.passed
+    assert energy.passed
+    mesh, _ = of_mesh(cracks(700), laws(7, strength=100))
+    assert not mesh.passed
+    assert mesh.name == checks.RESOLVED
+    off = float(mesh.message.split("% off")[0].split()[-1])
+    assert off < -2
+    mesh, _ = of_mesh(cracks(700), laws(7, strength=100), accuracy=1.01 * abs(off) / 100)
+    assert mesh.passed
+
+
+def test_elements_on_which_no_beam_can_be_released_fail_with_the_reason():
+    (mesh,) = of_mesh(cracks(7), laws(7, strength=1e4), beam=replace(BEAM, elements=10))
+    assert not mesh.passed
+    assert mesh.name == checks.RESOLVED
+    assert mesh.message.startswith("no crack on uniform ground: ")
+
+
+def test_energy_of_the_cracks_lies_between_that_of_a_stiff_beam_and_of_the_strongest_strip():
+    samples = laws(7, scatter=0.05)
+    strongest = 1e3 * float(samples.adhesion_energy.max())
+    bounds = {}
+    for gamma in np.linspace(0.9 * 7, 1.2 * strongest, 40):
+        _, energy = of_mesh(cracks(gamma, error=1e-6), samples)
+        bounds[gamma] = energy.passed
+    allowed = [gamma for gamma, passed in bounds.items() if passed]
+    # 4 % for the mesh; the crack on uniform ground ends 1 to 3 % of its energy before that of Eq. (13).
+    assert min(allowed) == pytest.approx(0.96 * 7, rel=0.015)
+    assert 1.04 * strongest < max(allowed) < 1.08 * strongest
+    _, energy = of_mesh(cracks(1.3 * strongest, error=0.5), samples)
+    assert energy.passed, "few beams leave an error"
+
+
+def test_beams_that_do_not_stick_have_no_crack_to_resolve():
+    assert of_mesh(cracks(7, stuck=1), laws(7)) == []
+    assert of_mesh(cracks(0.1), laws(7, strength=0.01)) == []
+
+
+def test_beams_are_checked_on_the_mesh_in_use_and_with_the_tolerance_of_their_case():
+    key = ("b", 0.67, "NG")
+    samples = {("b", 0.67, "NG"): laws(7, strength=12)}
+    coarse, fine = cracks(7.2 * 12), cracks(7.2 * 12, elements=1000)
+    _, of_paper, _ = checks.of_beams({key: coarse}, samples, {"b": BEAM}, STRIP, ["b_rh067"])
+    _, other, _ = checks.of_beams({key: coarse}, samples, {"b": BEAM}, STRIP, ["b_rh088"])
+    _, refined, _ = checks.of_beams({key: fine}, samples, {"b": BEAM}, STRIP, [])
+    assert "(allowed ± 2 %)" in of_paper.message
+    assert "(allowed ± 1 %)" in other.message
+    assert refined.message != other.message
+    _, geo, _ = checks.of_beams({("b", 0.67, "GEO"): coarse}, samples, {"b": BEAM}, STRIP, [])
+    assert geo.message == other.message
+
+
+def test_moments_that_replace_measured_ones_are_stated_and_are_the_target_of_the_drawn_surfaces():
+    kept = heights.compute(heights.Settings(1.7e-9, 0.0, 3.0))
+    with pytest.warns(UserWarning, match="nearest feasible"):
+        replaced = heights.compute(heights.Settings(1.7e-9, 0.01, 3.2))
+    drawn = {("B", "NG"): character(60)}
+    of_kept, *_ = checks.of_surfaces({"B": kept}, drawn, {"B": TARGET}, {"B": 0.0})
+    assert of_kept.passed
+    assert of_kept.message == "skewness 0, kurtosis 3"
+    of_replaced, *moments = checks.of_surfaces({"B": replaced}, drawn, {"B": TARGET | {"kurtosis": 3.2}}, {"B": 0.0})
+    assert of_replaced.passed
+    assert "measured skewness 0.01 and kurtosis 3.2" in of_replaced.message
+    targets = (1.7, replaced.skewness, replaced.kurtosis)
+    assert all(f"target {float(t):.4g}" in check.message for t, check in zip(targets, moments, strict=True))
+    assert not checks.heights_are_as_measured("B", replaced.assign(distance=2.5)).passed
+
+
 def test_cases_with_fewer_than_two_stuck_beams_are_not_compared():
     key = ("b", 0.5, "NG")
     assert list(checks.of_resampling({key: released(700)}, {key: released(700, stuck=0)})) == []
@@ -213,3 +306,31 @@ def test_messages_give_as_many_digits_as_their_error_allows():
         found.message.removeprefix("mean adhesion energy grows by ").removesuffix(" mJ/m²").partition(" ± ")
     )
     assert len(number.partition(".")[2]) == len(error.partition(".")[2])
+
+
+def identified(radius, density, error=1e-3):
+    wanted = {"mean_radius": radius, "summit_density": density}
+    return xr.Dataset(
+        {name: ((), ratio * 2.0) for name, ratio in wanted.items()}
+        | {f"{name}_error": ((), error * 2.0) for name in wanted}
+        | {f"target_{name}": ((), 2.0) for name in wanted}
+    )
+
+
+@pytest.mark.parametrize(
+    ("radius", "density", "passed"),
+    [
+        (1.0, 1.0, [True, True]),
+        (1.23, 0.77, [True, True]),
+        (1.4, 1.0, [False, True]),
+        (1.0, 0.6, [True, False]),
+        (1e-3, 1e3, [False, False]),
+        (np.nan, 1.0, [False, True]),
+    ],
+)
+def test_an_identified_spectrum_must_have_the_measured_summits(radius, density, passed):
+    found = list(checks.of_identifications({"Mine": identified(radius, density)}))
+    assert [check.passed for check in found] == passed
+    assert all(check.case == "Mine" for check in found)
+    (uncertain, _) = checks.of_identifications({"Mine": identified(1.4, 1.0, error=0.1)})
+    assert uncertain.passed

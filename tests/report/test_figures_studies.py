@@ -50,6 +50,12 @@ def variant(length_um, energy=1.0, free=0):
     return study_variant.layout(HUMIDITIES, energies, beams)
 
 
+def test_the_axis_of_fig_13_ends_at_saturated_air():
+    humid = {"rms": sensitivity(0.5).assign_coords(humidity=[0.8, 0.99])}
+    for panel in figures_studies.sensitivities(humid, {}).axes:
+        assert 0.99 < panel.get_xlim()[1] <= 1
+
+
 VARIANTS = {
     ("a", "base"): variant((800, 440)),
     ("a", "van_der_waals_none"): variant((880, 400), 0.8),

@@ -16,7 +16,7 @@ from stiction.contact import forcelaw
 from stiction.report.figures_beams import adhesion_energies, beam_shapes, converted
 from stiction.report.figures_forces import fitted_curve, force_curves, typical
 from stiction.report.figures_surfaces import elevation_maps, height_densities, profiles, spectra, summits
-from stiction.report.style import letter, panels, save
+from stiction.report.style import humidity_axis, letter, panels, save
 from stiction.stages import beams as stage_beams
 from stiction.stages import character as stage_character
 from stiction.stages import forces as stage_forces
@@ -481,6 +481,26 @@ def test_a_pair_of_one_humidity_shows_its_median_and_stays_within_all_humidities
     centres, _ = bars(panel, r"NG: median and 5–95 % of $\bar e$")
     np.testing.assert_allclose([*map(float, centres.ravel())][0], 0.99)
     assert panel.get_xlim()[0] < 0.99 < panel.get_xlim()[1] <= 1
+
+
+def test_energies_above_that_of_flat_surfaces_are_shown_with_their_deviation(pairs, published):
+    beam, beams, axes = pairs["b"]
+    strong = {key: found.assign(adhesion_energy=100 * found.adhesion_energy) for key, found in beams.items()}
+    panel = adhesion_energies({"b": (beam, strong, axes)}, published).axes[0]
+    energies = 1e3 * strong[0.5, "GEO"].adhesion_energy.values
+    assert panel.get_ylim()[1] > energies.mean() + energies.std(ddof=1) > 288
+
+
+def test_the_axis_of_a_single_humidity_is_a_tenth_long_and_ends_at_one():
+    for humidity, limits in ((0.5, (0.45, 0.55)), (0.99, (0.94, 1)), (0.02, (0, 0.07))):
+        _, ((panel,),) = panels(1, 1, (3, 2))
+        panel.plot(humidity, 1, "o")
+        panel.set_xlim(humidity - 1e-3, humidity + 1e-3)
+        humidity_axis(panel)
+        np.testing.assert_allclose(panel.get_xlim(), limits, atol=1e-9)
+    panel.set_xlim(0.4, 0.9)
+    humidity_axis(panel)
+    assert panel.get_xlim() == (0.4, 0.9)
 
 
 def test_the_energy_of_the_longest_crack_is_always_shown(pairs, published):

@@ -31,5 +31,5 @@ def test_samples_without_a_law_are_counted_not_averaged(table):
 
 def test_markdown_describes_the_numbers(table):
     text = table.markdown
-    assert "11.0 ± 0.6" in text
+    assert "11.00 ± 0.58" in text
     assert "d ≥ d_limit" in text.splitlines()[0]

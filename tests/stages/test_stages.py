@@ -10,8 +10,11 @@ from published import SURFACES
 from vectors import sampled_vectors
 
 from stiction.beam.montecarlo import Experiment, release_beam
+from stiction.beam.resolution import resolved
 from stiction.chaos.model import draw, draw_laws, fit, fit_report
 from stiction.config import jobs
+from stiction.config.merging import merged
+from stiction.config.plan import Plan
 from stiction.contact.forcelaw import parametrise
 from stiction.stages import (
     beams,
@@ -27,12 +30,13 @@ from stiction.stages import (
     storage,
 )
 from stiction.stages.cantilevers import cantilever, strips_along
-from stiction.stages.surfaces import FIELD, rough_surface
+from stiction.stages.surfaces import FIELD, Sampling, rough_surface
 from stiction.streams import stream
+from stiction.surface.feasible import nearest_feasible
 from stiction.surface.field import StripGrid, radial_periodogram
-from stiction.surface.identify import Identification
+from stiction.surface.identify import Identification, SummitTarget
 from stiction.surface.maxent import GAUSSIAN
-from stiction.surface.spectrum import CutoffSelfAffine
+from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
 from stiction.surface.summits import find_summits
 
 B2 = SURFACES["B2"]
@@ -50,6 +54,26 @@ def through_a_file(tmp_path):
 
 
 # Heights and spectrum
+
+
+def test_infeasible_moments_are_replaced_by_the_nearest_ones_and_both_are_stated(through_a_file):
+    measured = heights.Settings(2e-9, -0.1, 3.05)
+    nearest = nearest_feasible(-0.1, 3.05)
+    with pytest.warns(
+        UserWarning, match=r"skewness -0.1 and kurtosis 3.05; the heights have .* -0.103 and 3.028, 0.21"
+    ):
+        found = through_a_file(heights.compute(measured))
+    assert heights.moments(found) == heights.Settings(2e-9, nearest.skewness, nearest.kurtosis)
+    assert heights.measured(found) == (-0.1, 3.05, nearest.distance)
+    density = heights.density(found, "NG")
+    assert_allclose([density.moment(3), density.moment(4)], nearest[:2], rtol=1e-9)
+
+
+def test_feasible_moments_leave_no_trace_of_a_substitution():
+    found = small.heights_of("B2")
+    assert "distance" not in found
+    assert heights.measured(found) == (B2.skewness, B2.kurtosis, 0.0)
+    assert heights.substitution(found) == ""
 
 
 def test_heights_have_the_density_of_the_moments_of_the_surface(through_a_file):
@@ -95,6 +119,64 @@ def test_an_identified_spectrum_comes_from_its_stage_and_a_published_one_does_no
     identified = spectrum.compute(small.heights_of("B2"), parameters.variables(other), settings)
     assert parameters.spectrum_of(identified) == other
     assert spectrum.underlying(identified, "NG").cutoff == other.cutoff
+
+
+def identified(radius=1.0, density=1.0, corner=32e6):
+    """Dataset of stage identification with ratios to the measured summits, of a spectrum with this corner [rad m⁻¹]."""
+    psd = CutoffSelfAffine(525e-36, 0.8e-36, corner, 138e6)
+    found = Identification(psd, 9, radius * 4e-7, density * 7e13, 1e-9, 1e12)
+    return identification.layout(found, SummitTarget(1.7e-9, 4e-7, 7e13, 20e-9))
+
+
+USE = spectrum.Use("Mine", 1.5e-6, 1e-6)
+
+
+def test_an_identified_spectrum_is_used_for_strips_longer_than_its_correlation():
+    for corner in np.geomspace(3e6, 60e6, 9):
+        bound = correlation_length(CutoffSelfAffine(525e-36, 0.8e-36, corner, 138e6))
+        for length, margin in ((bound * 1.01, bound * 1.01), (bound * 0.99, 9e-6), (9e-6, bound * 0.99)):
+            use = spectrum.Use("Mine", length, margin)
+            if min(length, margin) > bound:
+                spectrum.refuse_misuse(identified(corner=corner), use)
+                continue
+            key = "strip_length_um" if length < bound else "margin_um"
+            with pytest.raises(ValueError, match=f"sampling.{key} is .* surface Mine, {1e6 * bound:.3g} µm"):
+                spectrum.refuse_misuse(identified(corner=corner), use)
+
+
+def test_a_patch_is_longer_than_the_correlation_of_the_identified_spectrum(monkeypatch):
+    settings = small.settings_of(identification, jobs.identification(small.PLAN, "B2"))
+    wide = Identification(CutoffSelfAffine(1e-30, 1e-38, 1e6, 138e6), 9, 4e-7, 7e13, 1e-9, 1e12)
+    monkeypatch.setattr(identification, "identify", lambda *_: wide)
+    with pytest.raises(
+        ValueError, match=r"identification.patch_um is 2, must be above the correlation .* surface B2, "
+    ):
+        identification.compute(small.heights_of("B2"), "B2", settings)
+
+
+@pytest.mark.parametrize("off", [0.51, 1.0, 1.99])
+@pytest.mark.parametrize("name", ["radius", "density"])
+def test_a_spectrum_whose_summits_do_not_resemble_the_measured_ones_is_not_used(name, off):
+    spectrum.refuse_misuse(identified(**{name: off}), USE)
+    for factor in (0.4, 1.3, 4.1):
+        ratio = off * factor
+        if not 0.5 <= ratio <= 2:
+            with pytest.raises(ValueError, match="no spectrum .* has the summits of surface Mine: at best"):
+                spectrum.refuse_misuse(identified(**{name: ratio}), USE)
+
+
+def test_misfits_are_the_deviations_from_the_measured_summits():
+    found = identification.misfits(identified(radius=1.2, density=0.7))
+    assert found["radius"] == pytest.approx((0.2, 1e-9 / 4e-7))
+    assert found["density"] == pytest.approx((-0.3, 1e12 / 7e13))
+
+
+def test_the_spectrum_of_a_job_is_checked_where_it_is_identified():
+    plan = Plan(merged(small.PLAN.config, {"surfaces": {"B2": {"psd": "identified"}}, "sampling": {"margin_um": 0.2}}))
+    settings = small.settings_of(spectrum, jobs.spectrum(plan, "B2"))
+    assert settings.identified == spectrum.Use("B2", 1.5e-6, pytest.approx(0.2e-6))
+    with pytest.raises(ValueError, match=r"sampling.margin_um is 0.2, .* surface B2"):
+        spectrum.compute(small.heights_of("B2"), identified(), settings)
 
 
 def test_identification_finds_what_the_surface_was_asked_for(through_a_file):
@@ -246,6 +328,32 @@ def test_beams_are_released_from_streams_of_their_own(through_a_file, model):
     assert_allclose(found.node, np.linspace(0, 1500e-6, 201), atol=1e-15)
 
 
+def test_elements_follow_the_force_laws_of_the_case(through_a_file):
+    settings = replace(of_beams("GEO"), refined=True)
+    coarse = replace(settings, beam=replace(settings.beam, elements=2))
+    model = chaos.chaos_model(small.chaos_of_case())
+    laws = draw_laws(model, 10_000, stream(small.SEED, "beams", small.CASE, "mesh"))
+    nominal = resolved(cantilever(coarse, "b"), 1000, laws)
+    assert nominal.elements > 2
+    found = through_a_file(beams.compute(small.chaos_of_case(), small.CASE, coarse))
+    assert_allclose(found.node, nominal.nodes, atol=1e-15)
+    experiment = Experiment(nominal, 1000, lambda n, rng: draw_laws(model, n, rng), settings.scatter)
+    last = release_beam(experiment, 2, stream(small.SEED, "beams", small.CASE, 2))
+    assert found.crack_length[2] == last.crack_length
+    fine = replace(settings, beam=replace(settings.beam, elements=500))
+    kept = beams.compute(small.chaos_of_case(), small.CASE, fine)
+    unrefined = beams.compute(small.chaos_of_case(), small.CASE, replace(fine, refined=False))
+    assert_array_equal(kept.crack_length, unrefined.crack_length)
+    assert kept.sizes["node"] == 501
+
+
+def test_a_refusal_of_the_strips_names_the_case():
+    settings = replace(of_beams(), refined=True, sampling=replace(of_beams().sampling, strip_length=7.5e-6))
+    with pytest.raises(ValueError, match="strips of 7.5 µm do not resolve a crack") as refusal:
+        beams.compute(small.chaos_of_case(), small.CASE, settings)
+    assert refusal.value.__notes__ == ["in case b_rh067"]
+
+
 def test_the_nominal_beam_is_that_of_the_settings():
     beam = cantilever(of_beams(), "b")
     assert (beam.length, beam.width, beam.thickness, beam.gap) == pytest.approx((1500e-6, 6e-6, 2.6e-6, 20e-6))
@@ -268,3 +376,12 @@ def test_ended_selects_beams_by_the_name_of_their_state():
     assert_array_equal(releases.ended(found, "arc"), [False, True, False, False])
     assert_array_equal(releases.ended(found, "free"), [False, False, True, False])
     assert found.state.attrs["flag_meanings"] == "S-shape arc free"
+
+
+def test_strips_have_the_margin_spacing_and_length_of_the_configuration():
+    assert Sampling(7.5e-9, 1.5e-6, 1e-6).strips(30e-6) == StripGrid(1.5e-6, 30e-6, 7.5e-9, margin=1e-6)
+
+
+def test_the_defect_is_the_share_of_the_variance_that_is_missing():
+    found = small.spectrum_of("B2")
+    assert spectrum.defect(found) == float(found.defect) > 0

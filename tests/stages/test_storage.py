@@ -1,3 +1,4 @@
+import json
 import os
 
 import numpy as np
@@ -18,6 +19,13 @@ def test_a_dataset_is_read_as_it_was_written_with_its_settings(tmp_path):
     loaded = storage.load(tmp_path / "x.nc", "forces")
     np.testing.assert_array_equal(loaded.x, dataset().x)
     assert loaded.attrs["settings"] == '{"seed": 1, "water": {"temperature_K": 300}}'
+
+
+def test_a_dataset_names_the_settings_of_its_inputs(tmp_path):
+    storage.save(dataset(), tmp_path / "x.nc", "contact", {"samples": 9})
+    storage.save(dataset(), tmp_path / "y.nc", "forces", {}, [tmp_path / "x.nc"])
+    before = storage.load(tmp_path / "y.nc", "forces").attrs["before"]
+    assert json.loads(before) == {(tmp_path / "x.nc").as_posix(): {"samples": 9}}
 
 
 def test_equal_data_give_equal_bytes(tmp_path):

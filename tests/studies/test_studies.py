@@ -11,7 +11,9 @@ from vectors import sampled_vectors
 
 from stiction.analysis.sensitivity import energy_sensitivity
 from stiction.beam.energy import apparent_adhesion_energy
+from stiction.beam.foundation import ELEMENT, foundation_length
 from stiction.beam.montecarlo import Experiment, release_beam
+from stiction.beam.resolution import resolved
 from stiction.chaos.model import draw_laws, fit, resample_laws, truncated
 from stiction.config import jobs
 from stiction.config.cases import case_id
@@ -286,15 +288,35 @@ def test_fine_elements_find_the_energy_of_the_law_and_the_case_of_median_energy(
     assert len({*found.crack_length.values}) == 3
 
 
-def test_meshes_that_do_not_resolve_the_crack_are_left_out_and_none_is_an_error(monkeypatch):
+def strong_forces(factor):
+    """Forces of the case, on surfaces that adhere more strongly by a factor."""
+    found = small.forces_of_case()
+    stronger = {name: factor * found[name] for name in ("adhesion_energy", "pull_off", "limit")}
+    return found.assign(stronger)
+
+
+@pytest.mark.parametrize(
+    ("factor", "length", "reason"), [(300, 150, "do not resolve a crack"), (3e5, 1.5, "equilibrium of the beam")]
+)
+def test_meshes_that_do_not_resolve_the_crack_are_left_out_and_none_is_an_error(factor, length, reason):
     settings = small.settings_of(mesh, jobs.mesh(small.PLAN))
+    coarse = replace(settings, mesh=mesh.Meshes((1e-6 * length,), (1.5e-6,)))
+    samples, limit = forces.vectors(strong_forces(factor))
+    laws = coefficients(samples, limit)
+    median = np.argsort(samples[:, 0])[len(laws) // 2]
+    element = 1e6 * ELEMENT * foundation_length(cantilever(settings, "b"), laws[[median]])
+    with (
+        pytest.warns(UserWarning, match=f"left out elements of {length} µm: .*{reason}"),
+        pytest.raises(ValueError, match=f"elements of at most {element:.3g} µm"),
+    ):
+        mesh.compute(strong_forces(factor), coarse)
 
-    def coarse(*_):
-        raise ValueError("too coarse")
 
-    monkeypatch.setattr(mesh, "arrest_on_uniform_ground", coarse)
-    with pytest.warns(UserWarning, match="left out: too coarse"), pytest.raises(ValueError, match="shorter elements"):
-        mesh.compute(small.forces_of_case(), settings)
+def test_the_meshes_that_resolve_the_crack_remain():
+    settings = replace(small.settings_of(mesh, jobs.mesh(small.PLAN)), mesh=mesh.Meshes((150e-6, 1.5e-6), (1.5e-6,)))
+    with pytest.warns(UserWarning, match="left out elements of 150 µm"):
+        found = mesh.compute(strong_forces(30), settings)
+    assert_allclose(found.element_length, [1.5e-6])
 
 
 # Correlation (App. C)
@@ -344,6 +366,24 @@ def test_a_variant_is_the_chain_behind_its_contact():
             assert found.crack_length[k, number] == beam.crack_length
             assert found.state[k, number] == beam.state
     assert found.sizes["beam"] == 2
+
+
+def test_elements_of_a_variant_follow_the_laws_at_some_humidities_and_of_resampled_beams_in_some_cases():
+    settings = small.settings_of(variant, jobs.variant(small.PLAN, "b", "base"))
+    pair = replace(settings.pairs["b"], humidities=(0.55, 0.8))
+    base = variant.compute(small.contact_of_pair(), "b", replace(settings, pairs={"b": pair}))
+    mixed = variant.compute(small.contact_of_pair(), "b", replace(settings, pairs={"b": pair}, refined=(0.8,)))
+    assert_array_equal(mixed.crack_length[0], base.crack_length[0])
+    assert np.all(mixed.crack_length[1] != base.crack_length[1])
+    settings = small.settings_of(resampling, jobs.resampling(small.PLAN, small.CASE))
+    vectors, limit = forces.vectors(small.forces_of_case())
+    laws = resample_laws(vectors, limit, 10_000, stream(small.SEED, "resampling", small.CASE, "mesh"))
+    refined = resolved(cantilever(settings, "b"), 1000, laws)
+    found = resampling.compute(small.forces_of_case(), small.CASE, replace(settings, refined=True))
+    experiment = Experiment(refined, 1000, lambda n, rng: resample_laws(vectors, limit, n, rng))
+    beam = release_beam(experiment, 1, stream(small.SEED, "resampling", small.CASE, 1))
+    assert refined.elements > 200
+    assert found.crack_length[1] == beam.crack_length
 
 
 def test_cases_of_a_variant_keep_the_beams_that_stick():

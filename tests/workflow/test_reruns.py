@@ -1,6 +1,10 @@
 """Which rules a change reruns and which it must not: plans with placeholder files, in a copy of the source tree."""
 
 # ruff: noqa: E501
+import ast
+import base64
+import contextlib
+import json
 import re
 import shutil
 import subprocess
@@ -8,9 +12,12 @@ from functools import reduce
 from itertools import product
 
 import pytest
+import xarray as xr
 import yaml
 from conftest import ROOT
 from planner import Planner
+
+from stiction.stages import storage
 
 #: Two pairs, one figure case, so that every rule has few jobs.
 SMALL = """
@@ -31,7 +38,7 @@ TARGETS = ["all", *(f"results/studies/{name}.nc" for name in STUDIES + VARIANTS)
 
 #: Rules, and the rules that read their outputs, listed by hand.
 READ_BY = {
-    "heights": "identification spectrum iteration character contact_chunk sensitivity_contact plasticity",
+    "heights": "identification spectrum iteration character contact_chunk sensitivity_contact plasticity table_1 checks",
     "identification": "table_2 variant_contact",
     "spectrum": "iteration character contact_chunk table_2 correlation sensitivity_contact plasticity checks",
     "character": "table_1 checks",
@@ -73,7 +80,7 @@ MATRIX = [
     ("elasticity", "solid: {young_modulus_GPa: 160}",
      "contact_chunk beams mesh resampling sensitivity_contact plasticity variant_contact checks", (), ""),
     ("grid of surfaces", "sampling: {spacing_nm: 5}", "identification spectrum variant_contact", (), "heights"),
-    ("length of strips", "sampling: {strip_length_um: 7.5}",
+    ("length of strips", "sampling: {strip_length_um: 2.5}",
      "character contact_chunk beams resampling sensitivity_contact plasticity variant_contact checks", (),
      "heights|identification|spectrum"),
     ("strips of Table I", "character: {strips: 50}", "character", (), "contact|forces"),
@@ -118,7 +125,7 @@ def behind(rules):
 
 
 class Tree:
-    """Copy of the source tree under git, with empty placeholder files for all results, which are up to date."""
+    """Copy of the source tree under git, with placeholder files for all results, which are up to date."""
 
     def __init__(self, folder, scratch):
         self.folder = folder
@@ -137,9 +144,30 @@ class Tree:
             path = folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.touch()
+        self.touch()
+        self.label()
+        self.touch()
+
+    def touch(self):
+        """Let Snakemake take all placeholders for results of the present settings and code."""
         touched = [*TARGETS, "--touch", "--forceall", "--scheduler", "greedy", "--no-hooks"]
         status, printed = self.planner(*touched, config=[self.small])
         assert status == 0, printed
+
+    def label(self):
+        """Replace the placeholders of datasets by datasets without numbers, each with its settings and its inputs."""
+        records = {}
+        for path in (self.folder / ".snakemake" / "metadata").iterdir():
+            records[base64.urlsafe_b64decode(path.name).decode()] = json.loads(path.read_text())
+        datasets = {name: record for name, record in records.items() if name.endswith(".nc")}
+        while datasets:
+            ready = [name for name, record in datasets.items() if not set(record["input"]) & set(datasets)]
+            for name in ready:
+                record = datasets.pop(name)
+                (settings,) = [text for text in record["params"] if ".py'" not in text]
+                stage = "contact" if "/contact/" in name else record["rule"]
+                with contextlib.chdir(self.folder):
+                    storage.save(xr.Dataset(), name, stage, ast.literal_eval(settings), record["input"])
 
     def git(self, *command):
         """Run git in the copy."""

@@ -2,7 +2,9 @@
 
 import contextlib
 import fcntl
+import json
 import os
+import re
 import resource
 import shutil
 import signal
@@ -10,6 +12,7 @@ import subprocess
 import time
 from itertools import cycle
 
+import netCDF4
 import pytest
 import xarray as xr
 from conftest import BEAMS, command, datasets, snakemake
@@ -174,20 +177,78 @@ def of_another_stage(path):
     path.touch()
 
 
-@pytest.mark.parametrize("spoil", [truncated, pytest.param(foreign, marks=pytest.mark.slow),
-                                   pytest.param(empty, marks=pytest.mark.slow),
-                                   pytest.param(of_another_stage, marks=pytest.mark.slow)])  # fmt: skip
-def test_an_invalid_result_file_is_reported_and_never_used(undisturbed, tiny, tmp_path, spoil):
+def of_another_order(path):
+    """Replace a file by a result of the same case with other settings."""
+    shutil.copy2(path, kept := path.with_suffix(".old"))
+    with netCDF4.Dataset(path, "r+") as file:
+        file.setncattr("settings", file.getncattr("settings").replace('"order": 2', '"order": 3'))
+    assert path.read_bytes() != kept.read_bytes()
+    kept.unlink()
+
+
+SPOILS = {
+    truncated: "cannot be read",
+    empty: "cannot be read",
+    foreign: "holds no result of this study",
+    of_another_stage: "holds heights of B2",
+    of_another_order: "was computed with chaos.order: 3 instead of 2",
+}
+
+
+@pytest.mark.parametrize(
+    "spoil", [of_another_order, *(pytest.param(spoil, marks=pytest.mark.slow) for spoil in SPOILS)]
+)
+def test_a_dataset_that_is_damaged_or_of_other_settings_is_computed_again(undisturbed, tiny, tmp_path, spoil):
     folder = copied(undisturbed, tmp_path / "run")
-    spoiled = folder / "results" / "chaos" / "b_rh088_NG.nc"
-    spoil(spoiled)
-    done = snakemake(folder, BEAMS, configs=[tiny], check=False)
+    shutil.rmtree(folder / ".snakemake" / "metadata")  # as in results copied from another folder
+    spoil(folder / "results" / "chaos" / "b_rh088_NG.nc")
+    done = snakemake(folder, BEAMS, configs=[tiny])
+    assert f"results/chaos/b_rh088_NG.nc {SPOILS[spoil]}; this run does not use it." in done.stdout
+    assert "rule contact" not in done.stdout
+    assert datasets(folder) == datasets(undisturbed)
+
+
+@pytest.mark.slow
+def test_a_file_that_is_damaged_during_a_run_is_reported_and_never_used(undisturbed, tiny, tmp_path):
+    folder = copied(undisturbed, tmp_path / "run", ["beams"])
+    truncated(folder / "results" / "chaos" / "b_rh088_NG.nc")
+    # Only the last rule may run, as if the file had been whole when the run was planned.
+    done = snakemake(folder, BEAMS, "--allowed-rules", "beams", configs=[tiny], check=False)
     assert done.returncode != 0
     assert "DataError: results/chaos/b_rh088_NG.nc" in done.stdout
     assert "delete it and start again" in done.stdout
     assert not (folder / BEAMS).exists()
-    spoiled.unlink()
-    assert_resumed(folder, undisturbed, [BEAMS], tiny)
+
+
+#: One damaged result of each kind.
+DAMAGED = ["tables/fit_quality.csv", "tables/variants.md", "tables/resampling.html"]
+DAMAGED += ["figures/figure_14.pdf", "figures/figure_07.png"]
+
+
+def test_a_table_or_figure_that_was_cut_off_is_made_again_and_nothing_else(smoke, tmp_path):
+    folder = copied(smoke, tmp_path / "run")
+    for name in DAMAGED:
+        truncated(folder / "results" / name)
+    done = snakemake(folder, *(f"results/{name}" for name in DAMAGED))
+    for name in ("figures/figure_07.png", "tables/fit_quality.csv"):  # the first of each folder
+        assert f"results/{name} is not as its job wrote it" in done.stdout
+    for name in DAMAGED:
+        assert (folder / "results" / name).read_bytes() == (smoke / "results" / name).read_bytes()
+    assert "5 of 5 steps (100%) done" in done.stdout
+
+
+def test_every_dataset_of_other_settings_is_recognised(smoke, tmp_path):
+    folder = copied(smoke, tmp_path / "run")
+    numbers = {}
+    for path in (folder / "results").rglob("*.nc"):
+        with netCDF4.Dataset(path, "r+") as file:
+            file.setncattr("settings", json.dumps(json.loads(file.getncattr("settings")) | {"other": 1}))
+        numbers[path.parent] = numbers.get(path.parent, 0) + 1
+    printed = snakemake(folder, "-n").stdout
+    named = re.findall(
+        r"(\S+)/\S+\.nc was computed with other: 1 instead of nothing; .*?(?:nor (\d+) more.*)?\n", printed
+    )
+    assert {folder / of: 1 + int(more or 0) for of, more in named} == numbers
 
 
 def test_a_second_run_in_the_same_folder_is_rejected(undisturbed, tiny, tmp_path):

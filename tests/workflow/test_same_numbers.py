@@ -32,5 +32,5 @@ def test_datasets_contain_settings_but_no_time_or_host(smoke):
     assert {"beams", "chaos", "character", "contact", "forces", "heights", "spectrum"} <= {p.parent.name for p in paths}
     for path in paths:
         with xr.open_dataset(path) as dataset:
-            assert set(dataset.attrs) == {"Conventions", "stage", "name", "settings"}
+            assert set(dataset.attrs) == {"Conventions", "stage", "name", "settings", "before"}
             json.loads(dataset.attrs["settings"])

@@ -1,9 +1,14 @@
 """Definitions shared by all rules: validated configuration and plan, code of a job, names of files."""
 
-from stiction.config import cases, files, jobs, relations
+from functools import cache
+from types import SimpleNamespace
+
+from snakemake.logging import logger
+
+from stiction.config import cases, files, jobs, memory, relations
 from stiction.config.plan import Plan
 from stiction.models import BEAM_MODELS, SURFACE_MODELS, surface_model
-from stiction.run import folder, provenance
+from stiction.run import folder, kept, provenance
 from stiction.run.atomic import DataError
 from stiction.run.fingerprint import fingerprint
 
@@ -29,6 +34,7 @@ except files.ConfigError as error:
 
 config.update(files.normalised(config))
 plan = Plan(config)
+MEMORY = memory.of_job(config)  # of the jobs that draw surfaces [MB]
 STYLE = str(BASE / "src" / "stiction" / "report" / "stiction.mplstyle")
 # Categories of the report.
 ON_SURFACES, ON_FORCES, ON_BEAMS = "Surfaces (Sec. II)", "Contact forces (Sec. III)", "Beams (Secs. IV and V)"
@@ -38,6 +44,35 @@ ON_STUDIES = "Sensitivity, appendices, model choices"
 def code(script):
     """Fingerprint of a script and of all modules of the package that it imports."""
     return fingerprint(BASE / "workflow" / "scripts" / script)
+
+
+@cache
+def settings_of(path):
+    """Settings of the job that writes a dataset; ``None`` if this configuration has no such job."""
+    for written_by in workflow.rules:
+        if written_by.output and (found := written_by.output[0].match(path)):
+            settings = written_by.params.settings
+            try:
+                return settings(SimpleNamespace(**found.groupdict())) if callable(settings) else settings
+            except KeyError:  # of a surface, pair or variant that this configuration does not contain
+                return None
+    return None
+
+
+@cache
+def unusable():
+    """Files in results/ that other settings gave, or that are damaged: to this run they are missing."""
+    found = {**dict(kept.foreign(Path("results").rglob("*.nc"), settings_of)), **dict(kept.damaged("results/logs"))}
+    for line in kept.summary(found):
+        logger.warning(line)
+    return found
+
+
+def planned(wildcards):
+    """No input. Snakemake calls this while it plans a run, because every run begins with the heights of a surface."""
+    if workflow.is_main_process:
+        workflow.dag.forcefiles.update(unusable())
+    return []
 
 
 def identified(wildcards):

@@ -3,6 +3,7 @@
 
 rule table_1:
     input:
+        heights=expand("results/heights/{surface}.nc", surface=plan.surfaces),
         characters=expand("results/character/{surface}_{model}.nc", surface=plan.surfaces, model=SURFACE_MODELS[::-1]),
         published=published("table_1"),
     output:

@@ -10,7 +10,7 @@ def main(job):
     dataset = beams.compute(
         storage.load(job.input.chaos, "chaos"), job.wildcards.case, typed(beams.Settings, job.params.settings)
     )
-    storage.save(dataset, job.output[0], "beams", job.params.settings)
+    storage.save(dataset, job.output[0], "beams", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

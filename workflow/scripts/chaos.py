@@ -13,7 +13,7 @@ def main(job):
         job.wildcards.model,
         typed(chaos.Settings, job.params.settings),
     )
-    storage.save(dataset, job.output[0], "chaos", job.params.settings)
+    storage.save(dataset, job.output[0], "chaos", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ def main(job):
     dataset = character.compute(
         *surface, job.wildcards.surface, job.wildcards.model, typed(character.Settings, job.params.settings)
     )
-    storage.save(dataset, job.output[0], "character", job.params.settings)
+    storage.save(dataset, job.output[0], "character", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

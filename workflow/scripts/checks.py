@@ -17,15 +17,18 @@ def main(job):
     sections = typed(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
     beams = {pair: cantilever(sections, pair) for pair in settings["pairs"]}
     strip = typed(StripLength, settings["sampling"]).strip_length
+    heights = load_named(job.input.heights, "heights")
     spectra = load_named(job.input.spectrum, "spectrum")
+    identified = load_named(job.input.identification, "identification")
     characters = load_named(job.input.character, "character", lambda name: (surface_of(name), model_of(name)))
     forces, chaoses, outcomes = (load_named(job.input[stage], stage, key_of) for stage in ("forces", "chaos", "beams"))
     resampled = load_named(job.input.resampling, "resampling", lambda name: (*key_of(name), "NG"))
     found = chain(
-        checks.of_surfaces(characters, targets, {name: defect(found) for name, found in spectra.items()}),
+        checks.of_surfaces(heights, characters, targets, {name: defect(found) for name, found in spectra.items()}),
+        checks.of_identifications(identified),
         checks.of_force_laws(forces, chaoses),
         checks.of_trends(forces, settings["skewed"]),
-        checks.of_beams(outcomes, forces, beams, strip),
+        checks.of_beams(outcomes, forces, beams, strip, settings["on_mesh_of_paper"]),
         checks.of_resampling(outcomes, resampled),
     )
     table = checks.table(found)
@@ -34,5 +37,5 @@ def main(job):
 
 
 if __name__ == "__main__":
-    with logged(snakemake.log[0]):
+    with logged(snakemake.log[0], snakemake.output):
         main(snakemake)

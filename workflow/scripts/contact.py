@@ -7,7 +7,7 @@ from stiction.stages import contact, storage
 def main(job):
     """Join the chunks in the order of their samples."""
     dataset = contact.joined(storage.load_all(job.input, "contact"))
-    storage.save(dataset, job.output[0], "contact", job.params.settings)
+    storage.save(dataset, job.output[0], "contact", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

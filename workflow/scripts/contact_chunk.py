@@ -11,7 +11,7 @@ def main(job):
     wanted = typed(contact.Settings, job.params.settings)
     samples = contact.chunk(wanted.contact.samples, int(job.wildcards.chunk), int(job.wildcards.number))
     dataset = contact.compute(surfaces, job.wildcards.pair, job.wildcards.model, wanted, samples)
-    storage.save(dataset, job.output[0], "contact", job.params.settings)
+    storage.save(dataset, job.output[0], "contact", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

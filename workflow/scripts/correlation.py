@@ -11,7 +11,7 @@ def main(job):
     """Transform the spectra, Eq. (7)."""
     spectra = load_named(job.input.spectra, "spectrum")
     dataset = correlation.compute(spectra, typed(correlation.Settings, job.params.settings))
-    storage.save(dataset, job.output[0], "correlation", job.params.settings)
+    storage.save(dataset, job.output[0], "correlation", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

@@ -27,5 +27,5 @@ def _of(pair, beams, bands):
 
 
 if __name__ == "__main__":
-    with logged(snakemake.log[0]):
+    with logged(snakemake.log[0], snakemake.output):
         main(snakemake)

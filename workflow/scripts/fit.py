@@ -13,7 +13,7 @@ def main(job):
         storage.load(job.input.forces, "forces"),
         typed(fit.Settings, job.params.settings),
     )
-    storage.save(dataset, job.output[0], "fit", job.params.settings)
+    storage.save(dataset, job.output[0], "fit", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from stiction.stages import heights, storage
 def main(job):
     """Solve for the maximum-entropy density with the moments of the surface."""
     dataset = heights.compute(typed(heights.Settings, job.params.settings))
-    storage.save(dataset, job.output[0], "heights", job.params.settings)
+    storage.save(dataset, job.output[0], "heights", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ def main(job):
     dataset = humidity.compute(
         storage.load(job.input.contact, "contact"), typed(humidity.Settings, job.params.settings)
     )
-    storage.save(dataset, job.output[0], "humidity", job.params.settings)
+    storage.save(dataset, job.output[0], "humidity", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

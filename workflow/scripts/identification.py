@@ -12,7 +12,7 @@ def main(job):
         job.wildcards.surface,
         typed(identification.Settings, job.params.settings),
     )
-    storage.save(dataset, job.output[0], "identification", job.params.settings)
+    storage.save(dataset, job.output[0], "identification", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ def main(job):
     """Run the iterations and store all spectra."""
     surface = storage.load(job.input.heights, "heights"), storage.load(job.input.spectrum, "spectrum")
     dataset = iteration.compute(*surface, job.wildcards.surface, typed(iteration.Settings, job.params.settings))
-    storage.save(dataset, job.output[0], "iteration", job.params.settings)
+    storage.save(dataset, job.output[0], "iteration", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

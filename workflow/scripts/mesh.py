@@ -9,7 +9,7 @@ from stiction.studies import mesh
 def main(job):
     """Release beams on uniform ground with increasingly fine meshes."""
     dataset = mesh.compute(storage.load(job.input.forces, "forces"), typed(mesh.Settings, job.params.settings))
-    storage.save(dataset, job.output[0], "mesh", job.params.settings)
+    storage.save(dataset, job.output[0], "mesh", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ def main(job):
         storage.load(job.input.chaos, "chaos"),
         typed(orders.Settings, job.params.settings),
     )
-    storage.save(dataset, job.output[0], "orders", job.params.settings)
+    storage.save(dataset, job.output[0], "orders", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ def main(job):
     dataset = resampling.compute(
         storage.load(job.input.forces, "forces"), job.wildcards.case, typed(resampling.Settings, job.params.settings)
     )
-    storage.save(dataset, job.output[0], "resampling", job.params.settings)
+    storage.save(dataset, job.output[0], "resampling", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

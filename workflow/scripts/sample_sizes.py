@@ -11,7 +11,7 @@ def main(job):
     dataset = sample_sizes.compute(
         storage.load(job.input.forces, "forces"), typed(sample_sizes.Settings, job.params.settings)
     )
-    storage.save(dataset, job.output[0], "sample_sizes", job.params.settings)
+    storage.save(dataset, job.output[0], "sample_sizes", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ def main(job):
     """Compare the energies at the two values of the moment."""
     contacts = storage.load_all(job.input.contacts, "contact")
     dataset = sensitivity.compute(contacts, typed(sensitivity.Settings, job.params.settings))
-    storage.save(dataset, job.output[0], "sensitivity", job.params.settings)
+    storage.save(dataset, job.output[0], "sensitivity", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

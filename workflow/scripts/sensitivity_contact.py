@@ -13,7 +13,7 @@ def main(job):
     dataset = sensitivity_contact.compute(
         surfaces, job.wildcards.pair, job.wildcards.moment, job.wildcards.side, wanted
     )
-    storage.save(dataset, job.output[0], "contact", job.params.settings)
+    storage.save(dataset, job.output[0], "contact", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

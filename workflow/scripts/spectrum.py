@@ -11,7 +11,7 @@ def main(job):
     dataset = spectrum.compute(
         storage.load(job.input.heights, "heights"), identification, typed(spectrum.Settings, job.params.settings)
     )
-    storage.save(dataset, job.output[0], "spectrum", job.params.settings)
+    storage.save(dataset, job.output[0], "spectrum", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

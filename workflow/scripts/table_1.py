@@ -4,6 +4,7 @@ from stiction.report import published
 from stiction.report.tables import save
 from stiction.report.tables_surfaces import table_1
 from stiction.run.logs import logged
+from stiction.stages.heights import substitution
 from stiction.stages.named import load_named, model_of, surface_of
 
 
@@ -11,10 +12,11 @@ def main(job):
     """Compare simulated, published and measured statistics."""
     settings = job.params.settings
     characters = load_named(job.input.characters, "character", lambda name: (surface_of(name), model_of(name)))
+    substitutions = {name: substitution(found) for name, found in load_named(job.input.heights, "heights").items()}
     known = published.of_paper(published.read(job.input.published), settings["of_paper"])
-    save(table_1(characters, settings["measured"], known), job.output)
+    save(table_1(characters, settings["measured"], known, substitutions), job.output)
 
 
 if __name__ == "__main__":
-    with logged(snakemake.log[0]):
+    with logged(snakemake.log[0], snakemake.output):
         main(snakemake)

@@ -11,7 +11,7 @@ def main(job):
     dataset = variant.compute(
         storage.load(job.input.contact, "contact"), job.wildcards.pair, typed(variant.Settings, job.params.settings)
     )
-    storage.save(dataset, job.output[0], "variant", job.params.settings)
+    storage.save(dataset, job.output[0], "variant", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ def main(job):
     changed = merged(settings["base"], settings["changes"])
     wanted = [typed(variant_contact.Settings, plain) for plain in (settings["base"], changed)]
     dataset = variant_contact.compute(identifications, job.wildcards.pair, *wanted)
-    storage.save(dataset, job.output[0], "contact", job.params.settings)
+    storage.save(dataset, job.output[0], "contact", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

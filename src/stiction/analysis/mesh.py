@@ -1,15 +1,20 @@
 """How fine elements and contact points must be: release of a beam on uniform ground (App. C)."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import ceil
 
 import numpy as np
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
+from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
 from stiction.beam.release import EndState, released_beam
-from stiction.contact.forcelaw import energy
+from stiction.contact.forcelaw import adhesion_energy, energy, pressure
 from stiction.numbers import is_multiple
+
+#: Number of distances at which the mean of force laws is evaluated.
+_NODES = 20_000
 
 
 @dataclass(frozen=True)
@@ -29,11 +34,65 @@ def arrest_on_uniform_ground(beam: Beam, law: np.ndarray, points: int) -> Arrest
     ------
     ValueError
         If the crack is too short for the elements to resolve it.
+    NotConverged
+        If no equilibrium is found, for example because the elements are much longer than the foundation length.
     """
     end = released_beam(beam, np.tile(law, (points, 1)), float(energy(law)))
     if end.state != EndState.S_SHAPE:
         return Arrest(np.nan, np.nan)
     return Arrest(end.crack_length, apparent_adhesion_energy(end.crack_length, beam))
+
+
+def finer_mesh(beam: Beam, law: np.ndarray, points: int) -> tuple[Beam, int]:
+    """Beam and number of points of a mesh that is at least twice as fine, and twice as fine as the law calls for.
+
+    Elements are then wrong by an eighth, points by a quarter: `tests/beam/test_release.py`.
+    """
+    length = foundation_length(beam, law[None])
+    fine = points * max(2, ceil(2 * beam.length / points / (STRIP * length)))
+    element = min(beam.element_length, ELEMENT * length) / 2
+    whole = (n for n in range(beam.elements, fine + 1) if fine % n == 0 and beam.length / n <= element)
+    return replace(beam, elements=next(whole)), fine
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """Arrest on uniform ground on the mesh in use and on a finer one."""
+
+    used: Arrest
+    fine: Arrest
+    law: np.ndarray  #: force law of the ground [SI]
+
+    @property
+    def error(self) -> float:
+        """Relative error of the crack length on the mesh in use [-]."""
+        return self.used.crack_length / self.fine.crack_length - 1
+
+    @property
+    def excess(self) -> float:
+        """Γ of Eq. (13) on the finer mesh, relative to the energy of the law [-].
+
+        It is above 1, because the crack ends where the distance falls below d_max, before the beam is flat.
+        """
+        return self.fine.energy / float(energy(self.law))
+
+
+def resolution(beam: Beam, law: np.ndarray, points: int) -> Resolution:
+    """Effect of the mesh of a beam on its crack on uniform ground; raises as `arrest_on_uniform_ground`."""
+    used = arrest_on_uniform_ground(beam, law, points)
+    finer, more = finer_mesh(beam, law, points)
+    return Resolution(used, arrest_on_uniform_ground(finer, law, more), law)
+
+
+def rigid_energy(laws: np.ndarray) -> float:
+    """Adhesion energy of the mean of force laws (n, 4), that of a beam too stiff to follow single strips [J m⁻²].
+
+    It is at most the mean of their energies, because some strips already push while others still pull.
+    """
+    _, d_max, a_left, a_right = laws.T
+    repulsive, decayed = d_max - np.log(4) / a_left, d_max + 20 / a_right
+    distance = np.linspace(repulsive.min(), decayed.max(), _NODES)
+    return float(adhesion_energy(distance, sum(pressure(law, distance) for law in laws) / len(laws)))
 
 
 def whole_meshes(

@@ -8,7 +8,7 @@ Where a function takes only a `stiction.config.plan.Plan`, the settings are the 
 
 from collections.abc import Iterable
 
-from stiction.config.cases import humidity_of, pair_of
+from stiction.config.cases import case_id, humidity_of, pair_of
 from stiction.config.plan import MOMENTS, SUMMITS, Plan, chosen
 
 
@@ -49,10 +49,12 @@ def identification(plan: Plan, surface: str) -> dict:
 
 
 def spectrum(plan: Plan, surface: str) -> dict:
-    """Published spectrum of a surface, or ``identified``, and the grid."""
-    entry = plan.config["surfaces"][surface]
-    psd = entry["published_psd"] if entry["psd"] == "published" else "identified"
-    return {"spacing_nm": plan.config["sampling"]["spacing_nm"], "psd": psd}
+    """Published spectrum of a surface, or ``identified`` with the strips it is used for, and the grid."""
+    entry, sampling = plan.config["surfaces"][surface], plan.config["sampling"]
+    if entry["psd"] == "published":
+        return {"spacing_nm": sampling["spacing_nm"], "psd": entry["published_psd"]}
+    use = {"surface": surface} | chosen(sampling, ("strip_length_um", "margin_um"))
+    return {"spacing_nm": sampling["spacing_nm"], "psd": "identified", "identified": use}
 
 
 def iteration(plan: Plan) -> dict:
@@ -108,10 +110,16 @@ def humidity(plan: Plan, pair: str) -> dict:
 # Secs. III-C and IV
 
 
+def _refined(plan, case):
+    """Setting of beams whose elements follow the force laws; none for those on the mesh of the paper."""
+    return {} if plan.has_mesh_of_paper(case) else {"refined": True}
+
+
 def beams(plan: Plan, case: str, model: str) -> dict:
     """Nominal beam of a case, number of beams and scatter of their dimensions."""
     section = plan.config["beam"]
     number = {"samples": section["samples"], "scatter": section["scatter"] if model == "GEO" else 0}
+    number |= _refined(plan, case)
     return chosen(plan.config, ["seed"]) | cantilevers(plan, pair_of(case)) | {"sampling": _strip(plan)} | number
 
 
@@ -157,7 +165,7 @@ def mesh(plan: Plan) -> dict:
 
 def resampling(plan: Plan, case: str) -> dict:
     """As `beams`, with the number of beams of the study."""
-    number = {"beams": plan.config["studies"]["resampling"]["beams"]}
+    number = {"beams": plan.config["studies"]["resampling"]["beams"]} | _refined(plan, case)
     return chosen(plan.config, ["seed"]) | cantilevers(plan, pair_of(case)) | {"sampling": _strip(plan)} | number
 
 
@@ -166,7 +174,8 @@ def variant(plan: Plan, pair: str, name: str) -> dict:
     found = chosen(plan.config, ("seed", "water", "chaos")) | cantilevers(plan, pair) | {"sampling": _strip(plan)}
     found["beam"] |= {"samples": plan.config["studies"]["variants"]["beams"]} | plan.finer_beams.get(name, {})
     found["pairs"][pair] |= chosen(plan.config["pairs"][pair], ["humidities"])
-    return found
+    refined = [h for h in plan.config["pairs"][pair]["humidities"] if not plan.has_mesh_of_paper(case_id(pair, h))]
+    return found | ({"refined": refined} if refined else {})
 
 
 # Tables, checks and figures
@@ -215,6 +224,7 @@ def checks(plan: Plan) -> dict:
         "targets": moments(plan),
         "skewed": skewed(plan, plan.paper_pairs),
         "sampling": _strip(plan),
+        "on_mesh_of_paper": [case for case in plan.cases if plan.has_mesh_of_paper(case)],
     } | cantilevers(plan, *plan.pairs)
 
 

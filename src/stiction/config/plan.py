@@ -9,11 +9,11 @@ from functools import cached_property
 from typing import Any
 
 from stiction.analysis.sensitivity import shifted
-from stiction.config.cases import case_id, pair_of
+from stiction.config.cases import case_id, humidity_of, pair_of
 from stiction.config.files import paper
 from stiction.config.merging import merged
-from stiction.config.relations import heights_have_a_density
 from stiction.models import BEAM_MODELS, SIDES, SURFACE_MODELS
+from stiction.surface.feasible import is_feasible, nearest_feasible
 
 #: Keys of the measured statistics of a surface: moments of the heights and summit statistics.
 MOMENTS = ("rms_nm", "skewness", "kurtosis")
@@ -22,6 +22,8 @@ SUMMITS = ("mean_summit_radius_um", "summit_density_per_um2")
 _CHANGED = {"van_der_waals": None, "psd": None, "every": "contact", "spacing_nm": "sampling", "poisson_ratio": "solid"}
 #: Keys that define the beam that the paper measured and simulated.
 _OF_BEAM = {"beam": ("length_um", "width_um", "thickness_um"), "solid": ("young_modulus_GPa",)}
+#: Keys that define the mesh of the paper and, with the force laws, how fine it is; a mesh has no width.
+_OF_MESH = _OF_BEAM | {"beam": ("length_um", "thickness_um", "elements"), "sampling": ("strip_length_um",)}
 
 
 def chosen(section: dict[str, Any], names: Iterable[str]) -> dict[str, Any]:
@@ -99,6 +101,27 @@ class Plan:
             and set(self.sides(pair)) <= set(self.paper_surfaces)
         ]
 
+    def has_mesh_of_paper(self, case: str) -> bool:
+        """Whether the beams of a case have the elements of the paper, whatever their force laws.
+
+        ASSUME: the mesh of the paper belongs to its beam, strips and pairs, up to the highest humidity of each pair. It
+        is kept under other model choices, so that variants differ by their choice alone.
+        """
+        pair, known = pair_of(case), paper()
+        of_paper = known["pairs"].get(pair)
+        return (
+            all(_same(self.config[section], known[section], only=keys) for section, keys in _OF_MESH.items())
+            and _same(self.config["pairs"][pair], of_paper, but=["humidities"])
+            and all(self._has_heights_of_paper(name) for name in self.sides(pair))
+            and humidity_of(case) <= max(of_paper["humidities"])
+        )
+
+    def _has_heights_of_paper(self, surface):
+        """Whether a surface has the moments of the paper, and the published spectrum or the summits that give it."""
+        entry = self.config["surfaces"][surface]
+        spectrum = ["published_psd"] if entry["psd"] == "published" else SUMMITS
+        return _same(entry, paper()["surfaces"].get(surface), only=[*MOMENTS, *spectrum])
+
     # Figures that show one pair, one case or one humidity
 
     @property
@@ -146,9 +169,10 @@ class Plan:
 
     def _can_be_shifted(self, moment):
         """Whether surfaces with the moment slightly decreased and slightly increased exist."""
-        shape = chosen(self.config["surfaces"][self.figure_surface], ("skewness", "kurtosis"))
+        measured = chosen(self.config["surfaces"][self.figure_surface], ("skewness", "kurtosis"))
+        shape = chosen(nearest_feasible(**measured)._asdict(), measured)
         at = shifted(shape[moment], self.config["studies"]["sensitivity"]["step"])
-        exists = not any(heights_have_a_density(**shape | {moment: value}) for value in at)
+        exists = all(is_feasible(**shape | {moment: value}) for value in at)
         return at[0] * at[1] > 0 and exists
 
     # Variants: one changed model choice each, where the paper leaves the choice open

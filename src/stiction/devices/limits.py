@@ -5,8 +5,8 @@ Lengths are in metres, angles of rotation in radians, shares between 0 and 1.
 
 from collections.abc import Sequence
 
-#: Largest strip and element, in foundation lengths, for a crack within 1 % of Eq. (13) on uniform ground.
-STRIP, ELEMENT = 0.7, 2.2
+from stiction.beam.foundation import ELEMENT, STRIP
+
 #: Largest plastic share of the contact area. Pair c has 58 %, and its beams stick at 72 % of the predicted length.
 PLASTIC = 0.02
 #: Smallest gap, in units of film height plus rms roughness.

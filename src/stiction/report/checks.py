@@ -5,7 +5,7 @@ a study, this gives one false alarm in about a hundred seeds; for a given seed t
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from os import PathLike
 
@@ -14,15 +14,23 @@ import pandas as pd
 import xarray as xr
 from scipy.stats import norm, t
 
+from stiction.analysis.mesh import resolution, rigid_energy
 from stiction.beam.cantilever import Beam
+from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.beam.equilibrium import allowed_imbalance
-from stiction.contact.forcelaw import admissible
+from stiction.beam.foundation import ACCURACY
+from stiction.config.cases import case_id
+from stiction.contact.forcelaw import admissible, coefficients, energy
+from stiction.errors import NotConverged
 from stiction.estimates import jackknife, mean_with_error
 from stiction.models import SURFACE_MODELS, surface_model
-from stiction.report.format import TO_MJ, TO_UM, with_error
+from stiction.report.format import TO_MJ, TO_UM, number, with_error
 from stiction.report.tables_surfaces import surface_statistics
 from stiction.stages.forces import vectors
+from stiction.stages.heights import measured, substitution
+from stiction.stages.identification import misfits
 from stiction.stages.releases import ended
+from stiction.surface.feasible import LARGEST_DISTANCE
 
 #: A case: pair, relative humidity and model.
 Case = tuple[str, float, str]
@@ -36,6 +44,15 @@ DRY = 0.4
 MEAN_OFF, SPREAD_OFF, CORRELATION_OFF = 0.02, 0.15, 0.05
 #: Tolerance of the chaos model: mean crack length, relative.
 LENGTH_OFF = 0.01
+#: Largest misfit of an identified spectrum, relative: a little above that which the paper accepts, 23 % for Sub2.
+MISFIT = 0.3
+#: Name of the check of the mesh.
+RESOLVED = "elements and strips resolve the crack"
+#: Tolerance of a crack length on the mesh of the paper, relative: for pair a, its elements have up to 3.7 and its
+#: strips up to 0.73 foundation lengths. Every measured crack length has a larger standard deviation, at least 2.4 %.
+MESH_OFF_OF_PAPER = 0.02
+#: Number of force laws for the energy of a stiff beam.
+_RIGID = 500
 #: Largest share of draws without a force law, non-Gaussian surfaces; largest difference from the share of the samples.
 REJECTED, REJECTED_OFF = 0.05, 0.02
 
@@ -87,6 +104,13 @@ def scatter_falls(case: str, weaker: xr.Dataset, stronger: xr.Dataset) -> Check:
     return Check("scatter does not grow with energy", case, bool(rise < ALLOWED * error), message)
 
 
+def heights_are_as_measured(case: str, heights: xr.Dataset) -> Check:
+    """The height density has the measured moments, or the nearest feasible ones within the error of a measurement."""
+    distance = measured(heights).distance
+    message = substitution(heights) or f"skewness {float(heights.skewness):.4g}, kurtosis {float(heights.kurtosis):.4g}"
+    return Check("heights have the measured moments", case, distance <= LARGEST_DISTANCE, message)
+
+
 def moments_meet_targets(
     case: str, character: xr.Dataset, targets: Mapping[str, float], defect: float
 ) -> Iterator[Check]:
@@ -110,6 +134,14 @@ def moments_meet_targets(
         within = allowed * error + (defect * target if name == "rms_nm" else 0)
         message = f"{name} is {with_error(values[name], error)}, target {target:.4g}, allowed ± {within:.2g}"
         yield Check("drawn surfaces have the target moments", case, bool(abs(off) <= within), message)
+
+
+def identification_meets_targets(case: str, identification: xr.Dataset) -> Iterator[Check]:
+    """Radius and density of the summits of the identified spectrum are the measured ones; datasets of that stage."""
+    for word, (off, error) in misfits(identification).items():
+        allowed = MISFIT + ALLOWED * error
+        message = f"{word} off by {with_error(100 * off, 100 * error, '+')} %, allowed ± {100 * allowed:.2g} %"
+        yield Check("identified spectra have the measured summits", case, bool(abs(off) <= allowed), message)
 
 
 def vectors_are_possible(case: str, forces: xr.Dataset) -> Check:
@@ -142,7 +174,7 @@ def chaos_reproduces_input(case: str, chaos: xr.Dataset, samples: int) -> Check:
         f"means off by up to {off[0]:.3f} standard deviations (allowed {limits[0]:.3f}), "
         f"standard deviations by {100 * off[1]:.1f} % (allowed {100 * limits[1]:.1f} %), "
         f"correlations by {off[2]:.3f} (allowed {limits[2]:.3f}), "
-        f"99 % quantile of ē by {(drawn_far[0] - far[0]) / spread[0]:+.2f} standard deviations"
+        f"99 % quantile of ē by {number((drawn_far[0] - far[0]) / spread[0], '+.2f')} standard deviations"
     )
     return Check("chaos model reproduces its input", case, bool(np.all(np.less_equal(off, limits))), message)
 
@@ -195,23 +227,89 @@ def beams_are_in_equilibrium(case: str, outcomes: xr.Dataset, limit: float, beam
     return Check("beams are in equilibrium", case, unbalanced == 0, message)
 
 
+def crack_is_resolved(
+    case: str, outcomes: xr.Dataset, forces: xr.Dataset, beam: Beam, strip: float, accuracy: float
+) -> Iterator[Check]:
+    """Crack lengths do not depend on the mesh, and the energy of Eq. (13) is one that the strips can have.
+
+    On uniform ground, with the force law of median energy, the crack length is compared with that on a finer mesh. On
+    random ground a crack opens up to the first strips that hold it, so that Γ exceeds ē, but not the energy of the
+    strongest strip; it is at least that of a beam too stiff to follow single strips. There is no check if fewer than
+    two beams end S-shaped, or if the beam on uniform ground does not.
+
+    Parameters
+    ----------
+    case
+    outcomes, forces
+        Stages beams and forces.
+    beam
+        Nominal dimensions, and the elements in use.
+    strip
+        Length of a strip [m].
+    accuracy
+        Allowed relative error of a crack length [-].
+    """
+    stuck = ended(outcomes, "S-shape")
+    if stuck.sum() < 2:
+        return
+    samples, limit = vectors(forces)
+    laws = coefficients(samples[admissible(samples, limit)], limit)
+    energies = energy(laws)
+    median = laws[np.argsort(energies)[len(laws) // 2]]
+    try:
+        found = resolution(beam, median, round(beam.length / strip))
+    except (ValueError, NotConverged) as reason:
+        yield Check(RESOLVED, case, False, f"no crack on uniform ground: {reason}")
+        return
+    if not np.isfinite(found.error):
+        return
+    message = (
+        f"crack on uniform ground is {TO_UM * found.used.crack_length:.4g} µm, {100 * found.error:+.2f} % off that on "
+        f"a finer mesh (allowed ± {100 * accuracy:g} %)"
+    )
+    yield Check(RESOLVED, case, bool(abs(found.error) <= accuracy), message)
+    gamma, error = mean_with_error(TO_MJ * outcomes.adhesion_energy.values[stuck])
+    tolerance = accuracy / abs(CRACK_LENGTH_POWER)
+    low = TO_MJ * rigid_energy(laws[:_RIGID]) * (1 - tolerance) - ALLOWED * error
+    high = TO_MJ * energies.max() * found.excess * (1 + tolerance) + ALLOWED * error
+    message = (
+        f"{with_error(gamma, error)} mJ/m², ē is {TO_MJ * energies.mean():.3g} mJ/m²; strips allow {low:.3g} to "
+        f"{high:.3g} mJ/m²"
+    )
+    yield Check("energy of the cracks is one of the strips", case, bool(low <= gamma <= high), message)
+
+
 def of_surfaces(
-    characters: Mapping[tuple[str, str], xr.Dataset], targets: Mapping[str, Mapping], defects: Mapping[str, float]
+    heights: Mapping[str, xr.Dataset],
+    characters: Mapping[tuple[str, str], xr.Dataset],
+    targets: Mapping[str, Mapping],
+    defects: Mapping[str, float],
 ) -> Iterator[Check]:
     """All checks of drawn surfaces.
 
     Parameters
     ----------
+    heights : dict
+        Surface to the dataset of stage heights.
     characters : dict
         (surface, model) to the dataset of stage character.
     targets : dict
-        Surface to rms_nm, skewness and kurtosis.
+        Surface to rms_nm, skewness and kurtosis as measured; feasible ones replace the last two.
     defects : dict
         Surface to the share of the variance that no Gaussian field provides.
     """
+    for surface, found in heights.items():
+        yield heights_are_as_measured(surface, found)
     for (surface, model), character in characters.items():
-        wanted = targets[surface] if model == "NG" else targets[surface] | {"skewness": 0.0, "kurtosis": 3.0}
+        used = heights[surface] if model == "NG" else {"skewness": 0.0, "kurtosis": 3.0}
+        wanted = targets[surface] | {name: float(used[name]) for name in ("skewness", "kurtosis")}
         yield from moments_meet_targets(f"{surface} {model}", character, wanted, defects[surface])
+
+
+def of_identifications(identifications: Mapping[str, xr.Dataset]) -> Iterator[Check]:
+    """All checks of identified spectra; surface to the dataset of stage identification."""
+    for surface, identification in identifications.items():
+        yield from identification_meets_targets(surface, identification)
 
 
 def of_force_laws(forces: Mapping[Case, xr.Dataset], chaoses: Mapping[Case, xr.Dataset]) -> Iterator[Check]:
@@ -249,9 +347,13 @@ def of_trends(forces: Mapping[Case, xr.Dataset], skewed: Collection[str]) -> Ite
 
 
 def of_beams(
-    outcomes: Mapping[Case, xr.Dataset], forces: Mapping[Case, xr.Dataset], beams: Mapping[str, Beam], strip: float
+    outcomes: Mapping[Case, xr.Dataset],
+    forces: Mapping[Case, xr.Dataset],
+    beams: Mapping[str, Beam],
+    strip: float,
+    on_mesh_of_paper: Collection[str],
 ) -> Iterator[Check]:
-    """Equilibrium of the beams of every case.
+    """Equilibrium, mesh and energy of the beams of every case.
 
     Parameters
     ----------
@@ -261,10 +363,15 @@ def of_beams(
         Pair to its nominal beam.
     strip : float
         Length of a strip [m].
+    on_mesh_of_paper : collection of str
+        Names of the cases whose beams have the mesh of the paper.
     """
     for (pair, humidity, model), released in outcomes.items():
-        limit = float(forces[pair, humidity, surface_model(model)].limit)
-        yield beams_are_in_equilibrium(_case(pair, humidity, model), released, limit, beams[pair], strip)
+        case, laws = _case(pair, humidity, model), forces[pair, humidity, surface_model(model)]
+        beam = replace(beams[pair], elements=released.sizes["node"] - 1)
+        accuracy = MESH_OFF_OF_PAPER if case_id(pair, humidity) in on_mesh_of_paper else ACCURACY
+        yield beams_are_in_equilibrium(case, released, float(laws.limit), beam, strip)
+        yield from crack_is_resolved(case, released, laws, beam, strip, accuracy)
 
 
 def of_resampling(outcomes: Mapping[Case, xr.Dataset], resampled: Mapping[Case, xr.Dataset]) -> Iterator[Check]:

@@ -108,7 +108,8 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame) -> Fi
     for row, (pair, (beam, released, bands)) in zip(axes, pairs.items(), strict=True):
         weakest = apparent_adhesion_energy(beam.length, beam)
         lowest = min(weakest, *(float(axis.energy_quantile.sel(probability=0.5).min()) for axis in bands.values()))
-        row[0].set(yscale="log", ylim=(TO_MJ * lowest / 2, 2 * TO_MJ * max(THEORETICAL, weakest)))
+        highest = max(2 * THEORETICAL, 2 * weakest, *map(_reach, released.values()))
+        row[0].set(yscale="log", ylim=(TO_MJ * lowest / 2, TO_MJ * highest))
         row[0].set_ylabel(r"adhesion energy $\Gamma$ [mJ/m²]")
         for panel, models in zip(row, _COLUMNS, strict=True):
             _bounds(panel, weakest)
@@ -169,6 +170,12 @@ def _band(panel, axis, model):
         return
     panel.fill_between(axis.humidity, low, high, alpha=0.25, linewidth=0, color=style["color"])
     panel.plot(axis.humidity, median, linestyle=MODELS[model]["linestyle"], **style)
+
+
+def _reach(beams):
+    """Energy that an axis must reach to show the mean and standard deviation of some beams [J m⁻²]."""
+    energies = beams.adhesion_energy.values[ended(beams, "S-shape")]
+    return 1.1 * (energies.mean() + energies.std()) if len(energies) else 0.0
 
 
 def _released(panel, released, model, weakest):

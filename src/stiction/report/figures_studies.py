@@ -77,6 +77,7 @@ def sensitivities(datasets: Mapping[str, xr.Dataset], published: Mapping[tuple[s
         k = list(datasets).index(moment)
         axes[0].plot(humidity, slope, marker(k), color=f"C{k}", markerfacecolor="none")
         axes[0].annotate(f"paper, {moment}", (humidity, slope), (5, 0), textcoords="offset points", va="center")
+    humidity_axis(axes[0])
     letter(axes, [rf"{statistic} of $\bar e$" for statistic in statistics])
     axes[1].legend(loc="lower right")
     return figure

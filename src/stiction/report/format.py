@@ -37,12 +37,12 @@ def number(value: float, form: str) -> str:
 
 
 def with_error(value: float, error: float, sign: str = "") -> str:
-    """Value ± standard error as text, to the first digit of the error, or to the second if the first is 1; – for NaN.
+    """Value ± standard error as text, to the second significant digit of the error; – for NaN.
 
     Examples
     --------
     >>> with_error(57.82009, 0.19801), with_error(-4.9, 0.042, "+")
-    ('57.82 ± 0.20', '-4.90 ± 0.04')
+    ('57.82 ± 0.20', '-4.900 ± 0.042')
     """
     if np.isnan(value):
         return MISSING
@@ -58,12 +58,12 @@ def error_alone(error: float) -> str:
     Examples
     --------
     >>> error_alone(0.0417), error_alone(12.3), error_alone(float("nan"))
-    ('0.04', '12', '–')
+    ('0.042', '12', '–')
     """
     return with_error(error, error).partition(" ")[0]
 
 
 def _decimals(error):
-    """Decimals of a value with this error: to its first digit, or to its second if the first is 1."""
-    first = int(np.floor(np.log10(error)))
-    return max(0, (error < 2 * 10.0**first) - first)
+    """Decimals of a value with this error: to the second significant digit of the rounded error."""
+    _, _, exponent = f"{error:.1e}".partition("e")
+    return max(0, 1 - int(exponent))

@@ -24,6 +24,8 @@ from stiction.run.atomic import save_bytes
 STYLE = Path(__file__).with_name("stiction.mplstyle")
 #: Widths of one and of two columns of the journal [in].
 SINGLE, DOUBLE = 3.5, 7.16
+#: Shortest axis of the relative humidity, for figures of a single one [-].
+_SHORTEST = 0.1
 #: Largest number of columns of panels side by side.
 _ABREAST = 4
 
@@ -118,10 +120,11 @@ def legends(figure: Figure, options: Mapping[Axes, dict], most: int = 6) -> None
 
 
 def humidity_axis(panel: Axes) -> None:
-    """Keep the axis of the relative humidity within 0 and 1, where a margin would exceed them."""
+    """Keep the axis of the relative humidity within 0 and 1, and so long that its ticks do not meet."""
     left, right = panel.get_xlim()
-    if left < 0 or right > 1:
-        panel.set_xlim(max(left, 0), min(right, 1))
+    short = max(0, _SHORTEST - (right - left)) / 2
+    if short or left < 0 or right > 1:
+        panel.set_xlim(max(left - short, 0), min(right + short, 1))
 
 
 def letter(axes: Iterable[Axes], names: Sequence[str] | None = None) -> None:

@@ -150,10 +150,10 @@ def _cells_fit(row):
         "RH": f"{row.relative_humidity:g}",
         "model": row.model,
         "curve [%]": with_error(row.curve_error_percent, row.curve_error_se_percent),
-        "median [%]": f"{row.curve_error_median_percent:.2f}",
-        "95 % of samples below [%]": f"{row.curve_error_95_percent:.1f}",
-        "ē at most [%]": f"{row.energy_error_max_percent:.0e}",
-        "without law [%]": f"{100 * row.share_without_law:.2g}",
+        "median [%]": number(row.curve_error_median_percent, ".2f"),
+        "95 % of samples below [%]": number(row.curve_error_95_percent, ".1f"),
+        "ē at most [%]": number(row.energy_error_max_percent, ".0e"),
+        "without law [%]": number(100 * row.share_without_law, ".2g"),
     }
 
 

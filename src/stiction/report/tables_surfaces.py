@@ -55,7 +55,10 @@ def surface_statistics(character: xr.Dataset) -> tuple[dict[str, float], dict[st
 
 
 def table_1(
-    characters: Mapping[tuple[str, str], xr.Dataset], measured: Mapping[str, Mapping], published: pd.DataFrame
+    characters: Mapping[tuple[str, str], xr.Dataset],
+    measured: Mapping[str, Mapping],
+    published: pd.DataFrame,
+    substitutions: Mapping[str, str],
 ) -> Table:
     """Table I: simulated statistics of the surfaces.
 
@@ -67,11 +70,14 @@ def table_1(
         Surface to its section of the configuration, with the measured statistics (AFM).
     published : pandas.DataFrame
         The published table, rows of the paper's own surfaces.
+    substitutions : dict
+        Surface to the sentence of `stiction.stages.heights.substitution`.
     """
     frame = pd.DataFrame([_row_1(*key, characters[key], measured[key[0]], published) for key in characters])
     titles = {"surface": "surface", "column": "model"} | _STATISTICS
     cells = [[row.surface, row.column, *(_cell_1(row, name) for name in _STATISTICS)] for _, row in frame.iterrows()]
-    caption = "Table I: simulated value ± standard error (published value)."
+    notes = (f" {surface}: {sentence}." for surface, sentence in substitutions.items() if sentence)
+    caption = "Table I: simulated value ± standard error (published value)." + "".join(notes)
     return Table(frame, caption, pd.DataFrame(cells, columns=list(titles.values())))
 
 

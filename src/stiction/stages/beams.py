@@ -1,5 +1,7 @@
 """Stage beams (Secs. III-C and IV): press beams down, release them and find where their cracks arrest."""
 
+from dataclasses import replace
+
 import numpy as np
 import xarray as xr
 
@@ -26,9 +28,9 @@ def compute(chaos: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
         Name of the case, part of the addresses of random numbers.
     settings : Settings
     """
-    return layout(
-        releases.released(chaos_model(chaos), case, settings, shapes=_KEPT), cantilever(settings, pair_of(case)).nodes
-    )
+    columns = releases.released(chaos_model(chaos), case, settings, shapes=_KEPT)
+    elements = columns["deflection"].shape[1] - 1
+    return layout(columns, replace(cantilever(settings, pair_of(case)), elements=elements).nodes)
 
 
 def layout(columns: dict[str, np.ndarray], nodes: np.ndarray) -> xr.Dataset:

@@ -1,11 +1,13 @@
 """Stage heights (Sec. II-A): the maximum-entropy height density of one surface."""
 
-from dataclasses import dataclass
+import warnings
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
 from stiction.surface import maxent
+from stiction.surface.feasible import Moments, nearest_feasible
 from stiction.surface.maxent import GAUSSIAN, HeightDensity
 
 
@@ -19,8 +21,24 @@ class Settings:
 
 
 def compute(settings: Settings) -> xr.Dataset:
-    """Solve for the maximum-entropy density with the moments of the surface."""
-    return layout(maxent.solve(settings.skewness, settings.kurtosis), settings)
+    """Solve for the maximum-entropy density with the moments of the surface, or with the nearest feasible ones.
+
+    ASSUME: measured moments that no maximum-entropy density has are an estimate of the nearest ones that one has. A
+    warning states both.
+
+    Raises
+    ------
+    ValueError, NotConverged
+        As `stiction.surface.feasible.nearest_feasible`.
+    """
+    found = nearest_feasible(settings.skewness, settings.kurtosis)
+    used = replace(settings, skewness=found.skewness, kurtosis=found.kurtosis)
+    dataset = layout(maxent.solve(found.skewness, found.kurtosis), used)
+    if not found.distance:
+        return dataset
+    dataset = dataset.assign(_measured(settings, found.distance))
+    warnings.warn(substitution(dataset), stacklevel=2)
+    return dataset
 
 
 def layout(density: HeightDensity, moments: Settings) -> xr.Dataset:
@@ -30,6 +48,7 @@ def layout(density: HeightDensity, moments: Settings) -> xr.Dataset:
     ----------
     density : HeightDensity
     moments : Settings
+        Moments of this density.
     """
     z = np.linspace(-6, 6, 601)
     return xr.Dataset(
@@ -52,11 +71,39 @@ def layout(density: HeightDensity, moments: Settings) -> xr.Dataset:
     )
 
 
+def _measured(moments, distance):
+    """Variables of a dataset whose density has other moments than the measured ones."""
+    return {
+        "measured_skewness": ((), moments.skewness, {"units": "1"}),
+        "measured_kurtosis": ((), moments.kurtosis, {"units": "1"}),
+        "distance": ((), distance, {"units": "1", "long_name": "of measured and used moments, in standard errors"}),
+    }
+
+
 def density(heights: xr.Dataset, model: str) -> HeightDensity:
     """Height density of model ``NG``, or the Gaussian one of model ``G``."""
     return HeightDensity(tuple(map(float, heights.multiplier))) if model == "NG" else GAUSSIAN
 
 
 def moments(heights: xr.Dataset) -> Settings:
-    """Moments for which the density was solved."""
+    """Moments of the density."""
     return Settings(float(heights.rms), float(heights.skewness), float(heights.kurtosis))
+
+
+def measured(heights: xr.Dataset) -> Moments:
+    """Measured skewness and kurtosis, and the distance of those of the density from them in standard errors."""
+    if "distance" not in heights:
+        return Moments(float(heights.skewness), float(heights.kurtosis), 0.0)
+    return Moments(*(float(heights[name]) for name in ("measured_skewness", "measured_kurtosis", "distance")))
+
+
+def substitution(heights: xr.Dataset) -> str:
+    """Sentence about moments that replace the measured ones; empty if the density has the measured moments."""
+    skewness, kurtosis, distance = measured(heights)
+    if not distance:
+        return ""
+    return (
+        f"no maximum-entropy density has the measured skewness {skewness:.4g} and kurtosis {kurtosis:.4g}; the heights "
+        f"have the nearest feasible ones, {float(heights.skewness):.4g} and {float(heights.kurtosis):.4g}, "
+        f"{distance:.2g} standard errors away"
+    )

@@ -11,12 +11,15 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.montecarlo import Experiment, columns, simulate
+from stiction.beam.resolution import resolved
 from stiction.chaos.model import ChaosModel, draw_laws
 from stiction.config.cases import pair_of
 from stiction.progress import progress
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever, strips_along
 from stiction.streams import stream
 
+#: Number of force laws from which the elements of the beams of a case are chosen.
+_LAWS = 10_000
 #: End states of a beam, in the order of `stiction.beam.release.EndState`.
 STATES = ("S-shape", "arc", "free")
 
@@ -32,6 +35,7 @@ class Settings:
     sampling: StripLength
     samples: int  #: number of beams
     scatter: float  #: relative standard deviation of each dimension [-]
+    refined: bool = False  #: whether the elements follow the force laws, as in `stiction.beam.resolution.resolved`
 
 
 def released(model: ChaosModel, case: str, settings: Settings, threads: int = 1, shapes: int = 0) -> dict:
@@ -43,12 +47,29 @@ def released(model: ChaosModel, case: str, settings: Settings, threads: int = 1,
 def released_on(
     draw: Callable, case: str, settings: Settings, address: Callable, threads: int = 1, shapes: int = 0
 ) -> dict:
-    """Release beams of a case on force laws drawn by ``draw(n, rng)``; ``address(k)`` returns the stream of beam k."""
+    """Release beams of a case on force laws drawn by ``draw(n, rng)``; ``address(k)`` returns the stream of beam k.
+
+    Raises
+    ------
+    ValueError
+        If the strips are too long for the force laws.
+    """
     number = settings.samples
-    strips = strips_along(settings.beam, settings.sampling)
-    experiment = Experiment(cantilever(settings, pair_of(case)), strips, draw, settings.scatter)
+    beam, strips = cantilever(settings, pair_of(case)), strips_along(settings.beam, settings.sampling)
+    if settings.refined:
+        beam = _resolved(beam, strips, draw(_LAWS, address("mesh")), case)
+    experiment = Experiment(beam, strips, draw, settings.scatter)
     outcomes = simulate(experiment, range(number), address, threads)
     return columns(list(progress(outcomes, "beams", total=number)), shapes)
+
+
+def _resolved(beam, strips, laws, case):
+    """`resolved`, with the name of the case added to an error."""
+    try:
+        return resolved(beam, strips, laws)
+    except ValueError as error:
+        error.add_note(f"in case {case}")
+        raise
 
 
 def ended(beams: xr.Dataset, state: str) -> np.ndarray:

@@ -1,16 +1,18 @@
-"""Result files: written atomically and labelled with stage, name and settings."""
+"""Result files: written atomically and labelled with their origin."""
 
-import json
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
+from stiction.run import labels
 from stiction.run.atomic import DataError, replacing
 
 
-def save(dataset: xr.Dataset, path: str | Path, stage: str, settings: dict[str, Any]) -> None:
+def save(
+    dataset: xr.Dataset, path: str | Path, stage: str, settings: dict[str, Any], inputs: Iterable[str | Path] = ()
+) -> None:
     """Write a dataset atomically, labelled with its stage, its name and the settings from which it was computed.
 
     Parameters
@@ -21,15 +23,17 @@ def save(dataset: xr.Dataset, path: str | Path, stage: str, settings: dict[str, 
         Name of the stage; :func:`load` checks it, and that the file has the name under which it was written.
     settings : dict
         Plain numbers, strings, lists and dicts; neither time nor machine, so that equal settings give equal files.
+    inputs : iterable of str or Path
+        Datasets from which it was computed; their settings become part of the label.
 
     Raises
     ------
     DataError
-        If the disk is full or the folder cannot be written.
+        If the disk is full, the folder cannot be written or an input cannot be read.
     """
     path = Path(path)
-    origin = {"stage": stage, "name": path.stem, "settings": json.dumps(settings, sort_keys=True)}
-    labelled = dataset.assign_attrs(Conventions="CF-1.10", **origin)
+    label = labels.made_from(inputs, stage, path.stem, settings)
+    labelled = dataset.assign_attrs(Conventions="CF-1.10", **label.attributes)
     encoding = {name: {"zlib": True, "complevel": 1} for name, values in labelled.items() if values.size > 10_000}
     with replacing(path) as draft:
         draft.write_bytes(bytes(labelled.nbytes + 2**16))  # detects a full disk; HDF5 would not name the cause
@@ -50,9 +54,7 @@ def load(path: str | Path, stage: str) -> xr.Dataset:
             found = dataset.attrs.get("stage"), dataset.attrs.get("name")
             loaded = dataset.load()
     except (OSError, ValueError, RuntimeError) as error:
-        raise DataError(
-            f"{path} cannot be read ({error}); delete it and start again, it will be computed anew"
-        ) from error
+        raise labels.unreadable(path, error) from error
     if found != wanted:
         held = "{} of {}".format(*found) if all(found) else "no result of this study"
         raise DataError(f"{path} holds {held}, not {stage} of {wanted[1]}; delete it and start again")

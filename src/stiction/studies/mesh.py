@@ -8,7 +8,9 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis.mesh import Arrest, arrest_on_uniform_ground, whole_meshes
+from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
 from stiction.contact import forcelaw
+from stiction.errors import NotConverged
 from stiction.progress import progress
 from stiction.stages import forces as stage_forces
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, cantilever
@@ -40,7 +42,7 @@ def compute(forces: xr.Dataset, settings: Settings) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If no mesh resolves the crack.
+        If no mesh resolves the crack; the message contains the lengths that would.
     """
     distance, curves = stage_forces.curves(forces)
     energies = stage_forces.energies(forces)[: len(curves)]
@@ -54,10 +56,14 @@ def compute(forces: xr.Dataset, settings: Settings) -> xr.Dataset:
         ground = replace(beam, elements=round(beam.length / element)), law, round(beam.length / point)
         try:
             arrests[element, point] = arrest_on_uniform_ground(*ground)
-        except ValueError as reason:  # the crack is too short for the elements
-            warnings.warn(f"left out: {reason}", stacklevel=2)
+        except (ValueError, NotConverged) as reason:  # the elements are too long for the crack or for the law
+            warnings.warn(f"left out elements of {1e6 * element:.3g} µm: {reason}", stacklevel=2)
     if not arrests:
-        raise ValueError("no mesh of studies.mesh resolves the crack: take shorter elements")
+        length = 1e6 * foundation_length(beam, law[None])
+        raise ValueError(
+            f"no mesh of studies.mesh resolves the crack: take elements of at most {ELEMENT * length:.3g} µm and "
+            f"strips of at most {STRIP * length:.3g} µm"
+        )
     return layout([*arrests], [*arrests.values()], law, (distance, curves[sample]))
 
 

@@ -23,13 +23,14 @@ class Settings:
     pairs: dict[str, Gap]
     sampling: StripLength
     beams: int  #: number of beams
+    refined: bool = False  #: as in `stiction.stages.releases.Settings`
 
 
 def compute(forces: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
     """Draw the force laws of every beam from the samples, with replacement, and release the beam."""
     draw = partial(resample_laws, *vectors(forces))
     sections = settings.solid, settings.beam, settings.pairs, settings.sampling
-    beams = releases.Settings(settings.seed, *sections, samples=settings.beams, scatter=0)
+    beams = releases.Settings(settings.seed, *sections, samples=settings.beams, scatter=0, refined=settings.refined)
     address = partial(stream, settings.seed, "resampling", case)
     return layout(releases.released_on(draw, case, beams, address))
 

@@ -1,7 +1,7 @@
 """Study variant: crack lengths of a pair under one variant, i.e. one model choice changed, from its contact."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -24,6 +24,7 @@ class Settings:
     beam: Dimensions
     pairs: dict[str, Gap]
     sampling: StripLength
+    refined: tuple[float, ...] = ()  #: humidities at which the elements follow the force laws [-]
 
 
 def compute(contact: xr.Dataset, pair: str, settings: Settings) -> xr.Dataset:
@@ -38,7 +39,8 @@ def compute(contact: xr.Dataset, pair: str, settings: Settings) -> xr.Dataset:
         vectors, limit = curves.vectors(contact, humidity, settings.water)
         model = fit(vectors, limit, settings.chaos.order, settings.chaos.dimension_tolerance)
         energies.append(vectors[:, 0])
-        ended.append(releases.released(model, case_id(pair, humidity), beams))
+        refined = replace(beams, refined=humidity in settings.refined)
+        ended.append(releases.released(model, case_id(pair, humidity), refined))
     return layout(humidities, energies, ended)
 
 

@@ -1,0 +1,45 @@
+"""Elements that resolve the cracks on given force laws (Sec. III-C, App. C)."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from stiction.beam.cantilever import Beam
+from stiction.beam.energy import arrest_length
+from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
+from stiction.beam.release import START
+from stiction.contact import forcelaw
+
+#: Elements along the crack from which a beam is released: `stiction.beam.release.release` needs two, and halves that
+#: crack once for a beam that adheres much more strongly than its mean law.
+ALONG_START = 4
+
+
+def resolved(beam: Beam, points: int, laws: np.ndarray) -> Beam:
+    """Beam with as many elements as its laws call for, at least its own number.
+
+    Parameters
+    ----------
+    beam : Beam
+    points : int
+        Number of force laws along the beam; every element contains a whole number of them.
+    laws : (n, 4) float64
+        Sample of the force laws [f_max, d_max, a_left, a_right], SI.
+
+    Raises
+    ------
+    ValueError
+        If the strips are too long for these laws, whatever the elements.
+    """
+    length, strip = foundation_length(beam, laws), beam.length / points
+    start = START * min(arrest_length(forcelaw.energy(laws).mean(), beam), beam.length)
+    element = min(ELEMENT * length, start / ALONG_START)
+    allowed = min(STRIP * length, element)
+    if strip > allowed:
+        raise ValueError(
+            f"strips of {1e6 * strip:.3g} µm do not resolve a crack on these surfaces: the adhesion needs strips of at "
+            f"most {1e6 * allowed:.3g} µm (foundation length {1e6 * length:.3g} µm); decrease strip_length_um, or "
+            "increase the thickness or the gap of the beam"
+        )
+    whole = (n for n in range(beam.elements, points + 1) if points % n == 0 and beam.length / n <= element)
+    return replace(beam, elements=next(whole))

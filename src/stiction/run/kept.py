@@ -1,0 +1,89 @@
+"""Result files of earlier runs: whether a run may use them.
+
+Snakemake compares settings only where its own record of a file exists, and never looks into a file. A dataset copied
+from another run, or a table cut off by a full disk, would be used silently.
+"""
+
+import hashlib
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from stiction.run import labels
+from stiction.run.atomic import DataError
+from stiction.run.logs import recorded
+
+
+def foreign(paths: Iterable[str | Path], expected: Callable[[str], dict[str, Any] | None]) -> Iterator[tuple[str, str]]:
+    """Datasets that other settings or another study gave, or that cannot be read, each with the reason.
+
+    Parameters
+    ----------
+    paths : iterable of str or Path
+        Files of datasets.
+    expected : callable
+        Settings of the job of a file in this run; ``None`` if no job of this run writes the file.
+
+    Yields
+    ------
+    tuple of str
+        File; and a clause that says what it holds, and what this run needs. Files that this run does not write are left
+        out.
+    """
+    for path in map(Path, paths):
+        if (settings := expected(path.as_posix())) is not None:
+            reason = _difference(path, settings, expected)
+            if reason:
+                yield path.as_posix(), reason
+
+
+def _difference(path, settings, expected):
+    """What distinguishes a dataset from the one that this run would compute; empty if nothing does."""
+    try:
+        found = labels.read(path)
+    except DataError:
+        return "cannot be read"
+    if found.name != path.stem:
+        return f"holds {found.stage} of {found.name}" if found.stage else "holds no result of this study"
+    if differing := _first(found.settings, settings):
+        return f"was computed with {differing}"
+    for file, stored in found.before.items():
+        if differing := _first(stored, expected(file) or {}):
+            return f"depends on {file} with {differing}"
+    return ""
+
+
+def _first(found, wanted, path=()):
+    """First key that differs between two sections, with both values; empty if they agree."""
+    if isinstance(found, dict) and isinstance(wanted, dict):
+        keys = sorted({*found, *wanted})
+        return next(filter(None, (_first(found.get(key), wanted.get(key), (*path, key)) for key in keys)), "")
+    wanted = json.loads(json.dumps(wanted))  # as it would be stored
+    return "" if found == wanted else f"{'.'.join(path)}: {_value(found)} instead of {_value(wanted)}"
+
+
+def _value(value):
+    """A value in a message."""
+    return "nothing" if value is None else value
+
+
+def damaged(logs: str | Path) -> Iterator[tuple[str, str]]:
+    """Files that are no longer as their jobs wrote them, according to the checksums in the logs, each with the reason.
+
+    Files that are missing and files without a checksum are left out.
+    """
+    for path, checksum in recorded(logs).items():
+        file = Path(path)
+        if file.is_file() and hashlib.sha256(file.read_bytes()).hexdigest() != checksum:
+            yield path, "is not as its job wrote it"
+
+
+def summary(unusable: Mapping[str, str]) -> Iterator[str]:
+    """One line about the first file of each folder that a run cannot use, with the number of its other files."""
+    paths = sorted(map(Path, unusable), key=lambda path: (path.parent, path.name))
+    for _, files in groupby(paths, key=lambda path: path.parent):
+        first, *others = map(Path.as_posix, files)
+        more = f" (nor {len(others)} more of this folder)" if others else ""
+        yield f"{first} {unusable[first]}; this run does not use it{more}."

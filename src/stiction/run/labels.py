@@ -1,0 +1,65 @@
+"""Labels of datasets: stage, name, settings, and the settings of all datasets on which a dataset depends."""
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import netCDF4
+
+from stiction.run.atomic import DataError
+
+
+class Label(NamedTuple):
+    """What a dataset says about its origin."""
+
+    stage: str | None  #: ``None`` if the file is no result of this study
+    name: str | None  #: name under which the file was written, without extension
+    settings: dict[str, Any]  #: settings from which the dataset was computed
+    before: dict[str, dict[str, Any]]  #: settings of all datasets on which it depends, by file
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """The label as attributes of a dataset; equal settings give equal text."""
+        texts = {key: json.dumps(getattr(self, key), sort_keys=True) for key in ("settings", "before")}
+        return {"stage": self.stage, "name": self.name} | texts
+
+
+def made_from(inputs: Iterable[str | Path], stage: str, name: str, settings: dict[str, Any]) -> Label:
+    """Label of a dataset that a stage computes from other datasets.
+
+    Datasets of the same stage are its chunks. They have its settings and leave no trace, because their number does not
+    affect the result.
+
+    Raises
+    ------
+    DataError
+        If an input cannot be read.
+    """
+    before = {}
+    for path in inputs:
+        found = read(path)
+        before |= found.before | ({} if found.stage == stage else {Path(path).as_posix(): found.settings})
+    return Label(stage, name, settings, before)
+
+
+def read(path: str | Path) -> Label:
+    """Label of a dataset, without its numbers.
+
+    Raises
+    ------
+    DataError
+        If the file is truncated or no netCDF file.
+    """
+    try:
+        with netCDF4.Dataset(path) as file:
+            found = {key: file.getncattr(key) for key in file.ncattrs()}
+    except (OSError, RuntimeError) as error:
+        raise unreadable(path, error) from error
+    plain = (json.loads(found.get(key, "{}")) for key in ("settings", "before"))
+    return Label(found.get("stage"), found.get("name"), *plain)
+
+
+def unreadable(path: str | Path, reason: Exception) -> DataError:
+    """The error of a dataset that cannot be read, with the remedy."""
+    return DataError(f"{path} cannot be read ({reason}); delete it and start again, it will be computed anew")

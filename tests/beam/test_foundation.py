@@ -1,0 +1,43 @@
+from dataclasses import replace
+
+import numpy as np
+from beams import E_BAR, PAPER, uniform_laws
+from numpy.testing import assert_allclose
+
+from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP, foundation_length
+from stiction.beam.release import released_beam
+from stiction.contact import forcelaw
+
+LAW = uniform_laws(1)
+LENGTH = foundation_length(PAPER, LAW)
+
+
+def test_a_beam_on_springs_of_the_slope_of_eq_12_decays_within_the_foundation_length():
+    f_max, d_max, a_left, _ = LAW[0]
+    rest, step = d_max - np.log(2) / a_left, 1e-14
+    slope = (forcelaw.pressure(LAW[0], rest - step) - forcelaw.pressure(LAW[0], rest + step)) / (2 * step)
+    # EI u⁗ + k w u = 0 has the solutions exp(-x/l) cos(x/l) and exp(-x/l) sin(x/l) with (4 EI / k w)^(1/4) = l.
+    rate = (-1 + 1j) / LENGTH
+    assert_allclose(PAPER.bending_stiffness * rate**4, -slope * PAPER.width, rtol=1e-4)
+
+
+def test_foundation_length_is_that_of_the_mean_stiffness():
+    laws = LAW * np.array([[1], [15]]) ** np.array([1, 0, 0, 0])
+    assert_allclose(foundation_length(PAPER, laws), LENGTH / 8**0.25, rtol=1e-12)
+
+
+def crack(strip, element, beam=PAPER):
+    """Crack length on uniform ground for strips and elements in foundation lengths."""
+    elements = round(beam.length / (element * LENGTH))
+    fitted = replace(beam, length=elements * element * LENGTH, elements=elements)
+    laws = np.tile(LAW, (elements * round(element / strip), 1))
+    return released_beam(fitted, laws, E_BAR).crack_length
+
+
+def test_allowed_strips_and_elements_find_the_crack_to_one_per_cent_and_longer_ones_do_not():
+    fine = crack(0.15, 0.3)
+    assert_allclose(crack(0.075, 0.15), fine, rtol=ACCURACY / 20)
+    for strip, parts in ((STRIP, 1), (STRIP, 2), (STRIP, 3), (ELEMENT / 4, 4), (ELEMENT / 6, 6), (ELEMENT / 11, 11)):
+        assert abs(crack(strip, parts * strip) / fine - 1) < ACCURACY
+    assert crack(2 * STRIP, 2 * STRIP) < (1 - 4 * ACCURACY) * fine
+    assert crack(3 * ELEMENT / 22, 3 * ELEMENT) < (1 - 4 * ACCURACY) * fine

@@ -1,0 +1,138 @@
+"""Files of earlier runs: those of other settings and damaged ones are recognised, all others are not."""
+
+import json
+
+import netCDF4
+import pytest
+import xarray as xr
+
+from stiction.run import kept, labels
+from stiction.run.logs import logged, recorded
+from stiction.stages import storage
+
+HEIGHTS, SPECTRUM = {"rms_nm": 3.4, "kurtosis": 3.9}, {"spacing_nm": 7.5, "psd": {"floor_nm4": 0.8}}
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch):
+    """Settings of two datasets, of which one depends on the other, by file."""
+    monkeypatch.chdir(tmp_path)
+    wanted = {"heights/B2.nc": HEIGHTS, "spectrum/B2.nc": SPECTRUM}
+    storage.save(xr.Dataset(), "heights/B2.nc", "heights", HEIGHTS)
+    storage.save(xr.Dataset(), "spectrum/B2.nc", "spectrum", SPECTRUM, ["heights/B2.nc"])
+    return wanted
+
+
+def reasons(wanted, **changed):
+    """Files that a run with these settings cannot use."""
+    return dict(kept.foreign(["heights/B2.nc", "spectrum/B2.nc"], (wanted | changed).get))
+
+
+def test_a_dataset_names_the_settings_of_all_stages_before(files):
+    storage.save(xr.Dataset(), "contact/b_NG.nc", "contact", {"samples": 9}, ["spectrum/B2.nc"])
+    assert labels.read("contact/b_NG.nc").before == files
+
+
+def test_the_order_of_keys_does_not_change_a_label():
+    one, other = ({"b": 1, "a": {"d": 1, "c": 2}}, {"a": {"c": 2, "d": 1}, "b": 1})
+    labelled = [labels.Label("s", "x", settings, {"f": settings}).attributes for settings in (one, other)]
+    assert labelled[0] == labelled[1]
+
+
+@pytest.mark.usefixtures("files")
+def test_chunks_of_a_dataset_leave_no_trace():
+    for chunk in ("0-of-2", "1-of-2"):
+        storage.save(xr.Dataset(), f"contact/{chunk}.nc", "contact", {"samples": 9}, ["heights/B2.nc"])
+    storage.save(xr.Dataset(), "contact/b.nc", "contact", {"samples": 9}, ["contact/0-of-2.nc", "contact/1-of-2.nc"])
+    assert labels.read("contact/b.nc").before == {"heights/B2.nc": HEIGHTS}
+
+
+def test_datasets_of_the_same_settings_are_used(files):
+    assert reasons(files) == {}
+    assert reasons({}) == {}, "not files of this run"
+
+
+@pytest.mark.usefixtures("files")
+def test_lists_and_tuples_are_the_same_setting():
+    storage.save(xr.Dataset(), "heights/B2.nc", "heights", {"at": (1, [2.0, (3,)])})
+    assert reasons({"heights/B2.nc": {"at": [1, (2, [3])]}}) == {}
+    assert reasons({"heights/B2.nc": {"at": [1, [2, [4]]]}}) != {}
+
+
+@pytest.mark.parametrize(
+    ("other", "difference"),
+    [
+        ({"rms_nm": 3.4, "kurtosis": 4.6}, "kurtosis: 3.9 instead of 4.6"),
+        ({"rms_nm": 3.4}, "kurtosis: 3.9 instead of nothing"),
+        ({"rms_nm": 3.4, "kurtosis": 3.9, "skewness": 0}, "skewness: nothing instead of 0"),
+    ],
+)
+def test_other_settings_are_named_here_and_in_all_that_depends_on_them(files, other, difference):
+    found = reasons(files, **{"heights/B2.nc": other})
+    assert found["heights/B2.nc"] == f"was computed with {difference}"
+    assert found["spectrum/B2.nc"] == f"depends on heights/B2.nc with {difference}"
+
+
+def test_the_key_of_a_section_is_named_with_its_section(files):
+    other = {"spacing_nm": 7.5, "psd": {"floor_nm4": 0.9}}
+    assert reasons(files, **{"spectrum/B2.nc": other}) == {
+        "spectrum/B2.nc": "was computed with psd.floor_nm4: 0.8 instead of 0.9"
+    }
+    assert "psd: {'floor_nm4': 0.8} instead of identified" in str(
+        reasons(files, **{"spectrum/B2.nc": SPECTRUM | {"psd": "identified"}})
+    )
+
+
+@pytest.mark.usefixtures("files")
+def test_a_dataset_that_depends_on_what_this_run_does_not_compute_is_not_used():
+    assert "depends on heights/B2.nc" in str(reasons({"spectrum/B2.nc": SPECTRUM}))
+
+
+def test_files_of_another_name_without_a_label_or_cut_off_are_not_used(files, tmp_path):
+    other = tmp_path / "heights" / "Sub1.nc"
+    (tmp_path / "heights" / "B2.nc").rename(other)
+    assert reasons({}, **{"heights/B2.nc": HEIGHTS}) == {"heights/B2.nc": "cannot be read"}
+    wanted = {"heights/Sub1.nc": HEIGHTS}
+    assert dict(kept.foreign([other.relative_to(tmp_path)], wanted.get)) == {"heights/Sub1.nc": "holds heights of B2"}
+    xr.Dataset().to_netcdf("heights/B2.nc")
+    assert reasons(files)["heights/B2.nc"] == "holds no result of this study"
+    whole = (tmp_path / "spectrum" / "B2.nc").read_bytes()
+    (tmp_path / "spectrum" / "B2.nc").write_bytes(whole[:-1])
+    assert reasons(files)["spectrum/B2.nc"] == "cannot be read"
+
+
+def test_a_changed_label_is_recognised_whatever_the_numbers(files):
+    with netCDF4.Dataset("spectrum/B2.nc", "r+") as file:
+        file.setncattr("before", json.dumps({"heights/B2.nc": HEIGHTS | {"rms_nm": 3.5}}))
+    assert set(reasons(files)) == {"spectrum/B2.nc"}
+
+
+@pytest.mark.parametrize("kind", ["csv", "md", "html", "png", "pdf"])
+def test_a_result_that_was_cut_off_or_changed_after_its_job_is_recognised(tmp_path, monkeypatch, kind):
+    monkeypatch.chdir(tmp_path)
+    result, other = tmp_path / f"table 1.{kind}", tmp_path / f"other.{kind}"
+    with logged("logs/tables/table_1.log", [result.name, other.name]):
+        result.write_bytes(b"a,b\n1,2\n3,4\n")
+        other.write_bytes(b"a,b\n")
+    assert set(recorded("logs")) == {result.name, other.name}
+    assert dict(kept.damaged("logs")) == {}
+    for content in (b"a,b\n1,2\n", b"", b"a,b\n1,2\n3,5\n"):
+        result.write_bytes(content)
+        assert dict(kept.damaged("logs")) == {result.name: "is not as its job wrote it"}
+    result.unlink()
+    assert dict(kept.damaged("logs")) == {}, "Snakemake sees that a file is missing"
+
+
+def test_a_failed_job_records_no_checksum(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit), logged("logs/x.log", ["x.csv"]):
+        raise ValueError
+    assert recorded("logs") == {}
+
+
+def test_the_summary_has_one_line_per_folder():
+    found = {"a/z.nc": "cannot be read", "a/b/1.nc": "is foreign", "a/1.nc": "holds forces", "a/a.nc": "cannot be read"}
+    assert list(kept.summary(found)) == [
+        "a/1.nc holds forces; this run does not use it (nor 2 more of this folder).",
+        "a/b/1.nc is foreign; this run does not use it.",
+    ]

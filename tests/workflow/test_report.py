@@ -1,0 +1,94 @@
+"""The report in a browser: every category opens and shows every figure and table, without an error in the console."""
+
+import json
+import re
+
+import pytest
+from browser import Browser, missing
+from conftest import ROOT, snakemake
+
+pytestmark = [pytest.mark.browser, pytest.mark.skipif(bool(missing()), reason=missing())]
+
+STYLE = ROOT / "workflow" / "report" / "style.css"
+#: Width of the open picture, if its upper edge can be seen.
+PIXELS = """
+const pictures = [...document.querySelectorAll('img[src^="data:image/png"]')];
+const whole = pictures.filter(picture => picture.getBoundingClientRect().top >= 0);
+return whole.reduce((sum, picture) => sum + picture.naturalWidth, 0);
+"""
+#: Kind of every result, and results of every category.
+KINDS = "return [Object.fromEntries(Object.entries(results).map(([path, of]) => [path, of.mime_type])), categories]"
+#: Number of rows of the table in a frame.
+ROWS = "return document.querySelectorAll('table tr').length"
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with Browser() as browser:
+        yield browser
+
+
+@pytest.fixture(scope="module")
+def report(smoke):
+    """Report of the smoke run."""
+    printed = snakemake(smoke, "--report", "results/report.html", "--report-stylesheet", STYLE).stdout
+    assert "Warning" not in printed
+    assert "ERROR" not in printed, "in a caption"
+    return smoke / "results" / "report.html"
+
+
+def faults(browser, report):
+    """What a reader of a report does not see, and the errors in the console; opens every result of every category."""
+    browser.open(report)
+    browser.errors()
+    kinds, categories = browser.run(KINDS)
+    found = []
+    for category, parts in categories.items():
+        hidden = {path for paths in parts.values() for path in paths}
+        browser.open(report)
+        (entry,) = [link for link in browser.find("#app li a") if browser.text(link).strip() == category]
+        browser.click(entry)
+        browser.wait(lambda: buttons(browser), 5)
+        for k in range(len(buttons(browser))):
+            browser.click(buttons(browser)[k])
+            path = browser.run("return app.state.resultPath")
+            if browser.wait(lambda kind=kinds[path]: opened(browser, kind)):
+                hidden.remove(path)
+        found += [f"{category} does not show {path}" for path in sorted(hidden)]
+    return found + browser.errors()
+
+
+def buttons(browser):
+    """The button of each listed result that opens it."""
+    return browser.find("#app tbody tr a:first-of-type")
+
+
+def opened(browser, kind):
+    """Whether the open result has pixels or rows."""
+    if kind == "image/png":
+        return browser.run(PIXELS)
+    return browser.find("iframe") and browser.inside("iframe", ROWS)
+
+
+def test_every_category_opens_and_shows_its_figures_and_tables(browser, report):
+    results = report.parent
+    made = [*results.glob("figures/*.png"), *results.glob("tables/*.html")]
+    browser.open(report)
+    assert set(browser.run("return Object.keys(results)")) == {f"results/{path.relative_to(results)}" for path in made}
+    assert faults(browser, report) == []
+
+
+def test_a_second_label_that_halves_a_category_is_noticed(browser, report, tmp_path):
+    # The page of Snakemake's report takes it for a switch between two versions of each result, and stays blank.
+    def halved(found):
+        results = json.loads(found[1])
+        for k, result in enumerate(results.values()):
+            result["labels"]["kind"] = "ab"[k % 2]
+        return f"var results = {json.dumps(results)};"
+
+    text, count = re.subn(r"var results = (\{.*\});", halved, report.read_text(encoding="utf-8"))
+    assert count == 1
+    (tmp_path / "report.html").write_text(text, encoding="utf-8")
+    found = faults(browser, tmp_path / "report.html")
+    assert any("does not show results/" in fault for fault in found)
+    assert any("Cannot read properties of undefined" in fault for fault in found)
