@@ -10,10 +10,11 @@ PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 ORDER = """
 constants errors streams estimates numbers models progress
 surface: maxent spectrum translation feasible field iteration summits identify
-contact: meniscus vanderwaals asperity estimate pair forcelaw bounds
+contact: meniscus vanderwaals asperity solids estimate pair forcelaw bounds
 chaos: coordinates density polynomials model
-beam: cantilever energy foundation equilibrium release resolution montecarlo
+beam: cantilever tension energy foundation equilibrium release resolution montecarlo
 analysis: plasticity sensitivity convergence mesh variants
+devices: arcs bridges tail risk stoppers chart budget limits
 run: fingerprint logs folder atomic labels kept provenance warmup forkserver hooks
 config: units cases merging messages reading memory relations files plan jobs
 stages: storage named heights parameters identification spectrum surfaces character pairs contact curves forces chaos

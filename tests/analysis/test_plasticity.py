@@ -56,3 +56,11 @@ def test_the_standard_error_of_the_share_is_the_scatter_of_repeated_studies():
 def test_without_contact_on_two_strips_there_is_no_plastic_share(touching):
     found = plasticity.plastic_share(np.ones(touching), np.ones(touching), np.zeros(touching, int), 3)
     assert np.isnan(found).all()
+
+
+def test_the_softer_body_decides_what_is_plastic():
+    stress, area, strip = np.full(4, 0.61 * HARDNESS), np.ones(4), np.arange(4)
+    shares = [plasticity.plastic_share(area, stress, strip, 4, hardness)[0] for hardness in (HARDNESS, 2 * HARDNESS)]
+    assert shares == [1.0, 0.0]
+    assert plasticity.yields(1.0, 1.0)
+    assert not plasticity.yields(1.0, 2.0)

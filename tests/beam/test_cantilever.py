@@ -17,3 +17,15 @@ def test_bending_stiffness_of_the_beam_of_the_paper_by_hand():
 def test_a_beam_has_positive_dimensions(field, value):
     with pytest.raises(ValueError, match=f"{field}.*{value}"):
         replace(PAPER, **{field: value})
+
+
+def test_bending_decays_under_tension_with_the_root_of_tension_by_stiffness():
+    beam = replace(PAPER, tension=1e-3)
+    assert_allclose(beam.decay**2 * beam.bending_stiffness, 1e-3, rtol=1e-14)
+    assert PAPER.decay == 0
+
+
+@pytest.mark.parametrize("value", [-1.0, np.nan, np.inf])
+def test_compression_is_refused(value):
+    with pytest.raises(ValueError, match=f"tension.*{value}"):
+        replace(PAPER, tension=value)

@@ -17,6 +17,7 @@ from stiction.contact.meniscus import (
 ROUNDING = 1e-12  # a dozen operations in double precision, and the logarithm near RH = 1
 humidities = st.floats(0.01, 0.999)
 temperatures = st.floats(273, 373)
+angles = st.floats(0, 1.5)
 
 
 @given(humidities, temperatures)
@@ -28,6 +29,31 @@ def test_tension_times_height_is_twice_the_surface_energy(humidity, temperature)
 def test_water_at_65_percent_has_the_tension_and_the_height_of_the_paper():
     assert round(float(laplace_pressure(0.65, 300)) / 1e6, 1) == -59.7
     assert round(float(meniscus_height(0.65, 300)) * 1e9, 2) == 2.41
+
+
+@given(humidities, temperatures, angles, angles)
+def test_tension_times_height_is_the_surface_energy_times_the_cosines(humidity, temperature, first, second):
+    product = abs(laplace_pressure(humidity, temperature)) * meniscus_height(humidity, temperature, (first, second))
+    expected = surface_energy(temperature) * (np.cos(first) + np.cos(second))
+    np.testing.assert_allclose(product, expected, rtol=ROUNDING)
+
+
+@given(humidities, temperatures)
+def test_perfectly_wetting_flats_are_those_of_the_paper_byte_for_byte(humidity, temperature):
+    expected = -2 * kelvin_radius(humidity, temperature)
+    assert meniscus_height(humidity, temperature) == expected
+    assert meniscus_height(humidity, temperature, (0.0, 0.0)) == expected
+
+
+def test_solids_may_be_exchanged_and_one_that_does_not_wet_may_be_outweighed():
+    heights = [meniscus_height(0.67, 300, pair) for pair in ((0.3, 1.9), (1.9, 0.3))]
+    assert heights[0] == heights[1] > 0
+
+
+@pytest.mark.parametrize("second", [np.radians(120), np.radians(150)])
+def test_between_flats_that_do_not_wet_no_water_condenses(second):
+    with pytest.raises(ValueError, match=f"angles of 61 and {np.degrees(second):.3g} degrees"):
+        meniscus_height(0.67, 300, (np.radians(61), second))
 
 
 @given(humidities, temperatures)

@@ -58,3 +58,11 @@ def test_no_attraction_is_none_and_not_one_of_zero_strength():
 def test_unknown_medium_is_refused_by_name():
     with pytest.raises(ValueError, match="water, dry or none, got 'oil'"):
         attraction("oil")
+
+
+@pytest.mark.parametrize("through", ["water", "dry"])
+def test_other_solids_attract_in_proportion_to_their_hamaker_constant(through):
+    own = attraction(through, 3 * HAMAKER_CONSTANT[through])
+    np.testing.assert_allclose(own.stress, 3 * attraction(through).stress, rtol=1e-14)
+    assert attraction(through, HAMAKER_CONSTANT[through]) == attraction(through)
+    assert attraction("none", 1e-20) is None

@@ -28,12 +28,14 @@ def contact_area(interference: np.ndarray, radius: np.ndarray) -> np.ndarray:
     return np.pi * radius * interference
 
 
-def yields(stress: float | np.ndarray) -> bool | np.ndarray:
-    """Whether a summit with this largest stress [Pa] yields."""
-    return stress > ONSET * HARDNESS
+def yields(stress: float | np.ndarray, hardness: float = HARDNESS) -> bool | np.ndarray:
+    """Whether a summit with this largest stress [Pa] yields; hardness of the softer body [Pa]."""
+    return stress > ONSET * hardness
 
 
-def plastic_share(area: np.ndarray, stress: np.ndarray, strip: np.ndarray, strips: int) -> tuple[float, float]:
+def plastic_share(
+    area: np.ndarray, stress: np.ndarray, strip: np.ndarray, strips: int, hardness: float = HARDNESS
+) -> tuple[float, float]:
     """Plastic share A_P / A of the contact area, with its jackknife standard error.
 
     Both are NaN if fewer than two strips have a touching summit.
@@ -46,8 +48,10 @@ def plastic_share(area: np.ndarray, stress: np.ndarray, strip: np.ndarray, strip
         Number of the strip of each summit, from 0.
     strips : int
         Number of strips, the independent samples.
+    hardness : float
+        Of the softer body [Pa].
     """
     if len(np.unique(strip)) < 2:
         return np.nan, np.nan
-    sums = [np.bincount(strip, weights, strips) for weights in (area * yields(stress), area)]
+    sums = [np.bincount(strip, weights, strips) for weights in (area * yields(stress, hardness), area)]
     return jackknife(lambda mean: mean[0] / mean[1], np.column_stack(sums) / np.sum(area))

@@ -24,10 +24,13 @@ class Beam:
     young_modulus: float  #: E [Pa]
     gap: float  #: h, height of the clamp above the substrate [m]
     elements: int  #: N_e [-]
+    tension: float = 0.0  #: N, constant along the beam; of a bridge under residual stress [N]
 
     def __post_init__(self):
+        if not (self.tension >= 0 and np.isfinite(self.tension)):
+            raise ValueError(f"tension of a beam must not be negative, got {self.tension}")
         for name, value in vars(self).items():
-            if not (value > 0 and np.isfinite(value)):
+            if name != "tension" and not (value > 0 and np.isfinite(value)):
                 raise ValueError(f"{name} of a beam must be positive, got {value}")
         if self.elements != int(self.elements):
             raise ValueError(f"a beam needs a whole number of elements, got {self.elements}")
@@ -41,6 +44,11 @@ class Beam:
     def bending_stiffness(self) -> float:
         """E I [N m²]."""
         return self.young_modulus * self.second_moment
+
+    @property
+    def decay(self) -> float:
+        """Wave number √(N/EI) with which bending decays under tension; 0 without tension [m⁻¹]."""
+        return float(np.sqrt(self.tension / self.bending_stiffness))
 
     @property
     def element_length(self) -> float:

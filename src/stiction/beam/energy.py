@@ -5,6 +5,7 @@ The beam is clamped at the height h and flat on the substrate beyond the crack l
 
 import numpy as np
 
+from stiction.beam import tension
 from stiction.beam.cantilever import Beam
 
 #: Power with which the crack length depends on the adhesion energy: l_s ~ Γ^(-1/4), Eq. (13).
@@ -12,7 +13,7 @@ CRACK_LENGTH_POWER = -1 / 4
 
 
 def s_shape_energy(crack_length: float | np.ndarray, beam: Beam) -> float | np.ndarray:
-    """Elastic energy of an S-shaped beam, 6 EI h² / l³ [J]; crack length l [m], any shape."""
+    """Elastic energy of an S-shaped beam without tension, 6 EI h² / l³ [J]; crack length l [m], any shape."""
     return 6 * beam.bending_stiffness * beam.gap**2 / crack_length**3
 
 
@@ -20,6 +21,8 @@ def apparent_adhesion_energy(crack_length: float | np.ndarray, beam: Beam) -> fl
     r"""Apparent adhesion energy Γ from a crack length, Eq. (13): energy release rate of the S-shape.
 
     .. math:: \Gamma = \frac{3}{2} E \frac{h^2 t^3}{l_s^4} = -\frac{1}{w} \frac{dU}{dl_s}
+
+    For a beam under tension, `stiction.beam.tension.release_rate`.
 
     Parameters
     ----------
@@ -38,9 +41,13 @@ def apparent_adhesion_energy(crack_length: float | np.ndarray, beam: Beam) -> fl
     >>> round(float(apparent_adhesion_energy(710e-6, beam)) * 1e3, 2)  # mJ/m²
     6.81
     """
+    if beam.tension:
+        return tension.release_rate(crack_length, beam)
     return 1.5 * beam.young_modulus * beam.gap**2 * beam.thickness**3 / crack_length**4
 
 
 def arrest_length(energy: float | np.ndarray, beam: Beam) -> float | np.ndarray:
     """Crack length [m] of an S-shaped beam at the adhesion energy Γ [J m⁻²], Eq. (13) inverted; any shape."""
+    if beam.tension:
+        return tension.arrest_length(energy, beam)
     return (energy / (1.5 * beam.young_modulus * beam.gap**2 * beam.thickness**3)) ** CRACK_LENGTH_POWER

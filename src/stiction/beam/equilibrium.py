@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from stiction.beam.cantilever import Beam
+from stiction.beam.tension import SLACK, add_open_part_in_tension, add_tension, fill_open_part_in_tension
 from stiction.errors import NotConverged
 
 #: Largest unbalanced force of an equilibrium, in units of a point's mean pull-off force f_max w l_quad (about 1e-4 N).
@@ -47,6 +48,7 @@ class _Mesh(NamedTuple):
     area: float  # of one point, w l_quad [m²]
     load: float  # uniform load times l_e [N]
     tip_force: float  # [N]
+    decay: float  # √(N/EI) l_e [-]; 0 without tension
 
 
 class _System(NamedTuple):
@@ -143,8 +145,14 @@ def _assemble(u, laws, system, mesh, window, viscosity):
     system.force[rows] = 0.0
     for element in range(first, last):
         _add_element(u, system, mesh, element)
+        if mesh.decay > 0:
+            pull = mesh.stiffness * mesh.decay**2
+            add_tension(u, system.band, system.force, pull, 2 * element)
         _add_points(u, laws, system, mesh, element, viscosity)
-    if first > 0:
+    if first > 0 and mesh.decay > 0:
+        kl = first * mesh.decay
+        add_open_part_in_tension(u, system.band, system.force, first, kl, mesh.stiffness, mesh.load)
+    elif first > 0:
         _add_open_part(u, system, mesh, first)
     else:
         _hold(system, 0)
@@ -231,6 +239,9 @@ def _front(stretch, points, element, elements):
 @njit(cache=True, nogil=True)
 def _fill_open_part(u, mesh, first):
     """Deflect the nodes between the clamp and ``first``: the cubic to that node and the deflection by the load."""
+    if first * mesh.decay > SLACK:
+        fill_open_part_in_tension(u, first, first * mesh.decay, mesh.stiffness, mesh.load)
+        return
     end, slope = u[2 * first], u[2 * first + 1] * first
     bow = mesh.load * first**4 / (24 * mesh.stiffness)
     for node in range(first):
@@ -294,7 +305,9 @@ def _mesh(beam, laws, load, tip_force):
     points = len(functions)
     area = beam.width * l_e / max(points, 1)
     stiffness = beam.bending_stiffness / l_e**3
-    return _Mesh(functions, points, stiffness, float(beam.gap), area, float(load) * l_e, float(tip_force))
+    return _Mesh(
+        functions, points, stiffness, float(beam.gap), area, float(load) * l_e, float(tip_force), beam.decay * l_e
+    )
 
 
 def allowed_imbalance(beam: Beam, pull: float) -> float:

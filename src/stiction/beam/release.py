@@ -5,6 +5,7 @@ from enum import IntEnum
 
 import numpy as np
 
+from stiction.beam import tension
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
 from stiction.beam.equilibrium import Equilibrium, distances, equilibrate
@@ -35,6 +36,8 @@ def holding_load(beam: Beam, crack: float) -> float:
 
     It follows from EI u⁽⁴⁾ = q with u = u⁽¹⁾ = 0 at the clamp and u = h, u⁽¹⁾ = u⁽²⁾ = 0 at the end of the crack.
     """
+    if beam.tension:
+        return tension.holding_load(beam, crack)
     return 72 * beam.bending_stiffness * beam.gap / crack**4
 
 

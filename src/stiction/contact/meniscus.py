@@ -93,6 +93,29 @@ def kelvin_radius(humidity: float | np.ndarray, temperature: float) -> float | n
     return surface_energy(temperature) / laplace_pressure(humidity, temperature)
 
 
-def meniscus_height(humidity: float | np.ndarray, temperature: float) -> float | np.ndarray:
-    """Widest gap bridged by water between perfectly wetting flats, h_C = -2 r_K [m]."""
-    return -2 * kelvin_radius(humidity, temperature)
+def meniscus_height(
+    humidity: float | np.ndarray, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)
+) -> float | np.ndarray:
+    r"""Widest gap bridged by water between two flats, :math:`h_C = |r_K| (\cos\theta_1 + \cos\theta_2)` [m].
+
+    The pressure of the water depends on the humidity alone, so that the energy to separate flooded flats is
+    :math:`|\Delta P| h_C = \gamma (\cos\theta_1 + \cos\theta_2)`. In the paper both solids
+    are perfectly wetting, h_C = -2 r_K.
+
+    Parameters
+    ----------
+    humidity, temperature
+        As in `laplace_pressure`.
+    contact_angles : tuple of 2 floats
+        θ₁ and θ₂ of the two solids [rad].
+
+    Raises
+    ------
+    ValueError
+        If the cosines add up to zero or less, so that no water condenses.
+    """
+    wetting = np.cos(contact_angles[0]) + np.cos(contact_angles[1])
+    if not wetting > 0:
+        degrees = " and ".join(f"{np.degrees(angle):.3g}" for angle in contact_angles)
+        raise ValueError(f"no water condenses between flats with contact angles of {degrees} degrees")
+    return -wetting * kelvin_radius(humidity, temperature)

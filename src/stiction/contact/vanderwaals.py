@@ -42,8 +42,10 @@ class DugdaleAttraction:
         return self.work_of_adhesion / self.range
 
 
-def attraction(through: str) -> DugdaleAttraction | None:
-    """Attraction of polysilicon through ``"water"`` or ``"dry"`` air; ``None`` for ``"none"``.
+def attraction(through: str, hamaker_constant: float | None = None) -> DugdaleAttraction | None:
+    """Attraction through ``"water"`` or ``"dry"`` air; ``None`` for ``"none"``.
+
+    ``hamaker_constant`` is that of the two solids through this medium [J]; without it, that of polysilicon.
 
     Raises
     ------
@@ -52,4 +54,6 @@ def attraction(through: str) -> DugdaleAttraction | None:
     """
     if through not in ("none", *HAMAKER_CONSTANT):
         raise ValueError(f"attraction acts through {', '.join(HAMAKER_CONSTANT)} or none, got {through!r}")
-    return None if through == "none" else DugdaleAttraction(HAMAKER_CONSTANT[through])
+    if through == "none":
+        return None
+    return DugdaleAttraction(HAMAKER_CONSTANT[through] if hamaker_constant is None else hamaker_constant)

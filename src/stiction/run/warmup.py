@@ -4,6 +4,7 @@ import numpy as np
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.release import release
+from stiction.beam.tension import end_stiffness
 from stiction.chaos import model as chaos
 from stiction.contact import forcelaw
 from stiction.contact.asperity import asperity, reduced_modulus
@@ -34,6 +35,7 @@ def main() -> None:
     model = chaos.fit(vectors, 2e6, 2, 1e-9)
     laws = chaos.draw_laws(model, 200, rng)
     release(Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200), laws, 300e-6)
+    end_stiffness(1.0)
 
 
 if __name__ == "__main__":

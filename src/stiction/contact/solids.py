@@ -1,0 +1,94 @@
+r"""Two bodies of different material in contact: elasticity, hardness, attraction and wetting of the pair.
+
+Each body is a `Solid`; the default is polysilicon as in the paper. Two equal bodies give exactly the paper's formulas.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from stiction.constants import HAMAKER_CONSTANT, HARDNESS
+from stiction.contact.asperity import reduced_modulus
+
+
+@dataclass(frozen=True)
+class Solid:
+    """Material of one body; polysilicon unless stated otherwise."""
+
+    young_modulus: float = 164e9  #: E [Pa]
+    poisson_ratio: float = 0.23  #: ν [-]
+    hardness: float = HARDNESS  #: σ_H [Pa]
+    #: Hamaker constant of two bodies of this material through each medium [J]
+    hamaker_constant: Mapping[str, float] = field(default_factory=lambda: dict(HAMAKER_CONSTANT))
+    contact_angle: float = 0.0  #: of water θ [rad]
+
+    def __post_init__(self):
+        constants = {f"Hamaker constant ({medium})": value for medium, value in self.hamaker_constant.items()}
+        positive = {"Young's modulus": self.young_modulus, "hardness": self.hardness} | constants
+        for name, value in positive.items():
+            if not (value > 0 and np.isfinite(value)):
+                raise ValueError(f"{name} of a solid must be positive, got {value}")
+        if not -1 < self.poisson_ratio <= 0.5:
+            raise ValueError(f"Poisson's ratio of a solid must be in (-1, 0.5], got {self.poisson_ratio}")
+        if not 0 <= self.contact_angle <= np.pi:
+            raise ValueError(f"the contact angle of a solid must be in [0, π] rad, got {self.contact_angle}")
+
+
+def composite_modulus(first: Solid, second: Solid) -> float:
+    r"""Modulus E' of two bodies in contact [Pa].
+
+    .. math:: \frac{1}{E'} = \frac{1 - \nu_1^2}{E_1} + \frac{1 - \nu_2^2}{E_2}
+    """
+    one, other = (reduced_modulus(solid.young_modulus, solid.poisson_ratio) for solid in (first, second))
+    return one * (2 * other / (one + other))  # in this order, equal bodies give exactly their reduced modulus
+
+
+def softer_hardness(first: Solid, second: Solid) -> float:
+    """Hardness of the body that yields first [Pa]."""
+    return min(first.hardness, second.hardness)
+
+
+def hamaker_through(vacuum: float, medium: float) -> float:
+    r"""Hamaker constant of two equal bodies through a medium, from those of body and medium in vacuum [J].
+
+    .. math:: A_{131} = \bigl(\sqrt{A_{11}} - \sqrt{A_{33}}\bigr)^2
+
+    Source: J. N. Israelachvili, Intermolecular and Surface Forces, combining relations.
+
+    Raises
+    ------
+    ValueError
+        If the body has the smaller constant: two different bodies may then repel each other.
+
+    Examples
+    --------
+    >>> round(hamaker_through(6.5e-20, 3.7e-20) * 1e20, 2)  # silica through water [1e-20 J]
+    0.39
+    """
+    if not vacuum > medium >= 0:
+        raise ValueError(f"need a Hamaker constant above that of the medium, {medium:.3g} J, got {vacuum:.3g} J")
+    return float((np.sqrt(vacuum) - np.sqrt(medium)) ** 2)
+
+
+def hamaker_constant(first: Solid, second: Solid, medium: str) -> float:
+    r"""Hamaker constant of two bodies through a medium, :math:`A_{132} = \sqrt{A_{131} A_{232}}` [J].
+
+    ASSUME: both bodies have a larger constant than the medium (`hamaker_through`); the combination is then exact in the
+    approximation of Berthelot.
+
+    Raises
+    ------
+    ValueError
+        If the constant of a body through this medium is not stated.
+    """
+    for solid in (first, second):
+        if medium not in solid.hamaker_constant:
+            stated = ", ".join(solid.hamaker_constant)
+            raise ValueError(f"the Hamaker constant of a solid through {medium} is not stated, only through {stated}")
+    return float(np.sqrt(first.hamaker_constant[medium] * second.hamaker_constant[medium]))
+
+
+def contact_angles(first: Solid, second: Solid) -> tuple[float, float]:
+    """Contact angles of water on both bodies, for `stiction.contact.meniscus.meniscus_height` [rad]."""
+    return first.contact_angle, second.contact_angle

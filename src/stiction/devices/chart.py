@@ -1,0 +1,105 @@
+r"""Chart of lengths over thickness and gap: a power law :math:`l = c \, t^\alpha h^\beta` between computed beams.
+
+The powers of Eq. (13) are 3/4 and 1/2; those of beams on rough surfaces differ a little, because a crack stops where
+the surfaces hold best, and a longer crack has more places to stop. The power law is fitted to beams by finite elements,
+and used only as far as beams that were left out confirm it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stiction.beam.cantilever import Beam
+from stiction.beam.energy import arrest_length
+from stiction.contact.meniscus import laplace_pressure, meniscus_height
+
+#: Largest relative error of a power law that is used.
+ALLOWED = 0.01
+
+
+@dataclass(frozen=True)
+class PowerLaw:
+    """Length c t^α h^β, within the thicknesses and gaps to which it was fitted."""
+
+    prefactor: float  #: c [m^(1 - α - β)]
+    thickness_power: float  #: α [-]
+    gap_power: float  #: β [-]
+    thicknesses: tuple[float, float]  #: smallest and largest t [m]
+    gaps: tuple[float, float]  #: smallest and largest h [m]
+
+    def __call__(self, thickness: float | np.ndarray, gap: float | np.ndarray) -> float | np.ndarray:
+        """Length [m]; thickness and gap [m] broadcast.
+
+        Raises
+        ------
+        ValueError
+            If a thickness or a gap is outside of the fitted range.
+        """
+        for name, values, (low, high) in (("thickness", thickness, self.thicknesses), ("gap", gap, self.gaps)):
+            if not np.all((np.asarray(values) >= low * (1 - 1e-12)) & (np.asarray(values) <= high * (1 + 1e-12))):
+                raise ValueError(f"a {name} of {values} m is outside of the computed {low:.3g} to {high:.3g} m")
+        return self.prefactor * thickness**self.thickness_power * gap**self.gap_power
+
+
+def fit_power_law(thickness: np.ndarray, gap: np.ndarray, length: np.ndarray) -> PowerLaw:
+    """Power law through computed beams, by least squares of the logarithms.
+
+    A power of a dimension that does not vary is zero: the law then holds at this dimension alone.
+
+    Parameters
+    ----------
+    thickness, gap, length : (n,) arrays
+        Of the beams [m].
+
+    Raises
+    ------
+    ValueError
+        If there are fewer beams than unknowns.
+    """
+    dimensions = np.log([thickness, gap]).T
+    varied = np.ptp(dimensions, axis=0) > 1e-9
+    terms = np.column_stack([np.ones(len(dimensions)), dimensions[:, varied]])
+    solution, _, rank, _ = np.linalg.lstsq(terms, np.log(length), rcond=None)
+    if rank < terms.shape[1]:
+        raise ValueError(f"{len(length)} beams do not determine a power law: vary thickness and gap independently")
+    powers = np.zeros(2)
+    powers[varied] = solution[1:]
+    ranges = ((float(np.min(values)), float(np.max(values))) for values in (thickness, gap))
+    return PowerLaw(float(np.exp(solution[0])), *map(float, powers), *ranges)
+
+
+def largest_error(law: PowerLaw, thickness: np.ndarray, gap: np.ndarray, length: np.ndarray) -> float:
+    """Largest relative error of a power law at beams to which it was not fitted (n,) [-]."""
+    return float(np.max(np.abs(law(thickness, gap) / length - 1)))
+
+
+def checked_power_law(
+    thickness: np.ndarray, gap: np.ndarray, length: np.ndarray, test: np.ndarray
+) -> tuple[PowerLaw, float]:
+    """Power law through the beams that are not in ``test`` (n,) bool, and its `largest_error` at those that are.
+
+    Raises
+    ------
+    ValueError
+        If the error exceeds ``ALLOWED``: more beams, closer to each other, must then be computed.
+    """
+    law = fit_power_law(thickness[~test], gap[~test], length[~test])
+    error = largest_error(law, thickness[test], gap[test], length[test])
+    if error > ALLOWED:
+        raise ValueError(f"a power law errs by {error:.1%} between the computed beams, more than {ALLOWED:.0%}")
+    return law, error
+
+
+def flooded_energy(temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:
+    """Adhesion energy of flats in saturated air, γ (cos θ₁ + cos θ₂) [J m⁻²]; temperature [K], angles [rad].
+
+    It is tension times height of the water, which does not depend on the humidity, and the limit of wet rough surfaces.
+    """
+    humidity = 0.5  # any
+    tension = -laplace_pressure(humidity, temperature)
+    return float(tension * meniscus_height(humidity, temperature, contact_angles))
+
+
+def flooded_length(beam: Beam, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:
+    """Crack length at the `flooded_energy`, the shortest that water alone can cause [m]."""
+    return float(arrest_length(flooded_energy(temperature, contact_angles), beam))

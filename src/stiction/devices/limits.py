@@ -1,0 +1,164 @@
+"""Where the model ends: one function per limit, a sentence with the number that triggers it, or None.
+
+Lengths are in metres, angles of rotation in radians, shares between 0 and 1.
+"""
+
+from collections.abc import Sequence
+
+from stiction.beam.foundation import ELEMENT, STRIP
+
+#: Largest plastic share of the contact area. Pair c has 58 %, and its beams stick at 72 % of the predicted length.
+PLASTIC = 0.02
+#: Smallest gap, in units of film height plus rms roughness.
+FILMS = 20.0
+#: Largest slope of a beam.
+ROTATION = 0.1
+#: Smallest ratio of crack length to thickness.
+SLENDER = 20.0
+#: Largest 6 h w² / (t l²), beyond which a beam bends as a plate.
+PLATE = 10.0
+#: Largest gap of a bridge, in thicknesses, for which its stretching changes the crack by at most 3 %.
+STRETCH = 1.0
+#: Relevant to stiction, but not in the model at any setting.
+NOT_MODELLED = (
+    "Not in the model: drying after release, the time that water needs to condense, electric charge and voltage, wear, "
+    "films that replicate each other, and curl by a stress gradient."
+)
+#: Inputs whose defaults are those of polysilicon and water.
+OF_THE_MATERIAL = ("Young's modulus", "Poisson's ratio", "hardness", "Hamaker constant", "contact angle")
+
+
+def arcs_of_elements(share: float, strip: float) -> str | None:
+    """Beams that end as an arc in the finite elements, whose share depends on the length of the strips."""
+    if share == 0:
+        return None
+    return (
+        f"{share:.1%} of the beams end as arcs, held by the tip only. This share depends on the strip length, here "
+        f"{strip * 1e6:.3g} µm: use the risk with arcs, which is computed on strips as short as the wedge at the tip."
+    )
+
+
+def cut_off_mean(share: float, mean: float, length: float) -> str | None:
+    """Mean crack length of S-shaped beams from which the others, with longer cracks, are missing."""
+    if share == 1:
+        return None
+    return (
+        f"Only {share:.1%} of the beams end S-shaped. Their mean crack length, {mean * 1e6:.0f} µm, lacks the longer "
+        f"cracks that beams of {length * 1e6:.0f} µm cut off: it is not the mean of longer beams."
+    )
+
+
+def coarse_mesh(strip: float, element: float, foundation: float) -> str | None:
+    """Elements or strips that do not resolve the foundation length l_f."""
+    if strip <= STRIP * foundation and element <= ELEMENT * foundation:
+        return None
+    return (
+        f"Strips of {strip * 1e6:.3g} µm and elements of {element * 1e6:.3g} µm do not resolve the foundation length "
+        f"of {foundation * 1e6:.3g} µm: cracks come out too short. Use strips of at most "
+        f"{STRIP * foundation * 1e6:.3g} µm and elements of at most {ELEMENT * foundation * 1e6:.3g} µm."
+    )
+
+
+def correlated_strips(strip: float, correlation_length: float) -> str | None:
+    """Strips as short as the correlation length of the surfaces, which are no longer independent."""
+    if strip > correlation_length:
+        return None
+    return (
+        f"Strips of {strip * 1e6:.3g} µm are no longer than the correlation length of the surfaces, "
+        f"{correlation_length * 1e6:.3g} µm: neighbouring strips are not independent, as the model takes them to be."
+    )
+
+
+def plastic_contact(share: float) -> str | None:
+    """Plastic contact, which makes surfaces stick more than the elastic model predicts."""
+    if share <= PLASTIC:
+        return None
+    return (
+        f"{share:.0%} of the contact area is plastic, more than {PLASTIC:.0%}: beams stick at shorter lengths than the "
+        "elastic model predicts, which is the unsafe side."
+    )
+
+
+def default_material(name: str, stated: Sequence[str]) -> str | None:
+    """Defaults of polysilicon that are used for another material; ``stated`` lists inputs that are given."""
+    missing = [quantity for quantity in OF_THE_MATERIAL if quantity not in stated]
+    if name == "polysilicon" or not missing:
+        return None
+    return f"{len(missing)} properties of {name} are not stated; those of polysilicon are used: {', '.join(missing)}."
+
+
+def filled_gap(gap: float, film: float, rms: float) -> str | None:
+    """Gap that is not much wider than film h_C and roughness, so that beam and film are not apart."""
+    if gap >= FILMS * (film + rms):
+        return None
+    return (
+        f"The gap of {gap * 1e6:.3g} µm is less than {FILMS:.0f} times film height plus roughness, "
+        f"{(film + rms) * 1e9:.3g} nm: the water acts on the beam ahead of its contact, too."
+    )
+
+
+def large_rotation(gap: float, crack_length: float) -> str | None:
+    """Slope 1.5 h / l of a beam that is too steep for the linear theory."""
+    slope = 1.5 * gap / crack_length
+    if slope <= ROTATION:
+        return None
+    return f"The beam reaches a slope of {slope:.2g}, above {ROTATION}: the linear theory of beams does not hold."
+
+
+def stubby_beam(crack_length: float, thickness: float) -> str | None:
+    """Crack that is too short for a beam without shear and with an ideal clamp."""
+    ratio = crack_length / thickness
+    if ratio >= SLENDER:
+        return None
+    return (
+        f"The crack is only {ratio:.3g} times as long as the beam is thick, less than {SLENDER:.0f}: shear and the "
+        "compliance of the clamp are not in the model."
+    )
+
+
+def wide_beam(gap: float, width: float, thickness: float, crack_length: float) -> str | None:
+    """Beam that is too wide to curve freely across its width."""
+    ratio = 6 * gap * width**2 / (thickness * crack_length**2)
+    if ratio <= PLATE:
+        return None
+    return (
+        f"6 h w² / (t l²) is {ratio:.3g}, above {PLATE:.0f}: the beam bends as a plate, with the modulus E / (1 - ν²)."
+    )
+
+
+def stretched_bridge(gap: float, thickness: float) -> str | None:
+    """Bridge whose deflection adds to its tension."""
+    ratio = gap / thickness
+    if ratio < STRETCH:
+        return None
+    return (
+        f"The gap is {ratio:.3g} times the thickness of the bridge: its stretching, which is left out, would open the "
+        "cracks further, by 3 % where both are equal and by more beyond. The prediction is on the safe side."
+    )
+
+
+def short_wedge(strip: float, wedge: float) -> str | None:
+    """Strips that are much longer than the wedge at the tip of an arc, so that the tip is averaged too far."""
+    if strip <= 2 * wedge:
+        return None
+    return (
+        f"The adhesion of the tip comes from strips of {strip * 1e6:.3g} µm, more than twice as long as the wedge on "
+        f"which it acts, {wedge * 1e6:.3g} µm: arcs hold more, and scatter more, than computed."
+    )
+
+
+def given(*warnings: str | None) -> list[str]:
+    """Warnings that are triggered, in order."""
+    return [warning for warning in warnings if warning is not None]
+
+
+def of_cantilever(
+    gap: float, width: float, thickness: float, crack_length: float, film: float, rms: float
+) -> list[str]:
+    """All warnings about the dimensions of a cantilever with this crack length, film height and rms roughness [m]."""
+    return given(
+        filled_gap(gap, film, rms),
+        large_rotation(gap, crack_length),
+        stubby_beam(crack_length, thickness),
+        wide_beam(gap, width, thickness, crack_length),
+    )

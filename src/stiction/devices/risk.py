@@ -1,0 +1,186 @@
+"""Risk of beams: the share of beams that stick over their length, and the safe length.
+
+Every simulated device has a *sticking length*, the shortest one that sticks on its ground: a device of length L sticks
+if and only if its sticking length is smaller than L. One Monte Carlo of long beams thus answers all lengths.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from scipy.special import betainc, betaincinv
+
+from stiction.devices.tail import TAIL, fit_tail, scaled_errors
+
+#: Length behind the end of a crack that a beam needs to stick, in foundation lengths.
+HOLD = 2.0
+#: Confidence of bounds and bands.
+CONFIDENCE = 0.95
+#: Smallest share down to which the fit of the lowest lengths has been verified by brute force.
+VERIFIED = 1e-4
+#: Expected number of samples below a length that is called fitted: one decade below the lowest sample.
+DECADE = 0.1
+
+
+class Basis(StrEnum):
+    """What a safe length rests on."""
+
+    SAMPLED = "sampled"  #: order statistics, no assumption about the distribution
+    FITTED = "fitted"  #: line through the lowest lengths, within a decade of the samples and within what was verified
+    EXTRAPOLATED = "extrapolated"  #: the same line beyond
+
+
+@dataclass(frozen=True)
+class SafeLength:
+    """Largest length whose one-sided upper bound of P(stuck) is at most ``share``."""
+
+    share: float  #: p [-]
+    length: float  #: the safe length: one-sided 95 % lower bound of ``estimate`` [m]
+    estimate: float  #: length with P(stuck) = p [m]
+    error: float  #: standard error of the estimate due to the number of beams [m]
+    basis: Basis
+
+
+# Sticking lengths
+
+
+def sticking_lengths(crack_lengths: np.ndarray, s_shaped: np.ndarray, foundation: float) -> np.ndarray:
+    """Sticking lengths of cantilevers, S-shaped, from long beams (n,) [m]: l_s + 2 l_f.
+
+    A beam cut to L has the crack of the long beam if enough of it remains behind the crack to hold it, 7.5 ± 1.5 µm on
+    pair b. Otherwise the crack runs to the tip.
+
+    Parameters
+    ----------
+    crack_lengths : (n,) array
+        Of beams that are much longer [m].
+    s_shaped : (n,) bool
+        Whether each ended S-shaped; the sticking length of others is unknown, beyond their length, and infinite here.
+    foundation : float
+        Foundation length l_f [m].
+    """
+    return np.where(s_shaped, crack_lengths + HOLD * foundation, np.inf)
+
+
+def with_arcs(s_shapes: np.ndarray, arcs: np.ndarray) -> np.ndarray:
+    """Sticking lengths of cantilevers in either shape (n,) [m].
+
+    Parameters
+    ----------
+    s_shapes : (n,) array
+        `sticking_lengths` [m].
+    arcs : (n,) array
+        Longest arcs that come free, `stiction.devices.arcs.arc_length`, of n independent tips [m].
+    """
+    return np.minimum(s_shapes, arcs)
+
+
+# Shares
+
+
+def upper_bound(stuck: int | np.ndarray, samples: int, confidence: float = CONFIDENCE) -> float | np.ndarray:
+    """One-sided upper bound of a share, of which ``stuck`` of ``samples`` were found (Clopper and Pearson) [-]."""
+    stuck = np.asarray(stuck)
+    inner = betaincinv(np.minimum(stuck, samples - 1) + 1.0, np.maximum(samples - stuck, 1), confidence)
+    return np.where(stuck < samples, inner, 1.0)[()]
+
+
+def stuck_share(lengths: np.ndarray, sticking: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """P(stuck) at some lengths, with the lower and the upper end of a pointwise 95 % band, (m,) each [-].
+
+    Parameters
+    ----------
+    lengths : (m,) array
+        [m]
+    sticking : (n,) array
+        Sticking lengths of n devices [m].
+    """
+    n = len(sticking)
+    stuck = np.searchsorted(np.sort(sticking), lengths, side="left")
+    two_sided = (1 + CONFIDENCE) / 2
+    return stuck / n, 1 - upper_bound(n - stuck, n, two_sided), upper_bound(stuck, n, two_sided)
+
+
+def samples_for(share: float) -> int:
+    """Number of samples of which the smallest bounds the length with P(stuck) = share (Wilks).
+
+    >>> [samples_for(share) for share in (1e-2, 1e-3, 1e-4)]
+    [299, 2995, 29956]
+    """
+    return int(np.ceil(np.log(1 - CONFIDENCE) / np.log1p(-share)))
+
+
+# Safe length
+
+
+def _sampled_length(ordered, share):
+    """Largest order statistic with an upper bound of at most ``share`` [m]; needs `samples_for` lengths."""
+    n = len(ordered)
+    stuck = np.arange(int(share * n) + 1)
+    allowed = stuck[upper_bound(stuck, n) <= share]
+    return ordered[allowed[-1]]
+
+
+def _quantile(ordered, share):
+    """Quantile of Harrell and Davis [m] and its standard error by Maritz and Jarrett [m]."""
+    n = len(ordered)
+    steps = betainc((n + 1) * share, (n + 1) * (1 - share), np.arange(n + 1) / n)
+    weights = np.diff(steps)
+    used = weights > 1e-12
+    values, weights = ordered[used], weights[used]
+    mean = weights @ values
+    return mean, np.sqrt(weights @ (values - mean) ** 2)
+
+
+def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator) -> SafeLength:
+    """Safe length for one share p of stuck devices.
+
+    It is sampled if there are enough devices (`samples_for`), and otherwise comes from the fit of the lowest 5 %.
+
+    Parameters
+    ----------
+    sticking : (n,) array
+        Sticking lengths [m].
+    share : float
+        p, at most the fitted 5 % [-].
+    rng : numpy.random.Generator
+        For the simulated errors of the fit.
+
+    Raises
+    ------
+    ValueError
+        If the share is out of range, there are too few devices for a fit, or too many of their lengths are unknown.
+    """
+    if not 0 < share <= TAIL:
+        raise ValueError(f"a safe length needs a share in (0, {TAIL}], got {share}")
+    fitted = fit_tail(sticking)
+    n = len(sticking)
+    if n >= samples_for(share):
+        ordered = np.sort(sticking)
+        estimate, error = _quantile(ordered, share)
+        return SafeLength(share, float(_sampled_length(ordered, share)), float(estimate), float(error), Basis.SAMPLED)
+    estimate = fitted.length(share)
+    errors, pivots = scaled_errors(n, share, rng)
+    bound = estimate * np.exp(-np.quantile(pivots, CONFIDENCE) * fitted.slope)
+    basis = Basis.FITTED if share >= VERIFIED and n * share >= DECADE else Basis.EXTRAPOLATED
+    return SafeLength(share, float(bound), estimate, float(estimate * fitted.slope * errors.std()), basis)
+
+
+def error_of_surfaces(without_group: np.ndarray) -> float | np.ndarray:
+    """Standard error due to the finite number of sampled surfaces, by the jackknife over groups of them.
+
+    Parameters
+    ----------
+    without_group : (groups, ...) array
+        The length [m], each time computed without one group of the samples and with the same random numbers.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two groups.
+    """
+    values = np.asarray(without_group, float)
+    groups = len(values)
+    if groups < 2:
+        raise ValueError(f"a jackknife needs two groups of samples, got {groups}")
+    return np.sqrt((groups - 1) / groups * np.sum((values - values.mean(axis=0)) ** 2, axis=0))

@@ -1,0 +1,62 @@
+"""Stoppers, dimples and landing tips: the force that pulls a patch off, against the force that restores it.
+
+A patch touches everywhere at once, unlike a beam, and is pulled off by the largest attraction on its way. Its pull-off
+force is therefore f_max times its area. Unlike the adhesion energy, f_max is largest below saturation: the wetter the
+air, the larger the wetted area, and the weaker the tension in it.
+
+ASSUME: the patch stays parallel to the substrate. A patch that tilts comes off more easily.
+"""
+
+import numpy as np
+
+from stiction.devices.risk import stuck_share
+from stiction.estimates import jackknife
+
+
+def pull_off_force(f_max: float | np.ndarray, area: float) -> float | np.ndarray:
+    """Force that pulls a patch off [N]; f_max [Pa] of surfaces drawn in the size of the patch, area [m²]."""
+    return f_max * area
+
+
+def stuck_patches(pull_off: np.ndarray, restoring_forces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """P(stuck), the share of patches that hold more than a force, with a pointwise 95 % band, (m,) each [-].
+
+    Parameters
+    ----------
+    pull_off : (n,) array
+        Pull-off forces of n sampled patches [N].
+    restoring_forces : (m,) array
+        [N]
+    """
+    return stuck_share(-np.asarray(restoring_forces), -pull_off)
+
+
+def peak(x: np.ndarray, values: np.ndarray) -> float:
+    """Place of the largest value, by a parabola through it and its neighbours; an end of ``x`` if it is there.
+
+    Parameters
+    ----------
+    x, values : (n,) arrays
+        Increasing, not necessarily evenly spaced.
+    """
+    i = int(np.argmax(values))
+    if i in (0, len(x) - 1):
+        return float(x[i])
+    before, after = x[i - 1] - x[i], x[i + 1] - x[i]
+    rise, fall = (values[i - 1] - values[i]) / before, (values[i + 1] - values[i]) / after
+    bend = (fall - rise) / (after - before)
+    return float(x[i] - (rise - bend * before) / (2 * bend)) if bend < 0 else float(x[i])
+
+
+def worst_humidity(humidities: np.ndarray, pull_off: np.ndarray) -> tuple[float, float]:
+    """Humidity of the largest mean pull-off force, with its jackknife standard error [-].
+
+    Parameters
+    ----------
+    humidities : (m,) array
+        A fine axis, increasing [-].
+    pull_off : (n, m) array
+        Pull-off forces of n patches at these humidities [N]; row k is the same patch at all of them.
+    """
+    worst, error = jackknife(lambda mean: peak(humidities, mean), pull_off)
+    return float(worst), float(error)

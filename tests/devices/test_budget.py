@@ -1,0 +1,147 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from beams import PAPER, scattered_laws
+from numpy.testing import assert_allclose
+
+from stiction.beam.release import released_beam
+from stiction.contact import forcelaw
+from stiction.devices import budget
+from stiction.devices.budget import Budget
+
+#: Pair b at RH 0.67 and the errors of one 10 µm scan of its beam's surface: rms relative, skewness, kurtosis.
+SURFACE = Budget(
+    ("rms", "skewness", "kurtosis"),
+    np.array([1.0, -0.76 / -0.76, 0.87 / 3.9]),
+    budget.covariance_of(np.array([0.014, 0.037, 0.115]), np.array([[1, 0, 0], [0, 1, -0.8], [0, -0.8, 1]])),
+)
+BEAM = Budget(("thickness", "gap"), np.array([0.79, 0.50]), np.diag([0.02, 0.01]) ** 2)
+
+
+def crack_lengths(beams=12, **changed):
+    """Crack lengths on the same grounds, of a beam with some dimensions changed (n,) [m]."""
+    beam = replace(PAPER, **changed)
+    grounds = [scattered_laws(np.random.default_rng(k), 1000, 0.24) for k in range(beams)]
+    return np.array([released_beam(beam, laws, float(forcelaw.energy(laws).mean())).crack_length for laws in grounds])
+
+
+def test_the_total_is_the_scatter_of_lengths_whose_inputs_scatter():
+    whole = budget.joined([SURFACE, BEAM])
+    rng, n = np.random.default_rng(0), 20_000
+    inputs = rng.multivariate_normal(np.zeros(5), whole.covariance, n)
+    logarithms = np.log([whole.shifted(dict(zip(whole.names, shifts, strict=True))) for shifts in inputs])
+    assert abs(logarithms.std() / whole.total - 1) < 4 / np.sqrt(2 * n)
+    independent = replace(whole, covariance=np.diag(np.diag(whole.covariance)))
+    assert abs(logarithms.std() / independent.total - 1) > 4 / np.sqrt(2 * n)  # control
+
+
+def test_correlated_errors_of_skewness_and_kurtosis_cancel_and_independent_ones_do_not():
+    # g = (1, 0.223), u = (0.037, 0.115), correlation -0.8: 0.037² + 0.0257² - 1.6 · 0.037 · 0.0257
+    pair = ("skewness", "kurtosis")
+    independent = replace(SURFACE, covariance=np.diag(np.diag(SURFACE.covariance)))
+    ratio = independent.effect(pair) / SURFACE.effect(pair)
+    assert_allclose(SURFACE.effect(pair) ** 2, 0.037**2 + 0.02565**2 - 1.6 * 0.037 * 0.02565, rtol=1e-3)
+    assert_allclose(independent.effect(pair) ** 2, 0.037**2 + 0.02565**2, rtol=1e-3)
+    assert 1.8 < ratio < 2.2
+    assert SURFACE.effect(pair) < SURFACE.effect(("skewness",))
+
+
+def test_effects_of_independent_measurements_add_up_in_squares():
+    whole = budget.joined([SURFACE, BEAM])
+    groups = (SURFACE.names, BEAM.names)
+    assert_allclose(whole.total**2, sum(whole.effect(group) ** 2 for group in groups), rtol=1e-12)
+    assert_allclose(whole.effect(SURFACE.names), SURFACE.total, rtol=1e-12)
+    for group, other in (groups, groups[::-1]):
+        assert_allclose(whole.remaining(group), whole.effect(other), rtol=1e-9)
+
+
+def test_an_input_that_is_known_tells_about_those_correlated_with_it():
+    # What remains is the scatter of the length at fixed skewness: the residual of the regression on it.
+    rng, n = np.random.default_rng(1), 40_000
+    inputs = rng.multivariate_normal(np.zeros(3), SURFACE.covariance, n)
+    logarithms, skewness = inputs @ SURFACE.slopes, inputs[:, 1]
+    slope = (skewness @ logarithms) / (skewness @ skewness)
+    residual = (logarithms - slope * skewness).std()
+    assert abs(residual / SURFACE.remaining(("skewness",)) - 1) < 4 / np.sqrt(2 * n)
+    naive = np.sqrt(SURFACE.total**2 - SURFACE.effect(("skewness",)) ** 2 + 0j).real
+    assert abs(residual / naive - 1 if naive else np.inf) > 4 / np.sqrt(2 * n)  # control
+
+
+def test_nothing_remains_if_all_is_known_and_everything_if_nothing_is():
+    assert SURFACE.remaining(SURFACE.names) < 1e-8
+    assert_allclose(SURFACE.remaining(()), SURFACE.total, rtol=1e-12)
+    exact = Budget(("a", "b"), np.ones(2), np.diag([0.0, 4.0]))
+    assert_allclose([exact.remaining(("a",)), exact.remaining(("b",))], [2, 0], atol=1e-9)
+
+
+def test_common_random_numbers_make_slopes_of_few_devices_exact():
+    rng, n = np.random.default_rng(2), 40
+    base = 700e-6 * np.exp(0.025 * rng.standard_normal(n))
+    noise = np.exp(0.002 * rng.standard_normal(n))
+    common = budget.log_slope(np.mean, base * 0.99**0.8, base * noise * 1.01**0.8, np.log(1.01 / 0.99))
+    shuffled = budget.log_slope(np.mean, base * 0.99**0.8, rng.permutation(base) * 1.01**0.8, np.log(1.01 / 0.99))
+    assert abs(common[0] - 0.8) < 4 * common[1]
+    assert shuffled[1] > 5 * common[1]
+
+
+def test_the_error_of_a_slope_is_the_scatter_of_repeated_studies():
+    rng, found = np.random.default_rng(3), []
+    for _ in range(300):
+        base = np.exp(0.025 * rng.standard_normal(60))
+        found.append(budget.log_slope(np.mean, base, base * np.exp(0.1 + 0.01 * rng.standard_normal(60)), 0.1))
+    slopes, errors = np.transpose(found)
+    assert_allclose(np.sqrt(np.mean(errors**2)), slopes.std(ddof=1), rtol=4 / np.sqrt(600))
+    assert abs(slopes.mean() - 1) < 4 * slopes.std() / np.sqrt(300)
+
+
+def test_the_error_of_a_mean_of_small_differences_is_its_standard_error():
+    changes = np.random.default_rng(4).standard_normal(15)
+    found = budget.log_slope(np.mean, np.ones(15), 1 + 1e-6 * changes, 1e-6, groups=15)
+    assert_allclose(found, [changes.mean(), changes.std(ddof=1) / np.sqrt(15)], rtol=1e-4)
+
+
+def test_the_measurement_with_the_largest_gain_is_named():
+    whole = budget.joined([SURFACE, BEAM])
+    groups = {"the thickness": ("thickness",), "the scan of B2": SURFACE.names, "the gap": ("gap",)}
+    rows = budget.ranked(whole, groups)
+    assert [name for name, _, _ in rows] == ["the scan of B2", "the thickness", "the gap"]
+    assert np.all(np.diff([remaining for _, _, remaining in rows]) > 0)
+    assert_allclose(rows[1][1], 0.79 * 0.02, rtol=1e-12)
+    assert budget.advice(whole, groups).startswith("Measure the scan of B2 better: known exactly, ")
+    assert f"from {whole.total:.1%} to {whole.remaining(SURFACE.names):.1%}" in budget.advice(whole, groups)
+
+
+def test_a_choice_of_the_model_is_a_ratio():
+    assert_allclose(budget.choice_effect(700.0, 700 * np.exp(0.042)), 0.042, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("slopes", "covariance", "message"),
+    [
+        (np.ones(3), np.eye(2), "2 inputs need"),
+        (np.ones(2), np.eye(3), "2 inputs need"),
+        (np.ones(2), np.array([[1, 2], [2, 1]]), "negative eigenvalues"),
+        (np.ones(2), np.array([[1, 0.5], [0.4, 1]]), "symmetric"),
+    ],
+)
+def test_a_budget_is_checked_at_once(slopes, covariance, message):
+    with pytest.raises(ValueError, match=message):
+        Budget(("a", "b"), slopes, covariance)
+
+
+def test_three_joint_shifts_of_a_beam_are_the_sum_of_single_ones():
+    shifts, step = {"thickness": 0.06, "gap": 0.12, "young_modulus": 0.1}, 0.03
+
+    def scaled(factors):
+        return crack_lengths(80, **{name: getattr(PAPER, name) * np.exp(shift) for name, shift in factors.items()})
+
+    slopes, errors = np.transpose(
+        [budget.log_slope(np.mean, scaled({x: -step}), scaled({x: step}), 2 * step) for x in shifts]
+    )
+    found = Budget(tuple(shifts), slopes, np.eye(3))
+    joint, joint_error = budget.log_slope(np.mean, scaled({}), scaled(shifts), 1.0)
+    error = np.hypot(joint_error, np.linalg.norm(errors * list(shifts.values())))
+    assert abs(joint - np.log(found.shifted(shifts))) < 4 * error
+    assert abs(joint - 0.06 * slopes[0]) > 4 * error  # control: without gap and modulus
+    assert np.all(np.abs(slopes - [0.79, 0.5, 0.26]) < 4 * errors + 0.03)  # Eq. (13), and a little more for more places

@@ -1,0 +1,84 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from beams import E_BAR, PAPER, scattered_laws
+from numpy.testing import assert_allclose
+
+from stiction.beam.energy import apparent_adhesion_energy, arrest_length
+from stiction.beam.release import released_beam
+from stiction.constants import WATER_SURFACE_ENERGY
+from stiction.contact import forcelaw
+from stiction.devices import chart
+
+GRID = np.array([(t, h) for t in (1e-6, 3e-6, 6e-6) for h in (1e-6, 10e-6, 40e-6)]).T
+
+
+def eq_13(thickness, gap):
+    return np.array(
+        [arrest_length(E_BAR, replace(PAPER, thickness=t, gap=h)) for t, h in zip(thickness, gap, strict=True)]
+    )
+
+
+def test_uniform_ground_has_the_powers_of_eq_13():
+    law = chart.fit_power_law(*GRID, eq_13(*GRID))
+    assert_allclose([law.thickness_power, law.gap_power], [3 / 4, 1 / 2], rtol=1e-12)
+    between = np.array([2e-6, 4.5e-6]), np.array([3e-6, 25e-6])
+    assert_allclose(law(*between), eq_13(*between), rtol=1e-10)
+
+
+def test_a_length_that_is_no_power_law_is_refused():
+    bent = eq_13(*GRID) * (1 + 0.05 * (GRID[0] == 3e-6))
+    with pytest.raises(ValueError, match=r"errs by [34]\.\d% .* more than 1%"):
+        chart.checked_power_law(*GRID, bent, GRID[0] == 3e-6)
+
+
+def test_the_error_is_the_largest_of_the_beams_that_were_left_out():
+    law = chart.fit_power_law(*GRID, eq_13(*GRID))
+    wrong = eq_13(*GRID)
+    wrong[4] /= 1.007
+    assert_allclose(chart.largest_error(law, *GRID, wrong), 0.007, rtol=1e-6)
+
+
+def test_a_dimension_that_does_not_vary_has_no_power_and_no_other_value():
+    thickness, gap = np.array([1e-6, 2e-6, 4e-6]), np.full(3, 20e-6)
+    law = chart.fit_power_law(thickness, gap, eq_13(thickness, gap))
+    assert law.gap_power == 0
+    assert_allclose(law(3e-6, 20e-6), eq_13([3e-6], [20e-6])[0], rtol=1e-10)
+    with pytest.raises(ValueError, match="gap of 2.1e-05 m is outside of the computed 2e-05 to 2e-05 m"):
+        law(2e-6, 21e-6)
+
+
+@pytest.mark.parametrize(("thickness", "gap"), [(0.9e-6, 10e-6), (6.1e-6, 10e-6), (2e-6, 0.9e-6), (2e-6, 41e-6)])
+def test_a_power_law_is_not_extrapolated(thickness, gap):
+    with pytest.raises(ValueError, match="is outside of the computed"):
+        chart.fit_power_law(*GRID, eq_13(*GRID))(thickness, gap)
+
+
+def test_beams_that_vary_together_do_not_determine_a_power_law():
+    size = np.array([1.0, 2.0, 4.0])
+    with pytest.raises(ValueError, match="3 beams do not determine"):
+        chart.fit_power_law(size, size, size)
+
+
+@pytest.mark.parametrize("angles", [(0.0, 0.0), (0.3, 0.9)])
+def test_saturated_air_holds_with_the_energy_of_water_at_any_temperature(angles):
+    energy = chart.flooded_energy(300.0, angles)
+    assert_allclose(energy, WATER_SURFACE_ENERGY * np.sum(np.cos(angles)), rtol=1e-12)
+    assert_allclose(apparent_adhesion_energy(chart.flooded_length(PAPER, 300.0, angles), PAPER), energy, rtol=1e-12)
+
+
+def test_a_power_law_between_beams_on_rough_ground_predicts_those_that_were_left_out():
+    # The same ground for all beams; thickness and gap vary, and the powers differ from those of Eq. (13).
+    grounds = [scattered_laws(np.random.default_rng(k), 800, 0.24) for k in range(12)]
+    dimensions = np.array([(t, h) for t in (2e-6, 2.6e-6, 3.4e-6) for h in (10e-6, 20e-6, 40e-6)])
+    lengths = []
+    for t, h in dimensions:
+        beam = replace(PAPER, length=1600e-6, elements=400, thickness=t, gap=h)
+        beam = replace(beam, length=2.2 * arrest_length(E_BAR, beam))
+        ends = [released_beam(beam, laws, float(forcelaw.energy(laws).mean())) for laws in grounds]
+        lengths.append(np.mean([end.crack_length for end in ends]))
+    middle = np.all(dimensions == [2.6e-6, 20e-6], axis=1)
+    law, error = chart.checked_power_law(*dimensions.T, np.array(lengths), middle)
+    assert 0 < error < chart.ALLOWED
+    assert_allclose([law.thickness_power, law.gap_power], [0.75, 0.5], atol=0.06)

@@ -1,0 +1,31 @@
+"""Safe lengths of the paper's pair b from few beams, against many."""
+
+import numpy as np
+import pytest
+
+import stiction
+from stiction.beam.montecarlo import Experiment, columns, simulate
+from stiction.chaos.model import resample_laws
+from stiction.devices import risk
+from stiction.streams import stream
+
+#: Lengths [m] that one beam in a thousand and one in ten thousand fall short of, with the ends of their 95 % interval:
+#: order statistics of 110 000 beams on force laws resampled from 5000 samples of contact, pair b, NG, RH 0.67.
+BRUTE_FORCE = {1e-3: (627.8e-6, 625.9e-6, 630.5e-6), 1e-4: (616.5e-6, 614.5e-6, 618.7e-6)}
+#: Standard error of such a length due to 5000 samples of contact [m].
+SAMPLING = 0.8e-6
+
+
+@pytest.mark.slow
+def test_a_few_thousand_beams_of_pair_b_find_the_lengths_of_110_000():
+    study = stiction.PairStudy.of(stiction.load(), "b")
+    vectors, limit = study.forces(0.67)
+    experiment = Experiment(study.beam, 1000, lambda n, rng: resample_laws(vectors, limit, n, rng))
+    cracks = columns(list(simulate(experiment, range(2900), lambda k: stream(7, k), threads=2)))["crack_length"]
+    for share, (length, low, high) in BRUTE_FORCE.items():
+        found = risk.safe_length(cracks, share, stream(0))
+        assert found.basis is risk.Basis.FITTED
+        error = np.sqrt(found.error**2 + ((high - low) / (2 * 1.96)) ** 2 + SAMPLING**2)
+        assert abs(found.estimate - length) < 3 * error
+        assert abs(np.quantile(cracks, 0.02) - length) > 3 * error  # control
+        assert found.length < high
