@@ -38,14 +38,14 @@ def test_heights_size_and_axes_survive_a_round_trip(tmp_path, ending, lateral):
     scan = read(written(tmp_path, ending, topography())).scan
     np.testing.assert_allclose(scan.heights, HEIGHTS, rtol=1e-12)
     np.testing.assert_allclose(scan.size, SIZE, rtol=lateral)
-    np.testing.assert_allclose(scan.pixel, (100e-9, 100e-9), rtol=lateral)
+    np.testing.assert_allclose(scan.frame.pixel, (100e-9, 100e-9), rtol=lateral)
     assert scan.name == f"scan.{ending}"
 
 
 @pytest.mark.parametrize("ending", ["gwy", "x3p"])
 def test_pixels_need_not_be_square(tmp_path, ending):
     scan = read(written(tmp_path, ending, topography(size=(6.4e-6, 8e-6)))).scan
-    np.testing.assert_allclose(scan.pixel, (100e-9, 200e-9))
+    np.testing.assert_allclose(scan.frame.pixel, (100e-9, 200e-9))
 
 
 def test_the_first_index_runs_along_the_fast_axis(tmp_path):

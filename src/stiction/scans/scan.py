@@ -15,6 +15,33 @@ from stiction.errors import ScanError
 FEWEST_POINTS = 32
 
 
+#: Relative difference of the sides of a pixel that still is square.
+_SQUARE = 1e-3
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Points and size of a scan."""
+
+    shape: tuple[int, int]  #: points along the fast and the slow axis
+    size: tuple[float, float]  #: along both, number of points times their distance [m]
+
+    @property
+    def pixel(self) -> tuple[float, float]:
+        """Distances of the points [m]."""
+        return self.size[0] / self.shape[0], self.size[1] / self.shape[1]
+
+    @property
+    def square(self) -> bool:
+        """Whether pixels are square."""
+        return abs(self.pixel[0] / self.pixel[1] - 1) < _SQUARE
+
+    @property
+    def area(self) -> float:
+        """Scanned area [m²]."""
+        return self.size[0] * self.size[1]
+
+
 @dataclass(frozen=True)
 class Scan:
     """Heights on a rectangular grid."""
@@ -33,9 +60,9 @@ class Scan:
             raise ScanError(self.name, "files", "has the same height, or none, at all points")
 
     @property
-    def pixel(self) -> tuple[float, float]:
-        """Distance of the points along the fast and the slow axis [m]."""
-        return self.size[0] / self.heights.shape[0], self.size[1] / self.heights.shape[1]
+    def frame(self) -> Frame:
+        """Points and size."""
+        return Frame(self.heights.shape, self.size)
 
     @cached_property
     def defined(self) -> np.ndarray:
