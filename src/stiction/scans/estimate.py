@@ -29,9 +29,10 @@ from stiction.scans.quantiles import (
     MeasuredDensity,
     compared_slopes,
     correlation_areas,
-    feasible,
     goodness,
+    maximum_entropy,
     measured_density,
+    nearest,
     quantiles,
 )
 from stiction.scans.scan import Frame, Scan
@@ -153,7 +154,7 @@ class SurfaceEstimate:
     tile_errors: np.ndarray  #: standard errors of the moments from the scatter of tiles, (3,)
     homogeneity: tuple[np.ndarray, np.ndarray]  #: χ² of the scatter between scans and p, (3,) each
     model: SurfaceModel  #: surface of which the model scans were drawn
-    nearest: Feasible | None  #: maximum-entropy density of the model, ``None`` if it has the measured density
+    feasible: Feasible | None  #: maximum-entropy density of the model, ``None`` if it has the measured density
     quantiles: np.ndarray  #: at `stiction.scans.quantiles.SCORES`, (49,) [-]
     quantile_errors: np.ndarray  #: (49,) [-]
     goodness: tuple[float, float]  #: χ² of the quantiles against the four-moment density, and p; ``nan`` without it
@@ -179,9 +180,9 @@ class SurfaceEstimate:
         """
         if heights == "measured":
             return measured_density(self.quantiles, self.inspection.areas)
-        if self.nearest is None:
+        if self.feasible is None:
             raise ScanError(", ".join(self.inspection.names), "heights", _infeasible(self) + ": use measured")
-        return self.nearest.density
+        return self.feasible.density
 
     def spectrum(self, psd: str, cutoff: float) -> CutoffSelfAffine | TabulatedSpectrum:
         """Spectrum ``fitted`` or ``tabulated`` up to a cut-off [rad m⁻¹]."""
@@ -218,10 +219,10 @@ def estimate(
     measured = quantiles(found.levelled)
     values = found.moments
     for _ in range(_ROUNDS):
-        model, nearest = _model(found, values, measured)
+        model, feasible = _model(found, values, measured)
         drawn = draw_model_scans(model, settings.levelling, rngs)
         values = found.moments - drawn.bias(model.moments, len(scans))
-    model, nearest = _model(found, values, measured)
+    model, feasible = _model(found, values, measured)
     return SurfaceEstimate(
         inspection=found,
         moments=values,
@@ -229,10 +230,10 @@ def estimate(
         tile_errors=tile_errors(found.levelled, settings.tiles),
         homogeneity=homogeneity(moments(found.powers), model.covariance),
         model=model,
-        nearest=nearest,
+        feasible=feasible,
         quantiles=measured,
         quantile_errors=drawn.quantiles.std(axis=0, ddof=1) / np.sqrt(len(scans)),
-        goodness=_goodness(found, nearest, measured, drawn),
+        goodness=_goodness(found, feasible, measured, drawn),
         sectors=spectra.sectors(found.periodogram, found.reach.low, found.reach.high),
         **_summits(found, drawn),
         line_jump=max(line_jump(z) for z in found.levelled),
@@ -248,24 +249,27 @@ def _model(found, values, measured):
         return SurfaceModel(density, spectrum, correlation, float(np.exp(values[0])), found.frame)
 
     try:
-        fallback = surface(measured_density(measured, found.areas))
-        nearest = feasible(*map(float, values[1:]), fallback.covariance[1:, 1:] / len(found.names))
-        model = fallback if nearest is None else surface(nearest.density)
+        shape = float(values[1]), float(values[2])
+        density = maximum_entropy(*shape)
+        if density is None:
+            fallback = surface(measured_density(measured, found.areas))
+            density = nearest(*shape, fallback.covariance[1:, 1:] / len(found.names))
+        model = fallback if density is None else surface(density.density)
         model.underlying  # noqa: B018
     except ValueError as reason:
         raise ScanError(
             ", ".join(found.names), "files", f"has heights that no surface can be drawn with: {reason}"
         ) from None
-    return model, nearest
+    return model, density
 
 
-def _goodness(found: Inspection, nearest: Feasible | None, measured: np.ndarray, drawn: ModelScans):
+def _goodness(found: Inspection, feasible: Feasible | None, measured: np.ndarray, drawn: ModelScans):
     """χ² and p of the compared quantiles, without the part that follows from the errors of the moments."""
-    if nearest is None:
+    if feasible is None:
         return np.nan, np.nan
-    slopes = compared_slopes(nearest.skewness, nearest.kurtosis)
-    shape = np.array([nearest.skewness, nearest.kurtosis])
-    expected = nearest.density.quantile_of_normal(SCORES[COMPARED])
+    slopes = compared_slopes(feasible.skewness, feasible.kurtosis)
+    shape = np.array([feasible.skewness, feasible.kurtosis])
+    expected = feasible.density.quantile_of_normal(SCORES[COMPARED])
 
     def residual(quantile, moment):
         return quantile[..., COMPARED] - expected - (moment[..., 1:] - shape) @ slopes
@@ -311,7 +315,8 @@ def _few_wavelengths(found):
 def _not_homogeneous(found):
     ratio = np.max(found.tile_errors / found.errors)
     if ratio > _TILES:
-        return f"parts of the scan differ {ratio:.2g} times as much as those of a homogeneous surface (bow, particles, marks)"
+        reason = "bow, particles or marks"
+        return f"parts of a scan differ {ratio:.2g} times as much as those of one homogeneous surface ({reason})"
     return ""
 
 
@@ -340,11 +345,11 @@ def _anisotropic(found):
 
 
 def _moments_have_no_density(found):
-    if found.nearest is None:
+    if found.feasible is None:
         return f"{_infeasible(found)}, nor have others within their errors; only heights: measured can be used"
-    if found.nearest.distance > 0:
-        near = f"skewness {found.nearest.skewness:.3g} with kurtosis {found.nearest.kurtosis:.3g}"
-        return f"{_infeasible(found)}; {near}, which is within the errors (d² {found.nearest.distance:.2g}), is used"
+    if found.feasible.distance > 0:
+        near = f"skewness {found.feasible.skewness:.3g} with kurtosis {found.feasible.kurtosis:.3g}"
+        return f"{_infeasible(found)}; {near}, which is within the errors (d² {found.feasible.distance:.2g}), is used"
     return ""
 
 
@@ -365,7 +370,8 @@ def _tip_rounds(found):
 def _lines_jump(found):
     slow, fast = found.line_jump
     if slow > _JUMP * fast:
-        return f"lines jump by {1e9 * slow:.2g} nm, against steps of {1e9 * fast:.2g} nm along a line; lines: offset levels them"
+        steps = f"{1e9 * slow:.2g} nm, against steps of {1e9 * fast:.2g} nm along a line"
+        return f"lines jump by {steps}; lines: offset levels them"
     return ""
 
 

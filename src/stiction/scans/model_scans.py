@@ -102,7 +102,7 @@ def draw_model_scans(
         rows.append(
             (
                 powers(levelled),
-                influence(raw / model.rms, *model.moments[1:]).mean(axis=(1, 2)),
+                influence(powers(raw) / model.rms ** np.arange(1, 5), *model.moments[1:]),
                 quantiles([levelled]),
                 summits_per_area(levelled, model.frame),
             )

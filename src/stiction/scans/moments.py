@@ -1,8 +1,8 @@
 r"""Moments of the heights of finite scans, and their covariance in closed form.
 
 The moments are the vector (ln rms, skewness, kurtosis) of Eq. (2). To first order an estimate from a finite scan
-differs from the truth by the mean over the scan of the influence functions ψ(z). With ψ(g(u)) expanded in orthonormal Hermite
-polynomials, coefficients a_ik, and ρ the autocorrelation of the underlying Gaussian field u, the covariance is
+differs from the truth by the mean over the scan of the influence functions ψ(z). With ψ(g(u)) expanded in
+orthonormal Hermite polynomials, coefficients a_ik, and ρ the autocorrelation of the Gaussian field u, the covariance is
 
 .. math::
 
@@ -25,7 +25,9 @@ _LAGS, _PANELS_PER_RADIAN, _FEWEST_PANELS = 1500, 2, 4000
 
 def powers(heights: np.ndarray) -> np.ndarray:
     """Means of z, z², z³, z⁴ over the defined heights, (4,) [m … m⁴]."""
-    return np.nanmean(np.asarray(heights, float).ravel() ** np.arange(1, 5)[:, None], axis=1)
+    z = np.asarray(heights, float)[np.isfinite(heights)]
+    square = z * z
+    return np.array([np.mean(values) for values in (z, square, square * z, square * square)])
 
 
 def moments(powers: np.ndarray) -> np.ndarray:
@@ -40,15 +42,23 @@ def moments(powers: np.ndarray) -> np.ndarray:
     return np.stack([np.log(m2) / 2, m3 / m2**1.5, m4 / m2**2], axis=-1)
 
 
-def influence(height: np.ndarray, skewness: float, kurtosis: float) -> np.ndarray:
-    """Influence functions ψ of (ln rms, skewness, kurtosis) at standardised heights (...), (3, ...) [-]."""
-    z = np.asarray(height, float)
-    spread = z**2 - 1
+def influence(powers: np.ndarray, skewness: float, kurtosis: float) -> np.ndarray:
+    """Influence functions ψ of (ln rms, skewness, kurtosis), (3, ...) [-].
+
+    Parameters
+    ----------
+    powers : (4, ...) array
+        z, z², z³, z⁴ of standardised heights, or means of them: the functions are linear in the powers [-].
+    skewness, kurtosis : float
+        [-]
+    """
+    first, second, third, fourth = powers
+    spread = second - 1
     return np.array(
         [
             spread / 2,
-            z**3 - skewness - 3 * z - 1.5 * skewness * spread,
-            z**4 - kurtosis - 4 * skewness * z - 2 * kurtosis * spread,
+            third - skewness - 3 * first - 1.5 * skewness * spread,
+            fourth - kurtosis - 4 * skewness * first - 2 * kurtosis * spread,
         ]
     )
 
@@ -57,7 +67,12 @@ def moments_of(translation: Translation) -> np.ndarray:
     """Moments (ln rms, skewness, kurtosis) of the standardised heights of a translation, (3,) [-]."""
     score = np.linspace(-LARGEST_SCORE, LARGEST_SCORE, len(translation.table))
     share = np.exp(-(score**2) / 2)
-    return moments(translation.table ** np.arange(1, 5)[:, None] @ (share / share.sum()))
+    return moments(_table_powers(translation) @ (share / share.sum()))
+
+
+def _table_powers(translation):
+    """Powers z, z², z³, z⁴ of the tabulated heights, (4, n)."""
+    return translation.table ** np.arange(1, 5)[:, None]
 
 
 def covariance(translation: Translation, underlying: Spectrum, size: tuple[float, float], reach: float) -> np.ndarray:
@@ -75,7 +90,7 @@ def covariance(translation: Translation, underlying: Spectrum, size: tuple[float
         Lag up to which the autocorrelation of ``underlying`` is known; there it must have vanished [m].
     """
     _, skewness, kurtosis = moments_of(translation)
-    coefficients = hermite_coefficients(influence(translation.table, skewness, kurtosis))
+    coefficients = hermite_coefficients(influence(_table_powers(translation), skewness, kurtosis))
     overlaps = overlap_integrals(underlying, size, reach, len(coefficients))
     return np.einsum("ki,kj,k->ij", coefficients, coefficients, overlaps)
 

@@ -110,8 +110,14 @@ class Feasible:
     distance: float  #: squared distance from the measured ones in standard errors, 0 if they have a density [-]
 
 
-def feasible(skewness: float, kurtosis: float, covariance: np.ndarray) -> Feasible | None:
-    """Maximum-entropy density of measured moments, or of the nearest that have one; ``None`` if none is `NEAR`.
+def maximum_entropy(skewness: float, kurtosis: float) -> Feasible | None:
+    """Maximum-entropy density of measured moments, ``None`` if they have none."""
+    density = _density(skewness, kurtosis)
+    return None if density is None else Feasible(density, skewness, kurtosis, 0.0)
+
+
+def nearest(skewness: float, kurtosis: float, covariance: np.ndarray) -> Feasible | None:
+    """Maximum-entropy density of the moments nearest to measured ones that have none; ``None`` if none is `NEAR`.
 
     Parameters
     ----------
@@ -120,15 +126,11 @@ def feasible(skewness: float, kurtosis: float, covariance: np.ndarray) -> Feasib
     covariance : (2, 2) array
         Of both; the metric of the distance.
     """
-    if (density := _density(skewness, kurtosis)) is not None:
-        return Feasible(density, skewness, kurtosis, 0.0)
     metric = np.linalg.inv(covariance)
     trials = (_largest_kurtosis(s, kurtosis) for s in skewness + np.sqrt(NEAR * covariance[0, 0]) * _GRID)
     points = [(s, k, (d := np.array([s - skewness, k - kurtosis])) @ metric @ d) for s, k in trials if np.isfinite(k)]
-    nearest = min(points, key=lambda point: point[2], default=(0, 0, np.inf))
-    if nearest[2] > NEAR:
-        return None
-    return Feasible(_density(*nearest[:2]), *map(float, nearest))
+    best = min(points, key=lambda point: point[2], default=(0, 0, np.inf))
+    return Feasible(_density(*best[:2]), *map(float, best)) if best[2] <= NEAR else None
 
 
 def _density(skewness, kurtosis):
