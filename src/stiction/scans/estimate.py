@@ -14,7 +14,6 @@ from stiction.estimates import jackknife
 from stiction.scans import periodogram as spectra
 from stiction.scans.levelling import Levelling, level, line_jump
 from stiction.scans.model_scans import (
-    ModelScans,
     SurfaceModel,
     draw_model_scans,
     radius_and_density,
@@ -198,7 +197,7 @@ class SurfaceEstimate:
 
 
 def estimate(
-    scans: Sequence[Scan], settings: Settings, rngs: Callable[[], Iterable[np.random.Generator]]
+    scans: Sequence[Scan], settings: Settings, rngs: Callable[[int], Iterable[np.random.Generator]]
 ) -> SurfaceEstimate:
     """Estimate a surface from its scans.
 
@@ -207,7 +206,7 @@ def estimate(
     scans : sequence of Scan
     settings : Settings
     rngs : callable
-        Returns the streams of the model scans, one per model scan and the same at every call: at least 12 and as many
+        Returns the streams of the model scans of round 0 or 1, one per model scan; in each round at least 8 and as many
         as scans.
 
     Raises
@@ -218,10 +217,12 @@ def estimate(
     found = inspect(scans, settings)
     measured = quantiles(found.levelled)
     values = found.moments
-    for _ in range(_ROUNDS):
+    residuals = []
+    for number in range(_ROUNDS):
         model, feasible = _model(found, values, measured)
-        drawn = draw_model_scans(model, settings.levelling, rngs)
+        drawn = draw_model_scans(model, settings.levelling, rngs(number))
         values = found.moments - drawn.bias(model.moments, len(scans))
+        residuals.append(_residual(feasible, drawn.quantiles, moments(drawn.powers)))
     model, feasible = _model(found, values, measured)
     return SurfaceEstimate(
         inspection=found,
@@ -233,7 +234,7 @@ def estimate(
         feasible=feasible,
         quantiles=measured,
         quantile_errors=drawn.quantiles.std(axis=0, ddof=1) / np.sqrt(len(scans)),
-        goodness=_goodness(found, feasible, measured, drawn),
+        goodness=goodness(_residual(feasible, measured, found.moments), np.vstack(residuals), len(scans)),
         sectors=spectra.sectors(found.periodogram, found.reach.low, found.reach.high),
         **_summits(found, drawn),
         line_jump=max(line_jump(z) for z in found.levelled),
@@ -263,20 +264,16 @@ def _model(found, values, measured):
     return model, density
 
 
-def _goodness(found: Inspection, feasible: Feasible | None, measured: np.ndarray, drawn: ModelScans):
-    """χ² and p of the compared quantiles, without the part that follows from the errors of the moments."""
+def _residual(feasible: Feasible | None, quantile: np.ndarray, moment: np.ndarray):
+    """Compared quantiles less those of maximum entropy with the moments (..., 3) of the same scan, (..., 5) [-].
+
+    The moments are near those of ``feasible``, so that the density is not solved for every scan; ``nan`` without it.
+    """
     if feasible is None:
-        return np.nan, np.nan
-    slopes = compared_slopes(feasible.skewness, feasible.kurtosis)
-    shape = np.array([feasible.skewness, feasible.kurtosis])
+        return np.full_like(quantile[..., COMPARED], np.nan)
+    shift = moment[..., 1:] - [feasible.skewness, feasible.kurtosis]
     expected = feasible.density.quantile_of_normal(SCORES[COMPARED])
-
-    def residual(quantile, moment):
-        return quantile[..., COMPARED] - expected - (moment[..., 1:] - shape) @ slopes
-
-    return goodness(
-        residual(measured, found.moments), residual(drawn.quantiles, moments(drawn.powers)), len(found.names)
-    )
+    return quantile[..., COMPARED] - expected - shift @ compared_slopes(feasible.skewness, feasible.kurtosis)
 
 
 def _summits(found, drawn):

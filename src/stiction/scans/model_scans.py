@@ -1,6 +1,6 @@
 """Scans drawn from the estimated surface, with pixel and size of the measured ones: what levelling does to them."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -91,12 +91,10 @@ class ModelScans:
         return np.mean(moments(found) - expected, axis=0) - truth
 
 
-def draw_model_scans(
-    model: SurfaceModel, levelling: Levelling, rngs: Callable[[], Iterable[np.random.Generator]]
-) -> ModelScans:
+def draw_model_scans(model: SurfaceModel, levelling: Levelling, rngs: Iterable[np.random.Generator]) -> ModelScans:
     """Draw scans of a model, one per generator, and level them."""
     rows = []
-    for rng in rngs():
+    for rng in rngs:
         raw = model.draw(rng)
         levelled = level(raw, levelling)
         rows.append(

@@ -181,7 +181,7 @@ def goodness(residual: np.ndarray, model_residuals: np.ndarray, scans: int) -> t
     residual : (p,) array
         Measured quantiles of all scans together less those of the density.
     model_residuals : (n, p) array
-        The same of single scans drawn from the density.
+        The same of single scans drawn from the density; rows of ``nan`` are left out.
     scans : int
         Number of measured scans.
 
@@ -189,9 +189,12 @@ def goodness(residual: np.ndarray, model_residuals: np.ndarray, scans: int) -> t
     -------
     chi2, p : float
         Squared distance in the covariance of the model scans (χ² of p degrees of freedom if that is known exactly), and
-        the probability of a larger one, which counts that it is estimated (Hotelling).
+        the probability of a larger one, which counts that it is estimated (Hotelling); ``nan`` without a density.
     """
+    model_residuals = model_residuals[np.isfinite(model_residuals).all(axis=1)]
     n, size = model_residuals.shape
+    if n <= size or not np.isfinite(residual).all():
+        return np.nan, np.nan
     difference = residual - model_residuals.mean(axis=0)
     covariance = np.cov(model_residuals.T) * (1 / scans + 1 / n)
     chi2 = float(difference @ np.linalg.solve(covariance, difference))
