@@ -19,6 +19,8 @@ BIN := $(VENV)/bin
 SNAKEMAKE := $(BIN)/snakemake
 SMOKE := --configfile config.yaml workflow/smoke.yaml
 MINE := $(if $(CONFIG),--configfile config.yaml $(CONFIG))
+# Snakemake reads files and settings before the Snakefile can check them.
+CHECKED = $(if $(CONFIG)$(findstring -C,$(ARGS))$(findstring --config,$(ARGS)),@$(BIN)/python -m stiction.config.reading $(CONFIG) -- $(ARGS))
 EMPTY :=
 SPACE := $(EMPTY) $(EMPTY)
 
@@ -41,20 +43,25 @@ help:
 	@sed -n 's/^#   //p; s/^#$$//p' Makefile
 
 paper: $(VENV)/ready
+	$(CHECKED)
 	$(SNAKEMAKE) $(ARGS) $(MINE)
 
 smoke: $(VENV)/ready
+	$(CHECKED)
 	$(SNAKEMAKE) --directory results/smoke $(SMOKE) $(CONFIG) $(ARGS)
 
 figures: $(VENV)/ready
+	$(CHECKED)
 	$(SNAKEMAKE) figures $(ARGS) $(MINE)
 
 run: $(VENV)/ready
 	@test -n "$(CONFIG)" || { echo "make run needs a file with your settings: make run CONFIG=mine.yaml"; exit 2; }
+	$(CHECKED)
 	$(SNAKEMAKE) $(ARGS) $(MINE)
 
 report: $(VENV)/ready
 	@test -e results/verdict.txt || { echo "there are no results for a report yet: run make paper first"; exit 2; }
+	$(CHECKED)
 	$(SNAKEMAKE) --report results/report.html $(ARGS) $(MINE)
 
 test: lint
@@ -115,6 +122,8 @@ clean:
 $(VENV)/ready: requirements.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "stiction needs Python 3.11 or newer; $(PYTHON) is $$($(PYTHON) --version 2>&1). Try: make PYTHON=python3.12"; exit 2; }
+	@$(PYTHON) -c 'import shutil, sys; sys.exit(sys.version_info >= (3, 14) and not any(map(shutil.which, ("cc", "gcc", "clang"))))' || \
+	  { echo "with Python 3.14 or newer a library of Snakemake (immutables) is compiled, which needs a C compiler (cc); $(PYTHON) is $$($(PYTHON) --version 2>&1). Install one, or try: make PYTHON=python3.13"; exit 2; }
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .

@@ -9,15 +9,15 @@ PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 #: Folders and their modules, in the order in which they may import: from modules above or to the left.
 ORDER = """
 constants errors streams estimates numbers models progress
-surface: maxent spectrum translation field iteration summits identify
-scans: scan levelling
-contact: meniscus vanderwaals asperity pair forcelaw
+surface: maxent spectrum translation feasible field iteration summits identify
+scans: scan levelling moments periodogram whittle quantiles model_scans estimate
+contact: meniscus vanderwaals asperity estimate pair forcelaw
 chaos: coordinates density polynomials model
 beam: cantilever energy equilibrium release montecarlo
 analysis: plasticity sensitivity convergence mesh variants
 run: fingerprint logs folder atomic provenance warmup
 scans: reading
-config: units cases merging messages relations files plan jobs
+config: units cases merging messages reading memory relations files plan jobs
 stages: storage named heights parameters identification spectrum surfaces character pairs contact curves forces chaos
 stages: cantilevers releases beams
 studies: iteration fit humidity sensitivity_contact sensitivity plasticity sample_sizes orders mesh correlation

@@ -5,12 +5,12 @@ import json
 
 import pytest
 from configurations import PAPER, ROOT
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from snakemake.utils import update_config
 
 from stiction.config import files
-from stiction.config.files import load, normalised, read
+from stiction.config.files import load, normalised
 from stiction.config.merging import merged
 from stiction.config.messages import ConfigError
 
@@ -67,64 +67,3 @@ def test_the_normal_form_keeps_the_order_of_other_lists_and_does_not_change_its_
     assert normalised(config)["run"] == {"pairs": ["c", "a"]}
     assert normalised(config)["pairs"]["a"]["humidities"] == [0.5, 0.9]
     assert config == before
-
-
-@pytest.mark.parametrize(
-    ("content", "message"),
-    [
-        (b"seed: 1\nbeam: {elements: 2}\nseed: 2\n", "key 'seed' is given twice"),
-        (b"beam:\n  elements: 2\n  elements: 2\n", "line 2, column 3"),
-        (b"", "holds None, must be sections"),
-        (b"- 1\n", "holds [1], must be sections"),
-        (b"5000\n", "holds 5000, must be sections"),
-        (b"a: [1\n", "expected ',' or ']'"),
-        (b"a:\n\tb: 1\n", "cannot start any token"),
-        (b"a: \xff\n", "cannot be read"),
-        (b"a: \x00\n", "cannot be read"),
-        (b"a: &x {b: *x}\n", "recursive"),
-        (b"a: &x {b: [*x]}\n", "recursive"),
-        (b"a: &x [*x]\n", "recursive"),
-        (b"a: *x\n", "undefined alias"),
-        (b"{[1]: 2}\n", "unhashable key"),
-        (b"a: !!bool x\n", "cannot be read"),
-        (b"a: !!python/object:os.system x\n", "could not determine a constructor"),
-        (b"a: 2021-13-45\n", "cannot be read"),
-        (b"a: 1\n---\na: 2\n", "expected a single document"),
-        (b"a: " + b"1" * 5000, "cannot be read"),
-        (b"[" * 2000, "cannot be read"),
-    ],
-)
-def test_an_invalid_file_is_rejected_in_one_line_with_its_name(tmp_path, content, message):
-    path = tmp_path / "mine.yaml"
-    path.write_bytes(content)
-    with pytest.raises(ConfigError) as refused:
-        read(path)
-    assert str(path) in str(refused.value)
-    assert message in str(refused.value)
-    assert "\n" not in str(refused.value)
-
-
-def test_a_missing_file_is_reported_by_name(tmp_path):
-    with pytest.raises(ConfigError, match=r"nowhere\.yaml cannot be read: .*No such file"):
-        read(tmp_path / "nowhere.yaml")
-
-
-def test_an_anchor_may_be_changed_key_by_key(tmp_path):
-    path = tmp_path / "mine.yaml"
-    path.write_text("base: &b {x: 1, y: 2}\nmine: {<<: *b, y: 3}\n", encoding="utf-8")
-    assert read(path)["mine"] == {"x": 1, "y": 3}
-
-
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(st.text(alphabet="abé1.-~: {}[]\n\t,'\"&*!<>?|%@#=0e") | st.text())
-def test_any_text_is_read_as_sections_or_rejected_in_one_line(tmp_path, text):
-    path = tmp_path / "mine.yaml"
-    path.write_bytes(text.encode("utf-8", "surrogatepass"))
-    try:
-        assert isinstance(read(path), dict)
-    except ConfigError as error:
-        refused = str(error)
-    else:
-        return
-    assert refused.startswith(str(path))
-    assert len(refused.splitlines()) == 1

@@ -34,7 +34,7 @@ PLAN = Plan(load())
 JOBS = {
     heights: jobs.heights(PLAN, "B2"),
     identification: jobs.identification(PLAN, "B2"),
-    spectrum: jobs.spectrum(PLAN, "B2"),
+    spectrum: jobs.spectrum(Plan(load({"surfaces": {"B2": {"psd": "identified"}}})), "B2"),
     iteration: jobs.iteration(PLAN),
     character: jobs.character(PLAN),
     contact: jobs.contact(PLAN, "b"),

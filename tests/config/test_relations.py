@@ -56,7 +56,7 @@ def test_a_violated_relation_is_rejected_in_one_line_with_key_value_and_what_is_
         "beam: {elements: 1000}",
         "beam: {scatter: 0}",
         "beam: {length_um: 21, width_um: 20.98, elements: 7}",
-        "pairs: {a: {humidities: [0.0001, 0.9999, 0.5]}}",
+        "pairs: {a: {humidities: [0.001, 0.9999, 0.5]}}",
         "pairs: {a: {substrate: B1}}",
         "van_der_waals: none",
         "run: {pairs: [c, a]}",

@@ -1,16 +1,19 @@
 from types import SimpleNamespace
+from unittest.mock import patch
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 from scipy.integrate import quad
+from scipy.optimize import brentq
 
 from stiction.contact.asperity import (
     HertzAsperity,
     MaugisTable,
     asperity,
+    deep_load,
     hertz_force,
     hertz_maximum_stress,
     interference_scale,
@@ -225,12 +228,11 @@ def test_sphere_out_of_reach_feels_nothing(radius):
 
 
 def test_tabulated_load_is_the_load_of_the_branch():
-    low, high, n = WATER.transitions
     roots = np.linspace(*WATER.roots)
-    for row in (0, 60, n - 1):
-        load, delta = maugis_branch(low * (high / low) ** (row / (n - 1)), 50_000)
+    for row in (0, 27, 90, 154, 180):
+        load, delta = maugis_branch(WATER.rows[row], 50_000)
         exact = np.interp(roots**2, delta - delta[0], load)
-        # Both interpolate: 6000 states against 50 000; the error stays below 1e-4 of the pull-off force or of the load.
+        # Both interpolate: 6000 states against 50 000; the error stays below 1e-4 of the pull-off force or load.
         # Snap-off itself has a vertical tangent.
         np.testing.assert_allclose(WATER.load[row][1:], exact[1:], rtol=1e-4, atol=1e-4)
         assert WATER.load[row][0] == pytest.approx(load[0], abs=5e-3)
@@ -238,7 +240,7 @@ def test_tabulated_load_is_the_load_of_the_branch():
 
 
 def test_dimensional_scales_are_those_of_a_sphere_of_one_metre():
-    log_transition, interference, force, first, log_step, root_step = WATER.scales
+    log_transition, interference, force, first, before, log_step, root_step = WATER.scales
     np.testing.assert_allclose(
         log_transition, np.log(transition_parameter(1.0, POLYSILICON, WATER.attraction)), rtol=1e-14
     )
@@ -246,6 +248,7 @@ def test_dimensional_scales_are_those_of_a_sphere_of_one_metre():
     np.testing.assert_allclose(force, np.pi * WATER.attraction.work_of_adhesion, rtol=1e-14)
     low, high, n = WATER.transitions
     np.testing.assert_allclose(np.exp(first + log_step * np.arange(n))[[0, -1]], [low, high], rtol=1e-12)
+    np.testing.assert_allclose(np.exp(first + log_step * (np.arange(len(WATER.rows)) - before)), WATER.rows, rtol=1e-12)
     assert root_step * (WATER.load.shape[1] - 1) == pytest.approx(WATER.roots[1], rel=1e-12)
 
 
@@ -276,3 +279,64 @@ def test_another_attraction_of_the_same_work_and_stress_gives_the_same_asperity(
     other = SimpleNamespace(work_of_adhesion=found.work_of_adhesion, stress=found.stress)
     at = np.linspace(-2e-9, 3e-9, 50)
     assert_array_equal(MaugisTable(POLYSILICON, other).force(at, 1e-6), MaugisTable(POLYSILICON, found).force(at, 1e-6))
+
+
+def test_rows_beyond_the_first_range_leave_those_inside_unchanged():
+    inside = slice(WATER.further[0], -WATER.further[1])
+    np.testing.assert_array_equal(WATER.rows[inside], np.geomspace(*WATER.transitions))
+    roots = np.linspace(*WATER.roots)
+    for transition, load in list(zip(WATER.rows, WATER.load, strict=True))[inside][::21]:
+        states, delta = maugis_branch(transition)
+        np.testing.assert_array_equal(load, np.interp(roots, np.sqrt(delta - delta[0]), states))
+
+
+@given(st.floats(np.log(0.01), np.log(1e3)), st.floats(np.log(800), np.log(1e6)))
+def test_deep_contact_has_the_load_of_maugis(log_transition, log_interference):
+    transition, interference = np.exp(log_transition), np.exp(log_interference)
+
+    def state(log_spread):
+        return np.ravel(maugis_in_contact(np.exp([log_spread]), transition))
+
+    spread = brentq(lambda x: state(x)[1] - interference, np.log(1e-7), np.log(10), xtol=1e-13)
+    load = state(spread)[0]
+    # The closure loses up to half of its digits to cancellation at the smallest spreads.
+    assert -1e-6 * load < deep_load(interference, transition) - load < 1.1 + 1e-6 * load
+
+
+@given(st.floats(30, 1e3))
+def test_deep_contact_of_a_large_soft_sphere_is_jkr(a):
+    load, interference = a**3 - a * np.sqrt(6 * a), a**2 - 2 / 3 * np.sqrt(6 * a)
+    # The next order in the width s of the attraction relative to λ.
+    assert deep_load(interference, 1e4) == pytest.approx(load, rel=1e-7)
+
+
+@given(st.floats(800, 1e6))
+def test_deep_contact_of_a_small_hard_sphere_is_hertz(interference):
+    assert deep_load(interference, 1e-6) == pytest.approx(interference**1.5, rel=1e-6)
+
+
+@given(st.floats(5, 12), st.floats(-9, -6.5))
+@example(10.9, -6.5)
+@example(10.5, -6.8)
+def test_any_solid_and_any_height_of_a_summit_have_the_force_of_the_exact_solution(log_modulus, log_height):
+    solid, height = MaugisTable(10**log_modulus, WATER.attraction), 10**log_height
+    radius, spacing, step = 3e-7, 10e-9, height / 40
+    x = spacing * np.arange(-1, 2)
+    heights = (height - (x[:, None] ** 2 + x**2) / (2 * radius)).astype(np.float32)
+    total = np.zeros(60)
+    with patch.object(MaugisTable, "load", WATER.load), patch.object(MaugisTable, "snap_off", WATER.snap_off):
+        solid.add_forces(heights, spacing, step, total)
+    exact = solid.force(height - step * np.arange(60), radius)
+    pull = np.pi * WATER.attraction.work_of_adhesion * radius
+    snap = maugis_branch(transition_parameter(radius, solid.modulus, WATER.attraction))[1][0]
+    near = np.abs((height - step * np.arange(60)) / interference_scale(radius, solid.modulus, WATER.attraction) - snap)
+    # Single precision of heights; interpolation between rows of λ. The load is vertical at snap-off.
+    np.testing.assert_allclose(total[near > 0.02], exact[near > 0.02], rtol=5e-4, atol=0.03 * pull)
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_summits_too_sharp_for_a_continuum_are_counted_once_each(count):
+    heights = np.zeros((3, 2 * count + 1), np.float32)
+    heights[1, 1::2] = 1e-3
+    with pytest.raises(ValueError, match=rf"^{count} summits are too sharp: their Maugis' λ is below 0.0097, a radius"):
+        WATER.add_forces(heights, 10e-9, 1e-6, np.zeros(1000))

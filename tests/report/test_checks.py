@@ -213,3 +213,31 @@ def test_messages_give_as_many_digits_as_their_error_allows():
         found.message.removeprefix("mean adhesion energy grows by ").removesuffix(" mJ/m²").partition(" ± ")
     )
     assert len(number.partition(".")[2]) == len(error.partition(".")[2])
+
+
+def identified(radius, density, error=1e-3):
+    wanted = {"mean_radius": radius, "summit_density": density}
+    return xr.Dataset(
+        {name: ((), ratio * 2.0) for name, ratio in wanted.items()}
+        | {f"{name}_error": ((), error * 2.0) for name in wanted}
+        | {f"target_{name}": ((), 2.0) for name in wanted}
+    )
+
+
+@pytest.mark.parametrize(
+    ("radius", "density", "passed"),
+    [
+        (1.0, 1.0, [True, True]),
+        (1.23, 0.77, [True, True]),
+        (1.4, 1.0, [False, True]),
+        (1.0, 0.6, [True, False]),
+        (1e-3, 1e3, [False, False]),
+        (np.nan, 1.0, [False, True]),
+    ],
+)
+def test_an_identified_spectrum_must_have_the_measured_summits(radius, density, passed):
+    found = list(checks.of_identifications({"Mine": identified(radius, density)}))
+    assert [check.passed for check in found] == passed
+    assert all(check.case == "Mine" for check in found)
+    (uncertain, _) = checks.of_identifications({"Mine": identified(1.4, 1.0, error=0.1)})
+    assert uncertain.passed

@@ -12,6 +12,8 @@ from vectors import sampled_vectors
 from stiction.beam.montecarlo import Experiment, release_beam
 from stiction.chaos.model import draw, draw_laws, fit, fit_report
 from stiction.config import jobs
+from stiction.config.merging import merged
+from stiction.config.plan import Plan
 from stiction.contact.forcelaw import parametrise
 from stiction.stages import (
     beams,
@@ -30,9 +32,9 @@ from stiction.stages.cantilevers import cantilever, strips_along
 from stiction.stages.surfaces import FIELD, rough_surface
 from stiction.streams import stream
 from stiction.surface.field import StripGrid, radial_periodogram
-from stiction.surface.identify import Identification
+from stiction.surface.identify import Identification, SummitTarget
 from stiction.surface.maxent import GAUSSIAN
-from stiction.surface.spectrum import CutoffSelfAffine
+from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
 from stiction.surface.summits import find_summits
 
 B2 = SURFACES["B2"]
@@ -95,6 +97,64 @@ def test_an_identified_spectrum_comes_from_its_stage_and_a_published_one_does_no
     identified = spectrum.compute(small.heights_of("B2"), parameters.variables(other), settings)
     assert parameters.spectrum_of(identified) == other
     assert spectrum.underlying(identified, "NG").cutoff == other.cutoff
+
+
+def identified(radius=1.0, density=1.0, corner=32e6):
+    """Dataset of stage identification with ratios to the measured summits, of a spectrum with this corner [rad m⁻¹]."""
+    psd = CutoffSelfAffine(525e-36, 0.8e-36, corner, 138e6)
+    found = Identification(psd, 9, radius * 4e-7, density * 7e13, 1e-9, 1e12)
+    return identification.layout(found, SummitTarget(1.7e-9, 4e-7, 7e13, 20e-9))
+
+
+USE = spectrum.Use("Mine", 1.5e-6, 1e-6)
+
+
+def test_an_identified_spectrum_is_used_for_strips_longer_than_its_correlation():
+    for corner in np.geomspace(3e6, 60e6, 9):
+        bound = correlation_length(CutoffSelfAffine(525e-36, 0.8e-36, corner, 138e6))
+        for length, margin in ((bound * 1.01, bound * 1.01), (bound * 0.99, 9e-6), (9e-6, bound * 0.99)):
+            use = spectrum.Use("Mine", length, margin)
+            if min(length, margin) > bound:
+                spectrum.refuse_misuse(identified(corner=corner), use)
+                continue
+            key = "strip_length_um" if length < bound else "margin_um"
+            with pytest.raises(ValueError, match=f"sampling.{key} is .* surface Mine, {1e6 * bound:.3g} µm"):
+                spectrum.refuse_misuse(identified(corner=corner), use)
+
+
+def test_a_patch_is_longer_than_the_correlation_of_the_identified_spectrum(monkeypatch):
+    settings = small.settings_of(identification, jobs.identification(small.PLAN, "B2"))
+    wide = Identification(CutoffSelfAffine(1e-30, 1e-38, 1e6, 138e6), 9, 4e-7, 7e13, 1e-9, 1e12)
+    monkeypatch.setattr(identification, "identify", lambda *_: wide)
+    with pytest.raises(
+        ValueError, match=r"identification.patch_um is 2, must be above the correlation .* surface B2, "
+    ):
+        identification.compute(small.heights_of("B2"), "B2", settings)
+
+
+@pytest.mark.parametrize("off", [0.51, 1.0, 1.99])
+@pytest.mark.parametrize("name", ["radius", "density"])
+def test_a_spectrum_whose_summits_do_not_resemble_the_measured_ones_is_not_used(name, off):
+    spectrum.refuse_misuse(identified(**{name: off}), USE)
+    for factor in (0.4, 1.3, 4.1):
+        ratio = off * factor
+        if not 0.5 <= ratio <= 2:
+            with pytest.raises(ValueError, match="no spectrum .* has the summits of surface Mine: at best"):
+                spectrum.refuse_misuse(identified(**{name: ratio}), USE)
+
+
+def test_misfits_are_the_deviations_from_the_measured_summits():
+    found = identification.misfits(identified(radius=1.2, density=0.7))
+    assert found["radius"] == pytest.approx((0.2, 1e-9 / 4e-7))
+    assert found["density"] == pytest.approx((-0.3, 1e12 / 7e13))
+
+
+def test_the_spectrum_of_a_job_is_checked_where_it_is_identified():
+    plan = Plan(merged(small.PLAN.config, {"surfaces": {"B2": {"psd": "identified"}}, "sampling": {"margin_um": 0.2}}))
+    settings = small.settings_of(spectrum, jobs.spectrum(plan, "B2"))
+    assert settings.identified == spectrum.Use("B2", 1.5e-6, pytest.approx(0.2e-6))
+    with pytest.raises(ValueError, match=r"sampling.margin_um is 0.2, .* surface B2"):
+        spectrum.compute(small.heights_of("B2"), identified(), settings)
 
 
 def test_identification_finds_what_the_surface_was_asked_for(through_a_file):

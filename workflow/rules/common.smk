@@ -1,6 +1,6 @@
 """Definitions shared by all rules: validated configuration and plan, code of a job, names of files."""
 
-from stiction.config import cases, files, jobs, relations
+from stiction.config import cases, files, jobs, memory, relations
 from stiction.config.plan import Plan
 from stiction.models import BEAM_MODELS, SURFACE_MODELS, surface_model
 from stiction.run import folder, provenance
@@ -29,6 +29,7 @@ except files.ConfigError as error:
 
 config.update(files.normalised(config))
 plan = Plan(config)
+MEMORY = memory.of_job(config)  # of the jobs that draw surfaces [MB]
 STYLE = str(BASE / "src" / "stiction" / "report" / "stiction.mplstyle")
 # Categories of the report.
 ON_SURFACES, ON_FORCES, ON_BEAMS = "Surfaces (Sec. II)", "Contact forces (Sec. III)", "Beams (Secs. IV and V)"

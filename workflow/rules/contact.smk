@@ -10,6 +10,7 @@ rule contact_chunk:
         "results/logs/contact/{pair}_{model}/{chunk}-of-{number}.log",
     resources:
         runtime=30,
+        mem_mb=MEMORY,
     params:
         settings=lambda w: jobs.contact(plan, w.pair),
         code=code("contact_chunk.py"),

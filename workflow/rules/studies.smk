@@ -10,6 +10,7 @@ rule sensitivity_contact:
         "results/logs/studies/sensitivity/contact/{pair}_{moment}_{side}.log",
     resources:
         runtime=30,
+        mem_mb=MEMORY,
     params:
         settings=lambda w: jobs.sensitivity_contact(plan, w.pair),
         code=code("sensitivity_contact.py"),
@@ -43,6 +44,8 @@ rule plasticity:
         "results/studies/plasticity/{pair}.nc",
     log:
         "results/logs/studies/plasticity/{pair}.log",
+    resources:
+        mem_mb=MEMORY,
     params:
         settings=lambda w: jobs.plasticity(plan, w.pair),
         code=code("plasticity.py"),
@@ -131,6 +134,7 @@ rule variant_contact:
         "results/logs/studies/variants/contact/{pair}_{variant}.log",
     resources:
         runtime=30,
+        mem_mb=MEMORY,
     params:
         settings=lambda w: plan.variant_contact(w.pair, w.variant),
         code=code("variant_contact.py"),

@@ -23,6 +23,8 @@ rule identification:
         "results/identification/{surface}.nc",
     log:
         "results/logs/identification/{surface}.log",
+    resources:
+        mem_mb=MEMORY,
     params:
         settings=lambda w: jobs.identification(plan, w.surface),
         code=code("identification.py"),
@@ -58,6 +60,8 @@ rule iteration:
         "results/iteration/{surface}.nc",
     log:
         "results/logs/iteration/{surface}.log",
+    resources:
+        mem_mb=MEMORY,
     params:
         settings=jobs.iteration(plan),
         code=code("iteration.py"),
@@ -75,6 +79,8 @@ rule character:
         "results/character/{surface}_{model}.nc",
     log:
         "results/logs/character/{surface}_{model}.log",
+    resources:
+        mem_mb=MEMORY,
     params:
         settings=jobs.character(plan),
         code=code("character.py"),

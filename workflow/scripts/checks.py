@@ -18,11 +18,13 @@ def main(job):
     beams = {pair: cantilever(sections, pair) for pair in settings["pairs"]}
     strip = typed(StripLength, settings["sampling"]).strip_length
     spectra = load_named(job.input.spectrum, "spectrum")
+    identified = load_named(job.input.identification, "identification")
     characters = load_named(job.input.character, "character", lambda name: (surface_of(name), model_of(name)))
     forces, chaoses, outcomes = (load_named(job.input[stage], stage, key_of) for stage in ("forces", "chaos", "beams"))
     resampled = load_named(job.input.resampling, "resampling", lambda name: (*key_of(name), "NG"))
     found = chain(
         checks.of_surfaces(characters, targets, {name: defect(found) for name, found in spectra.items()}),
+        checks.of_identifications(identified),
         checks.of_force_laws(forces, chaoses),
         checks.of_trends(forces, settings["skewed"]),
         checks.of_beams(outcomes, forces, beams, strip),

@@ -4,10 +4,8 @@ import functools
 from collections.abc import Mapping
 from pathlib import Path
 
-import yaml
-
 from stiction.config.merging import merged
-from stiction.config.messages import ConfigError, duplicates, shown
+from stiction.config.reading import read
 from stiction.config.relations import validate
 
 #: Configuration of the paper; in a checkout, a link to ``config.yaml`` in the root folder.
@@ -42,39 +40,6 @@ def load(*overlays: str | Path | Mapping) -> dict:
 def paper() -> dict:
     """Configuration of the paper, read once, for comparison."""
     return read(PAPER)
-
-
-def read(path: str | Path) -> dict:
-    """Mapping in one YAML file.
-
-    Raises
-    ------
-    ConfigError
-        If the file cannot be read, is not a mapping, or contains a key twice.
-    """
-    try:
-        with Path(path).open(encoding="utf-8") as file:
-            content = yaml.load(file, _UniqueKeys)
-    except Exception as reason:  # PyYAML does not wrap all exceptions: !!bool x raises a KeyError
-        raise ConfigError(f"{path} cannot be read: {' '.join(str(reason).split())}") from reason
-    if not isinstance(content, dict):
-        raise ConfigError(f"{path} holds {shown(content)}, must be sections such as 'contact: {{samples: 5000}}'")
-    return content
-
-
-class _UniqueKeys(yaml.SafeLoader):
-    """YAML loader that rejects duplicate keys; PyYAML would silently drop the first value."""
-
-    def construct_mapping(self, node, deep=False):  # noqa: ARG002
-        keys = [key for key, _ in node.value if key.tag != "tag:yaml.org,2002:merge"]
-        # Deep construction also rejects a mapping that contains itself.
-        mapping = super().construct_mapping(node, deep=True)
-        for key in duplicates(self.construct_object(key, deep=True) for key in keys):
-            raise yaml.constructor.ConstructorError(None, None, f"key {key!r} is given twice", node.start_mark)
-        return mapping
-
-
-_UniqueKeys.add_constructor("tag:yaml.org,2002:map", _UniqueKeys.construct_mapping)
 
 
 def normalised(config: dict) -> dict:

@@ -49,10 +49,12 @@ def identification(plan: Plan, surface: str) -> dict:
 
 
 def spectrum(plan: Plan, surface: str) -> dict:
-    """Published spectrum of a surface, or ``identified``, and the grid."""
-    entry = plan.config["surfaces"][surface]
-    psd = entry["published_psd"] if entry["psd"] == "published" else "identified"
-    return {"spacing_nm": plan.config["sampling"]["spacing_nm"], "psd": psd}
+    """Published spectrum of a surface, or ``identified`` with the strips it is used for, and the grid."""
+    entry, sampling = plan.config["surfaces"][surface], plan.config["sampling"]
+    if entry["psd"] == "published":
+        return {"spacing_nm": sampling["spacing_nm"], "psd": entry["published_psd"]}
+    use = {"surface": surface} | chosen(sampling, ("strip_length_um", "margin_um"))
+    return {"spacing_nm": sampling["spacing_nm"], "psd": "identified", "identified": use}
 
 
 def iteration(plan: Plan) -> dict:

@@ -13,12 +13,19 @@ from pathlib import Path
 import numpy as np
 import yaml
 
+from stiction.config import memory
 from stiction.config.cases import NAMEABLE, decimals
 from stiction.config.messages import ConfigError, Problem, did_you_mean, dotted, duplicates, schema_problems, shown
 from stiction.config.units import NM_PER_UM, typed
+from stiction.contact.asperity import asperity, reduced_modulus
+from stiction.contact.estimate import ProfileMoments, repulsion_and_attraction
+from stiction.contact.meniscus import laplace_pressure, meniscus_height
+from stiction.contact.vanderwaals import attraction
 from stiction.errors import NotConverged
+from stiction.models import SIDES
 from stiction.numbers import is_multiple
 from stiction.surface import maxent
+from stiction.surface.identify import SummitTarget, estimated_spectrum
 from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
 from stiction.surface.translation import LARGEST_SCORE
 
@@ -49,6 +56,13 @@ def validate(config: dict) -> None:
 
 
 _RELATIONS = []
+#: Keys of the targets of an identification.
+_TARGET = (
+    "surfaces.*.rms_nm",
+    "surfaces.*.mean_summit_radius_um",
+    "surfaces.*.summit_density_per_um2",
+    "character.spacing_nm",
+)
 
 
 def relation(*keys: str) -> Callable:
@@ -112,8 +126,11 @@ def _checked(holds, paths, config, faults):
 
 
 def _given(paths, values):
-    """The other values of a violated relation."""
-    others = [f"{dotted(path)} = {shown(value)}" for path, value in zip(paths, values, strict=True) if path[-1] != "#"]
+    """The other values of a violated relation, except lists of names and whole sections of the configuration."""
+    given = ((path, value) for path, value in zip(paths, values, strict=True) if path[-1] != "#")
+    others = [
+        f"{dotted(path)} = {shown(value)}" for path, value in given if len(path) > 1 or not isinstance(value, dict)
+    ]
     return f" (given {', '.join(others)})" if others else ""
 
 
@@ -231,6 +248,34 @@ def length_exceeds_the_correlation(length, psd):
     return None if length > bound else f"must be above the correlation length of the surface, {bound:.3g} µm"
 
 
+#: The correlation length estimated from summits exceeds that of the identified spectrum by this factor at most.
+_AT_MOST = 1.5
+
+
+@relation("identification.patch_um", "surfaces.*.psd", *_TARGET)
+@relation("sampling.strip_length_um", "surfaces.*.psd", *_TARGET)
+@relation("sampling.margin_um", "surfaces.*.psd", *_TARGET)
+def length_can_exceed_the_correlation(length, psd, *target):
+    """As above for identified spectra, as far as it is known before; the jobs check the identified spectrum itself."""
+    if psd != "identified":
+        return None
+    try:
+        with np.errstate(all="ignore"):
+            bound = _estimated_correlation_length(*target)
+    except (ValueError, ArithmeticError):
+        return None  # targets that no spectrum has, which the identification reports
+    if not length * _AT_MOST < bound:
+        return None
+    return f"must be above the correlation length of the surface, estimated as {bound:.2g} µm from its summits"
+
+
+@functools.lru_cache(maxsize=1000)
+def _estimated_correlation_length(rms, radius, density, spacing):
+    """Correlation length of the spectrum from which an identification starts [µm]."""
+    target = SummitTarget(np.float64(1e-9 * rms), 1e-6 * radius, 1e12 * density, 1e-9 * spacing)
+    return 1e6 * correlation_length(estimated_spectrum(target))
+
+
 @functools.cache
 def _correlation_length(**psd):
     """Correlation length of a published spectrum [µm]."""
@@ -317,3 +362,103 @@ def a_mesh_is_whole(elements, strips, length):
 def beam_is_slender(size, length):
     """The beam is longer than it is wide, thick and deflected (Euler-Bernoulli)."""
     return None if size < length else "must be below the length of the beam"
+
+
+#: Least ratio of the estimated repulsion at zero distance to the estimated pull-off pressure. ASSUME: 3, because the
+#: repulsion is estimated up to a factor of two too high, and the weakest sample must resist the strongest attraction.
+_SAFE = 3
+
+
+@relation(
+    "run.pairs.*",
+    "pairs",
+    "surfaces",
+    "solid",
+    "van_der_waals",
+    "water.temperature_K",
+    "figures.humidity",
+)
+def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature, shown_humidity):
+    """The force rises to the pull-off pressure on the grid of distances, which begins where mean planes meet."""
+    pair = pairs.get(name)
+    if pair is None or any(pair[side] not in surfaces for side in SIDES):
+        return None  # other relations report this and the next
+    both = [surfaces[pair[side]] for side in SIDES]
+    spectra = [surface["published_psd"] for surface in both if surface["psd"] == "published"]
+    if any(spectrum_falls(psd["floor_nm4"], psd["plateau_nm4"]) for psd in spectra) or any(
+        corner_lies_below_the_cutoff(psd["corner_rad_per_um"], psd["cutoff_rad_per_um"]) for psd in spectra
+    ):
+        return None
+    humidities = tuple(sorted({*pair["humidities"], shown_humidity}))
+    elastic = solid["young_modulus_GPa"], solid["poisson_ratio"], medium
+    try:
+        forces = _estimated(tuple(map(_summit_source, both)), elastic, temperature, humidities)
+    except (ValueError, ArithmeticError):
+        return "must have surfaces and a solid for which the adhesion can be estimated; some value is far out of range"
+    stuck = [
+        (at, *force) for at, force in zip(humidities, forces, strict=True) if not force[0] >= _SAFE * force[1] >= 0
+    ]
+    if not stuck:
+        return None
+    humidity, repulsion, pull = stuck[0]
+    return (
+        f"must have surfaces rough enough and a solid stiff enough for its humidities: at {humidity}"
+        f"{' and others' if len(stuck) > 1 else ''} the estimated attraction, {1e-6 * pull:.3g} MPa, is not below a "
+        f"third of the repulsion where the mean planes meet, {1e-6 * repulsion:.3g} MPa"
+    )
+
+
+def _summit_source(surface):
+    """What the estimate takes of a surface, hashable: rms and either Eq. (7) or the summits."""
+    if surface["psd"] == "published":
+        return surface["rms_nm"], tuple(surface["published_psd"].items())
+    return surface["rms_nm"], (surface["mean_summit_radius_um"], surface["summit_density_per_um2"])
+
+
+@functools.lru_cache(maxsize=1000)
+def _estimated(sources, elastic, temperature, humidities):
+    """Estimated repulsion at zero distance and attraction of a pair at all humidities [Pa]."""
+    modulus, ratio, medium = elastic
+    with np.errstate(all="raise", under="ignore"):
+        surface = ProfileMoments.of_sum(map(_moments, sources))
+        solid = asperity(reduced_modulus(1e9 * modulus, ratio), attraction(medium))
+        films = [(float(meniscus_height(h, temperature)), -float(laplace_pressure(h, temperature))) for h in humidities]
+        return repulsion_and_attraction(surface, solid, films)
+
+
+def _moments(source):
+    """Moments of the profile of one surface."""
+    rms, given = source
+    if isinstance(given[0], tuple):
+        return ProfileMoments.of_spectrum(np.float64(1e-9 * rms), typed(CutoffSelfAffine, dict(given)))
+    return ProfileMoments.of_summits(np.float64(1e-9 * rms), np.float64(1e-6 * given[0]), np.float64(1e12 * given[1]))
+
+
+@relation("sampling.spacing_nm", "sampling.strip_length_um", "sampling.margin_um", "beam.width_um")
+@relation("studies.variants.spacing_nm.*", "sampling.strip_length_um", "sampling.margin_um", "beam.width_um")
+def strips_fit_into_memory(spacing, length, margin, width):
+    """The field from which a strip is cut fits into the memory of a job."""
+    return _too_large(length + margin, width + margin, spacing)
+
+
+@relation("sampling.spacing_nm")
+def fields_fit_into_memory(spacing):
+    """The fields on which spectra are estimated fit into the memory of a job."""
+    return _too_large(memory.FIELD_UM, memory.FIELD_UM, spacing)
+
+
+@relation("identification.patch_um", "sampling.spacing_nm")
+def patches_fit_into_memory(side, spacing):
+    """A patch fits into the memory of a job."""
+    return _too_large(side, side, spacing)
+
+
+def _too_large(length, width, spacing):
+    """Refusal of a field whose memory exceeds that of the largest job."""
+    needed = memory.of_field(length, width, spacing)
+    if needed <= memory.LARGEST:
+        return None
+    return (
+        f"must leave fields within {1e-3 * memory.LARGEST:g} GB of memory: {length:g} x {width:g} µm every "
+        f"{spacing:g} nm take {1e-3 * needed:.3g} GB"
+    )

@@ -134,7 +134,8 @@ def _reach(force, start, level):
         if force[i] >= level:
             return i
     raise ValueError(
-        "the force does not rise to zero or to f_limit on its grid: the air is too dry or the steps are too long"
+        "the force does not rise to zero or to f_limit at any distance between the mean planes: the surfaces are too "
+        "smooth or the solid is too soft to resist the adhesion, or the air is too dry"
     )
 
 

@@ -22,6 +22,7 @@ from stiction.models import SURFACE_MODELS, surface_model
 from stiction.report.format import TO_MJ, TO_UM, with_error
 from stiction.report.tables_surfaces import surface_statistics
 from stiction.stages.forces import vectors
+from stiction.stages.identification import misfits
 from stiction.stages.releases import ended
 
 #: A case: pair, relative humidity and model.
@@ -36,6 +37,8 @@ DRY = 0.4
 MEAN_OFF, SPREAD_OFF, CORRELATION_OFF = 0.02, 0.15, 0.05
 #: Tolerance of the chaos model: mean crack length, relative.
 LENGTH_OFF = 0.01
+#: Largest misfit of an identified spectrum, relative: a little above that which the paper accepts, 23 % for Sub2.
+MISFIT = 0.3
 #: Largest share of draws without a force law, non-Gaussian surfaces; largest difference from the share of the samples.
 REJECTED, REJECTED_OFF = 0.05, 0.02
 
@@ -110,6 +113,14 @@ def moments_meet_targets(
         within = allowed * error + (defect * target if name == "rms_nm" else 0)
         message = f"{name} is {with_error(values[name], error)}, target {target:.4g}, allowed ± {within:.2g}"
         yield Check("drawn surfaces have the target moments", case, bool(abs(off) <= within), message)
+
+
+def identification_meets_targets(case: str, identification: xr.Dataset) -> Iterator[Check]:
+    """Radius and density of the summits of the identified spectrum are the measured ones; datasets of that stage."""
+    for word, (off, error) in misfits(identification).items():
+        allowed = MISFIT + ALLOWED * error
+        message = f"{word} off by {with_error(100 * off, 100 * error, '+')} %, allowed ± {100 * allowed:.2g} %"
+        yield Check("identified spectra have the measured summits", case, bool(abs(off) <= allowed), message)
 
 
 def vectors_are_possible(case: str, forces: xr.Dataset) -> Check:
@@ -212,6 +223,12 @@ def of_surfaces(
     for (surface, model), character in characters.items():
         wanted = targets[surface] if model == "NG" else targets[surface] | {"skewness": 0.0, "kurtosis": 3.0}
         yield from moments_meet_targets(f"{surface} {model}", character, wanted, defects[surface])
+
+
+def of_identifications(identifications: Mapping[str, xr.Dataset]) -> Iterator[Check]:
+    """All checks of identified spectra; surface to the dataset of stage identification."""
+    for surface, identification in identifications.items():
+        yield from identification_meets_targets(surface, identification)
 
 
 def of_force_laws(forces: Mapping[Case, xr.Dataset], chaoses: Mapping[Case, xr.Dataset]) -> Iterator[Check]:

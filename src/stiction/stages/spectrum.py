@@ -7,8 +7,22 @@ import xarray as xr
 
 from stiction.stages import parameters
 from stiction.stages.heights import density
+from stiction.stages.identification import misfits, refuse_long_correlation
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 from stiction.surface.translation import Translation, spectrum_of_heights, underlying_spectrum
+
+#: Largest ratio, or smallest inverse ratio, of identified to measured radius and density of summits. ASSUME: 2; beyond,
+#: contact would be computed for surfaces that do not resemble the measured one.
+RESEMBLES = 2.0
+
+
+@dataclass(frozen=True)
+class Use:
+    """Surface and strips for which an identified spectrum is used."""
+
+    surface: str  #: its name
+    strip_length: float  #: l_meso [m]
+    margin: float  #: width of the periodic field beyond the strip [m]
 
 
 @dataclass(frozen=True)
@@ -17,6 +31,7 @@ class Settings:
 
     spacing: float  #: of the grid on which the surface will be drawn [m]
     psd: CutoffSelfAffine | str  #: spectrum of the heights, used up to a factor, or ``identified``
+    identified: Use | None = None  #: what an identified spectrum is used for
 
 
 def compute(heights: xr.Dataset, identification: xr.Dataset | None, settings: Settings) -> xr.Dataset:
@@ -28,6 +43,11 @@ def compute(heights: xr.Dataset, identification: xr.Dataset | None, settings: Se
         Datasets of the stages of these names; ``identification`` is ignored if the settings contain the spectrum.
     settings : Settings
 
+    Raises
+    ------
+    ValueError
+        If the identified spectrum is not that of strips of a surface with the measured summits, see `refuse_misuse`.
+
     Returns
     -------
     Dataset
@@ -35,9 +55,31 @@ def compute(heights: xr.Dataset, identification: xr.Dataset | None, settings: Se
         the heights, all of unit variance; share of the variance that no Gaussian field can provide.
     """
     target = parameters.spectrum_of(identification) if settings.psd == "identified" else settings.psd
+    if settings.psd == "identified" and settings.identified:
+        refuse_misuse(identification, settings.identified)
     translation = Translation(density(heights, "NG"))
     underlying, defect = underlying_spectrum(target, translation, settings.spacing)
     return layout(target, underlying, spectrum_of_heights(underlying, translation, settings.spacing), defect)
+
+
+def refuse_misuse(identification: xr.Dataset, use: Use) -> None:
+    """Check an identified spectrum before anything is drawn from it.
+
+    Raises
+    ------
+    ValueError
+        If strips are not longer than its correlation length, or its summits do not resemble the measured ones.
+    """
+    found = parameters.spectrum_of(identification)
+    lengths = {"sampling.strip_length_um": use.strip_length, "sampling.margin_um": use.margin}
+    refuse_long_correlation(use.surface, found, lengths)
+    ratios = {word: 1 + off for word, (off, _) in misfits(identification).items()}
+    if not all(1 / RESEMBLES <= ratio <= RESEMBLES for ratio in ratios.values()):
+        raise ValueError(
+            f"no spectrum of the form of Eq. (7) has the summits of surface {use.surface}: at best "
+            f"{ratios['radius']:.3g} times the radius surfaces.{use.surface}.mean_summit_radius_um and "
+            f"{ratios['density']:.3g} times the density surfaces.{use.surface}.summit_density_per_um2"
+        )
 
 
 def layout(

@@ -56,7 +56,16 @@ def compute(identifications: Mapping[str, xr.Dataset], pair: str, base: Settings
     pair : str
     base, changed : Settings
         Settings without and with the change of the variant.
+
+    Raises
+    ------
+    ValueError
+        If an identified spectrum must not be used, see `stiction.stages.spectrum.refuse_misuse`.
     """
+    for name, identification in identifications.items():
+        stage_spectrum.refuse_misuse(
+            identification, stage_spectrum.Use(name, changed.sampling.strip_length, changed.sampling.margin)
+        )
     surfaces = surfaces_of(base.pairs[pair], base.surfaces, base.sampling.spacing, identifications)
     return stage_contact.compute(surfaces, pair, "NG", changed)
 

@@ -108,6 +108,11 @@ def identify(
     return Identification(_spectrum(fit.x, target), len(known), *map(float, (*values, *errors)))
 
 
+def estimated_spectrum(target: SummitTarget) -> CutoffSelfAffine:
+    """Spectrum from which the search starts; its correlation length is at most 1.5 times that of the result."""
+    return _spectrum(_start(target), target)
+
+
 def _spectrum(parameters, target):
     """Eq. (7) with (ln of corner / cut-off, ln -slope) and the rms and cut-off of the target."""
     corner, slope = np.exp(parameters) * [target.cutoff, 1.0]

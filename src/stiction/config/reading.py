@@ -1,0 +1,135 @@
+"""Strict reading of one configuration file, and a check before Snakemake reads files and arguments.
+
+    python -m stiction.config.reading FILE ... [-- ARGUMENTS OF SNAKEMAKE]
+
+Snakemake reads files before the Snakefile can check them, and prints tracebacks or sentences without the name of the
+file. This module imports little, so that the check takes a fraction of a second.
+"""
+
+import re
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import yaml
+
+from stiction.config.messages import ConfigError, duplicates, shown
+
+#: Numbers that YAML 1.1 reads in base 60 and in base 8.
+_BASE_60 = re.compile(r"[-+]?\d[\d_]*(:[0-5]?\d)+(\.[\d_]*)?")
+_BASE_8 = re.compile(r"[-+]?0[0-7_]+")
+#: What the parser says, and the likely cause.
+_CAUSES = {
+    "'\\t' that cannot start any token": "indent with spaces, not with tabs",
+    "expected a single document": "remove the line --- that starts a second document",
+}
+
+
+def read(path: str | Path) -> dict:
+    """Mapping in one YAML file.
+
+    Raises
+    ------
+    ConfigError
+        If the file cannot be read, is not a mapping, contains a key twice or a number that YAML misreads; one line
+        with the name of the file and, where it is known, the line.
+    """
+    try:
+        content = yaml.load(_text(path), _Strict)
+    except Exception as reason:  # PyYAML does not wrap all exceptions: !!bool x raises a KeyError
+        said = _said(reason)
+        causes = [f"; {cause}" for symptom, cause in _CAUSES.items() if symptom in said]
+        raise ConfigError(f"{path} cannot be read: {said}{''.join(causes)}") from reason
+    if not isinstance(content, dict):
+        held = "is empty" if content is None else f"holds {shown(content)}"
+        raise ConfigError(f"{path} {held}, must be sections such as 'contact: {{samples: 5000}}'")
+    return content
+
+
+def _said(reason):
+    """An error in one line, that of the parser with the line of the file first."""
+    mark = getattr(reason, "problem_mark", None)
+    if mark is None:
+        return " ".join(str(reason).split())
+    return f"line {mark.line + 1}, column {mark.column + 1}: {' '.join(filter(None, (reason.context, reason.problem)))}"
+
+
+def _text(path):
+    """Text of a file in UTF-8."""
+    data = Path(path).read_bytes()
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise ValueError("it is text in UTF-16, must be UTF-8: save it as UTF-8")
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as reason:
+        line = data[: reason.start].count(b"\n") + 1
+        raise ValueError(f"line {line} holds a character that is not UTF-8: save the file as UTF-8") from reason
+
+
+class _Strict(yaml.SafeLoader):
+    """YAML loader that rejects duplicate keys, of which PyYAML drops the first value, and numbers in base 60 or 8."""
+
+    def construct_mapping(self, node, deep=False):  # noqa: ARG002
+        keys = [key for key, _ in node.value if key.tag != "tag:yaml.org,2002:merge"]
+        # Deep construction also rejects a mapping that contains itself.
+        mapping = super().construct_mapping(node, deep=True)
+        for key in duplicates(self.construct_object(key, deep=True) for key in keys):
+            raise yaml.constructor.ConstructorError(None, None, f"key {key!r} is given twice", node.start_mark)
+        return mapping
+
+    def construct_number(self, node):
+        """Number, unless YAML reads another one than is written."""
+        construct = self.construct_yaml_int if node.tag.endswith(":int") else self.construct_yaml_float
+        value, text = construct(node), str(node.value)
+        for pattern, base in ((_BASE_60, 60), (_BASE_8, 8)):
+            if pattern.fullmatch(text) and (base == 60 or value != int(text)):
+                said = f"YAML reads {text} in base {base}, as {shown(value)}: write the number that is meant"
+                raise yaml.constructor.ConstructorError(None, None, said, node.start_mark)
+        return value
+
+
+_Strict.add_constructor("tag:yaml.org,2002:map", _Strict.construct_mapping)
+_Strict.add_constructor("tag:yaml.org,2002:int", _Strict.construct_number)
+_Strict.add_constructor("tag:yaml.org,2002:float", _Strict.construct_number)
+
+
+def problems(files: Iterable[str], arguments: Iterable[str]) -> Iterator[str]:
+    """One line for each file that cannot be read and each setting among Snakemake's arguments that it cannot take."""
+    arguments = list(arguments)
+    for file in [*files, *_values(arguments, ("--configfile", "--configfiles"))]:
+        try:
+            read(file)
+        except ConfigError as error:
+            yield str(error)
+    for setting in _values(arguments, ("--config", "-C")):
+        name, equals, _ = setting.partition("=")
+        if not (equals and name.isidentifier()):
+            yield (
+                f"--config {setting} must be a key of the first level and its value, such as --config seed=1; "
+                "put other changes into a file: CONFIG=mine.yaml"
+            )
+
+
+def _values(arguments, options):
+    """Words that follow one of some options, up to the next option."""
+    taken = False
+    for word in arguments:
+        if word.startswith("-"):
+            option, equals, value = word.partition("=")
+            taken = option in options
+            if taken and equals:
+                yield value
+        elif taken:
+            yield word
+
+
+def main(words: list[str]) -> int:
+    """Print the problems of files and, after ``--``, of arguments of Snakemake; 2 if there are any, otherwise 0."""
+    cut = words.index("--") if "--" in words else len(words)
+    found = list(problems(words[:cut], words[cut + 1 :]))
+    print("\n".join(found), file=sys.stderr, end="\n" if found else "")  # noqa: T201
+    return 2 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,162 @@
+"""Files are read strictly, and problems are one line with the name of the file; also before Snakemake reads them."""
+
+import subprocess
+import sys
+
+import pytest
+import yaml
+from configurations import ROOT
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from stiction.config.messages import ConfigError
+from stiction.config.reading import main, problems, read
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"seed: 1\nbeam: {elements: 2}\nseed: 2\n", "key 'seed' is given twice"),
+        (b"beam:\n  elements: 2\n  elements: 2\n", "line 2, column 3"),
+        (b"", "is empty, must be sections"),
+        (b"- 1\n", "holds [1], must be sections"),
+        (b"5000\n", "holds 5000, must be sections"),
+        (b"a: [1\n", "expected ',' or ']'"),
+        (b"a:\n\tb: 1\n", "; indent with spaces, not with tabs"),
+        (b"a: 1\nb: \xff\n", "line 2 holds a character that is not UTF-8"),
+        (b"a: \x00\n", "cannot be read"),
+        (b"a: &x {b: *x}\n", "recursive"),
+        (b"a: &x {b: [*x]}\n", "recursive"),
+        (b"a: &x [*x]\n", "recursive"),
+        (b"a: *x\n", "undefined alias"),
+        (b"{[1]: 2}\n", "unhashable key"),
+        (b"a: !!bool x\n", "cannot be read"),
+        (b"a: !!python/object:os.system x\n", "could not determine a constructor"),
+        (b"a: 2021-13-45\n", "cannot be read"),
+        (b"a: 1\n---\na: 2\n", "remove the line --- that starts a second document"),
+        (b"a: " + b"1" * 5000, "cannot be read"),
+        (b"[" * 2000, "cannot be read"),
+    ],
+)
+def test_an_invalid_file_is_rejected_in_one_line_with_its_name(tmp_path, content, message):
+    path = tmp_path / "mine.yaml"
+    path.write_bytes(content)
+    with pytest.raises(ConfigError) as refused:
+        read(path)
+    assert str(path) in str(refused.value)
+    assert message in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_missing_file_is_reported_by_name(tmp_path):
+    with pytest.raises(ConfigError, match=r"nowhere\.yaml cannot be read: .*No such file"):
+        read(tmp_path / "nowhere.yaml")
+
+
+def test_an_anchor_may_be_changed_key_by_key(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text("base: &b {x: 1, y: 2}\nmine: {<<: *b, y: 3}\n", encoding="utf-8")
+    assert read(path)["mine"] == {"x": 1, "y": 3}
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.text(alphabet="abé1.-~: {}[]\n\t,'\"&*!<>?|%@#=0e") | st.text())
+def test_any_text_is_read_as_sections_or_rejected_in_one_line(tmp_path, text):
+    path = tmp_path / "mine.yaml"
+    path.write_bytes(text.encode("utf-8", "surrogatepass"))
+    try:
+        assert isinstance(read(path), dict)
+    except ConfigError as error:
+        refused = str(error)
+    else:
+        return
+    assert refused.startswith(str(path))
+    assert len(refused.splitlines()) == 1
+
+
+ENCODINGS = ("latin-1", "utf-16", "utf-16-le", "utf-16-be", "utf-32", "cp1252")
+
+
+@pytest.mark.parametrize("encoding", ENCODINGS)
+@pytest.mark.parametrize("lines", [0, 1, 7])
+def test_text_in_another_encoding_is_rejected_with_its_line_or_its_name(tmp_path, encoding, lines):
+    path = tmp_path / "mine.yaml"
+    path.write_bytes(("seed: 1\n" * lines + "# gap in µm\n").encode(encoding))
+    with pytest.raises(ConfigError) as refused:
+        read(path)
+    assert str(refused.value).startswith(f"{path} cannot be read: ")
+    assert "UTF-8" in str(refused.value) or "special characters" in str(refused.value)
+    if encoding in ("latin-1", "cp1252"):
+        assert f"line {lines + 1} holds a character that is not UTF-8" in str(refused.value)
+
+
+@given(st.integers(0, 10**6))
+def test_a_number_is_read_as_written_or_rejected_with_the_number_that_yaml_reads(tmp_path_factory, number):
+    path = tmp_path_factory.mktemp("numbers") / "mine.yaml"
+    for text in (
+        f"{number}",
+        f"-{number}",
+        f"+{number}",
+        f"{number}.5",
+        f"0{number}",
+        f"{number}:30",
+        f"{number}:30.5",
+    ):
+        path.write_text(f"a: 1\nb: [{text}]\n")
+        (meant,) = yaml.safe_load(path.read_text())["b"]
+        if isinstance(meant, str) or (":" not in text and meant == float(text)):
+            assert read(path)["b"] == [meant]
+            continue
+        with pytest.raises(ConfigError, match=r"line 2, column 5: YAML reads") as refused:
+            read(path)
+        assert f"{text} in base" in str(refused.value)
+        assert f", as {meant}: write the number that is meant" in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"), [("1:30", 90), ("010", 8), ("-1:30", -90), ("1:30.5", 90.5), ("0o10", None)]
+)
+def test_bases_60_and_8_are_rejected(tmp_path, text, value):
+    path = tmp_path / "mine.yaml"
+    path.write_text(f"beam: {{thickness_um: {text}}}\n")
+    if value is None:
+        assert read(path) == {"beam": {"thickness_um": text}}
+        return
+    with pytest.raises(ConfigError, match=rf"line 1, column 22: YAML reads {text} in base \d+, as {value}: write"):
+        read(path)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "count"),
+    [
+        ([], 0),
+        (["--config", "seed=1", "chaos={order: 3}", "-n"], 0),
+        (["--config=seed=1"], 0),
+        (["-n", "--config", "seed", "beam.thickness_um=2.5", "--cores", "2"], 2),
+        (["-C", "a b=3"], 1),
+        (["--config=seed"], 1),
+        (["--cores", "seed", "--configfile", "nowhere.yaml", "config.yaml"], 1),
+    ],
+)
+def test_settings_that_snakemake_cannot_take_are_reported(monkeypatch, arguments, count):
+    monkeypatch.chdir(ROOT)
+    found = list(problems(["config.yaml"], arguments))
+    assert len(found) == count
+    assert all("must be a key of the first level" in line or "nowhere.yaml cannot be read" in line for line in found)
+
+
+def test_the_check_prints_every_problem_and_its_status_stops_make(tmp_path, capsys):
+    (tmp_path / "mine.yaml").write_text("- 1\n")
+    assert main([str(ROOT / "config.yaml")]) == 0
+    assert capsys.readouterr().err == ""
+    assert main([str(tmp_path / "mine.yaml"), "--", "--config", "seed"]) == 2
+    assert [line.split()[0] for line in capsys.readouterr().err.splitlines()] == [
+        str(tmp_path / "mine.yaml"),
+        "--config",
+    ]
+
+
+def test_the_check_imports_no_library_for_numbers():
+    code = "import sys, stiction.config.reading; print(*sys.modules)"
+    modules = subprocess.run([sys.executable, "-c", code], text=True, capture_output=True, check=True).stdout.split()
+    assert not {"numpy", "scipy", "numba", "xarray", "snakemake"} & set(modules)
