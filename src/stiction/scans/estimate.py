@@ -28,10 +28,9 @@ from stiction.scans.quantiles import (
     MeasuredDensity,
     compared_slopes,
     correlation_areas,
+    feasible,
     goodness,
-    maximum_entropy,
     measured_density,
-    nearest,
     quantiles,
 )
 from stiction.scans.scan import Frame, Scan
@@ -219,11 +218,11 @@ def estimate(
     values = found.moments
     residuals = []
     for number in range(_ROUNDS):
-        model, feasible = _model(found, values, measured)
+        model, nearest = _model(found, values, measured)
         drawn = draw_model_scans(model, settings.levelling, rngs(number))
         values = found.moments - drawn.bias(model.moments, len(scans))
-        residuals.append(_residual(feasible, drawn.quantiles, moments(drawn.powers)))
-    model, feasible = _model(found, values, measured)
+        residuals.append(_residual(nearest, drawn.quantiles, moments(drawn.powers)))
+    model, nearest = _model(found, values, measured)
     return SurfaceEstimate(
         inspection=found,
         moments=values,
@@ -231,10 +230,10 @@ def estimate(
         tile_errors=tile_errors(found.levelled, settings.tiles),
         homogeneity=homogeneity(moments(found.powers), model.covariance),
         model=model,
-        feasible=feasible,
+        feasible=nearest,
         quantiles=measured,
         quantile_errors=drawn.quantiles.std(axis=0, ddof=1) / np.sqrt(len(scans)),
-        goodness=goodness(_residual(feasible, measured, found.moments), np.vstack(residuals), len(scans)),
+        goodness=goodness(_residual(nearest, measured, found.moments), np.vstack(residuals), len(scans)),
         sectors=spectra.sectors(found.periodogram, found.reach.low, found.reach.high),
         **_summits(found, drawn),
         line_jump=max(line_jump(z) for z in found.levelled),
@@ -250,11 +249,8 @@ def _model(found, values, measured):
         return SurfaceModel(density, spectrum, correlation, float(np.exp(values[0])), found.frame)
 
     try:
-        shape = float(values[1]), float(values[2])
-        density = maximum_entropy(*shape)
-        if density is None:
-            fallback = surface(measured_density(measured, found.areas))
-            density = nearest(*shape, fallback.covariance[1:, 1:] / len(found.names))
+        fallback = surface(measured_density(measured, found.areas))
+        density = feasible(*map(float, values[1:]), lambda: fallback.covariance[1:, 1:] / len(found.names))
         model = fallback if density is None else surface(density.density)
         model.underlying  # noqa: B018
     except ValueError as reason:
@@ -264,16 +260,16 @@ def _model(found, values, measured):
     return model, density
 
 
-def _residual(feasible: Feasible | None, quantile: np.ndarray, moment: np.ndarray):
+def _residual(nearest: Feasible | None, quantile: np.ndarray, moment: np.ndarray):
     """Compared quantiles less those of maximum entropy with the moments (..., 3) of the same scan, (..., 5) [-].
 
-    The moments are near those of ``feasible``, so that the density is not solved for every scan; ``nan`` without it.
+    The moments are near those of ``nearest``, so that the density is not solved for every scan; ``nan`` without it.
     """
-    if feasible is None:
+    if nearest is None:
         return np.full_like(quantile[..., COMPARED], np.nan)
-    shift = moment[..., 1:] - [feasible.skewness, feasible.kurtosis]
-    expected = feasible.density.quantile_of_normal(SCORES[COMPARED])
-    return quantile[..., COMPARED] - expected - shift @ compared_slopes(feasible.skewness, feasible.kurtosis)
+    shift = moment[..., 1:] - [nearest.skewness, nearest.kurtosis]
+    expected = nearest.density.quantile_of_normal(SCORES[COMPARED])
+    return quantile[..., COMPARED] - expected - shift @ compared_slopes(nearest.skewness, nearest.kurtosis)
 
 
 def _summits(found, drawn):
@@ -346,7 +342,7 @@ def _moments_have_no_density(found):
         return f"{_infeasible(found)}, nor have others within their errors; only heights: measured can be used"
     if found.feasible.distance > 0:
         near = f"skewness {found.feasible.skewness:.3g} with kurtosis {found.feasible.kurtosis:.3g}"
-        return f"{_infeasible(found)}; {near}, which is within the errors (d² {found.feasible.distance:.2g}), is used"
+        return f"{_infeasible(found)}; {near}, which is {found.feasible.distance:.2g} standard errors away, is used"
     return ""
 
 

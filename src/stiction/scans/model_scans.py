@@ -16,8 +16,8 @@ from stiction.surface.spectrum import Spectrum, TabulatedSpectrum
 from stiction.surface.summits import find_summits
 from stiction.surface.translation import Translation, underlying_spectrum
 
-#: Largest number of points along a side of the transforms from the heights to the underlying Gaussian field.
-_POINTS = 2048
+#: Fewest and largest number of points along a side of the transforms from the heights to the underlying Gaussian field.
+_POINTS = 512, 2048
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class SurfaceModel:
 
     @property
     def _points(self):
-        return min(_POINTS, max(1024, 2 * max(self.frame.shape)))
+        return int(np.clip(2 * max(self.frame.shape), *_POINTS))
 
     @cached_property
     def covariance(self) -> np.ndarray:

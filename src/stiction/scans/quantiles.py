@@ -3,7 +3,7 @@ r"""Form of the height density: measured quantiles, the density that they are, a
 Quantiles are heights at normal scores u, as in Eq. (5), of the standardised heights.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,6 +13,7 @@ from scipy.special import ndtr, ndtri
 
 from stiction.errors import NotConverged
 from stiction.surface import maxent
+from stiction.surface.feasible import Moments, is_feasible, nearest_feasible
 from stiction.surface.maxent import HeightDensity
 from stiction.surface.spectrum import Spectrum
 from stiction.surface.translation import LARGEST_SCORE
@@ -23,10 +24,6 @@ SCORES = np.linspace(-3, 3, 49)
 COMPARED = np.searchsorted(SCORES, (-2.0, 1.0, 2.0, 2.5, 3.0))
 #: Fewest correlation areas beyond the outermost measured quantile that is used, and range of scores of its slope.
 _AREAS_BEYOND, _SLOPE_RANGE = 10, 0.5
-#: 95 % of the estimates of two moments are nearer to the truth than this squared distance in standard errors.
-NEAR = float(stats.chi2.ppf(0.95, 2))
-#: Trial values of the skewness, in the largest distance that counts, and accuracy of the kurtosis.
-_GRID, _ACCURACY = np.linspace(-1, 1, 21), 1e-3
 #: Differences of the moments for the slopes of the quantiles.
 _STEP = 0.02
 
@@ -107,53 +104,28 @@ class Feasible:
     density: HeightDensity
     skewness: float  #: [-]
     kurtosis: float  #: [-]
-    distance: float  #: squared distance from the measured ones in standard errors, 0 if they have a density [-]
+    distance: float  #: from the measured ones in standard errors, 0 if they have a density [-]
 
 
-def maximum_entropy(skewness: float, kurtosis: float) -> Feasible | None:
-    """Maximum-entropy density of measured moments, ``None`` if they have none."""
-    density = _density(skewness, kurtosis)
-    return None if density is None else Feasible(density, skewness, kurtosis, 0.0)
-
-
-def nearest(skewness: float, kurtosis: float, covariance: np.ndarray) -> Feasible | None:
-    """Maximum-entropy density of the moments nearest to measured ones that have none; ``None`` if none is `NEAR`.
+def feasible(skewness: float, kurtosis: float, covariance: Callable[[], np.ndarray]) -> Feasible | None:
+    """Maximum-entropy density of measured moments, or of the nearest that have one; ``None`` if none is near.
 
     Parameters
     ----------
     skewness, kurtosis : float
         [-]
-    covariance : (2, 2) array
-        Of both; the metric of the distance.
+    covariance : callable
+        Returns the covariance of both, (2, 2); called only if they have no density.
     """
-    metric = np.linalg.inv(covariance)
-    trials = (_largest_kurtosis(s, kurtosis) for s in skewness + np.sqrt(NEAR * covariance[0, 0]) * _GRID)
-    points = [(s, k, (d := np.array([s - skewness, k - kurtosis])) @ metric @ d) for s, k in trials if np.isfinite(k)]
-    best = min(points, key=lambda point: point[2], default=(0, 0, np.inf))
-    return Feasible(_density(*best[:2]), *map(float, best)) if best[2] <= NEAR else None
-
-
-def _density(skewness, kurtosis):
-    """Maximum-entropy density that can be drawn, or ``None``."""
     try:
-        density = maxent.solve(skewness, kurtosis)
-        density.quantile_of_normal(np.array([-LARGEST_SCORE, LARGEST_SCORE]))
+        found = (
+            Moments(skewness, kurtosis, 0.0)
+            if is_feasible(skewness, kurtosis)
+            else nearest_feasible(skewness, kurtosis, covariance())
+        )
+        return Feasible(maxent.solve(found.skewness, found.kurtosis), *found)
     except (ValueError, NotConverged):
         return None
-    return density
-
-
-def _largest_kurtosis(skewness, kurtosis):
-    """Skewness and the kurtosis nearest to a wanted one that has a density with it; ``nan`` without any."""
-    low, high = skewness**2 + 1.1, kurtosis
-    if _density(skewness, high) is not None:
-        return skewness, high
-    if high <= low or _density(skewness, low) is None:
-        return skewness, np.nan
-    while high - low > _ACCURACY:
-        middle = (low + high) / 2
-        low, high = (middle, high) if _density(skewness, middle) is not None else (low, middle)
-    return skewness, low
 
 
 def compared_slopes(skewness: float, kurtosis: float) -> np.ndarray:

@@ -1,0 +1,105 @@
+import numpy as np
+import pytest
+from published import SURFACES
+from scipy.stats import kurtosis as kurtosis_of
+from scipy.stats import skew
+
+from stiction.streams import stream
+from stiction.surface import feasible, maxent
+from stiction.surface.feasible import LARGEST_DISTANCE, is_feasible, largest_kurtosis, nearest_feasible
+
+#: |skewness| and the largest kurtosis, found by hand with solutions on a grid of moments.
+BORDER = {0: 3.000, 0.05: 3.006, 0.1: 3.026, 0.2: 3.107, 0.3: 3.242, 0.4: 3.454, 0.5: 3.804, 0.6: 4.362, 1.0: 7.78}
+#: Measured moments of nearly Gaussian surfaces, all of them infeasible.
+NEARLY_GAUSSIAN = [(-0.1, 3.05), (0.05, 3.02), (-0.3, 3.5), (-0.5, 4.0), (1e-9, 3.0)]
+
+
+@pytest.mark.parametrize(("skewness", "kurtosis"), BORDER.items())
+def test_largest_kurtosis_is_that_found_on_a_grid(skewness, kurtosis):
+    for sign in (-1, 1):
+        assert largest_kurtosis(sign * skewness) == pytest.approx(kurtosis, abs=0.002)
+    assert is_feasible(skewness, largest_kurtosis(skewness))
+    assert not is_feasible(skewness, largest_kurtosis(skewness) + 2e-5)
+
+
+@pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
+def test_published_moments_stay_as_they_are(surface):
+    assert nearest_feasible(surface.skewness, surface.kurtosis) == (surface.skewness, surface.kurtosis, 0.0)
+
+
+def test_moments_of_a_gaussian_stay_as_they_are():
+    assert nearest_feasible(0.0, 3.0) == (0.0, 3.0, 0.0)
+
+
+@pytest.mark.parametrize(("skewness", "kurtosis"), NEARLY_GAUSSIAN)
+def test_no_point_of_the_border_is_nearer(skewness, kurtosis):
+    found = nearest_feasible(skewness, kurtosis)
+    assert is_feasible(found.skewness, found.kurtosis)
+    errors = np.sqrt([6 / feasible.SAMPLE, 24 / feasible.SAMPLE])
+    off = np.subtract(found[:2], (skewness, kurtosis)) / errors
+    assert 0 < found.distance == pytest.approx(np.linalg.norm(off), rel=1e-9)
+    for trial in skewness + np.linspace(-2.4, 2.4, 13) * errors[0]:
+        border = np.subtract((trial, largest_kurtosis(float(trial))), (skewness, kurtosis)) / errors
+        assert np.linalg.norm(border) >= found.distance - 1e-4
+
+
+def test_mirrored_moments_have_mirrored_neighbours():
+    left, right = nearest_feasible(-0.1, 3.05), nearest_feasible(0.1, 3.05)
+    np.testing.assert_allclose(right, np.multiply(left, (-1, 1, 1)), atol=1e-3)
+
+
+def test_distance_is_in_the_errors_of_the_measurement():
+    exact_kurtosis = nearest_feasible(-0.3, 3.3, np.diag([0.05, 1e-3]) ** 2)
+    exact_skewness = nearest_feasible(-0.3, 3.3, np.diag([1e-3, 0.05]) ** 2)
+    assert exact_kurtosis.kurtosis == pytest.approx(3.3, abs=0.005)
+    assert exact_skewness.skewness == pytest.approx(-0.3, abs=0.005)
+    assert exact_skewness.distance == pytest.approx((3.3 - largest_kurtosis(-0.3)) / 0.05, rel=0.01)
+
+
+def test_correlated_errors_move_both_moments_alike():
+    # If skewness and kurtosis err in opposite directions, the way to more skewness and less kurtosis is short.
+    apart = np.array([[1, -0.9], [-0.9, 1]]) * 0.05**2
+    along = np.array([[1, 0.9], [0.9, 1]]) * 0.05**2
+    assert nearest_feasible(0.3, 3.35, along).distance > 2 * nearest_feasible(0.3, 3.35, apart).distance
+
+
+def test_default_errors_are_those_of_independent_gaussian_heights():
+    heights = stream(1, "feasible").standard_normal((4000, 500))
+    moments = np.stack([skew(heights, axis=1), kurtosis_of(heights, axis=1)])
+    # Terms of the next order are 4 % at 500 heights; 4 standard errors of 4000 variances are 9 %.
+    np.testing.assert_allclose(np.diag(np.cov(moments)), np.diag(feasible.sampling_covariance(500)), rtol=0.13)
+
+
+def test_measured_gaussian_surfaces_are_feasible_within_their_error_and_not_within_a_tenth_of_it():
+    heights = stream(2, "feasible").standard_normal((8, feasible.SAMPLE))
+    measured = np.column_stack([skew(heights, axis=1), kurtosis_of(heights, axis=1) + 3])
+    beyond = [moments for moments in measured if not is_feasible(*map(float, moments))]
+    assert 2 <= len(beyond) <= 6  # every other one
+    distances = [nearest_feasible(*map(float, moments)).distance for moments in beyond]
+    assert max(distances) <= LARGEST_DISTANCE
+    farthest = beyond[int(np.argmax(distances))]
+    with pytest.raises(ValueError, match="standard errors"):
+        nearest_feasible(*map(float, farthest), feasible.sampling_covariance(100 * feasible.SAMPLE))
+
+
+@pytest.mark.parametrize(("skewness", "kurtosis"), [(0.0, 4.6), (-0.1, 3.5), (-1.0, 10.0)])
+def test_distant_moments_are_refused_with_the_largest_kurtosis(skewness, kurtosis):
+    largest = f"{largest_kurtosis(skewness):.4g}"
+    with pytest.raises(ValueError, match=f"within 2.45 standard errors .* the largest kurtosis is {largest}"):
+        nearest_feasible(skewness, kurtosis)
+
+
+def test_the_largest_distance_is_that_of_one_measurement_in_twenty():
+    drawn = stream(3, "feasible").standard_normal((100_000, 2))
+    share = np.mean(np.linalg.norm(drawn, axis=1) > LARGEST_DISTANCE)
+    assert share == pytest.approx(0.05, abs=4 * np.sqrt(0.05 * 0.95 / 1e5))
+
+
+def test_moments_that_no_density_has_are_never_replaced():
+    with pytest.raises(ValueError, match="need kurtosis > skewness² "):
+        nearest_feasible(-0.76, 1.5)
+
+
+def test_tails_that_do_not_cover_all_scores_are_infeasible():
+    assert maxent.solve(-0.5, 4.07)
+    assert not is_feasible(-0.5, 4.07)
