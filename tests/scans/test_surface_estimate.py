@@ -138,8 +138,9 @@ def test_scans_of_other_pixels_or_size_are_refused():
 
 
 def test_a_scan_without_plateau_is_refused():
-    small = [Scan(scan.heights[:60, :60], (1.2e-6, 1.2e-6), f"small-{k}.spm") for k, scan in enumerate(B2)]
-    assert "files: small-0.spm, small-1.spm, small-2.spm shows no plateau of the spectrum: " in refused(small)
+    z = np.cumsum(np.cumsum(stream(1, "walk").standard_normal((200, 200)), axis=0), axis=1)  # a power law throughout
+    walks = [Scan(1e-10 * part, (SIDE, SIDE), f"{name}.spm") for name, part in (("a", z), ("b", z.T))]
+    assert "files: a.spm, b.spm shows no plateau of the spectrum: " in refused(walks)
     tiny = Scan(B2[0].heights[:34, :34], (0.7e-6, 0.7e-6), "tiny.spm")
     assert "files: tiny.spm cannot give a spectrum: 8 rings are needed" in refused([tiny])
 
