@@ -152,6 +152,14 @@ def test_a_named_channel_must_be_a_length(unit):
         reading._unit(channel, Source(), "scan.spm")
 
 
+def test_a_size_in_no_unit_of_length_is_not_a_size():
+    (channel,) = channels(("Height", "nm"))
+    channel.unit, channel.physical_sizes = ("um", None), (5.0, 5.0)
+    with pytest.raises(ScanError, match="size_um: scan.spm has no size in a unit of length"):
+        reading._size(channel, Source(), "scan.spm")
+    assert reading._size(channel, GIVEN, "scan.spm") == SIZE
+
+
 def test_levelling_by_the_instrument_is_told():
     metadata = {"Offline Planefit": "Full", "realtime planefit": "Line", "Planefit 0": "None", "FlattenOrder 1": "2"}
     channel = SimpleNamespace(index=0, channel_id="Height", info={"raw_metadata": metadata})

@@ -84,7 +84,9 @@ def _read(path, source):
     library = _library(name)
     with _opened(library, path) as reader:
         channel, notes = _height_channel(reader.channels, source.channel, name)
-        size, unit = _size(channel, source, name), _unit(channel, source, name)
+        if channel.dim != 2:
+            raise ScanError(name, "files", "is a profile; a map of heights is needed")
+        unit, size = _unit(channel, source, name), _size(channel, source, name)
         heights = UNITS[unit] * _heights(channel, path)
         notes += _instrument_levelling(channel, name)
         identifier = channel.channel_id
@@ -225,9 +227,7 @@ def _unit(channel, source, name):
 
 def _size(channel, source, name):
     """Size along x and y [m], from the file or, if it has none, from the configuration."""
-    if channel.dim != 2:
-        raise ScanError(name, "files", "is a profile; a map of heights is needed")
-    if channel.physical_sizes is None or channel.unit is None:
+    if channel.physical_sizes is None or channel.unit not in UNITS:
         if source.size is None:
             raise ScanError(name, "size_um", "has no size in a unit of length; give the size along x and y")
         return source.size
