@@ -141,7 +141,6 @@ MUTANTS = {
         ("0 < len(line) <= _LONGEST_REASON", "True"),
     ],
     "scans.levelling": [
-        ("levelled - np.nanmean(levelled)", "levelled"),
         ("for b in range(degree + 1 - a)", "for b in range(degree + 1)"),
         ('LEVELS = {"mean": 0, "plane": 1, "quadratic": 2}', 'LEVELS = {"mean": 0, "plane": 2, "quadratic": 2}'),
         ("np.where(defined, heights, 0.0)", "np.nan_to_num(heights, nan=1.0)"),

@@ -74,50 +74,6 @@ def test_densities_and_spectra_are_those_that_are_asked_for():
     Translation(ESTIMATE.density("measured")).hermite_coefficients  # noqa: B018
 
 
-def test_what_levelling_removes_is_given_back():
-    scans = published("B2", 4e-6, 6, "levelling")
-    tilted, plane = (estimates(scans, Settings(Levelling("plane", lines)), count=12) for lines in ("tilt", "none"))
-    error = plane[0].errors / np.sqrt(6)
-    raw, corrected = (
-        np.mean([part(t) - part(p) for t, p in zip(tilted, plane, strict=True)], axis=0)
-        for part in (lambda one: one.inspection.moments, lambda one: one.moments)
-    )
-    assert raw[0] < -3 * error[0]
-    assert np.all(np.abs(corrected) < error)
-    assert abs(plane[0].moments[0] - plane[0].inspection.moments[0]) < error[0]
-
-
-def test_lines_that_jump_and_tilt_change_the_corrected_moments_by_less_than_half_an_error():
-    n = len(B2[0].heights)
-    offset, tilt = 0.2 * SURFACES["B2"].rms * stream(1, "lines").standard_normal((2, n))
-    shift = offset + tilt * np.linspace(-1, 1, n)[:, None]
-    disturbed = [dataclasses.replace(scan, heights=scan.heights + shift) for scan in B2]
-    found = estimate(disturbed, Settings(Levelling("plane", "tilt")), streams(12))
-    clean = estimate(B2, Settings(Levelling("plane", "tilt")), streams(12))
-    assert np.all(np.abs(found.moments - clean.moments) < 0.5 * found.errors)
-    unlevelled = estimate(disturbed, Settings(), streams(12))
-    assert np.any(np.abs(unlevelled.moments - clean.moments) > 0.5 * found.errors)
-    slow, fast = unlevelled.line_jump
-    assert slow > 1.3 * fast
-    assert clean.line_jump[0] < 1.2 * clean.line_jump[1]
-
-
-def test_gaussian_scans_are_never_refused():
-    for found in estimates(gaussian(4e-6, 3), count=12):
-        assert found.feasible is not None
-        density = found.density("moments")
-        np.testing.assert_allclose(density.quantile_of_normal(1.0), 1.0, atol=0.1)
-
-
-def test_a_density_that_four_moments_do_not_describe_is_told_from_one_that_they_do():
-    (found,) = estimates(fleishman(10e-6, 1))
-    assert found.goodness[1] < 0.01
-    assert any("four moments do not describe the heights" in flag for flag in found.flags)
-    cubic = found.density("measured").quantile_of_normal(3.0)
-    assert abs(cubic - 2.055) < 0.12 < abs(found.density("moments").quantile_of_normal(3.0) - 2.055)
-    assert ESTIMATE.goodness[1] > 0.01
-
-
 def refused(scans, settings=None):
     with pytest.raises(ScanError) as caught:
         inspect(scans, settings or Settings())
@@ -200,6 +156,50 @@ def test_moments_without_density_are_refused_with_what_to_do():
     with pytest.raises(ScanError, match="heights: .* has no maximum-entropy density: use measured"):
         without.density("moments")
     without.density("measured")
+
+
+def test_what_levelling_removes_is_given_back():
+    scans = published("B2", 4e-6, 6, "levelling")
+    tilted, plane = (estimates(scans, Settings(Levelling("plane", lines)), count=12) for lines in ("tilt", "none"))
+    error = plane[0].errors / np.sqrt(6)
+    raw, corrected = (
+        np.mean([part(t) - part(p) for t, p in zip(tilted, plane, strict=True)], axis=0)
+        for part in (lambda one: one.inspection.moments, lambda one: one.moments)
+    )
+    assert raw[0] < -3 * error[0]
+    assert np.all(np.abs(corrected) < error)
+    assert abs(plane[0].moments[0] - plane[0].inspection.moments[0]) < error[0]
+
+
+def test_lines_that_jump_and_tilt_change_the_corrected_moments_by_less_than_half_an_error():
+    n = len(B2[0].heights)
+    offset, tilt = 0.2 * SURFACES["B2"].rms * stream(1, "lines").standard_normal((2, n))
+    shift = offset + tilt * np.linspace(-1, 1, n)[:, None]
+    disturbed = [dataclasses.replace(scan, heights=scan.heights + shift) for scan in B2]
+    found = estimate(disturbed, Settings(Levelling("plane", "tilt")), streams(12))
+    clean = estimate(B2, Settings(Levelling("plane", "tilt")), streams(12))
+    assert np.all(np.abs(found.moments - clean.moments) < 0.5 * found.errors)
+    unlevelled = estimate(disturbed, Settings(), streams(12))
+    assert np.any(np.abs(unlevelled.moments - clean.moments) > 0.5 * found.errors)
+    slow, fast = unlevelled.line_jump
+    assert slow > 1.3 * fast
+    assert clean.line_jump[0] < 1.2 * clean.line_jump[1]
+
+
+def test_gaussian_scans_are_never_refused():
+    for found in estimates(gaussian(4e-6, 3), count=12):
+        assert found.feasible is not None
+        density = found.density("moments")
+        np.testing.assert_allclose(density.quantile_of_normal(1.0), 1.0, atol=0.1)
+
+
+def test_a_density_that_four_moments_do_not_describe_is_told_from_one_that_they_do():
+    (found,) = estimates(fleishman(10e-6, 1))
+    assert found.goodness[1] < 0.01
+    assert any("four moments do not describe the heights" in flag for flag in found.flags)
+    cubic = found.density("measured").quantile_of_normal(3.0)
+    assert abs(cubic - 2.055) < 0.12 < abs(found.density("moments").quantile_of_normal(3.0) - 2.055)
+    assert ESTIMATE.goodness[1] > 0.01
 
 
 def test_particles_leave_the_measured_density():

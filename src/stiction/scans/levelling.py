@@ -30,9 +30,8 @@ def level(heights: np.ndarray, levelling: Levelling) -> np.ndarray:
     levelling : Levelling
     """
     levelled = heights - _surface(heights, LEVELS[levelling.level])
-    if LINES[levelling.lines] is not None:
-        levelled = levelled - _lines(levelled, LINES[levelling.lines])
-    return levelled - np.nanmean(levelled)
+    degree = LINES[levelling.lines]
+    return levelled if degree is None else levelled - _lines(levelled, degree)
 
 
 def _surface(heights, degree):
