@@ -112,7 +112,7 @@ docs: $(VENV)/ready
 # Keeps pinned versions as long as pyproject.toml allows them; ARGS=--upgrade updates all. Requires uv.
 lock:
 	uv pip compile --universal --python-version 3.11 --no-emit-index-url --no-header --no-annotate \
-	  --extra dev --extra docs --extra workflow $(ARGS) pyproject.toml -o requirements.lock
+	  --extra dev --extra docs --extra scans --extra workflow $(ARGS) pyproject.toml -o requirements.lock
 	@{ echo '# Pinned dependencies for Python 3.11 to 3.14, from pyproject.toml by `make lock`.'; cat requirements.lock; } \
 	  > requirements.lock.new && mv requirements.lock.new requirements.lock
 

@@ -10,12 +10,14 @@ PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 ORDER = """
 constants errors streams estimates numbers models progress
 surface: maxent spectrum translation feasible field iteration summits identify
+scans: scan levelling moments periodogram whittle quantiles model_scans estimate
 contact: meniscus vanderwaals asperity solids estimate pair forcelaw bounds
 chaos: coordinates density polynomials model
 beam: cantilever tension energy foundation equilibrium release resolution montecarlo
 analysis: plasticity sensitivity convergence mesh variants
 devices: arcs bridges tail risk stoppers chart budget limits
 run: fingerprint logs folder atomic labels kept provenance warmup forkserver hooks
+scans: reading
 config: units cases merging messages reading memory relations files plan jobs
 stages: storage named heights parameters identification spectrum surfaces character pairs contact curves forces chaos
 stages: cantilevers releases beams
@@ -33,6 +35,7 @@ MODULES = [
 PHYSICS = MODULES[: MODULES.index("run.fingerprint")]
 #: Libraries for files, labelled data, workflows and figures.
 BORDER = {"xarray", "netCDF4", "snakemake", "yaml", "jsonschema", "matplotlib", "json", "csv", "pathlib", "os"}
+BORDER |= {MICROSCOPES := "SurfaceTopography"}
 #: Largest number of modules in a folder: so that its contents can be read at a glance.
 LARGEST_FOLDER = 16
 
@@ -75,6 +78,14 @@ def test_a_module_imports_only_from_those_before_it(path):
 def test_physics_does_not_import_libraries_for_files_labels_workflows_or_figures(path):
     if module_name(path) in PHYSICS:
         assert not {name.split(".")[0] for name in imports(path)} & BORDER
+
+
+@each_module
+def test_files_of_microscopes_are_read_in_one_module_which_imports_its_library_when_it_reads(path):
+    used = {name.split(".")[0] for name in imports(path)}
+    assert (MICROSCOPES in used) == (module_name(path) == "scans.reading")
+    head = (node for node in ast.parse(path.read_text(encoding="utf-8")).body if isinstance(node, ast.ImportFrom))
+    assert not any(node.module.startswith(MICROSCOPES) for node in head)
 
 
 @each_module

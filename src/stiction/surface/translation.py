@@ -53,13 +53,7 @@ class Translation:
     @cached_property
     def hermite_coefficients(self) -> np.ndarray:
         """Coefficients c₁ … c₂₄ on orthonormal Hermite polynomials, (24,) [-]."""
-        weights = np.exp(-(_SCORES**2) / 2) * (_SCORES[1] - _SCORES[0]) / np.sqrt(2 * np.pi) * self.table
-        previous, current = np.zeros_like(_SCORES), np.ones_like(_SCORES)
-        coefficients = []
-        for k in range(1, _TERMS + 1):
-            previous, current = current, (_SCORES * current - np.sqrt(k - 1) * previous) / np.sqrt(k)
-            coefficients.append(weights @ current)
-        return np.array(coefficients)
+        return hermite_coefficients(self.table)
 
     def __call__(self, score: float | np.ndarray) -> float | np.ndarray:
         """Standardised height g(u), Eq. (5), any shape [-]."""
@@ -99,6 +93,27 @@ class Translation:
     def _series(self):
         power = self.hermite_coefficients**2
         return np.r_[0.0, power / power.sum()]
+
+
+def hermite_coefficients(values: np.ndarray) -> np.ndarray:
+    """Coefficients c₁ … c₂₄ on orthonormal Hermite polynomials of functions tabulated like `Translation.table`.
+
+    Parameters
+    ----------
+    values : (..., 4097) array
+
+    Returns
+    -------
+    (24, ...) array
+        In the unit of ``values``.
+    """
+    weights = np.exp(-(_SCORES**2) / 2) * (_SCORES[1] - _SCORES[0]) / np.sqrt(2 * np.pi) * values
+    previous, current = np.zeros_like(_SCORES), np.ones_like(_SCORES)
+    coefficients = []
+    for k in range(1, _TERMS + 1):
+        previous, current = current, (_SCORES * current - np.sqrt(k - 1) * previous) / np.sqrt(k)
+        coefficients.append(weights @ current)
+    return np.array(coefficients)
 
 
 def underlying_spectrum(

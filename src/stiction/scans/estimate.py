@@ -1,0 +1,386 @@
+"""From the scans of a surface to everything that the model needs of it, with errors and with what the user should know.
+
+The scans of a surface have equal numbers of points and equal size.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from stiction.errors import ScanError
+from stiction.estimates import jackknife
+from stiction.scans import periodogram as spectra
+from stiction.scans.levelling import Levelling, level, line_jump
+from stiction.scans.model_scans import (
+    SurfaceModel,
+    draw_model_scans,
+    radius_and_density,
+    summits_per_area,
+)
+from stiction.scans.moments import homogeneity, moments, powers, tile_errors, tiles
+from stiction.scans.periodogram import Periodogram, Rings
+from stiction.scans.quantiles import (
+    COMPARED,
+    SCORES,
+    Feasible,
+    MeasuredDensity,
+    compared_slopes,
+    correlation_areas,
+    feasible,
+    goodness,
+    measured_density,
+    quantiles,
+)
+from stiction.scans.scan import Frame, Scan
+from stiction.scans.whittle import Reach, WhittleFit, fit, reach, tabulated, tip_reach
+from stiction.surface.maxent import HeightDensity
+from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
+
+#: Fewest wavelengths of the corner along a scan: for a plateau at all, and for reliable errors.
+FEWEST_WAVELENGTHS, ENOUGH_WAVELENGTHS = 4, 10
+#: Largest relative difference between the sizes of the scans of a surface.
+_SAME_SIZE = 0.01
+#: Number of times that the bias of levelling is estimated: the second time on the surface without the first bias.
+_ROUNDS = 2
+#: Heights farther apart than this number of wavelengths of the corner are not correlated.
+_CORRELATED = 2
+#: Limits of the flags: error by tiles over that of the closed form, χ² per degree of freedom, sector ratio, p, and step
+#: between lines over step along them.
+_TILES, _MISFIT, _ANISOTROPY, _UNLIKELY, _JUMP = 2.0, 3.0, 1.5, 0.01, 2.0
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How scans are evaluated."""
+
+    levelling: Levelling = Levelling()
+    tip_radius: float | None = None  #: of the microscope [m]
+    shortest: float | None = None  #: wavelength used of the spectrum; four pixels by default [m]
+    tiles: int = 4  #: tiles along each side of a scan, whose scatter tests that the scan is homogeneous
+    undefined_share: float = 0.01  #: largest share of points without height [-]
+
+
+@dataclass(frozen=True)
+class Inspection:
+    """What the scans show without any model."""
+
+    names: tuple[str, ...]  #: of the scans
+    frame: Frame
+    settings: Settings
+    levelled: tuple[np.ndarray, ...]  #: heights, (n1, n2) each [m]
+    periodogram: Periodogram
+    rings: Rings
+    reach: Reach
+    fit: WhittleFit
+
+    @cached_property
+    def powers(self) -> np.ndarray:
+        """Means of z … z⁴ of every scan, (n, 4)."""
+        return np.array([powers(z) for z in self.levelled])
+
+    @property
+    def moments(self) -> np.ndarray:
+        """Moments (ln rms, skewness, kurtosis) of all scans together, (3,)."""
+        return moments(self.powers.mean(axis=0))
+
+    @property
+    def wavelengths(self) -> float:
+        """Wavelengths of the corner along the shorter side [-]."""
+        return self.fit.corner * min(self.frame.size) / (2 * np.pi)
+
+    @property
+    def areas(self) -> float:
+        """Correlation areas of all scans [-]."""
+        spectrum = self.fit.spectrum(self.reach.nyquist)
+        return correlation_areas(spectrum, np.exp(2 * self.moments[0]), self.frame.area * len(self.names))
+
+
+def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
+    """Level the scans and fit their spectrum: the fast part of `estimate`, with all reasons to refuse scans.
+
+    Raises
+    ------
+    ScanError
+        If scans of different points or size are given, if too many points are undefined, or if the scans are too small
+        to show the plateau of the spectrum.
+    """
+    frame, names = scans[0].frame, tuple(scan.name for scan in scans)
+    for scan in scans:
+        _refuse_other_frame(scan, scans[0])
+        if scan.undefined_share > settings.undefined_share:
+            share = f"{100 * scan.undefined_share:.3g} % of its points undefined"
+            raise ScanError(scan.name, "files", f"has {share}, at most {100 * settings.undefined_share:.3g} % may be")
+    levelled = tuple(level(scan.heights, settings.levelling) for scan in scans)
+    spectrum = spectra.periodogram(levelled, frame.size)
+    tip = np.inf if settings.tip_radius is None else tip_reach(levelled, frame.pixel[0], settings.tip_radius)
+    within = reach(frame.size, frame.pixel, settings.shortest, tip)
+    rings = spectra.rings(spectrum)
+    try:
+        fitted = fit(rings, within)
+    except ValueError as reason:
+        raise ScanError(", ".join(names), "files", f"cannot give a spectrum: {reason}") from None
+    found = Inspection(names, frame, settings, levelled, spectrum, rings, within, fitted)
+    if found.wavelengths < FEWEST_WAVELENGTHS:
+        raise ScanError(
+            ", ".join(names),
+            "files",
+            f"shows no plateau of the spectrum: {found.wavelengths:.2g} wavelengths of its corner fit into the scan, "
+            f"{FEWEST_WAVELENGTHS} are needed",
+        )
+    return found
+
+
+def _refuse_other_frame(scan, first):
+    """Refuse a scan that is not like the first one."""
+    if scan.frame.shape != first.frame.shape or not np.allclose(scan.size, first.size, rtol=_SAME_SIZE, atol=0):
+        shown = [
+            f"{s.frame.shape[0]} x {s.frame.shape[1]} points on {1e6 * s.size[0]:.4g} x {1e6 * s.size[1]:.4g} µm"
+            for s in (scan, first)
+        ]
+        raise ScanError(scan.name, "files", f"has {shown[0]}, {first.name} has {shown[1]}: all must be alike")
+
+
+@dataclass(frozen=True)
+class SurfaceEstimate:
+    """A surface measured by scans. Moments are (ln rms, skewness, kurtosis), the rms in metres."""
+
+    inspection: Inspection
+    moments: np.ndarray  #: without the bias of levelling and finite size, (3,)
+    covariance: np.ndarray  #: of the moments, (3, 3)
+    tile_errors: np.ndarray  #: standard errors of the moments from the scatter of tiles, (3,)
+    homogeneity: tuple[np.ndarray, np.ndarray]  #: χ² of the scatter between scans and p, (3,) each
+    model: SurfaceModel  #: surface of which the model scans were drawn
+    feasible: Feasible | None  #: maximum-entropy density of the model, ``None`` if it has the measured density
+    quantiles: np.ndarray  #: at `stiction.scans.quantiles.SCORES`, (49,) [-]
+    quantile_errors: np.ndarray  #: (49,) [-]
+    goodness: tuple[float, float]  #: χ² of the quantiles against the four-moment density, and p; ``nan`` without it
+    sectors: np.ndarray  #: mean of the spectrum in directions relative to that in all, (8,) [-]
+    summits: np.ndarray  #: radius [m] and density [m⁻²], (2,); ``nan`` if pixels are not square
+    summit_errors: np.ndarray  #: (2,)
+    model_summits: np.ndarray  #: of the model scans, (2,)
+    model_summit_errors: np.ndarray  #: scatter between model scans, (2,)
+    line_jump: tuple[float, float]  #: largest `stiction.scans.levelling.line_jump` of the scans [m]
+
+    @property
+    def errors(self) -> np.ndarray:
+        """Standard errors of the moments, (3,)."""
+        return np.sqrt(np.diag(self.covariance))
+
+    def density(self, heights: str) -> HeightDensity | MeasuredDensity:
+        """Height density of ``moments`` (maximum entropy) or ``measured``.
+
+        Raises
+        ------
+        ScanError
+            If the measured moments, and none near them, have a maximum-entropy density.
+        """
+        if heights == "measured":
+            return measured_density(self.quantiles, self.inspection.areas)
+        if self.feasible is None:
+            raise ScanError(", ".join(self.inspection.names), "heights", _infeasible(self) + ": use measured")
+        return self.feasible.density
+
+    def spectrum(self, psd: str, cutoff: float) -> CutoffSelfAffine | TabulatedSpectrum:
+        """Spectrum ``fitted`` or ``tabulated`` up to a cut-off [rad m⁻¹]."""
+        found = self.inspection
+        if psd == "fitted":
+            return found.fit.spectrum(cutoff)
+        return tabulated(found.rings, found.reach, found.fit.slope, cutoff)
+
+    @property
+    def flags(self) -> tuple[str, ...]:
+        """Sentences on everything that limits the estimate."""
+        return tuple(sentence for flag in _FLAGS if (sentence := flag(self)))
+
+
+def estimate(
+    scans: Sequence[Scan], settings: Settings, rngs: Callable[[int], Iterable[np.random.Generator]]
+) -> SurfaceEstimate:
+    """Estimate a surface from its scans.
+
+    Parameters
+    ----------
+    scans : sequence of Scan
+    settings : Settings
+    rngs : callable
+        Returns the streams of the model scans of round 0 or 1, one per model scan; in each round at least 8 and as many
+        as scans.
+
+    Raises
+    ------
+    ScanError
+        If the scans cannot be used, or no surface has their heights and spectrum.
+    """
+    found = inspect(scans, settings)
+    measured = quantiles(found.levelled)
+    values = found.moments
+    residuals = []
+    for number in range(_ROUNDS):
+        model, nearest = _model(found, values, measured)
+        drawn = draw_model_scans(model, settings.levelling, rngs(number))
+        values = found.moments - drawn.bias(model.moments, len(scans))
+        residuals.append(_residual(nearest, drawn.quantiles, moments(drawn.powers)))
+    model, nearest = _model(found, values, measured)
+    return SurfaceEstimate(
+        inspection=found,
+        moments=values,
+        covariance=model.covariance / len(scans),
+        tile_errors=tile_errors(found.levelled, settings.tiles),
+        homogeneity=homogeneity(moments(found.powers), model.covariance),
+        model=model,
+        feasible=nearest,
+        quantiles=measured,
+        quantile_errors=drawn.quantiles.std(axis=0, ddof=1) / np.sqrt(len(scans)),
+        goodness=goodness(_residual(nearest, measured, found.moments), np.vstack(residuals), len(scans)),
+        sectors=spectra.sectors(found.periodogram, found.reach.low, found.reach.high),
+        **_summits(found, drawn),
+        line_jump=max(line_jump(z) for z in found.levelled),
+    )
+
+
+def _model(found, values, measured):
+    """Surface with these moments, or with the measured density if there is none, and the maximum-entropy density."""
+    spectrum = found.fit.spectrum(found.reach.nyquist)
+    correlation = _CORRELATED * 2 * np.pi / found.fit.corner
+
+    def surface(density):
+        return SurfaceModel(density, spectrum, correlation, float(np.exp(values[0])), found.frame)
+
+    try:
+        fallback = surface(measured_density(measured, found.areas))
+        density = feasible(*map(float, values[1:]), lambda: fallback.covariance[1:, 1:] / len(found.names))
+        model = fallback if density is None else surface(density.density)
+        model.underlying  # noqa: B018
+    except ValueError as reason:
+        raise ScanError(
+            ", ".join(found.names), "files", f"has heights that no surface can be drawn with: {reason}"
+        ) from None
+    return model, density
+
+
+def _residual(nearest: Feasible | None, quantile: np.ndarray, moment: np.ndarray):
+    """Compared quantiles less those of maximum entropy with the moments (..., 3) of the same scan, (..., 5) [-].
+
+    The moments are near those of ``nearest``, so that the density is not solved for every scan; ``nan`` without it.
+    """
+    if nearest is None:
+        return np.full_like(quantile[..., COMPARED], np.nan)
+    shift = moment[..., 1:] - [nearest.skewness, nearest.kurtosis]
+    expected = nearest.density.quantile_of_normal(SCORES[COMPARED])
+    return quantile[..., COMPARED] - expected - shift @ compared_slopes(nearest.skewness, nearest.kurtosis)
+
+
+def _summits(found, drawn):
+    """Summits of the scans, with errors by tiles, and of the model scans."""
+    count = found.settings.tiles
+    per_tile = [
+        summits_per_area(tile, _tile_frame(found.frame, tile)) for z in found.levelled for tile in tiles(z, count)
+    ]
+    values, errors = jackknife(radius_and_density, np.array(per_tile))
+    modelled = np.array([radius_and_density(row) for row in drawn.summits])
+    return {
+        "summits": values,
+        "summit_errors": errors,
+        "model_summits": modelled.mean(axis=0),
+        "model_summit_errors": modelled.std(axis=0, ddof=1),
+    }
+
+
+def _tile_frame(frame, tile):
+    """Frame of a tile of a scan."""
+    return Frame(tile.shape, tuple(n * p for n, p in zip(tile.shape, frame.pixel, strict=True)))
+
+
+def _infeasible(found: SurfaceEstimate):
+    _, skewness, kurtosis = found.moments
+    return f"skewness {skewness:.3g} with kurtosis {kurtosis:.3g} has no maximum-entropy density"
+
+
+def _few_wavelengths(found):
+    number = found.inspection.wavelengths
+    if number < ENOUGH_WAVELENGTHS:
+        return f"only {number:.2g} wavelengths of the corner fit into the scan; errors are reliable from 10 on"
+    return ""
+
+
+def _not_homogeneous(found):
+    ratio = np.max(found.tile_errors / found.errors)
+    if ratio > _TILES:
+        reason = "bow, particles or marks"
+        return f"parts of a scan differ {ratio:.2g} times as much as those of one homogeneous surface ({reason})"
+    return ""
+
+
+def _scans_differ(found):
+    likely = found.homogeneity[1]
+    names = [name for name, p in zip(("rms", "skewness", "kurtosis"), likely, strict=True) if p < _UNLIKELY]
+    return f"the scans differ in {', '.join(names)} by more than their errors" if names else ""
+
+
+def _spectrum_misfits(found):
+    ratio = found.inspection.fit.chi2 / found.inspection.fit.freedom
+    if ratio > _MISFIT:
+        return f"the spectrum is not of the form of Eq. (7) (chi²/dof {ratio:.2g}); psd: tabulated follows it"
+    return ""
+
+
+def _anisotropic(found):
+    ratio = found.sectors.max() / found.sectors.min()
+    if not ratio > _ANISOTROPY:
+        return ""
+    width = 180 / spectra.SECTORS
+    direction = (np.argmax(found.sectors) + 0.5) * width
+    return (
+        f"the spectrum is {ratio:.2g} times as large at {direction:.0f}° to the fast axis as in the weakest direction"
+    )
+
+
+def _moments_have_no_density(found):
+    if found.feasible is None:
+        return f"{_infeasible(found)}, nor have others within their errors; only heights: measured can be used"
+    if found.feasible.distance > 0:
+        near = f"skewness {found.feasible.skewness:.3g} with kurtosis {found.feasible.kurtosis:.3g}"
+        return f"{_infeasible(found)}; {near}, which is {found.feasible.distance:.2g} standard errors away, is used"
+    return ""
+
+
+def _moments_do_not_describe(found):
+    chi2, likely = found.goodness
+    if likely < _UNLIKELY:
+        return f"four moments do not describe the heights (chi² {chi2:.3g}, p {likely:.1g}); heights: measured does"
+    return ""
+
+
+def _tip_rounds(found):
+    within = found.inspection.reach
+    if within.tip < within.nyquist:
+        return f"the tip rounds waves shorter than {2e9 * np.pi / within.tip:.3g} nm"
+    return ""
+
+
+def _lines_jump(found):
+    slow, fast = found.line_jump
+    if slow > _JUMP * fast:
+        steps = f"{1e9 * slow:.2g} nm, against steps of {1e9 * fast:.2g} nm along a line"
+        return f"lines jump by {steps}; lines: offset levels them"
+    return ""
+
+
+def _no_summits(found):
+    return "" if found.inspection.frame.square else "pixels are not square: summits are not compared"
+
+
+_FLAGS = (
+    _few_wavelengths,
+    _not_homogeneous,
+    _scans_differ,
+    _spectrum_misfits,
+    _anisotropic,
+    _moments_have_no_density,
+    _moments_do_not_describe,
+    _tip_rounds,
+    _lines_jump,
+    _no_summits,
+)

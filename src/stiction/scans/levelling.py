@@ -1,0 +1,78 @@
+"""Levelling: a polynomial of the whole map, then one of every line along the fast axis, by least squares.
+
+Levelling also removes roughness of long wavelengths: `stiction.scans.model` estimates how much.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+#: Largest total degree of the polynomial of the map, and degree of that of a line.
+LEVELS = {"mean": 0, "plane": 1, "quadratic": 2}
+LINES = {"none": None, "offset": 0, "tilt": 1, "bow": 2}
+
+
+@dataclass(frozen=True)
+class Levelling:
+    """What is subtracted from a map of heights."""
+
+    level: str = "plane"  #: key of `LEVELS`
+    lines: str = "none"  #: key of `LINES`
+
+
+def level(heights: np.ndarray, levelling: Levelling) -> np.ndarray:
+    """Levelled heights of mean zero, (n1, n2) with NaN where undefined [m].
+
+    Parameters
+    ----------
+    heights : (n1, n2) array
+        Fast axis first, NaN where undefined [m].
+    levelling : Levelling
+    """
+    levelled = heights - _surface(heights, LEVELS[levelling.level])
+    degree = LINES[levelling.lines]
+    return levelled if degree is None else levelled - _lines(levelled, degree)
+
+
+def _surface(heights, degree):
+    """Polynomial of total degree ``degree`` that is closest to the defined heights, (n1, n2) [m]."""
+    along, across = (_legendre(n, degree) for n in heights.shape)
+    terms = [(a, b) for a in range(degree + 1) for b in range(degree + 1 - a)]
+    defined = np.isfinite(heights)
+    basis = np.array([np.outer(along[:, a], across[:, b])[defined] for a, b in terms])
+    weights = np.linalg.solve(basis @ basis.T, basis @ heights[defined])
+    return sum(c * np.outer(along[:, a], across[:, b]) for c, (a, b) in zip(weights, terms, strict=True))
+
+
+def _lines(heights, degree):
+    """Polynomial of every line ``heights[:, j]``, (n1, n2) [m]; of the smallest norm where few points are defined."""
+    basis = _legendre(len(heights), degree)
+    defined = np.isfinite(heights)
+    products = (basis[:, :, None] * basis[:, None, :]).reshape(len(heights), -1)
+    gram = (products.T @ defined).T.reshape(-1, degree + 1, degree + 1)
+    moments = basis.T @ np.where(defined, heights, 0.0)
+    return basis @ np.einsum("jab,bj->aj", np.linalg.pinv(gram, rcond=1e-12, hermitian=True), moments)
+
+
+def _legendre(points, degree):
+    """Legendre polynomials at equally spaced points of ±1, (points, degree + 1)."""
+    return np.polynomial.legendre.legvander(np.linspace(-1, 1, points), degree)
+
+
+def line_jump(heights: np.ndarray) -> tuple[float, float]:
+    """Typical step from one line to the next, and from one point of a line to the next [m].
+
+    Parameters
+    ----------
+    heights : (n1, n2) array
+        Fast axis first, NaN where undefined [m].
+
+    Returns
+    -------
+    slow, fast : float
+        Root mean squares of the medians of the steps across the lines and along them. Without jumps of the lines both
+        are equal on an isotropic surface with square pixels.
+    """
+    return tuple(
+        float(np.sqrt(np.nanmean(np.nanmedian(np.diff(heights, axis=axis), axis=1 - axis) ** 2))) for axis in (1, 0)
+    )

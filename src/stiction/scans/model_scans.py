@@ -1,0 +1,121 @@
+"""Scans drawn from the estimated surface, with pixel and size of the measured ones: what levelling does to them."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from stiction.scans.levelling import Levelling, level
+from stiction.scans.moments import covariance, influence, moments, moments_of, powers
+from stiction.scans.quantiles import MeasuredDensity, quantiles
+from stiction.scans.scan import Frame
+from stiction.surface.field import RoughSurface, StripGrid
+from stiction.surface.maxent import HeightDensity
+from stiction.surface.spectrum import Spectrum, TabulatedSpectrum
+from stiction.surface.summits import find_summits
+from stiction.surface.translation import Translation, underlying_spectrum
+
+#: Fewest and largest number of points along a side of the transforms from the heights to the underlying Gaussian field.
+_POINTS = 512, 2048
+
+
+@dataclass(frozen=True)
+class SurfaceModel:
+    """Surface estimated from scans: density, spectrum, rms."""
+
+    density: HeightDensity | MeasuredDensity
+    spectrum: Spectrum  #: of the heights; its scale has no effect
+    correlation: float  #: distance at which heights are not correlated any more [m]
+    rms: float  #: [m]
+    frame: Frame
+
+    @cached_property
+    def translation(self) -> Translation:
+        """Eq. (5)."""
+        return Translation(self.density)
+
+    @cached_property
+    def moments(self) -> np.ndarray:
+        """Moments (ln rms, skewness, kurtosis), (3,)."""
+        return moments_of(self.translation) + [np.log(self.rms), 0, 0]
+
+    @cached_property
+    def underlying(self) -> TabulatedSpectrum:
+        """Spectrum of the Gaussian field; raises ValueError if no field has these heights and this spectrum."""
+        return underlying_spectrum(self.spectrum, self.translation, min(self.frame.pixel), self._points)[0]
+
+    @property
+    def _points(self):
+        return int(np.clip(2 * max(self.frame.shape), *_POINTS))
+
+    @cached_property
+    def covariance(self) -> np.ndarray:
+        """Covariance of (ln rms, skewness, kurtosis) of one scan, (3, 3)."""
+        known = self._points * min(self.frame.pixel) / 2
+        return covariance(self.translation, self.underlying, self.frame.size, known)
+
+    def draw(self, rng: np.random.Generator) -> np.ndarray:
+        """Draw one scan, with a true mean of 0 [m].
+
+        Pixels that are not square hold the nearest point of a grid of square ones.
+        """
+        shape, pixel = self.frame.shape, self.frame.pixel
+        spacing = min(pixel)
+        length, width = ((n + 1) * p for n, p in zip(shape, pixel, strict=True))
+        drawn = RoughSurface(
+            self.underlying, self.translation, self.rms, StripGrid(length, width, spacing, self.correlation)
+        ).draw(rng)
+        rows, columns = (np.rint(np.arange(n) * p / spacing).astype(int) for n, p in zip(shape, pixel, strict=True))
+        return drawn[np.ix_(rows, columns)].astype(float)
+
+
+@dataclass(frozen=True)
+class ModelScans:
+    """Statistics of levelled model scans."""
+
+    powers: np.ndarray  #: means of z … z⁴, (n, 4)
+    influence: np.ndarray  #: means of the influence functions over the scans before levelling; expectation 0, (n, 3)
+    quantiles: np.ndarray  #: at `stiction.scans.quantiles.SCORES`, (n, 49)
+    summits: np.ndarray  #: `summits_per_area`, (n, 2)
+
+    def bias(self, truth: np.ndarray, scans: int) -> np.ndarray:
+        """Bias of the moments of ``scans`` scans by levelling and finite size, (3,).
+
+        The mean over groups of as many model scans; their sampling error is reduced by the influence functions.
+        """
+        groups = len(self.powers) // scans
+        found, expected = (
+            rows[: groups * scans].reshape(groups, scans, -1).mean(axis=1) for rows in (self.powers, self.influence)
+        )
+        return np.mean(moments(found) - expected, axis=0) - truth
+
+
+def draw_model_scans(model: SurfaceModel, levelling: Levelling, rngs: Iterable[np.random.Generator]) -> ModelScans:
+    """Draw scans of a model, one per generator, and level them."""
+    rows = []
+    for rng in rngs:
+        raw = model.draw(rng)
+        levelled = level(raw, levelling)
+        rows.append(
+            (
+                powers(levelled),
+                influence(powers(raw) / model.rms ** np.arange(1, 5), *model.moments[1:]),
+                quantiles([levelled]),
+                summits_per_area(levelled, model.frame),
+            )
+        )
+    return ModelScans(*map(np.array, zip(*rows, strict=True)))
+
+
+def summits_per_area(heights: np.ndarray, frame: Frame) -> np.ndarray:
+    """Number and total curvature of the summits per area, (2,) [m⁻²], [m⁻³]; ``nan`` if pixels are not square."""
+    if not frame.square:
+        return np.full(2, np.nan)
+    _, curvature, density = find_summits(heights, frame.pixel[0])
+    return np.array([density, density * curvature.mean()])
+
+
+def radius_and_density(per_area: np.ndarray) -> np.ndarray:
+    """Radius 1 / mean curvature [m] and density [m⁻²] of summits from `summits_per_area`, (2,)."""
+    return np.array([per_area[0] / per_area[1], per_area[0]])

@@ -1,0 +1,146 @@
+r"""Moments of the heights of finite scans, and their covariance in closed form.
+
+The moments are the vector (ln rms, skewness, kurtosis) of Eq. (2). To first order an estimate from a finite scan
+differs from the truth by the mean over the scan of the influence functions ψ(z). With ψ(g(u)) expanded in
+orthonormal Hermite polynomials, coefficients a_ik, and ρ the autocorrelation of the Gaussian field u, the covariance is
+
+.. math::
+
+    C_{ij} = \sum_k a_{ik} a_{jk} I_k, \quad
+    I_k = \frac{1}{L_1 L_2} \iint (1 - |\tau_1| / L_1) (1 - |\tau_2| / L_2) \, \rho(\tau)^k \, d^2\tau .
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy import stats
+
+from stiction.estimates import jackknife
+from stiction.surface.spectrum import Spectrum, autocovariance
+from stiction.surface.translation import LARGEST_SCORE, Translation, hermite_coefficients
+
+#: Lags of the radial integral, and trapezoids of the transform per radian of its fastest wave.
+_LAGS, _PANELS_PER_RADIAN, _FEWEST_PANELS = 1500, 2, 4000
+
+
+def powers(heights: np.ndarray) -> np.ndarray:
+    """Means of z, z², z³, z⁴ over the defined heights, (4,) [m … m⁴]."""
+    z = np.asarray(heights, float)[np.isfinite(heights)]
+    square = z * z
+    return np.array([np.mean(values) for values in (z, square, square * z, square * square)])
+
+
+def moments(powers: np.ndarray) -> np.ndarray:
+    """Moments (ln rms, skewness, kurtosis) from the means of the powers of the heights, (..., 4) -> (..., 3) [-].
+
+    The rms is in metres.
+    """
+    m1, p2, p3, p4 = np.moveaxis(np.asarray(powers, float), -1, 0)
+    m2 = p2 - m1**2
+    m3 = p3 - 3 * m1 * p2 + 2 * m1**3
+    m4 = p4 - 4 * m1 * p3 + 6 * m1**2 * p2 - 3 * m1**4
+    return np.stack([np.log(m2) / 2, m3 / m2**1.5, m4 / m2**2], axis=-1)
+
+
+def influence(powers: np.ndarray, skewness: float, kurtosis: float) -> np.ndarray:
+    """Influence functions ψ of (ln rms, skewness, kurtosis), (3, ...) [-].
+
+    Parameters
+    ----------
+    powers : (4, ...) array
+        z, z², z³, z⁴ of standardised heights, or means of them: the functions are linear in the powers [-].
+    skewness, kurtosis : float
+        [-]
+    """
+    first, second, third, fourth = powers
+    spread = second - 1
+    return np.array(
+        [
+            spread / 2,
+            third - skewness - 3 * first - 1.5 * skewness * spread,
+            fourth - kurtosis - 4 * skewness * first - 2 * kurtosis * spread,
+        ]
+    )
+
+
+def moments_of(translation: Translation) -> np.ndarray:
+    """Moments (ln rms, skewness, kurtosis) of the standardised heights of a translation, (3,) [-]."""
+    score = np.linspace(-LARGEST_SCORE, LARGEST_SCORE, len(translation.table))
+    share = np.exp(-(score**2) / 2)
+    return moments(_table_powers(translation) @ (share / share.sum()))
+
+
+def _table_powers(translation):
+    """Powers z, z², z³, z⁴ of the tabulated heights, (4, n)."""
+    return translation.table ** np.arange(1, 5)[:, None]
+
+
+def covariance(translation: Translation, underlying: Spectrum, size: tuple[float, float], reach: float) -> np.ndarray:
+    """Covariance of (ln rms, skewness, kurtosis) of one scan, (3, 3) [-].
+
+    Parameters
+    ----------
+    translation : Translation
+        Eq. (5), of the standardised heights.
+    underlying : Spectrum
+        Of the Gaussian field; its scale has no effect.
+    size : (L1, L2)
+        Of the scan [m].
+    reach : float
+        Lag up to which the autocorrelation of ``underlying`` is known; there it must have vanished [m].
+    """
+    _, skewness, kurtosis = moments_of(translation)
+    coefficients = hermite_coefficients(influence(_table_powers(translation), skewness, kurtosis))
+    overlaps = overlap_integrals(underlying, size, reach, len(coefficients))
+    return np.einsum("ki,kj,k->ij", coefficients, coefficients, overlaps)
+
+
+def overlap_integrals(underlying: Spectrum, size: tuple[float, float], reach: float, terms: int) -> np.ndarray:
+    """Integrals I_1 … I_terms of the powers of the autocorrelation over the scan, (terms,) [-].
+
+    The angle is integrated in closed form; lags beyond the shorter side have no weight worth counting.
+    """
+    longest = min(*size, reach)
+    lag = longest * np.linspace(0, 1, _LAGS) ** 2  # dense near 0, where high powers decay
+    panels = max(_FEWEST_PANELS, int(_PANELS_PER_RADIAN * underlying.cutoff * longest))
+    rho = autocovariance(underlying, lag, panels)
+    angle = 2 * np.pi - 4 * lag * (1 / size[0] + 1 / size[1]) + 2 * lag**2 / (size[0] * size[1])
+    rows = (rho / rho[0]) ** np.arange(1, terms + 1)[:, None] * angle * lag
+    return np.trapezoid(rows, lag) / (size[0] * size[1])
+
+
+def homogeneity(per_scan: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Whether the scatter between scans is that of finite scans of one surface.
+
+    Parameters
+    ----------
+    per_scan : (n, 3) array
+        Moments of every scan.
+    covariance : (3, 3) array
+        Of the moments of one scan.
+
+    Returns
+    -------
+    chi2, p : (3,) arrays
+        Sum of the squared deviations from the mean in standard errors, and the probability of a larger one; ``nan``
+        for a single scan.
+    """
+    freedom = len(per_scan) - 1
+    if freedom == 0:
+        return np.full(3, np.nan), np.full(3, np.nan)
+    chi2 = np.sum((per_scan - per_scan.mean(axis=0)) ** 2, axis=0) / np.diag(covariance)
+    return chi2, stats.chi2.sf(chi2, freedom)
+
+
+def tiles(scan: np.ndarray, sides: int) -> list[np.ndarray]:
+    """Equal tiles of a map (n1, n2), ``sides`` along each side; a remainder at the far edges is left out."""
+    rows, columns = (n // sides for n in scan.shape)
+    return [
+        scan[i * rows : (i + 1) * rows, j * columns : (j + 1) * columns] for i in range(sides) for j in range(sides)
+    ]
+
+
+def tile_errors(scans: Sequence[np.ndarray], sides: int) -> np.ndarray:
+    """Standard errors of the pooled moments from the scatter between tiles of the scans, (3,) [-]."""
+    rows = np.array([powers(tile) for scan in scans for tile in tiles(scan, sides) if np.isfinite(tile).any()])
+    return jackknife(moments, rows)[1]

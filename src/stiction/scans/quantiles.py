@@ -1,0 +1,173 @@
+r"""Form of the height density: measured quantiles, the density that they are, and whether four moments describe it.
+
+Quantiles are heights at normal scores u, as in Eq. (5), of the standardised heights.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import stats
+from scipy.special import ndtr, ndtri
+
+from stiction.errors import NotConverged
+from stiction.surface import maxent
+from stiction.surface.feasible import Moments, is_feasible, nearest_feasible
+from stiction.surface.maxent import HeightDensity
+from stiction.surface.spectrum import Spectrum
+from stiction.surface.translation import LARGEST_SCORE
+
+#: Scores at which quantiles are measured.
+SCORES = np.linspace(-3, 3, 49)
+#: Scores at which the form is compared: both sides, the upper tail in more points, as only hills touch.
+COMPARED = np.searchsorted(SCORES, (-2.0, 1.0, 2.0, 2.5, 3.0))
+#: Fewest correlation areas beyond the outermost measured quantile that is used, and range of scores of its slope.
+_AREAS_BEYOND, _SLOPE_RANGE = 10, 0.5
+#: Differences of the moments for the slopes of the quantiles.
+_STEP = 0.02
+
+
+def quantiles(scans: Sequence[np.ndarray]) -> np.ndarray:
+    """Heights of all scans at `SCORES`, less their mean and over their rms, (49,) [-]."""
+    z = np.concatenate([scan[np.isfinite(scan)] for scan in scans])
+    return (np.quantile(z, ndtr(SCORES)) - z.mean()) / z.std()
+
+
+@dataclass(frozen=True)
+class MeasuredDensity:
+    """Density given by measured quantiles; takes the place of a `HeightDensity` in a `Translation`.
+
+    ASSUME: beyond the outermost quantiles that have enough of the scan beyond them, heights are straight lines in the
+    score, with the slope of the last part.
+    """
+
+    scores: np.ndarray  #: increasing, (n,)
+    heights: np.ndarray  #: at the scores, in any unit, (n,)
+
+    def quantile_of_normal(self, score: float | np.ndarray) -> np.ndarray:
+        """Standardised height of the normal score u, any shape [-]."""
+        mean, deviation = self._mean_and_deviation
+        return (self._height(score) - mean) / deviation
+
+    def _height(self, score):
+        inner = np.interp(score, self.scores, self.heights)
+        below, above = np.minimum(score - self.scores[0], 0), np.maximum(score - self.scores[-1], 0)
+        return inner + self._slope(slice(None)) * below + self._slope(slice(None, None, -1)) * above
+
+    def _slope(self, order):
+        """Mean slope of the outermost part, at the first of the scores in this order."""
+        score, height = self.scores[order], self.heights[order]
+        inner = np.flatnonzero(np.abs(score - score[0]) >= _SLOPE_RANGE)[0]
+        return (height[inner] - height[0]) / (score[inner] - score[0])
+
+    @cached_property
+    def _mean_and_deviation(self):
+        score = np.linspace(-LARGEST_SCORE, LARGEST_SCORE, 4097)
+        share = np.exp(-(score**2) / 2) / np.exp(-(score**2) / 2).sum()
+        height = self._height(score)
+        mean = share @ height
+        return mean, np.sqrt(share @ (height - mean) ** 2)
+
+
+def correlation_areas(spectrum: Spectrum, variance: float, area: float) -> float:
+    """Number of areas A m₂ / (4 π² s_Z(0)) with independent heights in a scanned area [-]."""
+    return area * variance / (4 * np.pi**2 * float(spectrum(0.0)))
+
+
+def measured_density(heights: np.ndarray, areas: float) -> MeasuredDensity:
+    """Density of measured quantiles.
+
+    Parameters
+    ----------
+    heights : (49,) array
+        At `SCORES`.
+    areas : float
+        `correlation_areas` of all scans.
+
+    Raises
+    ------
+    ValueError
+        If the scans hold too few of them for quantiles at scores of ±1.
+    """
+    largest = -ndtri(min(_AREAS_BEYOND / areas, 0.5))
+    if largest < 1:
+        raise ValueError(f"the heights of {areas:.3g} independent areas do not give a density")
+    inside = np.abs(SCORES) <= largest + 1e-9
+    return MeasuredDensity(SCORES[inside], np.asarray(heights)[inside])
+
+
+@dataclass(frozen=True)
+class Feasible:
+    """Maximum-entropy density of the moments that are nearest to the measured ones."""
+
+    density: HeightDensity
+    skewness: float  #: [-]
+    kurtosis: float  #: [-]
+    distance: float  #: from the measured ones in standard errors, 0 if they have a density [-]
+
+
+def feasible(skewness: float, kurtosis: float, covariance: Callable[[], np.ndarray]) -> Feasible | None:
+    """Maximum-entropy density of measured moments, or of the nearest that have one; ``None`` if none is near.
+
+    Parameters
+    ----------
+    skewness, kurtosis : float
+        [-]
+    covariance : callable
+        Returns the covariance of both, (2, 2); called only if they have no density.
+    """
+    try:
+        found = (
+            Moments(skewness, kurtosis, 0.0)
+            if is_feasible(skewness, kurtosis)
+            else nearest_feasible(skewness, kurtosis, covariance())
+        )
+        return Feasible(maxent.solve(found.skewness, found.kurtosis), *found)
+    except (ValueError, NotConverged):
+        return None
+
+
+def compared_slopes(skewness: float, kurtosis: float) -> np.ndarray:
+    """Slopes of the compared quantiles of maximum entropy with skewness and kurtosis, (2, 5) [-].
+
+    The differences are taken at a slightly smaller kurtosis, where a density exists on both sides.
+    """
+    base = kurtosis - _STEP
+
+    def compared(s, k):
+        return maxent.solve(s, k).quantile_of_normal(SCORES[COMPARED])
+
+    centre = compared(skewness, base)
+    return (
+        np.array([(compared(skewness + _STEP / 2, base) - centre) * 2, centre - compared(skewness, base - _STEP)])
+        / _STEP
+    )
+
+
+def goodness(residual: np.ndarray, model_residuals: np.ndarray, scans: int) -> tuple[float, float]:
+    """Whether quantiles deviate from those of the four-moment density by more than finite scans do.
+
+    Parameters
+    ----------
+    residual : (p,) array
+        Measured quantiles of all scans together less those of the density.
+    model_residuals : (n, p) array
+        The same of single scans drawn from the density; rows of ``nan`` are left out.
+    scans : int
+        Number of measured scans.
+
+    Returns
+    -------
+    chi2, p : float
+        Squared distance in the covariance of the model scans (χ² of p degrees of freedom if that is known exactly), and
+        the probability of a larger one, which counts that it is estimated (Hotelling); ``nan`` without a density.
+    """
+    model_residuals = model_residuals[np.isfinite(model_residuals).all(axis=1)]
+    n, size = model_residuals.shape
+    if n <= size or not np.isfinite(residual).all():
+        return np.nan, np.nan
+    difference = residual - model_residuals.mean(axis=0)
+    covariance = np.cov(model_residuals.T) * (1 / scans + 1 / n)
+    chi2 = float(difference @ np.linalg.solve(covariance, difference))
+    return chi2, float(stats.f.sf(chi2 * (n - size) / (size * (n - 1)), size, n - size))

@@ -1,0 +1,263 @@
+"""Files of microscopes, read by SurfaceTopography: units, axes, undefined points and the channel of the heights.
+
+The library is imported only here, and only when a file is read. It regards every channel with a length, and some
+without, as heights; the channel is therefore selected by name and unit. What the library prints, logs or raises never
+reaches the user: every unusable file is a `ScanError`.
+"""
+
+import contextlib
+import io
+import logging
+import re
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+
+from stiction.errors import ScanError
+from stiction.scans.scan import Scan
+
+#: Units of length [m].
+UNITS = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6, "nm": 1e-9, "Å": 1e-10, "A": 1e-10, "pm": 1e-12}
+#: Names of height channels consist of these words: at least one of the first set, others only of the second and third.
+_HEIGHT, _SENSOR = {"height", "topography", "z"}, {"axis", "sensor"}
+_DIRECTION = {"scan", "trace", "retrace", "forward", "backward", "measured", "raw", "channel", "data"}
+#: Names of the library for the channel of a file that names none.
+_NAMELESS = re.compile(r"(default|channel \d+)$", re.IGNORECASE)
+#: Formats that any file of a certain length has: recognised by the ending of the file only.
+_WITHOUT_MAGIC = {"hgt", "nms"}
+#: Metadata of instruments that tell whether the stored heights are levelled, and their values if they are not.
+_LEVELLED = re.compile(r"offline planefit|(?:planefit|flattenorder) (\d+)", re.IGNORECASE)
+_NOT_LEVELLED = {"none", "-1", "0", ""}
+#: Largest relative difference between the size in the file and the size given, and longest quoted reason.
+_SAME_SIZE, _LONGEST_REASON = 0.01, 120
+
+
+@dataclass(frozen=True)
+class Source:
+    """What the configuration says of the files of a surface; every item is optional."""
+
+    channel: str | None = None  #: name, or name#2 for the second of equal names
+    fast_axis: str = "x"  #: axis of the file along which the microscope scans a line, x or y
+    size: tuple[float, float] | None = None  #: along x and y, for files without a size [m]
+    height_unit: str | None = None  #: for files without a unit, one of `UNITS`
+
+
+@dataclass(frozen=True)
+class ScanFile:
+    """Content of a file: the scan, where it comes from, and what the user should know of it."""
+
+    scan: Scan
+    channel: str  #: identifier of the channel that was read
+    unit: str  #: of the heights in the file
+    notes: tuple[str, ...]  #: sentences on the choice of the channel and on levelling by the instrument
+
+
+def read(path: str | Path, source: Source | None = None) -> ScanFile:
+    """Read the heights of a file of any format that SurfaceTopography reads.
+
+    Parameters
+    ----------
+    path : path
+    source : Source, optional
+
+    Raises
+    ------
+    ScanError
+        If the file has no usable map of heights, or the configuration contradicts it.
+    """
+    path = Path(path)
+    _refuse_empty(path)
+    with _silenced():
+        try:
+            return _read(path, source or Source())
+        except ScanError as reason:  # ends here with all that it refers to, so that files are closed in silence
+            refused = ScanError(reason.file, reason.key, reason.reason)
+    raise refused
+
+
+def _read(path, source):
+    """`ScanFile` of a file that is not empty."""
+    name = path.name
+    library = _library(name)
+    with _opened(library, path) as reader:
+        channel, notes = _height_channel(reader.channels, source.channel, name)
+        if channel.dim != 2:
+            raise ScanError(name, "files", "is a profile; a map of heights is needed")
+        unit, size = _unit(channel, source, name), _size(channel, source, name)
+        heights = UNITS[unit] * _heights(channel, path)
+        notes += _instrument_levelling(channel, name)
+        identifier = channel.channel_id
+    if source.fast_axis == "y":
+        heights, size = heights.T, size[::-1]
+    return ScanFile(Scan(heights, size, name), identifier, unit, notes)
+
+
+def _refuse_empty(path):
+    try:
+        with path.open("rb") as file:
+            first = file.read(1)
+    except OSError as reason:
+        raise ScanError(path.name, "files", f"cannot be opened: {reason.strerror}") from None
+    if not first:
+        raise ScanError(path.name, "files", "is empty")
+
+
+@contextlib.contextmanager
+def _silenced():
+    """Suppress warnings, log records and output of libraries."""
+    before = logging.root.manager.disable
+    logging.disable(logging.CRITICAL)
+    try:
+        with (
+            warnings.catch_warnings(),
+            contextlib.redirect_stdout(io.StringIO()),
+            contextlib.redirect_stderr(io.StringIO()),
+        ):
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        logging.disable(before)
+
+
+def _library(name):
+    """Functions and exceptions of SurfaceTopography that are used."""
+    try:
+        from SurfaceTopography import IO
+    except ImportError:
+        raise ScanError(
+            name, "files", "needs the library SurfaceTopography to be read: pip install 'stiction[scans]'"
+        ) from None
+    return SimpleNamespace(
+        open=IO.open_topography,
+        unknown=IO.CannotDetectFileFormat,
+        endings={ending: kind for kind in IO.readers for ending in (kind.format(), *(kind.file_extensions() or ()))},
+    )
+
+
+def _opened(library, path):
+    """Reader of a file; refuses what no format fits."""
+    try:
+        reader = library.open(str(path))
+    except library.unknown:
+        raise _unreadable(path, _reason_of_its_format(library, path)) from None
+    except Exception as reason:  # whatever a reader of some format raises on a damaged file
+        raise _unreadable(path, reason) from None
+    if reader.format() in _WITHOUT_MAGIC and reader.format() != _ending(path):
+        reader.close()
+        raise _unreadable(path, _reason_of_its_format(library, path))
+    return reader
+
+
+def _ending(path):
+    return path.suffix.lower().removeprefix(".")
+
+
+def _reason_of_its_format(library, path):
+    """Why the reader for the ending of a file does not accept it; empty if no format has this ending."""
+    kind = library.endings.get(_ending(path))
+    if kind is None:
+        return ""
+    try:
+        kind(str(path)).close()
+    except Exception as reason:  # as in `_opened`
+        return reason
+    return ""
+
+
+def _unreadable(path, reason):
+    """One sentence, with the first line of the reason if it is short."""
+    line = next(iter(str(reason).strip().splitlines()), "").rstrip(". ")
+    quoted = f" ({line})" if 0 < len(line) <= _LONGEST_REASON else ""
+    return ScanError(path.name, "files", f"cannot be read as any known format, or is damaged{quoted}")
+
+
+def _words(name):
+    """Words of the name of a channel, in lower case; ``HeightTrace`` has two."""
+    return {word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", name)}
+
+
+def _is_height(channel):
+    """Whether name and unit of a channel are those of heights."""
+    words = _words(channel.name)
+    named = bool(words & _HEIGHT) and words <= _HEIGHT | _SENSOR | _DIRECTION
+    return named and (_unit_of(channel) is None or _unit_of(channel) in UNITS)
+
+
+def _unit_of(channel):
+    """Unit of the heights of a channel; ``None`` if the file has none, otherwise not always a length."""
+    return channel.unit if channel.data_unit is None else channel.data_unit
+
+
+def _height_channel(channels, wanted, name):
+    """Channel of the heights and notes on its choice."""
+    listed = ", ".join(channel.channel_id for channel in channels) or "none"
+    if wanted is not None:
+        chosen = [channel for channel in channels if wanted in (channel.channel_id, channel.name)]
+        if not chosen:
+            raise ScanError(name, "channel", f"has no channel {wanted}, only: {listed}")
+    elif len(channels) == 1 and _NAMELESS.match(channels[0].name):
+        chosen = channels
+    else:
+        chosen = [channel for channel in channels if _is_height(channel)]
+        if not chosen:
+            raise ScanError(name, "channel", f"has no channel that is named as a height, only: {listed}")
+        if len({frozenset(_words(channel.name) - _DIRECTION) for channel in chosen}) > 1:
+            several = ", ".join(channel.channel_id for channel in chosen)
+            raise ScanError(name, "channel", f"has several channels of heights; name one of: {several}")
+    others = ", ".join(channel.channel_id for channel in chosen[1:])
+    notes = (f"{name}: channel {chosen[0].channel_id} was read; the file also has {others}",) if others else ()
+    return chosen[0], notes
+
+
+def _unit(channel, source, name):
+    """Unit of the heights, from the file or, if it has none, from the configuration."""
+    stored = _unit_of(channel)
+    if stored is None and source.height_unit is None:
+        raise ScanError(name, "height_unit", f"has no unit; give one of {', '.join(UNITS)}")
+    if stored is not None and stored not in UNITS:
+        shown = stored if isinstance(stored, str) else "no single unit"
+        raise ScanError(name, "channel", f"has channel {channel.channel_id} in {shown}, which is not a length")
+    if None not in (stored, source.height_unit) and UNITS[stored] != UNITS[source.height_unit]:
+        raise ScanError(name, "height_unit", f"has heights in {stored}, not in {source.height_unit}")
+    return stored or source.height_unit
+
+
+def _size(channel, source, name):
+    """Size along x and y [m], from the file or, if it has none, from the configuration."""
+    if channel.physical_sizes is None or channel.unit not in UNITS:
+        if source.size is None:
+            raise ScanError(name, "size_um", "has no size in a unit of length; give the size along x and y")
+        return source.size
+    stored = tuple(float(length) * UNITS[channel.unit] for length in channel.physical_sizes)
+    if source.size is not None and not np.allclose(source.size, stored, rtol=_SAME_SIZE, atol=0):
+        shown = " x ".join(f"{length / UNITS['um']:.4g}" for length in stored)
+        raise ScanError(name, "size_um", f"has a size of {shown} µm, which differs by more than 1 %")
+    return stored
+
+
+def _heights(channel, path):
+    """Heights of a channel in the unit of the file, (n_x, n_y) float64, NaN where undefined."""
+    size = None if channel.physical_sizes is not None else channel.nb_grid_pts
+    try:
+        topography = channel.topography(physical_sizes=size)
+        heights = topography.heights()
+    except Exception as reason:  # damage that shows only when the data are read
+        raise _unreadable(path, reason) from None
+    if not topography.is_uniform:
+        raise ScanError(path.name, "files", "has unequal distances between its points; a regular map is needed")
+    return np.ma.filled(np.ma.asarray(heights, dtype=float), np.nan)
+
+
+def _instrument_levelling(channel, name):
+    """Note that the instrument has levelled the stored heights already, if the metadata tell so."""
+    found = []
+    for key, value in channel.info.get("raw_metadata", {}).items():
+        known = _LEVELLED.fullmatch(str(key))
+        if known and known[1] in (None, str(channel.index)) and str(value).strip().lower() not in _NOT_LEVELLED:
+            found.append(f"{key}: {value}")
+    if not found:
+        return ()
+    return (f"{name}: the instrument has levelled channel {channel.channel_id} already ({', '.join(found)})",)

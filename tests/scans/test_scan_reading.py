@@ -1,0 +1,267 @@
+"""Files written by SurfaceTopography and by hand, read back; files that cannot be used, refused in one sentence."""
+
+import subprocess
+import sys
+import warnings
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from stiction.errors import ScanError
+from stiction.scans import reading
+from stiction.scans.reading import Source, read
+from stiction.streams import stream
+
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore", ImportWarning)  # of NuMPI, without mpi4py
+    SurfaceTopography = pytest.importorskip("SurfaceTopography")
+
+#: Rougher along the second axis; 64 x 40 points of 100 nm.
+HEIGHTS = 3e-9 * stream(1, "reading").standard_normal((64, 40)) * np.linspace(0.5, 1.5, 40)
+SIZE = (6.4e-6, 4e-6)
+GIVEN = Source(size=SIZE, height_unit="nm")
+
+
+def topography(heights=HEIGHTS, size=SIZE, unit="m"):
+    return SurfaceTopography.Topography(heights, size, unit=unit)
+
+
+def written(folder, ending, surface):
+    path = folder / f"scan.{ending}"
+    getattr(surface, {"gwy": "to_gwy", "x3p": "to_x3p", "nc": "to_netcdf"}[ending])(str(path))
+    return path
+
+
+@pytest.mark.parametrize(("ending", "lateral"), [("gwy", 1e-12), ("x3p", 1e-12), ("nc", 1e-7)])
+def test_heights_size_and_axes_survive_a_round_trip(tmp_path, ending, lateral):
+    scan = read(written(tmp_path, ending, topography())).scan
+    np.testing.assert_allclose(scan.heights, HEIGHTS, rtol=1e-12)
+    np.testing.assert_allclose(scan.size, SIZE, rtol=lateral)
+    np.testing.assert_allclose(scan.frame.pixel, (100e-9, 100e-9), rtol=lateral)
+    assert scan.name == f"scan.{ending}"
+
+
+@pytest.mark.parametrize("ending", ["gwy", "x3p"])
+def test_pixels_need_not_be_square(tmp_path, ending):
+    scan = read(written(tmp_path, ending, topography(size=(6.4e-6, 8e-6)))).scan
+    np.testing.assert_allclose(scan.frame.pixel, (100e-9, 200e-9))
+
+
+def test_the_first_index_runs_along_the_fast_axis(tmp_path):
+    ramp = 1e-9 * np.arange(64.0)[:, None] * np.ones(40)
+    path = written(tmp_path, "gwy", topography(ramp))
+    along_x, along_y = (read(path, Source(fast_axis=axis)).scan for axis in "xy")
+    np.testing.assert_allclose(np.diff(along_x.heights, axis=0), 1e-9)
+    np.testing.assert_allclose(np.diff(along_y.heights, axis=1), 1e-9)
+    np.testing.assert_allclose(along_y.size, SIZE[::-1])
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("m", 1), ("mm", 1e-3), ("µm", 1e-6), ("um", 1e-6), ("nm", 1e-9)])
+def test_units_of_the_file_are_converted(tmp_path, unit, metres):
+    scan = read(written(tmp_path, "nc", topography(HEIGHTS / metres, tuple(x / metres for x in SIZE), unit))).scan
+    np.testing.assert_allclose(scan.heights, HEIGHTS, rtol=1e-12)
+    np.testing.assert_allclose(scan.size, SIZE, rtol=1e-7)
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("nm", 1e-9), ("um", 1e-6), ("Å", 1e-10), ("pm", 1e-12)])
+def test_a_matrix_without_units_takes_those_of_the_configuration(tmp_path, unit, metres):
+    np.savetxt(tmp_path / "scan.txt", HEIGHTS.T / metres)
+    np.save(tmp_path / "scan.npy", HEIGHTS / metres)
+    for name in ("scan.txt", "scan.npy"):
+        scan = read(tmp_path / name, Source(size=SIZE, height_unit=unit)).scan
+        np.testing.assert_allclose(scan.heights, HEIGHTS, rtol=1e-12)
+        assert scan.size == SIZE
+
+
+@pytest.mark.parametrize("ending", ["gwy", "x3p", "nc"])
+def test_undefined_points_are_not_numbers(tmp_path, ending):
+    mask = np.zeros(HEIGHTS.shape, bool)
+    mask[3:6, 7] = True
+    scan = read(written(tmp_path, ending, topography(np.ma.masked_array(HEIGHTS, mask)))).scan
+    np.testing.assert_array_equal(~scan.defined, mask)
+    np.testing.assert_allclose(scan.heights[~mask], HEIGHTS[~mask], rtol=1e-12)
+    assert scan.undefined_share == pytest.approx(3 / 2560)
+
+
+def test_undefined_points_of_a_matrix_are_not_numbers(tmp_path):
+    z = HEIGHTS.copy()
+    z[0, 0] = np.nan
+    np.save(tmp_path / "scan.npy", z)
+    assert read(tmp_path / "scan.npy", GIVEN).scan.defined.sum() == z.size - 1
+
+
+def channels(*named):
+    """Channels of a file: (name, unit)."""
+    result, seen = [], []
+    for index, (name, unit) in enumerate(named):
+        seen.append(name)
+        double = [other for other, _ in named].count(name) > 1
+        identifier = f"{name}#{seen.count(name)}" if double else name
+        result.append(
+            SimpleNamespace(index=index, name=name, channel_id=identifier, unit="nm", data_unit=unit, info={}, dim=2)
+        )
+    return result
+
+
+CHOICES = {
+    "Height beside others": ([("Phase", "deg"), ("Height", "nm"), ("AmplitudeError", ("nm", None))], None, "Height"),
+    "first of equal names": ([("Height", "nm"), ("Height", "nm")], None, "Height#1"),
+    "second of equal names": ([("Height", "nm"), ("Height", "nm")], "Height#2", "Height#2"),
+    "first of both directions": ([("PhaseTrace", "m"), ("HeightTrace", "m"), ("HeightRetrace", "m")],
+                                 None, "HeightTrace"),
+    "one sensor": ([("Deflection", "nm"), ("ZSensor", "nm")], None, "ZSensor"),
+    "one of two sensors, named": ([("Scan forward (Z-Axis)", "m"), ("Scan forward (Z-AxisSensor)", "m")],
+                                  "Scan forward (Z-AxisSensor)", "Scan forward (Z-AxisSensor)"),
+    "in both directions": ([("Z Height Forward", "um"), ("Z Height Backward", "um")], None, "Z Height Forward"),
+    "file without names": ([("channel 0", None)], None, "channel 0"),
+    "default name": ([("Default", "m")], None, "Default"),
+    "any name that is given": ([("Deflection", "nm"), ("Height", "nm")], "Deflection", "Deflection"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("named", "wanted", "expected"), CHOICES.values(), ids=CHOICES)
+def test_the_channel_of_the_heights_is_chosen_by_name(named, wanted, expected):
+    chosen, notes = reading._height_channel(channels(*named), wanted, "scan.spm")
+    assert chosen.channel_id == expected
+    assert bool(notes) == (wanted is None and expected in ("Height#1", "HeightTrace", "Z Height Forward"))
+    assert all(note.startswith(f"scan.spm: channel {expected} was read; the file also has ") for note in notes)
+
+
+REFUSED_CHANNELS = {
+    "none is a height": ([("Phase", "deg"), ("Deflection", "nm")], None, "named as a height, only: Phase, Deflection"),
+    "a height without length": ([("Height", ("nm", None))], None, "no channel that is named as a height"),
+    "a height in volts": ([("Height", "V")], None, "no channel that is named as a height"),
+    "a single other channel": ([("Friction", "nm")], None, "no channel that is named as a height"),
+    "two kinds of heights": ([("Height", "nm"), ("ZSensor", "nm")], None, "name one of: Height, ZSensor"),
+    "an unknown name": ([("Height", "nm")], "height", "no channel height, only: Height"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("named", "wanted", "reason"), REFUSED_CHANNELS.values(), ids=REFUSED_CHANNELS)
+def test_without_one_channel_of_heights_the_file_is_refused_with_the_list(named, wanted, reason):
+    with pytest.raises(ScanError, match=reason) as caught:
+        reading._height_channel(channels(*named), wanted, "scan.spm")
+    assert (caught.value.key, caught.value.file) == ("channel", "scan.spm")
+
+
+@pytest.mark.parametrize("unit", ["V", "deg", ("um", None)])
+def test_a_named_channel_must_be_a_length(unit):
+    (channel,) = channels(("Deflection", unit))
+    with pytest.raises(ScanError, match="channel: scan.spm has channel Deflection in .*, which is not a length"):
+        reading._unit(channel, Source(), "scan.spm")
+
+
+def test_a_size_in_no_unit_of_length_is_not_a_size():
+    (channel,) = channels(("Height", "nm"))
+    channel.unit, channel.physical_sizes = ("um", None), (5.0, 5.0)
+    with pytest.raises(ScanError, match="size_um: scan.spm has no size in a unit of length"):
+        reading._size(channel, Source(), "scan.spm")
+    assert reading._size(channel, GIVEN, "scan.spm") == SIZE
+
+
+def test_levelling_by_the_instrument_is_told():
+    metadata = {"Offline Planefit": "Full", "realtime planefit": "Line", "Planefit 0": "None", "FlattenOrder 1": "2"}
+    channel = SimpleNamespace(index=0, channel_id="Height", info={"raw_metadata": metadata})
+    (note,) = reading._instrument_levelling(channel, "scan.spm")
+    assert note == "scan.spm: the instrument has levelled channel Height already (Offline Planefit: Full)"
+    for plain in ({}, {"offline planefit": "None"}, {"FlattenOrder 0": "-1"}):
+        channel.info = {"raw_metadata": plain}
+        assert reading._instrument_levelling(channel, "scan.spm") == ()
+    channel.info, channel.index = {"raw_metadata": metadata}, 1
+    assert "FlattenOrder 1: 2" in reading._instrument_levelling(channel, "scan.spm")[0]
+
+
+def bad_files(folder):
+    """Contents of unusable files: name, bytes."""
+    whole = {ending: written(folder, ending, topography()).read_bytes() for ending in ("gwy", "x3p", "nc")}
+    profile = "\n".join(f"{x} {x**2}" for x in range(40))
+    return {
+        "empty.spm": b"",
+        "nonsense.txt": b"nothing in here is a height\n" * 9,
+        "table.csv": b"1.0,2.0,3.0,4.0\n" * 40,
+        "commas.txt": b"1,5 2,5 3,5\n" * 40,
+        "picture.png": b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 4,
+        "square.spm": bytes(2 * 64 * 64),
+        "profile.xyz": profile.encode(),
+        "column.txt": "\n".join(map(str, range(40))).encode(),
+    } | {f"half.{ending}": content[: len(content) // 2] for ending, content in whole.items()}
+
+
+#: Name of an unusable file: (settings, key, sentence).
+BAD = {
+    "missing.spm": (Source(), "files", "cannot be opened: No such file or directory"),
+    "empty.spm": (GIVEN, "files", "is empty"),
+    "nonsense.txt": (GIVEN, "files", "cannot be read as any known format, or is damaged"),
+    "table.csv": (GIVEN, "files", "cannot be read as any known format, or is damaged"),
+    "commas.txt": (GIVEN, "files", "cannot be read as any known format, or is damaged"),
+    "picture.png": (GIVEN, "files", "cannot be read as any known format, or is damaged"),
+    "square.spm": (GIVEN, "files", "cannot be read as any known format, or is damaged"),
+    "half.gwy": (Source(), "files", "cannot be read as any known format, or is damaged [(]The file has .* truncated"),
+    "half.x3p": (Source(), "files", "cannot be read as any known format, or is damaged"),
+    "half.nc": (Source(), "files", "cannot be read as any known format, or is damaged"),
+    "profile.xyz": (GIVEN, "files", "is a profile; a map of heights is needed"),
+    "column.txt": (GIVEN, "files", "is a profile; a map of heights is needed"),
+    "small.npy": (GIVEN, "files", "has 40 x 31 points, needs 32 along each side"),
+    "flat.npy": (GIVEN, "files", "has the same height, or none, at all points"),
+    "nothing.npy": (GIVEN, "files", "has the same height, or none, at all points"),
+    "matrix.npy": (Source(height_unit="nm"), "size_um", "has no size in a unit of length"),
+    "scan.npy": (Source(size=SIZE), "height_unit", "has no unit; give one of m, mm"),
+    "scan.gwy": (Source(size=(6.5e-6, 4e-6)), "size_um", "has a size of 6.4 x 4 µm, which differs by more than 1 %"),
+    "scan.x3p": (Source(height_unit="nm"), "height_unit", "has heights in m, not in nm"),
+    "point.npy": (Source(size=(0.0, 1e-6), height_unit="nm"), "size_um", "has a size of 0 x 1e-06 m"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_an_unusable_file_is_refused_in_one_sentence_with_key_and_file(tmp_path, capfd, name):
+    arrays = {"small.npy": HEIGHTS[:40, :31], "flat.npy": np.ones((40, 40)), "nothing.npy": np.full((40, 40), np.nan)}
+    for other, content in bad_files(tmp_path).items():
+        (tmp_path / other).write_bytes(content)
+    for other in ("small.npy", "flat.npy", "nothing.npy", "matrix.npy", "scan.npy", "point.npy"):
+        np.save(tmp_path / other, arrays.get(other, HEIGHTS))
+    settings, key, sentence = BAD[name]
+    with pytest.raises(ScanError, match=f"^{key}: {name} {sentence}") as caught:
+        read(tmp_path / name, settings)
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 250
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_size_given_for_a_file_that_has_one_must_agree(tmp_path):
+    path = written(tmp_path, "gwy", topography())
+    np.testing.assert_allclose(read(path, Source(size=(6.43e-6, 4e-6), height_unit="m")).scan.size, SIZE)
+
+
+def test_a_folder_is_not_a_file(tmp_path):
+    with pytest.raises(ScanError, match="cannot be opened: Is a directory"):
+        read(tmp_path)
+
+
+def test_damage_that_shows_only_when_heights_are_read_is_told(tmp_path):
+    def topography(**_):
+        raise IndexError("list index out of range\nin some reader")
+
+    channel = SimpleNamespace(physical_sizes=None, nb_grid_pts=(64, 64), topography=topography)
+    with pytest.raises(ScanError, match="^files: a.tiff cannot be read .* damaged [(]list index out of range[)]$"):
+        reading._heights(channel, tmp_path / "a.tiff")
+
+
+def test_without_the_library_the_message_tells_how_to_install_it(tmp_path, monkeypatch):
+    path = written(tmp_path, "gwy", topography())
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+    with pytest.raises(ScanError, match="needs the library SurfaceTopography to be read: pip install 'stiction"):
+        read(path)
+
+
+def test_the_library_is_imported_only_to_read_and_its_import_warns_nobody(tmp_path):
+    path = written(tmp_path, "gwy", topography())
+    code = f"""
+import sys
+import stiction.scans.reading as reading
+assert "SurfaceTopography" not in sys.modules
+reading.read({str(path)!r})
+assert "SurfaceTopography" in sys.modules
+"""
+    done = subprocess.run([sys.executable, "-W", "error::ImportWarning", "-c", code], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

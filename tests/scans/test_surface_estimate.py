@@ -1,0 +1,234 @@
+import dataclasses
+
+import numpy as np
+import pytest
+from drawn_scans import fleishman, gaussian, published, truth
+from published import SURFACES
+
+from stiction.errors import ScanError
+from stiction.scans.estimate import Settings, estimate, inspect
+from stiction.scans.levelling import Levelling
+from stiction.scans.quantiles import Feasible
+from stiction.scans.scan import Scan
+from stiction.streams import stream
+from stiction.surface.translation import Translation
+
+SIDE = 5e-6
+
+
+def streams(count=24):
+    return lambda number: [stream(2, "model", number, k) for k in range(count)]
+
+
+def estimates(scans, settings=None, count=24):
+    """Estimate of each scan by itself."""
+    return [estimate([scan], settings or Settings(), streams(count)) for scan in scans]
+
+
+B2 = published("B2", SIDE, 3)
+ESTIMATE = estimate(B2, Settings(), streams(12))
+
+
+def test_the_truth_is_within_the_errors():
+    assert np.all(np.abs(ESTIMATE.moments - truth("B2")) < 3.5 * ESTIMATE.errors)
+    spectrum = SURFACES["B2"].spectrum
+    found = ESTIMATE.inspection.fit
+    errors = np.sqrt(np.diag(found.covariance))
+    assert abs(np.log(found.corner / spectrum.corner)) < 3.5 * errors[1]
+    assert abs(found.slope - spectrum.slope) < 3.5 * errors[2]
+    measured = ESTIMATE.density("measured").quantile_of_normal(np.array([-2.0, 1.0, 2.0]))
+    np.testing.assert_allclose(
+        measured, SURFACES["B2"].density.quantile_of_normal(np.array([-2.0, 1.0, 2.0])), rtol=0, atol=0.12
+    )
+
+
+def test_three_scans_have_smaller_errors_than_one():
+    (one,) = estimates(B2[:1], count=12)
+    np.testing.assert_allclose(one.errors / ESTIMATE.errors, np.sqrt(3), rtol=0.25)
+    assert ESTIMATE.inspection.areas == pytest.approx(3 * one.inspection.areas, rel=0.4)
+    assert np.isnan(one.homogeneity[1]).all()
+    assert np.isfinite(ESTIMATE.homogeneity[1]).all()
+
+
+def test_summits_are_those_of_the_model_on_a_surface_of_the_form_of_eq_7():
+    error = np.hypot(ESTIMATE.summit_errors, ESTIMATE.model_summit_errors)
+    # The cut-off of the model is the Nyquist number, 157 rad/µm, that of the surface 125: sharper summits.
+    ratio = ESTIMATE.summits / ESTIMATE.model_summits
+    assert np.all(np.abs(ratio - [1.08, 0.89]) < 4 * error / ESTIMATE.model_summits)
+
+
+def test_the_same_streams_give_the_same_estimate():
+    again = estimate(B2, Settings(), streams(12))
+    np.testing.assert_array_equal(again.moments, ESTIMATE.moments)
+
+
+def test_densities_and_spectra_are_those_that_are_asked_for():
+    assert ESTIMATE.density("moments") is ESTIMATE.feasible.density
+    found = ESTIMATE.inspection
+    fitted, tabulated = (ESTIMATE.spectrum(psd, 1.2e8) for psd in ("fitted", "tabulated"))
+    assert fitted == found.fit.spectrum(1.2e8)
+    ring = found.rings
+    inside = (ring.wavenumber > 8e6) & (ring.wavenumber < 60e6)
+    np.testing.assert_allclose(tabulated(ring.wavenumber[inside]), ring.density[inside], rtol=0.05)
+    assert (fitted.cutoff, tabulated.cutoff) == (1.2e8, 1.2e8)
+    Translation(ESTIMATE.density("measured")).hermite_coefficients  # noqa: B018
+
+
+def refused(scans, settings=None):
+    with pytest.raises(ScanError) as caught:
+        inspect(scans, settings or Settings())
+    return str(caught.value)
+
+
+def test_too_many_undefined_points_are_refused():
+    z = B2[0].heights.copy()
+    z[:10, :100] = np.nan
+    scan = Scan(z, (SIDE, SIDE), "a.spm")
+    assert refused([B2[1], scan]) == "files: a.spm has 1.6 % of its points undefined, at most 1 % may be"
+    assert inspect([scan], Settings(undefined_share=0.02)).names == ("a.spm",)
+
+
+def test_scans_of_other_pixels_or_size_are_refused():
+    coarse = Scan(B2[0].heights[::2, ::2], (SIDE, SIDE), "b.spm")
+    assert "files: b.spm has 125 x 125 points on 5 x 5 µm, B2-scan-0.spm has 250 x 250 points" in refused(
+        [B2[0], coarse]
+    )
+    assert "250 points on 5 x 5.1 µm" in refused([B2[0], Scan(B2[1].heights, (SIDE, 1.02 * SIDE), "b.spm")])
+
+
+def test_a_scan_without_plateau_is_refused():
+    z = np.cumsum(np.cumsum(stream(1, "walk").standard_normal((200, 200)), axis=0), axis=1)  # a power law throughout
+    walks = [Scan(1e-10 * part, (SIDE, SIDE), f"{name}.spm") for name, part in (("a", z), ("b", z.T))]
+    assert "files: a.spm, b.spm shows no plateau of the spectrum: " in refused(walks)
+    tiny = Scan(B2[0].heights[:34, :34], (0.7e-6, 0.7e-6), "tiny.spm")
+    assert "files: tiny.spm cannot give a spectrum: 8 rings are needed" in refused([tiny])
+
+
+def changed(**values):
+    return dataclasses.replace(ESTIMATE, **values).flags
+
+
+def with_inspection(**values):
+    return changed(inspection=dataclasses.replace(ESTIMATE.inspection, **values))
+
+
+def fit_with(**values):
+    return with_inspection(fit=dataclasses.replace(ESTIMATE.inspection.fit, **values))
+
+
+FLAGS = {
+    "only 7.5 wavelengths of the corner fit into the scan; errors are reliable from 10 on":
+        lambda: fit_with(corner=7.5 * 2 * np.pi / SIDE),
+    "parts of a scan differ 2.5 times as much as those of one homogeneous surface (bow, particles or marks)":
+        lambda: changed(tile_errors=ESTIMATE.errors * [1, 1, 2.5]),
+    "the scans differ in rms, kurtosis by more than their errors":
+        lambda: changed(homogeneity=(np.ones(3), np.array([0.001, 0.2, 0.009]))),
+    "the spectrum is not of the form of Eq. (7) (chi²/dof 4); psd: tabulated follows it":
+        lambda: fit_with(chi2=400.0, freedom=100),
+    "the spectrum is 2 times as large at 79° to the fast axis as in the weakest direction":
+        lambda: changed(sectors=np.array([1.0, 1, 1, 2, 1, 1, 1, 1])),
+    "skewness 0.1 with kurtosis 9 has no maximum-entropy density, nor have others within their errors; "
+    "only heights: measured can be used":
+        lambda: changed(moments=np.array([-20.0, 0.1, 9.0]), feasible=None),
+    "skewness 0.1 with kurtosis 3.1 has no maximum-entropy density; skewness 0.15 with kurtosis 3.06, which is 1.5 "
+    "standard errors away, is used":
+        lambda: changed(moments=np.array([-20.0, 0.1, 3.1]),
+                        feasible=Feasible(ESTIMATE.feasible.density, 0.15, 3.06, 1.5)),
+    "four moments do not describe the heights (chi² 35, p 0.003); heights: measured does":
+        lambda: changed(goodness=(35.0, 0.003)),
+    "the tip rounds waves shorter than 50 nm":
+        lambda: with_inspection(reach=dataclasses.replace(ESTIMATE.inspection.reach, tip=np.pi / 25e-9)),
+    "lines jump by 2.5 nm, against steps of 1 nm along a line; lines: offset levels them":
+        lambda: changed(line_jump=(2.5e-9, 1e-9)),
+    "pixels are not square: summits are not compared":
+        lambda: with_inspection(frame=dataclasses.replace(ESTIMATE.inspection.frame, shape=(250, 125))),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("sentence", FLAGS)
+def test_every_limit_of_an_estimate_has_its_sentence(sentence):
+    assert sentence in FLAGS[sentence]()
+    assert sentence not in ESTIMATE.flags
+
+
+def test_moments_without_density_are_refused_with_what_to_do():
+    without = dataclasses.replace(ESTIMATE, feasible=None, moments=np.array([-20.0, 0.1, 9.0]))
+    with pytest.raises(ScanError, match="heights: .* has no maximum-entropy density: use measured"):
+        without.density("moments")
+    without.density("measured")
+
+
+def test_what_levelling_removes_is_given_back():
+    scans = published("B2", 4e-6, 6, "levelling")
+    tilted, plane = (estimates(scans, Settings(Levelling("plane", lines)), count=12) for lines in ("tilt", "none"))
+    error = plane[0].errors / np.sqrt(6)
+    raw, corrected = (
+        np.mean([part(t) - part(p) for t, p in zip(tilted, plane, strict=True)], axis=0)
+        for part in (lambda one: one.inspection.moments, lambda one: one.moments)
+    )
+    assert raw[0] < -3 * error[0]
+    assert np.all(np.abs(corrected) < error)
+    assert abs(plane[0].moments[0] - plane[0].inspection.moments[0]) < error[0]
+
+
+def test_lines_that_jump_and_tilt_change_the_corrected_moments_by_less_than_half_an_error():
+    n = len(B2[0].heights)
+    offset, tilt = 0.2 * SURFACES["B2"].rms * stream(1, "lines").standard_normal((2, n))
+    shift = offset + tilt * np.linspace(-1, 1, n)[:, None]
+    disturbed = [dataclasses.replace(scan, heights=scan.heights + shift) for scan in B2]
+    found = estimate(disturbed, Settings(Levelling("plane", "tilt")), streams(12))
+    clean = estimate(B2, Settings(Levelling("plane", "tilt")), streams(12))
+    assert np.all(np.abs(found.moments - clean.moments) < 0.5 * found.errors)
+    unlevelled = estimate(disturbed, Settings(), streams(12))
+    assert np.any(np.abs(unlevelled.moments - clean.moments) > 0.5 * found.errors)
+    slow, fast = unlevelled.line_jump
+    assert slow > 1.3 * fast
+    assert clean.line_jump[0] < 1.2 * clean.line_jump[1]
+
+
+def test_gaussian_scans_are_never_refused():
+    for found in estimates(gaussian(4e-6, 3), count=12):
+        assert found.feasible is not None
+        density = found.density("moments")
+        np.testing.assert_allclose(density.quantile_of_normal(1.0), 1.0, atol=0.1)
+
+
+def test_a_density_that_four_moments_do_not_describe_is_told_from_one_that_they_do():
+    (found,) = estimates(fleishman(10e-6, 1))
+    assert found.goodness[1] < 0.01
+    assert any("four moments do not describe the heights" in flag for flag in found.flags)
+    cubic = found.density("measured").quantile_of_normal(3.0)
+    assert abs(cubic - 2.055) < 0.12 < abs(found.density("moments").quantile_of_normal(3.0) - 2.055)
+    assert ESTIMATE.goodness[1] > 0.01
+
+
+def test_particles_leave_the_measured_density():
+    z = B2[0].heights.copy()
+    for i, j in stream(1, "particles").integers(5, 240, (6, 2)):
+        z[i : i + 4, j : j + 4] += 60e-9
+    (found,) = estimates([Scan(z, (SIDE, SIDE), "dirt.spm")], count=12)
+    assert found.feasible is None
+    assert np.isnan(found.goodness).all()
+    assert any(flag.startswith("parts of a scan differ") for flag in found.flags)
+    assert any("only heights: measured can be used" in flag for flag in found.flags)
+
+
+@pytest.mark.slow
+def test_errors_cover_the_truth_as_often_as_they_say():
+    found = estimates(published("B2", SIDE, 100, "coverage"))
+    deviation = np.array([(one.moments - truth("B2")) / one.errors for one in found])
+    within = np.mean(np.abs(deviation) < 1, axis=0)
+    assert np.all((within >= 0.58) & (within <= 0.78)), within
+    assert np.all(np.mean(np.abs(deviation) < 2, axis=0) >= 0.88)
+    scatter = deviation.std(axis=0, ddof=1)
+    assert np.all((scatter > 0.85) & (scatter < 1.2)), scatter
+
+
+@pytest.mark.slow
+def test_forms_of_the_density_are_told_apart_in_nine_of_ten_scans():
+    cubic, maximum = (
+        np.array([one.goodness[1] for one in estimates(scans)])
+        for scans in (fleishman(10e-6, 10), published("B2", 10e-6, 10))
+    )
+    assert np.sum(cubic < 0.01) >= 9
+    assert np.sum(maximum < 0.01) <= 1

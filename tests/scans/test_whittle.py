@@ -1,0 +1,142 @@
+import dataclasses
+import warnings
+
+import numpy as np
+import pytest
+from drawn_scans import PIXELS, published
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from published import SURFACES
+
+from stiction.scans.levelling import Levelling, level
+from stiction.scans.periodogram import Rings, periodogram, rings
+from stiction.scans.whittle import fit, reach, tabulated, tip_reach
+from stiction.streams import stream
+
+SIDE = 10e-6
+SIZE = (SIDE, SIDE)
+REACH = reach(SIZE, PIXELS)
+WAVENUMBER = 2 * np.pi / SIDE * np.arange(1.0, 250)
+#: Modes of the rings of one scan of 10 µm.
+MODES = 0.6 * np.pi * np.arange(1.0, 250)
+B2 = SURFACES["B2"].spectrum
+
+
+def measured(rng, spectrum=B2):
+    """Rings of one scan of Gaussian heights: χ² variables about the spectrum."""
+    values = spectrum(WAVENUMBER) * rng.gamma(MODES) / MODES
+    return Rings(WAVENUMBER, values, MODES)
+
+
+def parameters(found):
+    return np.array([np.log(found.plateau), np.log(found.corner), found.slope])
+
+
+TRUTH = np.array([np.log(B2.plateau), np.log(B2.corner), B2.slope])
+
+
+def test_the_reach_ends_at_half_of_the_nyquist_number_and_begins_within_the_scan():
+    assert REACH.nyquist == pytest.approx(np.pi / 20e-9)
+    assert REACH.high == pytest.approx(REACH.nyquist / 2)
+    assert REACH.low == pytest.approx(1.5 * 2 * np.pi / SIDE)
+    oblong = reach((SIDE, 2 * SIDE), (20e-9, 40e-9))
+    assert (oblong.nyquist, oblong.low) == (pytest.approx(REACH.nyquist / 2), pytest.approx(REACH.low))
+
+
+def test_a_shortest_wave_and_a_blunt_tip_limit_the_reach():
+    assert reach(SIZE, PIXELS, shortest=160e-9).high == pytest.approx(REACH.high / 2)
+    assert reach(SIZE, PIXELS, shortest=1e-9).high == REACH.nyquist
+    assert reach(SIZE, PIXELS, tip=3e7).high == 3e7
+    assert reach(SIZE, PIXELS, tip=3e9).high == REACH.high
+
+
+@settings(max_examples=15)
+@given(st.floats(4, 30), st.floats(-8, -1), st.floats(-2, 2))
+def test_an_exact_spectrum_is_found_again(corner, slope, scale):
+    exact = dataclasses.replace(
+        fit(measured(stream(1)), REACH), plateau=np.exp(scale), corner=1e6 * corner, slope=slope
+    )
+    density = exact.spectrum(REACH.nyquist)(WAVENUMBER)
+    found = fit(Rings(WAVENUMBER, np.where(density > 0, density, 1.0), MODES), REACH)
+    np.testing.assert_allclose(parameters(found), parameters(exact), rtol=1e-3, atol=1e-3)
+    assert found.chi2 < 1e-3
+
+
+def test_errors_are_those_of_the_scatter_and_chi_square_is_one_per_degree_of_freedom():
+    found = [fit(measured(stream(1, "whittle", k)), REACH) for k in range(80)]
+    values = np.array([parameters(one) for one in found])
+    errors = np.sqrt(np.diag(found[0].covariance)) / 1.15  # of Gaussian heights
+    np.testing.assert_allclose(values.std(axis=0, ddof=1) / errors, 1, rtol=0, atol=0.3)
+    assert np.all(np.abs(values.mean(axis=0) - TRUTH) < 4 * errors / np.sqrt(80))
+    correlation = np.corrcoef(values.T)[0, 1] - found[0].covariance[0, 1] / 1.15**2 / np.prod(errors[:2])
+    assert abs(correlation) < 0.2
+    assert np.mean([one.chi2 / one.freedom for one in found]) == pytest.approx(1, abs=0.06)
+
+
+def test_a_smooth_knee_has_a_large_chi_square():
+    knee = (1 + (WAVENUMBER / B2.corner) ** 2) ** (B2.slope / 2)
+    modes = 3 * MODES  # of three scans
+    found = fit(Rings(WAVENUMBER, knee * stream(1, "knee").gamma(modes) / modes, modes), REACH)
+    assert found.chi2 / found.freedom > 3
+
+
+def test_the_fitted_spectrum_is_that_of_drawn_scans():
+    levelled = [level(scan.heights, Levelling()) for scan in published("B2", SIDE, 3)]
+    found = fit(rings(periodogram(levelled, SIZE)), REACH)
+    scale = SURFACES["B2"].rms ** 2 / B2.variance
+    errors = np.sqrt(np.diag(found.covariance))
+    assert np.all(np.abs(parameters(found) - TRUTH - [np.log(scale), 0, 0]) < 3.5 * errors)
+    assert found.chi2 / found.freedom < 1.5
+
+
+def test_aliases_bias_a_fit_beyond_half_of_the_nyquist_number():
+    # Sub1 has roughness up to 264 rad/µm, the Nyquist number is 157 rad/µm.
+    levelled = [level(scan.heights, Levelling()) for scan in published("Sub1", SIDE, 4)]
+    ring = rings(periodogram(levelled, SIZE))
+    half, most = (fit(ring, reach(SIZE, PIXELS, shortest=pixels * 20e-9)) for pixels in (4, 8 / 3))
+    true = SURFACES["Sub1"].spectrum.slope
+    assert abs(half.slope / true - 1) < 0.015 < 0.02 < abs(most.slope / true - 1)
+
+
+def test_too_few_rings_are_refused():
+    with pytest.raises(ValueError, match="8 rings are needed within the reach of the scan, there are 5"):
+        fit(measured(stream(1)), dataclasses.replace(REACH, high=6.5 * 2 * np.pi / SIDE))
+
+
+def test_a_fitted_spectrum_ends_at_the_cut_off_that_is_asked_for():
+    found = fit(measured(stream(1)), REACH)
+    near, far = (found.spectrum(cutoff) for cutoff in (1e8, 2e8))
+    np.testing.assert_allclose(near(5e7), far(5e7))
+    assert (near(1.5e8), near.cutoff, near.slope) == (0, 1e8, pytest.approx(found.slope))
+
+
+def test_a_tabulated_spectrum_follows_the_rings_within_the_reach():
+    ring, within = measured(stream(1)), reach(SIZE, PIXELS, shortest=81e-9)
+    found = tabulated(ring, within, -4.0, 1.5e8)
+    inside = np.clip(WAVENUMBER, within.low, within.high) == WAVENUMBER
+    # Linear interpolation between 2000 points.
+    np.testing.assert_allclose(found(WAVENUMBER[inside]), ring.density[inside], rtol=0.05)
+    first, last = (ring.density[inside][i] for i in (0, -1))
+    np.testing.assert_allclose(found(np.array([0.0, 5e5])), first)
+    end = WAVENUMBER[inside][-1]
+    np.testing.assert_allclose(found(1.7 * end), last * 1.7**-4, rtol=1e-3)
+    assert found(1.6e8) == 0
+
+
+@pytest.mark.parametrize(("name", "radius"), [("B2", 10e-9), ("B2", 200e-9), ("Sub2", 30e-9), ("Sub2", 100e-9)])
+def test_the_reach_of_the_tip_is_that_of_the_library(name, radius):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ImportWarning)
+        library = pytest.importorskip("SurfaceTopography")
+    (scan,) = published(name, 5e-6, 1)
+    expected = library.Topography(scan.heights, scan.size, unit="m").scanning_probe_reliability_cutoff(radius)
+    found = tip_reach([scan.heights], 20e-9, radius)
+    assert found == (np.inf if expected is None else pytest.approx(2 * np.pi / expected, rel=0.1))
+
+
+def test_a_sharp_point_on_one_of_the_scans_limits_the_reach():
+    ripple = 1e-9 * np.cos(2e7 * 20e-9 * np.arange(256))[:, None] * np.ones(8)  # curvature 0.4 per µm
+    sharp = ripple.copy()
+    sharp[100, 3] += 5e-9
+    assert tip_reach([ripple], 20e-9, 1e-6) == np.inf
+    assert tip_reach([ripple, sharp], 20e-9, 1e-6) < 1.6e8
