@@ -44,7 +44,7 @@ TESTS = {
     "scans.estimate": "scans/test_surface_estimate.py",
 }
 #: Stages and studies whose tests are in one file each.
-STAGES = "heights spectrum surfaces identification character forces chaos releases beams cantilevers"
+STAGES = "parameters heights spectrum surfaces identification character forces chaos releases beams cantilevers"
 STUDIES = "sensitivity_contact sensitivity plasticity fit humidity iteration sample_sizes orders mesh correlation"
 STUDIES += " resampling variant variant_contact"
 TESTS |= {f"stages.{name}": "stages/test_stages.py" for name in STAGES.split()}
@@ -683,8 +683,9 @@ MUTANTS = {
             "return 100 * (value - reference) if reference else np.nan",
         ),
         ("return text if float(text) else format(0.0, form)", "return text"),
-        ("(error < 2 * 10.0**first) - first)", "1 - first)"),
-        ("(error < 2 * 10.0**first) - first)", "-first)"),
+        ("max(0, 1 - int(exponent))", "max(0, -int(exponent))"),
+        ("max(0, 1 - int(exponent))", "1 - int(exponent)"),
+        ('f"{error:.1e}".partition', 'f"{error:e}".partition'),
     ],
     "report.published": [
         ("return published[published.iloc[:, 0].isin(list(names))]", "return published"),
@@ -929,10 +930,12 @@ MUTANTS = {
         ),
         ('patches(), patches("control"))', "patches(), patches())"),
         ('"identification", surface, *address)', '"identification", *address)'),
-        ("if length <= bound", "if length <= 0.9 * bound"),
-        ("    refuse_long_correlation(surface, found.spectrum", "    (surface, found.spectrum"),
-        ('identification[f"{name}_error"])', "identification[name])"),
+        ("parameters.refuse_long_correlation(surface, found.spectrum", "(surface, found.spectrum"),
         ("StripGrid(patch, patch, settings.spacing,", "StripGrid(patch, patch, settings.target_spacing,"),
+    ],
+    "stages.parameters": [
+        ("if length <= bound", "if length <= 0.9 * bound"),
+        ('identification[f"{name}_error"])', "identification[name])"),
     ],
     "stages.character": [
         ("[::every, ::every]", "[::every, :]"),

@@ -11,8 +11,9 @@ from stiction.config import memory
 from stiction.stages.surfaces import FIELD
 
 DRAWING = """
-import resource, sys
+import sys
 import numpy as np
+from stiction.run.logs import peak_memory
 from stiction.surface.field import RoughSurface, StripGrid, radial_periodogram
 from stiction.surface.maxent import GAUSSIAN
 from stiction.surface.spectrum import CutoffSelfAffine
@@ -24,7 +25,7 @@ grid = StripGrid(length, width, spacing, 0.0)
 z = RoughSurface(psd, Translation(GAUSSIAN), 1e-9, grid).draw(np.random.default_rng(1))
 if length == width:
     radial_periodogram(z, spacing)
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+print(peak_memory())
 """
 
 

@@ -137,7 +137,7 @@ def test_figure_13_shows_slopes_and_published_values():
 
 
 def test_figure_16_shows_the_onset_of_yield_and_the_share_beyond():
-    for found, label in ((plasticity(0.0), "$A_P$ = 0"), (plasticity(0.5), "$A_P/A$ = 50 ± 5 %")):
+    for found, label in ((plasticity(0.0), "$A_P$ = 0"), (plasticity(0.5), "$A_P/A$ = 50.0 ± 5.0 %")):
         panel = figures_studies.summit_stresses({"c": found}).axes[0]
         assert label in [text.get_text() for text in panel.texts]
         assert_allclose(panel.get_lines()[0].get_ydata(), 0.6 * 12.8)

@@ -166,7 +166,7 @@ def test_a_spectrum_whose_summits_do_not_resemble_the_measured_ones_is_not_used(
 
 
 def test_misfits_are_the_deviations_from_the_measured_summits():
-    found = identification.misfits(identified(radius=1.2, density=0.7))
+    found = parameters.misfits(identified(radius=1.2, density=0.7))
     assert found["radius"] == pytest.approx((0.2, 1e-9 / 4e-7))
     assert found["density"] == pytest.approx((-0.3, 1e12 / 7e13))
 

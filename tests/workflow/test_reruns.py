@@ -41,7 +41,7 @@ TARGETS = ["all", *(f"results/studies/{name}.nc" for name in STUDIES + VARIANTS)
 #: Rules, and the rules that read their outputs, listed by hand.
 READ_BY = {
     "heights": "identification spectrum iteration character contact_chunk sensitivity_contact plasticity table_1 checks",
-    "identification": "table_2 variant_contact",
+    "identification": "table_2 variant_contact checks",
     "spectrum": "iteration character contact_chunk table_2 correlation sensitivity_contact plasticity checks",
     "character": "table_1 checks",
     "contact_chunk": "contact",

@@ -46,7 +46,7 @@ def arrest_on_uniform_ground(beam: Beam, law: np.ndarray, points: int) -> Arrest
 def finer_mesh(beam: Beam, law: np.ndarray, points: int) -> tuple[Beam, int]:
     """Beam and number of points of a mesh that is at least twice as fine, and twice as fine as the law calls for.
 
-    Elements are then wrong by an eighth, points by a quarter: `tests/beam/test_release.py`.
+    Elements are then wrong by an eighth, points by a quarter: ``tests/beam/test_release.py``.
     """
     length = foundation_length(beam, law[None])
     fine = points * max(2, ceil(2 * beam.length / points / (STRIP * length)))

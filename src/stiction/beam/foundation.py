@@ -9,7 +9,7 @@ import numpy as np
 from stiction.beam.cantilever import Beam
 
 #: Largest length of a strip and of an element, in foundation lengths. Up to these the crack on a uniform law is within
-#: ``ACCURACY`` of that on a fine mesh: `tests/beam/test_foundation.py`.
+#: ``ACCURACY`` of that on a fine mesh: ``tests/beam/test_foundation.py``.
 STRIP, ELEMENT = 0.7, 2.2
 #: Largest relative error of the length of a crack on a mesh of these lengths.
 ACCURACY = 0.01

@@ -28,7 +28,7 @@ from stiction.report.format import TO_MJ, TO_UM, number, with_error
 from stiction.report.tables_surfaces import surface_statistics
 from stiction.stages.forces import vectors
 from stiction.stages.heights import measured, substitution
-from stiction.stages.identification import misfits
+from stiction.stages.parameters import misfits
 from stiction.stages.releases import ended
 from stiction.surface.feasible import LARGEST_DISTANCE
 

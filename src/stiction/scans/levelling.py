@@ -1,6 +1,6 @@
 """Levelling: a polynomial of the whole map, then one of every line along the fast axis, by least squares.
 
-Levelling also removes roughness of long wavelengths: `stiction.scans.model` estimates how much.
+Levelling also removes roughness of long wavelengths: `stiction.scans.model_scans` estimates how much.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ class Levelling:
     """What is subtracted from a map of heights."""
 
     level: str = "plane"  #: key of `LEVELS`
-    lines: str = "none"  #: key of `LINES`
+    lines: str = "none"  #: key of ``LINES``
 
 
 def level(heights: np.ndarray, levelling: Levelling) -> np.ndarray:

@@ -1,6 +1,5 @@
 """Stage identification (Sec. II-C): Eq. (7) fitted to the radius and density of the summits of a surface."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import xarray as xr
@@ -10,7 +9,6 @@ from stiction.stages.heights import density, moments
 from stiction.streams import stream
 from stiction.surface.field import StripGrid
 from stiction.surface.identify import Identification, SummitTarget, identify
-from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
 from stiction.surface.translation import Translation
 
 
@@ -67,40 +65,8 @@ def compute(heights: xr.Dataset, surface: str, settings: Settings) -> xr.Dataset
         return lambda: (stream(*address, k) for k in range(settings.identification.patches))
 
     found = identify(target, Translation(density(heights, "NG")), grid, patches(), patches("control"))
-    refuse_long_correlation(surface, found.spectrum, {"identification.patch_um": patch})
+    parameters.refuse_long_correlation(surface, found.spectrum, {"identification.patch_um": patch})
     return layout(found, target)
-
-
-def refuse_long_correlation(surface: str, spectrum: CutoffSelfAffine, lengths: Mapping[str, float]) -> None:
-    """Raise a ValueError if the heights are correlated over any of the lengths, by key of the configuration [m].
-
-    The same law as for published spectra, see `stiction.config.relations.length_exceeds_the_correlation`.
-    """
-    bound = correlation_length(spectrum)
-    for key, length in lengths.items():
-        if length <= bound:
-            raise ValueError(
-                f"{key} is {1e6 * length:.4g}, must be above the correlation length of surface {surface}, "
-                f"{1e6 * bound:.3g} µm for the spectrum identified from its summits"
-            )
-
-
-def misfits(identification: xr.Dataset) -> dict[str, tuple[float, float]]:
-    """Radius and density of the summits of the identified spectrum relative to the measured ones.
-
-    Returns
-    -------
-    dict
-        ``radius`` and ``density``: the relative deviation and its standard error [-].
-    """
-    names = {"radius": "mean_radius", "density": "summit_density"}
-    return {
-        word: tuple(
-            float(part / identification[f"target_{name}"])
-            for part in (identification[name] - identification[f"target_{name}"], identification[f"{name}_error"])
-        )
-        for word, name in names.items()
-    }
 
 
 def layout(found: Identification, target: SummitTarget) -> xr.Dataset:

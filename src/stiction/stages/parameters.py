@@ -1,11 +1,13 @@
-"""The four parameters of Eq. (7) as variables of a dataset; stages identification and spectrum share them.
+"""What stages identification and spectrum share: the parameters of Eq. (7) in a dataset, and whether they can be used.
 
 A separate module, so that a change of the identification does not rerun published spectra.
 """
 
+from collections.abc import Mapping
+
 import xarray as xr
 
-from stiction.surface.spectrum import CutoffSelfAffine
+from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
 
 _UNITS = {"plateau": "m4", "floor": "m4", "corner": "rad m-1", "cutoff": "rad m-1"}
 
@@ -18,3 +20,35 @@ def variables(spectrum: CutoffSelfAffine) -> xr.Dataset:
 def spectrum_of(dataset: xr.Dataset) -> CutoffSelfAffine:
     """Eq. (7) from the dataset of stage identification or spectrum."""
     return CutoffSelfAffine(**{name: float(dataset[name]) for name in _UNITS})
+
+
+def refuse_long_correlation(surface: str, spectrum: CutoffSelfAffine, lengths: Mapping[str, float]) -> None:
+    """Raise a ValueError if the heights are correlated over any of the lengths, by key of the configuration [m].
+
+    The same law as for published spectra, see `stiction.config.relations.length_exceeds_the_correlation`.
+    """
+    bound = correlation_length(spectrum)
+    for key, length in lengths.items():
+        if length <= bound:
+            raise ValueError(
+                f"{key} is {1e6 * length:.4g}, must be above the correlation length of surface {surface}, "
+                f"{1e6 * bound:.3g} µm for the spectrum identified from its summits"
+            )
+
+
+def misfits(identification: xr.Dataset) -> dict[str, tuple[float, float]]:
+    """Radius and density of the summits of the identified spectrum relative to the measured ones.
+
+    Returns
+    -------
+    dict
+        ``radius`` and ``density``: the relative deviation and its standard error [-].
+    """
+    names = {"radius": "mean_radius", "density": "summit_density"}
+    return {
+        word: tuple(
+            float(part / identification[f"target_{name}"])
+            for part in (identification[name] - identification[f"target_{name}"], identification[f"{name}_error"])
+        )
+        for word, name in names.items()
+    }

@@ -7,7 +7,6 @@ import xarray as xr
 
 from stiction.stages import parameters
 from stiction.stages.heights import density
-from stiction.stages.identification import misfits, refuse_long_correlation
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 from stiction.surface.translation import Translation, spectrum_of_heights, underlying_spectrum
 
@@ -72,8 +71,8 @@ def refuse_misuse(identification: xr.Dataset, use: Use) -> None:
     """
     found = parameters.spectrum_of(identification)
     lengths = {"sampling.strip_length_um": use.strip_length, "sampling.margin_um": use.margin}
-    refuse_long_correlation(use.surface, found, lengths)
-    ratios = {word: 1 + off for word, (off, _) in misfits(identification).items()}
+    parameters.refuse_long_correlation(use.surface, found, lengths)
+    ratios = {word: 1 + off for word, (off, _) in parameters.misfits(identification).items()}
     if not all(1 / RESEMBLES <= ratio <= RESEMBLES for ratio in ratios.values()):
         raise ValueError(
             f"no spectrum of the form of Eq. (7) has the summits of surface {use.surface}: at best "
