@@ -9,7 +9,7 @@ PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 #: Folders and their modules, in the order in which they may import: from modules above or to the left.
 ORDER = """
 constants errors streams estimates numbers models progress
-surface: maxent spectrum translation feasible field iteration summits identify
+surface: maxent spectrum translation feasible normals field iteration summits identify
 scans: scan levelling moments periodogram whittle quantiles model_scans estimate
 contact: meniscus vanderwaals asperity solids estimate pair forcelaw bounds
 chaos: coordinates density polynomials model

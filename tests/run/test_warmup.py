@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from stiction.run import warmup
+
 SOURCE = Path(__file__).parents[2] / "src"
 #: Prints the signatures of every kernel, and the kernels that it calls, after the warm-up and after a study as well.
 PROGRAM = """
@@ -29,7 +31,11 @@ def called(kernel):
 def signatures():
     return {name: list(map(str, kernel.signatures)) for name, kernel in kernels.items()}
 
-warmup.main()
+warmed = []
+for part in warmup.PARTS:
+    before = signatures()
+    part()
+    warmed.append([name for name, found in signatures().items() if found != before[name]])
 warm = signatures()
 small = {"contact": {"samples": 40}, "chaos": {"order": 3}, "beam": {"samples": 3, "width_um": 6}}
 for through in ("water", "none"):
@@ -37,28 +43,65 @@ for through in ("water", "none"):
     study = stiction.PairStudy.of(config, "b")
     study.energies(0.8)
 study.beams(0.8, scatter=0.02)
-print(json.dumps([warm, signatures(), {name: called(kernel) for name, kernel in kernels.items()}]))
+calls = {name: called(kernel) for name, kernel in kernels.items()}
+print(json.dumps([warm, signatures(), calls, warmed]))
 """
 
 
 @pytest.fixture(scope="module")
 def compiled():
-    """Signatures of all kernels after the warm-up, after a study as well, and the kernels that each of them calls."""
+    """Signatures of all kernels after the warm-up and after a study as well, calls of each, kernels of each part."""
     environment = os.environ | {"PYTHONPATH": str(SOURCE)}
     done = subprocess.run([sys.executable, "-c", PROGRAM], env=environment, capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
 
 
-def test_the_warm_up_compiles_every_kernel(compiled):
-    warm, _, called = compiled
-    assert len(warm) > 30
-    ready, found = set(), [name for name, signatures in warm.items() if signatures]
-    while found:  # a kernel from the cache includes those it calls, which then have no signature
+def with_those_they_call(kernels, called):
+    """Kernels and all that they call: one from the cache includes those it calls, which then have no signature."""
+    ready, found = set(), list(kernels)
+    while found:
         ready.add(kernel := found.pop())
         found += set(called[kernel]) - ready
-    assert set(warm) - ready == set()
+    return ready
+
+
+def test_the_warm_up_compiles_every_kernel(compiled):
+    warm, _, called, parts = compiled
+    assert len(warm) > 30
+    assert set(warm) - with_those_they_call(sum(parts, []), called) == set()
+
+
+def test_no_kernel_is_compiled_by_two_parts_of_the_warm_up_which_run_at_the_same_time(compiled):
+    _, _, called, parts = compiled
+    one, other = (with_those_they_call(part, called) for part in parts)
+    assert one & other == set()
+
+
+def caches(folder):
+    """Names and contents of the indices of a cache of compiled kernels."""
+    return {path.name: path.read_bytes() for path in folder.rglob("*.nbi")}
+
+
+@pytest.mark.slow
+def test_the_warm_up_of_two_processes_leaves_the_kernels_of_both_in_the_cache(tmp_path):
+    environment = os.environ | {"PYTHONPATH": str(SOURCE), "NUMBA_CACHE_DIR": str(tmp_path)}
+    for _ in range(2):
+        before = caches(tmp_path)
+        subprocess.run([sys.executable, "-m", "stiction.run.warmup"], env=environment, check=True)
+    assert len(before) > 30
+    assert caches(tmp_path) == before  # the second time nothing was compiled
+
+
+def broken():
+    raise ValueError("this part cannot be compiled")
+
+
+def test_an_error_of_a_part_is_an_error_of_the_warm_up(monkeypatch):
+    monkeypatch.setattr(warmup, "PARTS", (broken,))
+    with pytest.raises(ValueError, match="this part cannot be compiled"):
+        warmup.main()
 
 
 def test_a_study_compiles_nothing_more(compiled):
-    warm, used, _ = compiled
+    warm, used, _, _ = compiled
     assert used == warm

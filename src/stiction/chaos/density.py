@@ -43,28 +43,38 @@ def kernel_density(eta: np.ndarray) -> KernelDensity:
 
 
 @njit(cache=True, nogil=True)
-def _kernel_weights(given, centres, bandwidth, weights):
-    """Weight of each kernel (m,) given the preceding coordinates ``given`` (k,)."""
-    weights[:] = 0.0
-    for j in range(given.size):
-        for i in range(weights.size):
-            distance = (given[j] - centres[j, i]) / bandwidth
-            weights[i] += distance * distance
-    nearest = weights.min()
-    for i in range(weights.size):
-        weights[i] = np.exp(0.5 * (nearest - weights[i]))
+def _add_squares(value, centres, bandwidth, before, squares):
+    """Squared distances (m,) of the kernels in the coordinates ``before``, plus those in one more, in bandwidths."""
+    for i in range(centres.size):
+        distance = (value - centres[i]) / bandwidth
+        squares[i] = before[i] + distance * distance
 
 
 @njit(cache=True, nogil=True)
-def _bin_linearly(points, weights, start, step, bins):
-    """Split each weight between the two nearest nodes of a grid."""
-    bins[:] = 0.0
+def _kernel_weights(squares, weights):
+    """Weight of each kernel (m,) at these squared distances from the preceding coordinates."""
+    nearest = squares.min()
+    for i in range(weights.size):
+        weights[i] = np.exp(0.5 * (nearest - squares[i]))
+
+
+@njit(cache=True, nogil=True)
+def _locate(points, start, step, cells, parts):
+    """Cells of points (m,) on a grid, and their positions within the cells."""
     for i in range(points.size):
         position = (points[i] - start) / step
-        cell = int(position)
-        upper = (position - cell) * weights[i]
-        bins[cell] += weights[i] - upper
-        bins[cell + 1] += upper
+        cells[i] = int(position)
+        parts[i] = position - cells[i]
+
+
+@njit(cache=True, nogil=True)
+def _bin_linearly(cells, parts, weights, bins):
+    """Split each weight between the two nearest nodes of a grid."""
+    bins[:] = 0.0
+    for i in range(cells.size):
+        upper = parts[i] * weights[i]
+        bins[cells[i]] += weights[i] - upper
+        bins[cells[i] + 1] += upper
 
 
 @njit(cache=True, nogil=True)
@@ -98,13 +108,20 @@ def _invert(masses, start, step, probabilities, quantiles):
 def _quantile_rows(given, centres, bandwidth, grid, taps, probabilities, rows):
     """Fill ``rows`` (r, n) of `conditional_quantiles`; ``grid`` is (first node, step, number of nodes)."""
     start, step, count = grid
-    coordinate = given.shape[1]
-    weights = np.empty(centres.shape[1])
+    coordinate, m = given.shape[1], centres.shape[1]
+    squares, weights = np.zeros((coordinate + 1, m)), np.empty(m)
+    cells, parts = np.empty(m, np.int64), np.empty(m)
+    _locate(centres[coordinate], start, step, cells, parts)
     bins, masses = np.empty(count), np.empty(count + taps.size - 1)
     edge = start - 0.5 * taps.size * step
     for r in range(given.shape[0]):
-        _kernel_weights(given[r], centres, bandwidth, weights)
-        _bin_linearly(centres[coordinate], weights, start, step, bins)
+        first = 0
+        while r > 0 and first < coordinate and given[r, first] == given[r - 1, first]:
+            first += 1  # the distances in the leading coordinates are unchanged from the previous row
+        for j in range(first, coordinate):
+            _add_squares(given[r, j], centres[j], bandwidth, squares[j], squares[j + 1])
+        _kernel_weights(squares[coordinate], weights)
+        _bin_linearly(cells, parts, weights, bins)
         _smooth(bins, taps, masses)
         _invert(masses, edge, step, probabilities, rows[r])
 

@@ -98,46 +98,61 @@ def expand(xi: np.ndarray, indices: np.ndarray, coefficients: np.ndarray) -> np.
     return eta.T
 
 
-@njit(cache=True, nogil=True)
-def _multiply(left, right, out):
-    for i in range(out.size):
-        out[i] = left[i] * right[i]
+# Inlined: passing an array to a compiled function counts its references, which takes longer than these loops.
 
 
-@njit(cache=True, nogil=True)
-def _add(factor, values, out):
-    for i in range(out.size):
-        out[i] += factor * values[i]
+@njit(inline="always")
+def _multiply(left, values, a, out):
+    """Write left · values[a]."""
+    for i in range(_BLOCK):
+        out[i] = left[i] * values[a, i]
+
+
+@njit(inline="always")
+def _add_products(factors, left, values, out):
+    """Add Σ factors[a] · left · values[a], in the order of a."""
+    for a in range(factors.size):
+        for i in range(_BLOCK):
+            out[i] += factors[a] * (left[i] * values[a, i])
 
 
 @njit(cache=True, nogil=True)
 def _expand_block(xi, indices, coefficients, values, partial, eta):
-    """Sum Eq. (19) over one block of points; ``xi`` and ``eta`` are (N_g, n), ``values`` and ``partial`` workspace."""
-    terms, dimension = indices.shape
+    """Sum Eq. (19) over a block; ``xi`` and ``eta`` are (N_g, _BLOCK), ``values`` and ``partial`` workspace.
+
+    The terms are summed in runs that differ in the last index only, 0, 1, ...; the product of the others is common.
+    """
+    (terms, dimension), run = indices.shape, 0
+    last = dimension - 1
     for j in range(dimension):
         legendre(xi[j], values[j])
     partial[0] = 1.0
     eta[:] = 0.0
-    for t in range(terms):
-        first, last = 0, dimension - 1
-        while t > 0 and indices[t, first] == indices[t - 1, first]:
-            first += 1  # the product over the leading dimensions is unchanged from the previous term
-        for j in range(first, dimension):
-            _multiply(partial[j], values[j, indices[t, j]], partial[j + 1])
-        while last > 0 and indices[t, last] == 0:
-            last -= 1  # coordinate k depends on the first k dimensions only
-        for k in range(last, dimension):
-            _add(coefficients[k, t], partial[dimension], eta[k])
+    while run < terms:
+        end = run + 1
+        while end < terms and indices[end, last] > 0:
+            end += 1
+        first, used = 0, last
+        while run > 0 and first < last and indices[run, first] == indices[run - 1, first]:
+            first += 1  # the product over the leading dimensions is unchanged from the previous run
+        for j in range(first, last):
+            _multiply(partial[j], values[j], indices[run, j], partial[j + 1])
+        while used > 0 and indices[run, used] == 0:
+            used -= 1  # coordinate k depends on the first k dimensions only
+        for k in range(used, last):
+            _add_products(coefficients[k, run : run + 1], partial[last], values[last], eta[k])
+        _add_products(coefficients[last, run:end], partial[last], values[last], eta[last])
+        run = end
 
 
 @njit(cache=True, nogil=True)
 def _expand(xi, indices, coefficients, order, eta):
-    """Sum Eq. (19) at points (N_g, n), block by block."""
+    """Sum Eq. (19) at points (N_g, n), block by block; the last block is filled up with points that are not used."""
     dimension, n = xi.shape
+    points, part = np.full((dimension, _BLOCK), 0.5), np.empty((dimension, _BLOCK))
+    values, partial = np.empty((dimension, order + 1, _BLOCK)), np.empty((dimension, _BLOCK))
     for start in range(0, n, _BLOCK):
         size = min(_BLOCK, n - start)
-        values = np.empty((dimension, order + 1, size))
-        partial = np.empty((dimension + 1, size))
-        part = np.empty((dimension, size))
-        _expand_block(xi[:, start : start + size].copy(), indices, coefficients, values, partial, part)
-        eta[:, start : start + size] = part
+        points[:, :size] = xi[:, start : start + size]
+        _expand_block(points, indices, coefficients, values, partial, part)
+        eta[:, start : start + size] = part[:, :size]

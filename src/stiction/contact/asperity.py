@@ -17,7 +17,7 @@ from typing import NamedTuple, Protocol
 import numba
 import numpy as np
 
-from stiction.surface.summits import is_summit, mean_curvature
+from stiction.surface.summits import is_summit, mark_summits, mean_curvature
 
 
 class Attraction(Protocol):
@@ -286,38 +286,61 @@ def _add_hertz(heights, spacing, step, modulus, force):
 
 @numba.njit(cache=True, nogil=True)
 def _add_maugis(heights, spacing, step, scales, snap_off, load, force):
-    """Add the Maugis force of every summit, by interpolation in the table; returns the number of too sharp ones."""
+    """Add the Maugis force of every summit, by interpolation in the table; returns the number of summits before it."""
     sharp = 0
+    summits, roots = np.empty(heights.shape[1], np.bool_), np.empty(force.size)
     for i in range(1, heights.shape[0] - 1):
+        mark_summits(heights, i, summits)
         for j in range(1, heights.shape[1] - 1):
-            z = np.float64(heights[i, j])
-            if z <= 0 or not is_summit(heights, i, j):
-                continue
-            radius = 1 / mean_curvature(heights, i, j, spacing)
-            third = radius ** (1 / 3)
-            place = (scales.log_transition + np.log(third) - scales.first) / scales.log_step
-            row = int(np.floor(place))
-            share = place - row
-            row += scales.before
-            if row < 0:
-                sharp += 1
-                continue
-            if row >= len(snap_off) - 1:  # JKR
-                row, share = len(snap_off) - 2, 1.0
-            low, high = load[row], load[row + 1]
-            inverse = 1 / (scales.interference * third)
-            deepest = (1 - share) * snap_off[row] + share * snap_off[row + 1]
-            weight = scales.force * radius
-            last = min(int(np.floor((z - deepest / inverse) / step)), len(force) - 1)
-            for k in range(last + 1):
-                root = np.sqrt(max((z - k * step) * inverse - deepest, 0.0)) / scales.root_step
-                cell = int(root)
-                if cell >= len(low) - 1:
-                    transition = np.exp(scales.log_transition) * third
-                    force[k] += weight * deep_load((z - k * step) * inverse, transition)
-                    continue
-                part = root - cell
-                below = low[cell] + part * (low[cell + 1] - low[cell])
-                above = high[cell] + part * (high[cell + 1] - high[cell])
-                force[k] += weight * ((1 - share) * below + share * above)
+            if summits[j] and heights[i, j] > 0:
+                sphere = np.float64(heights[i, j]), 1 / mean_curvature(heights, i, j, spacing)
+                sharp += not _add_sphere(sphere, step, scales, snap_off, load, roots, force)
     return sharp
+
+
+@numba.njit(cache=True, nogil=True)
+def _add_sphere(sphere, step, scales, snap_off, load, roots, force):
+    """Add the force of one sphere (top, radius); returns False if it is before the table. ``roots``: workspace."""
+    top, radius = sphere
+    third = radius ** (1 / 3)
+    place = (scales.log_transition + np.log(third) - scales.first) / scales.log_step
+    row = int(np.floor(place))
+    share = place - row
+    row += scales.before
+    if row < 0:
+        return False
+    if row >= len(snap_off) - 1:  # JKR
+        row, share = len(snap_off) - 2, 1.0
+    inverse, weight = 1 / (scales.interference * third), scales.force * radius
+    deepest = (1 - share) * snap_off[row] + share * snap_off[row + 1]
+    held = min(max(int(np.floor((top - deepest / inverse) / step)) + 1, 0), len(force))
+    _roots(top, step, inverse, deepest, scales.root_step, roots[:held])
+    deep = 0  # number of distances beyond the table; the root falls with the distance
+    while deep < held and roots[deep] >= load.shape[1] - 1:
+        transition = np.exp(scales.log_transition) * third
+        force[deep] += weight * deep_load((top - deep * step) * inverse, transition)
+        deep += 1
+    _add_loads(roots[deep:held], load[row], load[row + 1], share, weight, force[deep:])
+    return True
+
+
+# Two loops, because only one without a look-up computes several distances at a time.
+
+
+@numba.njit(cache=True, nogil=True)
+def _roots(top, step, inverse, deepest, root_step, roots):
+    """Places √(δ̄ - δ̄_min) of a sphere in the table at the distances ``step * arange(n)``, in steps of the table."""
+    for k in range(roots.size):
+        beyond = (top - np.int32(k) * step) * inverse - deepest
+        roots[k] = np.sqrt(max(beyond, 0.0)) / root_step
+
+
+@numba.njit(cache=True, nogil=True)
+def _add_loads(roots, low, high, share, weight, force):
+    """Add ``weight`` times the load between two rows of the table, at these places of their columns."""
+    for k in range(roots.size):
+        cell = np.uint32(np.int32(roots[k]))  # without a sign, so that it cannot count from the end of a row
+        part = roots[k] - cell
+        below = low[cell] + part * (low[cell + np.uint32(1)] - low[cell])
+        above = high[cell] + part * (high[cell + np.uint32(1)] - high[cell])
+        force[k] += weight * ((1 - share) * below + share * above)

@@ -16,7 +16,7 @@ import numba
 import numpy as np
 
 from stiction.contact.asperity import Asperity
-from stiction.surface.field import RoughSurface, add_heights
+from stiction.surface.field import RoughSurface
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class SurfacePair:
     def draw(self, beam_rng: np.random.Generator, substrate_rng: np.random.Generator) -> np.ndarray:
         """Draw one equivalent surface z = z₁ + z₂; (n1, n2) float32 [m]."""
         heights = self.beam.draw(beam_rng)
-        add_heights(self.substrate.draw_scores(substrate_rng), self.substrate.table, heights)
+        self.substrate.add_to(heights, substrate_rng)
         return np.ascontiguousarray(heights[:: self.every, :: self.every])
 
     def contact(self, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -107,15 +107,28 @@ class SurfacePair:
 @numba.njit(cache=True, nogil=True)
 def bearing_area(heights: np.ndarray, step: float, below: int, above: int) -> np.ndarray:
     """Share of the points that are higher than each distance, ``step * arange(-below, above)`` [-]."""
-    count = np.zeros(below + above + 1)
-    inverse = np.float32(1 / step)
-    for z in heights.ravel():
-        count[min(max(int(np.floor(z * inverse)) + below + 1, 0), below + above)] += 1
-    higher = 0.0
+    cells = np.empty(heights.shape[1], np.int32)
+    count = np.zeros(below + above + 1, np.int64)
+    for i in range(heights.shape[0]):
+        _cells_below(heights[i], step, below, above, cells)
+        for cell in cells:
+            count[np.uint32(cell)] += 1
+    area = np.zeros(below + above)
+    higher = 0
     for k in range(below + above, 0, -1):
         higher += count[k]
-        count[k] = higher / heights.size
-    return count[1:]
+        area[k - 1] = higher / heights.size
+    return area
+
+
+@numba.njit(cache=True, nogil=True)
+def _cells_below(heights, step, below, above, cells):
+    """Number of distances ``step * arange(-below, above)`` that are not above each point of a row."""
+    inverse = np.float32(1 / step)
+    lowest, highest = np.float32(-below - 1), np.float32(above - 1)
+    for j in range(heights.size):
+        cell = min(max(np.floor(heights[j] * inverse), lowest), highest)
+        cells[j] = np.int32(cell) + np.int32(below + 1)
 
 
 def contact_of_samples(

@@ -1,4 +1,11 @@
-"""Compile and cache all kernels before jobs run in parallel: ``python -m stiction.run.warmup``."""
+"""Compile and cache all kernels before jobs run in parallel: ``python -m stiction.run.warmup``.
+
+Two processes compile a part each. A kernel that both compiled, with different types, could corrupt the index of its
+cache: the parts share none.
+"""
+
+import sys
+from multiprocessing import get_context
 
 import numpy as np
 
@@ -18,8 +25,8 @@ from stiction.surface.summits import find_summits
 from stiction.surface.translation import Translation
 
 
-def main() -> None:
-    """Run all kernels on a small problem."""
+def contact_kernels() -> None:
+    """Run the kernels of surfaces and contact on a small problem."""
     rng = stream(0)
     grid = StripGrid(1e-6, 1e-6, 1e-8, 0.0)
     surface = RoughSurface(CutoffSelfAffine(1, 0.1, 1e7, 1e8), Translation(maxent.GAUSSIAN), 1e-9, grid)
@@ -31,11 +38,33 @@ def main() -> None:
     starts = pair.distances.solid[0], pair.distances.bearing[0]
     distance, curve = forcelaw.humid_curves(solid[None], bearing[None], starts, 1e-10, (1e-9, 1e6))
     forcelaw.parametrise(distance, curve, 1)
+
+
+def beam_kernels() -> None:
+    """Run the kernels of the chaos model and of the beams on a small problem."""
+    rng = stream(0)
     vectors = np.exp(0.1 * rng.standard_normal((50, 4))) * [7e-3, 2e6, 8e-9, 4e-9]
-    model = chaos.fit(vectors, 2e6, 2, 1e-9)
-    laws = chaos.draw_laws(model, 200, rng)
+    laws = chaos.draw_laws(chaos.fit(vectors, 2e6, 2, 1e-9), 200, rng)
     release(Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200), laws, 300e-6)
     end_stiffness(1.0)
+
+
+#: Parts that may be compiled at the same time.
+PARTS = (contact_kernels, beam_kernels)
+
+
+def main() -> None:
+    """Compile the parts at the same time, all but the last in processes of their own, and load all kernels here."""
+    context = get_context("fork" if sys.platform == "linux" else "spawn")
+    *others, last = PARTS
+    compiling = [context.Process(target=part) for part in others]
+    for process in compiling:
+        process.start()
+    last()
+    for process in compiling:
+        process.join()
+    for part in others:
+        part()  # from the cache; if its process failed, it fails here as well, with its error
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import numba
 import numpy as np
 from scipy import fft
 
+from stiction.surface.normals import standard_normal
 from stiction.surface.spectrum import Spectrum, radial_spectrum
 from stiction.surface.translation import LARGEST_SCORE, TranslationMap
 
@@ -91,35 +92,71 @@ class RoughSurface:
 
     def draw_scores(self, rng: np.random.Generator) -> np.ndarray:
         """Draw one strip of the standard Gaussian field u, Eq. (4); (n1, n2) float32 [-]."""
-        position, amplitude, columns = self._modes
-        n1, n2 = self.grid.field_shape
-        normals = rng.standard_normal(2 * len(position), dtype=np.float32)
-        waves = np.zeros(columns * n1, np.complex64)
-        waves[position] = normals.view(np.complex64) * amplitude
-        along = fft.ifft(waves.reshape(columns, n1), axis=1, norm="forward", overwrite_x=True)
-        rows, across = self.grid.shape
-        return fft.irfft(along.T[:rows], n=n2, axis=1, norm="forward")[:, :across]
+        return self._field(rng)[:, : self.grid.shape[1]]
 
     def draw(self, rng: np.random.Generator) -> np.ndarray:
         """Draw one strip of heights z = rms · g(u), Eq. (5); (n1, n2) float32 [m]."""
         heights = np.zeros(self.grid.shape, np.float32)
-        add_heights(self.draw_scores(rng), self.table, heights)
+        self.add_to(heights, rng)
         return heights
 
+    def add_to(self, heights: np.ndarray, rng: np.random.Generator) -> None:
+        """Draw one strip and add it to ``heights`` (n1, n2) float32 [m]."""
+        add_heights(self._field(rng), self.table, heights)
 
-# Scores may be a window of a field: one explicit signature for windows and whole fields is compiled and cached once.
-@numba.njit("void(float32[:, :], float32[::1], float32[:, ::1])", cache=True, nogil=True)
+    def _field(self, rng):
+        """Draw the standard Gaussian field on the length of the strip and the whole period across; (n1, n) float32."""
+        position, amplitude, columns = self._modes
+        n1, n2 = self.grid.field_shape
+        waves = np.zeros(columns * n1, np.complex64)
+        _place(standard_normal(rng, 2 * len(position)), amplitude, position, waves.view(np.float32))
+        along = fft.ifft(waves.reshape(columns, n1), axis=1, norm="forward", overwrite_x=True)
+        # The transform would copy an input that is not contiguous or does not reach the Nyquist number.
+        across = np.zeros((self.grid.shape[0], n2 // 2 + 1), np.complex64)
+        across[:, :columns] = along.T[: len(across)]
+        return fft.irfft(across, n=n2, axis=1, norm="forward")
+
+
+@numba.njit(cache=True, nogil=True)
+def _place(normals, amplitude, position, parts):
+    """Write the waves to their places: real and imaginary parts (2 n,), from normal numbers (2 n,) and amplitudes."""
+    for k in range(position.size):
+        parts[2 * position[k]] = normals[2 * k] * amplitude[k]
+        parts[2 * position[k] + 1] = normals[2 * k + 1] * amplitude[k]
+
+
+@numba.njit(cache=True, nogil=True)
 def add_heights(scores: np.ndarray, table: np.ndarray, heights: np.ndarray) -> None:
-    """Add the heights of normal scores, by interpolation in a table over ±``LARGEST_SCORE``."""
-    scale = np.float32((len(table) - 1) / (2 * LARGEST_SCORE))
-    offset = np.float32((len(table) - 1) / 2)
-    last = np.float32(len(table) - 1.001)
+    """Add the heights of normal scores, by interpolation in a table over ±``LARGEST_SCORE``.
+
+    ``scores`` (n1, n2 or more) float32 are used in the columns of ``heights`` (n1, n2) float32.
+    """
+    cells, fractions = np.empty(heights.shape[1], np.int32), np.empty(heights.shape[1], np.float32)
     for i in range(heights.shape[0]):
-        for j in range(heights.shape[1]):
-            place = min(max(scores[i, j] * scale + offset, np.float32(0)), last)
-            k = int(place)
-            fraction = place - np.float32(k)
-            heights[i, j] += table[k] + fraction * (table[k + 1] - table[k])
+        _locate(scores[i], table.size, cells, fractions)
+        _add_row(cells, fractions, table, heights[i])
+
+
+# Two loops, because only one without a look-up computes several points at a time.
+
+
+@numba.njit(cache=True, nogil=True)
+def _locate(scores, points, cells, fractions):
+    """Cells of normal scores in a table of this number of points, and their positions within the cells."""
+    scale, offset = np.float32((points - 1) / (2 * LARGEST_SCORE)), np.float32((points - 1) / 2)
+    last = np.float32(points - 1.001)
+    for j in range(cells.size):
+        place = min(max(scores[j] * scale + offset, np.float32(0)), last)
+        cells[j] = np.int32(place)
+        fractions[j] = place - np.float32(cells[j])
+
+
+@numba.njit(cache=True, nogil=True)
+def _add_row(cells, fractions, table, heights):
+    """Add the heights at these places of a table."""
+    for j in range(heights.size):
+        k = np.uint32(cells[j])  # without a sign, so that it cannot count from the end of the table
+        heights[j] += table[k] + fractions[j] * (table[k + np.uint32(1)] - table[k])
 
 
 def radial_periodogram(heights: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 from scipy.special import ndtri_exp
 
 from stiction.errors import NotConverged
@@ -57,6 +56,8 @@ class HeightDensity:
         ValueError
             If the tails are so heavy that a score corresponds to a height beyond ``SUPPORT``.
         """
+        from scipy.interpolate import PchipInterpolator  # takes 0.3 s, and only jobs that draw surfaces need it
+
         height, known = self._normal_score
         if np.any((score < known[0]) | (score > known[-1])):
             raise ValueError(

@@ -9,6 +9,7 @@ follows this convention; Eq. (4) does not.
 """
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Protocol
 
 import numpy as np
@@ -167,10 +168,16 @@ def ring_means(values: np.ndarray, inside: np.ndarray | None = None) -> np.ndarr
     (n_rings,) float64
         Mean at |ζ| = 0, 1, 2, ... steps of the wave number; 0 for an empty ring.
     """
-    axis = fft.fftfreq(len(values), 1 / len(values))
-    counted = np.ones(values.shape, bool) if inside is None else inside
-    ring = np.rint(np.hypot(axis[:, None], axis)).astype(int)[counted]
-    return np.bincount(ring, values[counted]) / np.maximum(np.bincount(ring), 1)
+    counted = slice(None) if inside is None else inside.ravel()
+    ring = _rings(len(values))[counted]
+    return np.bincount(ring, values.ravel()[counted]) / np.maximum(np.bincount(ring), 1)
+
+
+@cache
+def _rings(n):
+    """Number of the ring of every wave number of an FFT of n x n points, (n²,)."""
+    axis = fft.fftfreq(n, 1 / n)
+    return np.rint(np.hypot(axis[:, None], axis)).astype(int).ravel()
 
 
 def radial_spectrum(values: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:

@@ -20,6 +20,18 @@ def is_summit(z: np.ndarray, i: int, j: int) -> bool:
     )
 
 
+@numba.njit(cache=True, nogil=True)
+def mark_summits(z: np.ndarray, i: int, marks: np.ndarray) -> None:
+    """Write to ``marks`` (n2,) which points of the inner row i of z (n1, n2) are summits; its ends are not written."""
+    above, row, below = z[i - 1], z[i], z[i + 1]
+    for j in range(1, row.size - 1):
+        # All comparisons, without branches: most points fail an early one, but several are compared at a time.
+        h = row[j]
+        sides = (h > row[j - 1]) & (h > row[j + 1]) & (h > above[j]) & (h > below[j])
+        corners = (h > above[j - 1]) & (h > above[j + 1]) & (h > below[j - 1]) & (h > below[j + 1])
+        marks[j] = sides & corners
+
+
 @numba.njit(cache=True, nogil=True, inline="always")
 def mean_curvature(z: np.ndarray, i: int, j: int, spacing: float) -> float:
     """Mean of the two three-point second differences, positive on a summit [m⁻¹]."""
