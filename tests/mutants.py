@@ -275,7 +275,7 @@ MUTANTS = {
     ],
     "scans.model_scans": [
         ("+ [np.log(self.rms), 0, 0]", "+ [self.rms, 0, 0]"),
-        ("2 * max(self.frame.shape), *_POINTS", "128, 128, 128"),
+        ("self._points * min(self.frame.pixel) / 2", "self._points * min(self.frame.pixel) / 200"),
         ("spacing, self.correlation)", "spacing, 0.0)"),
         ("np.arange(n) * p / spacing", "np.arange(n)"),
         ("model.rms ** np.arange(1, 5)", "model.rms ** np.arange(4)"),

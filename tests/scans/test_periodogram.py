@@ -102,6 +102,7 @@ def test_pixels_need_not_be_square():
 def test_there_are_no_empty_rings_and_their_wave_numbers_increase(size):
     found = rings(periodogram(MAPS[:1], size))
     assert np.all(np.diff(found.wavenumber) > 0)
+    assert np.median(np.diff(found.wavenumber)) == pytest.approx(2 * np.pi / min(size), rel=0.05)
     assert found.modes.min() > 0
 
 

@@ -1,5 +1,6 @@
 """Files written by SurfaceTopography and by hand, read back; files that cannot be used, refused in one sentence."""
 
+import logging
 import subprocess
 import sys
 import warnings
@@ -114,6 +115,7 @@ CHOICES = {
     "one of two sensors, named": ([("Scan forward (Z-Axis)", "m"), ("Scan forward (Z-AxisSensor)", "m")],
                                   "Scan forward (Z-AxisSensor)", "Scan forward (Z-AxisSensor)"),
     "in both directions": ([("Z Height Forward", "um"), ("Z Height Backward", "um")], None, "Z Height Forward"),
+    "a name beside none": ([("channel 0", "nm"), ("Height", "nm")], None, "Height"),
     "file without names": ([("channel 0", None)], None, "channel 0"),
     "default name": ([("Default", "m")], None, "Default"),
     "any name that is given": ([("Deflection", "nm"), ("Height", "nm")], "Deflection", "Deflection"),
@@ -131,6 +133,7 @@ def test_the_channel_of_the_heights_is_chosen_by_name(named, wanted, expected):
 REFUSED_CHANNELS = {
     "none is a height": ([("Phase", "deg"), ("Deflection", "nm")], None, "named as a height, only: Phase, Deflection"),
     "a height without length": ([("Height", ("nm", None))], None, "no channel that is named as a height"),
+    "an error of the height": ([("Height Error", "nm"), ("Sensor", "nm")], None, "no channel that is named as"),
     "a height in volts": ([("Height", "V")], None, "no channel that is named as a height"),
     "a single other channel": ([("Friction", "nm")], None, "no channel that is named as a height"),
     "two kinds of heights": ([("Height", "nm"), ("ZSensor", "nm")], None, "name one of: Height, ZSensor"),
@@ -231,6 +234,27 @@ def test_an_unusable_file_is_refused_in_one_sentence_with_key_and_file(tmp_path,
 def test_a_size_given_for_a_file_that_has_one_must_agree(tmp_path):
     path = written(tmp_path, "gwy", topography())
     np.testing.assert_allclose(read(path, Source(size=(6.43e-6, 4e-6), height_unit="m")).scan.size, SIZE)
+
+
+@pytest.mark.parametrize(
+    ("reason", "quoted"),
+    [("truncated.\nat byte 7", " (truncated)"), ("x" * 121, ""), ("", ""), ("x" * 120, f" ({'x' * 120})")],
+)
+def test_a_reason_is_quoted_by_its_first_line_if_that_is_short(tmp_path, reason, quoted):
+    error = reading._unreadable(tmp_path / "a.spm", IndexError(reason))
+    assert str(error) == f"files: a.spm cannot be read as any known format, or is damaged{quoted}"
+
+
+def test_what_libraries_print_log_and_warn_of_is_not_shown(capfd, caplog):
+    with reading._silenced():
+        print("printed")  # noqa: T201
+        print("printed", file=sys.stderr)  # noqa: T201
+        warnings.warn("warned", stacklevel=1)
+        logging.getLogger("some.library").error("logged")
+    assert capfd.readouterr() == ("", "")
+    assert not caplog.records
+    logging.getLogger("some.library").error("shown again")
+    assert len(caplog.records) == 1
 
 
 def test_a_folder_is_not_a_file(tmp_path):

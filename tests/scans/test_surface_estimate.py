@@ -4,13 +4,15 @@ import numpy as np
 import pytest
 from drawn_scans import fleishman, gaussian, published, truth
 from published import SURFACES
+from scipy import stats
 
 from stiction.errors import ScanError
-from stiction.scans.estimate import Settings, estimate, inspect
+from stiction.scans.estimate import Settings, _residual, estimate, inspect
 from stiction.scans.levelling import Levelling
-from stiction.scans.quantiles import Feasible
+from stiction.scans.quantiles import SCORES, Feasible
 from stiction.scans.scan import Scan
 from stiction.streams import stream
+from stiction.surface import maxent
 from stiction.surface.translation import Translation
 
 SIDE = 5e-6
@@ -46,8 +48,24 @@ def test_three_scans_have_smaller_errors_than_one():
     (one,) = estimates(B2[:1], count=12)
     np.testing.assert_allclose(one.errors / ESTIMATE.errors, np.sqrt(3), rtol=0.25)
     assert ESTIMATE.inspection.areas == pytest.approx(3 * one.inspection.areas, rel=0.4)
+    np.testing.assert_allclose(one.summit_errors / ESTIMATE.summit_errors, np.sqrt(3), rtol=0.4)
+    np.testing.assert_allclose(ESTIMATE.model_summit_errors / one.summit_errors, 1, rtol=0, atol=0.5)
     assert np.isnan(one.homogeneity[1]).all()
     assert np.isfinite(ESTIMATE.homogeneity[1]).all()
+
+
+def test_moments_of_several_scans_are_those_of_all_their_heights():
+    z = np.concatenate([scan.ravel() for scan in ESTIMATE.inspection.levelled])
+    expected = np.log(z.std()), stats.skew(z), stats.kurtosis(z) + 3
+    np.testing.assert_allclose(ESTIMATE.inspection.moments, expected, rtol=1e-9)
+
+
+def test_quantiles_of_other_moments_do_not_count_as_a_misfit():
+    skewness, kurtosis = -0.76, 3.9
+    nearest = Feasible(maxent.solve(skewness, kurtosis), skewness, kurtosis, 0.0)
+    other = maxent.solve(skewness + 0.04, kurtosis - 0.14).quantile_of_normal(SCORES)
+    unlike, like = (_residual(nearest, other, np.array([0.0, *m])) for m in ((-0.76, 3.9), (-0.72, 3.76)))
+    assert np.abs(like).max() < 0.15 * np.abs(unlike).max()
 
 
 def test_summits_are_those_of_the_model_on_a_surface_of_the_form_of_eq_7():

@@ -63,11 +63,11 @@ def test_an_exact_spectrum_is_found_again(corner, slope, scale):
 
 
 def test_errors_are_those_of_the_scatter_and_chi_square_is_one_per_degree_of_freedom():
-    found = [fit(measured(stream(1, "whittle", k)), REACH) for k in range(80)]
+    found = [fit(measured(stream(1, "whittle", k)), REACH) for k in range(300)]
     values = np.array([parameters(one) for one in found])
     errors = np.sqrt(np.diag(found[0].covariance)) / 1.15  # of Gaussian heights
-    np.testing.assert_allclose(values.std(axis=0, ddof=1) / errors, 1, rtol=0, atol=0.3)
-    assert np.all(np.abs(values.mean(axis=0) - TRUTH) < 4 * errors / np.sqrt(80))
+    np.testing.assert_allclose(values.std(axis=0, ddof=1) / errors, 1, rtol=0, atol=4 / np.sqrt(600))
+    assert np.all(np.abs(values.mean(axis=0) - TRUTH) < 4 * errors / np.sqrt(300))
     correlation = np.corrcoef(values.T)[0, 1] - found[0].covariance[0, 1] / 1.15**2 / np.prod(errors[:2])
     assert abs(correlation) < 0.2
     assert np.mean([one.chi2 / one.freedom for one in found]) == pytest.approx(1, abs=0.06)
