@@ -31,9 +31,11 @@ def server():
 
 @pytest.fixture
 def bare(monkeypatch):
-    """Server that has imported nothing."""
+    """Server that has imported nothing, started as from a terminal: a background job would ignore Ctrl-C."""
     monkeypatch.setattr(forkserver, "COMMAND", [sys.executable, "-P", "-c", BARE])
+    ignored = signal.signal(signal.SIGINT, signal.default_int_handler)
     server = Server(dict(os.environ))
+    signal.signal(signal.SIGINT, ignored)
     yield server
     server.close()
 
