@@ -1,8 +1,8 @@
 """Normal random numbers in single precision, for the waves of random fields.
 
 The numbers are those of ``numpy.random.Generator.standard_normal``, bit for bit, in a quarter of its time: the
-ziggurat of G. Marsaglia and W. W. Tsang (J. Stat. Softw. 5 (8), 2000) with 256 layers, compiled together with the generator
-SFC64 (C. Doty-Humphrey, PractRand) that `stiction.streams` uses.
+ziggurat of G. Marsaglia and W. W. Tsang (J. Stat. Softw. 5 (8), 2000) with 256 layers, compiled together with the
+generator SFC64 (C. Doty-Humphrey, PractRand) that `stiction.streams` uses.
 """
 
 from math import erfc
