@@ -1,6 +1,6 @@
 """Levelling: a polynomial of the whole map, then one of every line along the fast axis, by least squares.
 
-Levelling also removes roughness of long wavelengths: `stiction.scans.model` estimates how much.
+Levelling also removes roughness of long wavelengths: `stiction.scans.model_scans` estimates how much.
 """
 
 from dataclasses import dataclass
@@ -16,8 +16,8 @@ LINES = {"none": None, "offset": 0, "tilt": 1, "bow": 2}
 class Levelling:
     """What is subtracted from a map of heights."""
 
-    level: str = "plane"  #: key of `LEVELS`
-    lines: str = "none"  #: key of `LINES`
+    level: str = "plane"  #: mean, plane or quadratic
+    lines: str = "none"  #: none, offset, tilt or bow
 
 
 def level(heights: np.ndarray, levelling: Levelling) -> np.ndarray:

@@ -36,7 +36,7 @@ def quantiles(scans: Sequence[np.ndarray]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class MeasuredDensity:
-    """Density given by measured quantiles; takes the place of a `HeightDensity` in a `Translation`.
+    """Density given by measured quantiles; takes the place of a maximum-entropy density in a translation.
 
     ASSUME: beyond the outermost quantiles that have enough of the scan beyond them, heights are straight lines in the
     score, with the slope of the last part.

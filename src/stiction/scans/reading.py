@@ -2,7 +2,7 @@
 
 The library is imported only here, and only when a file is read. It regards every channel with a length, and some
 without, as heights; the channel is therefore selected by name and unit. What the library prints, logs or raises never
-reaches the user: every unusable file is a `ScanError`.
+reaches the user: every unusable file is a ``ScanError``.
 """
 
 import contextlib
