@@ -11,7 +11,18 @@ from pathlib import Path
 from stiction.run.atomic import save_text
 
 #: Libraries on which results may depend.
-LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4", "pandas", "matplotlib", "snakemake")
+LIBRARIES = (
+    "numpy",
+    "scipy",
+    "numba",
+    "llvmlite",
+    "xarray",
+    "netCDF4",
+    "pandas",
+    "matplotlib",
+    "snakemake",
+    "SurfaceTopography",
+)
 
 
 def record(path: str | Path, checkout: str | Path, config: dict) -> None:
