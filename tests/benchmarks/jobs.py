@@ -25,7 +25,9 @@ def rules():
 
 def measured(results):
     """For every rule that ran: name, number of jobs, most and all seconds, most memory [MB], stated MB and minutes."""
-    logs = {str(path.relative_to(results / "logs"))[:-4]: path.read_text() for path in results.rglob("logs/**/*.log")}
+    logs = {
+        str(path.relative_to(results / "logs"))[:-4]: path.read_text() for path in (results / "logs").rglob("*.log")
+    }
     for name, pattern, memory, minutes in rules():
         took = [TOOK.findall(text)[-1] for log, text in logs.items() if pattern.fullmatch(log) and TOOK.search(text)]
         if took:
