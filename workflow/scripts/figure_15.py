@@ -1,11 +1,13 @@
 """Figure 15: adhesion energies over the relative humidity."""
 
 from stiction.config.units import typed
+from stiction.contact.meniscus import surface_energy
 from stiction.report import published
 from stiction.report.figures_beams import adhesion_energies
 from stiction.report.style import save
 from stiction.run.logs import logged
 from stiction.stages.cantilevers import Cantilevers, cantilever
+from stiction.stages.curves import Water
 from stiction.stages.named import key_of, load_named, model_of, surface_of
 
 
@@ -17,7 +19,8 @@ def main(job):
     sections = typed(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
     pairs = {pair: (cantilever(sections, pair), *_of(pair, beams, bands)) for pair in settings["pairs"]}
     known = published.of_paper(published.read(job.input.published), settings["of_paper"])
-    save(adhesion_energies(pairs, known), *job.output)
+    flat = 2 * surface_energy(typed(Water, settings["water"]).temperature)
+    save(adhesion_energies(pairs, known, flat), *job.output)
 
 
 def _of(pair, beams, bands):

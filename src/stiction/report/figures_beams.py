@@ -10,7 +10,6 @@ from matplotlib.transforms import ScaledTranslation
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
-from stiction.constants import WATER_SURFACE_ENERGY
 from stiction.models import SURFACE_MODELS
 from stiction.report.format import TO_MJ, TO_UM
 from stiction.report.published import rows
@@ -26,10 +25,6 @@ from stiction.report.style import (
     styled,
 )
 from stiction.stages.releases import ended
-
-#: Work of adhesion of two flats with water between them, 2γ [J m⁻²].
-THEORETICAL = 2 * WATER_SURFACE_ENERGY
-
 
 # Figure 14
 
@@ -93,7 +88,7 @@ _ASIDE = 3
 
 
 @styled
-def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame) -> Figure:
+def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat: float) -> Figure:
     """Figure 15: apparent adhesion energy over the humidity; models G and NG on the left, GEO on the right.
 
     Parameters
@@ -103,16 +98,18 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame) -> Fi
         to the dataset of stage humidity.
     published : pandas.DataFrame
         The published Table III, rows of the paper's own pairs.
+    flat : float
+        Work of adhesion of two flats with water between them, 2γ [J m⁻²].
     """
     figure, axes = panels(len(pairs), 2, (DOUBLE, 2.2 * len(pairs) + 0.6), sharex="row", sharey="row")
     for row, (pair, (beam, released, bands)) in zip(axes, pairs.items(), strict=True):
         weakest = apparent_adhesion_energy(beam.length, beam)
         lowest = min(weakest, *(float(axis.energy_quantile.sel(probability=0.5).min()) for axis in bands.values()))
-        highest = max(2 * THEORETICAL, 2 * weakest, *map(_reach, released.values()))
+        highest = max(2 * flat, 2 * weakest, *map(_reach, released.values()))
         row[0].set(yscale="log", ylim=(TO_MJ * lowest / 2, TO_MJ * highest))
         row[0].set_ylabel(r"adhesion energy $\Gamma$ [mJ/m²]")
         for panel, models in zip(row, _COLUMNS, strict=True):
-            _bounds(panel, weakest)
+            _bounds(panel, flat, weakest)
             for surface in SURFACE_MODELS if "G" in models else ("NG",):
                 _band(panel, bands[surface], surface)
             _known(panel, rows(published, pair=pair), beam, models)
@@ -132,10 +129,10 @@ def _aside(panel, points):
     return panel.transData + ScaledTranslation(points / 72, 0, panel.figure.dpi_scale_trans)
 
 
-def _bounds(panel, weakest):
+def _bounds(panel, flat, weakest):
     """Energy of flat surfaces and of the longest crack that fits into the beam [J m⁻²]."""
     style = {"color": "black", "linewidth": 0.8}
-    panel.axhline(TO_MJ * THEORETICAL, linestyle="-.", label=r"flat surfaces, $2\gamma_{LG}$", **style)
+    panel.axhline(TO_MJ * flat, linestyle="-.", label=r"flat surfaces, $2\gamma_{LG}$", **style)
     panel.axhline(TO_MJ * weakest, linestyle=":", label="crack as long as the beam", **style)
 
 
