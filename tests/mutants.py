@@ -604,9 +604,9 @@ MUTANTS = {
         ("self.bandwidth * rng.standard_normal", "rng.standard_normal"),
     ],
     "chaos.polynomials": [
-        ("values[1] = 2 * points - 1", "values[1] = 2 * points + 1"),
+        ("= 2 * points[i] - 1", "= 2 * points[i] + 1"),
         ("- a * values[a - 1, i]) / (a + 1)", "- a * values[a - 1, i]) / (a + 2)"),
-        ("values[a] *= np.sqrt(2 * a + 1)", "values[a] *= np.sqrt(2 * a + 2)"),
+        ("norm = np.sqrt(2 * a + 1)", "norm = np.sqrt(2 * a + 2)"),
         ("3 * w * t * (1 - t)", "6 * w * t * (1 - t)"),
         ("if sum(alpha) <= order]", "if sum(alpha) < order]"),
         ("first += 1  #", "first += 2  #"),

@@ -70,7 +70,7 @@ def _locate(points, start, step, cells, parts):
 @njit(cache=True, nogil=True)
 def _bin_linearly(cells, parts, weights, bins):
     """Split each weight between the two nearest nodes of a grid."""
-    bins[:] = 0.0
+    bins.fill(0.0)
     for i in range(cells.size):
         upper = parts[i] * weights[i]
         bins[cells[i]] += weights[i] - upper
@@ -80,11 +80,13 @@ def _bin_linearly(cells, parts, weights, bins):
 @njit(cache=True, nogil=True)
 def _smooth(bins, taps, masses):
     """Probability of each cell (n + taps - 1,): convolution of ``bins`` (n,) with the taps."""
-    masses[:] = 0.0
+    masses.fill(0.0)
     for t in range(taps.size):
         for i in range(bins.size):
             masses[i + t] += taps[t] * bins[i]
-    masses /= masses.sum()
+    total = masses.sum()
+    for i in range(masses.size):
+        masses[i] /= total
 
 
 @njit(cache=True, nogil=True)

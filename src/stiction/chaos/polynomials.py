@@ -34,14 +34,17 @@ def multi_indices(order: int, dimension: int) -> np.ndarray:
 @njit(cache=True, nogil=True)
 def legendre(points: np.ndarray, values: np.ndarray) -> None:
     """Write the orthonormal Legendre polynomials on [0, 1] at ``points`` (n,) to ``values`` (order + 1, n)."""
-    values[0] = 1.0
-    if len(values) > 1:
-        values[1] = 2 * points - 1
+    for i in range(points.size):
+        values[0, i] = 1.0
+        if len(values) > 1:
+            values[1, i] = 2 * points[i] - 1
     for a in range(1, len(values) - 1):
         for i in range(points.size):
             values[a + 1, i] = ((2 * a + 1) * values[1, i] * values[a, i] - a * values[a - 1, i]) / (a + 1)
     for a in range(len(values)):
-        values[a] *= np.sqrt(2 * a + 1)
+        norm = np.sqrt(2 * a + 1)
+        for i in range(points.size):
+            values[a, i] *= norm
 
 
 def quadrature() -> tuple[np.ndarray, np.ndarray]:
@@ -126,8 +129,8 @@ def _expand_block(xi, indices, coefficients, values, partial, eta):
     last = dimension - 1
     for j in range(dimension):
         legendre(xi[j], values[j])
-    partial[0] = 1.0
-    eta[:] = 0.0
+    partial[0].fill(1.0)
+    eta.fill(0.0)
     while run < terms:
         end = run + 1
         while end < terms and indices[end, last] > 0:
@@ -149,10 +152,14 @@ def _expand_block(xi, indices, coefficients, values, partial, eta):
 def _expand(xi, indices, coefficients, order, eta):
     """Sum Eq. (19) at points (N_g, n), block by block; the last block is filled up with points that are not used."""
     dimension, n = xi.shape
-    points, part = np.full((dimension, _BLOCK), 0.5), np.empty((dimension, _BLOCK))
+    points, part = np.zeros((dimension, _BLOCK)), np.empty((dimension, _BLOCK))
     values, partial = np.empty((dimension, order + 1, _BLOCK)), np.empty((dimension, _BLOCK))
     for start in range(0, n, _BLOCK):
         size = min(_BLOCK, n - start)
-        points[:, :size] = xi[:, start : start + size]
+        for j in range(dimension):
+            for i in range(size):
+                points[j, i] = xi[j, start + i]
         _expand_block(points, indices, coefficients, values, partial, part)
-        eta[:, start : start + size] = part[:, :size]
+        for k in range(dimension):
+            for i in range(size):
+                eta[k, start + i] = part[k, i]

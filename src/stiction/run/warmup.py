@@ -1,7 +1,7 @@
 """Compile and cache all kernels before jobs run in parallel: ``python -m stiction.run.warmup``.
 
-Two processes compile a part each. A kernel that both compiled, with different types, could corrupt the index of its
-cache: the parts share none.
+Two processes share the work. A kernel that both compiled, with different types, could corrupt the index of its cache:
+the parts have none in common.
 """
 
 import sys
@@ -40,31 +40,31 @@ def contact_kernels() -> None:
     forcelaw.parametrise(distance, curve, 1)
 
 
+def chaos_kernels() -> None:
+    """Run the kernels of the chaos model on a small problem."""
+    vectors = np.exp(0.1 * stream(0).standard_normal((50, 4))) * [7e-3, 2e6, 8e-9, 4e-9]
+    chaos.draw_laws(chaos.fit(vectors, 2e6, 2, 1e-9), 200, stream(0))
+
+
 def beam_kernels() -> None:
-    """Run the kernels of the chaos model and of the beams on a small problem."""
-    rng = stream(0)
-    vectors = np.exp(0.1 * rng.standard_normal((50, 4))) * [7e-3, 2e6, 8e-9, 4e-9]
-    laws = chaos.draw_laws(chaos.fit(vectors, 2e6, 2, 1e-9), 200, rng)
-    release(Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200), laws, 300e-6)
+    """Run the kernels of the beams on a small problem."""
+    release(Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200), np.tile([2e6, 8e-9, 6e8, 5e8], (200, 1)), 300e-6)
     end_stiffness(1.0)
 
 
 #: Parts that may be compiled at the same time.
-PARTS = (contact_kernels, beam_kernels)
+PARTS = (chaos_kernels, contact_kernels, beam_kernels)
 
 
 def main() -> None:
-    """Compile the parts at the same time, all but the last in processes of their own, and load all kernels here."""
-    context = get_context("fork" if sys.platform == "linux" else "spawn")
-    *others, last = PARTS
-    compiling = [context.Process(target=part) for part in others]
-    for process in compiling:
-        process.start()
-    last()
-    for process in compiling:
-        process.join()
+    """Compile the first part in another process and the others, which take as long, in this one; load all here."""
+    first, *others = PARTS
+    compiling = get_context("fork" if sys.platform == "linux" else "spawn").Process(target=first)
+    compiling.start()
     for part in others:
-        part()  # from the cache; if its process failed, it fails here as well, with its error
+        part()
+    compiling.join()
+    first()  # from the cache; if its process failed, it fails here as well, with its error
 
 
 if __name__ == "__main__":
