@@ -17,7 +17,7 @@ from typing import NamedTuple, Protocol
 import numba
 import numpy as np
 
-from stiction.surface.summits import is_summit, mark_summits, mean_curvature
+from stiction.surface.summits import mark_summits, mean_curvature
 
 
 class Attraction(Protocol):
@@ -275,9 +275,11 @@ def asperity(modulus: float, attraction: Attraction | None) -> Asperity:
 @numba.njit(cache=True, nogil=True)
 def _add_hertz(heights, spacing, step, modulus, force):
     """Add the Hertz force of every summit at the distances ``step * arange(n)`` [N]."""
+    summits = np.empty(heights.shape[1], np.bool_)
     for i in range(1, heights.shape[0] - 1):
+        mark_summits(heights, i, summits)
         for j in range(1, heights.shape[1] - 1):
-            if heights[i, j] > 0 and is_summit(heights, i, j):
+            if summits[j] and heights[i, j] > 0:
                 factor = 4 / 3 * modulus / np.sqrt(mean_curvature(heights, i, j, spacing))
                 for k in range(min(int(heights[i, j] / step) + 1, len(force))):
                     overlap = max(heights[i, j] - k * step, 0.0)

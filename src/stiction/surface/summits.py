@@ -4,25 +4,12 @@ import numba
 import numpy as np
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
-def is_summit(z: np.ndarray, i: int, j: int) -> bool:
-    """Whether an inner point is strictly higher than its eight neighbours."""
-    h = z[i, j]
-    return (
-        h > z[i, j - 1]
-        and h > z[i, j + 1]
-        and h > z[i - 1, j]
-        and h > z[i + 1, j]
-        and h > z[i - 1, j - 1]
-        and h > z[i - 1, j + 1]
-        and h > z[i + 1, j - 1]
-        and h > z[i + 1, j + 1]
-    )
-
-
 @numba.njit(cache=True, nogil=True)
 def mark_summits(z: np.ndarray, i: int, marks: np.ndarray) -> None:
-    """Write to ``marks`` (n2,) which points of the inner row i of z (n1, n2) are summits; its ends are not written."""
+    """Mark in ``marks`` (n2,) the points of the inner row i of z (n1, n2) that are higher than their eight neighbours.
+
+    The ends of the row, which are no inner points, are not written.
+    """
     above, row, below = z[i - 1], z[i], z[i + 1]
     for j in range(1, row.size - 1):
         # All comparisons, without branches: most points fail an early one, but several are compared at a time.
@@ -41,10 +28,11 @@ def mean_curvature(z: np.ndarray, i: int, j: int, spacing: float) -> float:
 
 @numba.njit(cache=True, nogil=True)
 def _collect(z, spacing, height, curvature):
-    count = 0
+    count, summits = 0, np.empty(z.shape[1], np.bool_)
     for i in range(1, z.shape[0] - 1):
+        mark_summits(z, i, summits)
         for j in range(1, z.shape[1] - 1):
-            if is_summit(z, i, j):
+            if summits[j]:
                 height[count] = z[i, j]
                 curvature[count] = mean_curvature(z, i, j, spacing)
                 count += 1
