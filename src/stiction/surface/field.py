@@ -106,23 +106,30 @@ class RoughSurface:
 
     def _field(self, rng):
         """Draw the standard Gaussian field on the length of the strip and the whole period across; (n1, n) float32."""
+        return fft.irfft(self._waves_across(rng), n=self.grid.field_shape[1], axis=1, norm="forward")
+
+    def _waves_across(self, rng):
+        """Draw the waves ζ₂ >= 0 across each line of the strip, up to the Nyquist number; complex64.
+
+        The inverse transform would copy an input that is not contiguous or shorter.
+        """
         position, amplitude, columns = self._modes
         n1, n2 = self.grid.field_shape
         waves = np.zeros(columns * n1, np.complex64)
         _place(standard_normal(rng, 2 * len(position)), amplitude, position, waves.view(np.float32))
         along = fft.ifft(waves.reshape(columns, n1), axis=1, norm="forward", overwrite_x=True)
-        # The transform would copy an input that is not contiguous or does not reach the Nyquist number.
         across = np.zeros((self.grid.shape[0], n2 // 2 + 1), np.complex64)
         across[:, :columns] = along.T[: len(across)]
-        return fft.irfft(across, n=n2, axis=1, norm="forward")
+        return across
 
 
 @numba.njit(cache=True, nogil=True)
 def _place(normals, amplitude, position, parts):
     """Write the waves to their places: real and imaginary parts (2 n,), from normal numbers (2 n,) and amplitudes."""
     for k in range(position.size):
-        parts[2 * position[k]] = normals[2 * k] * amplitude[k]
-        parts[2 * position[k] + 1] = normals[2 * k + 1] * amplitude[k]
+        real = np.uint64(2 * position[k])  # without a sign, so that it cannot count from the end
+        parts[real] = normals[2 * k] * amplitude[k]
+        parts[real + np.uint64(1)] = normals[2 * k + 1] * amplitude[k]
 
 
 @numba.njit(cache=True, nogil=True)
