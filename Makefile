@@ -1,7 +1,9 @@
 # Each target first creates the virtual environment .venv if necessary and runs in it.
-#   make paper      the whole paper: tables and figures in results/ (about 15 minutes)
-#   make smoke      the same with small samples (about a minute), in results/smoke/   (takes CONFIG=... too)
+#   make paper      the whole paper: tables and figures in results/ (about 10 minutes)
+#   make smoke      the same with small samples (half a minute), in results/smoke/   (takes CONFIG=... too)
 #   make run CONFIG=mine.yaml    your own surfaces, pairs and beams; the file changes single keys of config.yaml
+#   make example    from drawn scans of two surfaces to crack lengths, beside the truth (3 minutes), in results/example/
+#   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (about 10 minutes)
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
 #
@@ -21,8 +23,8 @@ SMOKE := --configfile config.yaml workflow/smoke.yaml
 MINE := $(if $(CONFIG),--configfile config.yaml $(CONFIG))
 # Snakemake reads files and settings before the Snakefile can check them.
 CHECKED = $(if $(CONFIG)$(findstring -C,$(ARGS))$(findstring --config,$(ARGS)),@$(BIN)/python -m stiction.config.reading $(CONFIG) -- $(ARGS))
-# The tests of a file share what they compute.
-WORKERS := --numprocesses auto --maxprocesses 4 --dist loadfile
+# The tests of a file share what they compute; the longest files come first, in the order of tests/conftest.py.
+WORKERS := --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 EMPTY :=
 SPACE := $(EMPTY) $(EMPTY)
 
@@ -37,7 +39,7 @@ ifneq ($(CONFIG),$(wildcard $(CONFIG)))
 $(error cannot read $(CONFIG))
 endif
 
-.PHONY: help paper smoke figures run report test test-all lint format cluster mutants bench jobs docs lock clean
+.PHONY: help paper smoke example devices figures run report test test-all lint format cluster mutants bench jobs docs lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -51,6 +53,17 @@ paper: $(VENV)/ready
 smoke: $(VENV)/ready
 	$(CHECKED)
 	$(SNAKEMAKE) --directory results/smoke $(SMOKE) $(CONFIG) $(ARGS)
+
+# Draws the scans, writes them as files of microscopes, and computes the tables and the sheets of the surfaces from the files.
+example: $(VENV)/ready
+	$(BIN)/python examples/scans/draw.py results/example
+	cp examples/scans/mine.yaml results/example/
+	$(SNAKEMAKE) measured --directory results/example --configfile config.yaml results/example/mine.yaml $(ARGS)
+	$(BIN)/python examples/scans/compare.py results/example
+
+devices: $(VENV)/ready
+	$(CHECKED)
+	$(SNAKEMAKE) devices --directory results/devices --configfile config.yaml $(or $(CONFIG),examples/devices.yaml) $(ARGS)
 
 figures: $(VENV)/ready
 	$(CHECKED)
@@ -75,14 +88,14 @@ test-all: lint
 	$(BIN)/python -m pytest $(WORKERS) -m "not cluster" $(ARGS)
 
 lint: $(VENV)/ready
-	$(BIN)/ruff format --check src tests workflow docs
-	$(BIN)/ruff check src tests workflow docs
+	$(BIN)/ruff format --check src tests workflow docs examples
+	$(BIN)/ruff check src tests workflow docs examples
 	$(BIN)/snakefmt --check Snakefile workflow/rules
 	$(SNAKEMAKE) --lint
 
 format: $(VENV)/ready
-	$(BIN)/ruff format src tests workflow docs
-	$(BIN)/ruff check --fix src tests workflow docs
+	$(BIN)/ruff format src tests workflow docs examples
+	$(BIN)/ruff check --fix src tests workflow docs examples
 	$(BIN)/snakefmt Snakefile workflow/rules
 
 # A SLURM cluster on this machine; the test is skipped, with the reason, if the daemons of SLURM are not installed.
@@ -97,7 +110,8 @@ mutants: $(VENV)/ready
 
 bench: $(VENV)/ready
 	$(BIN)/python -m stiction.run.warmup
-	$(BIN)/python tests/benchmarks/stages.py | tee docs/tables/bench.md
+	{ $(BIN)/python tests/benchmarks/stages.py; $(BIN)/python tests/benchmarks/scaling.py docs/pictures/scaling.png; } \
+	  | tee docs/tables/bench.md
 
 # Reads the logs of the last run.
 jobs: $(VENV)/ready

@@ -22,15 +22,24 @@ container: "stiction.sif"
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/scans.smk"
 include: "workflow/rules/surfaces.smk"
 include: "workflow/rules/contact.smk"
 include: "workflow/rules/laws.smk"
 include: "workflow/rules/beams.smk"
 include: "workflow/rules/studies.smk"
+include: "workflow/rules/slopes.smk"
 include: "workflow/rules/tables.smk"
+include: "workflow/rules/common_devices.smk"
+include: "workflow/rules/devices.smk"
+include: "workflow/rules/budgets.smk"
 include: "workflow/rules/checks.smk"
 include: "workflow/rules/figures_studies.smk"
 include: "workflow/rules/figures.smk"
+
+
+if workflow.is_main_process:
+    remember.save()
 
 
 HELD = []  # open file that holds the lock on the folder of this run
@@ -60,6 +69,8 @@ rule all:
     input:
         rules.tables.input,
         rules.figures.input,
+        rules.devices.input,
+        rules.model_limits.output,
         rules.verdict.output,
     localrule: True
     message:

@@ -33,6 +33,7 @@ napoleon_use_param = False
 napoleon_use_rtype = False
 default_role = "py:obj"
 nitpick_ignore = [("py:class", "enum.IntEnum"), ("py:obj", "ast.dump")]
+nitpick_ignore += [("py:class", f"collections.abc.{name}") for name in ("Callable", "Sequence")]
 # Public names are described where they are defined.
 nitpick_ignore += [("py:obj", f"stiction.{name}") for name in stiction.__all__]
 

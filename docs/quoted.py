@@ -22,6 +22,7 @@ def numbers(tables):
         | slopes(tables["sensitivity"])
         | chaos(tables["resampling"])
     )
+    found |= safe_lengths(tables["safe_lengths"]) | stoppers(tables["stoppers"]) | budget(tables["budget"])
     return found | studies(tables["studies"]) | checks(tables["checks"])
 
 
@@ -151,6 +152,49 @@ def studies(table):
 def checks(table):
     """``checks`` and ``checks_passed``: number of checks and of those that passed."""
     return {"checks": f"{len(table)}", "checks_passed": f"{int(table.passed.sum())}"}
+
+
+def safe_lengths(table):
+    """``safe_C1_067_1e-03``: safe length of a device [µm], held by the beam alone; ``…_tip``: by beam or tip."""
+    found = {}
+    for row in table.itertuples():
+        name = f"safe_{row.device}_{_digits(row.relative_humidity)}_{row.share:.0e}".replace("-", "")
+        found[name + ("_tip" if row.held_by == "beam or tip" else "")] = f"{row.safe_length_um:.0f}"
+    return found
+
+
+def stoppers(table):
+    """``worst_S1``: worst humidity; ``stuck_S1_067``: P(stuck) [%]; ``force_S1_067_1e02``: safe force [µN]."""
+    found = {}
+    for row in table.to_dict("records"):
+        name = f"{row['device']}_{_digits(row['relative_humidity'])}"
+        found[f"worst_{row['device']}"] = f"{row['worst_humidity']:.2f}"
+        found[f"stuck_{name}"] = f"{100 * row['share_stuck']:.2g}"
+        shares = [key.rpartition("_")[2] for key in row if key.startswith("safe_force_uN")]
+        found |= {
+            f"force_{name}_{float(share):.0e}".replace("-", ""): f"{row[f'safe_force_uN_{share}']:.0f}"
+            for share in shares
+        }
+    return found
+
+
+def budget(table):
+    """``total_C1_067``, ``independent_C1_067`` and ``scatter_C1_067`` [%]; ``best_C1_067``: what to measure better."""
+    found = {}
+    for (device, humidity), rows in table.groupby(["device", "relative_humidity"]):
+        name = f"{device}_{_digits(humidity)}"
+        totals = rows[rows.part == "total"].effect_percent.values
+        found |= {
+            f"{what}_{name}": f"{value:.1f}" for what, value in zip(("total", "independent"), totals, strict=True)
+        }
+        found[f"scatter_{name}"] = f"{rows[rows.part == 'scatter'].effect_percent.iloc[0]:.2g}"
+        best = rows.loc[rows.remaining_percent.idxmin()]
+        found |= {f"best_{name}": best["name"], f"left_{name}": f"{best.remaining_percent:.1f}"}
+        inputs = rows[rows.part == "input"]
+        for entry in inputs.itertuples():
+            quantity = entry.name.replace("'", "").replace(" ", "_")
+            found[f"slope_{name}_{quantity}"] = with_error(entry.slope, entry.slope_se)
+    return found
 
 
 def _case(row):

@@ -1,7 +1,8 @@
 """Bring README and docs up to date with a run: ``python docs/update.py results``, part of ``make docs``.
 
 1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
-   and ``docs/pictures``. Otherwise those from an earlier run are kept.
+   and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``
+   and ``make devices`` in its subfolders ``example`` and ``devices``.
 2. ``docs/results.json`` receives the numbers quoted by the pages and a checksum of each source table.
 3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted, and the block between
    the markers in ``README.md`` is rewritten.
@@ -49,6 +50,16 @@ PICTURES = {
     "figure_19": 1100,
     "variants": 1100,
 }
+#: Tables and pictures of ``make example``: place in its folder, without ending; pictures by their width [pixels].
+EXAMPLE_TABLES = {
+    "example_scans": "results/tables/scans",
+    "example_scan_uncertainty": "results/tables/scan_uncertainty",
+    "example_prediction": "prediction",
+}
+EXAMPLE_PICTURES = {"results/figures/surface_sheet_Etched": 1400, "prediction": 700}
+#: Tables and pictures of ``make devices``; pictures by their width [pixels].
+DEVICE_TABLES = ("safe_lengths", "stoppers", "budget")
+DEVICE_PICTURES = {"risk": 1000, "chart": 800, "stoppers": 700, "budget": 1000}
 #: Largest picture [bytes].
 LARGEST = 150_000
 NOTE = "<!-- Written by docs/update.py from docs/templates/{name}: edit that file, then run make docs. -->"
@@ -56,11 +67,15 @@ NOTE = "<!-- Written by docs/update.py from docs/templates/{name}: edit that fil
 
 def main(results):
     """Update everything, and print a message if the numbers of an earlier run are kept."""
-    reason = unfinished(results)
-    if reason:
-        print(f"{reason}: the docs keep their present numbers")  # noqa: T201
-    else:
-        collect(results)
+    for folder, why, collected in (
+        (results, unfinished, collect),
+        (results / "example", unfinished_example, collect_example),
+        (results / "devices", unfinished_devices, collect_devices),
+    ):
+        if reason := why(folder):
+            print(f"{reason}: the docs keep their present numbers")  # noqa: T201
+        else:
+            collected(folder)
     for path, text in pages().items():
         path.write_text(text, encoding="utf-8")
 
@@ -72,19 +87,37 @@ def unfinished(results):
     """Why a folder does not hold a finished run of the paper by this code; empty if it does."""
     if not (results / "verdict.txt").exists():
         return f"{results} holds no finished run"
-    plan = [
-        sys.executable,
-        "-m",
-        "snakemake",
-        "--snakefile",
-        ROOT / "Snakefile",
-        "--directory",
-        results.resolve().parent,
-    ]
+    if up_to_date(results.resolve().parent):
+        return ""
+    return f"{results} is not up to date with config.yaml and the code, see make paper ARGS=-n"
+
+
+def unfinished_example(folder):
+    """Why a folder does not hold a finished run of the example by this code; empty if it does."""
+    if not (folder / "prediction.md").exists():
+        return f"{folder} holds no finished run"
+    configs = ROOT / "config.yaml", folder.resolve() / "mine.yaml"
+    if up_to_date(folder.resolve(), "measured", "--configfile", *configs):
+        return ""
+    return f"{folder} is not up to date with the code, see make example"
+
+
+def unfinished_devices(folder):
+    """Why a folder does not hold a finished run of the example of devices by this code; empty if it does."""
+    if not (folder / "results" / "tables" / "budget.csv").exists():
+        return f"{folder} holds no finished run"
+    configs = ROOT / "config.yaml", ROOT / "examples" / "devices.yaml"
+    if up_to_date(folder.resolve(), "devices", "--configfile", *configs):
+        return ""
+    return f"{folder} is not up to date with examples/devices.yaml and the code, see make devices ARGS=-n"
+
+
+def up_to_date(folder, *arguments):
+    """Whether Snakemake has nothing to do in a working directory."""
+    plan = [sys.executable, "-m", "snakemake", *arguments, "--snakefile", ROOT / "Snakefile", "--directory", folder]
     plan += ["--workflow-profile", ROOT / "profiles" / "default", "--dry-run"]
     done = subprocess.run(list(map(str, plan)), cwd=ROOT, capture_output=True, text=True)
-    finished = "Nothing to be done" in done.stdout + done.stderr
-    return "" if finished else f"{results} is not up to date with config.yaml and the code, see make paper ARGS=-n"
+    return "Nothing to be done" in done.stdout + done.stderr
 
 
 def collect(results):
@@ -100,6 +133,24 @@ def collect(results):
     for name, width in PICTURES.items():
         if (picture := results / "figures" / f"{name}.png").exists():
             shrink(picture, DOCS / "pictures" / f"{name}.png", width)
+
+
+def collect_example(folder):
+    """Copy tables and pictures of a run of the example."""
+    for name, place in EXAMPLE_TABLES.items():
+        for kind in ("csv", "md"):
+            shutil.copyfile(folder / f"{place}.{kind}", DOCS / "tables" / f"{name}.{kind}")
+    for place, width in EXAMPLE_PICTURES.items():
+        shrink(folder / f"{place}.png", DOCS / "pictures" / f"{Path(place).name}.png", width)
+
+
+def collect_devices(folder):
+    """Copy tables and pictures of a run of the example of devices."""
+    for name in DEVICE_TABLES:
+        for kind in ("csv", "md"):
+            shutil.copyfile(folder / "results" / "tables" / f"{name}.{kind}", DOCS / "tables" / f"{name}.{kind}")
+    for name, width in DEVICE_PICTURES.items():
+        shrink(folder / "results" / "figures" / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
 
 
 def scalars(studies):
@@ -171,7 +222,9 @@ def pages():
 
 def quoted_numbers():
     """Every number that may be quoted, by name."""
-    frames = {name: quoted.frame(DOCS / "tables" / f"{name}.csv") for name in (*TABLES, "studies", "checks")}
+    frames = {
+        name: quoted.frame(DOCS / "tables" / f"{name}.csv") for name in (*TABLES, *DEVICE_TABLES, "studies", "checks")
+    }
     return quoted.numbers(frames)
 
 

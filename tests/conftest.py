@@ -22,3 +22,9 @@ if "PYTEST_XDIST_WORKER" in os.environ:
             save(cache, key, data)
 
     IndexDataCacheFile.save = save_alone
+
+
+def pytest_collection_modifyitems(items):
+    """Begin with the files that take longest, so that no process works alone at the end."""
+    first = ["test_reruns.py", "test_run.py"]
+    items.sort(key=lambda item: (item.path.name not in first, item.path.parent.name != "workflow"))

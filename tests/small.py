@@ -20,6 +20,7 @@ PLAN = Plan(
             "studies": {
                 "iteration": {"iterations": 2, "fields": 2},
                 "sensitivity": {"samples": 4},
+                "slopes": {"samples": 20},
                 "plasticity": {"strips": 4},
                 "orders": {"draws": 2000},
                 "resampling": {"beams": 3},

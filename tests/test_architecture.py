@@ -9,23 +9,28 @@ PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 #: Folders and their modules, in the order in which they may import: from modules above or to the left.
 ORDER = """
 constants errors streams estimates numbers models progress
-surface: maxent spectrum translation feasible normals field iteration summits identify
-scans: scan levelling moments periodogram whittle quantiles model_scans estimate
+surface: maxent spectrum translation empirical feasible normals field iteration summits identify
+scans: scan levelling moments periodogram whittle quantiles model_scans histogram estimate
 contact: meniscus vanderwaals asperity solids estimate pair forcelaw bounds
 chaos: coordinates density polynomials model
 beam: cantilever tension energy foundation equilibrium release resolution montecarlo
-analysis: plasticity sensitivity convergence mesh variants
+analysis: plasticity sensitivity shifts convergence mesh variants
 devices: arcs bridges tail risk stoppers chart budget limits
-run: fingerprint logs folder atomic labels kept provenance warmup forkserver hooks
+run: fingerprint logs folder atomic labels kept remembered provenance warmup forkserver hooks
 scans: reading
-config: units cases merging messages reading memory relations files plan jobs
+config: units cases merging messages reading measured memory relations designs relations_devices files plan jobs
 stages: storage named heights parameters identification spectrum surfaces character pairs contact curves forces chaos
 stages: cantilevers releases beams
-studies: iteration fit humidity sensitivity_contact sensitivity plasticity sample_sizes orders mesh correlation
-studies: resampling variant_contact variant
-study
+measured: scan estimate heights spectrum choices
+studies: iteration fit humidity slope_contact slopes sensitivity_contact sensitivity plasticity sample_sizes orders mesh
+studies: correlation resampling scan_uncertainty
+variants: summits contact beams
+designs: cracks safe_lengths chart findings stoppers budget
+study device
 report: format published tables tables_surfaces tables_beams tables_studies style figures_surfaces figures_forces
 report: figures_beams figures_studies figures_overview checks
+measured: tables_scans figures_scans
+designs: tables_devices tables_budget figures_devices figures_budget pages
 """
 MODULES = [
     f"{folder.strip()}.{name}".strip(".")
@@ -148,7 +153,7 @@ def test_an_import_of_the_bare_package_is_found(tmp_path, statement):
 @pytest.mark.parametrize("path", [*FILES, *SCRIPTS], ids=lambda path: path.stem)
 def test_no_number_depends_on_a_module_that_the_fingerprint_leaves_out(path):
     # Such modules may report progress and errors, or reject a configuration, but must not affect results.
-    refusing = {"config.messages", "config.relations"}
+    refusing = {"config.messages", "config.relations", "config.relations_devices"}
     if not path.is_relative_to(PACKAGE / "config"):
         assert not modules_used(path) & refusing, f"{path} must use config.files"
 

@@ -5,10 +5,12 @@ import importlib.util
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import yaml
+from PIL import Image
 
 import stiction
 
@@ -26,6 +28,7 @@ def module(path):
     """Import a module that is not part of the package."""
     spec = importlib.util.spec_from_file_location(path.stem, path)
     loaded = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = loaded  # dataclasses look their module up
     spec.loader.exec_module(loaded)
     return loaded
 
@@ -60,6 +63,26 @@ def test_folders_without_a_finished_run_of_the_paper_change_nothing(tmp_path):
     assert "no finished run" in update.unfinished(results)
     (results / "verdict.txt").touch()
     assert "not up to date with config.yaml and the code" in update.unfinished(results)
+
+
+def test_folders_without_a_finished_run_of_the_example_change_nothing(tmp_path):
+    assert "no finished run" in update.unfinished_example(tmp_path)
+
+
+def test_tables_and_pictures_of_the_example_are_copied(tmp_path, monkeypatch):
+    monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
+    for part in ("tables", "pictures"):
+        (tmp_path / "docs" / part).mkdir(parents=True)
+    for place in (*update.EXAMPLE_TABLES.values(), *update.EXAMPLE_PICTURES):
+        (tmp_path / place).parent.mkdir(parents=True, exist_ok=True)
+        for kind in ("csv", "md"):
+            (tmp_path / f"{place}.{kind}").write_text(f"{place} {kind}")
+        Image.new("RGB", (20, 10)).save(tmp_path / f"{place}.png")
+    update.collect_example(tmp_path)
+    made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
+    pictures = {"surface_sheet_Etched.png", "prediction.png"}
+    assert made == {path.name for path in (DOCS / "tables").glob("example_*")} | pictures
+    assert (tmp_path / "docs" / "tables" / "example_scans.md").read_text() == "results/tables/scans md"
 
 
 def test_markers_are_needed_once_each():
@@ -155,6 +178,8 @@ def test_every_public_name_is_described():
 
 
 def test_yaml_examples_are_configurations_that_can_run(tmp_path):
+    draw = pytest.importorskip("SurfaceTopography") and module(ROOT / "examples" / "scans" / "draw.py")
+    draw.main(tmp_path, [replace(scans, side=5e-6, pixel=20e-9) for scans in draw.SCANS])
     for block in blocks("yaml"):
         path = tmp_path / "mine.yaml"
         path.write_text(block, encoding="utf-8")

@@ -6,14 +6,17 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.beam.energy import arrest_length
 from stiction.config import jobs
+from stiction.config.cases import case_id
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.stages import heights, identification, pairs, spectrum
 from stiction.stages.parameters import spectrum_of
-from stiction.studies import variant, variant_contact
 from stiction.study import PairStudy
+from stiction.variants import beams as variant_beams
+from stiction.variants import contact as variant_contact
+from stiction.variants import summits as variant_summits
 
 CONFIG = load({"contact": {"samples": 40}, "beam": {"samples": 3, "width_um": 6}, "chaos": {"order": 3}})
 HUMIDITY = 0.8
@@ -28,10 +31,14 @@ def under(config, name):
     """Dataset of study variant of pair b at one humidity, with the samples and beams of the main line."""
     sizes = {"variants": {"samples": 40, "beams": 3}}
     plan = Plan(merged(config, {"pairs": {"b": {"humidities": [HUMIDITY]}}, "studies": sizes}))
-    plain = plan.variant_contact("b", name)
-    settings = [typed(variant_contact.Settings, merged(plain["base"], changes)) for changes in ({}, plain["changes"])]
-    found = variant_contact.compute({}, "b", *settings)
-    return variant.compute(found, "b", typed(variant.Settings, jobs.variant(plan, "b", name))).isel(humidity=0)
+    plain = plan.variant_summits("b", name)
+    settings = [typed(variant_summits.Settings, merged(plain["base"], changes)) for changes in ({}, plain["changes"])]
+    summits = variant_summits.compute({}, "b", *settings)
+    found = variant_contact.compute(summits, typed(variant_contact.Settings, plan.variant_contact("b", name)))
+    case = case_id("b", HUMIDITY)
+    return variant_beams.compute(found, case, typed(variant_beams.Settings, jobs.variant(plan, case, name))).isel(
+        humidity=0
+    )
 
 
 @pytest.mark.parametrize(("humidity", "published"), [(0.55, 878), (0.67, 710), (0.80, 538), (0.88, 434), (0.92, 391)])
@@ -44,12 +51,12 @@ def test_crack_length_of_the_mean_energy_is_the_published_one(study, humidity, p
 
 def test_a_finer_grid_gives_the_same_surfaces():
     plan = Plan(CONFIG)
-    plain = plan.variant_contact("b", "base")["base"]
-    base = typed(variant_contact.Settings, plain)
-    surfaces = variant_contact.surfaces_of(base.pairs["b"], base.surfaces, base.sampling.spacing, {})
-    finer = typed(variant_contact.Settings, merged(plain, {"sampling": {"spacing_nm": 5}}))
+    plain = plan.variant_summits("b", "base")["base"]
+    base = typed(variant_summits.Settings, plain)
+    surfaces = variant_summits.surfaces_of(base.pairs["b"], base.surfaces, base.sampling.spacing, {})
+    finer = typed(variant_summits.Settings, merged(plain, {"sampling": {"spacing_nm": 5}}))
     coarse, fine = (
-        pairs.surface_pair(surfaces, "NG", s).draw(*map(np.random.default_rng, (1, 2))) for s in (base, finer)
+        pairs.equivalent_surface(surfaces, "NG", s).draw(*map(np.random.default_rng, (1, 2))) for s in (base, finer)
     )
     assert fine.shape == (300, 1200)
     # Single precision of the Fourier transforms, in units of the rms.

@@ -92,6 +92,11 @@ WRONG_VALUES = [
     ("surfaces:", "surfaces", "None", GONE),
     ("surfaces: {B1: }", "surfaces.B1", "None", GONE),
     ("surfaces: {B1: {published_psd: }}", "surfaces.B1.published_psd", "None", GONE),
+    # measured surfaces; tests/config/test_measured.py has more, with files
+    ("scans: {model_scans: 7}", "scans.model_scans", "7", "at least 8"),
+    ("scans: {tiles: 1}", "scans.tiles", "1", "at least 2 and at most 8"),
+    ("scans: {undefined_share: 1}", "scans.undefined_share", "1", "at most 0.5: largest share of the points"),
+    ("surfaces: {B1: {scans: }}", "surfaces.B1.scans", "None", GONE),
 ]  # fmt: skip
 
 #: Smooth surfaces under a beam whose strips are short enough.
@@ -102,6 +107,12 @@ WRONG_RELATIONS = [
      "above skewness² + 1 = 1.25 (given"),
     ("surfaces: {B1: {kurtosis: 1.6}}", "surfaces.B1.kurtosis", "1.6", "skewness² + 1 = 1.6084 (given surfaces.B1."),
     ("surfaces: {B1: {skewness: 0}}", "surfaces.B1.kurtosis", "4.6", "maximum-entropy"),
+    ("surfaces: {B2: {scans: {files: [a.spm]}}}", "surfaces.B2.scans", "{'files': ['a.spm']}",
+     "must not be given beside rms_nm, skewness, kurtosis, mean_summit_radius_um, summit_density_per_um2, published_psd"
+     ),
+    ("surfaces: {B2: {heights: measured}}", "surfaces.B2.heights", "'measured'", "must not be given for a surface"),
+    ("surfaces: {B2: {beyond: cut}}", "surfaces.B2.beyond", "'cut'", "must not be given for a surface without scans"),
+    ("surfaces: {B2: {psd: fitted}}", "surfaces.B2.psd", "'fitted'", "must be published or identified for a surface"),
     ("surfaces: {B1: {skewness: 1.0e-3}}", "surfaces.B1.kurtosis", "4.6", "surfaces.B1.skewness = 0.001"),
     ("surfaces: {B1: {skewness: -0.1, kurtosis: 3.5}}", "surfaces.B1.kurtosis", "3.5",
      "near that of a maximum-entropy density of the heights: no maximum-entropy density has moments within 2.45 "
@@ -171,7 +182,7 @@ WRONG_RELATIONS = [
     ("pairs: {a: {gap_um: 1000}}\nbeam: {length_um: 900}", "pairs.a.gap_um", "1000", "below the length of the beam"),
     ("beam: {width_um: 1500}\nstudies: {variants: {spacing_nm: []}}", "beam.width_um", "1500", "below the length"),
     (SMOOTH, "run.pairs[1]", "'b'", "a solid stiff enough for its humidities: at"),
-    ("surfaces: {B2: {rms_nm: 0.3}}\nbeam: {thickness_um: 8}", "run.pairs[1]", "'b'", "MPa, is not below a third of"),
+    ("surfaces: {B2: {rms_nm: 0.3}}\nbeam: {thickness_um: 8}", "run.pairs[1]", "'b'", "where 3 times the pull"),
     ("run: {pairs: [c]}\nsolid: {young_modulus_GPa: 0.1}", "run.pairs[0]", "'c'", "must have surfaces rough enough"),
     ("sampling: {margin_um: 1000}\nstudies: {variants: {spacing_nm: []}}", "sampling.spacing_nm", "10",
      "within 8 GB of memory: 1001.5 x 1030 µm every 10 nm take 619 GB (given sampling.strip_length_um = 1.5,"),

@@ -24,7 +24,12 @@ if TYPE_CHECKING:
     from stiction.contact.asperity import HertzAsperity, MaugisTable, asperity, reduced_modulus
     from stiction.contact.pair import SurfacePair
     from stiction.contact.vanderwaals import DugdaleAttraction, attraction
+    from stiction.device import Device
     from stiction.errors import NotConverged
+    from stiction.scans.estimate import SurfaceEstimate
+    from stiction.scans.estimate import estimate as estimate_surface
+    from stiction.scans.reading import read as read_scan
+    from stiction.scans.scan import Scan
     from stiction.streams import stream
     from stiction.study import PairStudy
     from stiction.surface.field import RoughSurface, StripGrid
@@ -37,10 +42,11 @@ __version__ = "0.2.0"
 
 #: Public names and where each is defined.
 _PLACES = {
-    # configuration and study of a pair of surfaces
+    # configuration, study of a pair of surfaces, and devices
     "load": "config.files.load",
     "case_id": "config.cases.case_id",
     "PairStudy": "study.PairStudy",
+    "Device": "device.Device",
     # surfaces
     "maximum_entropy": "surface.maxent.solve",
     "HeightDensity": "surface.maxent.HeightDensity",
@@ -50,6 +56,11 @@ _PLACES = {
     "underlying_spectrum": "surface.translation.underlying_spectrum",
     "StripGrid": "surface.field.StripGrid",
     "RoughSurface": "surface.field.RoughSurface",
+    # measured surfaces
+    "read_scan": "scans.reading.read",
+    "Scan": "scans.scan.Scan",
+    "estimate_surface": "scans.estimate.estimate",
+    "SurfaceEstimate": "scans.estimate.SurfaceEstimate",
     # contact and force laws
     "DugdaleAttraction": "contact.vanderwaals.DugdaleAttraction",
     "attraction": "contact.vanderwaals.attraction",

@@ -41,7 +41,8 @@ class PairStudy:
     def of(cls, config: dict, name: str, model: str = "NG") -> "PairStudy":
         """Study of one pair of a configuration: draws the surfaces and computes their contact, 15 ms per sample.
 
-        Spectra with ``psd: identified`` are identified first, which takes about 15 s each.
+        Spectra with ``psd: identified`` are identified first, which takes about 15 s each; surfaces described by scans
+        are estimated first.
 
         Parameters
         ----------
@@ -60,7 +61,7 @@ class PairStudy:
         if name not in config["pairs"]:
             raise ValueError(f"there is no pair {name}; the configuration has {', '.join(config['pairs'])}")
         plan = Plan(config)
-        surfaces = [_surface(plan, side) for side in plan.sides(name)]
+        surfaces = [surface_datasets(plan, side) for side in plan.sides(name)]
         settings = typed(stage_contact.Settings, jobs.contact(plan, name))
         pair = pairs.surface_pair(surfaces, model, settings)
         return cls(name, pair, stage_contact.compute(surfaces, name, model, settings), config)
@@ -101,11 +102,13 @@ class PairStudy:
 
     @cached_property
     def _water(self):
-        return typed(curves.Water, self.config["water"])
+        return typed(curves.Water, Plan(self.config).water(self.name))
 
 
-def _surface(plan, name):
+def surface_datasets(plan: Plan, name: str) -> tuple[xr.Dataset, xr.Dataset]:
     """Datasets of stages heights and spectrum of one surface."""
+    if name in plan.scanned:
+        return _measured(plan, name)
     found = heights.compute(typed(heights.Settings, jobs.heights(plan, name)))
     settings = typed(spectrum.Settings, jobs.spectrum(plan, name))
     identified = None
@@ -113,3 +116,26 @@ def _surface(plan, name):
         wanted = typed(identification.Settings, jobs.identification(plan, name))
         identified = identification.compute(found, name, wanted)
     return found, spectrum.compute(found, identified, settings)
+
+
+def estimate_of(plan: Plan, name: str) -> xr.Dataset:
+    """Dataset of stage estimate of one surface described by scans."""
+    # Imported here: other surfaces do not need these modules.
+    from stiction.measured import estimate, scan
+
+    scans = [
+        scan.compute(path, typed(scan.Settings, jobs.scan(plan, name, number)))
+        for number, path in plan.scan_files(name).items()
+    ]
+    return estimate.compute(scans, name, typed(estimate.Settings, jobs.estimate(plan, name)))
+
+
+def _measured(plan, name):
+    """As `surface_datasets`, of a surface described by scans."""
+    from stiction.measured import heights as measured_heights
+    from stiction.measured import spectrum as measured_spectrum
+
+    found = estimate_of(plan, name)
+    drawn = measured_heights.compute(found, typed(measured_heights.Settings, jobs.heights_of_scans(plan, name)))
+    settings = typed(measured_spectrum.Settings, jobs.spectrum_of_scans(plan, name))
+    return drawn, measured_spectrum.compute(found, drawn, settings)

@@ -79,7 +79,7 @@ def energies(moments, seeds):
     translation = Translation(solve(skewness, kurtosis))
     underlying = underlying_spectrum(B2.spectrum, translation, GRID.spacing)[0]
     solid = MaugisTable(reduced_modulus(164e9, 0.23), attraction("water"))
-    pair = SurfacePair(RoughSurface(underlying, translation, rms, GRID), SUB1.on(GRID), solid, 5e-11)
+    pair = SurfacePair(RoughSurface(underlying, translation, rms, GRID), SUB1.on(GRID), 5e-11, asperity=solid)
     curves = contact_of_samples(pair, lambda k: (stream(k, "beam"), stream(k, "substrate")), seeds)
     starts = pair.distances.solid[0], pair.distances.bearing[0]
     film = float(meniscus_height(0.67, 300.0)), -float(laplace_pressure(0.67, 300.0))

@@ -11,7 +11,8 @@ TOOK = re.compile(r"^took ([\d.]+) s, (\d+) MB$", re.MULTILINE)
 def rules():
     """For every rule with a script: name, pattern of its logs, and the stated memory [MB] and minutes."""
     default = (ROOT / "profiles" / "default" / "config.yaml").read_text()
-    for file in sorted((ROOT / "workflow" / "rules").glob("*.smk")):
+    files = (ROOT / "workflow" / "rules").glob("*.smk")
+    for file in sorted(files, key=lambda file: (file.stem == "scans", file.name)):  # the paper's surfaces come first
         for name, body in re.findall(
             r"^(?:use )?rule (?:\w+ as )?(\w+)(?: with)?:\n((?:[ \n].*\n|\n)+)", file.read_text(), re.MULTILINE
         ):
@@ -29,7 +30,8 @@ def measured(results):
         str(path.relative_to(results / "logs"))[:-4]: path.read_text() for path in (results / "logs").rglob("*.log")
     }
     for name, pattern, memory, minutes in rules():
-        took = [TOOK.findall(text)[-1] for log, text in logs.items() if pattern.fullmatch(log) and TOOK.search(text)]
+        own = [log for log in logs if pattern.fullmatch(log)]  # other rules may write logs of the same names
+        took = [TOOK.findall(text)[-1] for log in own if TOOK.search(text := logs.pop(log))]
         if took:
             seconds, megabytes = (list(map(float, column)) for column in zip(*took, strict=True))
             yield name, len(took), max(seconds), sum(seconds), max(megabytes), memory, minutes

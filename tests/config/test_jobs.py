@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from stiction import studies
+from stiction import studies, variants
 from stiction.config import jobs
 from stiction.config.files import load
 from stiction.config.merging import merged
@@ -24,11 +24,15 @@ from stiction.studies import (
     plasticity,
     resampling,
     sample_sizes,
+    scan_uncertainty,
     sensitivity,
     sensitivity_contact,
-    variant,
-    variant_contact,
+    slope_contact,
+    slopes,
 )
+from stiction.variants import beams as variant_beams
+from stiction.variants import contact as variant_contact
+from stiction.variants import summits
 
 PLAN = Plan(load())
 #: Stage and the settings of one of its jobs.
@@ -46,14 +50,18 @@ JOBS = {
     beams: jobs.beams(PLAN, "b_rh067", "GEO"),
     sensitivity_contact: jobs.sensitivity_contact(PLAN, "b"),
     sensitivity: jobs.sensitivity(PLAN, "b"),
+    slope_contact: jobs.slope_contact(PLAN, "b"),
+    slopes: jobs.sensitivity(PLAN, "b"),
+    scan_uncertainty: jobs.sensitivity(PLAN, "b"),
     plasticity: jobs.plasticity(PLAN, "b"),
     sample_sizes: jobs.sample_sizes(PLAN),
     orders: jobs.orders(PLAN),
     mesh: jobs.mesh(PLAN),
     correlation: {"surfaces": PLAN.surfaces},
     resampling: jobs.resampling(PLAN, "b_rh067"),
-    variant_contact: PLAN.variant_contact("b", "base")["base"],
-    variant: jobs.variant(PLAN, "b", "base"),
+    summits: PLAN.variant_summits("b", "base")["base"],
+    variant_contact: PLAN.variant_contact("b", "base"),
+    variant_beams: jobs.variant(PLAN, "b_rh067", "base"),
 }
 each_job = pytest.mark.parametrize(
     ("stage", "settings"), JOBS.items(), ids=[stage.__name__.rpartition(".")[2] for stage in JOBS]
@@ -63,7 +71,7 @@ each_job = pytest.mark.parametrize(
 @each_job
 def test_a_stage_takes_exactly_the_settings_of_its_jobs(stage, settings):
     found = typed(stage.Settings, settings)
-    optional = {field.name for field in fields(found) if field.default is not MISSING}
+    optional = {field.name for field in fields(found) if not field.default is field.default_factory is MISSING}
     assert set(vars(found)) - optional == {key.removesuffix("_nm") for key in settings} - optional
 
 
@@ -76,7 +84,7 @@ def test_settings_of_contact_do_not_depend_on_humidity_gap_and_chunks():
     other = {"pairs": {"b": {"humidities": [0.5], "gap_um": 10}}, "contact": {"chunks": 7}}
     dry = Plan(load(other | {"water": {"temperature_K": 310}}))
     assert jobs.contact(dry, "b") == jobs.contact(PLAN, "b")
-    assert dry.variant_contact("b", "base") == PLAN.variant_contact("b", "base")
+    assert dry.variant_summits("b", "base") == PLAN.variant_summits("b", "base")
     assert jobs.plasticity(dry, "b") == jobs.plasticity(PLAN, "b")
 
 
@@ -86,7 +94,7 @@ def test_only_model_geo_has_scattered_dimensions():
 
 
 def test_a_variant_of_the_mesh_changes_only_the_number_of_elements():
-    base, finer = (jobs.variant(PLAN, "b", name) for name in ("base", "strips_per_element_2"))
+    base, finer = (jobs.variant(PLAN, "b_rh067", name) for name in ("base", "strips_per_element_2"))
     assert finer == merged(base, {"beam": {"elements": 500}})
     assert base["beam"]["samples"] == PLAN.config["studies"]["variants"]["beams"]
 
@@ -97,8 +105,8 @@ def test_elements_follow_the_force_laws_except_on_the_mesh_of_the_paper():
     assert jobs.beams(other, "b_rh095", "GEO")["refined"] is True
     assert "refined" not in jobs.resampling(other, "b_rh067")
     assert jobs.resampling(other, "b_rh095")["refined"] is True
-    assert jobs.variant(other, "b", "strips_per_element_2")["refined"] == [0.95]
-    assert "refined" not in jobs.variant(PLAN, "b", "base")
+    assert jobs.variant(other, "b_rh095", "strips_per_element_2")["refined"] is True
+    assert "refined" not in jobs.variant(other, "b_rh067", "base")
     assert set(jobs.checks(other)["on_mesh_of_paper"]) == {*PLAN.cases} - {*PLAN.cases[6:12]} | {"b_rh067"}
 
 
@@ -117,18 +125,19 @@ def test_negative_skewness_is_checked_only_for_pairs_without_positive_skewness()
     assert jobs.checks(other)["skewed"] == ["c"]
 
 
-def test_every_stage_and_study_is_tested_here():
-    folders = [module.__name__.rpartition(".")[0] for module in JOBS]
-    assert set(folders) == {"stiction.stages", "stiction.studies"}
-    names = {module.__name__.rpartition(".")[2] for module in JOBS if module.__name__.startswith("stiction.studies")}
-    files = Path(studies.__file__).parent.glob("[!_]*.py")
-    assert names == {path.stem for path in files}
+@pytest.mark.parametrize("folder", [studies, variants], ids=lambda folder: folder.__name__)
+def test_every_study_and_variant_is_tested_here(folder):
+    names = {module.__name__ for module in JOBS if module.__name__.startswith(f"{folder.__name__}.")}
+    assert names == {f"{folder.__name__}.{path.stem}" for path in Path(folder.__file__).parent.glob("[!_]*.py")}
 
 
 def test_the_axis_of_humidities_runs_from_the_driest_to_the_most_humid():
     assert jobs.humidity(PLAN, "b")["range"] == [0.44, 0.92]
 
 
-def test_the_sensitivity_has_its_own_number_of_samples():
-    samples = jobs.sensitivity_contact(PLAN, "b")["contact"]["samples"]
-    assert samples == PLAN.config["studies"]["sensitivity"]["samples"] != PLAN.config["contact"]["samples"]
+@pytest.mark.parametrize(
+    ("settings", "study"), [(jobs.sensitivity_contact, "sensitivity"), (jobs.slope_contact, "slopes")]
+)
+def test_studies_with_shifted_surfaces_have_their_own_number_of_samples(settings, study):
+    samples = settings(PLAN, "b")["contact"]["samples"]
+    assert samples == PLAN.config["studies"][study]["samples"] != PLAN.config["contact"]["samples"]

@@ -3,11 +3,13 @@
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 import yaml
 from configurations import PAPER, ROOT, changed
 
 from stiction.config import memory
+from stiction.stages import contact, storage
 from stiction.stages.surfaces import FIELD
 
 DRAWING = """
@@ -67,3 +69,59 @@ def test_the_largest_field_of_a_configuration_counts(overlay, size):
 
 def test_the_fields_of_spectra_have_the_size_of_the_stages():
     assert pytest.approx(FIELD) == 1e-6 * memory.FIELD_UM
+
+
+JOINING = """
+import sys
+from stiction.run.logs import peak_memory
+from stiction.stages import contact, curves, storage
+
+before, samples, paths = peak_memory(), int(sys.argv[1]), sys.argv[2:]
+joined = contact.joined((storage.load(path, "contact") for path in paths), samples)
+storage.save(joined, paths[0].replace("/0.nc", "/all.nc"), "contact", {})
+curves.energies(joined, 0.67, curves.Water(300.0))
+print(before, peak_memory())
+"""
+
+
+def test_joining_the_chunks_of_many_samples_takes_at_most_the_stated_memory_and_at_least_half_of_what_it_adds(tmp_path):
+    samples, chunks, rms = 40_000, 4, 7.2  # of pair c
+    grid = contact.DistanceGrid.covering(-10 * rms * 1e-9, 7 * rms * 1e-9, 0.05e-9)
+    pressure, area = (np.zeros((samples, n), np.float32) for n in (grid.above, grid.below + grid.above))
+    pressure[:, 100] = -1e6
+    for k in range(chunks):
+        part = contact.chunk(samples, k, chunks)
+        dataset = contact.layout(pressure[part.start : part.stop], area[part.start : part.stop], grid, part)
+        storage.save(dataset, tmp_path / f"{k}.nc", "contact", {})
+    paths = [str(tmp_path / f"{k}.nc") for k in range(chunks)]
+    words = [sys.executable, "-c", JOINING, str(samples), *paths]
+    before, used = map(float, subprocess.run(words, text=True, capture_output=True, check=True).stdout.split())
+    overlay = f"contact: {{samples: {samples}, chunks: {chunks}}}\nrun: {{pairs: [c]}}"
+    stated = memory.of_samples(changed(overlay))
+    few = memory.of_samples(changed("run: {pairs: [c]}"))
+    assert few == memory.USUAL < stated
+    assert before + 0.5 * (stated - before) < used < stated
+
+
+def test_the_roughest_pair_that_runs_determines_the_memory_of_the_samples():
+    sizes = {
+        pairs: memory.of_samples(changed(f"contact: {{samples: 100000}}\nrun: {{pairs: {pairs}}}"))
+        for pairs in ("[a]", "[b]", "[a, b, c]")
+    }
+    assert memory.USUAL < sizes["[a]"] < sizes["[b]"] < sizes["[a, b, c]"]
+
+
+#: Points along a side, number of scans and peak memory [MB] of estimates measured one by one.
+MEASURED = [(512, 1, 399), (1024, 1, 640), (1024, 3, 677), (2048, 1, 726)]
+
+
+@pytest.mark.parametrize(("points", "files", "used"), MEASURED)
+def test_an_estimate_takes_at_most_the_reserved_memory(points, files, used):
+    assert used < memory.of_estimate((points, points), files)
+
+
+def test_memory_of_an_estimate_grows_with_the_points_of_its_scans_and_their_number():
+    assert memory.of_estimate((512, 512), 1) == memory.USUAL
+    one, three, larger = (memory.of_estimate((4096, n), files) for n, files in ((4096, 1), (4096, 3), (8192, 1)))
+    assert three - one == pytest.approx(24e-6 * 4096**2, abs=1)
+    assert larger - one == pytest.approx(42e-6 * 4096**2, abs=1)

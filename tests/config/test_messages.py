@@ -96,6 +96,10 @@ UNITS = {
     "_rad_per_um": "[rad/µm]",
     "_per_um2": "[1/µm²]",
     "_GPa": "[GPa]",
+    "_MPa": "[MPa]",
+    "_uN": "[µN]",
+    "_zJ": "[zJ]",
+    "_deg": "[°]",
     "_K": "[K]",
 }
 

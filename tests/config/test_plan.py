@@ -66,10 +66,19 @@ def test_a_variant_that_changes_nothing_about_a_pair_is_left_out():
 
 
 def test_a_variant_uses_an_identified_spectrum_only_where_summits_were_measured():
-    settings = PAPER.variant_contact("a", "psd_identified")
+    settings = PAPER.variant_summits("a", "psd_identified")
     assert settings["identified"] == ["B1", "Sub1"]
     assert "published_psd" not in settings["base"]["surfaces"]["B1"]
-    assert PAPER.variant_contact("a", "base")["identified"] == []
+    assert PAPER.variant_summits("a", "base")["identified"] == []
+
+
+def test_variants_of_the_solids_share_the_summits_of_the_base_and_no_others_do():
+    shared = {name for name in PAPER.variants if PAPER.summits_under("b", name) == "base"}
+    solids = {"van_der_waals_dry", "van_der_waals_none", "poisson_ratio_0.18", "poisson_ratio_0.28"}
+    assert shared == {"base", *solids, *PAPER.finer_beams}
+    assert PAPER.summits_under("b", "every_2") == "every_2"
+    assert PAPER.variant_contact("b", "poisson_ratio_0.18")["solid"]["poisson_ratio"] == 0.18
+    assert PAPER.variant_contact("b", "base") == {key: PAPER.config[key] for key in ("solid", "van_der_waals")}
 
 
 @pytest.mark.parametrize(
@@ -105,7 +114,7 @@ def test_a_surface_without_summits_keeps_its_published_spectrum_under_every_vari
     known = PAPER.config["surfaces"]["B1"]
     bare = {key: known[key] for key in ("rms_nm", "skewness", "kurtosis", "psd", "published_psd")}
     mine = plan(run={"pairs": ["mine"]}, surfaces={"Bare": bare}, pairs={"mine": LIKE_A | {"beam": "Bare"}})
-    settings = mine.variant_contact("mine", "psd_identified")
+    settings = mine.variant_summits("mine", "psd_identified")
     assert settings["base"]["surfaces"]["Bare"]["psd"] == "published"
     assert settings["identified"] == ["Sub1"]
 

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from wrong_configurations import WRONG_RELATIONS
 
 from stiction.chaos.model import MAX_ORDER
+from stiction.config import relations
 
 FUZZ = settings(max_examples=250, suppress_health_check=[HealthCheck.too_slow])
 
@@ -89,6 +90,26 @@ def test_all_problems_are_found_at_once_and_each_only_once():
         "chaos.order",
     }
     assert (keys, len(lines)) == (expected, 6)
+
+
+def test_numbers_of_measured_surfaces_are_named_by_their_files():
+    files = {"B2": ["folder/a.spm", "folder/b.spm"]}
+    overlay = "surfaces: {B2: {kurtosis: 1.2}}\nsampling: {margin_um: 0.1}\npairs: {b: {gap_um: 0.1}}"
+    lines = [str(problem) for problem in relations._broken_relations(relations._OPTIONAL | changed(overlay), [], files)]
+    shown = "surfaces.B2.scans.files = ['a.spm', 'b.spm']"
+    (kurtosis,) = [line for line in lines if "skewness²" in line]
+    assert kurtosis == (
+        "surfaces.B2.scans.files is ['a.spm', 'b.spm'], which gives kurtosis = 1.2, must be above skewness² + 1 = "
+        f"1.5776 (given {shown})"
+    )
+    (gap, _) = [line for line in lines if line.startswith("pairs.b.gap_um is 0.1, must be at least")]
+    assert gap.endswith(f"{shown})")
+    assert [
+        line for line in lines if line.startswith("sampling.margin_um is 0.1") and line.endswith(f"(given {shown})")
+    ]
+    others = [line for line in lines if "surfaces.B1.published_psd = {" in line]
+    assert others
+    assert not any(shown in line for line in others)
 
 
 def test_two_missing_keys_are_named_once_each():

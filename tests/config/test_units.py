@@ -14,6 +14,9 @@ class Anything:
     summit_density: float | None = None
     young_modulus: float | None = None
     temperature: float | None = None
+    contact_angle: float | None = None
+    restoring_force: float | None = None
+    hamaker_constant: dict | None = None
     elements: tuple[float, ...] = ()
     samples: int | None = None
     psd: str | None = None
@@ -41,6 +44,15 @@ class Outer:
         ("summit_density_per_um2", 68, "summit_density", 68e12),
         ("young_modulus_GPa", 164, "young_modulus", 164e9),
         ("temperature_K", 300, "temperature", 300.0),
+        ("young_modulus_MPa", 50, "young_modulus", 50e6),
+        ("restoring_force_uN", 20, "restoring_force", 20e-6),
+        ("contact_angle_deg", 90, "contact_angle", 1.5707963267948966),
+        (
+            "hamaker_constant_zJ",
+            {"water": 97.5, "dry": 186.5},
+            "hamaker_constant",
+            {"water": 9.75e-20, "dry": 1.865e-19},
+        ),
     ],
 )
 def test_a_value_is_converted_by_the_unit_of_its_key(key, value, name, expected):

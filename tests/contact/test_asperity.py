@@ -25,10 +25,16 @@ from stiction.contact.asperity import (
     transition_parameter,
 )
 from stiction.contact.vanderwaals import DugdaleAttraction, attraction
+from stiction.surface.summits import find_summits
 
 POLYSILICON = reduced_modulus(164e9, 0.23)
 WATER = MaugisTable(POLYSILICON, attraction("water"))
 interferences, radii, moduli = st.floats(1e-11, 1e-7), st.floats(1e-8, 1e-5), st.floats(1e10, 2e11)
+
+
+def summits(heights, spacing):
+    """Heights and curvatures of the summits of a surface."""
+    return find_summits(heights, spacing)[:2]
 
 
 def test_two_equal_bodies_are_half_as_stiff_as_one_against_a_rigid_one():
@@ -266,7 +272,7 @@ def test_force_of_a_surface_with_one_summit_is_that_of_a_sphere(model):
     x = spacing * np.arange(-3, 4)
     heights = (5e-9 - (x[:, None] ** 2 + x**2) / (2 * radius)).astype(np.float32)
     total = np.ones(150)
-    model.add_forces(heights, spacing, step, total)
+    model.add_forces(*summits(heights, spacing), step, total)
     exact = model.force(5e-9 - step * np.arange(150), radius)
     # Single precision of the heights, and the interpolation between rows of λ near the first contact.
     np.testing.assert_allclose(
@@ -280,7 +286,8 @@ def test_summits_below_the_mean_plane_feel_nothing(model, height, feels):
     radius, spacing = 3e-7, 10e-9
     x = spacing * np.arange(-3, 4)
     force = np.zeros(20)
-    model.add_forces((height - (x[:, None] ** 2 + x**2) / (2 * radius)).astype(np.float32), spacing, 0.05e-9, force)
+    cap = (height - (x[:, None] ** 2 + x**2) / (2 * radius)).astype(np.float32)
+    model.add_forces(*summits(cap, spacing), 0.05e-9, force)
     assert np.any(force != 0) == feels
 
 
@@ -335,7 +342,7 @@ def test_any_solid_and_any_height_of_a_summit_have_the_force_of_the_exact_soluti
     heights = (height - (x[:, None] ** 2 + x**2) / (2 * radius)).astype(np.float32)
     total = np.zeros(60)
     with patch.object(MaugisTable, "load", WATER.load), patch.object(MaugisTable, "snap_off", WATER.snap_off):
-        solid.add_forces(heights, spacing, step, total)
+        solid.add_forces(*summits(heights, spacing), step, total)
     exact = solid.force(height - step * np.arange(60), radius)
     pull = np.pi * WATER.attraction.work_of_adhesion * radius
     snap = maugis_branch(transition_parameter(radius, solid.modulus, WATER.attraction))[1][0]
@@ -349,4 +356,4 @@ def test_summits_too_sharp_for_a_continuum_are_counted_once_each(count):
     heights = np.zeros((3, 2 * count + 1), np.float32)
     heights[1, 1::2] = 1e-3
     with pytest.raises(ValueError, match=rf"^{count} summits are too sharp: their Maugis' λ is below 0.0097, a radius"):
-        WATER.add_forces(heights, 10e-9, 1e-6, np.zeros(1000))
+        WATER.add_forces(*summits(heights, 10e-9), 1e-6, np.zeros(1000))

@@ -4,17 +4,20 @@ import dataclasses
 
 import numpy as np
 import pytest
+import small
 from hypothesis import given
 from hypothesis import strategies as st
 from published import SPACING, SURFACES
-from scipy.special import gamma
+from scipy.special import gamma, ndtri
 
+from stiction.beam.foundation import decay_length, ground_stiffness
 from stiction.contact import forcelaw
 from stiction.contact.asperity import HertzAsperity, MaugisTable, hertz_force, reduced_modulus
-from stiction.contact.estimate import ProfileMoments, repulsion_and_attraction, solid_pressure
+from stiction.contact.estimate import ProfileMoments, force_law, repulsion_and_attraction, solid_pressure
 from stiction.contact.meniscus import laplace_pressure, meniscus_height
 from stiction.contact.pair import SurfacePair, contact_of_samples
 from stiction.contact.vanderwaals import attraction
+from stiction.stages import curves
 from stiction.streams import stream
 from stiction.surface.field import StripGrid
 from stiction.surface.spectrum import NayakSummits
@@ -86,7 +89,7 @@ def drawn(rms, medium):
     grid = StripGrid(1.5e-6, 30e-6, SPACING, margin=1e-6)
     beam, substrate = (SURFACES[name].gaussian_twin(grid) for name in ("B2", "Sub1"))
     solid = HertzAsperity(POLYSILICON) if medium == "none" else MaugisTable(POLYSILICON, attraction(medium))
-    pair = SurfacePair(dataclasses.replace(beam, rms=rms), substrate, solid, 0.05e-9)
+    pair = SurfacePair(dataclasses.replace(beam, rms=rms), substrate, 0.05e-9, asperity=solid)
     streams = [(stream(1, "beam", k), stream(1, "substrate", k)) for k in range(4)]
     return pair, contact_of_samples(pair, streams.__getitem__, range(4))
 
@@ -124,3 +127,51 @@ def test_a_stiffer_solid_and_wetter_air_resist_more():
     soft, stiff = (repulsion_and_attraction(both, HertzAsperity(modulus), films) for modulus in (1e9, 1e11))
     assert all(more[0] > less[0] for less, more in zip(soft, stiff, strict=True))
     assert soft[0][0] < soft[1][0] < soft[2][0]
+
+
+# Force law of heights that are not Gaussian
+
+
+def quantiles(name):
+    """Equally probable heights of a surface [m]."""
+    scores = ndtri((np.arange(40_000) + 0.5) / 40_000)
+    return scores, SURFACES[name].rms * SURFACES[name].density.quantile_of_normal(scores)
+
+
+def test_gaussian_heights_have_the_attraction_of_the_mean_curve():
+    surface, solid = moments("B2"), MaugisTable(POLYSILICON, attraction("water"))
+    ((_, pull),) = repulsion_and_attraction(surface, solid, [film(0.95)])
+    heights = SURFACES["B2"].rms * quantiles("B2")[0]
+    assert force_law(surface, solid, heights, film(0.95))[0] == pytest.approx(pull, rel=0.01)
+
+
+@pytest.mark.parametrize("humidity", [0.67, 0.88])
+def test_the_foundation_length_is_that_of_surfaces_that_are_drawn(humidity):
+    # Pair b with 20 samples, whose foundation length, a fourth root, has an error of 2 %.
+    contact = small.contact_of_pair()
+    vectors, limit = curves.vectors(contact, humidity, curves.Water(300.0))
+    laws = forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit)
+    drawn = decay_length(1.0, ground_stiffness(laws[:, 0], laws[:, 2]).mean())
+    solid = MaugisTable(POLYSILICON, attraction("water"))
+    found = ground_stiffness(*force_law(moments("B2"), solid, quantiles("B2")[1], film(humidity)))
+    assert 0.85 < decay_length(1.0, found) / drawn < 1.05
+    gaussian = ground_stiffness(
+        *force_law(moments("B2"), solid, SURFACES["B2"].rms * quantiles("B2")[0], film(humidity))
+    )
+    assert abs(decay_length(1.0, gaussian) / drawn - 1) > 0.15  # control: heights decide
+
+
+def test_forces_of_heights_and_radii_that_grow_together_keep_their_ratio():
+    # Twice the heights and the film at the same tension: Hertz pressures and the water pull over twice the distance.
+    surface, solid = moments("B2"), HertzAsperity(POLYSILICON)
+    wide = ProfileMoments(4 * surface.m0, 4 * surface.m2 / 4, 4 * surface.m4 / 16)
+    heights, (height, tension) = quantiles("B2")[1], film(0.8)
+    one = force_law(surface, solid, heights, (height, tension))
+    other = force_law(wide, solid, 2 * heights, (2 * height, tension))
+    assert other[0] == pytest.approx(one[0], rel=1e-6)
+    assert other[1] == pytest.approx(one[1] / 2, rel=1e-6)
+
+
+def test_a_solid_that_does_not_resist_has_no_force_law():
+    with pytest.raises(ValueError, match="does not rise to f_limit"):
+        force_law(moments("B2"), HertzAsperity(1e3), quantiles("B2")[1], film(0.8))

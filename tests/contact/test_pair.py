@@ -10,7 +10,7 @@ from scipy.stats import norm
 from standard_errors import ALLOWED, errors_off
 
 from stiction.contact.asperity import HertzAsperity, MaugisTable, hertz_force, reduced_modulus, transition_parameter
-from stiction.contact.pair import DistanceGrid, SurfacePair, bearing_area, contact_of_samples
+from stiction.contact.pair import DistanceGrid, SurfacePair, bearing_area, contact_of_samples, contacts_of_samples
 from stiction.contact.vanderwaals import attraction
 from stiction.streams import stream
 from stiction.surface import maxent
@@ -22,7 +22,7 @@ POLYSILICON = reduced_modulus(164e9, 0.23)
 WATER, NONE = MaugisTable(POLYSILICON, attraction("water")), HertzAsperity(POLYSILICON)
 STRIP = StripGrid(0.6e-6, 0.8e-6, SPACING, margin=0.2e-6)
 STEP = 0.05e-9
-PAIR = SurfacePair(SURFACES["B1"].on(STRIP), SURFACES["Sub1"].on(STRIP), WATER, STEP)
+PAIR = SurfacePair(SURFACES["B1"].on(STRIP), SURFACES["Sub1"].on(STRIP), STEP, asperity=WATER)
 HERTZ = dataclasses.replace(PAIR, asperity=NONE)
 #: The table interpolates between rows of λ: error of 1.5 % of the force scale πwR at first contact, 1e-4 of a
 #: large load.
@@ -80,6 +80,11 @@ def test_one_spherical_bump_with_attraction_is_maugis(radius):
     allowed = TABLE * force_scale(radius) * (exact != 0) + TABLE_DEEP * np.abs(exact)
     assert np.all((np.abs(force - exact) <= allowed)[~next_to_snap_off(exact)])
     assert -force.min() > 1.4 * force_scale(radius)
+
+
+@pytest.mark.parametrize(("top", "carries"), [(-STEP, False), (STEP, True)])
+def test_only_a_summit_above_the_mean_plane_carries(top, carries):
+    assert np.any(PAIR.contact(spheres((30, 30, top)))[0]) == carries
 
 
 def test_two_bumps_carry_the_sum_of_their_forces():
@@ -200,7 +205,7 @@ def test_a_sphere_too_sharp_for_a_continuum_is_refused():
         hard.contact(spheres((30, 30, 5e-9)))
 
 
-@given(arrays.arrays(np.float32, (6, 7), elements=st.integers(-6000, 6000).map(lambda k: k * 1e-12)))
+@given(arrays.arrays(np.float32, (6, 7), elements=st.integers(-7000, 6000).map(lambda k: k * 1e-12)))
 def test_bearing_area_is_the_count_of_higher_points(heights):
     below, above = 60, 50
     distance = 1e-10 * np.arange(-below, above)
@@ -246,7 +251,7 @@ def test_integral_of_the_bearing_area_is_the_mean_height_above_the_lowest_distan
 def test_mean_bearing_area_is_the_upper_tail_of_the_height_density_with_a_control_that_fails():
     surface = SURFACES["Sub2"]
     polished = dataclasses.replace(SURFACES["Sub1"].on(STRIP), rms=1e-15)
-    pair = SurfacePair(surface.on(STRIP), polished, NONE, STEP)
+    pair = SurfacePair(surface.on(STRIP), polished, STEP, asperity=NONE)
     places = pair.distances.below + np.array([-100, 0, 100, 200])
     areas = np.array([pair.contact(rough(k, pair))[1][places] for k in range(100)])
     scores = np.linspace(-8, 8, 160_001)
@@ -308,6 +313,28 @@ def test_contact_of_a_sample_does_not_depend_on_the_samples_it_is_computed_with(
         assert together[which].dtype == np.float32
         np.testing.assert_array_equal(together[which], np.concatenate([apart[1][which], apart[0][which]]))
         np.testing.assert_allclose(together[which][3], PAIR.contact(rough(3))[which], rtol=1e-6)
+
+
+@pytest.mark.parametrize("shared", [True, False])
+def test_pairs_with_a_common_surface_have_the_contact_of_each_alone(shared):
+    rougher = dataclasses.replace(PAIR.beam, rms=2 * PAIR.beam.rms)
+    substrate = PAIR.substrate if shared else dataclasses.replace(PAIR.substrate)
+    others = [dataclasses.replace(PAIR, beam=rougher, substrate=substrate), dataclasses.replace(HERTZ, every=2)]
+    for pair, found in zip([PAIR, *others], contacts_of_samples([PAIR, *others], streams, range(3)), strict=True):
+        for curves, alone in zip(found, contact_of_samples(pair, streams, range(3)), strict=True):
+            np.testing.assert_array_equal(curves, alone)
+
+
+def test_a_common_surface_is_drawn_once_for_each_side_and_sample():
+    asked = []
+
+    def counted(k):
+        asked.append(k)
+        return streams(k)
+
+    rougher = dataclasses.replace(PAIR.beam, rms=2 * PAIR.beam.rms)
+    contacts_of_samples([PAIR, dataclasses.replace(PAIR, beam=rougher)], counted, range(2))
+    assert asked == [0, 0, 0, 1, 1, 1]
 
 
 def test_sample_that_cannot_be_computed_is_an_error_with_its_number():

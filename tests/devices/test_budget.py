@@ -109,7 +109,10 @@ def test_the_measurement_with_the_largest_gain_is_named():
     assert np.all(np.diff([remaining for _, _, remaining in rows]) > 0)
     assert_allclose(rows[1][1], 0.79 * 0.02, rtol=1e-12)
     assert budget.advice(whole, groups).startswith("Measure the scan of B2 better: known exactly, ")
-    assert f"from {whole.total:.1%} to {whole.remaining(SURFACE.names):.1%}" in budget.advice(whole, groups)
+    assert f"from {100 * whole.total:.1f} to {100 * whole.remaining(SURFACE.names):.1f} %." in budget.advice(
+        whole, groups
+    )
+    assert "of the force would fall" in budget.advice(whole, groups, "force")
 
 
 def test_a_choice_of_the_model_is_a_ratio():
@@ -145,3 +148,20 @@ def test_three_joint_shifts_of_a_beam_are_the_sum_of_single_ones():
     assert abs(joint - np.log(found.shifted(shifts))) < 4 * error
     assert abs(joint - 0.06 * slopes[0]) > 4 * error  # control: without gap and modulus
     assert np.all(np.abs(slopes - [0.79, 0.5, 0.26]) < 4 * errors + 0.03)  # Eq. (13), and a little more for more places
+
+
+def test_the_error_of_an_effect_is_the_scatter_of_effects_with_scattered_slopes():
+    rng, errors = np.random.default_rng(5), np.array([0.02, 0.05, 0.03])
+    repeats = [replace(SURFACE, slopes=SURFACE.slopes + errors * rng.standard_normal(3)) for _ in range(2000)]
+    for group in (SURFACE.names, ("rms",), ("skewness", "kurtosis")):
+        scatter = np.std([found.effect(group) for found in repeats])
+        assert_allclose(SURFACE.error_of_effect(group, errors), scatter, rtol=0.08)
+    exact = Budget(("a",), np.ones(1), np.zeros((1, 1)))
+    assert exact.error_of_effect(("a",), np.ones(1)) == 0
+
+
+def test_a_budget_without_correlations_keeps_the_uncertainties():
+    plain = SURFACE.uncorrelated
+    assert_allclose(np.diag(plain.covariance), np.diag(SURFACE.covariance))
+    assert_allclose(plain.total**2, np.sum(SURFACE.slopes**2 * np.diag(SURFACE.covariance)), rtol=1e-12)
+    assert plain.total > 1.5 * SURFACE.total

@@ -46,7 +46,7 @@ def test_every_limit_is_tested():
     functions = {
         value for name, value in vars(limits).items() if callable(value) and value.__module__ == limits.__name__
     }
-    assert functions == {case[0] for case in CASES} | {limits.given, limits.of_cantilever}
+    assert functions == {case[0] for case in CASES} | {limits.given, limits.of_cantilever, limits.least_gap}
 
 
 #: Ratio, as a function of the limit, of a quantity that scales with one argument; its warning appears just beyond it.

@@ -6,6 +6,7 @@ import pytest
 import stiction
 from stiction.beam.montecarlo import Experiment, columns, simulate
 from stiction.chaos.model import resample_laws
+from stiction.designs import cracks
 from stiction.devices import risk
 from stiction.streams import stream
 
@@ -29,3 +30,17 @@ def test_a_few_thousand_beams_of_pair_b_find_the_lengths_of_110_000():
         assert abs(found.estimate - length) < 3 * error
         assert abs(np.quantile(cracks, 0.02) - length) > 3 * error  # control
         assert found.length < high
+
+
+@pytest.mark.slow
+def test_the_stages_of_a_device_find_the_lengths_of_110_000(monkeypatch):
+    monkeypatch.setattr(cracks, "GROUPS", 2)
+    beam = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
+    config = stiction.load({"devices": {"C1": beam}, "design": {"beams": 2900, "shares": [1e-3, 1e-4]}})
+    found = stiction.Device.of(config, "C1").safe_lengths(0.67).sel(shape="S-shape")
+    for share, (length, low, high) in BRUTE_FORCE.items():
+        one = found.sel(share=share)
+        held = risk.HOLD * 3.4e-6
+        error = np.sqrt(float(one.beams_error) ** 2 + ((high - low) / (2 * 1.96)) ** 2 + SAMPLING**2)
+        assert abs(float(one.estimate) - held - length) < 3 * error
+        assert float(one.safe_length) - held < high

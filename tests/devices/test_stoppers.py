@@ -73,3 +73,18 @@ def test_the_error_of_the_worst_humidity_is_the_scatter_of_repeated_studies():
     worst, errors = np.transpose(found)
     assert_allclose(errors.mean(), worst.std(ddof=1), rtol=4 / np.sqrt(2 * 149))
     assert abs(worst.mean() - 0.6) < 4 * worst.std() / np.sqrt(150)
+
+
+def test_the_safe_force_bounds_the_true_force_of_a_share_in_95_of_100_studies():
+    true, rng = -np.log(0.02), np.random.default_rng(4)  # of exponential forces, exceeded by 2 %
+    found = np.array([stoppers.safe_force(rng.exponential(size=300), 0.02) for _ in range(500)])
+    covered, error = np.mean(found[:, 0] >= true), np.sqrt(0.95 * 0.05 / 500)
+    assert covered > 0.95 - 4 * error
+    assert np.mean(found[:, 1] >= true) < 0.95 - 4 * error  # control: the estimate bounds nothing
+    assert abs(found[:, 1].mean() - true) < 0.05 * true  # an order statistic, biased by less than its spacing
+    assert_allclose(found[:, 2].mean(), found[:, 1].std(), rtol=0.25)
+
+
+def test_too_few_patches_bound_no_share():
+    with pytest.raises(ValueError, match="share of 0.001 needs 2995 samples, got 300"):
+        stoppers.safe_force(np.ones(300), 1e-3)

@@ -15,7 +15,7 @@ from stiction.studies import orders as study_orders
 from stiction.studies import plasticity as study_plasticity
 from stiction.studies import sample_sizes as study_sample_sizes
 from stiction.studies import sensitivity as study_sensitivity
-from stiction.studies import variant as study_variant
+from stiction.variants import beams as study_variant
 
 HUMIDITIES = (0.5, 0.8)
 RNG = np.random.default_rng(0)

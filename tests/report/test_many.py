@@ -12,7 +12,7 @@ from stiction.studies import correlation as study_correlation
 from stiction.studies import mesh as study_mesh
 from stiction.studies import plasticity as study_plasticity
 from stiction.studies import sample_sizes as study_sample_sizes
-from stiction.studies import variant as study_variant
+from stiction.variants import beams as study_variant
 
 COUNTS = (1, 2, 3, 4, 5, 7, 9, 12)
 HUMIDITIES = (0.5, 0.7)

@@ -241,3 +241,23 @@ def test_a_redefined_pair_with_a_name_of_the_paper_is_compared_with_nothing():
     assert np.isnan([row.published_um, row.experiment_um, row.published_bias_error_percent]).all()
     (row,) = tables_studies.variants({("a", "base"): variant(0, 0, 1)}, known).frame.itertuples()
     assert np.isnan([row.published_um, row.experiment_um]).all()
+
+
+def test_errors_by_scans_are_columns_of_their_own_and_only_of_measured_pairs():
+    keys = [("a", 0.45, model) for model in ("G", "NG", "GEO")]
+    laws = {("a", 0.45, model): forces() for model in ("G", "NG")}
+    plain, scanned = (
+        tables_beams.table_3({key: beams(0, 0, 1) for key in keys}, laws, PUBLISHED, by_scans)
+        for by_scans in ({}, {("a", 0.45): 0.1})
+    )
+    assert not [name for name in [*plain.frame, *plain.cells] if "scans" in name]
+    assert "scans" not in plain.caption
+    pd.testing.assert_frame_equal(plain.frame, scanned.frame[list(plain.frame)])
+    gaussian, *others = scanned.frame.itertuples()
+    assert np.isnan(gaussian.crack_length_scans_se_um)
+    for found in others:
+        assert_allclose(found.crack_length_scans_se_um, 0.025 * found.crack_length_um)
+        assert_allclose(found.meso_energy_scans_se_J_per_m2, 0.1 * found.meso_energy_J_per_m2)
+        assert_allclose(found.adhesion_energy_scans_se_J_per_m2, 0.1 * found.adhesion_energy_J_per_m2)
+    assert list(scanned.cells["se, scans"]) == ["–", "16", "16"]
+    assert list(scanned.cells).index("se, scans") == list(scanned.cells).index("se") + 1

@@ -9,6 +9,7 @@ from stiction.scans.moments import (
     covariance,
     homogeneity,
     influence,
+    mode_covariance,
     moments,
     moments_of,
     overlap_integrals,
@@ -137,3 +138,18 @@ def test_errors_by_tiles_are_those_of_independent_heights():
     drawn = [[stream(1, "tiles", k, j).standard_normal((n, n)) for j in range(2)] for k in range(60)]
     found = np.mean([tile_errors(pair, 4) ** 2 for pair in drawn], axis=0)
     np.testing.assert_allclose(np.sqrt(found), np.sqrt(np.array([0.5, 6, 24]) / (2 * n**2)), rtol=0.1)
+
+
+def test_modes_of_the_heights_are_uncorrelated_and_correlated_with_the_rms_as_its_hermite_series():
+    surface = SURFACES["B2"]
+    overlaps = overlap_integrals(surface.underlying, (10e-6, 10e-6), 5e-6, 24)
+    found = mode_covariance(surface.translation, overlaps, range(1, 25))
+    full = covariance(surface.translation, surface.underlying, (10e-6, 10e-6), 5e-6)
+    np.testing.assert_allclose(found[0, 0], full[0, 0], rtol=1e-9)
+    np.testing.assert_allclose(np.diag(found)[1:], overlaps)
+    np.testing.assert_allclose(found[1:, 1:], np.diag(overlaps), atol=1e-15)
+    # All of the error of the rms is that of the modes.
+    explained = found[0, 1:] @ np.linalg.solve(found[1:, 1:], found[0, 1:])
+    np.testing.assert_allclose(explained, found[0, 0], rtol=1e-9)
+    few = mode_covariance(surface.translation, overlaps, [2, 5])
+    np.testing.assert_allclose(few, found[np.ix_([0, 2, 5], [0, 2, 5])])

@@ -65,6 +65,12 @@ def test_small_scans_have_no_measured_density():
         measured_density(SCORES, 40)
 
 
+def test_heights_that_are_equal_apart_from_a_few_have_no_measured_density():
+    with pytest.raises(ValueError, match="nearly all of the heights are equal"):
+        measured_density(np.where(SCORES > 2.9, 50.0, 0.0), 2000)
+    measured_density(np.where(SCORES > 2.4, 50.0, 0.0), 2000)
+
+
 def test_gaussian_quantiles_give_the_gaussian_density():
     np.testing.assert_allclose(Translation(measured_density(SCORES, 1e4)).table, IDENTITY.table, rtol=2e-5, atol=2e-5)
 

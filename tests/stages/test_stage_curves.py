@@ -18,3 +18,15 @@ def test_force_at_a_humidity_is_solid_pressure_less_tension_on_the_wet_area():
     for k in (5, 12):
         wet = np.interp(distance[k] - height, grid.bearing, bearing[0])
         np.testing.assert_allclose((solid[0, k] - curve(0)[k]) / tension, wet, rtol=2e-3)  # inputs have 3 digits
+
+
+def test_contact_angles_lower_the_film_and_keep_the_tension():
+    grid = DistanceGrid(0.5e-9, 10, 40)
+    bearing = 1 / (1 + np.exp(grid.bearing / 2e-9))[None]
+    dataset = contact.layout(np.zeros((1, 40)), bearing, grid, range(1))
+    angles = np.radians([20.0, 60.0])
+    distance, curve = force_curves(dataset, 0.65, Water(300.0, tuple(angles)))
+    height = 2.41e-9 * np.cos(angles).sum() / 2
+    for k in (5, 12):
+        wet = np.interp(distance[k] - height, grid.bearing, bearing[0])
+        np.testing.assert_allclose(-curve(0)[k] / 59.7e6, wet, rtol=2e-3)

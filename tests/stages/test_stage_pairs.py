@@ -9,7 +9,7 @@ from stiction.config.units import typed
 from stiction.stages import contact, heights, pairs, spectrum
 from stiction.stages.parameters import spectrum_of
 from stiction.streams import stream
-from stiction.studies.variant_contact import Sides, Surface, surfaces_of
+from stiction.variants.summits import Sides, Surface, surfaces_of
 
 SETTINGS = typed(contact.Settings, jobs.contact(Plan(load()), "b"))
 
@@ -57,3 +57,31 @@ def test_surfaces_of_a_pair_are_those_of_their_stages_that_of_the_beam_first():
     (beam, beam_spectrum), (substrate, _) = surfaces_of(Sides("B1", "Sub1"), known, SPACING, {})
     assert (float(beam.rms), float(substrate.rms)) == (SURFACES["B1"].rms, SURFACES["Sub1"].rms)
     assert spectrum_of(beam_spectrum) == SURFACES["B1"].spectrum
+
+
+# Materials
+
+
+def with_materials(**properties):
+    """Settings under which the substrate is of another material."""
+    changes = {"materials": {"Other": properties}, "surfaces": {"Sub1": {"material": "Other"}}}
+    return typed(contact.Settings, jobs.contact(Plan(load(changes)), "b"))
+
+
+def test_stated_properties_of_polysilicon_give_the_asperities_of_the_paper():
+    same = with_materials(young_modulus_GPa=164, hamaker_constant_zJ={"water": 97.5, "dry": 186.5})
+    found = pairs.surface_pair((datasets("B1"), datasets("Sub1")), "NG", same).asperity
+    np.testing.assert_allclose(found.modulus, pair().asperity.modulus, rtol=1e-14)
+    np.testing.assert_allclose(
+        found.attraction.work_of_adhesion, pair().asperity.attraction.work_of_adhesion, rtol=1e-14
+    )
+
+
+def test_a_substrate_of_another_material_has_its_share_in_modulus_and_attraction():
+    other = with_materials(young_modulus_GPa=82, hamaker_constant_zJ={"water": 390, "dry": 400})
+    found = pairs.surface_pair((datasets("B1"), datasets("Sub1")), "NG", other).asperity
+    # 1/E' is the sum of both compliances; the Hamaker constant is the geometric mean.
+    np.testing.assert_allclose(found.modulus, pair().asperity.modulus * 2 / 3, rtol=1e-12)
+    ratio = found.attraction.work_of_adhesion / pair().asperity.attraction.work_of_adhesion
+    np.testing.assert_allclose(ratio, 2, rtol=1e-12)
+    assert [solid.young_modulus for solid in pairs.bodies(other)] == [164e9, 82e9]

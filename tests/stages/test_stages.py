@@ -36,7 +36,7 @@ from stiction.surface.feasible import nearest_feasible
 from stiction.surface.field import StripGrid, radial_periodogram
 from stiction.surface.identify import Identification, SummitTarget
 from stiction.surface.maxent import GAUSSIAN
-from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
+from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum, correlation_length
 from stiction.surface.summits import find_summits
 
 B2 = SURFACES["B2"]
@@ -140,7 +140,9 @@ def test_an_identified_spectrum_is_used_for_strips_longer_than_its_correlation()
                 spectrum.refuse_misuse(identified(corner=corner), use)
                 continue
             key = "strip_length_um" if length < bound else "margin_um"
-            with pytest.raises(ValueError, match=f"sampling.{key} is .* surface Mine, {1e6 * bound:.3g} µm"):
+            with pytest.raises(
+                ValueError, match=f"sampling.{key} is .* surface Mine, {1e6 * bound:.3g} µm for the .* identified"
+            ):
                 spectrum.refuse_misuse(identified(corner=corner), use)
 
 
@@ -163,6 +165,14 @@ def test_a_spectrum_whose_summits_do_not_resemble_the_measured_ones_is_not_used(
         if not 0.5 <= ratio <= 2:
             with pytest.raises(ValueError, match="no spectrum .* has the summits of surface Mine: at best"):
                 spectrum.refuse_misuse(identified(**{name: ratio}), USE)
+
+
+def test_a_tabulated_spectrum_comes_back_from_its_dataset(through_a_file):
+    table = TabulatedSpectrum(np.linspace(0, 2e8, 5), np.array([4.0, 4.0, 2.0, 1.0, 0.5]) * 1e-34, 1.5e8)
+    found = parameters.spectrum_of(through_a_file(parameters.variables(table)))
+    assert_array_equal(found.wavenumber, table.wavenumber)
+    assert_array_equal(found.density, table.density)
+    assert found.cutoff == table.cutoff
 
 
 def test_misfits_are_the_deviations_from_the_measured_summits():

@@ -17,8 +17,10 @@ from stiction.beam.resolution import resolved
 from stiction.chaos.model import draw_laws, fit, resample_laws, truncated
 from stiction.config import jobs
 from stiction.config.cases import case_id
+from stiction.config.merging import merged
 from stiction.contact.asperity import reduced_modulus
 from stiction.contact.forcelaw import admissible, coefficients, energy, pressure
+from stiction.contact.solids import Solid
 from stiction.stages import chaos, curves, forces, heights, parameters, spectrum
 from stiction.stages import contact as stage_contact
 from stiction.stages.cantilevers import cantilever
@@ -35,12 +37,15 @@ from stiction.studies import (
     sample_sizes,
     sensitivity,
     sensitivity_contact,
-    variant,
-    variant_contact,
+    slope_contact,
+    slopes,
 )
 from stiction.studies import fit as study_fit
 from stiction.surface.spectrum import autocovariance
 from stiction.surface.summits import find_summits
+from stiction.variants import beams as variant_beams
+from stiction.variants import contact as variant_contact
+from stiction.variants import summits as variant_summits
 
 WATER = curves.Water(300.0)
 
@@ -57,10 +62,9 @@ def of_vectors(vectors, limit=None):
 @pytest.fixture(scope="module")
 def shifted():
     """Datasets of less and more skewness, and their settings."""
-    plain = jobs.sensitivity_contact(small.PLAN, "b")
+    plain = jobs.sensitivity_contact(small.PLAN, "b") | {"moments": ["skewness"]}
     settings = small.settings_of(sensitivity_contact, plain)
-    sides = ("less", "more")
-    return [sensitivity_contact.compute(small.surfaces(), "b", "skewness", side, settings) for side in sides], settings
+    return sensitivity_contact.compute(small.surfaces(), "b", settings), settings
 
 
 def test_less_and_more_of_a_moment_bracket_that_of_the_surface(shifted):
@@ -68,24 +72,33 @@ def test_less_and_more_of_a_moment_bracket_that_of_the_surface(shifted):
     assert (less, more) == pytest.approx((-0.76 * 1.05, -0.76 * 0.95))
 
 
-@pytest.mark.parametrize(("moment", "side", "factor"), [("rms", "less", 0.95), ("kurtosis", "more", 1.05)])
-def test_a_shifted_moment_changes_that_of_the_beams_surface_alone(monkeypatch, shifted, moment, side, factor):
-    asked, contact = [], small.contact_of_pair()
-    monkeypatch.setattr(stage_contact, "compute", lambda *given: asked.extend(given) or contact)
-    found = sensitivity_contact.compute(small.surfaces(), "b", moment, side, shifted[1])
-    ((changed, shape), substrate), pair, model, _ = asked
+@pytest.fixture
+def asked(monkeypatch):
+    """Arguments of the calls that would draw surfaces."""
+    found, contact = [], small.contact_of_pair()
+    monkeypatch.setattr(
+        stage_contact, "compute_each", lambda *given: found.append(given) or [contact for _ in given[0]]
+    )
+    return found
+
+
+@pytest.mark.parametrize(("moment", "place", "factor"), [("rms", 0, 0.95), ("rms", 1, 1.05), ("kurtosis", 3, 1.05)])
+def test_a_shifted_moment_changes_that_of_the_beams_surface_alone(asked, shifted, moment, place, factor):
+    settings = replace(shifted[1], moments=("rms", "kurtosis"))
+    found = sensitivity_contact.compute(small.surfaces(), "b", settings)[place]
+    ((alternatives, pair, model, _),) = asked
+    (changed, shape), substrate = alternatives[place]
     before = heights.moments(small.heights_of("B2"))
     assert heights.moments(changed) == replace(before, **{moment: getattr(before, moment) * factor})
     assert sensitivity_contact.moment(found) == pytest.approx(getattr(before, moment) * factor, rel=1e-14)
     assert parameters.spectrum_of(shape) == SURFACES["B2"].published_psd
     assert_array_equal(shape.wavenumber, small.spectrum_of("B2").wavenumber)
-    assert all(ours is theirs for ours, theirs in zip(substrate, small.surfaces()[1], strict=True))
+    assert substrate is small.surfaces()[1]
     assert (pair, model) == ("b", "NG")
 
 
 def test_a_step_of_nothing_is_the_contact_of_the_pair(shifted):
-    settings = replace(shifted[1], step=0.0)
-    found = sensitivity_contact.compute(small.surfaces(), "b", "rms", "more", settings)
+    found, _ = sensitivity_contact.compute(small.surfaces(), "b", replace(shifted[1], step=0.0))
     assert_allclose(found.solid_pressure, small.contact_of_pair().solid_pressure[:4], rtol=1e-5, atol=1)
     assert_allclose(found.bearing_area, small.contact_of_pair().bearing_area[:4], rtol=1e-6)
 
@@ -107,7 +120,62 @@ def test_sensitivity_is_that_of_the_energies_at_both_values(shifted):
     assert_allclose(found.slope.sel(statistic="mean"), plain, rtol=0.02, atol=0.02)
 
 
+# Slopes with common random numbers
+
+
+def slope_settings(**changes):
+    return replace(small.settings_of(slope_contact, jobs.slope_contact(small.PLAN, "b")), **changes)
+
+
+@pytest.mark.parametrize(("surface", "changed"), [("B2", (True, False)), ("Sub1", (False, True))])
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_shifted_quantity_changes_the_named_surface_alone(asked, surface, changed, side):
+    found = slope_contact.compute(small.surfaces(), "b", surface, "corner", slope_settings())[side]
+    ((alternatives, pair, model, _),) = asked
+    for ours, theirs, is_changed in zip(alternatives[side], small.surfaces(), changed, strict=True):
+        assert (ours is not theirs) == is_changed
+        corner, before = (parameters.spectrum_of(spectrum).corner for _, spectrum in (ours, theirs))
+        assert corner / before == pytest.approx(np.exp((-0.05, 0.05)[side]) if is_changed else 1)
+        assert heights.moments(ours[0]) == heights.moments(theirs[0])
+    assert (pair, model) == ("b", "NG")
+    assert slope_contact.difference(found) == pytest.approx(0.1)
+
+
+def test_a_surface_on_both_sides_is_shifted_on_both(asked):
+    twice = [small.surfaces()[0]] * 2
+    slope_contact.compute(twice, "b", "B2", "rms", slope_settings(surfaces=("B2", "B2")))
+    more = asked[0][0][1]
+    assert [heights.moments(changed[0]).rms for changed in more] == pytest.approx([3.4e-9 * np.exp(0.05)] * 2)
+
+
+def test_slopes_are_those_of_the_energies_at_both_values_and_of_their_own_quantity():
+    both = slope_contact.compute(small.surfaces(), "b", "B2", "rms", slope_settings())
+    wanted = small.settings_of(slopes, jobs.sensitivity(small.PLAN, "b"))
+    found = slopes.compute({"rms": both, "kurtosis": both[::-1]}, wanted)
+    for k, h in enumerate(wanted.humidities):
+        less, more = (curves.energies(contact, h, WATER) for contact in both)
+        expected = np.log(more.mean() / less.mean()) / 0.1
+        assert_allclose(slopes.of(found, ["rms", "kurtosis"])[k], [expected, -expected], rtol=1e-9)
+        paired = np.std(np.log(more / less) / 0.1, ddof=1) / np.sqrt(len(less))
+        assert 0.3 * paired < float(found.standard_error[0, k]) < 3 * paired
+    # Rougher surfaces adhere less, the more so the drier the air.
+    of_rms = slopes.of(found, ["rms"])[:, 0]
+    assert np.all(of_rms < 0)
+    assert of_rms[0] < of_rms[-1]
+
+
 # Plasticity (App. A)
+
+
+def test_the_softer_of_two_materials_yields():
+    settings = small.settings_of(plasticity, jobs.plasticity(small.PLAN, "b"))
+    soft = replace(settings, materials={"beam": Solid(hardness=1e9)})
+    hard = replace(settings, materials={"beam": Solid(hardness=1e12)})
+    found = {name: plasticity.compute(small.surfaces(), "b", one) for name, one in (("soft", soft), ("hard", hard))}
+    shares = {name: float(dataset.plastic_share) for name, dataset in found.items()}
+    assert shares["soft"] > shares["hard"]
+    assert shares["hard"] == float(plasticity.compute(small.surfaces(), "b", settings).plastic_share)
+    assert float(found["soft"].hardness) == 1e9
 
 
 def test_stress_of_every_touching_summit_is_that_of_eq_14():
@@ -352,29 +420,30 @@ def test_resampled_beams_are_released_on_laws_of_the_samples_from_streams_of_the
         assert (found.state[k], found.crack_length[k]) == (beam.state, beam.crack_length)
 
 
-def test_a_variant_is_the_chain_behind_its_contact():
-    settings = small.settings_of(variant, jobs.variant(small.PLAN, "b", "base"))
-    pair = replace(settings.pairs["b"], humidities=(0.55, 0.8))
-    found = variant.compute(small.contact_of_pair(), "b", replace(settings, pairs={"b": pair}))
-    for k, h in enumerate((0.55, 0.8)):
-        vectors, limit = curves.vectors(small.contact_of_pair(), h, WATER)
-        assert_array_equal(found.adhesion_energy[k], vectors[:, 0])
-        model = fit(vectors, limit, 2, 0.001)
-        experiment = Experiment(cantilever(settings, "b"), 1000, lambda n, rng, m=model: draw_laws(m, n, rng))
-        for number in (0, 1):
-            beam = release_beam(experiment, number, stream(small.SEED, "beams", case_id("b", h), number))
-            assert found.crack_length[k, number] == beam.crack_length
-            assert found.state[k, number] == beam.state
+@pytest.mark.parametrize("h", [0.55, 0.8])
+def test_a_variant_is_the_chain_behind_its_contact(h):
+    case = case_id("b", h)
+    settings = small.settings_of(variant_beams, jobs.variant(small.PLAN, case, "base"))
+    found = variant_beams.compute(small.contact_of_pair(), case, settings).isel(humidity=0)
+    vectors, limit = curves.vectors(small.contact_of_pair(), h, WATER)
+    assert found.humidity == h
+    assert_array_equal(found.adhesion_energy, vectors[:, 0])
+    model = fit(vectors, limit, 2, 0.001)
+    experiment = Experiment(cantilever(settings, "b"), 1000, lambda n, rng: draw_laws(model, n, rng))
+    for number in (0, 1):
+        beam = release_beam(experiment, number, stream(small.SEED, "beams", case, number))
+        assert found.crack_length[number] == beam.crack_length
+        assert found.state[number] == beam.state
     assert found.sizes["beam"] == 2
 
 
-def test_elements_of_a_variant_follow_the_laws_at_some_humidities_and_of_resampled_beams_in_some_cases():
-    settings = small.settings_of(variant, jobs.variant(small.PLAN, "b", "base"))
-    pair = replace(settings.pairs["b"], humidities=(0.55, 0.8))
-    base = variant.compute(small.contact_of_pair(), "b", replace(settings, pairs={"b": pair}))
-    mixed = variant.compute(small.contact_of_pair(), "b", replace(settings, pairs={"b": pair}, refined=(0.8,)))
-    assert_array_equal(mixed.crack_length[0], base.crack_length[0])
-    assert np.all(mixed.crack_length[1] != base.crack_length[1])
+def test_elements_of_a_variant_and_of_resampled_beams_follow_the_laws_if_asked():
+    settings = small.settings_of(variant_beams, jobs.variant(small.PLAN, "b_rh080", "base"))
+    base, finer = (
+        variant_beams.compute(small.contact_of_pair(), "b_rh080", replace(settings, refined=refined))
+        for refined in (False, True)
+    )
+    assert np.all(finer.crack_length != base.crack_length)
     settings = small.settings_of(resampling, jobs.resampling(small.PLAN, small.CASE))
     vectors, limit = forces.vectors(small.forces_of_case())
     laws = resample_laws(vectors, limit, 10_000, stream(small.SEED, "resampling", small.CASE, "mesh"))
@@ -388,16 +457,60 @@ def test_elements_of_a_variant_follow_the_laws_at_some_humidities_and_of_resampl
 
 def test_cases_of_a_variant_keep_the_beams_that_stick():
     beams = [{"crack_length": np.array([1.0, 2.0]) * k, "state": np.array([0, k])} for k in (1, 2)]
-    found = variant.layout((0.5, 0.6), [[1e-3, 2e-3], [3e-3, 4e-3]], beams)
-    (h, first), (_, second) = variant.cases_of(found)
+    found = variant_beams.layout((0.5, 0.6), [[1e-3, 2e-3], [3e-3, 4e-3]], beams)
+    (h, first), (_, second) = variant_beams.cases_of(found)
     assert h == 0.5
     assert_array_equal([*vars(first).values()][0], [1e-3, 2e-3])
     assert_array_equal([*vars(second).values()][1], [2.0, 4.0])
     assert_array_equal([*vars(second).values()][2], [True, False])
 
 
+def test_cases_of_a_pair_are_joined_from_dry_to_humid():
+    def case(humidity):
+        beams = [{"crack_length": np.array([humidity, 2 * humidity]), "state": np.array([0, 1])}]
+        return variant_beams.layout([humidity], [[1e-3 * humidity]], beams)
+
+    found = variant_beams.by_pair(
+        {("b", "rh080", "dry"): case(0.8), ("b", "rh0655", "dry"): case(0.655), ("a", "rh090", "base"): case(0.9)}
+    )
+    assert list(found) == [("b", "dry"), ("a", "base")]
+    assert_array_equal(found["b", "dry"].humidity, [0.655, 0.8])
+    assert_array_equal(found["b", "dry"].crack_length[:, 1], [1.31, 1.6])
+
+
+def contact_under(variant, samples=3):
+    """Contact of pair b under a variant."""
+    plain = small.PLAN.variant_summits("b", variant)
+    base, changed = (small.settings_of(variant_summits, merged(plain["base"], c)) for c in ({}, plain["changes"]))
+    fewer = replace(changed, contact=replace(changed.contact, samples=samples))
+    solids = small.settings_of(variant_contact, small.PLAN.variant_contact("b", variant))
+    return variant_contact.compute(variant_summits.compute({}, "b", base, fewer), solids)
+
+
 def test_the_contact_of_the_base_variant_is_that_of_the_pair():
-    plain = small.PLAN.variant_contact("b", "base")
-    base = small.settings_of(variant_contact, plain["base"])
-    found = variant_contact.compute({}, "b", base, replace(base, contact=replace(base.contact, samples=3)))
-    assert_array_equal(found.solid_pressure, small.contact_of_pair().solid_pressure[:3])
+    found, pair = contact_under("base"), small.contact_of_pair().isel(sample=slice(3))
+    assert set(found) == set(pair)
+    for name in [*found, *found.coords]:
+        assert_array_equal(found[name], pair[name])
+        assert found[name].dtype == pair[name].dtype
+
+
+@pytest.mark.parametrize("variant", ["van_der_waals_none", "poisson_ratio_0.28", "every_2"])
+def test_the_contact_of_a_variant_is_that_of_pairs_of_its_settings(variant):
+    plain = merged(jobs.contact(small.PLAN, "b"), small.PLAN.variants[variant])
+    settings = small.settings_of(stage_contact, merged(plain, {"contact": {"samples": 3}}))
+    plain_way = stage_contact.compute(small.surfaces(), "b", "NG", settings)
+    found = contact_under(variant)
+    for name in found:
+        assert_array_equal(found[name], plain_way[name])
+    assert not np.array_equal(found.solid_pressure, contact_under("base").solid_pressure)
+
+
+def test_a_measured_surface_is_the_same_under_every_variant():
+    plain = small.PLAN.variant_summits("b", "base")
+    base = small.settings_of(variant_summits, plain["base"])
+    described = {name: entry for name, entry in base.surfaces.items() if name != "B2"}
+    changed = replace(base, contact=replace(base.contact, samples=3))
+    measured = {"B2": small.surfaces()[0]}
+    found = variant_summits.compute({}, "b", replace(base, surfaces=described), changed, measured)
+    assert_array_equal(found.top, variant_summits.compute({}, "b", base, changed).top)

@@ -189,6 +189,26 @@ def test_tabulated_spectrum_is_linear_between_its_points_and_zero_beyond_its_cut
     np.testing.assert_array_equal(s(np.array([0, 0.5, 1, 1.5, 1.75, 1.8, 5])), [4, 3, 2, 1.5, 1.25, 0, 0])
 
 
+@pytest.mark.parametrize("slope", [-3.0, -4.6, -7.0])
+def test_a_table_of_eq_7_has_its_variance_corner_and_correlation(slope):
+    corner, cutoff = 1.2e7, 1.25e8
+    psd = CutoffSelfAffine(1e-32, 1e-32 * (cutoff / corner) ** slope, corner, cutoff)
+    wavenumber = np.linspace(0, 1.5 * cutoff, 4001)
+    table = TabulatedSpectrum(wavenumber, psd.plateau * np.maximum(wavenumber / corner, 1) ** slope, cutoff)
+    np.testing.assert_allclose(table.variance, psd.variance, rtol=1e-3)
+    np.testing.assert_allclose(table.corner, corner * 2 ** (-1 / slope), atol=wavenumber[1])
+    np.testing.assert_allclose(correlation_length(table), correlation_length(psd), rtol=0.01)
+
+
+def test_a_table_without_decay_has_its_corner_at_the_cutoff():
+    wavenumber = np.linspace(0, 2e7, 2001)
+    table = TabulatedSpectrum(wavenumber, np.full(2001, 1e-32), cutoff=1e7)
+    assert table.corner == pytest.approx(1e7, abs=wavenumber[1])
+    assert TabulatedSpectrum(wavenumber, table.density, cutoff=2e7).corner == 2e7
+    flat = CutoffSelfAffine(1e-32, 1e-32, 0.999e7, 1e7)
+    np.testing.assert_allclose(correlation_length(table), correlation_length(flat), rtol=0.01)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

@@ -1,4 +1,4 @@
-"""Planned jobs of many runs: a process that has imported Snakemake forks for every query."""
+"""Planned jobs of many runs: a process that has imported Snakemake and the configuration forks for every query."""
 
 import csv
 import json
@@ -11,6 +11,7 @@ SERVER = """
 import json, os, sys
 from pathlib import Path
 import jsonschema, numba, scipy.integrate, scipy.interpolate, scipy.optimize, scipy.stats, snakemake.cli, xarray
+import stiction.config.jobs, stiction.config.relations_devices, stiction.run.hooks, stiction.run.kept
 from stiction.run.fingerprint import fingerprint
 
 for script in Path("workflow", "scripts").resolve().glob("*.py"):  # kept for files that do not change

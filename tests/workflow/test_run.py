@@ -124,3 +124,13 @@ def test_everything_can_be_computed_and_drawn_for_a_surface_of_the_user(tmp_path
     drawn = {path.stem for path in (tmp_path / "results" / "figures").glob("*.pdf")}
     assert {"figure_05", "figure_13", "figure_15", "figure_18", "figure_19", "variants"} <= drawn
     assert (tmp_path / "results" / "checks.md").exists()
+
+
+def test_the_table_of_jobs_counts_each_job_once_and_no_job_of_the_smoke_run_beside_it(tmp_path):
+    for results, seconds in ((tmp_path, "1.5"), (tmp_path / "smoke" / "results", "9.0")):
+        for surface in ("B1", "B2"):
+            log = results / "logs" / "heights" / f"{surface}.log"
+            log.parent.mkdir(parents=True, exist_ok=True)
+            log.write_text(f"took 99.0 s, 1 MB\ntook {seconds} s, 300 MB\n")
+    ((name, number, longest, total, *_),) = jobs.measured(tmp_path)
+    assert (name, number, longest, total) == ("heights", 2, 1.5, 3.0)

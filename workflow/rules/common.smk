@@ -5,54 +5,89 @@ from types import SimpleNamespace
 
 from snakemake.logging import logger
 
-from stiction.config import cases, files, jobs, memory, messages, relations
+from stiction.config import cases, files, jobs, measured, memory, messages
+from stiction.config.designs import Designs
 from stiction.config.plan import Plan
-from stiction.models import BEAM_MODELS, SURFACE_MODELS, surface_model
+from stiction.models import BEAM_MODELS, CHOICES, OF_MEASURED, OF_MOMENTS, OF_SPECTRUM, SURFACE_MODELS, surface_model
 from stiction.run import folder, hooks, kept, provenance
 from stiction.run.atomic import DataError
 from stiction.run.fingerprint import fingerprint
+from stiction.run.remembered import Remembered
 
 
 wildcard_constraints:
     surface="[A-Za-z][A-Za-z0-9]*",
+    device="[A-Za-z][A-Za-z0-9]*",
     pair="[A-Za-z][A-Za-z0-9]*",
     model="|".join(BEAM_MODELS),
     case=cases.CASE,
     chunk="[0-9]+",
     number="[0-9]+",
-    moment="rms|skewness|kurtosis",
+    moment="|".join(OF_MOMENTS),
+    quantity="|".join({*OF_MOMENTS, *OF_MEASURED, *OF_SPECTRUM}),
     side="less|more",
+    choice="|".join(CHOICES),
     variant="base|[a-z_]+_[a-z0-9.-]+",
+    length="[0-9]+",
+    width="[0-9]+",
 
 
 hooks.compare_without_pandas()
+remember = Remembered(".snakemake/planning.json")
+
+
+def code(script):
+    """Fingerprint of a script, or of a module of the package, and of all modules of the package that it imports."""
+    return fingerprint(BASE / "workflow" / "scripts" / script, remember)
+
+
+def validated():
+    """Preliminary numbers of the measured surfaces of a valid configuration."""
+    from stiction.config.relations_devices import validate
+
+    return validate(config, kept=".snakemake/scans")
+
+
+def rules_of_the_configuration():
+    """Code and schema that decide whether a configuration is valid."""
+    folder = BASE / "src" / "stiction" / "config"
+    modules = [code(folder / f"{name}.py") for name in ("relations", "relations_devices", "messages")]
+    return [*modules, (folder / "schema.yaml").read_text(encoding="utf-8")]
+
 
 try:
-    for file in workflow.configfiles:  # Snakemake silently uses the last of duplicate keys
-        files.read(file)
-    relations.validate(config)
+    # Read again, because Snakemake silently uses the last of duplicate keys.
+    contents = {Path(file): files.read(file) for file in workflow.configfiles}
+    for file in [
+        *reversed(workflow.overwrite_configfiles),
+        *contents,
+    ]:  # files of scans are relative to the first match
+        config.update(measured.anchored(config, contents[file], file.parent))
+    scanned = measured.has_scans(config)
+    preliminary = validated() if scanned else remember(["valid", config, rules_of_the_configuration()], validated)
 except messages.ConfigError as error:
     raise WorkflowError(f"The configuration is invalid:\n{error}")
 
 config.update(files.normalised(config))
-plan = Plan(config)
+plan = Plan(config, preliminary)
+if not scanned:  # finding out takes the solver of densities
+    shifted = ["shifted", config, code(BASE / "src" / "stiction" / "config" / "plan.py")]
+    vars(plan)["shifted_moments"] = remember(shifted, lambda: plan.shifted_moments)
+designs = Designs(config)
 MEMORY = memory.of_job(config)  # of the jobs that draw surfaces [MB]
+SAMPLES = memory.of_samples(measured.view(config, preliminary))  # of the jobs that hold the contact of all samples [MB]
 STYLE = str(BASE / "src" / "stiction" / "report" / "stiction.mplstyle")
 # Categories of the report.
 ON_SURFACES, ON_FORCES, ON_BEAMS = "Surfaces (Sec. II)", "Contact forces (Sec. III)", "Beams (Secs. IV and V)"
 ON_STUDIES = "Sensitivity, appendices, model choices"
-
-
-def code(script):
-    """Fingerprint of a script and of all modules of the package that it imports."""
-    return fingerprint(BASE / "workflow" / "scripts" / script)
+ON_DEVICES = "Devices"
 
 
 @cache
 def settings_of(path):
     """Settings of the job that writes a dataset; ``None`` if this configuration has no such job."""
     for written_by in workflow.rules:
-        if written_by.output and (found := written_by.output[0].match(path)):
+        if found := next(filter(None, (output.match(path) for output in written_by.output)), None):
             settings = written_by.params.settings
             try:
                 return settings(SimpleNamespace(**found.groupdict())) if callable(settings) else settings
@@ -77,6 +112,16 @@ def planned(wildcards):
     return []
 
 
+def one_of(names):
+    """Pattern of a wildcard that is one of some names; matches nothing without names."""
+    return "|".join(sorted(names)) or "(?!)"
+
+
+def path_of_scan(surface, number):
+    """File of a scan, relative to the working directory, so that a moved folder changes nothing."""
+    return os.path.relpath(plan.scan_files(surface)[number])
+
+
 def identified(wildcards):
     """Dataset of the identification if the spectrum is identified, otherwise nothing."""
     source = config["surfaces"][wildcards.surface]["psd"]
@@ -85,10 +130,27 @@ def identified(wildcards):
 
 def surfaces_of_pair(wildcards):
     """Datasets of the surfaces of beam and substrate, in this order."""
+    return datasets_of(plan.sides(wildcards.pair))
+
+
+def measured_surfaces_of_pair(wildcards):
+    """Datasets of those surfaces of beam and substrate that are described by scans."""
+    return datasets_of([name for name in plan.scanned if name in plan.sides(wildcards.pair)])
+
+
+def datasets_of(surfaces):
+    """Datasets from which surfaces are drawn, by stage."""
     return {
-        stage: expand("results/{stage}/{surface}.nc", stage=stage, surface=plan.sides(wildcards.pair))
+        stage: expand("results/{stage}/{surface}.nc", stage=stage, surface=surfaces)
         for stage in ("heights", "spectrum")
     }
+
+
+def contacts_of_slopes(wildcards):
+    """Contact with less and with more of every quantity of a surface."""
+    name = "results/studies/slopes/contact/{pair}_{surface}_{quantity}_{side}.nc"
+    quantities = plan.quantities(wildcards.surface)
+    return {side: expand(name, **wildcards, quantity=quantities, side=side) for side in ("less", "more")}
 
 
 def of_case(stage):

@@ -32,6 +32,8 @@ rule contact:
     log:
         "results/logs/contact/{pair}_{model}.log",
     localrule: True
+    resources:
+        mem_mb=SAMPLES,
     params:
         settings=lambda w: jobs.contact(plan, w.pair),
         code=code("contact.py") | code("contact_chunk.py"),

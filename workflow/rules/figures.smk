@@ -210,12 +210,41 @@ rule figure_overview:
         "../scripts/figure_overview.py"
 
 
+rule surface_sheet:
+    input:
+        estimate="results/estimate/{surface}.nc",
+        style=STYLE,
+    output:
+        **figure_files("surface_sheet_{surface}", ON_SURFACES, "scans of {surface}", caption="surface_sheet"),
+    log:
+        "results/logs/figures/surface_sheet_{surface}.log",
+    localrule: True
+    params:
+        settings=lambda w: {"surface": w.surface},
+        code=code("surface_sheet.py"),
+    message:
+        "Sheet of the measured surface {wildcards.surface}."
+    script:
+        "../scripts/surface_sheet.py"
+
+
+rule measured:
+    input:
+        expand("results/figures/surface_sheet_{surface}.{kind}", surface=plan.scanned, kind=("pdf", "png")),
+        rules.table_3.output,
+        [rules.table_scans.output, rules.table_scan_uncertainty.output] if plan.scanned else [],
+    localrule: True
+    message:
+        "Sheets and tables of the measured surfaces."
+
+
 rule figures:
     input:
         expand("results/figures/figure_{name}.{kind}", name=["05", "07", "08", "09", "10", "11"], kind=("pdf", "png")),
         rules.figure_11_supplement.output if plan.other_surfaces else [],
         expand("results/figures/figure_{name}.{kind}", name=["12", "14", "15"], kind=("pdf", "png")),
         rules.figure_overview.output,
+        rules.measured.input,
         rules.fit_quality.output,
         rules.study_figures.input,
     localrule: True

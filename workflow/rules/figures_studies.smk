@@ -98,7 +98,7 @@ rule figure_19:
 
 rule figure_variants:
     input:
-        studies=[f"results/studies/variants/{pair}_{variant}.nc" for pair, variant in plan.studied],
+        studies=[f"results/studies/variants/{case}_{variant}.nc" for case, variant in plan.studied_cases],
         published=published("table_3"),
         style=STYLE,
     output:

@@ -9,6 +9,8 @@ rule forces:
     log:
         "results/logs/forces/{case}_{model}.log",
     localrule: True
+    resources:
+        mem_mb=SAMPLES,
     params:
         settings=lambda w: jobs.forces(plan, w.case),
         code=code("forces.py"),
@@ -44,6 +46,8 @@ rule fit:
     log:
         "results/logs/fit/{case}_{model}.log",
     localrule: True
+    resources:
+        mem_mb=SAMPLES,
     params:
         settings=lambda w: jobs.forces(plan, w.case),
         code=code("fit.py"),
@@ -61,6 +65,8 @@ rule humidity:
     log:
         "results/logs/humidity/{pair}_{model}.log",
     localrule: True
+    resources:
+        mem_mb=SAMPLES,
     params:
         settings=lambda w: jobs.humidity(plan, w.pair),
         code=code("humidity.py"),

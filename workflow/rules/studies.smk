@@ -5,9 +5,15 @@ rule sensitivity_contact:
     input:
         unpack(surfaces_of_pair),
     output:
-        "results/studies/sensitivity/contact/{pair}_{moment}_{side}.nc",
+        expand(
+            "results/studies/sensitivity/contact/{{pair}}_{moment}_{side}.nc",
+            moment=plan.shifted_moments,
+            side=("less", "more"),
+        ),
     log:
-        "results/logs/studies/sensitivity/contact/{pair}_{moment}_{side}.log",
+        "results/logs/studies/sensitivity/contact/{pair}.log",
+    # The longest job; it begins early, so that no core waits for it at the end.
+    priority: 1
     resources:
         runtime=30,
         mem_mb=MEMORY,
@@ -15,7 +21,7 @@ rule sensitivity_contact:
         settings=lambda w: jobs.sensitivity_contact(plan, w.pair),
         code=code("sensitivity_contact.py"),
     message:
-        "Contact of pair {wildcards.pair} with {wildcards.side} {wildcards.moment} (Fig. 13)."
+        "Contact of pair {wildcards.pair} with less and more of each moment (Fig. 13)."
     script:
         "../scripts/sensitivity_contact.py"
 
@@ -123,18 +129,36 @@ rule correlation:
         "../scripts/correlation.py"
 
 
+rule variant_summits:
+    input:
+        unpack(measured_surfaces_of_pair),
+        identifications=lambda w: expand(
+            "results/identification/{surface}.nc", surface=plan.variant_summits(w.pair, w.variant)["identified"]
+        ),
+    output:
+        "results/studies/variants/summits/{pair}_{variant}.nc",
+    log:
+        "results/logs/studies/variants/summits/{pair}_{variant}.log",
+    resources:
+        runtime=30,
+        mem_mb=MEMORY,
+    params:
+        settings=lambda w: plan.variant_summits(w.pair, w.variant),
+        code=code("variant_summits.py"),
+    message:
+        "Summits of pair {wildcards.pair} under variant {wildcards.variant}."
+    script:
+        "../scripts/variant_summits.py"
+
+
 rule variant_contact:
     input:
-        identifications=lambda w: expand(
-            "results/identification/{surface}.nc", surface=plan.variant_contact(w.pair, w.variant)["identified"]
-        ),
+        summits=lambda w: f"results/studies/variants/summits/{w.pair}_{plan.summits_under(w.pair, w.variant)}.nc",
     output:
         "results/studies/variants/contact/{pair}_{variant}.nc",
     log:
         "results/logs/studies/variants/contact/{pair}_{variant}.log",
-    resources:
-        runtime=30,
-        mem_mb=MEMORY,
+    localrule: True
     params:
         settings=lambda w: plan.variant_contact(w.pair, w.variant),
         code=code("variant_contact.py"),
@@ -146,16 +170,17 @@ rule variant_contact:
 
 rule variant:
     input:
-        contact=lambda w: f"results/studies/variants/contact/{w.pair}_{plan.contact_under(w.variant)}.nc",
+        contact=lambda w: f"results/studies/variants/contact/{cases.pair_of(w.case)}_{plan.contact_under(w.variant)}.nc",
     output:
-        "results/studies/variants/{pair}_{variant}.nc",
+        "results/studies/variants/{case}_{variant}.nc",
     log:
-        "results/logs/studies/variants/{pair}_{variant}.log",
+        "results/logs/studies/variants/{case}_{variant}.log",
+    localrule: True
     params:
-        settings=lambda w: jobs.variant(plan, w.pair, w.variant),
+        settings=lambda w: jobs.variant(plan, w.case, w.variant),
         code=code("variant.py"),
     message:
-        "Crack lengths of pair {wildcards.pair} under variant {wildcards.variant}."
+        "Crack lengths of {wildcards.case} under variant {wildcards.variant}."
     script:
         "../scripts/variant.py"
 

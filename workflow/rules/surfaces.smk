@@ -8,6 +8,8 @@ rule heights:
         "results/heights/{surface}.nc",
     log:
         "results/logs/heights/{surface}.log",
+    wildcard_constraints:
+        surface=one_of(set(config["surfaces"]) - set(plan.scanned)),
     localrule: True
     params:
         settings=lambda w: jobs.heights(plan, w.surface),
@@ -44,6 +46,8 @@ rule spectrum:
         "results/spectrum/{surface}.nc",
     log:
         "results/logs/spectrum/{surface}.log",
+    wildcard_constraints:
+        surface=one_of(set(config["surfaces"]) - set(plan.scanned)),
     localrule: True
     params:
         settings=lambda w: jobs.spectrum(plan, w.surface),

@@ -3,6 +3,7 @@
 
 rule table_1:
     input:
+        estimates=expand("results/estimate/{surface}.nc", surface=plan.estimated),
         heights=expand("results/heights/{surface}.nc", surface=plan.surfaces),
         characters=expand("results/character/{surface}_{model}.nc", surface=plan.surfaces, model=SURFACE_MODELS[::-1]),
         published=published("table_1"),
@@ -43,6 +44,7 @@ rule table_3:
     input:
         beams=[f"results/beams/{case}_{model}.nc" for case, model in plan.outcomes],
         forces=[f"results/forces/{case}_{model}.nc" for case, model in plan.laws],
+        by_scans=expand("results/studies/scan_uncertainty/{pair}.nc", pair=plan.scanned_pairs),
         published=published("table_3"),
     output:
         **table_files("table_3", "crack lengths and adhesion energies"),
@@ -56,6 +58,41 @@ rule table_3:
         "Table III: crack lengths and adhesion energies."
     script:
         "../scripts/table_3.py"
+
+
+rule table_scans:
+    input:
+        estimates=expand("results/estimate/{surface}.nc", surface=plan.scanned),
+        scans=[f"results/scan/{surface}_{number}.nc" for surface in plan.scanned for number in plan.scan_files(surface)],
+    output:
+        **table_files("scans", "scans of the measured surfaces"),
+    log:
+        "results/logs/tables/scans.log",
+    localrule: True
+    params:
+        settings=jobs.table_scans(plan),
+        code=code("table_scans.py"),
+    message:
+        "Scans of the measured surfaces."
+    script:
+        "../scripts/table_scans.py"
+
+
+rule table_scan_uncertainty:
+    input:
+        studies=expand("results/studies/scan_uncertainty/{pair}.nc", pair=plan.scanned_pairs),
+    output:
+        **table_files("scan_uncertainty", "errors that the scans leave"),
+    log:
+        "results/logs/tables/scan_uncertainty.log",
+    localrule: True
+    params:
+        settings={"pairs": plan.scanned_pairs},
+        code=code("table_scan_uncertainty.py"),
+    message:
+        "Errors that the scans leave in the adhesion energy."
+    script:
+        "../scripts/table_scan_uncertainty.py"
 
 
 rule fit_quality:
@@ -97,7 +134,7 @@ rule table_sensitivity:
 
 rule table_variants:
     input:
-        studies=[f"results/studies/variants/{pair}_{variant}.nc" for pair, variant in plan.studied],
+        studies=[f"results/studies/variants/{case}_{variant}.nc" for case, variant in plan.studied_cases],
         published=published("table_3"),
     output:
         **table_files("variants", "Table III under other model choices"),
@@ -136,6 +173,7 @@ rule tables:
         rules.table_1.output,
         rules.table_2.output if plan.measured else [],
         rules.table_3.output,
+        [rules.table_scans.output, rules.table_scan_uncertainty.output] if plan.scanned else [],
     localrule: True
     message:
         "All tables."

@@ -5,8 +5,9 @@ from stiction.stages import contact, storage
 
 
 def main(job):
-    """Join the chunks in the order of their samples."""
-    dataset = contact.joined(storage.load_all(job.input, "contact"))
+    """Join the chunks in the order of their samples, one at a time."""
+    chunks = (storage.load(path, "contact") for path in job.input)
+    dataset = contact.joined(chunks, job.params.settings["contact"]["samples"])
     storage.save(dataset, job.output[0], "contact", job.params.settings, job.input)
 
 

@@ -7,13 +7,12 @@ from stiction.studies import sensitivity_contact
 
 
 def main(job):
-    """Draw samples with the same random numbers for both values of the shifted moment."""
+    """Draw samples with the same random numbers for all values of the moments."""
     surfaces = list(zip(*(storage.load_all(job.input[stage], stage) for stage in ("heights", "spectrum")), strict=True))
     wanted = typed(sensitivity_contact.Settings, job.params.settings)
-    dataset = sensitivity_contact.compute(
-        surfaces, job.wildcards.pair, job.wildcards.moment, job.wildcards.side, wanted
-    )
-    storage.save(dataset, job.output[0], "contact", job.params.settings, job.input)
+    contacts = sensitivity_contact.compute(surfaces, job.wildcards.pair, wanted)
+    for dataset, path in zip(contacts, job.output, strict=True):
+        storage.save(dataset, path, "contact", job.params.settings, job.input)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Table I: statistics of the simulated surfaces."""
 
+from stiction.measured import estimate
 from stiction.report import published
 from stiction.report.tables import save
 from stiction.report.tables_surfaces import table_1
@@ -13,8 +14,9 @@ def main(job):
     settings = job.params.settings
     characters = load_named(job.input.characters, "character", lambda name: (surface_of(name), model_of(name)))
     substitutions = {name: substitution(found) for name, found in load_named(job.input.heights, "heights").items()}
+    scanned = {name: estimate.statistics(found) for name, found in load_named(job.input.estimates, "estimate").items()}
     known = published.of_paper(published.read(job.input.published), settings["of_paper"])
-    save(table_1(characters, settings["measured"], known, substitutions), job.output)
+    save(table_1(characters, settings["measured"] | scanned, known, substitutions), job.output)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from stiction.report.tables import save
 from stiction.report.tables_beams import table_3
 from stiction.run.logs import logged
 from stiction.stages.named import key_of, load_named
+from stiction.studies.scan_uncertainty import pair_errors
 
 
 def main(job):
@@ -12,7 +13,9 @@ def main(job):
     beams = load_named(job.input.beams, "beams", key_of)
     forces = load_named(job.input.forces, "forces", key_of)
     known = published.of_paper(published.read(job.input.published), job.params.settings["of_paper"])
-    save(table_3(beams, forces, known), job.output)
+    scanned = load_named(job.input.by_scans, "scan_uncertainty")
+    by_scans = {(pair, humidity): e for pair, found in scanned.items() for humidity, e in pair_errors(found).items()}
+    save(table_3(beams, forces, known, by_scans), job.output)
 
 
 if __name__ == "__main__":

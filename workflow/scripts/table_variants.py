@@ -5,11 +5,12 @@ from stiction.report.tables import save
 from stiction.report.tables_studies import variants
 from stiction.run.logs import logged
 from stiction.stages.named import load_named
+from stiction.variants.beams import by_pair
 
 
 def main(job):
     """Compare every variant with the base and with the published and measured crack lengths."""
-    loaded = load_named(job.input.studies, "variant", lambda name: tuple(name.split("_", 1)))
+    loaded = by_pair(load_named(job.input.studies, "variant", lambda name: tuple(name.split("_", 2))))
     known = published.of_paper(published.read(job.input.published), job.params.settings["of_paper"])
     save(variants(loaded, known), job.output)
 

@@ -1,15 +1,15 @@
-"""Crack lengths of a pair under one variant, i.e. one changed model choice, from its contact."""
+"""Beams of a case under one variant, i.e. one changed model choice, from its contact."""
 
 from stiction.config.units import typed
 from stiction.run.logs import logged
 from stiction.stages import storage
-from stiction.studies import variant
+from stiction.variants import beams
 
 
 def main(job):
-    """Run the stages after contact at all humidities."""
-    dataset = variant.compute(
-        storage.load(job.input.contact, "contact"), job.wildcards.pair, typed(variant.Settings, job.params.settings)
+    """Run the stages after contact."""
+    dataset = beams.compute(
+        storage.load(job.input.contact, "contact"), job.wildcards.case, typed(beams.Settings, job.params.settings)
     )
     storage.save(dataset, job.output[0], "variant", job.params.settings, job.input)
 

@@ -49,8 +49,13 @@ def shift(variant: Variant, base: Variant) -> tuple[float, float]:
 
 def energy_shift(variant: Variant, base: Variant) -> tuple[float, float]:
     """Relative change of the mean meso-scale energy from ``base`` to ``variant`` and its standard error [-]."""
-    ratio = variant.energy.mean() / base.energy.mean()
-    _, error = mean_with_error(variant.energy / variant.energy.mean() - base.energy / base.energy.mean())
+    return relative_shift(variant.energy, base.energy)
+
+
+def relative_shift(values: np.ndarray, base: np.ndarray) -> tuple[float, float]:
+    """Relative change of the mean from ``base`` to ``values`` (m,), paired samples, and its standard error [-]."""
+    ratio = values.mean() / base.mean()
+    _, error = mean_with_error(values / values.mean() - base / base.mean())
     return ratio - 1, ratio * error
 
 

@@ -18,7 +18,8 @@ class EndState(IntEnum):
     """Final configuration of a released beam."""
 
     S_SHAPE = 0  #: adheres beyond the crack
-    ARC = 1  #: only the tip adheres
+    #: Only the tip adheres. How many beams end so depends on the length of the strips, see `stiction.devices.arcs`.
+    ARC = 1
     FREE = 2  #: no contact
 
 

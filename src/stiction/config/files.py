@@ -4,9 +4,9 @@ import functools
 from collections.abc import Mapping
 from pathlib import Path
 
+from stiction.config.measured import anchored, complete
 from stiction.config.merging import merged
 from stiction.config.reading import read
-from stiction.config.relations import validate
 
 #: Configuration of the paper; in a checkout, a link to ``config.yaml`` in the root folder.
 PAPER = Path(__file__).with_name("paper.yaml")
@@ -18,7 +18,8 @@ def load(*overlays: str | Path | Mapping) -> dict:
     Parameters
     ----------
     *overlays : path of a YAML file, or mapping
-        Each changes single keys of the preceding configuration, like ``CONFIG=mine.yaml`` in the workflow.
+        Each changes single keys of the preceding configuration, like ``CONFIG=mine.yaml`` in the workflow. Files of
+        scans are relative to the folder of the YAML file, in a mapping to the working directory.
 
     Raises
     ------
@@ -30,10 +31,25 @@ def load(*overlays: str | Path | Mapping) -> dict:
     >>> load({"run": {"pairs": ["b"]}})["run"]
     {'pairs': ['b']}
     """
-    changes = (overlay if isinstance(overlay, Mapping) else read(overlay) for overlay in overlays)
+    # Imports the physics, which reading alone does not need.
+    from stiction.config.relations_devices import validate
+
+    changes = (overlay if isinstance(overlay, Mapping) else located(overlay) for overlay in overlays)
     config = functools.reduce(merged, changes, read(PAPER))
     validate(config)
     return normalised(config)
+
+
+def located(path: str | Path) -> dict:
+    """Mapping in one YAML file, with the files of scans relative to its folder.
+
+    Raises
+    ------
+    ConfigError
+        As `stiction.config.reading.read`.
+    """
+    content = read(path)
+    return anchored(content, content, Path(path).parent)
 
 
 @functools.cache
@@ -45,16 +61,23 @@ def paper() -> dict:
 def normalised(config: dict) -> dict:
     """Configuration in normal form: equivalent settings are equal, whatever their order in the file.
 
-    Keys are sorted, so that the parameters of a rule do not depend on their order. The humidities of each pair are
-    sorted as well, so that tables and curves begin with the lowest.
+    Keys are sorted, so that the parameters of a rule do not depend on their order. The humidities of each pair and
+    device are sorted as well, so that tables and curves begin with the lowest. Measured surfaces get all their keys.
 
     Parameters
     ----------
     config : dict
         Complete configuration that `stiction.config.relations.validate` accepts.
     """
-    pairs = {name: pair | {"humidities": sorted(pair["humidities"])} for name, pair in config["pairs"].items()}
-    return _in_order(config | {"pairs": pairs})
+    named = {section: config[section] for section in ("pairs", "devices") if section in config}
+    surfaces = {name: complete(entry) for name, entry in config["surfaces"].items()}
+    in_order = {section: _sorted(entries) for section, entries in named.items()}
+    return _in_order(config | in_order | {"surfaces": surfaces})
+
+
+def _sorted(entries):
+    """Pairs or devices with their humidities sorted."""
+    return {name: entry | {"humidities": sorted(entry["humidities"])} for name, entry in entries.items()}
 
 
 def _in_order(value):

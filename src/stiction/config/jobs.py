@@ -7,9 +7,15 @@ Where a function takes only a `stiction.config.plan.Plan`, the settings are the 
 """
 
 from collections.abc import Iterable
+from pathlib import Path
 
-from stiction.config.cases import case_id, humidity_of, pair_of
-from stiction.config.plan import MOMENTS, SUMMITS, Plan, chosen
+from stiction.config import measured
+from stiction.config.cases import humidity_of, pair_of
+from stiction.config.designs import Designs
+from stiction.config.merging import merged
+from stiction.config.plan import ELASTIC, MOMENTS, SUMMITS, Plan, chosen
+from stiction.config.units import NM_PER_UM
+from stiction.devices.budget import STEP
 
 
 def _strip(plan):
@@ -27,11 +33,39 @@ def cantilevers(plan: Plan, *pairs: str) -> dict:
     return {
         "solid": chosen(plan.config["solid"], ["young_modulus_GPa"]),
         "beam": chosen(plan.config["beam"], ("length_um", "width_um", "thickness_um", "elements")),
-        "pairs": {pair: chosen(plan.config["pairs"][pair], ["gap_um"]) for pair in pairs},
+        "pairs": {pair: chosen(plan.config["pairs"][pair], ["gap_um"]) | plan.beam_modulus(pair) for pair in pairs},
     }
 
 
 # Sec. II
+
+
+def scan(plan: Plan, surface: str, number: str) -> dict:
+    """File of a scan by its content, and how it is read; the folder of the file does not affect the result."""
+    path = plan.scan_files(surface)[number]
+    source = measured.source(plan.config["surfaces"][surface])
+    return {"file": Path(path).name, "sha256": measured.digest(path), "source": source}
+
+
+def estimate(plan: Plan, surface: str) -> dict:
+    """How the scans of a surface are evaluated, with the names of the files: other files alone rerun nothing."""
+    evaluation = measured.evaluation(plan.config["surfaces"][surface], plan.config["scans"])
+    files = [Path(path).name for path in plan.scan_files(surface).values()]
+    number = plan.config["scans"]["model_scans"]
+    return chosen(plan.config, ["seed"]) | {"evaluation": evaluation, "model_scans": number, "files": files}
+
+
+def heights_of_scans(plan: Plan, surface: str) -> dict:
+    """Source of the heights of a measured surface."""
+    return {"surface": surface} | chosen(plan.config["surfaces"][surface], ["heights"])
+
+
+def spectrum_of_scans(plan: Plan, surface: str) -> dict:
+    """Source of the spectrum of a measured surface, the strips it is used for, and the grid."""
+    sampling = plan.config["sampling"]
+    use = {"surface": surface} | chosen(sampling, ("strip_length_um", "margin_um"))
+    source = chosen(plan.config["surfaces"][surface], ("psd", "beyond"))
+    return source | {"spacing_nm": sampling["spacing_nm"], "use": use}
 
 
 def heights(plan: Plan, surface: str) -> dict:
@@ -71,10 +105,10 @@ def character(plan: Plan) -> dict:
 # Sec. III-A
 
 
-def _meeting(plan, pair):
+def _meeting(plan, pair, properties=ELASTIC):
     """Settings for drawing a pair, with the names of the surfaces, because other input files alone rerun nothing."""
     shared = chosen(plan.config, ("seed", "sampling", "solid", "van_der_waals"))
-    return shared | {"surfaces": plan.sides(pair), "beam": _width(plan)}
+    return shared | {"surfaces": plan.sides(pair), "beam": _width(plan)} | plan.materials(pair, properties)
 
 
 def _search(plan, **more):
@@ -92,7 +126,7 @@ def contact(plan: Plan, pair: str) -> dict:
 
 def forces(plan: Plan, case: str) -> dict:
     """Water and humidity of a case; also the settings of stage fit."""
-    return chosen(plan.config, ["water"]) | {"humidity": humidity_of(case)}
+    return {"water": plan.water(pair_of(case)), "humidity": humidity_of(case)}
 
 
 def chaos(plan: Plan) -> dict:
@@ -104,7 +138,7 @@ def humidity(plan: Plan, pair: str) -> dict:
     """Water and humidity axis of a pair."""
     humidities = plan.config["pairs"][pair]["humidities"]
     axis = {"points": plan.config["figures"]["humidity_points"], "range": [min(humidities), max(humidities)]}
-    return chosen(plan.config, ["water"]) | axis
+    return {"water": plan.water(pair)} | axis
 
 
 # Secs. III-C and IV
@@ -127,21 +161,34 @@ def beams(plan: Plan, case: str, model: str) -> dict:
 
 
 def sensitivity_contact(plan: Plan, pair: str) -> dict:
-    """As `contact`, with the number of samples and the step of Fig. 13."""
+    """As `contact`, with the number of samples, the moments and the step of Fig. 13."""
     study = plan.config["studies"]["sensitivity"]
-    return _meeting(plan, pair) | {"contact": _search(plan, samples=study["samples"]), "step": study["step"]}
+    shifts = {"moments": plan.shifted_moments, "step": study["step"]}
+    return _meeting(plan, pair) | {"contact": _search(plan, samples=study["samples"])} | shifts
+
+
+def slope_contact(plan: Plan, pair: str) -> dict:
+    """As `contact`, with the number of samples of the slopes."""
+    return _meeting(plan, pair) | {"contact": _search(plan, samples=plan.config["studies"]["slopes"]["samples"])}
+
+
+def choice_contact(plan: Plan, pair: str) -> dict:
+    """As `slope_contact`, with the sources of the measured surfaces."""
+    entries = {name: plan.config["surfaces"][name] for name in plan.scanned_sides(pair)}
+    sources = {name: chosen(entry, ("heights", "psd", "beyond")) for name, entry in entries.items()}
+    return slope_contact(plan, pair) | {"sources": sources}
 
 
 def sensitivity(plan: Plan, pair: str) -> dict:
-    """Water and humidities of Fig. 13."""
-    return chosen(plan.config, ["water"]) | {"humidities": plan.config["pairs"][pair]["humidities"]}
+    """Water and humidities of Fig. 13; also the settings of study slopes."""
+    return {"water": plan.water(pair), "humidities": plan.config["pairs"][pair]["humidities"]}
 
 
 def plasticity(plan: Plan, pair: str) -> dict:
     """As `contact`, with the number of strips and the distance of App. A."""
     study = plan.config["studies"]["plasticity"]
     size = {"strips": study["strips"], "distance_nm": study["distance_nm"][pair]}
-    return _meeting(plan, pair) | {"contact": _search(plan)} | size
+    return _meeting(plan, pair, (*ELASTIC, "hardness_GPa")) | {"contact": _search(plan)} | size
 
 
 def sample_sizes(plan: Plan) -> dict:
@@ -169,28 +216,190 @@ def resampling(plan: Plan, case: str) -> dict:
     return chosen(plan.config, ["seed"]) | cantilevers(plan, pair_of(case)) | {"sampling": _strip(plan)} | number
 
 
-def variant(plan: Plan, pair: str, name: str) -> dict:
-    """Stages after contact under a variant: water, force laws and beams without scatter, at all humidities."""
-    found = chosen(plan.config, ("seed", "water", "chaos")) | cantilevers(plan, pair) | {"sampling": _strip(plan)}
+def variant(plan: Plan, case: str, name: str) -> dict:
+    """Stages after contact under a variant: water, force laws and beams without scatter."""
+    pair = pair_of(case)
+    found = chosen(plan.config, ("seed", "chaos")) | {"water": plan.water(pair)} | cantilevers(plan, pair)
     found["beam"] |= {"samples": plan.config["studies"]["variants"]["beams"]} | plan.finer_beams.get(name, {})
-    found["pairs"][pair] |= chosen(plan.config["pairs"][pair], ["humidities"])
-    refined = [h for h in plan.config["pairs"][pair]["humidities"] if not plan.has_mesh_of_paper(case_id(pair, h))]
-    return found | ({"refined": refined} if refined else {})
+    return found | {"sampling": _strip(plan)} | _refined(plan, case)
+
+
+# Devices
+
+
+def _on_patch(plan, pair, length, width, samples):
+    """As `contact`, on a patch of another size [nm]."""
+    size = {"strip_length_um": int(length) / NM_PER_UM}
+    found = _meeting(plan, pair) | {"contact": _search(plan, samples=samples)}
+    return found | {"sampling": found["sampling"] | size, "beam": {"width_um": int(width) / NM_PER_UM}}
+
+
+def device_contact(plan: Plan, pair: str, length: int, width: int) -> dict:
+    """As `contact`, for a device whose patch of surface differs from the strips of the main line; sides in nm."""
+    return _on_patch(plan, pair, length, width, plan.config["contact"]["samples"])
+
+
+def tip_contact(plan: Plan, pair: str, length: int, width: int) -> dict:
+    """As `device_contact`, for the strips that hold the tips of beams; every beam has its own."""
+    return _on_patch(plan, pair, length, width, plan.config["design"]["beams"])
+
+
+def _device(plan, name):
+    """Kind, pair and dimensions of a beam, and the length of its strips."""
+    section = plan.config["devices"][name]
+    sizes = chosen(section, ("kind", "pair", "thickness_um", "gap_um", "width_um", "residual_stress_MPa"))
+    modulus = chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(section["pair"])
+    return sizes | modulus | {"strip_um": Designs(plan.config).strip(name)}
+
+
+def cracks(plan: Plan, case: str) -> dict:
+    """A device at a humidity: force laws, dimensions and number of beams."""
+    device = _device(plan, pair_of(case))
+    found = chosen(plan.config, ("seed", "chaos")) | {
+        "water": plan.water(device["pair"]),
+        "humidity": humidity_of(case),
+    }
+    return found | {"device": device, "beams": plan.config["design"]["beams"]}
+
+
+def safe_lengths(plan: Plan, case: str) -> dict:
+    """As `cracks`, with the shares of stuck devices and the strips of tips, without the force laws."""
+    found = cracks(plan, case)
+    return chosen(found, ("seed", "water", "humidity", "device")) | chosen(plan.config["design"], ("shares", "tip_um"))
+
+
+def chart(plan: Plan, case: str) -> dict:
+    """As `cracks` and `safe_lengths`, for all thicknesses and gaps of the chart of a device."""
+    section = plan.config["devices"][pair_of(case)]
+    sizes = {"gaps_um": [section["gap_um"]]} | chosen(section["chart"], ("thicknesses_um", "gaps_um"))
+    return cracks(plan, case) | safe_lengths(plan, case) | sizes
+
+
+#: Names of the properties of a material in warnings.
+_PROPERTIES = {
+    "young_modulus_GPa": "Young's modulus",
+    "poisson_ratio": "Poisson's ratio",
+    "hardness_GPa": "hardness",
+    "hamaker_constant_zJ": "Hamaker constant",
+    "contact_angle_deg": "contact angle",
+}
+
+
+def _stated(plan, pair):
+    """Names of the materials of a pair, each with its stated properties in words."""
+    named = plan.config.get("materials", {})
+    used = (plan.config["surfaces"][surface].get("material") for surface in plan.sides(pair))
+    return [[name, [_PROPERTIES[key] for key in named[name]]] for name in dict.fromkeys(used) if name]
+
+
+def beyond_the_model(plan: Plan) -> dict:
+    """Cases of beams, and what the warnings about each device need: dimensions, strips of tips, stated properties."""
+    designs = Designs(plan.config)
+    devices = {
+        name: {"device": _device(plan, name), "materials": _stated(plan, plan.config["devices"][name]["pair"])}
+        | chosen(plan.config["design"], ["tip_um"])
+        for name in designs.beams
+    }
+    return {"cases": designs.cases, "pressed": designs.pressed_pairs, "devices": devices}
+
+
+def model_limits(plan: Plan) -> dict:
+    """As `beyond_the_model`, with the cases, the nominal beams and the strips of all pairs."""
+    pairs = {"sampling": _strip(plan)} | cantilevers(plan, *plan.pairs)
+    shown = {"outcomes": plan.outcomes, "pressed_pairs": plan.pressed_pairs}
+    return beyond_the_model(plan) | {"pairs": pairs, "stoppers": beyond_stoppers(plan)} | shown
+
+
+# Stoppers and budgets of devices
+
+
+def stoppers(plan: Plan, name: str) -> dict:
+    """Water, patch, restoring force and humidities of a stopper, and its fine axis of humidities."""
+    section = plan.config["devices"][name]
+    found = chosen(section, ("contact_um", "restoring_force_uN", "humidities"))
+    return found | {"water": plan.water(section["pair"])} | chosen(plan.config["design"], ["worst_humidities"])
+
+
+def _samples_of_slopes(plan):
+    """Number of samples of contacts with a changed input, at most those of the contact itself."""
+    return min(plan.config["studies"]["slopes"]["samples"], plan.config["contact"]["samples"])
+
+
+def device_slope_contact(plan: Plan, pair: str, length: int, width: int) -> dict:
+    """As `slope_contact`, on a patch of another size [nm]."""
+    return _on_patch(plan, pair, length, width, plan.config["studies"]["slopes"]["samples"])
+
+
+def modulus_contact(plan: Plan, pair: str, length: int, width: int, side: str) -> dict:
+    """As `device_slope_contact`, with less or more of Young's modulus of the beam's material, in both bodies of it."""
+    found = _on_patch(plan, pair, length, width, _samples_of_slopes(plan))
+    factor = 1 - STEP if side == "less" else 1 + STEP
+
+    def changed(material):
+        return material | {"young_modulus_GPa": factor * material["young_modulus_GPa"]}
+
+    stated = found.get("materials", {})
+    of_beam = stated.get("beam", found["solid"])
+    if not stated:
+        return found | {"solid": changed(found["solid"])}
+    materials = {name: changed(one) if one == of_beam else one for name, one in stated.items()}
+    return found | {"materials": materials}
+
+
+def device_choice_summits(plan: Plan, pair: str, length: int, width: int, variant: str) -> dict:
+    """As `stiction.config.plan.Plan.variant_summits`, on a patch of another size [nm]."""
+    found = plan.variant_summits(pair, variant)
+    size = _on_patch(plan, pair, length, width, _samples_of_slopes(plan))
+    return found | {"base": merged(found["base"], chosen(size, ("sampling", "beam", "contact")))}
+
+
+def budget(plan: Plan, case: str) -> dict:
+    """Everything about a budget: its settings, and what its files stand for in their order."""
+    name, designs = pair_of(case), Designs(plan.config)
+    section = plan.config["devices"][name]
+    pair = section["pair"]
+    found = chosen(plan.config, ["seed"]) | chosen(section, ["uncertainty"])
+    found |= {"water": plan.water(pair), "humidity": humidity_of(case)}
+    found |= chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(pair)
+    if section["kind"] == "stopper":
+        found |= chosen(section, ["contact_um"])
+    else:
+        found |= {"device": _device(plan, name), "beams": plan.config["design"]["budget_beams"]}
+    return {"budget": found, "quantities": list(map(list, designs.quantities(name))), "choices": plan.choices(pair)}
+
+
+def beyond_stoppers(plan: Plan) -> dict:
+    """What the warnings about stoppers need: their pairs and the stated properties of their materials."""
+    devices = {name: plan.config["devices"][name] for name in Designs(plan.config).stoppers}
+    return {
+        name: {"pair": device["pair"], "materials": _stated(plan, device["pair"])} for name, device in devices.items()
+    }
+
+
+def page(plan: Plan, name: str) -> dict:
+    """Section of a device, and what its warnings need."""
+    warned = beyond_the_model(plan)["devices"] | beyond_stoppers(plan)
+    return {"name": name, "device": plan.config["devices"][name], "warned": {name: warned[name]}}
 
 
 # Tables, checks and figures
 
 
 def table_1(plan: Plan) -> dict:
-    """Measured statistics of all surfaces, and the surfaces whose published values are shown."""
+    """Measured statistics of all surfaces without scans, and the surfaces whose published values are shown."""
     entries = plan.config["surfaces"]
-    measured = {name: chosen(entries[name], (*MOMENTS, *SUMMITS)) for name in plan.surfaces}
-    return {"measured": measured, "of_paper": plan.paper_surfaces}
+    statistics = {name: chosen(entries[name], (*MOMENTS, *SUMMITS)) for name in plan.described}
+    return {"measured": statistics, "of_paper": plan.paper_surfaces}
+
+
+def table_scans(plan: Plan) -> dict:
+    """Numbers of the scans of every measured surface."""
+    return {"scans": {name: list(plan.scan_files(name)) for name in plan.scanned}}
 
 
 def moments(plan: Plan) -> dict:
-    """Target moments of the drawn surfaces."""
-    return {name: heights(plan, name) for name in plan.surfaces}
+    """Target moments of the drawn surfaces that have no scans."""
+    return {name: heights(plan, name) for name in plan.described}
 
 
 def skewed(plan: Plan, pairs: Iterable[str]) -> list[str]:
@@ -211,8 +420,8 @@ def table_3(plan: Plan) -> dict:
 
 
 def table_variants(plan: Plan) -> dict:
-    """Pairs and variants, and the pairs whose published values are shown."""
-    return {"studied": plan.studied, "of_paper": plan.paper_pairs}
+    """Cases and variants, and the pairs whose published values are shown."""
+    return {"studied": plan.studied_cases, "of_paper": plan.paper_pairs}
 
 
 def checks(plan: Plan) -> dict:

@@ -1,12 +1,24 @@
-"""Memory of the jobs that draw surfaces, from the size of the largest field that they hold."""
+"""Memory of jobs: that draw surfaces, by their largest field; that hold the contact of all samples, by their number."""
+
+import math
+from collections.abc import Sequence
+
+from stiction.models import SIDES
 
 #: Side of the periodic fields on which spectra are estimated [µm]; `stiction.stages.surfaces.FIELD`.
 FIELD_UM = 10.24
 #: Memory of a job: libraries and small arrays [MB]; fields, their waves and their spectra [bytes per point]. Measured:
 #: 54 bytes per point of a field whose spectrum is estimated, up to 24 of one from which a strip is cut.
 _BASE, _PER_POINT = 350, 60
+#: Number of distances at which the contact of a pair is stored, in single precision, times their step over the sum of
+#: both rms. Measured: 17 to 21 for the pairs of the paper.
+_DISTANCES = 30
 #: Memory that every job may use without asking for it [MB], and the most that a job may need.
 USUAL, LARGEST = 800, 8000
+#: Memory of an estimate from scans [bytes per point]: of the transforms, which have up to 2048 points along a side, of
+#: the map that is evaluated, of every scan. Measured: 640 MB for one scan of 1024² points, 726 MB for one of 2048².
+_PER_TRANSFORMED_POINT, _PER_SCANNED_POINT, _PER_STORED_POINT = 75, 30, 12
+_LARGEST_TRANSFORM = 2048
 
 
 def of_field(length_um: float, width_um: float, spacing_nm: float) -> float:
@@ -20,6 +32,25 @@ def of_field(length_um: float, width_um: float, spacing_nm: float) -> float:
     return _BASE + 1e-6 * _PER_POINT * (1e3 * length_um / spacing_nm) * (1e3 * width_um / spacing_nm)
 
 
+def of_samples(config: dict) -> int:
+    """Memory to reserve for any job that holds the contact of all samples of a pair of a configuration [MB].
+
+    The chunks are joined one at a time.
+    """
+    contact, surfaces = config["contact"], config["surfaces"]
+    running = [config["pairs"][pair] for pair in config["run"]["pairs"]]
+    rms = max(sum(surfaces[pair[side]]["rms_nm"] for side in SIDES) for pair in running)
+    stored = 4e-6 * contact["samples"] * _DISTANCES * rms / contact["distance_step_nm"]
+    return max(USUAL, round(_BASE + stored * (1 + 1 / contact["chunks"])))
+
+
+def patch_of(device: dict, sampling: dict) -> tuple[float, float]:
+    """Sides of the patch of surface on which a device sticks [µm]; section of the device."""
+    if device["kind"] == "stopper":
+        return tuple(device["contact_um"])
+    return device.get("strip_um", sampling["strip_length_um"]), device["width_um"]
+
+
 def of_job(config: dict) -> int:
     """Memory to reserve for any job that draws surfaces of a configuration [MB]."""
     sampling, patch = config["sampling"], config["identification"]["patch_um"]
@@ -27,4 +58,14 @@ def of_job(config: dict) -> int:
     spacings = sampling["spacing_nm"], *config["studies"]["variants"]["spacing_nm"]
     sides = (FIELD_UM, FIELD_UM), (patch, patch)
     needed = [of_field(*side, spacings[0]) for side in sides] + [of_field(*strip, spacing) for spacing in spacings]
+    patches = (patch_of(device, sampling) for device in config.get("devices", {}).values())
+    margin = sampling["margin_um"]
+    needed += [of_field(length + margin, width + margin, spacings[0]) for length, width in patches]
     return max(USUAL, round(max(needed)))
+
+
+def of_estimate(points: Sequence[int], files: int) -> int:
+    """Memory to reserve for the estimate of a surface from scans with this number of points along each side [MB]."""
+    transformed = min(2 * max(points), _LARGEST_TRANSFORM) ** 2
+    scanned = math.prod(points) * (_PER_SCANNED_POINT + _PER_STORED_POINT * files)
+    return max(USUAL, round(_BASE + 1e-6 * (_PER_TRANSFORMED_POINT * transformed + scanned)))

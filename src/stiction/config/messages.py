@@ -97,7 +97,9 @@ def _allowed(entry):
     words.append(" and ".join(f"{word} {entry[bound]}" for bound, word in _BOUNDS.items() if bound in entry))
     if entry.get("properties"):
         words.append(f"with the keys {', '.join(entry['properties'])}")
-    if "minItems" in entry or "minProperties" in entry:
+    if "maxItems" in entry:
+        words.append(f"with {entry['maxItems']} entries")
+    elif "minItems" in entry or "minProperties" in entry:
         words.append("with at least one entry")
     return f"{' '.join(filter(None, words))}: {entry['description']}"
 

@@ -1,25 +1,29 @@
 """Plan of a configuration: the surfaces, cases, variants and figures to be computed.
 
-The rules of the workflow and the library use the same plan and therefore the same cases.
+The rules of the workflow and the library use the same plan and therefore the same cases. Densities are imported where
+they are needed, because a plan that is made again knows the answers, see `stiction.run.remembered`.
 """
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from stiction.analysis.sensitivity import shifted
 from stiction.config.cases import case_id, humidity_of, pair_of
 from stiction.config.files import paper
+from stiction.config.measured import evaluated, is_measured, quantities
 from stiction.config.merging import merged
 from stiction.models import BEAM_MODELS, SIDES, SURFACE_MODELS
-from stiction.surface.feasible import is_feasible, nearest_feasible
 
+#: Properties of a material on which contact depends.
+ELASTIC = ("young_modulus_GPa", "poisson_ratio", "hamaker_constant_zJ")
 #: Keys of the measured statistics of a surface: moments of the heights and summit statistics.
 MOMENTS = ("rms_nm", "skewness", "kurtosis")
 SUMMITS = ("mean_summit_radius_um", "summit_density_per_um2")
 #: Key that a variant changes, and its section; the source of the spectrum is a key of each surface.
 _CHANGED = {"van_der_waals": None, "psd": None, "every": "contact", "spacing_nm": "sampling", "poisson_ratio": "solid"}
+#: Sections of the solids, which do not affect the summits.
+_SOLIDS = ("solid", "van_der_waals")
 #: Keys that define the beam that the paper measured and simulated.
 _OF_BEAM = {"beam": ("length_um", "width_um", "thickness_um"), "solid": ("young_modulus_GPa",)}
 #: Keys that define the mesh of the paper and, with the force laws, how fine it is; a mesh has no width.
@@ -43,7 +47,8 @@ def _same(section, other, only=None, but=()):
 class Plan:
     """Names of everything that is computed for one configuration."""
 
-    config: dict  #: complete and valid
+    config: dict  #: complete, valid and in normal form
+    preliminary: dict[str, dict] = field(default_factory=dict)  #: numbers of measured surfaces, computed if missing
 
     @property
     def pairs(self) -> list[str]:
@@ -54,11 +59,66 @@ class Plan:
         """Names of the surfaces of a pair, that of the beam first."""
         return [self.config["pairs"][pair][side] for side in SIDES]
 
+    def _stated(self, pair):
+        """Stated properties of the materials of both surfaces of a pair."""
+        named = self.config.get("materials", {})
+        return [named.get(self.config["surfaces"][surface].get("material"), {}) for surface in self.sides(pair)]
+
+    def materials(self, pair: str, properties: Sequence[str]) -> dict[str, dict]:
+        """Some properties of the materials of a pair by side; empty if those of section solid and polysilicon hold."""
+        stated = [chosen(material, properties) for material in self._stated(pair)]
+        if not any(stated):
+            return {}
+        solid = self.config["solid"]
+        return {"materials": {side: solid | material for side, material in zip(SIDES, stated, strict=True)}}
+
+    def water(self, pair: str) -> dict:
+        """Section ``water`` with the contact angles on both surfaces of a pair if one of them is not zero."""
+        angles = [material.get("contact_angle_deg", 0) for material in self._stated(pair)]
+        return self.config["water"] | ({"contact_angles_deg": angles} if any(angles) else {})
+
+    def beam_modulus(self, pair: str) -> dict:
+        """Young's modulus of the beam of a pair if its material states one, otherwise empty."""
+        return chosen(self._stated(pair)[0], ["young_modulus_GPa"])
+
     @cached_property
     def surfaces(self) -> list[str]:
         """Surfaces of the pairs that run, in the order of the configuration."""
         met = {name for pair in self.pairs for name in self.sides(pair)}
         return [name for name in self.config["surfaces"] if name in met]
+
+    @property
+    def scanned(self) -> list[str]:
+        """All surfaces of the configuration that are described by scans."""
+        return [name for name, entry in self.config["surfaces"].items() if is_measured(entry)]
+
+    @property
+    def estimated(self) -> list[str]:
+        """Surfaces of the pairs that run that are described by scans."""
+        return [name for name in self.surfaces if name in self.scanned]
+
+    @property
+    def described(self) -> list[str]:
+        """Surfaces of the pairs that run that are described by numbers."""
+        return [name for name in self.surfaces if name not in self.scanned]
+
+    def scan_files(self, surface: str) -> dict[str, str]:
+        """Files of the scans of a surface, by number; none if it is described by numbers."""
+        files = self.config["surfaces"][surface].get("scans", {}).get("files", ())
+        return {str(number): file for number, file in enumerate(files)}
+
+    def scanned_sides(self, pair: str) -> list[str]:
+        """Surfaces of a pair that are described by scans, each once."""
+        return [name for name in dict.fromkeys(self.sides(pair)) if name in self.scanned]
+
+    @cached_property
+    def scanned_pairs(self) -> list[str]:
+        """Pairs with a surface described by scans."""
+        return [pair for pair in self.pairs if self.scanned_sides(pair)]
+
+    def quantities(self, surface: str) -> tuple[str, ...]:
+        """Quantities of a surface on which its slopes depend, see `stiction.analysis.shifts`."""
+        return quantities(self.config["surfaces"][surface])
 
     @cached_property
     def measured(self) -> list[str]:
@@ -169,11 +229,27 @@ class Plan:
 
     def _can_be_shifted(self, moment):
         """Whether surfaces with the moment slightly decreased and slightly increased exist."""
-        measured = chosen(self.config["surfaces"][self.figure_surface], ("skewness", "kurtosis"))
-        shape = chosen(nearest_feasible(**measured)._asdict(), measured)
+        from stiction.analysis.sensitivity import shifted
+        from stiction.surface.feasible import is_feasible
+
+        shape = self._feasible_shape(self.figure_surface)
+        if shape is None:
+            return False
         at = shifted(shape[moment], self.config["studies"]["sensitivity"]["step"])
         exists = all(is_feasible(**shape | {moment: value}) for value in at)
         return at[0] * at[1] > 0 and exists
+
+    def _feasible_shape(self, surface):
+        """Skewness and kurtosis of the maximum-entropy density of a surface; ``None`` if its heights are measured."""
+        from stiction.surface.feasible import nearest_feasible
+
+        entry, names = self.config["surfaces"][surface], ("skewness", "kurtosis")
+        if not is_measured(entry):
+            return chosen(nearest_feasible(**chosen(entry, names))._asdict(), names)
+        if entry["heights"] == "measured":
+            return None
+        known = self.preliminary or evaluated(self.config)[0]
+        return dict(zip(names, known[surface]["feasible"], strict=True))
 
     # Variants: one changed model choice each, where the paper leaves the choice open
 
@@ -210,27 +286,51 @@ class Plan:
         wanted = self.variants[variant].get("psd", entry["psd"])
         return wanted if known[wanted] else entry["psd"]
 
-    def variant_contact(self, pair: str, variant: str) -> dict:
-        """Settings of the contact of a pair without the variant, and the changes of the variant."""
+    def variant_summits(self, pair: str, variant: str) -> dict:
+        """Settings of the summits of a pair without the variant, and the changes of the variant.
+
+        A measured surface is that of the base: no variant changes its heights or its spectrum.
+        """
         contact = chosen(self.config["contact"], ("distance_step_nm", "every"))
-        base = chosen(self.config, ("seed", "sampling", "solid", "van_der_waals")) | {
+        base = chosen(self.config, ("seed", "sampling")) | {
             "contact": contact | {"samples": self.config["studies"]["variants"]["samples"]},
             "beam": chosen(self.config["beam"], ["width_um"]),
             "pairs": {pair: chosen(self.config["pairs"][pair], SIDES)},
-            "surfaces": {name: self.surface_under(variant, name) for name in self.sides(pair)},
+            "surfaces": {
+                name: self.surface_under(variant, name) for name in self.sides(pair) if name not in self.scanned
+            },
         }
-        changes = {key: change for key, change in self.variants[variant].items() if key != "psd"}
+        changes = chosen(self.variants[variant], ("sampling", "contact"))
         identified = sorted(name for name, entry in base["surfaces"].items() if entry["psd"] == "identified")
         return {"base": base, "changes": changes, "identified": identified}
+
+    def variant_contact(self, pair: str, variant: str) -> dict:
+        """Solids of a pair under a variant: the settings of the contact, given the summits."""
+        found = merged(chosen(self.config, _SOLIDS), chosen(self.variants[variant], _SOLIDS))
+        return found | self.materials(pair, ELASTIC)
+
+    def summits_under(self, pair: str, variant: str) -> str:
+        """First variant with the same summits of a pair: solids do not change them."""
+        wanted = self._summits(pair, variant)
+        return next(name for name in self.variants if self._summits(pair, name) == wanted)
 
     def contact_under(self, variant: str) -> str:
         """Variant whose contact a variant starts from: a finer beam meets the surfaces of the base."""
         return "base" if variant in self.finer_beams else variant
 
-    def _under(self, pair, variant):
-        """Settings of the contact of a pair under a variant."""
-        found = self.variant_contact(pair, variant)
+    def _summits(self, pair, variant):
+        """Settings of the summits of a pair under a variant."""
+        found = self.variant_summits(pair, variant)
         return merged(found["base"], found["changes"])
+
+    def _under(self, pair, variant):
+        """All settings that distinguish the variants of a pair."""
+        return self._summits(pair, variant), self.variant_contact(pair, variant), self.finer_beams.get(variant)
+
+    def choices(self, pair: str) -> list[str]:
+        """Variants that change the contact of a pair, which need not run."""
+        contacts = [name for name in self.variants if self.contact_under(name) == name != "base"]
+        return [name for name in contacts if self._under(pair, name) != self._under(pair, "base")]
 
     @cached_property
     def studied(self) -> list[tuple[str, str]]:
@@ -240,4 +340,13 @@ class Plan:
             for pair in self.pairs
             for variant in self.variants
             if variant == "base" or self._under(pair, variant) != self._under(pair, "base")
+        ]
+
+    @property
+    def studied_cases(self) -> list[tuple[str, str]]:
+        """Cases of the pairs and their variants."""
+        return [
+            (case_id(pair, humidity), variant)
+            for pair, variant in self.studied
+            for humidity in self.config["pairs"][pair]["humidities"]
         ]

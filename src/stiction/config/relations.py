@@ -15,15 +15,17 @@ import yaml
 from scipy.special import ndtri
 
 from stiction.beam.foundation import STRIP, decay_length, ground_stiffness
-from stiction.config import memory
+from stiction.config import measured, memory
 from stiction.config.cases import NAMEABLE, decimals
 from stiction.config.messages import ConfigError, Problem, did_you_mean, dotted, duplicates, schema_problems, shown
 from stiction.config.units import NM_PER_UM, typed
-from stiction.contact.asperity import asperity, reduced_modulus
+from stiction.contact.asperity import asperity
 from stiction.contact.bounds import least_law
-from stiction.contact.estimate import ProfileMoments, repulsion_and_attraction
+from stiction.contact.estimate import ProfileMoments, force_law, repulsion_and_attraction
 from stiction.contact.meniscus import laplace_pressure, meniscus_height
+from stiction.contact.solids import Solid, composite_modulus, hamaker_constant
 from stiction.contact.vanderwaals import attraction
+from stiction.devices import limits
 from stiction.errors import NotConverged
 from stiction.models import SIDES
 from stiction.numbers import is_multiple
@@ -32,9 +34,6 @@ from stiction.surface.feasible import nearest_feasible
 from stiction.surface.identify import SummitTarget, estimated_spectrum
 from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
 
-#: ASSUME: smallest gap in units of film height and roughness. The model takes the range of the force laws as short
-#: compared with the gap: with a film of half the gap, Eq. (13) gives half of the adhesion energy.
-APART = 20
 #: Normal scores of equally probable heights; score that one of 10 strips with 450 000 points each exceeds.
 _SCORES, _HIGHEST = ndtri((np.arange(200) + 0.5) / 200), 5.0
 
@@ -45,13 +44,22 @@ def schema() -> dict:
     return yaml.safe_load(Path(__file__).with_name("schema.yaml").read_text(encoding="utf-8"))
 
 
-def validate(config: dict) -> None:
-    """Check a configuration against the schema and the relations between its keys.
+def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
+    """Check a configuration against the schema and the relations between its keys, and the files of its scans.
+
+    Relations hold for the preliminary numbers of measured surfaces as for the given numbers of others.
 
     Parameters
     ----------
     config : dict
         Complete configuration.
+    kept : path, optional
+        Folder in which the preliminary numbers of measured surfaces are kept between processes.
+
+    Returns
+    -------
+    dict
+        Preliminary numbers of the measured surfaces by name, see `stiction.config.measured.evaluated`.
 
     Raises
     ------
@@ -59,12 +67,23 @@ def validate(config: dict) -> None:
         If the configuration is invalid; one line per problem: full key, value, allowed values.
     """
     faults = schema_problems(config, schema())
-    problems = faults + _broken_relations(config, [fault.path for fault in faults])
+    wrong = [fault.path for fault in faults]
+    sections = _OPTIONAL | config if isinstance(config, dict) else config
+    broken = _broken_relations(sections, wrong)
+    of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
+    found, refused = measured.evaluated(config, wrong + of_surfaces, kept)
+    problems = faults + broken + refused
+    if found:
+        files = {name: config["surfaces"][name]["scans"]["files"] for name in found}
+        problems += _broken_relations(measured.view(sections, found), wrong, files)
     if problems:
         raise ConfigError(*dict.fromkeys(map(str, problems)))
+    return found
 
 
 _RELATIONS = []
+#: Sections that a configuration need not have.
+_OPTIONAL = {"materials": {}, "devices": {}}
 #: Keys of the targets of an identification.
 _TARGET = (
     "surfaces.*.rms_nm",
@@ -89,10 +108,10 @@ def relation(*keys: str) -> Callable:
     return register
 
 
-def _broken_relations(config, faults):
-    """Violated relations between keys that are valid on their own."""
+def _broken_relations(config, faults, files=None):
+    """Violated relations between keys that are valid on their own; ``files`` of the measured surfaces by name."""
     cases = ((holds, paths) for keys, holds in _RELATIONS for paths in _spelled_out(keys, config))
-    return [problem for holds, paths in cases for problem in _checked(holds, paths, config, faults)]
+    return [problem for holds, paths in cases for problem in _checked(holds, paths, config, faults, files or {})]
 
 
 def _spelled_out(keys, config):
@@ -120,7 +139,7 @@ def _members(config, path):
     return range(len(found)) if isinstance(found, list) else _names(found)
 
 
-def _checked(holds, paths, config, faults):
+def _checked(holds, paths, config, faults, files):
     """Problem, if any, of one relation at the values of the paths."""
     if any(_overlap(path, fault) for path in paths for fault in faults):
         return []
@@ -131,16 +150,27 @@ def _checked(holds, paths, config, faults):
     message = holds(*values)
     if message is None:
         return []
-    return [Problem(paths[0], f"is {shown(values[0])}, {message}{_given(paths[1:], values[1:])}")]
+    path, value = _known(paths[0], values[0], files)
+    number = "" if path == paths[0] else f", which gives {paths[0][-1]} = {values[0]:.4g}"
+    return [Problem(path, f"is {shown(value)}{number}, {message}{_given(paths[1:], values[1:], files)}")]
 
 
-def _given(paths, values):
+def _known(path, value, files):
+    """Key and value of which the user knows: the numbers of a measured surface come from its files."""
+    if len(path) > 2 and path[0] == "surfaces" and path[1] in files:
+        return (*path[:2], "scans", "files"), [Path(file).name for file in files[path[1]]]
+    return path, value
+
+
+def _given(paths, values, files):
     """The other values of a violated relation, except names and whole sections of the configuration."""
-    given = ((path, value) for path, value in zip(paths, values, strict=True) if path[-1] not in "#@")
+    given = [_known(path, value, files) for path, value in zip(paths, values, strict=True) if path[-1] not in "#@"]
+    if ("surfaces",) in paths:
+        given += [_known(("surfaces", name, "rms_nm"), None, files) for name in files]
     others = [
         f"{dotted(path)} = {shown(value)}" for path, value in given if len(path) > 1 or not isinstance(value, dict)
     ]
-    return f" (given {', '.join(others)})" if others else ""
+    return f" (given {', '.join(dict.fromkeys(others))})" if others else ""
 
 
 def _overlap(path, fault):
@@ -178,6 +208,7 @@ def selected_pairs_exist(names, pairs):
 
 @relation("pairs.*.beam", "surfaces.#")
 @relation("pairs.*.substrate", "surfaces.#")
+@relation("surfaces.*.material", "materials.#")
 @relation("figures.pair", "pairs.#")
 def name_is_defined(name, defined):
     """References must be to defined names."""
@@ -198,6 +229,42 @@ def cases_have_unique_names(humidities):
 def humidity_of_the_figures_has_a_name(humidity):
     """The humidity of the figures must be valid in the name of a case."""
     return None if decimals(humidity) else f"must {NAMEABLE}"
+
+
+#: Keys of a surface that is described by numbers.
+_NUMBERS = ("rms_nm", "skewness", "kurtosis", "mean_summit_radius_um", "summit_density_per_um2", "published_psd")
+
+
+@relation("surfaces.*.scans", "surfaces.*.#")
+def scans_stand_alone(scans, keys):  # noqa: ARG001
+    """A surface is described either by scans or by numbers."""
+    beside = [key for key in keys if key in _NUMBERS]
+    if not beside:
+        return None
+    return f"must not be given beside {', '.join(beside)}; give the measured surface a name of its own"
+
+
+@relation("surfaces.*.psd", "surfaces.*.#")
+def spectrum_suits_the_surface(psd, keys):
+    """Scans give a spectrum themselves."""
+    if "scans" in keys and any(key in _NUMBERS for key in keys):
+        return None  # the relation above reports this
+    which, sources = ("with", ("fitted", "tabulated")) if "scans" in keys else ("without", ("published", "identified"))
+    return None if psd in sources else f"must be {' or '.join(sources)} for a surface {which} scans"
+
+
+@relation("surfaces.*.heights", "surfaces.*.#")
+@relation("surfaces.*.beyond", "surfaces.*.#")
+def only_scans_leave_this_choice(choice, keys):  # noqa: ARG001
+    """Other surfaces have the heights of their moments and a spectrum with a cut-off."""
+    return None if "scans" in keys else "must not be given for a surface without scans"
+
+
+@relation("surfaces.*.scans.files")
+def files_have_no_duplicates(files):
+    """A scan counts once."""
+    repeated = duplicates(files)
+    return f"must list each file once; {shown(repeated[0])} is listed twice" if repeated else None
 
 
 @relation("surfaces.*.kurtosis", "surfaces.*.skewness")
@@ -244,11 +311,11 @@ def other_grid_carries_an_identified_spectrum(spacing, coarse, psd):
     return None if spacing <= coarse or psd == "published" else "must be at most that of Table I"
 
 
-@relation("identification.patch_um", "surfaces.*.published_psd")
+@relation("identification.patch_um", "surfaces.*.published_psd", "surfaces.*.summit_density_per_um2")
 @relation("sampling.strip_length_um", "surfaces.*.published_psd")
 @relation("sampling.margin_um", "surfaces.*.published_psd")
-def length_exceeds_the_correlation(length, psd):
-    """Strips are samples of the field, and opposite edges of a strip are uncorrelated."""
+def length_exceeds_the_correlation(length, psd, _=None):
+    """Strips are samples of the field, and opposite edges of a strip, or of a patch to identify, are uncorrelated."""
     try:
         bound = _correlation_length(**psd)
     except ValueError:
@@ -365,21 +432,35 @@ def a_mesh_is_whole(elements, strips, length):
 
 
 #: Keys of a pair, of the water and of the surfaces that meet: the last arguments of the next two relations.
-_MEETING = ("run.pairs", "pairs.*.@", "water.temperature_K", "pairs.*.beam", "pairs.*.substrate", "surfaces")
+_MEETING = (
+    "run.pairs",
+    "pairs.*.@",
+    "water.temperature_K",
+    "pairs.*.beam",
+    "pairs.*.substrate",
+    "surfaces",
+    "materials",
+)
 
 
 @relation("pairs.*.gap_um", "pairs.*.humidities", *_MEETING)
 @relation("pairs.*.gap_um", "figures.humidity", *_MEETING)
 def beam_is_apart_from_the_film(gap, humidities, running, pair, temperature, *meeting):
     """Along most of a crack, the beam of a pair that runs is far from the water film and the hills of the substrate."""
-    sides = _sides(*meeting) if pair in running else []
-    if not sides:
+    sides = sides_of(*meeting[:-1]) if pair in running else []
+    return not_apart(gap, humidities, temperature, sides, meeting[-1])
+
+
+def not_apart(gap: float, humidities: float | list, temperature: float, sides: list, materials: dict) -> str | None:
+    """Refusal of a gap [µm] that is not far above the film at the highest humidity; sections of the two surfaces."""
+    angles = wetting(sides, materials)
+    if not angles:
         return None
-    film = 1e9 * float(np.max(meniscus_height(humidities, temperature)))
-    rms = math.hypot(*(side["rms_nm"] for side in sides))
-    least = APART * (film + rms) / NM_PER_UM
-    found = f"{APART} times the height of the water film, {film:.5g} nm, plus the rms of the surfaces, {rms:.3g} nm"
-    return None if gap >= least else f"must be at least {least:.4g} µm, {found}"
+    film = float(np.max(meniscus_height(humidities, temperature, angles)))
+    rms = math.hypot(*(1e-9 * side["rms_nm"] for side in sides))
+    least = 1e6 * limits.least_gap(film, rms)
+    found = f"{limits.FILMS} times the height of the water film, {1e9 * film:.5g} nm, plus the rms of the surfaces, "
+    return None if gap >= least else f"must be at least {least:.4g} µm, {found}{1e9 * rms:.3g} nm"
 
 
 @relation("sampling.strip_length_um", "beam.thickness_um", "solid.young_modulus_GPa", "pairs.*.humidities", *_MEETING)
@@ -388,37 +469,109 @@ def strips_resolve_the_crack(strip, thickness, modulus, humidities, running, pai
 
     Strips that pass may still be refused after the contact, by `stiction.beam.resolution.resolved`.
     """
-    sides = _sides(*meeting) if pair in running else []
-    shapes = [_shape(side["skewness"], side["kurtosis"]) for side in sides]
-    if not sides or None in shapes:
-        return None
-    (beam, substrate), highest = zip(*shapes, strict=True)
-    rms = np.array([1e-9 * side["rms_nm"] for side in sides])
-    heights, top = np.add.outer(rms[0] * np.array(beam), rms[1] * np.array(substrate)), float(rms @ highest)
-    bending = 1e9 * modulus * (1e-6 * thickness) ** 3 / 12
+    sides = sides_of(*meeting[:-1]) if pair in running else []
+    stated = of_material(sides, meeting[-1])
+    modulus = stated[0].get("young_modulus_GPa", modulus) if stated else modulus
     for humidity in humidities:
-        film = float(meniscus_height(humidity, temperature)), -float(laplace_pressure(humidity, temperature))
-        f_max, a_left = least_law(heights, top, film)
-        longest = 1e6 * STRIP * decay_length(bending, ground_stiffness(f_max, a_left)) if f_max else math.inf
+        longest = longest_strip(thickness, modulus, humidity, temperature, sides, meeting[-1])
         if strip > longest:
             return f"must be at most {longest:.3g} µm to resolve the cracks of pair {pair} at RH {humidity:g}"
     return None
 
 
-def _sides(beam, substrate, surfaces):
-    """Sections of the surfaces of a pair; empty if one is not defined, which another relation reports."""
-    return [surfaces[name] for name in (beam, substrate)] if {beam, substrate} <= set(surfaces) else []
+def longest_strip(
+    thickness: float, modulus: float, humidity: float, temperature: float, sides: list, materials: dict
+) -> float:
+    """Length that no strip may exceed on which a beam of this thickness [µm] and Young's modulus [GPa] is to stop [µm].
+
+    It is infinite where nothing is known without the contact.
+    """
+    shapes = [_shape(side.get("skewness"), side.get("kurtosis")) for side in sides]
+    angles = wetting(sides, materials)
+    if not angles or None in shapes:
+        return math.inf
+    (beam, substrate), highest = zip(*shapes, strict=True)
+    rms = np.array([1e-9 * side["rms_nm"] for side in sides])
+    heights, top = np.add.outer(rms[0] * np.array(beam), rms[1] * np.array(substrate)), float(rms @ highest)
+    bending = 1e9 * modulus * (1e-6 * thickness) ** 3 / 12
+    film = float(meniscus_height(humidity, temperature, angles)), -float(laplace_pressure(humidity, temperature))
+    f_max, a_left = least_law(heights, top, film)
+    return 1e6 * STRIP * decay_length(bending, ground_stiffness(f_max, a_left)) if f_max else math.inf
+
+
+#: ASSUME: estimated foundation lengths are at most this much too long; more often they are too short.
+_ESTIMATED = 1.25
+
+
+def estimated_strip(
+    thickness: float, solid: dict, medium: str, humidity: float, temperature: float, sides: list, materials: dict
+) -> float:
+    """As `longest_strip`, from the estimated force law, which is far closer but no bound; section ``solid``."""
+    shapes = [_shape(side["skewness"], side["kurtosis"]) for side in sides]
+    angles = wetting(sides, materials)
+    if not angles or None in shapes:
+        return math.inf
+    bodies = [typed(Solid, solid | stated) for stated in of_material(sides, materials)]
+    constant = None if medium == "none" else hamaker_constant(*bodies, medium)
+    elastic = composite_modulus(*bodies), medium, constant
+    film = float(meniscus_height(humidity, temperature, angles)), -float(laplace_pressure(humidity, temperature))
+    try:
+        stiffness = _estimated_stiffness(tuple(map(_summit_source, sides)), tuple(s for s, _ in shapes), elastic, film)
+    except (ValueError, ArithmeticError):
+        return math.inf  # other relations report what is out of range
+    bending = bodies[0].young_modulus * (1e-6 * thickness) ** 3 / 12
+    return 1e6 * _ESTIMATED * STRIP * decay_length(bending, stiffness)
+
+
+@functools.lru_cache(maxsize=1000)
+def _estimated_stiffness(sources, shapes, elastic, film):
+    """Estimated stiffness of the ground of a pair [Pa/m]."""
+    modulus, medium, constant = elastic
+    rms = [1e-9 * source[0] for source in sources]
+    heights = np.sort(np.add.outer(rms[0] * np.array(shapes[0]), rms[1] * np.array(shapes[1])).ravel())
+    with np.errstate(all="raise", under="ignore"):
+        surface = ProfileMoments.of_sum(map(_moments, sources))
+        return ground_stiffness(*force_law(surface, asperity(modulus, attraction(medium, constant)), heights, film))
+
+
+def sides_of(beam: str, substrate: str, surfaces: dict) -> list[dict]:
+    """Sections of the surfaces of a pair; empty if one is not defined or has no numbers (yet)."""
+    both = [surfaces.get(name, {}) for name in (beam, substrate)]
+    return both if all("rms_nm" in surface and "scans" not in surface for surface in both) else []
+
+
+def of_material(sides: list[dict], materials: dict) -> list[dict]:
+    """Stated properties of the material of each surface; none of the solid of both bodies, or of an undefined one."""
+    return [materials.get(side.get("material"), {}) for side in sides]
+
+
+def wetting(sides: list[dict], materials: dict) -> tuple[float, ...]:
+    """Contact angles of two surfaces [rad]; empty without surfaces or without water, which other relations report."""
+    angles = [math.radians(stated.get("contact_angle_deg", 0)) for stated in of_material(sides, materials)]
+    return tuple(angles) if sum(map(math.cos, angles)) > 1e-9 else ()
 
 
 @functools.cache
 def _shape(skewness, kurtosis):
     """Equally probable heights and the highest one, in units of the rms; ``None`` without a density, as above."""
+    if skewness is None:  # of a surface with measured heights
+        return None
     try:
         moments = nearest_feasible(skewness, kurtosis)
     except (ValueError, NotConverged):
         return None
     density = maxent.solve(moments.skewness, moments.kurtosis)
     return tuple(density.quantile_of_normal(_SCORES)), float(density.quantile_of_normal(_HIGHEST))
+
+
+@relation("pairs.*.beam", "pairs.*.substrate", "surfaces", "materials")
+def water_wets_the_pair(beam, substrate, surfaces, materials):
+    """Water condenses between two surfaces only if the cosines of their contact angles add up to more than zero."""
+    sides = sides_of(beam, substrate, surfaces)
+    if not sides or wetting(sides, materials):
+        return None
+    angles = " and ".join(f"{stated.get('contact_angle_deg', 0):g}" for stated in of_material(sides, materials))
+    return f"must be of a material that water wets enough: contact angles of {angles} degrees on the two surfaces"
 
 
 @relation("pairs.*.gap_um", "beam.length_um")
@@ -442,22 +595,28 @@ _SAFE = 3
     "van_der_waals",
     "water.temperature_K",
     "figures.humidity",
+    "materials",
 )
-def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature, shown_humidity):
+def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature, shown_humidity, materials):
     """The force rises to the pull-off pressure on the grid of distances, which begins where mean planes meet."""
-    pair = pairs.get(name)
-    if pair is None or any(pair[side] not in surfaces for side in SIDES):
+    both = sides_of(*(pairs.get(name, {}).get(side) for side in SIDES), surfaces)
+    if not both:
         return None  # other relations report this and the next
-    both = [surfaces[pair[side]] for side in SIDES]
+    pair = pairs[name]
     spectra = [surface["published_psd"] for surface in both if surface["psd"] == "published"]
     if any(spectrum_falls(psd["floor_nm4"], psd["plateau_nm4"]) for psd in spectra) or any(
         corner_lies_below_the_cutoff(psd["corner_rad_per_um"], psd["cutoff_rad_per_um"]) for psd in spectra
     ):
         return None
     humidities = tuple(sorted({*pair["humidities"], shown_humidity}))
-    elastic = solid["young_modulus_GPa"], solid["poisson_ratio"], medium
+    angles = wetting(both, materials)
+    if not angles:
+        return None  # no water, which another relation reports
     try:
-        forces = _estimated(tuple(map(_summit_source, both)), elastic, temperature, humidities)
+        bodies = [typed(Solid, solid | stated) for stated in of_material(both, materials)]
+        constant = None if medium == "none" else hamaker_constant(*bodies, medium)
+        elastic = composite_modulus(*bodies), medium, constant
+        forces = _estimated(tuple(map(_summit_source, both)), elastic, (temperature, angles), humidities)
     except (ValueError, ArithmeticError):
         return "must have surfaces and a solid for which the adhesion can be estimated; some value is far out of range"
     stuck = [
@@ -468,8 +627,9 @@ def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature
     humidity, repulsion, pull = stuck[0]
     return (
         f"must have surfaces rough enough and a solid stiff enough for its humidities: at {humidity}"
-        f"{' and others' if len(stuck) > 1 else ''} the estimated attraction, {1e-6 * pull:.3g} MPa, is not below a "
-        f"third of the repulsion where the mean planes meet, {1e-6 * repulsion:.3g} MPa"
+        f"{' and others' if len(stuck) > 1 else ''}, water and van der Waals forces pull with an estimated "
+        f"{1e-6 * pull:.3g} MPa and the summits resist with {1e-6 * max(repulsion, 0):.3g} MPa where the mean planes "
+        f"meet, where {_SAFE} times the pull is needed; increase rms_nm or young_modulus_GPa, or lower the humidity"
     )
 
 
@@ -481,13 +641,14 @@ def _summit_source(surface):
 
 
 @functools.lru_cache(maxsize=1000)
-def _estimated(sources, elastic, temperature, humidities):
+def _estimated(sources, elastic, water, humidities):
     """Estimated repulsion at zero distance and attraction of a pair at all humidities [Pa]."""
-    modulus, ratio, medium = elastic
+    modulus, medium, constant = elastic
+    temperature = water[0]
     with np.errstate(all="raise", under="ignore"):
         surface = ProfileMoments.of_sum(map(_moments, sources))
-        solid = asperity(reduced_modulus(1e9 * modulus, ratio), attraction(medium))
-        films = [(float(meniscus_height(h, temperature)), -float(laplace_pressure(h, temperature))) for h in humidities]
+        solid = asperity(modulus, attraction(medium, constant))
+        films = [(float(meniscus_height(h, *water)), -float(laplace_pressure(h, temperature))) for h in humidities]
         return repulsion_and_attraction(surface, solid, films)
 
 

@@ -3,6 +3,7 @@
 Keys of the configuration carry their units (``gap_um``); fields of the objects do not (``gap``).
 """
 
+import math
 import re
 from dataclasses import is_dataclass
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
@@ -14,6 +15,10 @@ _FACTORS = {
     "rad_per_um": 1e6,
     "per_um2": 1e12,
     "GPa": 1e9,
+    "MPa": 1e6,
+    "uN": 1e-6,
+    "zJ": 1e-21,
+    "deg": math.pi / 180,
     "K": 1.0,
 }
 #: Lengths of the configuration are in two units: nanometres in a micrometre.
@@ -27,6 +32,7 @@ def typed(kind: type[T], section: dict[str, Any]) -> T:
     """Section of the configuration, or settings of a job, as a frozen dataclass in SI.
 
     Fields that are dataclasses, or dicts of dataclasses, are built from nested sections; lists become tuples.
+    Numbers by name, below a key with a unit, stay a dict.
 
     Parameters
     ----------
@@ -59,7 +65,7 @@ def typed(kind: type[T], section: dict[str, Any]) -> T:
 def _converted(value, kind, factor):
     """Value of one key in SI units, converted to the type of its field."""
     if isinstance(value, dict):
-        return _section(value, kind)
+        return _section(value, kind) if factor is None else {name: item * factor for name, item in value.items()}
     if isinstance(value, list | tuple):
         return tuple(value) if factor is None else tuple(item * factor for item in value)
     return value if factor is None else value * factor

@@ -17,8 +17,6 @@ from typing import NamedTuple, Protocol
 import numba
 import numpy as np
 
-from stiction.surface.summits import mark_summits, mean_curvature
-
 
 class Attraction(Protocol):
     """Attraction of two flats as a constant stress over a short range (Dugdale): what Maugis' theory needs of it."""
@@ -148,15 +146,13 @@ class Asperity(Protocol):
     def force(self, interference: float | np.ndarray, radius: float) -> float | np.ndarray:
         """Force [N] of a sphere of this radius [m] at interferences (n,) [m]."""
 
-    def add_forces(self, heights: np.ndarray, spacing: float, step: float, force: np.ndarray) -> None:
+    def add_forces(self, tops: np.ndarray, curvatures: np.ndarray, step: float, force: np.ndarray) -> None:
         """Add the force of all summits of an equivalent surface on a flat.
 
         Parameters
         ----------
-        heights : (n1, n2) float32 array
-            [m]
-        spacing : float
-            Of the points [m].
+        tops, curvatures : (m,) float64 arrays
+            Height [m] and mean curvature [m⁻¹] of each summit; those below the mean plane are left out.
         step : float
             Of the distances [m].
         force : (n,) float64 array
@@ -179,9 +175,9 @@ class HertzAsperity:
         """Elastic force, see `Asperity`."""
         return hertz_force(interference, radius, self.modulus)
 
-    def add_forces(self, heights: np.ndarray, spacing: float, step: float, force: np.ndarray) -> None:
+    def add_forces(self, tops: np.ndarray, curvatures: np.ndarray, step: float, force: np.ndarray) -> None:
         """Add the elastic force of all summits, see `Asperity`."""
-        _add_hertz(heights, spacing, step, self.modulus, force)
+        _add_hertz(tops, curvatures, step, self.modulus, force)
 
 
 class TableScales(NamedTuple):
@@ -257,9 +253,9 @@ class MaugisTable:
         held = np.interp(np.sqrt(np.maximum(scaled - delta[0], 0)), np.sqrt(delta - delta[0]), load)
         return np.pi * self.attraction.work_of_adhesion * radius * np.where(scaled < delta[0], 0.0, held)
 
-    def add_forces(self, heights: np.ndarray, spacing: float, step: float, force: np.ndarray) -> None:
+    def add_forces(self, tops: np.ndarray, curvatures: np.ndarray, step: float, force: np.ndarray) -> None:
         """Add the force of all summits by interpolation in the table, see `Asperity`."""
-        sharp = _add_maugis(heights, spacing, step, self.scales, self.snap_off, self.load, force)
+        sharp = _add_maugis(tops, curvatures, step, self.scales, self.snap_off, self.load, force)
         if sharp:
             raise ValueError(
                 f"{sharp} summits are too sharp: their Maugis' λ is below {self.rows[0]:.2g}, a radius below "
@@ -273,30 +269,23 @@ def asperity(modulus: float, attraction: Attraction | None) -> Asperity:
 
 
 @numba.njit(cache=True, nogil=True)
-def _add_hertz(heights, spacing, step, modulus, force):
+def _add_hertz(tops, curvatures, step, modulus, force):
     """Add the Hertz force of every summit at the distances ``step * arange(n)`` [N]."""
-    summits = np.empty(heights.shape[1], np.bool_)
-    for i in range(1, heights.shape[0] - 1):
-        mark_summits(heights, i, summits)
-        for j in range(1, heights.shape[1] - 1):
-            if summits[j] and heights[i, j] > 0:
-                factor = 4 / 3 * modulus / np.sqrt(mean_curvature(heights, i, j, spacing))
-                for k in range(min(int(heights[i, j] / step) + 1, len(force))):
-                    overlap = max(heights[i, j] - k * step, 0.0)
-                    force[k] += factor * overlap * np.sqrt(overlap)
+    for n in range(tops.size):
+        if tops[n] > 0:
+            factor = 4 / 3 * modulus / np.sqrt(curvatures[n])
+            for k in range(min(int(tops[n] / step) + 1, len(force))):
+                overlap = max(tops[n] - k * step, 0.0)
+                force[k] += factor * overlap * np.sqrt(overlap)
 
 
 @numba.njit(cache=True, nogil=True)
-def _add_maugis(heights, spacing, step, scales, snap_off, load, force):
+def _add_maugis(tops, curvatures, step, scales, snap_off, load, force):
     """Add the Maugis force of every summit, by interpolation in the table; returns the number of summits before it."""
-    sharp = 0
-    summits, roots = np.empty(heights.shape[1], np.bool_), np.empty(force.size)
-    for i in range(1, heights.shape[0] - 1):
-        mark_summits(heights, i, summits)
-        for j in range(1, heights.shape[1] - 1):
-            if summits[j] and heights[i, j] > 0:
-                sphere = np.float64(heights[i, j]), 1 / mean_curvature(heights, i, j, spacing)
-                sharp += not _add_sphere(sphere, step, scales, snap_off, load, roots, force)
+    sharp, roots = 0, np.empty(force.size)
+    for n in range(tops.size):
+        if tops[n] > 0:
+            sharp += not _add_sphere((tops[n], 1 / curvatures[n]), step, scales, snap_off, load, roots, force)
     return sharp
 
 

@@ -260,6 +260,11 @@ def adhesion_energies(distance: np.ndarray, curve: Callable[[int], np.ndarray], 
     return _each_sample(lambda f: adhesion_energy(distance, f), curve, samples)
 
 
+def pull_offs(distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int) -> np.ndarray:
+    """Largest attraction f_max of all sampled curves (m,) [Pa]; parameters and errors as in `parametrise`."""
+    return _each_sample(lambda f: extremum(distance, f)[1], curve, samples)
+
+
 # Eq. (12): the analytical force law
 
 

@@ -9,14 +9,16 @@ with the solid pressure p_s (spheres fitted to the summits, Hertz or Maugis) and
 ASSUME: summits below the mean plane are never in contact.
 """
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numba
 import numpy as np
 
 from stiction.contact.asperity import Asperity
 from stiction.surface.field import RoughSurface
+from stiction.surface.summits import find_summits
 
 
 @dataclass(frozen=True)
@@ -43,13 +45,20 @@ class DistanceGrid:
         return self.step * np.arange(-self.below, self.above)
 
 
+class Summits(NamedTuple):
+    """Summits of an equivalent surface: the asperities in contact."""
+
+    tops: np.ndarray  #: heights, (m,) [m]
+    curvatures: np.ndarray  #: mean curvatures, (m,) [m⁻¹]
+    area: float  #: in which a point can be a summit [m²]
+
+
 @dataclass(frozen=True)
-class SurfacePair:
-    """Two surfaces in contact, the model of their asperities and the step of the distances."""
+class EquivalentSurface:
+    """The sum z = z₁ + z₂ of two rough surfaces and the step of the distances: all of a pair but its elasticity."""
 
     beam: RoughSurface
     substrate: RoughSurface
-    asperity: Asperity
     step: float  #: of the distances [m]
     every: int = 1  #: summits and area are taken from every n-th point of the drawn grid
 
@@ -73,6 +82,29 @@ class SurfacePair:
         self.substrate.add_to(heights, substrate_rng)
         return np.ascontiguousarray(heights[:: self.every, :: self.every])
 
+    def summits(self, heights: np.ndarray) -> Summits:
+        """Summits of one equivalent surface z (n1, n2) [m].
+
+        ASSUME: a summit is higher than its eight neighbours on this grid, and a sphere of its mean curvature there.
+        """
+        spacing = self.beam.grid.spacing * self.every
+        tops, curvatures, _ = find_summits(heights, spacing)
+        # ASSUME: the area is the one in which a point can be a summit, 1.4 % less than that of a strip of 1.5 µm,
+        # because points on the edge have fewer than eight neighbours.
+        return Summits(tops, curvatures, (heights.shape[0] - 2) * (heights.shape[1] - 2) * spacing**2)
+
+    def bearing_area(self, heights: np.ndarray) -> np.ndarray:
+        """Share A of z (n1, n2) [m] above the distances ``distances.bearing``, (n_bearing,) [-]."""
+        grid = self.distances
+        return bearing_area(heights, grid.step, grid.below, grid.above)
+
+
+@dataclass(frozen=True)
+class SurfacePair(EquivalentSurface):
+    """Two surfaces in contact."""
+
+    asperity: Asperity = field(kw_only=True)  #: model of one summit
+
     def contact(self, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solid pressure and bearing area of one equivalent surface.
 
@@ -91,17 +123,23 @@ class SurfacePair:
         Raises
         ------
         ValueError
-            If a summit is too sharp, too blunt or indented too deeply for the tabulated asperity.
+            If a summit is too sharp for the model of the asperities.
         """
-        grid = self.distances
-        spacing = self.beam.grid.spacing * self.every
-        force = np.zeros(grid.above)
-        # ASSUME: a summit is higher than its eight neighbours on this grid, and a sphere of its mean curvature there.
-        self.asperity.add_forces(heights, spacing, grid.step, force)
-        # ASSUME: the area is the one in which a point can be a summit, 1.4 % less than that of a strip of 1.5 µm,
-        # because points on the edge have fewer than eight neighbours.
-        inside = (heights.shape[0] - 2) * (heights.shape[1] - 2) * spacing**2
-        return force / inside, bearing_area(heights, grid.step, grid.below, grid.above)
+        solid = solid_pressure(self.asperity, self.summits(heights), self.distances)
+        return solid, self.bearing_area(heights)
+
+
+def solid_pressure(asperity: Asperity, summits: Summits, distances: DistanceGrid) -> np.ndarray:
+    """Pressure p_s of the summits at ``distances.solid``, (n_solid,) [Pa].
+
+    Raises
+    ------
+    ValueError
+        If a summit is too sharp for the model of the asperities.
+    """
+    force = np.zeros(distances.above)
+    asperity.add_forces(summits.tops, summits.curvatures, distances.step, force)
+    return force / summits.area
 
 
 @numba.njit(cache=True, nogil=True)
@@ -140,12 +178,39 @@ def contact_of_samples(
 
     ``streams(k)`` returns the streams of the two surfaces of sample k; its result does not depend on other samples.
     """
-    solid_pressure, bearing_areas = [], []
+    return contacts_of_samples([pair], streams, samples)[0]
+
+
+def contacts_of_samples(
+    pairs: Sequence[SurfacePair],
+    streams: Callable[[int], tuple[np.random.Generator, np.random.Generator]],
+    samples: Iterable[int],
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """As `contact_of_samples`, for several pairs with the same random numbers.
+
+    A surface that is the same object in several pairs is drawn once for all of them.
+    """
+    found = [([], []) for _ in pairs]
     for k in samples:
-        try:
-            solid, bearing = pair.contact(pair.draw(*streams(k)))
-        except ValueError as error:
-            raise ValueError(f"sample {k}: {error}") from error
-        solid_pressure.append(solid.astype(np.float32))
-        bearing_areas.append(bearing.astype(np.float32))
-    return np.array(solid_pressure), np.array(bearing_areas)
+        for curves, pair, heights in zip(found, pairs, _drawn(pairs, streams, k), strict=True):
+            try:
+                contact = pair.contact(heights)
+            except ValueError as error:
+                raise ValueError(f"sample {k}: {error}") from error
+            for column, curve in zip(curves, contact, strict=True):
+                column.append(curve.astype(np.float32))
+    return [(np.array(solid), np.array(bearing)) for solid, bearing in found]
+
+
+def _drawn(pairs, streams, sample):
+    """Equivalent surface of one sample of each pair."""
+    if len(pairs) == 1:
+        yield pairs[0].draw(*streams(sample))
+        return
+    strips = {}
+    for pair in pairs:
+        for side, surface in enumerate((pair.beam, pair.substrate)):
+            if (side, id(surface)) not in strips:
+                strips[side, id(surface)] = surface.draw(streams(sample)[side])
+        heights = strips[0, id(pair.beam)] + strips[1, id(pair.substrate)]
+        yield np.ascontiguousarray(heights[:: pair.every, :: pair.every])

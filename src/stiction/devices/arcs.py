@@ -6,8 +6,8 @@ bends the beam, this is
 
 .. math:: e_\mathrm{tip} = \frac{3 E t^3 h^2}{8 L^4} :
 
-the tip comes free if its adhesion energy is smaller. The wedge is 0.1 to 0.2 µm long, far shorter than the strips of a
-beam, so that the end state ``ARC`` of the finite elements depends on their length and is not used here.
+the tip comes free if its adhesion energy is smaller. The wedge is less than 0.1 µm long, far shorter than the strips of
+a beam, so that the end state ``ARC`` of the finite elements depends on their length and is not used here.
 
 ASSUME: the adhesion energy of the tip is that of a strip about as long as the wedge, drawn independently of the strips
 of the crack.

@@ -10,9 +10,12 @@ have no distribution.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+
+#: Relative change of dimensions and of Young's modulus in either direction for their slopes.
+STEP = 0.05
 
 
 @dataclass(frozen=True)
@@ -37,10 +40,23 @@ class Budget:
         """Relative standard uncertainty of the length [-]."""
         return float(np.sqrt(self.slopes @ self.covariance @ self.slopes))
 
+    @property
+    def uncorrelated(self) -> "Budget":
+        """Budget of the same inputs, taken as independent."""
+        return replace(self, covariance=np.diag(np.diag(self.covariance)))
+
     def effect(self, group: Sequence[str]) -> float:
         """Relative standard uncertainty of the length due to some inputs together, the others being exact [-]."""
         of = self._places(group)
         return float(np.sqrt(self.slopes[of] @ self.covariance[np.ix_(of, of)] @ self.slopes[of]))
+
+    def error_of_effect(self, group: Sequence[str], slope_errors: np.ndarray) -> float:
+        """Standard error of `effect` due to those of the slopes of all inputs (k,) [-]."""
+        of, effect = self._places(group), self.effect(group)
+        if effect == 0:
+            return 0.0
+        gradient = self.covariance[np.ix_(of, of)] @ self.slopes[of] / effect
+        return float(np.linalg.norm(gradient * np.asarray(slope_errors)[of]))
 
     def remaining(self, group: Sequence[str]) -> float:
         """Relative standard uncertainty of the length that remains if some inputs were known exactly [-].
@@ -116,10 +132,13 @@ def ranked(budget: Budget, groups: Mapping[str, Sequence[str]]) -> list[tuple[st
     return sorted(rows, key=lambda row: row[2])
 
 
-def advice(budget: Budget, groups: Mapping[str, Sequence[str]]) -> str:
-    """Sentence on what to measure better: the group whose exact knowledge would reduce the uncertainty most."""
+def advice(budget: Budget, groups: Mapping[str, Sequence[str]], response: str = "length") -> str:
+    """Sentence on what to measure better: the group whose exact knowledge would reduce the uncertainty most.
+
+    ``response`` is what the budget is of.
+    """
     name, _, remaining = ranked(budget, groups)[0]
     return (
-        f"Measure {name} better: known exactly, the standard uncertainty of the length would fall from "
-        f"{budget.total:.1%} to {remaining:.1%}."
+        f"Measure {name} better: known exactly, the standard uncertainty of the {response} would fall from "
+        f"{100 * budget.total:.1f} to {100 * remaining:.1f} %."
     )

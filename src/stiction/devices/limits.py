@@ -9,8 +9,9 @@ from stiction.beam.foundation import ELEMENT, STRIP
 
 #: Largest plastic share of the contact area. Pair c has 58 %, and its beams stick at 72 % of the predicted length.
 PLASTIC = 0.02
-#: Smallest gap, in units of film height plus rms roughness.
-FILMS = 20.0
+#: ASSUME: smallest gap, in units of film height plus rms roughness. The model takes the range of the force laws as
+#: short compared with the gap: with a film of half the gap, Eq. (13) gives half of the adhesion energy.
+FILMS = 20
 #: Largest slope of a beam.
 ROTATION = 0.1
 #: Smallest ratio of crack length to thickness.
@@ -87,12 +88,17 @@ def default_material(name: str, stated: Sequence[str]) -> str | None:
     return f"{len(missing)} properties of {name} are not stated; those of polysilicon are used: {', '.join(missing)}."
 
 
+def least_gap(film: float, rms: float) -> float:
+    """Smallest gap in which beam and film are apart [m]; height h_C of the film and rms roughness [m]."""
+    return FILMS * (film + rms)
+
+
 def filled_gap(gap: float, film: float, rms: float) -> str | None:
     """Gap that is not much wider than film h_C and roughness, so that beam and film are not apart."""
-    if gap >= FILMS * (film + rms):
+    if gap >= least_gap(film, rms):
         return None
     return (
-        f"The gap of {gap * 1e6:.3g} µm is less than {FILMS:.0f} times film height plus roughness, "
+        f"The gap of {gap * 1e6:.3g} µm is less than {FILMS} times film height plus roughness, "
         f"{(film + rms) * 1e9:.3g} nm: the water acts on the beam ahead of its contact, too."
     )
 

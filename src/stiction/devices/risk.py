@@ -114,7 +114,7 @@ def samples_for(share: float) -> int:
 
 
 def _sampled_length(ordered, share):
-    """Largest order statistic with an upper bound of at most ``share`` [m]; needs `samples_for` lengths."""
+    """Largest order statistic below which a share of at most ``share`` lies, with confidence."""
     n = len(ordered)
     stuck = np.arange(int(share * n) + 1)
     allowed = stuck[upper_bound(stuck, n) <= share]
@@ -122,7 +122,7 @@ def _sampled_length(ordered, share):
 
 
 def _quantile(ordered, share):
-    """Quantile of Harrell and Davis [m] and its standard error by Maritz and Jarrett [m]."""
+    """Quantile of Harrell and Davis and its standard error by Maritz and Jarrett."""
     n = len(ordered)
     steps = betainc((n + 1) * share, (n + 1) * (1 - share), np.arange(n + 1) / n)
     weights = np.diff(steps)
@@ -130,6 +130,30 @@ def _quantile(ordered, share):
     values, weights = ordered[used], weights[used]
     mean = weights @ values
     return mean, np.sqrt(weights @ (values - mean) ** 2)
+
+
+def sampled_bound(values: np.ndarray, share: float) -> tuple[float, float, float]:
+    """Value below which a share of all lies: one-sided 95 % lower bound, estimate and its standard error.
+
+    The bound is an order statistic, without an assumption about the distribution.
+
+    Parameters
+    ----------
+    values : (n,) array
+        Samples, in any unit, which is that of the results.
+    share : float
+        [-]
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than `samples_for` samples.
+    """
+    if len(values) < samples_for(share):
+        raise ValueError(f"a bound for a share of {share:g} needs {samples_for(share)} samples, got {len(values)}")
+    ordered = np.sort(values)
+    estimate, error = _quantile(ordered, share)
+    return float(_sampled_length(ordered, share)), float(estimate), float(error)
 
 
 def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator) -> SafeLength:
@@ -156,9 +180,7 @@ def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator) ->
     fitted = fit_tail(sticking)
     n = len(sticking)
     if n >= samples_for(share):
-        ordered = np.sort(sticking)
-        estimate, error = _quantile(ordered, share)
-        return SafeLength(share, float(_sampled_length(ordered, share)), float(estimate), float(error), Basis.SAMPLED)
+        return SafeLength(share, *sampled_bound(sticking, share), Basis.SAMPLED)
     estimate = fitted.length(share)
     errors, pivots = scaled_errors(n, share, rng)
     bound = estimate * np.exp(-np.quantile(pivots, CONFIDENCE) * fitted.slope)
@@ -166,21 +188,25 @@ def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator) ->
     return SafeLength(share, float(bound), estimate, float(estimate * fitted.slope * errors.std()), basis)
 
 
-def error_of_surfaces(without_group: np.ndarray) -> float | np.ndarray:
-    """Standard error due to the finite number of sampled surfaces, by the jackknife over groups of them.
+def error_of_surfaces(of_group: np.ndarray) -> float | np.ndarray:
+    """Standard error due to the finite number of sampled surfaces, from the scatter between groups of them.
+
+    It contains the error due to the number of devices, divided by the square root of the number of groups: a jackknife
+    would multiply it, because a slightly changed ground may stop a crack at quite another place.
 
     Parameters
     ----------
-    without_group : (groups, ...) array
-        The length [m], each time computed without one group of the samples and with the same random numbers.
+    of_group : (groups, ...) array
+        The length [m], each time computed from one group of the samples alone.
 
     Raises
     ------
     ValueError
         If there are fewer than two groups.
     """
-    values = np.asarray(without_group, float)
+    values = np.asarray(of_group, float)
     groups = len(values)
     if groups < 2:
-        raise ValueError(f"a jackknife needs two groups of samples, got {groups}")
-    return np.sqrt((groups - 1) / groups * np.sum((values - values.mean(axis=0)) ** 2, axis=0))
+        raise ValueError(f"a scatter needs two groups of samples, got {groups}")
+    values = values - values[0]  # equal values, such as arcs alone, have no error by rounding
+    return values.std(axis=0, ddof=1) / np.sqrt(groups)

@@ -9,7 +9,7 @@ ASSUME: the patch stays parallel to the substrate. A patch that tilts comes off 
 
 import numpy as np
 
-from stiction.devices.risk import stuck_share
+from stiction.devices.risk import sampled_bound, stuck_share
 from stiction.estimates import jackknife
 
 
@@ -29,6 +29,33 @@ def stuck_patches(pull_off: np.ndarray, restoring_forces: np.ndarray) -> tuple[n
         [N]
     """
     return stuck_share(-np.asarray(restoring_forces), -pull_off)
+
+
+def safe_force(pull_off: np.ndarray, share: float) -> tuple[float, float, float]:
+    """Smallest restoring force whose one-sided 95 % upper bound of P(stuck) is at most ``share`` [N].
+
+    It is an order statistic of the sampled forces, without an assumption about their distribution; a fit of their end,
+    as for lengths of beams, has not been verified.
+
+    Parameters
+    ----------
+    pull_off : (n,) array
+        Pull-off forces [N]; at least `stiction.devices.risk.samples_for` of them.
+    share : float
+        p [-].
+
+    Returns
+    -------
+    force, estimate, error : float
+        The safe force, the force with P(stuck) = p, and the standard error of the estimate [N].
+
+    Raises
+    ------
+    ValueError
+        If there are too few forces for this share.
+    """
+    force, estimate, error = sampled_bound(-np.asarray(pull_off), share)
+    return -force, -estimate, error
 
 
 def peak(x: np.ndarray, values: np.ndarray) -> float:

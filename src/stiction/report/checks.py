@@ -24,7 +24,7 @@ from stiction.contact.forcelaw import admissible, coefficients, energy
 from stiction.errors import NotConverged
 from stiction.estimates import jackknife, mean_with_error
 from stiction.models import SURFACE_MODELS, surface_model
-from stiction.report.format import TO_MJ, TO_UM, number, with_error
+from stiction.report.format import TO_MJ, TO_NM, TO_UM, number, with_error
 from stiction.report.tables_surfaces import surface_statistics
 from stiction.stages.forces import vectors
 from stiction.stages.heights import measured, substitution
@@ -294,7 +294,8 @@ def of_surfaces(
     characters : dict
         (surface, model) to the dataset of stage character.
     targets : dict
-        Surface to rms_nm, skewness and kurtosis as measured; feasible ones replace the last two.
+        Surface to rms_nm, skewness and kurtosis as given; feasible ones replace the last two. Surfaces described by
+        scans have the rms of their heights.
     defects : dict
         Surface to the share of the variance that no Gaussian field provides.
     """
@@ -302,7 +303,8 @@ def of_surfaces(
         yield heights_are_as_measured(surface, found)
     for (surface, model), character in characters.items():
         used = heights[surface] if model == "NG" else {"skewness": 0.0, "kurtosis": 3.0}
-        wanted = targets[surface] | {name: float(used[name]) for name in ("skewness", "kurtosis")}
+        given = targets.get(surface, {"rms_nm": TO_NM * float(heights[surface].rms)})
+        wanted = given | {name: float(used[name]) for name in ("skewness", "kurtosis")}
         yield from moments_meet_targets(f"{surface} {model}", character, wanted, defects[surface])
 
 

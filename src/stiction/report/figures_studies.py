@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 from stiction.analysis import convergence
 from stiction.analysis import variants as comparison
 from stiction.analysis.plasticity import ONSET
-from stiction.constants import HARDNESS
 from stiction.contact import forcelaw
 from stiction.report.format import TO_GPA, TO_MJ, TO_MPA, TO_NM, TO_UM, with_error
 from stiction.report.published import rows
@@ -33,7 +32,7 @@ from stiction.report.style import (
     styled,
 )
 from stiction.report.tables_studies import variant_label
-from stiction.studies.variant import cases_of
+from stiction.variants.beams import cases_of
 
 _COLOURS = ("#0072B2", "#56B4E9", "#E69F00", "#D55E00", "#CC79A7", "#009E73", "#882255", "#7F7F00")
 _ZERO = {"color": "0.6", "linewidth": 0.6, "zorder": 0}
@@ -97,13 +96,15 @@ def summit_stresses(datasets: Mapping[str, xr.Dataset]) -> Figure:
     """
     figure, axes, lines = columns_of_panels(len(datasets), 1, _width, 2.6, sharey=True)
     axes = axes[:, 0]
-    onset = TO_GPA * ONSET * HARDNESS
-    top = max([1.15 * onset, *(1.05 * TO_GPA * stress for data in datasets.values() for stress in data.stress.values)])
+    onsets = [TO_GPA * ONSET * float(found.hardness) for found in datasets.values()]
+    top = max(
+        [1.15 * max(onsets), *(1.05 * TO_GPA * stress for data in datasets.values() for stress in data.stress.values)]
+    )
     counts = LogNorm(vmin=_FAINTEST)
     cells = [_cells(panel, dataset, counts, top) for panel, dataset in zip(axes, datasets.values(), strict=True)]
     # A bar from 1 to 1 has no length.
     counts.vmax = max([2, *(count for found in cells for count in found.get_array())])
-    for panel, dataset in zip(axes, datasets.values(), strict=True):
+    for panel, dataset, onset in zip(axes, datasets.values(), onsets, strict=True):
         panel.axhline(onset, color="C3", linestyle="--")
         place, style = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "path_effects": OUTLINED}
         panel.annotate(r"$0.6\,\sigma_H$", (0.95, onset), (0, 2), place, "offset points", **style)

@@ -188,3 +188,11 @@ def save(figure: Figure, *paths: str | Path) -> None:
         _WRITERS[Path(path).suffix](figure, content)
         figure.dpi = resolution  # writing a PDF sets it to 72
         save_bytes(content.getvalue(), path)
+
+
+@styled
+def png(figure: Figure) -> bytes:
+    """Content of a PNG file of a figure, for pages that contain their figures."""
+    content = io.BytesIO()
+    _write_png(figure, content)
+    return content.getvalue()

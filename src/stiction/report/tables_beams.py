@@ -25,7 +25,12 @@ _PUBLISHED = {"NG": ("ng", "ng_std"), "GEO": ("geo", "geo_std")}
 # Table III
 
 
-def table_3(beams: Mapping[Case, xr.Dataset], forces: Mapping[Case, xr.Dataset], published: pd.DataFrame) -> Table:
+def table_3(
+    beams: Mapping[Case, xr.Dataset],
+    forces: Mapping[Case, xr.Dataset],
+    published: pd.DataFrame,
+    by_scans: Mapping[tuple[str, float], float] | None = None,
+) -> Table:
     """Table III: crack lengths and adhesion energies of released beams.
 
     Parameters
@@ -34,13 +39,21 @@ def table_3(beams: Mapping[Case, xr.Dataset], forces: Mapping[Case, xr.Dataset],
         (pair, humidity, model) to the datasets of stages beams and forces; beams of model GEO have the forces of NG.
     published : pandas.DataFrame
         The published table, rows of the paper's own pairs.
+    by_scans : dict, optional
+        (pair, humidity) to the relative standard error of ē that finite scans leave, of pairs with measured surfaces.
     """
-    frame = pd.DataFrame([_row_3(key, beams[key], forces[*key[:2], surface_model(key[2])], published) for key in beams])
+    rows = [_row_3(key, beams[key], forces[*key[:2], surface_model(key[2])], published) for key in beams]
+    if by_scans:
+        rows = [row | _by_scans(row, by_scans) for row in rows]
+    frame = pd.DataFrame(rows)
     caption = (
         "Table III: crack length of the S-shaped beams, mean ± standard deviation over the beams; se: standard error of"
         " the mean, over beams and sampled pairs of surfaces; deviations from the published and from the measured "
-        "length."
+        "length. S/arc/free: end states of the beams; an arc is held by its tip alone, and how many beams end so "
+        "depends on the length of the strips, so that it is no prediction."
     )
+    if by_scans:
+        caption += " Scans: standard error of the mean that the finite scans of measured surfaces leave."
     return Table(frame, caption, pd.DataFrame([_cells_3(row) for _, row in frame.iterrows()]))
 
 
@@ -84,19 +97,34 @@ def _simulated(beams, forces):
     return row | {_share(state): float(ended(beams, state).mean()) for state in STATES}
 
 
+def _by_scans(row, relative):
+    """Standard errors of the means of one case that finite scans leave.
+
+    They are those of the surfaces in use: there are none for Gaussian heights.
+    """
+    error = relative.get((row["pair"], row["relative_humidity"]), np.nan) if row["model"] != "G" else np.nan
+    return {
+        "crack_length_scans_se_um": abs(CRACK_LENGTH_POWER) * error * row["crack_length_um"],
+        "adhesion_energy_scans_se_J_per_m2": error * row["adhesion_energy_J_per_m2"],
+        "meso_energy_scans_se_J_per_m2": error * row["meso_energy_J_per_m2"],
+    }
+
+
 def _share(state):
     """Name of the column with the share of an end state."""
     return f"share_{state.lower().replace('-', '_')}"
 
 
 def _cells_3(row):
-    """One case as text."""
-    return {
+    """One case as text; without measured surfaces it has no errors by scans."""
+    by_scans = row.get("crack_length_scans_se_um", np.nan), row.get("meso_energy_scans_se_J_per_m2", np.nan)
+    cells = {
         "pair": row.pair,
         "RH": f"{row.relative_humidity:g}",
         "model": row.model,
         "l_s [µm]": with_error(row.crack_length_um, row.crack_length_std_um),
         "se": error_alone(row.crack_length_se_um),
+        "se, scans": error_alone(by_scans[0]),
         "published": with_error(row.published_um, row.published_std_um),
         "dev. published [%]": number(row.deviation_percent, "+.1f"),
         "experiment": with_error(row.experiment_um, row.experiment_std_um),
@@ -104,9 +132,12 @@ def _cells_3(row):
         "published bias [%]": number(row.published_bias_error_percent, "g"),
         "Γ [mJ/m²]": number(TO_MJ * row.adhesion_energy_J_per_m2, ".3g"),
         "ē [mJ/m²]": number(TO_MJ * row.meso_energy_J_per_m2, ".3g"),
+        "se of ē, scans": error_alone(TO_MJ * by_scans[1]),
         "cv(ē)": number(row.meso_energy_cv, ".3f"),
         "S/arc/free [%]": "/".join(f"{100 * row[_share(state)]:.3g}" for state in STATES),
     }
+    scanned = "crack_length_scans_se_um" in row
+    return {name: text for name, text in cells.items() if scanned or "scans" not in name}
 
 
 # Fit by Eq. (12), Fig. 5

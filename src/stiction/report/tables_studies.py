@@ -11,7 +11,7 @@ from stiction.estimates import mean_with_error
 from stiction.report.format import MISSING, UM, percent, with_error
 from stiction.report.published import value
 from stiction.report.tables import Table
-from stiction.studies.variant import cases_of
+from stiction.variants.beams import cases_of
 
 _LABELS = {
     "van_der_waals": "vdW: {}",

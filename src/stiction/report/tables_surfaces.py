@@ -67,7 +67,7 @@ def table_1(
     characters : dict
         (surface, model) to the dataset of stage character.
     measured : dict
-        Surface to its section of the configuration, with the measured statistics (AFM).
+        Surface to the measured statistics (AFM), by the keys of the configuration.
     published : pandas.DataFrame
         The published table, rows of the paper's own surfaces.
     substitutions : dict

@@ -6,17 +6,25 @@ directly or through other modules. This module uses only the standard library.
 
 import ast
 import hashlib
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 PACKAGE = Path(__file__).parents[1]
 #: Modules that do not affect any result: they report progress and errors, or reject a configuration.
-SILENT = {"stiction.progress", "stiction.run.logs", "stiction.config.messages", "stiction.config.relations"}
+SILENT = {"stiction.progress", "stiction.run.logs", "stiction.config.messages"}
+SILENT |= {"stiction.config.relations", "stiction.config.relations_devices"}
 #: Fields of a syntax tree that do not affect what the code does.
 _WITHOUT_MEANING = {"kind", "type_comment", "type_ignores"}
 
 
-def fingerprint(script: str | Path) -> dict[str, str]:
+def _compute(_determined_by, compute):
+    """Result of a function, which is not kept."""
+    return compute()
+
+
+def fingerprint(script: str | Path, remember: Callable[[object, Callable[[], Any]], Any] = _compute) -> dict[str, str]:
     """Hash a script and every module of the package that it imports, directly or through other modules.
 
     The hashes do not depend on comments, docstrings and formatting, and the modules in ``SILENT`` are left out, so that
@@ -25,6 +33,8 @@ def fingerprint(script: str | Path) -> dict[str, str]:
     Parameters
     ----------
     script : path
+    remember : callable
+        Keeps what is found in a file of the same content, see `stiction.run.remembered.Remembered`.
 
     Returns
     -------
@@ -36,7 +46,7 @@ def fingerprint(script: str | Path) -> dict[str, str]:
         path = open_files.pop()
         name = _name(path)
         if name not in reached:
-            reached[name], imports = _read(path, path.stat().st_mtime_ns)
+            reached[name], imports = _read(path, path.stat().st_mtime_ns, remember)
             open_files += imports
     return dict(sorted(reached.items()))
 
@@ -49,24 +59,35 @@ def _name(path):
 
 
 @cache
-def _read(path, _modified):
+def _read(path, _modified, remember):
     """Hash of one file and the files of the package that it imports."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    imports = [module for node in ast.walk(tree) for module in imported(node) if _name(module) not in SILENT]
-    return hashlib.sha256(canonical(tree).encode()).hexdigest()[:8], imports
+    text = path.read_bytes()
+    code = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
+    hashed, names = remember([code, hashlib.sha256(text).hexdigest()], lambda: _parsed(text))
+    return hashed, [module for name in names for module in files_of(name) if _name(module) not in SILENT]
 
 
-def imported(node: ast.AST) -> list[Path]:
-    """Files of the package that an import statement refers to; empty for any other node."""
+def _parsed(text):
+    """Hash of a module, and the full names of everything of the package that it imports."""
+    tree = ast.parse(text)
+    names = [name for node in ast.walk(tree) for name in imported(node)]
+    return [hashlib.sha256(canonical(tree).encode()).hexdigest()[:8], names]
+
+
+def imported(node: ast.AST) -> list[str]:
+    """Full names of what an import statement imports of the package; empty for any other node."""
     if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "stiction":
-        names = [(*node.module.split("."), alias.name) for alias in node.names]
-    elif isinstance(node, ast.Import):
-        names = [alias.name.split(".") for alias in node.names if alias.name.startswith("stiction.")]
-    else:
-        return []
-    # The last part is a module, or an object defined in the module named by the parts before it.
-    paths = [[PACKAGE.joinpath(*parts[1:end]).with_suffix(".py") for end in (None, -1)] for parts in map(list, names)]
-    return [path for both in paths for path in both if path != PACKAGE.with_suffix(".py") and path.is_file()]
+        return [f"{node.module}.{alias.name}" for alias in node.names]
+    if isinstance(node, ast.Import):
+        return [alias.name for alias in node.names if alias.name.startswith("stiction.")]
+    return []
+
+
+def files_of(name: str) -> list[Path]:
+    """Files of the package that a full name refers to: a module, or the module that defines an object."""
+    parts = name.split(".")
+    paths = [PACKAGE.joinpath(*parts[1:end]).with_suffix(".py") for end in (None, -1)]
+    return [path for path in paths if path != PACKAGE.with_suffix(".py") and path.is_file()]
 
 
 def canonical(node: object) -> str:

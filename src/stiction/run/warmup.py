@@ -21,7 +21,6 @@ from stiction.streams import stream
 from stiction.surface import maxent
 from stiction.surface.field import RoughSurface, StripGrid
 from stiction.surface.spectrum import CutoffSelfAffine
-from stiction.surface.summits import find_summits
 from stiction.surface.translation import Translation
 
 
@@ -31,10 +30,9 @@ def contact_kernels() -> None:
     grid = StripGrid(1e-6, 1e-6, 1e-8, 0.0)
     surface = RoughSurface(CutoffSelfAffine(1, 0.1, 1e7, 1e8), Translation(maxent.GAUSSIAN), 1e-9, grid)
     for through in ("water", "none"):
-        pair = SurfacePair(surface, surface, asperity(reduced_modulus(164e9, 0.23), attraction(through)), 1e-10)
-        heights = pair.draw(rng, rng)
-        solid, bearing = pair.contact(heights)
-    find_summits(heights, 1e-8)
+        model = asperity(reduced_modulus(164e9, 0.23), attraction(through))
+        pair = SurfacePair(surface, surface, 1e-10, asperity=model)
+        solid, bearing = pair.contact(pair.draw(rng, rng))
     starts = pair.distances.solid[0], pair.distances.bearing[0]
     distance, curve = forcelaw.humid_curves(solid[None], bearing[None], starts, 1e-10, (1e-9, 1e6))
     forcelaw.parametrise(distance, curve, 1)

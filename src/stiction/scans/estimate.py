@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from stiction.errors import ScanError
+from stiction.errors import NotConverged, ScanError
 from stiction.estimates import jackknife
 from stiction.scans import periodogram as spectra
 from stiction.scans.levelling import Levelling, level, line_jump
@@ -25,7 +25,6 @@ from stiction.scans.quantiles import (
     COMPARED,
     SCORES,
     Feasible,
-    MeasuredDensity,
     compared_slopes,
     correlation_areas,
     feasible,
@@ -35,6 +34,8 @@ from stiction.scans.quantiles import (
 )
 from stiction.scans.scan import Frame, Scan
 from stiction.scans.whittle import Reach, WhittleFit, fit, reach, tabulated, tip_reach
+from stiction.streams import stream
+from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.maxent import HeightDensity
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 
@@ -44,6 +45,8 @@ FEWEST_WAVELENGTHS, ENOUGH_WAVELENGTHS = 4, 10
 _SAME_SIZE = 0.01
 #: Number of times that the bias of levelling is estimated: the second time on the surface without the first bias.
 _ROUNDS = 2
+#: Fewest model scans of a round, unless others are given.
+_MODEL_SCANS = 24
 #: Heights farther apart than this number of wavelengths of the corner are not correlated.
 _CORRELATED = 2
 #: Limits of the flags: error by tiles over that of the closed form, χ² per degree of freedom, sector ratio, p, and step
@@ -196,15 +199,17 @@ class SurfaceEstimate:
 
 
 def estimate(
-    scans: Sequence[Scan], settings: Settings, rngs: Callable[[int], Iterable[np.random.Generator]]
+    scans: Sequence[Scan],
+    settings: Settings | None = None,
+    rngs: Callable[[int], Iterable[np.random.Generator]] | None = None,
 ) -> SurfaceEstimate:
     """Estimate a surface from its scans.
 
     Parameters
     ----------
     scans : sequence of Scan
-    settings : Settings
-    rngs : callable
+    settings : Settings, optional
+    rngs : callable, optional
         Returns the streams of the model scans of round 0 or 1, one per model scan; in each round at least 8 and as many
         as scans.
 
@@ -213,6 +218,7 @@ def estimate(
     ScanError
         If the scans cannot be used, or no surface has their heights and spectrum.
     """
+    settings, rngs = settings or Settings(), rngs or _streams(len(scans))
     found = inspect(scans, settings)
     measured = quantiles(found.levelled)
     values = found.moments
@@ -240,6 +246,22 @@ def estimate(
     )
 
 
+def nearest_density(found: Inspection) -> Feasible | None:
+    """Maximum-entropy density of the scans as they are, before the bias is known; ``None`` if there is none near.
+
+    Raises
+    ------
+    ScanError
+        If no surface has the heights and the spectrum of the scans.
+    """
+    return _model(found, found.moments, quantiles(found.levelled))[1]
+
+
+def _streams(scans):
+    """Streams of 24 model scans, or as many as there are scans, by round."""
+    return lambda round_number: (stream(0, "estimate", round_number, k) for k in range(max(_MODEL_SCANS, scans)))
+
+
 def _model(found, values, measured):
     """Surface with these moments, or with the measured density if there is none, and the maximum-entropy density."""
     spectrum = found.fit.spectrum(found.reach.nyquist)
@@ -253,7 +275,7 @@ def _model(found, values, measured):
         density = feasible(*map(float, values[1:]), lambda: fallback.covariance[1:, 1:] / len(found.names))
         model = fallback if density is None else surface(density.density)
         model.underlying  # noqa: B018
-    except ValueError as reason:
+    except (ValueError, NotConverged) as reason:
         raise ScanError(
             ", ".join(found.names), "files", f"has heights that no surface can be drawn with: {reason}"
         ) from None

@@ -7,9 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from stiction.scans.levelling import Levelling, level
-from stiction.scans.moments import covariance, influence, moments, moments_of, powers
-from stiction.scans.quantiles import MeasuredDensity, quantiles
+from stiction.scans.moments import covariance, influence, moments, moments_of, overlap_integrals, powers
+from stiction.scans.quantiles import quantiles
 from stiction.scans.scan import Frame
+from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.field import RoughSurface, StripGrid
 from stiction.surface.maxent import HeightDensity
 from stiction.surface.spectrum import Spectrum, TabulatedSpectrum
@@ -52,8 +53,18 @@ class SurfaceModel:
     @cached_property
     def covariance(self) -> np.ndarray:
         """Covariance of (ln rms, skewness, kurtosis) of one scan, (3, 3)."""
-        known = self._points * min(self.frame.pixel) / 2
-        return covariance(self.translation, self.underlying, self.frame.size, known)
+        return covariance(self.translation, self.underlying, self.frame.size, self._known)
+
+    @cached_property
+    def overlaps(self) -> np.ndarray:
+        """Integrals I_1 … I_24 of `stiction.scans.moments.overlap_integrals`, (24,) [-]."""
+        terms = len(self.translation.hermite_coefficients)
+        return overlap_integrals(self.underlying, self.frame.size, self._known, terms)
+
+    @property
+    def _known(self):
+        """Lag up to which the autocorrelation is known [m]."""
+        return self._points * min(self.frame.pixel) / 2
 
     def draw(self, rng: np.random.Generator) -> np.ndarray:
         """Draw one scan, with a true mean of 0 [m].

@@ -109,6 +109,29 @@ def overlap_integrals(underlying: Spectrum, size: tuple[float, float], reach: fl
     return np.trapezoid(rows, lag) / (size[0] * size[1])
 
 
+def mode_covariance(translation: Translation, overlaps: np.ndarray, orders: Sequence[int]) -> np.ndarray:
+    """Covariance of ln rms and of the means over a scan of the Hermite polynomials of some orders, (1 + n, 1 + n) [-].
+
+    The means are those that change measured heights, see `stiction.analysis.shifts`. They are uncorrelated and have the
+    variances I_k.
+
+    Parameters
+    ----------
+    translation : Translation
+        Eq. (5), of the standardised heights.
+    overlaps : (24,) array
+        I_1 … I_24.
+    orders : sequence of n
+        Orders k, from 1 on.
+    """
+    _, skewness, kurtosis = moments_of(translation)
+    of_rms = hermite_coefficients(influence(_table_powers(translation), skewness, kurtosis)[0])
+    chosen = np.array(orders) - 1
+    found = np.diag([of_rms**2 @ overlaps, *overlaps[chosen]])
+    found[0, 1:] = found[1:, 0] = (of_rms * overlaps)[chosen]
+    return found
+
+
 def homogeneity(per_scan: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Whether the scatter between scans is that of finite scans of one surface.
 

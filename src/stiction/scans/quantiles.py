@@ -5,7 +5,6 @@ Quantiles are heights at normal scores u, as in Eq. (5), of the standardised hei
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy import stats
@@ -13,17 +12,17 @@ from scipy.special import ndtr, ndtri
 
 from stiction.errors import NotConverged
 from stiction.surface import maxent
+from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import Moments, is_feasible, nearest_feasible
 from stiction.surface.maxent import HeightDensity
 from stiction.surface.spectrum import Spectrum
-from stiction.surface.translation import LARGEST_SCORE
 
 #: Scores at which quantiles are measured.
 SCORES = np.linspace(-3, 3, 49)
 #: Scores at which the form is compared: both sides, the upper tail in more points, as only hills touch.
 COMPARED = np.searchsorted(SCORES, (-2.0, 1.0, 2.0, 2.5, 3.0))
-#: Fewest correlation areas beyond the outermost measured quantile that is used, and range of scores of its slope.
-_AREAS_BEYOND, _SLOPE_RANGE = 10, 0.5
+#: Fewest correlation areas beyond the outermost measured quantile that is used.
+_AREAS_BEYOND = 10
 #: Differences of the moments for the slopes of the quantiles.
 _STEP = 0.02
 
@@ -32,43 +31,6 @@ def quantiles(scans: Sequence[np.ndarray]) -> np.ndarray:
     """Heights of all scans at `SCORES`, less their mean and over their rms, (49,) [-]."""
     z = np.concatenate([scan[np.isfinite(scan)] for scan in scans])
     return (np.quantile(z, ndtr(SCORES)) - z.mean()) / z.std()
-
-
-@dataclass(frozen=True)
-class MeasuredDensity:
-    """Density given by measured quantiles; takes the place of a `stiction.surface.maxent.HeightDensity` in a
-    `stiction.surface.translation.Translation`.
-
-    ASSUME: beyond the outermost quantiles that have enough of the scan beyond them, heights are straight lines in the
-    score, with the slope of the last part.
-    """
-
-    scores: np.ndarray  #: increasing, (n,)
-    heights: np.ndarray  #: at the scores, in any unit, (n,)
-
-    def quantile_of_normal(self, score: float | np.ndarray) -> np.ndarray:
-        """Standardised height of the normal score u, any shape [-]."""
-        mean, deviation = self._mean_and_deviation
-        return (self._height(score) - mean) / deviation
-
-    def _height(self, score):
-        inner = np.interp(score, self.scores, self.heights)
-        below, above = np.minimum(score - self.scores[0], 0), np.maximum(score - self.scores[-1], 0)
-        return inner + self._slope(slice(None)) * below + self._slope(slice(None, None, -1)) * above
-
-    def _slope(self, order):
-        """Mean slope of the outermost part, at the first of the scores in this order."""
-        score, height = self.scores[order], self.heights[order]
-        inner = np.flatnonzero(np.abs(score - score[0]) >= _SLOPE_RANGE)[0]
-        return (height[inner] - height[0]) / (score[inner] - score[0])
-
-    @cached_property
-    def _mean_and_deviation(self):
-        score = np.linspace(-LARGEST_SCORE, LARGEST_SCORE, 4097)
-        share = np.exp(-(score**2) / 2) / np.exp(-(score**2) / 2).sum()
-        height = self._height(score)
-        mean = share @ height
-        return mean, np.sqrt(share @ (height - mean) ** 2)
 
 
 def correlation_areas(spectrum: Spectrum, variance: float, area: float) -> float:
@@ -89,13 +51,16 @@ def measured_density(heights: np.ndarray, areas: float) -> MeasuredDensity:
     Raises
     ------
     ValueError
-        If the scans hold too few of them for quantiles at scores of ±1.
+        If the scans hold too few of them for quantiles at scores of ±1, or all these heights are equal.
     """
     largest = -ndtri(min(_AREAS_BEYOND / areas, 0.5))
     if largest < 1:
         raise ValueError(f"the heights of {areas:.3g} independent areas do not give a density")
     inside = np.abs(SCORES) <= largest + 1e-9
-    return MeasuredDensity(SCORES[inside], np.asarray(heights)[inside])
+    known = np.asarray(heights)[inside]
+    if not known[-1] > known[0]:
+        raise ValueError("nearly all of the heights are equal")
+    return MeasuredDensity(SCORES[inside], known)
 
 
 @dataclass(frozen=True)

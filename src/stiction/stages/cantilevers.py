@@ -29,7 +29,7 @@ class Gap:
     """The part of a pair's section on which beams depend."""
 
     gap: float  #: h [m]
-    humidities: tuple[float, ...] = ()  #: [-]
+    young_modulus: float | None = None  #: E of the beam, if it is not that of section ``solid`` [Pa]
 
 
 @dataclass(frozen=True)
@@ -58,13 +58,13 @@ class Cantilevers:
 
 def cantilever(settings: Settings, pair: str) -> Beam:
     """Nominal beam of a pair."""
-    size = settings.beam
+    size, of_pair = settings.beam, settings.pairs[pair]
     return Beam(
         length=size.length,
         width=size.width,
         thickness=size.thickness,
-        young_modulus=settings.solid.young_modulus,
-        gap=settings.pairs[pair].gap,
+        young_modulus=of_pair.young_modulus or settings.solid.young_modulus,
+        gap=of_pair.gap,
         elements=size.elements,
     )
 

@@ -1,28 +1,13 @@
 """Stage contact (Sec. III-A): solid pressure and bearing area of the sampled pairs, independent of humidity."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import xarray as xr
 
-from stiction.contact.pair import DistanceGrid, contact_of_samples
+from stiction.contact.pair import DistanceGrid, contacts_of_samples
 from stiction.progress import progress
-from stiction.stages.pairs import Contact, Solid, streams_of_sides, surface_pair
-from stiction.stages.surfaces import Sampling, Width
-
-
-@dataclass(frozen=True)
-class Settings:
-    """Everything that the contact of a pair depends on apart from its surfaces; independent of humidity."""
-
-    seed: int
-    sampling: Sampling
-    solid: Solid
-    van_der_waals: str
-    contact: Contact
-    beam: Width
-    surfaces: tuple[str, ...] = ()  #: names of the two surfaces; they do not affect the results
+from stiction.stages.pairs import Settings, streams_of_sides, surface_pairs
 
 
 def compute(
@@ -46,11 +31,25 @@ def compute(
     samples : range, optional
         Indices of the samples; all by default.
     """
-    meeting = surface_pair(surfaces, model, settings)
+    return compute_each([surfaces], pair, model, settings, samples)[0]
+
+
+def compute_each(
+    alternatives: Sequence[Sequence[tuple[xr.Dataset, xr.Dataset]]],
+    pair: str,
+    model: str,
+    settings: Settings,
+    samples: range | None = None,
+) -> list[xr.Dataset]:
+    """As `compute`, for several choices of the two surfaces with the same random numbers.
+
+    A surface with the same tuple of datasets in several choices is drawn once for all of them.
+    """
+    meetings = surface_pairs(alternatives, model, settings)
     samples = range(settings.contact.samples) if samples is None else samples
     streams = streams_of_sides(settings.seed, pair)
-    curves = contact_of_samples(meeting, streams, progress(samples, "surface pairs"))
-    return layout(*curves, meeting.distances, samples)
+    found = contacts_of_samples(meetings, streams, progress(samples, "surface pairs"))
+    return [layout(*curves, meeting.distances, samples) for curves, meeting in zip(found, meetings, strict=True)]
 
 
 def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceGrid, samples: range) -> xr.Dataset:
@@ -83,9 +82,34 @@ def chunk(samples: int, number: int, chunks: int) -> range:
     return range(samples * number // chunks, samples * (number + 1) // chunks)
 
 
-def joined(chunks: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Contact of all samples, joined from the chunks in the order of the samples."""
-    return xr.concat(chunks, "sample", data_vars="minimal", coords="minimal", compat="equals", join="exact")
+def joined(chunks: Iterable[xr.Dataset], samples: int) -> xr.Dataset:
+    """Contact of all samples, joined from the chunks in their order; of an iterator, one chunk is held at a time.
+
+    Raises
+    ------
+    ValueError
+        If a chunk has other distances than those before it, or if samples are missing or repeated.
+    """
+    pressures = areas = grid = None
+    found = 0
+    for chunk in chunks:
+        if grid is None:
+            grid = _grid(chunk)
+            pressures, areas = (np.empty((samples, n), np.float32) for n in (grid.above, grid.below + grid.above))
+        here = slice(found, found + chunk.sizes["sample"])
+        if _grid(chunk) != grid or not np.array_equal(chunk.sample, np.arange(samples)[here]):
+            raise ValueError(f"the chunk after {found} of {samples} samples does not continue the contact")
+        pressures[here], areas[here] = chunk.solid_pressure, chunk.bearing_area
+        found = here.stop
+    if found != samples:
+        raise ValueError(f"the chunks contain {found} of {samples} samples")
+    return layout(pressures, areas, grid, range(samples))
+
+
+def _grid(contact):
+    """Grid of the distances."""
+    above = contact.sizes["distance"]
+    return DistanceGrid(float(contact.step), contact.sizes["height"] - above, above)
 
 
 def tables(contact: xr.Dataset) -> tuple[np.ndarray, np.ndarray, tuple[float, float], float]:

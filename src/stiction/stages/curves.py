@@ -16,18 +16,24 @@ class Water:
     """Condensed water."""
 
     temperature: float  #: T [K]
+    contact_angles: tuple[float, float] = (0.0, 0.0)  #: on beam and substrate [rad]
 
 
 def force_curves(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, Callable[[int], np.ndarray]]:
     """Distance (n_d,) [m] and ``curve(k)``, force of sample k [Pa], from `stiction.contact.forcelaw.humid_curves`."""
-    temperature = water.temperature
-    film = float(meniscus_height(humidity, temperature)), -float(laplace_pressure(humidity, temperature))
+    height = float(meniscus_height(humidity, water.temperature, water.contact_angles))
+    film = height, -float(laplace_pressure(humidity, water.temperature))
     return forcelaw.humid_curves(*tables(contact), film)
 
 
 def energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
     return forcelaw.adhesion_energies(*force_curves(contact, humidity, water), contact.sizes["sample"])
+
+
+def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
+    """Largest attraction f_max of all samples at a relative humidity (m,) [Pa]."""
+    return forcelaw.pull_offs(*force_curves(contact, humidity, water), contact.sizes["sample"])
 
 
 def vectors(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, float]:

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.surface import maxent
+from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import Moments, nearest_feasible
 from stiction.surface.maxent import GAUSSIAN, HeightDensity
 
@@ -33,31 +34,30 @@ def compute(settings: Settings) -> xr.Dataset:
     """
     found = nearest_feasible(settings.skewness, settings.kurtosis)
     used = replace(settings, skewness=found.skewness, kurtosis=found.kurtosis)
-    dataset = layout(maxent.solve(found.skewness, found.kurtosis), used)
-    if not found.distance:
-        return dataset
-    dataset = dataset.assign(_measured(settings, found.distance))
-    warnings.warn(substitution(dataset), stacklevel=2)
+    measured = Moments(settings.skewness, settings.kurtosis, found.distance) if found.distance else None
+    dataset = layout(maxent.solve(found.skewness, found.kurtosis), used, measured)
+    if measured:
+        warnings.warn(substitution(dataset), stacklevel=2)
     return dataset
 
 
-def layout(density: HeightDensity, moments: Settings) -> xr.Dataset:
-    """Dataset of the maximum-entropy density of one surface.
+def layout(density: HeightDensity | MeasuredDensity, moments: Settings, measured: Moments | None = None) -> xr.Dataset:
+    """Dataset of the height density of one surface.
 
     Parameters
     ----------
-    density : HeightDensity
+    density : HeightDensity or MeasuredDensity
     moments : Settings
         Moments of this density.
+    measured : Moments, optional
+        Measured moments, and the distance of those of a maximum-entropy density from them; by default there is none.
     """
     z = np.linspace(-6, 6, 601)
+    form = _measured_form if isinstance(density, MeasuredDensity) else _maximum_entropy
+    variables, coordinates = form(density)
     return xr.Dataset(
-        {
-            "multiplier": (
-                "order",
-                list(density.multipliers),
-                {"units": "1", "long_name": "λ of Eq. (3), standardised heights"},
-            ),
+        variables
+        | {
             "density": (
                 "height",
                 density(z),
@@ -66,23 +66,40 @@ def layout(density: HeightDensity, moments: Settings) -> xr.Dataset:
             "rms": ((), moments.rms, {"units": "m"}),
             "skewness": ((), moments.skewness, {"units": "1"}),
             "kurtosis": ((), moments.kurtosis, {"units": "1"}),
-        },
-        coords={"order": [1, 2, 3, 4], "height": ("height", z, {"units": "1"})},
+        }
+        | ({} if measured is None else _measured(measured)),
+        coords=coordinates | {"height": ("height", z, {"units": "1"})},
     )
 
 
-def _measured(moments, distance):
-    """Variables of a dataset whose density has other moments than the measured ones."""
+def _maximum_entropy(density):
+    """Variables and coordinates of Eq. (3)."""
+    name = {"units": "1", "long_name": "λ of Eq. (3), standardised heights"}
+    return {"multiplier": ("order", list(density.multipliers), name)}, {"order": [1, 2, 3, 4]}
+
+
+def _measured_form(density):
+    """Variables and coordinates of measured quantiles."""
+    name = {"units": "1", "long_name": "measured height of a normal score, up to scale and mean"}
+    return {"quantile": ("score", density.heights, name)}, {"score": ("score", density.scores, {"units": "1"})}
+
+
+def _measured(moments):
+    """Variables of the measured moments."""
     return {
         "measured_skewness": ((), moments.skewness, {"units": "1"}),
         "measured_kurtosis": ((), moments.kurtosis, {"units": "1"}),
-        "distance": ((), distance, {"units": "1", "long_name": "of measured and used moments, in standard errors"}),
+        "distance": ((), moments.distance, {"units": "1", "long_name": "to the moments used, in standard errors"}),
     }
 
 
-def density(heights: xr.Dataset, model: str) -> HeightDensity:
+def density(heights: xr.Dataset, model: str) -> HeightDensity | MeasuredDensity:
     """Height density of model ``NG``, or the Gaussian one of model ``G``."""
-    return HeightDensity(tuple(map(float, heights.multiplier))) if model == "NG" else GAUSSIAN
+    if model == "G":
+        return GAUSSIAN
+    if "score" in heights:
+        return MeasuredDensity(heights.score.values, heights["quantile"].values)
+    return HeightDensity(tuple(map(float, heights.multiplier)))
 
 
 def moments(heights: xr.Dataset) -> Settings:

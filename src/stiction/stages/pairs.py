@@ -4,18 +4,22 @@ Separate from `stiction.stages.contact`, because studies use the same pairs for 
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 import xarray as xr
 
-from stiction.contact.asperity import asperity, reduced_modulus
-from stiction.contact.pair import SurfacePair
+from stiction.contact import solids
+from stiction.contact.asperity import Asperity, asperity
+from stiction.contact.pair import EquivalentSurface, SurfacePair
 from stiction.contact.vanderwaals import attraction
 from stiction.models import SIDES
 from stiction.stages.surfaces import Sampling, Width, rough_surface
 from stiction.streams import stream
+
+#: Materials of beam and substrate by side, where section ``solid`` does not hold for both.
+Materials = dict[str, solids.Solid]
 
 
 @dataclass(frozen=True)
@@ -35,23 +39,74 @@ class Contact:
     samples: int | None = None  #: number of surface pairs
 
 
-class Settings(Protocol):
+class Surfaces(Protocol):
     """Sections of the settings of any job that draws pairs of surfaces."""
 
+    sampling: Sampling
+    contact: Contact
+    beam: Width
+
+
+class Solids(Protocol):
+    """Sections of the settings of any job that computes the forces of summits."""
+
+    solid: Solid
+    van_der_waals: str
+    materials: Materials
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the contact of a pair depends on apart from its surfaces; independent of humidity."""
+
+    seed: int
     sampling: Sampling
     solid: Solid
     van_der_waals: str
     contact: Contact
     beam: Width
+    surfaces: tuple[str, ...] = ()  #: names of the two surfaces; they do not affect the results
+    materials: Materials = field(default_factory=dict)
+
+
+def bodies(settings: Solids) -> tuple[solids.Solid, solids.Solid]:
+    """Materials of beam and substrate: as stated by side, otherwise section ``solid`` and polysilicon."""
+    both = solids.Solid(settings.solid.young_modulus, settings.solid.poisson_ratio)
+    return tuple(settings.materials.get(side, both) for side in SIDES)
+
+
+def asperity_of(settings: Solids) -> Asperity:
+    """Model of one summit of the two bodies."""
+    met, medium = bodies(settings), settings.van_der_waals
+    constant = None if medium == "none" else solids.hamaker_constant(*met, medium)
+    return asperity(solids.composite_modulus(*met), attraction(medium, constant))
+
+
+def equivalent_surface(
+    surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], model: str, settings: Surfaces
+) -> EquivalentSurface:
+    """Sum of two surfaces from their (heights, spectrum) datasets, that of the beam first."""
+    grid = settings.sampling.strips(settings.beam.width)
+    beam, substrate = (rough_surface(heights, spectrum, model, grid) for heights, spectrum in surfaces)
+    return EquivalentSurface(beam, substrate, settings.contact.distance_step, settings.contact.every)
 
 
 def surface_pair(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], model: str, settings: Settings) -> SurfacePair:
-    """Pair of surfaces from two (heights, spectrum) datasets, that of the beam first."""
-    grid = settings.sampling.strips(settings.beam.width)
-    beam, substrate = (rough_surface(heights, spectrum, model, grid) for heights, spectrum in surfaces)
-    modulus = reduced_modulus(settings.solid.young_modulus, settings.solid.poisson_ratio)
-    solid = asperity(modulus, attraction(settings.van_der_waals))
-    return SurfacePair(beam, substrate, solid, settings.contact.distance_step, settings.contact.every)
+    """Pair of surfaces from their (heights, spectrum) datasets, that of the beam first."""
+    return surface_pairs([surfaces], model, settings)[0]
+
+
+def surface_pairs(
+    alternatives: Sequence[Sequence[tuple[xr.Dataset, xr.Dataset]]], model: str, settings: Settings
+) -> list[SurfacePair]:
+    """As `surface_pair`, for several pairs; equal tuples of datasets give the same object."""
+    grid, solid = settings.sampling.strips(settings.beam.width), asperity_of(settings)
+    distinct = {id(datasets): datasets for surfaces in alternatives for datasets in surfaces}
+    built = {key: rough_surface(*datasets, model, grid) for key, datasets in distinct.items()}
+    step, every = settings.contact.distance_step, settings.contact.every
+    return [
+        SurfacePair(*(built[id(one)] for one in surfaces), step, every, asperity=solid) for surfaces in alternatives
+    ]
 
 
 def streams_of_sides(seed: int, pair: str) -> Callable[[int], tuple[np.random.Generator, ...]]:

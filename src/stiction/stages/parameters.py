@@ -1,4 +1,4 @@
-"""What stages identification and spectrum share: the parameters of Eq. (7) in a dataset, and whether they can be used.
+"""What stages identification and spectrum share: Eq. (7), or a table, in a dataset, and whether it can be used.
 
 A separate module, so that a change of the identification does not rerun published spectra.
 """
@@ -7,32 +7,48 @@ from collections.abc import Mapping
 
 import xarray as xr
 
-from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
+from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum, correlation_length
 
 _UNITS = {"plateau": "m4", "floor": "m4", "corner": "rad m-1", "cutoff": "rad m-1"}
 
 
-def variables(spectrum: CutoffSelfAffine) -> xr.Dataset:
-    """Dataset of the four parameters."""
-    return xr.Dataset({name: ((), getattr(spectrum, name), {"units": unit}) for name, unit in _UNITS.items()})
+def variables(spectrum: CutoffSelfAffine | TabulatedSpectrum) -> xr.Dataset:
+    """Dataset of the four parameters of Eq. (7), or of a table and its cut-off."""
+    if isinstance(spectrum, CutoffSelfAffine):
+        return xr.Dataset({name: ((), getattr(spectrum, name), {"units": unit}) for name, unit in _UNITS.items()})
+    return xr.Dataset(
+        {
+            "table_wavenumber": ("node", spectrum.wavenumber, {"units": "rad m-1"}),
+            "table_density": ("node", spectrum.density, {"units": "m4"}),
+            "cutoff": ((), spectrum.cutoff, {"units": _UNITS["cutoff"]}),
+        }
+    )
 
 
-def spectrum_of(dataset: xr.Dataset) -> CutoffSelfAffine:
-    """Eq. (7) from the dataset of stage identification or spectrum."""
+def spectrum_of(dataset: xr.Dataset) -> CutoffSelfAffine | TabulatedSpectrum:
+    """Eq. (7) from the dataset of stage identification, the spectrum from that of stage spectrum."""
+    if "node" in dataset.dims:
+        return TabulatedSpectrum(dataset.table_wavenumber.values, dataset.table_density.values, float(dataset.cutoff))
     return CutoffSelfAffine(**{name: float(dataset[name]) for name in _UNITS})
 
 
-def refuse_long_correlation(surface: str, spectrum: CutoffSelfAffine, lengths: Mapping[str, float]) -> None:
+def refuse_long_correlation(
+    surface: str,
+    spectrum: CutoffSelfAffine | TabulatedSpectrum,
+    lengths: Mapping[str, float],
+    source: str = "identified from its summits",
+) -> None:
     """Raise a ValueError if the heights are correlated over any of the lengths, by key of the configuration [m].
 
-    The same law as for published spectra, see `stiction.config.relations.length_exceeds_the_correlation`.
+    The same law as for published spectra, see `stiction.config.relations.length_exceeds_the_correlation`. The message
+    states the source of the spectrum.
     """
     bound = correlation_length(spectrum)
     for key, length in lengths.items():
         if length <= bound:
             raise ValueError(
                 f"{key} is {1e6 * length:.4g}, must be above the correlation length of surface {surface}, "
-                f"{1e6 * bound:.3g} µm for the spectrum identified from its summits"
+                f"{1e6 * bound:.3g} µm for the spectrum {source}"
             )
 
 

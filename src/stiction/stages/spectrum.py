@@ -29,7 +29,7 @@ class Settings:
     """Everything that a spectrum depends on apart from the height density."""
 
     spacing: float  #: of the grid on which the surface will be drawn [m]
-    psd: CutoffSelfAffine | str  #: spectrum of the heights, used up to a factor, or ``identified``
+    psd: CutoffSelfAffine | TabulatedSpectrum | str  #: spectrum of the heights, used up to a factor, or ``identified``
     identified: Use | None = None  #: what an identified spectrum is used for
 
 
@@ -56,9 +56,14 @@ def compute(heights: xr.Dataset, identification: xr.Dataset | None, settings: Se
     target = parameters.spectrum_of(identification) if settings.psd == "identified" else settings.psd
     if settings.psd == "identified" and settings.identified:
         refuse_misuse(identification, settings.identified)
+    return on_grid(target, heights, settings.spacing)
+
+
+def on_grid(target: CutoffSelfAffine | TabulatedSpectrum, heights: xr.Dataset, spacing: float) -> xr.Dataset:
+    """Dataset of a spectrum of the heights, for surfaces drawn on a grid of this spacing [m]."""
     translation = Translation(density(heights, "NG"))
-    underlying, defect = underlying_spectrum(target, translation, settings.spacing)
-    return layout(target, underlying, spectrum_of_heights(underlying, translation, settings.spacing), defect)
+    underlying, defect = underlying_spectrum(target, translation, spacing)
+    return layout(target, underlying, spectrum_of_heights(underlying, translation, spacing), defect)
 
 
 def refuse_misuse(identification: xr.Dataset, use: Use) -> None:
@@ -82,9 +87,12 @@ def refuse_misuse(identification: xr.Dataset, use: Use) -> None:
 
 
 def layout(
-    target: CutoffSelfAffine, underlying: TabulatedSpectrum, achieved: TabulatedSpectrum, defect: float
+    target: CutoffSelfAffine | TabulatedSpectrum,
+    underlying: TabulatedSpectrum,
+    achieved: TabulatedSpectrum,
+    defect: float,
 ) -> xr.Dataset:
-    """Dataset of Eq. (7), the spectrum of the underlying Gaussian field and the achieved spectrum of the heights.
+    """Dataset of a spectrum, of that of the underlying Gaussian field and of the achieved spectrum of the heights.
 
     The three spectra have unit variance and are given at the wave numbers of ``underlying``.
     """

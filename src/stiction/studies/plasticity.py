@@ -7,24 +7,19 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis import plasticity
-from stiction.contact.asperity import hertz_maximum_stress, reduced_modulus
+from stiction.constants import HARDNESS
+from stiction.contact import solids
+from stiction.contact.asperity import hertz_maximum_stress
 from stiction.progress import progress
-from stiction.stages.pairs import Contact, Solid, streams_of_sides, surface_pair
-from stiction.stages.surfaces import Sampling, Width
+from stiction.stages import pairs
+from stiction.stages.pairs import bodies, streams_of_sides, surface_pair
 from stiction.surface.summits import find_summits
 
 
-@dataclass(frozen=True)
-class Settings:
-    """Everything that the stresses depend on apart from the surfaces."""
+@dataclass(frozen=True, kw_only=True)
+class Settings(pairs.Settings):
+    """Settings of the contact, number of strips and distance."""
 
-    seed: int
-    sampling: Sampling
-    solid: Solid
-    van_der_waals: str
-    contact: Contact
-    beam: Width
-    surfaces: tuple[str, ...]  #: names of the two surfaces; they do not affect the results
     strips: int  #: number of pairs of strips
     distance: float  #: between the mean planes [m]
 
@@ -39,15 +34,18 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
         interference, radius = plasticity.touching(height, curvature, settings.distance)
         found.append((interference, radius, np.full(len(radius), k)))
     interference, radius, strip = np.hstack(found)
-    modulus = reduced_modulus(settings.solid.young_modulus, settings.solid.poisson_ratio)
-    stress = hertz_maximum_stress(interference, radius, modulus)
+    met = bodies(settings)
+    stress = hertz_maximum_stress(interference, radius, solids.composite_modulus(*met))
     area = plasticity.contact_area(interference, radius)
-    share = plasticity.plastic_share(area, stress, strip.astype(int), settings.strips)
+    hardness = solids.softer_hardness(*met)
+    share = plasticity.plastic_share(area, stress, strip.astype(int), settings.strips, hardness)
     summits = {"interference": interference, "radius": radius, "stress": stress, "strip": strip.astype(int)}
-    return layout(summits, share, settings.distance)
+    return layout(summits, share, settings.distance, hardness)
 
 
-def layout(summits: dict[str, np.ndarray], share: tuple[float, float], distance: float) -> xr.Dataset:
+def layout(
+    summits: dict[str, np.ndarray], share: tuple[float, float], distance: float, hardness: float = HARDNESS
+) -> xr.Dataset:
     """Stress of every touching summit and the share of the contact area that yields.
 
     Parameters
@@ -58,6 +56,8 @@ def layout(summits: dict[str, np.ndarray], share: tuple[float, float], distance:
         A_P / A and its standard error [-].
     distance : float
         Between the mean planes [m].
+    hardness : float
+        Of the softer body [Pa].
     """
     units = {"interference": "m", "radius": "m", "stress": "Pa"}
     columns = {name: ("summit", np.asarray(summits[name], np.float32), {"units": unit}) for name, unit in units.items()}
@@ -68,5 +68,6 @@ def layout(summits: dict[str, np.ndarray], share: tuple[float, float], distance:
             "plastic_share": ((), share[0], {"units": "1", "long_name": "A_P / A"}),
             "plastic_share_error": ((), share[1], {"units": "1"}),
             "separation": ((), distance, {"units": "m"}),
+            "hardness": ((), hardness, {"units": "Pa"}),
         }
     )

@@ -80,6 +80,17 @@ class TabulatedSpectrum:
         """s_Z at |ζ|, shape of ``wavenumber`` [rad m⁻¹], in the unit of ``density``."""
         return np.where(wavenumber <= self.cutoff, np.interp(wavenumber, self.wavenumber, self.density), 0.0)
 
+    @property
+    def corner(self) -> float:
+        """First wave number at which the density is below half of that at 0 [rad m⁻¹]; a bit above that of Eq. (7)."""
+        below = np.flatnonzero(self(self.wavenumber) < 0.5 * self.density[0])
+        return float(self.wavenumber[below[0]]) if len(below) else self.cutoff
+
+    @property
+    def variance(self) -> float:
+        """Second moment m₂ of the heights, in the unit of ``density`` over m²."""
+        return float(2 * np.pi * np.trapezoid(self.wavenumber * self(self.wavenumber), self.wavenumber))
+
 
 @dataclass(frozen=True)
 class NayakSummits:
@@ -136,7 +147,9 @@ def autocovariance(spectrum: Spectrum, lag: np.ndarray, panels: int = 4000) -> n
     return 2 * np.pi * j0(np.outer(lag, zeta)) @ (weights * zeta * spectrum(zeta))
 
 
-def correlation_length(spectrum: CutoffSelfAffine, threshold: float = 0.01, reach: float = 6.0) -> float:
+def correlation_length(
+    spectrum: CutoffSelfAffine | TabulatedSpectrum, threshold: float = 0.01, reach: float = 6.0
+) -> float:
     """Distance l^m beyond which r_Z remains below ``threshold`` · m₂ (Sec. III) [m].
 
     Searched up to ``reach`` wavelengths of the corner; the slowest decay, that of a pure plateau, needs 4.7.

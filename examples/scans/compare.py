@@ -1,0 +1,79 @@
+"""Crack lengths predicted from the drawn scans beside those of the true surfaces: ``python compare.py FOLDER``.
+
+Reads Table III of a run in the folder, and writes ``prediction.csv``, ``prediction.md`` and ``prediction.png``.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from stiction.report.format import error_alone, number, with_error
+from stiction.report.style import SINGLE, humidity_axis, panels, save, styled
+from stiction.report.tables import Table
+
+#: Pairs of the measured and of the true surfaces.
+MEASURED, TRUE = "mine", "truth"
+
+
+def main(folder):
+    """Write table and figure."""
+    found = compared(pd.read_csv(folder / "results" / "tables" / "table_3.csv"))
+    table = written(found)
+    (folder / "prediction.csv").write_text(table.csv, encoding="utf-8")
+    (folder / "prediction.md").write_text(table.markdown, encoding="utf-8")
+    save(drawn(found), folder / "prediction.png")
+    print(table.markdown)  # noqa: T201
+
+
+def compared(table_3):
+    """Crack lengths of both pairs with their errors [µm], one row per humidity; model NG."""
+    cases = table_3[table_3.model == "NG"].set_index(["pair", "relative_humidity"])
+    mine, true = cases.loc[MEASURED], cases.loc[TRUE]
+    found = pd.DataFrame(
+        {
+            "predicted_um": mine.crack_length_um,
+            "scans_se_um": mine.crack_length_scans_se_um,
+            "simulation_se_um": mine.crack_length_se_um,
+            "true_um": true.crack_length_um,
+            "true_se_um": true.crack_length_se_um,
+        }
+    )
+    errors = found[["scans_se_um", "simulation_se_um", "true_se_um"]]
+    found["errors_off"] = (found.predicted_um - found.true_um) / np.sqrt((errors**2).sum(axis=1, skipna=False))
+    return found.reset_index()
+
+
+def written(found):
+    """Table for reading."""
+    rows = [
+        {
+            "RH": f"{row.relative_humidity:g}",
+            "l_s from scans [µm]": with_error(row.predicted_um, np.hypot(row.scans_se_um, row.simulation_se_um)),
+            "of it: scans": error_alone(row.scans_se_um),
+            "of it: simulation": error_alone(row.simulation_se_um),
+            "l_s of the true surfaces [µm]": with_error(row.true_um, row.true_se_um),
+            "difference in standard errors": number(row.errors_off, "+.1f"),
+        }
+        for row in found.itertuples()
+    ]
+    caption = "Crack length predicted from scans, ± standard error by the scans and by the simulation, and the truth."
+    return Table(found, caption, pd.DataFrame(rows))
+
+
+@styled
+def drawn(found):
+    """Figure for looking at."""
+    figure, ((panel,),) = panels(1, 1, (SINGLE, 2.5))
+    error = np.hypot(found.scans_se_um, found.simulation_se_um)
+    panel.plot(found.relative_humidity, found.true_um, color="black", marker="s", label="true surfaces")
+    panel.errorbar(found.relative_humidity, found.predicted_um, error, marker="o", linestyle="", label="from scans")
+    panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$ [µm]")
+    humidity_axis(panel)
+    panel.legend()
+    return figure
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

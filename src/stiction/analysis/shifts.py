@@ -1,0 +1,122 @@
+r"""A surface with one of its quantities slightly decreased and increased, for slopes with common random numbers.
+
+The quantities are those that a measurement of a surface determines: ln rms and form of the heights, and ln corner and
+slope of its spectrum. The form of maximum-entropy heights is given by skewness and kurtosis. That of measured heights
+has modes: the mean over a scan of the Hermite polynomial h_k of the Gaussian field is 0 on the surface; if it is x_k on
+the scan, the measured heights are, to first order,
+
+.. math:: z(u + x_k \, h_{k-1}(u) / \sqrt{k}) .
+
+The plateau of the spectrum is not among the quantities, because the rms alone sets the heights. The cut-off stays: a
+changed one would renumber the waves, so that both surfaces would not have the same random numbers any more.
+"""
+
+from dataclasses import dataclass, replace
+from math import factorial
+
+import numpy as np
+from scipy.special import eval_hermitenorm
+
+from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
+from stiction.surface.empirical import MeasuredDensity
+from stiction.surface.feasible import largest_kurtosis
+from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
+
+#: Orders k of the modes. ASSUME: higher ones change only heights beyond those that touch or that a scan determines.
+ORDERS = [int(name.removeprefix("mode")) for name in OF_MEASURED[1:]]
+#: Steps of the central differences in either direction; those of rms and corner are logarithmic.
+STEPS = {"rms": 0.05, "skewness": 0.04, "kurtosis": 0.15, "corner": 0.05, "slope": 0.1}
+STEPS |= dict.fromkeys(OF_MEASURED[1:], 0.02)
+
+
+@dataclass(frozen=True)
+class Description:
+    """Heights and spectrum of a surface."""
+
+    rms: float  #: [m]
+    skewness: float  #: [-]
+    kurtosis: float  #: [-]
+    spectrum: CutoffSelfAffine | TabulatedSpectrum  #: of the heights, used up to a factor
+    form: MeasuredDensity | None = None  #: of the heights, maximum entropy of the moments by default
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """Names of the quantities, keys of `STEPS`."""
+        return (OF_MOMENTS if self.form is None else OF_MEASURED) + OF_SPECTRUM
+
+
+def bracketed(surface: Description, quantity: str) -> tuple[tuple[Description, Description], float]:
+    """Two surfaces that differ in one quantity, around the given one, and the difference of that quantity.
+
+    ASSUME: where no surface has the increased quantity, both values are lower, so that the slope is that of a near
+    surface. This concerns skewness and kurtosis of nearly Gaussian heights, whose kurtosis is the largest that is
+    feasible, a corner at the cut-off and a flat spectrum.
+
+    Parameters
+    ----------
+    surface : Description
+    quantity : str
+        One of its quantities.
+
+    Returns
+    -------
+    (less, more) : tuple of Description
+    difference : float
+        Of ln rms, skewness, kurtosis, x_k, ln corner or slope [-].
+    """
+    step = STEPS[quantity]
+    if quantity in OF_MEASURED[1:]:
+        found = _mode(surface, step, ORDERS[OF_MEASURED.index(quantity) - 1])
+    else:
+        makers = {"rms": _rms, "skewness": _skewness, "kurtosis": _kurtosis, "corner": _corner, "slope": _slope}
+        found = makers[quantity](surface, step)
+    return tuple(found), 2 * step
+
+
+def _around(value, step, largest=np.inf):
+    """Two values a step below and above the given one, or below the largest one."""
+    centre = min(value, largest - step)
+    return centre - step, centre + step
+
+
+def _rms(surface, step):
+    return [replace(surface, rms=float(np.exp(at))) for at in _around(np.log(surface.rms), step)]
+
+
+def _skewness(surface, step):
+    kurtosis = min(surface.kurtosis, largest_kurtosis(max(abs(surface.skewness) - step, 0.0)))
+    return [replace(surface, skewness=at, kurtosis=kurtosis) for at in _around(surface.skewness, step)]
+
+
+def _kurtosis(surface, step):
+    largest = largest_kurtosis(abs(surface.skewness))
+    return [replace(surface, kurtosis=at) for at in _around(surface.kurtosis, step, largest)]
+
+
+def _mode(surface, step, order):
+    score = surface.form.scores
+    polynomial = eval_hermitenorm(order - 1, score) / np.sqrt(factorial(order - 1) * order)
+    heights = [surface.form.quantile_of_normal(score + at * polynomial) for at in (-step, step)]
+    return [replace(surface, form=MeasuredDensity(score, at)) for at in heights]
+
+
+def _corner(surface, step):
+    shape = surface.spectrum
+    at = _around(np.log(shape.corner), step, np.log(shape.cutoff) - step)
+    return [replace(surface, spectrum=_bent(shape, float(np.exp(value)), 0.0)) for value in at]
+
+
+def _slope(surface, step):
+    shape = surface.spectrum
+    largest = -shape.slope if isinstance(shape, CutoffSelfAffine) else np.inf
+    return [replace(surface, spectrum=_bent(shape, shape.corner, by)) for by in _around(0.0, step, largest)]
+
+
+def _bent(spectrum, corner, steeper):
+    """Spectrum with another corner [rad m⁻¹] and with ``steeper`` added to its slope beyond the corner."""
+    if isinstance(spectrum, CutoffSelfAffine):
+        floor = spectrum.plateau * (spectrum.cutoff / corner) ** (spectrum.slope + steeper)
+        return CutoffSelfAffine(spectrum.plateau, floor, corner, spectrum.cutoff)
+    known = spectrum.wavenumber
+    density = np.interp(known * spectrum.corner / corner, known, spectrum.density)
+    return replace(spectrum, density=density * np.maximum(known / corner, 1.0) ** steeper)

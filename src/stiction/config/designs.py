@@ -1,0 +1,151 @@
+"""Plan of the devices of a configuration: their cases, the strips on which they stick, the axes of their charts."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.config.cases import case_id
+from stiction.config.measured import is_measured, quantities
+from stiction.config.units import NM_PER_UM
+from stiction.models import OF_MOMENTS, SIDES
+
+#: Kinds of devices that crack open; a stopper is pulled off at once.
+BEAMS = ("cantilever", "bridge")
+#: Keys of each kind of device apart from those that every device has.
+KEYS = {
+    "cantilever": {"thickness_um", "gap_um", "width_um"},
+    "bridge": {"thickness_um", "gap_um", "width_um", "residual_stress_MPa"},
+    "stopper": {"contact_um", "restoring_force_uN"},
+}
+#: Keys that a device need not have, by kind.
+OPTIONAL = {"cantilever": {"strip_um", "chart"}, "bridge": {"strip_um", "chart"}, "stopper": set()}
+
+
+class Patch(NamedTuple):
+    """Area in which the two surfaces of a pair meet, in whole nanometres as in the names of files."""
+
+    pair: str
+    length: int  #: along a beam [nm]
+    width: int  #: [nm]
+
+    @property
+    def name(self) -> str:
+        """Part of the names of files.
+
+        Examples
+        --------
+        >>> Patch("b", 1500, 30000).name
+        'b_1500x30000'
+        """
+        return f"{self.pair}_{self.length}x{self.width}"
+
+
+def patch(pair: str, length_um: float, width_um: float) -> Patch:
+    """Patch of a pair with sides in µm."""
+    return Patch(pair, round(length_um * NM_PER_UM), round(width_um * NM_PER_UM))
+
+
+@dataclass(frozen=True)
+class Designs:
+    """Names of everything that is computed for the devices of one configuration."""
+
+    config: dict  #: complete and valid
+
+    @property
+    def devices(self) -> dict[str, dict]:
+        """Sections of all devices by name; empty if the configuration has none."""
+        return self.config.get("devices", {})
+
+    def of_kind(self, *kinds: str) -> list[str]:
+        """Names of the devices of some kinds."""
+        return [name for name, device in self.devices.items() if device["kind"] in kinds]
+
+    @property
+    def beams(self) -> list[str]:
+        """Devices that crack open."""
+        return self.of_kind(*BEAMS)
+
+    @property
+    def cases(self) -> list[str]:
+        """Every beam at each of its humidities."""
+        return [case_id(name, humidity) for name in self.beams for humidity in self.devices[name]["humidities"]]
+
+    @property
+    def charted(self) -> list[str]:
+        """Devices with a chart."""
+        return [name for name in self.beams if "chart" in self.devices[name]]
+
+    def chart_cases(self, device: str) -> list[str]:
+        """A device at each humidity along the axis of its chart."""
+        return [case_id(device, humidity) for humidity in self.axis(device)]
+
+    def axis(self, device: str) -> list[float]:
+        """Humidities along the axis of the chart of a device, with at most four decimals."""
+        ends = self.devices[device]["chart"]["humidities"]
+        axis = np.linspace(*ends, self.config["design"]["chart_points"])
+        return sorted({round(float(humidity), 4) for humidity in axis})
+
+    @property
+    def pressed_pairs(self) -> list[str]:
+        """Pairs of beams whose plasticity is studied."""
+        return self.pressed(*self.beams)
+
+    def pressed(self, *devices: str) -> list[str]:
+        """Pairs of some devices whose plasticity is studied."""
+        pairs = dict.fromkeys(self.devices[name]["pair"] for name in devices)
+        return [pair for pair in pairs if pair in self.config["studies"]["plasticity"]["distance_nm"]]
+
+    def strip(self, device: str) -> float:
+        """Length of the strips along a device [µm]."""
+        return self.devices[device].get("strip_um", self.config["sampling"]["strip_length_um"])
+
+    def strips(self, device: str) -> Patch:
+        """Strips along a device."""
+        section = self.devices[device]
+        return patch(section["pair"], self.strip(device), section["width_um"])
+
+    def has_strips_of_pair(self, device: str) -> bool:
+        """Whether a device sticks on the strips of its pair in the main line, whose contact it then shares."""
+        main = self.config["sampling"]["strip_length_um"], self.config["beam"]["width_um"]
+        return self.ground(device) == patch(self.devices[device]["pair"], *main)
+
+    def tips(self, device: str) -> Patch:
+        """Strips that hold the tips of the beams of a device."""
+        section = self.devices[device]
+        return patch(section["pair"], self.config["design"]["tip_um"], section["width_um"])
+
+    # Stoppers and budgets
+
+    @property
+    def stoppers(self) -> list[str]:
+        """Devices that touch with their whole surface."""
+        return self.of_kind("stopper")
+
+    def ground(self, device: str) -> Patch:
+        """Patch on which a device sticks: strips along a beam, or the whole area of a stopper."""
+        section = self.devices[device]
+        if section["kind"] == "stopper":
+            return patch(section["pair"], *section["contact_um"])
+        return self.strips(device)
+
+    @property
+    def budgeted(self) -> list[str]:
+        """Devices with a stated uncertainty."""
+        return [name for name, device in self.devices.items() if any(device.get("uncertainty", {}).values())]
+
+    def budget_cases(self, *devices: str) -> list[str]:
+        """Devices, all with a stated uncertainty by default, at each of their humidities."""
+        return [case_id(name, h) for name in devices or self.budgeted for h in self.devices[name]["humidities"]]
+
+    def quantities(self, device: str) -> list[tuple[str, str]]:
+        """Surfaces of a device and their uncertain quantities: of all scans, or of the heights alone if one is stated.
+
+        ASSUME: without scans, the spectrum of a surface counts as exact; that of one scan is worth 0.2 % of a length.
+        """
+        pair = self.config["pairs"][self.devices[device]["pair"]]
+        stated = OF_MOMENTS if self.devices[device].get("uncertainty", {}).get("scan_um") else ()
+        surfaces = dict.fromkeys(pair[side] for side in SIDES)
+        entries = {name: self.config["surfaces"][name] for name in surfaces}
+        found = {name: quantities(entry) if is_measured(entry) else stated for name, entry in entries.items()}
+        return [(name, quantity) for name, of_surface in found.items() for quantity in of_surface]

@@ -1,0 +1,260 @@
+"""Measured surfaces of a configuration: their files, evaluated once before any job, so that its laws hold for them too.
+
+The numbers are preliminary: they contain the bias that stage estimate removes. Results depend on them only through the
+question which studies are possible. They are kept by the content of the files, the settings and the code, so that a
+process that checks the same configuration again does not read the files.
+"""
+
+import hashlib
+import json
+import math
+from collections.abc import Collection, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from stiction.config.messages import Problem
+from stiction.config.units import NM_PER_UM, typed
+from stiction.errors import ScanError
+from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
+from stiction.run.atomic import save_text
+from stiction.run.fingerprint import fingerprint
+
+#: Values of the keys of a measured surface that are not given.
+_DEFAULTS = {"heights": "moments", "psd": "fitted", "beyond": "cut"}
+_OF_SCANS = {"fast_axis": "x", "level": "plane", "lines": "none"}
+#: Keys that say how a file is read, and how its map is evaluated.
+_READING = ("channel", "fast_axis", "size_um", "height_unit")
+_EVALUATION = ("tip_radius_nm", "shortest_nm")
+
+
+def is_measured(entry: Mapping[str, Any]) -> bool:
+    """Whether a section of ``surfaces`` describes the surface by scans."""
+    return "scans" in entry
+
+
+def quantities(entry: Mapping[str, Any]) -> tuple[str, ...]:
+    """Quantities of a surface on which its slopes depend, see `stiction.analysis.shifts`."""
+    return (OF_MEASURED if entry.get("heights") == "measured" else OF_MOMENTS) + OF_SPECTRUM
+
+
+def has_scans(config: Mapping[str, Any]) -> bool:
+    """Whether a configuration, which need not be valid, describes a surface by scans."""
+    return any(isinstance(entry, dict) and is_measured(entry) for entry in _surfaces(config).values())
+
+
+def complete(entry: dict[str, Any]) -> dict[str, Any]:
+    """Section of a surface with the values of all keys that are not given."""
+    if not is_measured(entry):
+        return entry
+    return _DEFAULTS | entry | {"scans": _OF_SCANS | entry["scans"]}
+
+
+def anchored(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
+    """Configuration whose files of scans are in a folder, if they are those that another mapping names.
+
+    Parameters
+    ----------
+    config : dict
+        Configuration, which need not be valid.
+    named : mapping
+        Content of a configuration file.
+    folder : path
+        Folder of this file.
+    """
+    files = {name: _files(entry) for name, entry in _surfaces(named).items()}
+    found = {
+        name: entry for name, entry in _surfaces(config).items() if _files(entry) and _files(entry) == files.get(name)
+    }
+    moved = {name: _moved(entry, Path(folder).absolute()) for name, entry in found.items()}
+    return config | {"surfaces": config["surfaces"] | moved} if moved else config
+
+
+def _surfaces(config):
+    """Section of the surfaces; empty if there is none."""
+    surfaces = config.get("surfaces")
+    return surfaces if isinstance(surfaces, dict) else {}
+
+
+def _files(entry):
+    """Files of the scans of a surface, if they are a list of texts."""
+    scans = entry.get("scans") if isinstance(entry, dict) else None
+    files = scans.get("files") if isinstance(scans, dict) else None
+    return files if isinstance(files, list) and all(isinstance(file, str) for file in files) else None
+
+
+def _moved(entry, folder):
+    """Section of a surface whose relative files are in a folder."""
+    return entry | {"scans": entry["scans"] | {"files": [str(folder / file) for file in entry["scans"]["files"]]}}
+
+
+def source(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """How files are read; `stiction.scans.reading.Source` in the units of the configuration."""
+    return {key: entry["scans"][key] for key in _READING if key in entry["scans"]}
+
+
+def evaluation(entry: Mapping[str, Any], section: Mapping[str, Any]) -> dict[str, Any]:
+    """How scans are evaluated; `stiction.scans.estimate.Settings` in the units of the configuration."""
+    scans = entry["scans"]
+    levelling = {"levelling": {key: scans[key] for key in ("level", "lines")}}
+    limits = {key: section[key] for key in ("tiles", "undefined_share")}
+    return levelling | {key: scans[key] for key in _EVALUATION if key in scans} | limits
+
+
+def digest(path: str | Path) -> str:
+    """SHA-256 of the content of a file; raises OSError."""
+    path = Path(path)
+    found = path.stat()
+    return _digest(path.absolute(), found.st_mtime_ns, found.st_size)
+
+
+@cache
+def _digest(path, _modified, _size):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def evaluated(
+    config: dict[str, Any], faults: Collection[tuple] = (), kept: str | Path | None = None
+) -> tuple[dict[str, dict], list[Problem]]:
+    """Preliminary numbers of the measured surfaces by name, and the problems of those that have none.
+
+    Parameters
+    ----------
+    config : dict
+        Configuration.
+    faults : collection of tuple
+        Keys that are wrong on their own: their surfaces are left out.
+    kept : path, optional
+        Folder in which the numbers are kept between processes.
+    """
+    found, problems = {}, []
+    if _unusable(faults):
+        return found, problems
+    wrong = {fault[1] for fault in faults if fault[:1] == ("surfaces",) and len(fault) > 1}
+    for name, entry in config["surfaces"].items():
+        if name not in wrong and is_measured(entry):
+            try:
+                found[name] = _evaluated(complete(entry), config["scans"], kept)
+                problems += _without_density(name, entry, found[name])
+            except ScanError as refusal:
+                problems.append(_problem(name, complete(entry), refusal))
+    return found, problems
+
+
+def _unusable(faults):
+    """Whether a section that the evaluation needs is wrong, apart from single surfaces."""
+    sections = {fault[:1] for fault in faults if len(fault) < 2 or fault[0] != "surfaces"}
+    return bool(sections & {(), ("surfaces",), ("scans",), ("sampling",)})
+
+
+def _evaluated(entry, section, kept):
+    """Preliminary numbers of one surface, computed if they are not known yet."""
+    contents = []
+    for path in entry["scans"]["files"]:
+        try:
+            contents.append([Path(path).name, digest(path)])
+        except OSError as reason:
+            raise ScanError(Path(path).name, "files", f"cannot be opened: {reason.strerror} ({path})") from None
+    settings = source(entry), evaluation(entry, section)
+    text = json.dumps([contents, settings, _code()], sort_keys=True)
+    key = hashlib.sha256(text.encode()).hexdigest()
+    if key not in _KNOWN:
+        file = None if kept is None else Path(kept) / f"{key}.json"
+        _KNOWN[key] = _read(file) or _preliminary(entry["scans"]["files"], *settings)
+        if file is not None and not file.exists():
+            file.parent.mkdir(parents=True, exist_ok=True)
+            save_text(json.dumps(_KNOWN[key]), file)
+    return _KNOWN[key]
+
+
+#: Preliminary numbers that this process knows, by content, settings and code.
+_KNOWN = {}
+
+
+def _read(file):
+    """Numbers in a file; ``None`` if there is none or it is damaged."""
+    try:
+        return json.loads(file.read_text(encoding="utf-8")) if file else None
+    except (OSError, ValueError):
+        return None
+
+
+@cache
+def _code():
+    """Fingerprint of the code that evaluates scans."""
+    folder = Path(__file__).parents[1] / "scans"
+    return fingerprint(folder / "estimate.py") | fingerprint(folder / "reading.py")
+
+
+def _preliminary(files, reading, evaluating):
+    """Read and evaluate the scans of a surface, without model scans; raises the ScanErrors of both."""
+    # Imported here: configurations without scans need neither.
+    from stiction.scans import estimate
+    from stiction.scans.reading import Source, read
+
+    scans = [read(path, typed(Source, reading)).scan for path in files]
+    found = estimate.inspect(scans, typed(estimate.Settings, evaluating))
+    nearest = estimate.nearest_density(found)
+    ln_rms, skewness, kurtosis = map(float, found.moments)
+    return {
+        "rms_nm": 1e9 * math.exp(ln_rms),
+        "measured": [skewness, kurtosis],
+        "feasible": None if nearest is None else [nearest.skewness, nearest.kurtosis],
+        "plateau_nm4": 1e36 * found.fit.plateau,
+        "corner_rad_per_um": 1e-6 * found.fit.corner,
+        "slope": found.fit.slope,
+        "nyquist_rad_per_um": 1e-6 * float(found.reach.nyquist),
+        "points": list(found.frame.shape),
+        "pixel_nm": [1e9 * pixel for pixel in found.frame.pixel],
+    }
+
+
+def _without_density(name, entry, found):
+    """Problem of a surface whose moments have no maximum-entropy density, if it is to have it."""
+    if found["feasible"] or complete(entry)["heights"] != "moments":
+        return []
+    skewness, kurtosis = found["measured"]
+    reason = (
+        f"is 'moments', but no maximum-entropy density has moments near the skewness {skewness:.3g} and kurtosis "
+        f"{kurtosis:.3g} of {', '.join(_names(entry))}, must be measured"
+    )
+    return [Problem(("surfaces", name, "heights"), reason)]
+
+
+def _names(entry):
+    """Names of the files of a surface without folders."""
+    return [Path(file).name for file in entry["scans"]["files"]]
+
+
+def _problem(name, entry, refusal):
+    """Problem with the key that a refusal of scans is about."""
+    if refusal.key == "files":
+        names = _names(entry)
+        index = (names.index(refusal.file),) if refusal.file in names else ()
+        return Problem(("surfaces", name, "scans", "files", *index), f"is {refusal.file!r}, which {refusal.reason}")
+    path, section = ("surfaces", name, "scans", refusal.key), entry["scans"]
+    given = f"is {section[refusal.key]!r}" if refusal.key in section else "is missing"
+    return Problem(path, f"{given}: {refusal.file} {refusal.reason}")
+
+
+def view(config: dict[str, Any], found: Mapping[str, dict]) -> dict[str, Any]:
+    """Configuration in which measured surfaces are described by their preliminary numbers, as other surfaces are."""
+    spacing = config["sampling"]["spacing_nm"]
+    described = {name: _described(complete(config["surfaces"][name]), found[name], spacing) for name in found}
+    return config | {"surfaces": config["surfaces"] | described}
+
+
+def _described(entry, found, spacing):
+    """Section of a surface by numbers; without skewness and kurtosis if these do not give its heights."""
+    grid = math.pi / spacing * NM_PER_UM
+    cutoff = min(found["nyquist_rad_per_um"], grid) if entry["beyond"] == "cut" else grid
+    plateau, corner = found["plateau_nm4"], found["corner_rad_per_um"]
+    psd = {
+        "plateau_nm4": plateau,
+        "floor_nm4": plateau * (cutoff / corner) ** found["slope"],
+        "corner_rad_per_um": corner,
+        "cutoff_rad_per_um": cutoff,
+    }
+    moments = found["feasible"] if entry["heights"] == "moments" else None
+    shape = dict(zip(("skewness", "kurtosis"), moments or (), strict=False))
+    return {"rms_nm": found["rms_nm"], **shape, "psd": "published", "published_psd": psd}

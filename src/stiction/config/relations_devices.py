@@ -1,0 +1,172 @@
+"""Relations between the keys of devices, registered with those of `stiction.config.relations`.
+
+Lengths are in µm, as in the configuration. A relation gets the name of a device, and takes the rest from its section.
+"""
+
+from stiction.config import memory
+from stiction.config.designs import KEYS, OPTIONAL
+from stiction.config.relations import (
+    cases_have_unique_names,
+    estimated_strip,
+    length_can_exceed_the_correlation,
+    length_exceeds_the_correlation,
+    name_is_defined,
+    not_apart,
+    relation,
+    sides_of,
+    solids_resist_the_adhesion,
+    strip_is_whole_on_the_grid,
+)
+from stiction.config.relations import validate as validate  # of all relations, those of this module among them
+from stiction.config.units import NM_PER_UM
+from stiction.models import SIDES
+
+#: Keys that every device may have.
+_COMMON = {"kind", "pair", "humidities", "uncertainty"}
+#: What a relation about the humidities of a device needs: its name, all devices and the surfaces that meet.
+_MEETING = ("devices.*.@", "devices", "pairs", "surfaces", "materials", "water.temperature_K")
+
+relation("devices.*.pair", "pairs.#")(name_is_defined)
+relation("devices.*.humidities")(cases_have_unique_names)
+relation("devices.*.strip_um", "sampling.spacing_nm", "contact.every")(strip_is_whole_on_the_grid)
+relation("devices.*.width_um", "sampling.spacing_nm", "contact.every")(strip_is_whole_on_the_grid)
+
+
+@relation("design.tip_um", "sampling.spacing_nm", "contact.every", "devices")
+def tips_are_whole_on_the_grid(side, spacing, every, devices):
+    """Strips of tips are three contact points long or more, so that they can hold a summit, if there are devices."""
+    if not devices:
+        return None
+    short = "must be at least three contact points long" if side * NM_PER_UM < 2.5 * spacing * every else None
+    return short or strip_is_whole_on_the_grid(side, spacing, every)
+
+
+@relation("devices.*.kind", "devices.*.#")
+def device_has_the_keys_of_its_kind(kind, keys):
+    """A device has all keys that its kind needs, and no key of another kind."""
+    missing, strange = KEYS[kind] - set(keys), set(keys) - KEYS[kind] - OPTIONAL[kind] - _COMMON
+    if missing:
+        return f"must come with {', '.join(sorted(missing))}"
+    return f"must come without {', '.join(sorted(strange))}" if strange else None
+
+
+@relation("devices.*.contact_um", "sampling.spacing_nm", "contact.every")
+def patch_of_a_stopper_is_whole_on_the_grid(sides, spacing, every):
+    """Both sides of the area of a stopper are multiples of the distance between contact points."""
+    refusals = (strip_is_whole_on_the_grid(side, spacing, every) for side in sides)
+    return next(filter(None, refusals), None)
+
+
+@relation("design.worst_humidities")
+@relation("devices.*.chart.humidities")
+@relation("devices.*.chart.thicknesses_um")
+@relation("devices.*.chart.gaps_um")
+def axis_increases(values):
+    """Values along an axis increase."""
+    increasing = all(low < high for low, high in zip(values, values[1:], strict=False))
+    return None if increasing else "must be in increasing order, each value once"
+
+
+@relation("devices.*.gap_um", "devices.*.humidities", *_MEETING)
+@relation("devices.*.gap_um", "devices.*.chart.humidities", *_MEETING)
+def device_is_apart_from_the_film(gap, humidities, name, devices, pairs, surfaces, materials, temperature):
+    """The gap of a device is far above the film of water and the hills, as for pairs."""
+    return not_apart(gap, humidities, temperature, _sides(devices[name], pairs, surfaces), materials)
+
+
+@relation("devices.*.chart.gaps_um", "devices.*.chart.humidities", *_MEETING)
+def charted_gaps_are_apart_from_the_film(gaps, humidities, *meeting):
+    """As above, for the smallest gap of a chart."""
+    return device_is_apart_from_the_film(gaps[0], humidities, *meeting)
+
+
+#: What it takes to resolve a crack.
+_RESOLVING = (*_MEETING, "solid", "van_der_waals", "sampling.strip_length_um")
+
+
+@relation("devices.*.thickness_um", "devices.*.humidities", *_RESOLVING)
+def strips_resolve_the_cracks_of_a_device(
+    thickness, humidities, name, devices, pairs, surfaces, materials, temperature, solid, medium, strip
+):
+    """Strips are short enough for the force laws of a device, as far as they can be estimated without its contact.
+
+    What passes may still be refused after the contact, by `stiction.beam.resolution.resolved`.
+    """
+    strip, sides = devices[name].get("strip_um", strip), _sides(devices[name], pairs, surfaces)
+    meeting = temperature, sides, materials
+    needed = {rh: estimated_strip(thickness, solid, medium, rh, *meeting) for rh in humidities} if sides else {}
+    shortest = min(needed, key=needed.get, default=None)
+    if shortest is None or strip <= needed[shortest]:
+        return None
+    return (
+        f"must be so large that strips of {strip:g} µm resolve its cracks: at RH {shortest:g} they must be below "
+        f"about {needed[shortest]:.2g} µm; decrease strip_um, within the correlation length of the surfaces"
+    )
+
+
+@relation("devices.*.chart.thicknesses_um", "devices.*.chart.humidities", *_RESOLVING)
+def strips_resolve_the_thinnest_beam_of_a_chart(thicknesses, humidities, *meeting):
+    """As above, for the thinnest beam of a chart."""
+    return strips_resolve_the_cracks_of_a_device(thicknesses[0], humidities, *meeting)
+
+
+@relation("devices.*.strip_um", "devices.*.pair", "pairs", "surfaces", "character.spacing_nm")
+def strips_of_a_device_exceed_the_correlation(strip, pair, pairs, surfaces, spacing):
+    """Strips are independent samples; those of tips, which are never next to each other, may be shorter."""
+    for side in _sides({"pair": pair}, pairs, surfaces):
+        target = side["rms_nm"], side.get("mean_summit_radius_um"), side.get("summit_density_per_um2"), spacing
+        if side["psd"] == "published":
+            refusal = length_exceeds_the_correlation(strip, side["published_psd"])
+        else:
+            refusal = length_can_exceed_the_correlation(strip, "identified", *target)
+        if refusal:
+            return refusal
+    return None
+
+
+@relation("devices.*.pair", *_MEETING, "solid", "van_der_waals")
+def solids_resist_the_adhesion_of_a_device(pair, name, devices, pairs, surfaces, materials, temperature, solid, medium):
+    """As for pairs that run, at the humidities of a device."""
+    device = devices[name]
+    humidities = [*device["humidities"], *device.get("chart", {}).get("humidities", ())]
+    met = {name: section | {"humidities": humidities} for name, section in pairs.items() if name == pair}
+    return solids_resist_the_adhesion(pair, met, surfaces, solid, medium, temperature, humidities[0], materials)
+
+
+@relation("devices.*.kind", "devices.*.@", "devices", "sampling")
+def device_fits_into_memory(kind, name, devices, sampling):
+    """The field from which a patch of surface is cut fits into the memory of a job."""
+    if not KEYS[kind] <= set(devices[name]):
+        return None
+    length, width = memory.patch_of(devices[name], sampling)
+    needed = memory.of_field(length + sampling["margin_um"], width + sampling["margin_um"], sampling["spacing_nm"])
+    if needed <= memory.LARGEST:
+        return None
+    return f"must have a patch of surface within {1e-3 * memory.LARGEST:g} GB of memory, not {1e-3 * needed:.3g} GB"
+
+
+@relation("devices.*.uncertainty.thickness_um", "devices.*.thickness_um")
+@relation("devices.*.uncertainty.gap_um", "devices.*.gap_um")
+def dimension_stays_positive(deviation, value):
+    """A dimension is positive one standard uncertainty below its value, too."""
+    return None if deviation < value else "must be below the dimension itself"
+
+
+@relation("devices.*.uncertainty.humidity", "devices.*.humidities")
+def uncertain_humidity_stays_within_its_limits(deviation, humidities):
+    """Humidities are above 0 and below 1 one standard uncertainty around their values, too."""
+    inside = min(humidities) - deviation > 0 and max(humidities) + deviation < 1
+    return None if inside else "must leave the humidities above 0 and below 1"
+
+
+@relation("devices.*.uncertainty", "devices.*.kind")
+def uncertainty_is_that_of_the_kind(uncertainty, kind):
+    """Only dimensions that a device has are uncertain."""
+    strange = {"thickness_um", "gap_um", "residual_stress_MPa"} & set(uncertainty) - KEYS[kind]
+    return f"must come without {', '.join(sorted(strange))}" if strange else None
+
+
+def _sides(device, pairs, surfaces):
+    """Sections of the surfaces of the pair of a device; empty if one is not defined, which another relation reports."""
+    pair = pairs.get(device["pair"])
+    return sides_of(*(pair[side] for side in SIDES), surfaces) if pair else []

@@ -1,0 +1,146 @@
+"""Figures of devices: share of stuck beams over their length, safe length over the relative humidity."""
+
+import textwrap
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from stiction.designs.findings import numbered
+from stiction.report.format import TO_UM
+from stiction.report.style import (
+    DOUBLE,
+    SINGLE,
+    columns_of_panels,
+    handles,
+    humidity_axis,
+    letter_lines,
+    styled,
+)
+
+#: Line style of each shape in which a beam sticks, and what holds it.
+_SHAPES = {"S-shape": ("--", "held by the beam"), "S-shape or arc": ("-", "held by beam or tip")}
+#: Marker of each basis of a safe length.
+_BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x"}
+#: Characters in a line of warnings.
+_LINE = 130
+
+
+def _width(columns):
+    """Width of a figure with this number of columns [in]."""
+    return min(DOUBLE, 1.5 * SINGLE * columns)
+
+
+def _shades(count):
+    """Colours that darken from the first to the last, also when printed in grey."""
+    return colormaps["viridis_r"](np.linspace(0.25, 1, count))
+
+
+def _below(figure, sentences):
+    """Write numbered sentences below a figure."""
+    lines = [textwrap.fill(f"({k}) {sentence}", _LINE) for k, sentence in enumerate(sentences, 1)]
+    if lines:
+        figure.supxlabel("\n".join(lines), fontsize=6, ha="left", x=0.01)
+
+
+@styled
+def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float], list]) -> Figure:
+    """Share of stuck beams over their length, with bands of 95 % and safe lengths, one panel for each device.
+
+    Parameters
+    ----------
+    found : dict
+        Name and humidity to the dataset of stage safe_lengths.
+    warnings : dict
+        Name and humidity to sentences, which are written below the figure.
+    """
+    names = list(dict.fromkeys(name for name, _ in found))
+    sentences, numbers = numbered(warnings)
+    figure, columns, lines = columns_of_panels(len(names), 1, _width, 3.2)
+    for panel, name in zip(columns[:, 0], names, strict=True):
+        cases = {humidity: dataset for (device, humidity), dataset in found.items() if device == name}
+        named = []
+        for (humidity, dataset), shade in zip(cases.items(), _shades(len(cases)), strict=True):
+            marks = "".join(f" ({k})" for k in numbers[name, humidity])
+            _shares(panel, dataset, shade)
+            named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=f"RH {humidity:g}{marks}"))
+        panel.legend(handles=named, loc="lower right")
+        shares = np.concatenate([dataset.share.values for dataset in cases.values()])
+        panel.set(yscale="log", ylim=(shares.min() / 2, 1.3), xlabel="length of the device [µm]")
+    for line in lines:
+        line[0, 0].set_ylabel("share of stuck devices [–]")
+    letter_lines(lines, names)
+    _explain(columns[0, 0], found)
+    figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=5)
+    _below(figure, sentences)
+    return figure
+
+
+def _shares(panel: Axes, dataset, colour):
+    """P(stuck) of a device at one humidity, its band and its safe lengths."""
+    length = TO_UM * dataset.length.values
+    for shape in dataset["shape"].values:
+        one = dataset.sel(shape=shape)
+        known = one.stuck.values > 0
+        panel.plot(length[known], one.stuck.values[known], _SHAPES[shape][0], color=colour)
+        panel.fill_between(length[known], *one.stuck_band.values[:, known], color=colour, alpha=0.2, linewidth=0)
+        for share in one.share.values:
+            safe = one.sel(share=share)
+            panel.plot(TO_UM * float(safe.safe_length), share, _BASES[str(safe.basis.values)], color=colour)
+
+
+def _explain(panel, found):
+    """Add line styles and markers that occur to the legend of a panel."""
+    for shape, (line, text) in _SHAPES.items():
+        if any(shape in dataset["shape"].values for dataset in found.values()):
+            panel.plot([], [], line, color="0.3", label=text)
+    for basis, mark in _BASES.items():
+        if any(basis in dataset.basis.values for dataset in found.values()):
+            panel.plot([], [], mark, color="0.3", label=f"safe length, {basis}")
+
+
+@styled
+def chart(found: Mapping[tuple[str, float], xr.Dataset]) -> Figure:
+    """Safe length over the relative humidity, one panel for each device and gap, for the middle one of the shares.
+
+    Parameters
+    ----------
+    found : dict
+        Name and humidity to the dataset of stage chart.
+    """
+    devices = {}
+    for (name, humidity), dataset in sorted(found.items()):
+        devices.setdefault(name, []).append(dataset.expand_dims(relative_humidity=[humidity]))
+    joint = {"data_vars": "minimal", "coords": "minimal", "compat": "equals", "join": "exact"}
+    axes = {name: xr.concat(parts, "relative_humidity", **joint) for name, parts in devices.items()}
+    subjects = [(name, gap) for name, whole in axes.items() for gap in whole.gap.values]
+    figure, columns, lines = columns_of_panels(len(subjects), 1, _width, 3.2)
+    for panel, (name, gap) in zip(columns[:, 0], subjects, strict=True):
+        _thicknesses(panel, axes[name].sel(gap=gap))
+        panel.set(xlabel="relative humidity [–]", ylim=(0, None))
+        humidity_axis(panel)
+    for line in lines:
+        line[0, 0].set_ylabel("safe length [µm]")
+    letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm" for name, gap in subjects])
+    figure.legend(*handles(*columns[:, 0]), loc="outside upper center", ncols=4)
+    return figure
+
+
+def _thicknesses(panel, whole):
+    """Curves of all thicknesses of one device and gap, and their limits in saturated air."""
+    share = whole.share.values[len(whole.share) // 2]
+    for thickness, shade in zip(whole.thickness.values, _shades(whole.sizes["thickness"]), strict=True):
+        one = whole.sel(thickness=thickness, share=share)
+        for shape in whole["shape"].values:
+            line, text = _SHAPES[shape]
+            lengths = TO_UM * one.safe_length.sel(shape=shape)
+            panel.plot(one.relative_humidity, lengths, line, color=shade)
+            panel.plot([], [], line, color="0.3", label=f"{text}, p = {share:g}")
+        limit = TO_UM * float(one.flooded_length.isel(relative_humidity=0))
+        panel.axhline(limit, color=shade, linestyle=":", linewidth=0.8)
+        panel.plot([], [], "s", color=shade, label=f"thickness {TO_UM * thickness:g} µm")
+    panel.plot([], [], ":", color="0.3", label="beam in saturated air")

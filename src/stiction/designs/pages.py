@@ -1,0 +1,271 @@
+"""Pages of single devices for the report: the answer in words, tables, figures, warnings, and what the words mean."""
+
+import base64
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from html import escape
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.figure import Figure
+
+from stiction.designs import figures_budget, figures_devices, tables_budget, tables_devices
+from stiction.designs.stoppers import is_at_an_end, shares_stuck
+from stiction.devices.limits import NOT_MODELLED
+from stiction.report.format import UM, UN
+from stiction.report.style import png
+
+_PAGE = """<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8">
+<title>{title}</title>
+<style>
+body {{ font: 15px/1.45 sans-serif; max-width: 62em; margin: 1.5em auto; padding: 0 1em }}
+h1 {{ font-size: 1.5em }} h2 {{ font-size: 1.15em; margin-top: 1.6em }}
+table {{ border-collapse: collapse; margin: .6em 0 }}
+td, th {{ padding: 2px 12px; text-align: right; border-bottom: 1px solid #ddd }}
+td:first-child, th:first-child {{ text-align: left }}
+td {{ white-space: nowrap }} img {{ max-width: 100% }}
+.answer {{ font-size: 1.1em; border-left: 4px solid #0072B2; padding: .2em 1em }}
+.warning {{ border-left: 4px solid #D55E00; padding: .2em 1em }}
+dt {{ font-weight: bold }} dd {{ margin: 0 0 .5em 1.5em }}
+</style>
+<h1>{title}</h1>
+{body}
+</html>
+"""
+#: Pixels of a page for one inch of a figure.
+_PIXELS = 120
+
+
+@dataclass(frozen=True)
+class Section:
+    """Part of a page: paragraphs, a table and a figure, each of which may be missing."""
+
+    title: str
+    paragraphs: Sequence[str] = ()
+    cells: pd.DataFrame | None = None
+    figure: Figure | None = None
+
+
+@dataclass(frozen=True)
+class Page:
+    """Everything that the page of a device shows."""
+
+    title: str
+    facts: Mapping[str, str]  #: dimensions and conditions, by name
+    answer: Sequence[str]  #: sentences at the top
+    sections: Sequence[Section] = ()
+    warnings: Sequence[str] = ()  #: where the model ends for this device
+    words: Mapping[str, str] = field(default_factory=dict)  #: terms and what they mean
+
+    @property
+    def html(self) -> str:
+        """The page as one file: figures are part of it."""
+        parts = [_block("answer", self.answer), _facts(self.facts), *map(_section, self.sections)]
+        parts += ["<h2>Limits of this prediction</h2>", _block("warning", [*self.warnings, NOT_MODELLED])]
+        parts += ["<h2>What the words mean</h2>", _words(self.words)]
+        return _PAGE.format(title=escape(self.title), body="\n".join(parts))
+
+
+def _block(kind, sentences):
+    return f'<div class="{kind}">{_paragraphs(sentences)}</div>'
+
+
+def _paragraphs(sentences):
+    return "\n".join(f"<p>{escape(sentence)}</p>" for sentence in sentences)
+
+
+def _facts(facts):
+    rows = "".join(f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in facts.items())
+    return f"<table>{rows}</table>"
+
+
+def _section(section):
+    parts = [f"<h2>{escape(section.title)}</h2>", _paragraphs(section.paragraphs)]
+    if section.cells is not None:
+        parts.append(section.cells.to_html(index=False, border=0))
+    if section.figure is not None:
+        picture, width = base64.b64encode(png(section.figure)).decode(), round(_PIXELS * section.figure.get_figwidth())
+        parts.append(f'<img alt="{escape(section.title)}" width="{width}" src="data:image/png;base64,{picture}">')
+    return "\n".join(parts)
+
+
+def _words(words):
+    return "<dl>" + "".join(f"<dt>{escape(term)}</dt><dd>{escape(text)}</dd>" for term, text in words.items()) + "</dl>"
+
+
+# Devices
+
+
+_KINDS = {"cantilever": "beam clamped at one end", "bridge": "beam clamped at both ends", "stopper": "stopper"}
+#: Keys of a device, what they are called and their unit.
+_FACTS = {
+    "thickness_um": ("thickness", "µm"),
+    "gap_um": ("gap below the beam", "µm"),
+    "width_um": ("width", "µm"),
+    "residual_stress_MPa": ("tensile stress", "MPa"),
+    "contact_um": ("sides of the area in contact", "µm"),
+    "restoring_force_uN": ("restoring force", "µN"),
+}
+_OF_BEAMS = {
+    "Safe length": "Largest length of which at most the stated share sticks, with a confidence of 95 %.",
+    "Estimate": "Length at which exactly the stated share sticks, as well as it is known; it is no bound.",
+    "Held by the beam": "The beam touches down behind an open crack and stays flat there (S-shape).",
+    "Held by the tip": "Only the free end touches and holds the beam (arc). Shorter beams can be held in this way.",
+    "Sampled, fitted, extrapolated": (
+        "What a length rests on: on simulated beams alone; on a line through the shortest 5 % of them, within what was "
+        "verified; or on that line beyond it."
+    ),
+}
+_OF_STOPPERS = {
+    "Pull-off force": "Largest force with which the two surfaces hold each other while they are separated.",
+    "P(stuck)": "Share of equal stoppers whose pull-off force exceeds the restoring force.",
+    "Safe force": "Restoring force that at most the stated share of stoppers exceeds, with a confidence of 95 %.",
+    "Worst humidity": "Humidity of the largest mean pull-off force. Wetter air wets more area, but pulls less.",
+}
+_OF_BUDGETS = {
+    "Effect": "Standard uncertainty of the result due to one measurement, if all others were exact.",
+    "Remaining": "Standard uncertainty of the result if this measurement were exact.",
+    "Scatter between devices": "How much equal devices differ. A better measurement does not reduce it.",
+    "Choice of the model": "What another assumption of the theory would change. It has no distribution.",
+}
+
+
+def of_beam(
+    name: str,
+    section: Mapping,
+    found: Mapping[float, xr.Dataset],
+    charts: Mapping[float, xr.Dataset],
+    budgets: Mapping[float, xr.Dataset],
+    warnings: Sequence[str],
+) -> Page:
+    """Page of a cantilever or bridge.
+
+    Parameters
+    ----------
+    name : str
+    section : dict
+        Its section of the configuration.
+    found, charts, budgets : dict
+        Humidity to the datasets of the stages safe_lengths, chart and budget; the last two may be empty.
+    warnings : sequence of str
+        Where the model ends for this device.
+    """
+    cases = {(name, humidity): dataset for humidity, dataset in found.items()}
+    silent = dict.fromkeys(cases, ())
+    table = tables_devices.safe_lengths(cases, silent).cells.drop(columns=["device", "warnings"])
+    sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, silent))]
+    if charts:
+        drawn = figures_devices.chart({(name, humidity): dataset for humidity, dataset in charts.items()})
+        sections.append(Section("Other thicknesses and humidities", (), None, drawn))
+    sections += _sure(name, budgets)
+    answer = [safe_sentence(humidity, dataset) for humidity, dataset in found.items()]
+    words = _OF_BEAMS | (_OF_BUDGETS if budgets else {})
+    return Page(_title(name, section), _facts_of(section), answer, sections, warnings, words)
+
+
+def of_stopper(
+    name: str,
+    section: Mapping,
+    found: xr.Dataset,
+    budgets: Mapping[float, xr.Dataset],
+    warnings: Sequence[str],
+) -> Page:
+    """Page of a stopper; parameters as in `of_beam`, with one dataset of stage stoppers."""
+    table = tables_budget.stoppers({name: found}, {name: []}).cells.drop(columns=["device"])
+    sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: found}))]
+    sections += _sure(name, budgets)
+    answer = [*(stuck_sentence(*row, force=float(found.restoring_force)) for row in shares_stuck(found))]
+    answer += [*safe_force_sentences(found), worst_sentence(found)]
+    words = _OF_STOPPERS | (_OF_BUDGETS if budgets else {})
+    return Page(_title(name, section), _facts_of(section), answer, sections, warnings, words)
+
+
+def _title(name, section):
+    return f"{name}: {_KINDS[section['kind']]}"
+
+
+def _facts_of(section):
+    """Dimensions and conditions of a device, by name."""
+    found = {"surfaces": f"pair {section['pair']}"}
+    for key, (name, unit) in _FACTS.items():
+        if key in section:
+            values = section[key] if isinstance(section[key], list) else [section[key]]
+            found[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
+    return found | {"relative humidities": ", ".join(f"{humidity:g}" for humidity in section["humidities"])}
+
+
+def safe_sentence(humidity: float, found: xr.Dataset) -> str:
+    """The safe lengths of a device at one humidity in words, for the middle one of the shares."""
+    share = float(found.share[found.sizes["share"] // 2])
+    lengths = {
+        str(shape): float(found.safe_length.sel(shape=shape, share=share)) / UM for shape in found["shape"].values
+    }
+    shortest = min(lengths.values())
+    sentence = (
+        f"At a relative humidity of {humidity:g}, devices of up to {shortest:.0f} µm come free after they were pressed "
+        f"down, except for at most 1 in {1 / share:g} (95 % confidence)."
+    )
+    longest = max(lengths.values())
+    if longest == shortest:
+        return sentence
+    return f"{sentence} If the tip cannot hold them, this is true of up to {longest:.0f} µm."
+
+
+def stuck_sentence(humidity: float, stuck: float, low: float, high: float, force: float) -> str:
+    """P(stuck) of a stopper at one humidity in words; restoring force [N].
+
+    Examples
+    --------
+    >>> stuck_sentence(0.67, 0.012, 0.01, 0.015, 20e-6)
+    'At a relative humidity of 0.67, 1.2 % of the stoppers (1 to 1.5 %) hold more than the restoring force of 20 µN.'
+    """
+    share, ends = f"{100 * stuck:.3g} %", f"{100 * low:.3g} to {100 * high:.3g} %"
+    return (
+        f"At a relative humidity of {humidity:g}, {share} of the stoppers ({ends}) hold more than the restoring force "
+        f"of {force / UN:g} µN."
+    )
+
+
+def safe_force_sentences(found: xr.Dataset) -> list[str]:
+    """Restoring forces that would suffice at every humidity of a stopper, for the shares that its patches can bound."""
+    safe = found.safe_force.sel(part="safe").max("humidity")
+    return [
+        f"At all these humidities, a restoring force of {float(force) / UN:.3g} µN leaves at most 1 in "
+        f"{1 / float(force.share):g} stuck (95 % confidence)."
+        for force in safe
+        if np.isfinite(force)
+    ]
+
+
+def worst_sentence(found: xr.Dataset) -> str:
+    """The worst humidity of a stopper in words."""
+    worst = float(found.worst_humidity)
+    low, high = (f"{float(found.axis[end]):g}" for end in (0, -1))
+    if is_at_an_end(found):
+        return f"Between relative humidities of {low} and {high}, the stopper holds most at {worst:g}."
+    return (
+        f"The stopper holds most at a relative humidity of {worst:.2f}; drier and wetter air, from {low} to {high}, "
+        "are less critical."
+    )
+
+
+def _sure(name, budgets):
+    """Section on the uncertainty of the result and what to measure better; none without a stated uncertainty."""
+    if not budgets:
+        return []
+    cases = {(name, humidity): dataset for humidity, dataset in budgets.items()}
+    advice = [
+        f"Relative humidity {humidity:g}: {tables_budget.advised(dataset)}" for humidity, dataset in budgets.items()
+    ]
+    cells, drawn = _side_by_side(tables_budget.budget(cases).cells), figures_budget.budget(cases)
+    return [Section("How sure is this, and what should be measured better?", advice, cells, drawn)]
+
+
+def _side_by_side(cells):
+    """Cells of the budget of one device with a pair of columns for every humidity."""
+    parts = [cells[humidity == cells.RH].set_index("what") for humidity in cells.RH.unique()]
+    shown = [part[["effect [%]", "remaining [%]"]].add_prefix(f"RH {part.RH.iloc[0]}: ") for part in parts]
+    return pd.concat(shown, axis=1).reset_index()

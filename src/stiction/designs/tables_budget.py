@@ -1,0 +1,172 @@
+"""Tables of stoppers and of the uncertainty of devices: P(stuck) of patches, and what to measure better."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from stiction.designs.budget import budget_of, groups_of
+from stiction.designs.stoppers import is_at_an_end, shares_stuck
+from stiction.devices.budget import advice
+from stiction.devices.limits import NOT_MODELLED
+from stiction.estimates import mean_with_error
+from stiction.report.format import MISSING, UN, number, with_error
+from stiction.report.tables import Table
+from stiction.report.tables_studies import variant_label
+
+#: Rows of a budget below those of its measurements.
+TOTAL, INDEPENDENT, SCATTER = "total", "total, if all errors were independent", "scatter between devices"
+#: What the length of a budget is, by its unit.
+RESPONSES = {"m": "mean sticking length", "N": "mean pull-off force"}
+
+
+# Stoppers
+
+
+def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence[str]]) -> Table:
+    """Stoppers: pull-off force, P(stuck), restoring force needed, worst humidity.
+
+    Parameters
+    ----------
+    datasets : dict
+        Device to the dataset of stage stoppers.
+    warnings : dict
+        Device to sentences.
+    """
+    rows = [row for device, dataset in datasets.items() for row in _of_stopper(device, dataset)]
+    frame = pd.DataFrame([row | {"warnings": " ".join(warnings[row["device"]])} for row in rows])
+    caption = (
+        "Stoppers: force that pulls a patch off, mean ± standard error and standard deviation over the patches; "
+        "P(stuck): share of the patches that hold more than the restoring force, with its 95 % band; safe force: "
+        "restoring force that at most this share of all patches exceeds, with 95 % confidence; – where there are too "
+        "few patches. Worst RH: humidity of the largest mean pull-off force."
+    )
+    said = [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found]
+    caption = " ".join([caption, *(["Warnings:", *said] if said else []), NOT_MODELLED])
+    return Table(frame, caption, pd.DataFrame([_stopper_as_text(row) for _, row in frame.iterrows()]))
+
+
+def _of_stopper(device, dataset):
+    """Numbers of one stopper at each of its humidities."""
+    for humidity, stuck, low, high in shares_stuck(dataset):
+        forces = dataset.pull_off.sel(humidity=humidity).values / UN
+        mean, error = mean_with_error(forces)
+        safe = dataset.safe_force.sel(humidity=humidity, part="safe").to_series() / UN
+        row = {"device": device, "relative_humidity": humidity}
+        row |= {"pull_off_uN": mean, "pull_off_se_uN": error, "pull_off_std_uN": forces.std(ddof=1)}
+        row |= {"restoring_force_uN": float(dataset.restoring_force) / UN}
+        row |= {"share_stuck": stuck, "share_stuck_low": low, "share_stuck_high": high}
+        row |= {f"safe_force_uN_{share:g}": force for share, force in safe.items()}
+        row |= {"worst_humidity": float(dataset.worst_humidity)}
+        row |= {"worst_humidity_se": float(dataset.worst_humidity_error), "worst_is_an_end": is_at_an_end(dataset)}
+        yield row
+
+
+def _stopper_as_text(row):
+    """One row as text."""
+    safe = {name: force for name, force in row.items() if name.startswith("safe_force")}
+    return {
+        "device": row.device,
+        "RH": f"{row.relative_humidity:g}",
+        "pull-off force [µN]": with_error(row.pull_off_uN, row.pull_off_se_uN),
+        "std [µN]": number(row.pull_off_std_uN, ".3g"),
+        "restoring force [µN]": number(row.restoring_force_uN, "g"),
+        "P(stuck) [%]": percentage(row.share_stuck, row.share_stuck_low, row.share_stuck_high),
+        **{f"safe force, {name.rpartition('_')[2]} [µN]": number(force, ".3g") for name, force in safe.items()},
+        "worst RH": worst_humidity(row.worst_humidity, row.worst_humidity_se, row.worst_is_an_end),
+    }
+
+
+def percentage(share: float, low: float, high: float) -> str:
+    """A share and its band, in percent.
+
+    Examples
+    --------
+    >>> percentage(0.0123, 0.0101, 0.0149)
+    '1.23 (1.01 to 1.49)'
+    """
+    return f"{100 * share:.3g} ({100 * low:.3g} to {100 * high:.3g})"
+
+
+def worst_humidity(humidity: float, error: float, is_an_end: bool) -> str:
+    """Worst humidity as text, also if it is an end of the humidities that were computed.
+
+    Examples
+    --------
+    >>> worst_humidity(0.901, 0.0021, False), worst_humidity(0.98, 0.0, True)
+    ('0.9010 ± 0.0021', '0.98 or beyond')
+    """
+    return f"{humidity:g} or beyond" if is_an_end else with_error(humidity, error)
+
+
+# Budget
+
+
+def budget(datasets: Mapping[tuple[str, float], xr.Dataset]) -> Table:
+    """Uncertainty of every device: effect of each measurement, total, scatter, choices of the model.
+
+    The numbers hold every input with its slope; the text is by measurement, with a sentence on what to measure better.
+
+    Parameters
+    ----------
+    datasets : dict
+        (device, humidity) to the dataset of stage budget.
+    """
+    frame = pd.DataFrame([row for case, dataset in datasets.items() for row in _of_budget(case, dataset)])
+    sentences = [f"{device}, RH {humidity:g}: {advised(dataset)}" for (device, humidity), dataset in datasets.items()]
+    caption = (
+        "Uncertainty of the mean length at which beams stick and of the mean pull-off force of stoppers: relative "
+        "standard uncertainty due to every measurement, the others being exact, ± standard error of the "
+        "simulation. Remaining: what would be left if the measurement were exact. Scatter between devices and other "
+        "choices of the model, with the sign of their effect, are no part of the total. " + " ".join(sentences)
+    )
+    shown = frame[frame.part != "input"]
+    return Table(frame, caption, pd.DataFrame([_budget_as_text(row) for _, row in shown.iterrows()]))
+
+
+def advised(dataset: xr.Dataset) -> str:
+    """Sentence on what to measure better."""
+    found = budget_of(dataset)
+    if found.total == 0:
+        return "No uncertainty of an input is stated."
+    return advice(found, groups_of(dataset), RESPONSES[dataset["mean"].attrs["units"]])
+
+
+def _of_budget(case, dataset):
+    """Numbers of one device at one humidity: inputs, measurements, totals, scatter, choices."""
+    found, errors = budget_of(dataset), dataset.slope_error.values
+    head = dict(zip(("device", "relative_humidity"), case, strict=True))
+    deviations = np.sqrt(np.diag(found.covariance))
+    for name, slope, error, deviation in zip(found.names, found.slopes, errors, deviations, strict=True):
+        numbers = {"slope": slope, "slope_se": error, "standard_uncertainty": deviation}
+        yield head | {"part": "input", "name": name} | numbers | _effect(found, [name], errors)
+    for name, inputs in groups_of(dataset).items():
+        left = {"remaining_percent": 100 * found.remaining(inputs)}
+        yield head | {"part": "measurement", "name": name} | _effect(found, inputs, errors) | left
+    for name, whole in ((TOTAL, found), (INDEPENDENT, found.uncorrelated)):
+        yield head | {"part": "total", "name": name} | _effect(whole, found.names, errors)
+    yield head | {"part": "scatter", "name": SCATTER, "effect_percent": 100 * float(dataset.scatter)}
+    for name in dataset.choice.values:
+        effect, error = (100 * float(dataset[key].sel(choice=name)) for key in ("effect", "effect_error"))
+        yield head | {"part": "choice", "name": str(name), "effect_percent": effect, "effect_se_percent": error}
+
+
+def _effect(budget, inputs, slope_errors):
+    """Effect of some inputs and its standard error [%]."""
+    error = budget.error_of_effect(inputs, slope_errors)
+    return {"effect_percent": 100 * budget.effect(inputs), "effect_se_percent": 100 * error}
+
+
+def _budget_as_text(row):
+    """One row as text."""
+    effect = number(row.effect_percent, ".2g")
+    if not np.isnan(row.effect_se_percent):
+        effect = with_error(row.effect_percent, row.effect_se_percent, "+" if row.part == "choice" else "")
+    return {
+        "device": row.device,
+        "RH": f"{row.relative_humidity:g}",
+        "what": f"choice: {variant_label(row['name'])}" if row.part == "choice" else row["name"],
+        "effect [%]": effect,
+        "remaining [%]": MISSING if np.isnan(row.remaining_percent) else number(row.remaining_percent, ".2g"),
+    }

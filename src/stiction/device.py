@@ -1,0 +1,149 @@
+"""A device in one process: from a configuration to its safe lengths, forces and uncertainty, without files.
+
+Stages, settings and addresses of random numbers are the same as in the workflow, and so are the results.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import xarray as xr
+
+from stiction.config import jobs
+from stiction.config.cases import case_id
+from stiction.config.designs import Designs
+from stiction.config.merging import merged
+from stiction.config.plan import Plan
+from stiction.config.units import typed
+from stiction.designs import budget, chart, cracks, findings, safe_lengths, stoppers
+from stiction.stages import contact as stage_contact
+from stiction.stages import identification
+from stiction.studies import slope_contact
+from stiction.study import estimate_of, surface_datasets
+from stiction.variants import contact as variant_contact
+from stiction.variants import summits
+
+
+@dataclass(frozen=True)
+class Device:
+    """One device of a configuration, and its safe lengths or pull-off forces at any relative humidity.
+
+    Examples
+    --------
+    >>> import stiction
+    >>> beam = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}
+    >>> config = stiction.load({"devices": {"C1": beam | {"humidities": [0.67]}}})
+    >>> device = stiction.Device.of(config, "C1")  # doctest: +SKIP
+    >>> device.safe_lengths(0.67).safe_length  # doctest: +SKIP
+    """
+
+    name: str
+    contact: xr.Dataset  #: contact of the strips along a beam, or of the whole area of a stopper
+    tips: xr.Dataset | None  #: contact of the strips that hold the tips of a cantilever
+    config: dict  #: complete configuration
+    surfaces: list[tuple[xr.Dataset, xr.Dataset]]  #: datasets (heights, spectrum) of beam and substrate
+
+    @classmethod
+    def of(cls, config: dict, name: str) -> "Device":
+        """Device of a configuration: draws the surfaces and computes their contact, 15 ms per sample.
+
+        Parameters
+        ----------
+        config : dict
+            Complete configuration, from `stiction.load`.
+        name : str
+            Name of the device.
+
+        Raises
+        ------
+        ValueError
+            If the configuration has no such device.
+        """
+        designs, plan = Designs(config), Plan(config)
+        if name not in designs.devices:
+            raise ValueError(f"there is no device {name}; the configuration has {', '.join(designs.devices) or 'none'}")
+        pair, kind = (config["devices"][name][key] for key in ("pair", "kind"))
+        surfaces = [surface_datasets(plan, side) for side in plan.sides(pair)]
+
+        def contact(settings):
+            return stage_contact.compute(surfaces, pair, "NG", typed(stage_contact.Settings, settings))
+
+        shared = designs.has_strips_of_pair(name)
+        ground = contact(jobs.contact(plan, pair) if shared else jobs.device_contact(plan, *designs.ground(name)))
+        tips = contact(jobs.tip_contact(plan, *designs.tips(name))) if kind == "cantilever" else None
+        return cls(name, ground, tips, config, surfaces)
+
+    def cracks(self, humidity: float) -> xr.Dataset:
+        """Crack lengths of long beams; dataset of `stiction.designs.cracks`, half a minute."""
+        return cracks.compute(self.contact, self._settings(cracks, jobs.cracks, humidity))
+
+    def safe_lengths(self, humidity: float) -> xr.Dataset:
+        """P(stuck) over the length, and safe lengths; dataset of `stiction.designs.safe_lengths`."""
+        settings = self._settings(safe_lengths, jobs.safe_lengths, humidity)
+        return safe_lengths.compute(self.cracks(humidity), self.tips, settings)
+
+    def chart(self, humidity: float) -> xr.Dataset:
+        """Safe lengths of the thicknesses and gaps of its chart; dataset of `stiction.designs.chart`."""
+        return chart.compute(self.contact, self.tips, self._settings(chart, jobs.chart, humidity))
+
+    def forces(self) -> xr.Dataset:
+        """Pull-off forces of a stopper, P(stuck) and the worst humidity; dataset of `stiction.designs.stoppers`."""
+        return stoppers.compute(self.contact, typed(stoppers.Settings, jobs.stoppers(Plan(self.config), self.name)))
+
+    def budget(self, humidity: float) -> xr.Dataset:
+        """Uncertainty of length or force; dataset of `stiction.designs.budget`.
+
+        The first call draws the surfaces with every uncertain input changed, a few minutes.
+        """
+        plan = Plan(self.config)
+        plain = jobs.budget(plan, case_id(self.name, humidity))
+        settings = typed(budget.Settings, plain["budget"])
+        described = dict(zip(plan.sides(self.config["devices"][self.name]["pair"]), self.surfaces, strict=True))
+        uncertain = {name: described[name] for name, _ in plain["quantities"]}
+        estimates = {name: estimate_of(plan, name) for name in uncertain if name in plan.scanned}
+        known = budget.covariances(uncertain, estimates, settings)
+        return budget.compute(self.contact, *self._changed, known, settings)
+
+    @cached_property
+    def _changed(self):
+        """Contacts with less and with more of every input, and under other choices of the model."""
+        plan, designs = Plan(self.config), Designs(self.config)
+        section, ground = self.config["devices"][self.name], designs.ground(self.name)
+        pair, stated = section["pair"], section.get("uncertainty", {})
+        shared = designs.has_strips_of_pair(self.name)
+        plain = jobs.slope_contact(plan, pair) if shared else jobs.device_slope_contact(plan, *ground)
+        shifts = typed(slope_contact.Settings, plain)
+        shifted = {
+            key: tuple(slope_contact.compute(self.surfaces, pair, *key, shifts))
+            for key in designs.quantities(self.name)
+        }
+        modulus = None
+        if stated.get("young_modulus_GPa"):
+            plains = (jobs.modulus_contact(plan, *ground, side) for side in ("less", "more"))
+            both = (typed(stage_contact.Settings, plain) for plain in plains)
+            modulus = tuple(stage_contact.compute(self.surfaces, pair, "NG", settings) for settings in both)
+        choices = {name: self._choice(plan, *ground, name) for name in plan.choices(pair)}
+        return shifted, modulus, choices
+
+    def _choice(self, plan, pair, length, width, variant):
+        """Contact under another choice of the model."""
+        plain = jobs.device_choice_summits(plan, pair, length, width, variant)
+        described = dict(zip(plan.sides(pair), self.surfaces, strict=True))
+        identified = {
+            name: identification.compute(
+                described[name][0], name, typed(identification.Settings, jobs.identification(plan, name))
+            )
+            for name in plain["identified"]
+        }
+        measured = {name: described[name] for name in plan.scanned_sides(pair)}
+        both = (plain["base"], merged(plain["base"], plain["changes"]))
+        found = summits.compute(identified, pair, *(typed(summits.Settings, one) for one in both), measured)
+        return variant_contact.compute(found, typed(variant_contact.Settings, plan.variant_contact(pair, variant)))
+
+    def warnings(self, found: xr.Dataset) -> list[str]:
+        """Where safe lengths (`safe_lengths`) are beyond the limits of the model, one sentence each."""
+        plain = jobs.beyond_the_model(Plan(self.config))["devices"][self.name]
+        return findings.of_device(found, typed(findings.OfDevice, plain))
+
+    def _settings(self, stage, job, humidity):
+        """Settings of a stage at a humidity."""
+        return typed(stage.Settings, job(Plan(self.config), case_id(self.name, humidity)))

@@ -1,0 +1,69 @@
+"""Stage scan: the map of heights in one file of a microscope."""
+
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from stiction.scans import reading
+from stiction.scans.reading import ScanFile, Source
+from stiction.scans.scan import Scan
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that a scan depends on apart from its file."""
+
+    file: str  #: name of the file without folders
+    sha256: str  #: of its content
+    source: Source = Source()
+
+
+def compute(path: str | Path, settings: Settings) -> xr.Dataset:
+    """Read the heights of a file; a warning states what the user should know of the file.
+
+    Raises
+    ------
+    ScanError
+        If the file has no usable map of heights.
+    """
+    found = reading.read(path, settings.source)
+    for note in found.notes:
+        warnings.warn(note, stacklevel=2)
+    return layout(found)
+
+
+def layout(found: ScanFile) -> xr.Dataset:
+    """Dataset of the heights of one scan, less their mean, in single precision; NaN where they are undefined."""
+    scan = found.scan
+    fast, slow = (np.arange(n) * pixel for n, pixel in zip(scan.heights.shape, scan.frame.pixel, strict=True))
+    elevation = np.asarray(scan.heights - np.nanmean(scan.heights), np.float32)
+    return xr.Dataset(
+        {
+            "elevation": (("fast", "slow"), elevation, {"units": "m"}),
+            "size": ("axis", list(scan.size), {"units": "m", "long_name": "number of points times their distance"}),
+            "file": ((), scan.name),
+            "channel": ((), found.channel, {"long_name": "channel of the file that was read"}),
+            "unit": ((), found.unit, {"long_name": "unit of the heights in the file"}),
+            "notes": ((), "\n".join(found.notes), {"long_name": "sentences on channel and instrument, one per line"}),
+        },
+        coords={
+            "fast": ("fast", fast, {"units": "m"}),
+            "slow": ("slow", slow, {"units": "m"}),
+            "axis": ["fast", "slow"],
+        },
+    )
+
+
+def scan_of(dataset: xr.Dataset) -> Scan:
+    """The scan, in double precision."""
+    return Scan(
+        dataset.elevation.values.astype(float), tuple(map(float, dataset["size"].values)), str(dataset.file.item())
+    )
+
+
+def notes(dataset: xr.Dataset) -> tuple[str, ...]:
+    """Sentences on the choice of the channel and on levelling by the instrument."""
+    return tuple(str(dataset.notes.item()).splitlines())

@@ -1,0 +1,69 @@
+"""Spectrum of a measured surface (Sec. II-B): the dataset of `stiction.stages.spectrum` from that of stage estimate."""
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.errors import NotConverged
+from stiction.measured import estimate as stage_estimate
+from stiction.stages import parameters
+from stiction.stages import spectrum as stage_spectrum
+from stiction.stages.spectrum import Use
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Source of the spectrum, its cut-off, and what it is used for."""
+
+    psd: str  #: ``fitted`` (Eq. (7)) or ``tabulated``
+    beyond: str  #: ``cut`` at the Nyquist number of the scans, or ``continued`` to that of the grid
+    spacing: float  #: of the grid on which the surface will be drawn [m]
+    use: Use
+
+
+def compute(estimate: xr.Dataset, heights: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Fit or table of the measured spectrum up to its cut-off, and the spectrum of the Gaussian field.
+
+    ASSUME: with ``cut`` there is no roughness that the scans do not resolve, as in the identification from summits.
+
+    Parameters
+    ----------
+    estimate, heights : Dataset
+        Datasets of stages estimate and heights.
+    settings : Settings
+
+    Raises
+    ------
+    ValueError
+        If strips are not longer than the correlation length, or no Gaussian field has these heights and this spectrum.
+    """
+    use, source = settings.use, f"from {', '.join(stage_estimate.files(estimate))}"
+    cutoff, clipped = cutoff_and_clipping(stage_estimate.reach(estimate).nyquist, settings)
+    if clipped:
+        warnings.warn(f"surface {use.surface}: {clipped}", stacklevel=2)
+    try:
+        target = stage_estimate.spectrum(estimate, settings.psd, cutoff)
+        found = stage_spectrum.on_grid(target, heights, settings.spacing)
+    except (ValueError, NotConverged) as reason:
+        raise ValueError(f"surface {use.surface} {source} cannot be drawn: {reason}") from None
+    lengths = {"sampling.strip_length_um": use.strip_length, "sampling.margin_um": use.margin}
+    parameters.refuse_long_correlation(use.surface, target, lengths, source)
+    return found.assign(flags=((), clipped))
+
+
+def cutoff_and_clipping(nyquist: float, settings: Settings) -> tuple[float, str]:
+    """Cut-off [rad m⁻¹], and a sentence if the grid cuts the measured spectrum off; empty if it does not.
+
+    Parameters
+    ----------
+    nyquist : float
+        Of the scans [rad m⁻¹].
+    settings : Settings
+    """
+    grid = np.pi / settings.spacing
+    if nyquist <= grid:
+        return (nyquist if settings.beyond == "cut" else grid), ""
+    shown = f"{1e-6 * grid:.4g} rad/µm, below that of the scans, {1e-6 * nyquist:.4g} rad/µm"
+    return grid, f"the spectrum ends at the Nyquist number of the grid, {shown}; a finer sampling.spacing_nm keeps more"

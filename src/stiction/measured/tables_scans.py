@@ -1,0 +1,125 @@
+"""Tables of measured surfaces: their scans, and how unsure these leave the prediction."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from stiction.beam.energy import CRACK_LENGTH_POWER
+from stiction.measured import estimate as stage_estimate
+from stiction.measured import scan as stage_scan
+from stiction.report.format import NM, UM, number, with_error
+from stiction.report.tables import Table
+from stiction.studies.scan_uncertainty import GOAL
+
+#: Parts of an estimate as columns.
+_PARTS = {"rms": "rms", "shape": "skewness and kurtosis", "spectrum": "spectrum", "total": "total"}
+
+
+def scans(estimates: Mapping[str, xr.Dataset], maps: Mapping[str, Sequence[xr.Dataset]]) -> Table:
+    """Scans of the measured surfaces, one row per file.
+
+    Parameters
+    ----------
+    estimates : dict
+        Surface to its dataset of stage estimate.
+    maps : dict
+        Surface to the datasets of stage scan of its files, in the order of the configuration.
+    """
+    frame = pd.DataFrame([row for name, estimate in estimates.items() for row in _scans(name, estimate, maps[name])])
+    caption = (
+        "Scans of the measured surfaces: moments of the levelled heights of each file, ± standard error of one scan of "
+        "its size. The moments of a surface are in Table I, without the bias of levelling."
+    )
+    flags = [f"- {name}: {flag}" for name, estimate in estimates.items() for flag in stage_estimate.flags(estimate)]
+    return Table(
+        frame,
+        "\n".join([caption, *([""] if flags else []), *flags]),
+        pd.DataFrame(map(_cells_scan, frame.to_dict("records"))),
+    )
+
+
+def _scans(name, estimate, maps):
+    """Rows of one surface."""
+    errors = np.sqrt(np.diag(estimate.covariance) * len(maps))
+    flags = "; ".join(stage_estimate.flags(estimate))
+    for dataset, moments in zip(maps, estimate.scan_moments.values, strict=True):
+        scan = stage_scan.scan_of(dataset)
+        rms = np.exp(moments[0]) / NM
+        row = {"surface": name, "file": scan.name, "channel": str(dataset.channel.item())}
+        row |= {f"size_{axis}_um": length / UM for axis, length in zip(("fast", "slow"), scan.size, strict=True)}
+        row |= {f"points_{axis}": n for axis, n in zip(("fast", "slow"), scan.heights.shape, strict=True)}
+        row |= {"undefined_percent": 100 * scan.undefined_share, "rms_nm": rms, "rms_se_nm": rms * errors[0]}
+        row |= {"skewness": moments[1], "skewness_se": errors[1], "kurtosis": moments[2], "kurtosis_se": errors[2]}
+        yield row | {"flags": flags}
+
+
+def _cells_scan(row):
+    """One scan as text."""
+    return {
+        "surface": row["surface"],
+        "file": row["file"],
+        "channel": row["channel"],
+        "size [µm]": f"{row['size_fast_um']:.4g} × {row['size_slow_um']:.4g}",
+        "points": f"{row['points_fast']} × {row['points_slow']}",
+        "rms [nm]": with_error(row["rms_nm"], row["rms_se_nm"]),
+        "skewness": with_error(row["skewness"], row["skewness_se"]),
+        "kurtosis": with_error(row["kurtosis"], row["kurtosis_se"]),
+    }
+
+
+def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
+    """Standard errors that the scans leave: a row per pair, humidity and surface, and one for all surfaces.
+
+    Parameters
+    ----------
+    studies : dict
+        Pair to the dataset of study scan_uncertainty.
+    """
+    rows = [
+        row for pair, study in studies.items() for k in range(study.sizes["humidity"]) for row in _rows(pair, study, k)
+    ]
+    frame = pd.DataFrame(rows)
+    caption = (
+        "Relative standard error of the mean adhesion energy ē that the finite scans of measured surfaces leave, by "
+        "what the scans measure (skewness and kurtosis with their correlation), and of the mean crack length l_s. "
+        f"Needed: scans of this surface that would bring its part of the error of ē below {100 * GOAL:g} %. Last "
+        "columns: change of ē if the measured surfaces had the other value of that key, ± standard error by sampling."
+    )
+    return Table(frame, caption, pd.DataFrame([_cells(row) for row in frame.to_dict("records")]))
+
+
+def _rows(pair, study, k):
+    """Rows of one pair at its humidity number ``k``."""
+    case = study.isel(humidity=k)
+    key = {"pair": pair, "relative_humidity": float(case.humidity)}
+    for name in study.surface.values:
+        one = case.sel(surface=name)
+        parts = {f"{part}_percent": 100 * float(one.error.sel(part=part)) for part in _PARTS}
+        number_of = {"scans": int(one.scans), "scans_needed": int(one.scans_needed)}
+        yield key | {"surface": str(name)} | parts | _crack_length(float(one.error.sel(part="total"))) | number_of
+    changes = {}
+    for choice in study.choice.values:
+        one = case.sel(choice=choice)
+        changes |= {f"{choice}_percent": 100 * float(one.change), f"{choice}_se_percent": 100 * float(one.change_error)}
+    total = float(case.pair_error)
+    yield key | {"surface": "all"} | {"total_percent": 100 * total} | _crack_length(total) | changes
+
+
+def _crack_length(error):
+    """Relative error of the mean crack length by that of ē."""
+    return {"crack_length_percent": 100 * abs(CRACK_LENGTH_POWER) * error}
+
+
+def _cells(row):
+    """One row as text."""
+    cells = {"pair": row["pair"], "RH": f"{row['relative_humidity']:g}", "surface": row["surface"]}
+    cells |= {f"ē: {title} [%]": number(row[f"{part}_percent"], ".2g") for part, title in _PARTS.items()}
+    cells |= {"l_s [%]": number(row["crack_length_percent"], ".2g")}
+    cells |= {title: number(row[name], ".0f") for name, title in (("scans", "scans"), ("scans_needed", "needed"))}
+    choices = [name.removesuffix("_se_percent") for name in row if name.endswith("_se_percent")]
+    return cells | {
+        f"other {choice} [%]": with_error(row[f"{choice}_percent"], row[f"{choice}_se_percent"], "+")
+        for choice in choices
+    }

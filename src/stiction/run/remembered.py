@@ -1,0 +1,48 @@
+"""Results that a plan needs and that only its inputs and its code determine, kept in a file between runs.
+
+Planning a run again takes half of the time.
+"""
+
+import contextlib
+import hashlib
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from stiction.run.atomic import DataError, save_text
+
+
+class Remembered:
+    """Results by the hash of everything that determines them."""
+
+    def __init__(self, path: str | Path):
+        """Results in a file; none if it cannot be read."""
+        self._path, self._used = Path(path), {}
+        try:
+            self._known = dict(json.loads(self._path.read_text(encoding="utf-8")))
+        except (OSError, ValueError, TypeError):
+            self._known = {}
+
+    def __call__(self, determined_by: object, compute: Callable[[], Any]) -> Any:
+        """Result that is known, or computed now.
+
+        Parameters
+        ----------
+        determined_by : object
+            Plain numbers, strings, lists and dicts that determine the result, its code among them.
+        compute : callable
+            Returns the result, of the same kind; if it raises an error, nothing is kept.
+        """
+        text = json.dumps(determined_by, sort_keys=True, default=str)
+        key = hashlib.sha256(text.encode()).hexdigest()
+        if key not in self._used:
+            self._used[key] = self._known[key] if key in self._known else compute()
+        return self._used[key]
+
+    def save(self) -> None:
+        """Keep the results that were used; nothing is lost but time if the file cannot be written."""
+        if self._used != self._known:
+            with contextlib.suppress(OSError, DataError):
+                save_text(json.dumps(self._used), self._path)
+            self._known = dict(self._used)

@@ -1,0 +1,66 @@
+"""Contact of a pair with one quantity of one surface slightly decreased and increased.
+
+The datasets are those of stage contact with an additional variable, the difference of the quantity between both sides.
+They serve every slope with common random numbers: of energies in `stiction.studies.slopes`, of any result of the laws.
+"""
+
+from collections.abc import Sequence
+
+import xarray as xr
+
+from stiction.analysis.shifts import Description, bracketed
+from stiction.stages import contact as stage_contact
+from stiction.stages import heights as stage_heights
+from stiction.stages import parameters
+from stiction.stages import spectrum as stage_spectrum
+from stiction.stages.pairs import Settings
+from stiction.surface.empirical import MeasuredDensity
+
+
+def compute(
+    surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, surface: str, quantity: str, settings: Settings
+) -> list[xr.Dataset]:
+    """Contact with less and with more of a quantity, in this order; the samples have the same random numbers.
+
+    Parameters
+    ----------
+    surfaces : sequence
+        Datasets (heights, spectrum) of the surfaces of beam and substrate.
+    pair : str
+        Name of the pair, part of the addresses of random numbers.
+    surface : str
+        Name of the surface whose quantity is shifted; on both sides of the pair if both have this surface.
+    quantity : str
+        Key of `stiction.analysis.shifts.STEPS`.
+    settings : Settings
+    """
+    as_is = description(*surfaces[settings.surfaces.index(surface)])
+    both, difference = bracketed(as_is, quantity)
+    alternatives = []
+    for changed in both:
+        drawn = drawn_as(changed, settings.sampling.spacing)
+        alternatives.append(
+            [drawn if name == surface else same for name, same in zip(settings.surfaces, surfaces, strict=True)]
+        )
+    contacts = stage_contact.compute_each(alternatives, pair, "NG", settings)
+    return [contact.assign(difference=((), difference, {"units": "1"})) for contact in contacts]
+
+
+def description(heights: xr.Dataset, spectrum: xr.Dataset) -> Description:
+    """Heights and spectrum of a surface from its datasets of stages heights and spectrum."""
+    moments, density = stage_heights.moments(heights), stage_heights.density(heights, "NG")
+    form = density if isinstance(density, MeasuredDensity) else None
+    return Description(moments.rms, moments.skewness, moments.kurtosis, parameters.spectrum_of(spectrum), form)
+
+
+def drawn_as(surface: Description, spacing: float) -> tuple[xr.Dataset, xr.Dataset]:
+    """Datasets of stages heights and spectrum of a surface on a grid of this spacing [m]."""
+    moments = stage_heights.Settings(surface.rms, surface.skewness, surface.kurtosis)
+    measured = surface.form is not None
+    heights = stage_heights.layout(surface.form, moments) if measured else stage_heights.compute(moments)
+    return heights, stage_spectrum.on_grid(surface.spectrum, heights, spacing)
+
+
+def difference(contact: xr.Dataset) -> float:
+    """Difference of the quantity between both sides, see `stiction.analysis.shifts.bracketed`."""
+    return float(contact.difference)

@@ -1,0 +1,56 @@
+"""Study slopes: effect of the measured quantities of one surface on the mean adhesion energy of a pair."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.devices.budget import log_slope
+from stiction.stages.curves import Water, energies
+from stiction.studies.slope_contact import difference
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the slopes depend on apart from the contact."""
+
+    water: Water
+    humidities: tuple[float, ...]  #: [-]
+
+
+def compute(contacts: Mapping[str, Sequence[xr.Dataset]], settings: Settings) -> xr.Dataset:
+    """Slopes of ln ē by central differences.
+
+    Parameters
+    ----------
+    contacts : dict
+        Quantity, key of `stiction.analysis.shifts.STEPS`, to the contact with less and with more of it.
+    settings : Settings
+    """
+    found = np.array([[_slope(*both, h, settings.water) for h in settings.humidities] for both in contacts.values()])
+    return layout(list(contacts), settings.humidities, *np.moveaxis(found, -1, 0))
+
+
+def _slope(less, more, humidity, water):
+    """Slope of ln ē and its standard error at a humidity."""
+    samples = (energies(contact, humidity, water) for contact in (less, more))
+    return log_slope(np.mean, *samples, difference(less))
+
+
+def layout(
+    quantities: Sequence[str], humidities: Sequence[float], slopes: np.ndarray, errors: np.ndarray
+) -> xr.Dataset:
+    """Dataset of the slopes of ln ē and their standard errors, (n_quantities, n_rh) [-]."""
+    return xr.Dataset(
+        {
+            "slope": (("quantity", "humidity"), slopes, {"units": "1", "long_name": "d ln e / dx"}),
+            "standard_error": (("quantity", "humidity"), errors, {"units": "1"}),
+        },
+        coords={"quantity": list(quantities), "humidity": list(humidities)},
+    )
+
+
+def of(dataset: xr.Dataset, quantities: Sequence[str]) -> np.ndarray:
+    """Slopes of ln ē with respect to some quantities at every humidity, (n_rh, n_quantities) [-]."""
+    return dataset.slope.sel(quantity=list(quantities)).values.T

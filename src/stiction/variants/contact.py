@@ -1,0 +1,28 @@
+"""Contact of a pair under a variant, i.e. one changed model choice; independent of humidity, as in stage contact."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import xarray as xr
+
+from stiction.contact.pair import solid_pressure
+from stiction.stages import contact as stage_contact
+from stiction.stages.pairs import Materials, Solid, asperity_of
+from stiction.variants import summits as variant_summits
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The solids of a pair; everything else about the contact is settled by the summits."""
+
+    solid: Solid
+    van_der_waals: str
+    materials: Materials = field(default_factory=dict)
+
+
+def compute(summits: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Contact of the summits of a pair, see `stiction.variants.summits`, under the settings of the variant."""
+    model, grid = asperity_of(settings), variant_summits.distances(summits)
+    pressures = [solid_pressure(model, sample, grid) for sample in variant_summits.samples_of(summits)]
+    areas = summits.bearing_area.values
+    return stage_contact.layout(np.array(pressures), areas, grid, range(len(areas)))

@@ -1,0 +1,183 @@
+"""Growth of time and memory with samples, strips, grid, cases and cores: part of ``make bench``; this is no test.
+
+Each size is measured in a process of its own. Prints a table, and draws ``docs/pictures/scaling.png`` if asked to.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections import defaultdict
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+ROOT = Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT / "docs"))
+
+#: Changes of the configuration of the paper, by what grows and its size. Pair b; the first of each is the reference.
+CONTACT = {
+    "samples": {n: {"contact": {"samples": n}} for n in (100, 400, 1600)},
+    "length of a strip [µm]": {
+        length: {"sampling": {"strip_length_um": length}, "contact": {"samples": 100}} for length in (1.5, 3, 7.5)
+    },
+    "points of the grid per µm": {
+        round(1e3 / spacing): {"sampling": {"spacing_nm": spacing}, "contact": {"samples": 100}}
+        for spacing in (10, 5, 2.5)
+    },
+}
+#: Numbers of samples of the chaos model of one case, and of humidities of each of the three pairs in a plan.
+SAMPLES, HUMIDITIES = (1250, 5000, 20_000), (6, 25, 100)
+
+_CONTACT = """
+import json, sys, time
+from stiction.config import files, jobs
+from stiction.config.plan import Plan
+from stiction.config.units import typed
+from stiction.run.logs import peak_memory
+from stiction.stages import contact, heights, spectrum
+
+plan = Plan(files.load(json.loads(sys.argv[1])))
+surfaces = []
+for name in plan.sides("b"):
+    density = heights.compute(typed(heights.Settings, jobs.heights(plan, name)))
+    surfaces.append((density, spectrum.compute(density, None, typed(spectrum.Settings, jobs.spectrum(plan, name)))))
+settings = typed(contact.Settings, jobs.contact(plan, "b"))
+contact.compute(surfaces, "b", "NG", settings, range(1))
+start = time.perf_counter()
+contact.compute(surfaces, "b", "NG", settings)
+print(time.perf_counter() - start, peak_memory())
+"""
+
+_CHAOS = """
+import sys, time
+import numpy as np
+from stiction.chaos import model
+from stiction.run.logs import peak_memory
+from stiction.streams import stream
+
+number = int(sys.argv[1])
+z = stream(3).standard_normal((number, 4)) @ np.linalg.cholesky(0.7 + 0.3 * np.eye(4)).T
+e, f, d, gap = (z * [0.3, 0.3, 0.3e-9, 0.1]).T
+vectors = np.column_stack([7e-3 * np.exp(e), 2e6 * np.exp(f), 8e-9 + d, 8e-9 + d - 1.5e-9 * np.exp(gap)])
+model.fit(vectors[:50], vectors[:50, 1].max(), 2, 0.0)
+start = time.perf_counter()
+model.fit(vectors, vectors[:, 1].max(), 12, 0.0)
+print(time.perf_counter() - start, peak_memory())
+"""
+
+
+def run(program, argument):
+    """Seconds and peak memory [MB] that a program prints."""
+    words = [sys.executable, "-c", program, argument]
+    environment = os.environ | dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+    printed = subprocess.run(words, text=True, capture_output=True, check=True, env=environment).stdout
+    seconds, megabytes = map(float, printed.split())
+    return seconds, megabytes
+
+
+def contact(changes):
+    """Contact of pair b under changes of the configuration."""
+    return run(_CONTACT, json.dumps(changes | {"studies": {"variants": {"spacing_nm": []}}}))
+
+
+def plan_of(humidities):
+    """Dry run of the paper with this number of humidities of each pair."""
+    axis = np.round(np.linspace(0.44, 0.92, humidities), 4).tolist()
+    with tempfile.TemporaryDirectory() as folder:
+        overlay = Path(folder) / "many.yaml"
+        overlay.write_text(yaml.safe_dump({"pairs": {pair: {"humidities": axis} for pair in "abc"}}))
+        words = [sys.executable, "-m", "snakemake", "-s", ROOT / "Snakefile", "-d", folder, "-n", "-q", "all"]
+        words += ["--configfile", ROOT / "config.yaml", overlay]
+        start = time.perf_counter()
+        process = subprocess.Popen(list(map(str, words)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        _, status, usage = os.wait4(process.pid, 0)
+        if status:
+            raise RuntimeError(f"the dry run with {humidities} humidities failed")
+        return time.perf_counter() - start, usage.ru_maxrss / 1024
+
+
+def rows():
+    """What grows, its size, seconds and peak memory [MB]."""
+    for name, sizes in CONTACT.items():
+        for size, changes in sizes.items():
+            yield f"contact: {name}", size, *contact(changes)
+    for number in SAMPLES:
+        yield "chaos model: samples", number, *run(_CHAOS, str(number))
+    for number in HUMIDITIES:
+        yield "plan: humidities per pair", number, *plan_of(number)
+
+
+def on_two_cores():
+    """Contact of 800 pairs on one core, and twice that on two cores in the same time: gain of the second core."""
+    changes = {"contact": {"samples": 800}}
+    contact(changes)
+    start = time.perf_counter()
+    contact(changes)
+    alone = time.perf_counter() - start
+    start = time.perf_counter()
+    with ThreadPoolExecutor(2) as pool:
+        list(pool.map(contact, [changes] * 2))
+    return 2 * alone / (time.perf_counter() - start)
+
+
+def table(measured, gain):
+    """The table in Markdown; growth is the exponent of the time between the last two sizes."""
+    lines = [
+        "| what grows | size | seconds | memory [MB] | seconds grow as size to the power |",
+        "|---|---|---|---|---|",
+    ]
+    before = {}
+    for name, size, seconds, megabytes in measured:
+        power = ""
+        if name in before:
+            power = f"{np.log(seconds / before[name][1]) / np.log(size / before[name][0]):.2f}"
+        before[name] = size, seconds
+        lines.append(f"| {name} | {size:g} | {seconds:.2f} | {megabytes:.0f} | {power} |")
+    return "\n".join([*lines, f"| contact: two cores over one | 2 | {gain:.2f} × |  |  |"])
+
+
+def draw(measured, path):
+    """Seconds and memory over size, each relative to the smallest, on logarithmic axes."""
+    from stiction.report.style import DOUBLE, dashes, marker, panels, styled  # noqa: PLC0415
+
+    curves = defaultdict(list)
+    for name, *point in measured:
+        curves[name].append(point)
+
+    @styled
+    def figure():
+        drawn, ((left, right),) = panels(1, 2, (DOUBLE, 2.9))
+        for k, (name, points) in enumerate(curves.items()):
+            size, seconds, megabytes = np.array(points).T
+            look = {"marker": marker(k), "linestyle": dashes(k), "label": name}
+            left.loglog(size / size[0], seconds / seconds[0], **look)
+            right.loglog(size / size[0], megabytes, **look)
+        factor = np.array([1, 20])
+        left.loglog(factor, factor, color="0.6", linewidth=0.8, label="proportional")
+        left.set(xlabel="size / smallest size", ylabel="time / time of the smallest")
+        right.set(xlabel="size / smallest size", ylabel="peak memory [MB]", ylim=(100, 2000))
+        left.legend(fontsize="x-small")
+        return drawn
+
+    figure().savefig(path, dpi=200)
+
+
+def main():
+    """Print the table, and draw the picture into the file named by the argument."""
+    measured = list(rows())
+    print("\n" + table(measured, on_two_cores()))  # noqa: T201
+    if len(sys.argv) > 1:
+        from update import shrink  # noqa: PLC0415
+
+        with tempfile.TemporaryDirectory() as folder:
+            draw(measured, Path(folder) / "scaling.png")
+            shrink(Path(folder) / "scaling.png", Path(sys.argv[1]), 1100)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,150 @@
+"""Stoppers and budgets in a configuration: what is computed for them, and the settings of their jobs."""
+
+import json
+from dataclasses import MISSING, fields
+
+import pytest
+from configurations import PAPER, problems
+
+from stiction.config import jobs
+from stiction.config.designs import Designs, patch
+from stiction.config.files import load
+from stiction.config.merging import merged
+from stiction.config.plan import Plan
+from stiction.config.units import typed
+from stiction.designs import budget, stoppers
+from stiction.devices.budget import STEP
+from stiction.models import OF_MOMENTS
+from stiction.stages import contact
+from stiction.studies import slope_contact
+from stiction.variants import summits
+
+SIZES = {"thickness_um": 2.6, "gap_um": 20, "width_um": 30}
+C1 = {"kind": "cantilever", "pair": "b", "humidities": [0.67]} | SIZES
+S1 = {"kind": "stopper", "pair": "b", "contact_um": [3, 2], "restoring_force_uN": 20, "humidities": [0.44, 0.9]}
+STATED = {"humidity": 0.01, "young_modulus_GPa": 5, "scan_um": 10}
+DEVICES = {"C1": C1 | {"uncertainty": STATED}, "C2": C1, "S1": S1 | {"uncertainty": {"humidity": 0.02}}}
+GLASS = {"young_modulus_GPa": 70, "poisson_ratio": 0.2, "contact_angle_deg": 20}
+
+
+def plan(**changes):
+    return Plan(load({"devices": DEVICES}, changes))
+
+
+def designs(**changes):
+    return Designs(plan(**changes).config)
+
+
+PLAN = plan()
+PATCH = "b", 3000, 2000
+#: Stage and the settings of one of its jobs.
+JOBS = [
+    (stoppers, jobs.stoppers(PLAN, "S1")),
+    (budget, jobs.budget(PLAN, "C1_rh067")["budget"]),
+    (budget, jobs.budget(PLAN, "S1_rh090")["budget"]),
+    (contact, jobs.modulus_contact(PLAN, *PATCH, "more")),
+    (slope_contact, jobs.device_slope_contact(PLAN, *PATCH)),
+    (summits, jobs.device_choice_summits(PLAN, *PATCH, "every_2")["base"]),
+]
+
+
+@pytest.mark.parametrize(("stage", "settings"), JOBS)
+def test_a_stage_takes_exactly_the_settings_of_its_jobs(stage, settings):
+    found = typed(stage.Settings, settings)
+    optional = {field.name for field in fields(found) if not field.default is field.default_factory is MISSING}
+    assert set(vars(found)) - optional <= {key.rpartition("_um")[0] or key.removesuffix("_GPa") for key in settings} | {
+        key.removesuffix("_uN").removesuffix("_GPa") for key in settings
+    }
+    assert json.loads(json.dumps(settings)) == settings
+
+
+def test_a_stopper_sticks_with_its_whole_area_and_a_beam_with_its_strips():
+    found = designs()
+    assert found.ground("S1") == patch("b", 3, 2)
+    assert found.ground("C1") == patch("b", 1.5, 30)
+    assert found.has_strips_of_pair("C1")
+    assert not found.has_strips_of_pair("S1")
+    assert designs(devices={"S1": {"contact_um": [1.5, 30]}}).has_strips_of_pair("S1")
+    assert found.stoppers == ["S1"]
+
+
+def test_only_devices_with_a_stated_uncertainty_have_a_budget():
+    found = designs()
+    assert found.budgeted == ["C1", "S1"]
+    assert found.budget_cases() == ["C1_rh067", "S1_rh044", "S1_rh090"]
+    assert found.budget_cases("C2") == ["C2_rh067"]
+    assert designs(devices={"S1": {"uncertainty": {"humidity": 0}}}).budgeted == ["C1"]
+
+
+def test_heights_are_uncertain_if_a_scan_is_stated():
+    found = designs()
+    assert found.quantities("C1") == [(name, quantity) for name in ("B2", "Sub1") for quantity in OF_MOMENTS]
+    assert found.quantities("S1") == []
+    same = designs(pairs={"b": {"substrate": "B2"}})
+    assert {name for name, _ in same.quantities("C1")} == {"B2"}
+
+
+def test_choices_of_the_model_change_the_contact_and_leave_the_mesh():
+    found = PLAN.choices("b")
+    assert {"van_der_waals_dry", "psd_identified", "spacing_nm_5"} < set(found)
+    assert not set(found) & {"base", *PLAN.finer_beams}
+    identified = plan(surfaces={name: {"psd": "identified"} for name in ("B2", "Sub1")})
+    assert "psd_identified" not in identified.choices("b")
+
+
+def test_contacts_of_a_budget_are_on_the_patch_of_the_device_with_the_samples_of_slopes():
+    samples = PLAN.config["studies"]["slopes"]["samples"]
+    for settings in (
+        jobs.modulus_contact(PLAN, *PATCH, "less"),
+        jobs.device_choice_summits(PLAN, *PATCH, "every_2")["base"],
+    ):
+        assert settings["contact"]["samples"] == samples
+        assert (settings["sampling"]["strip_length_um"], settings["beam"]["width_um"]) == (3, 2)
+    few = plan(contact={"samples": samples - 1, "chunks": 1}, chaos={"order": 4})
+    assert jobs.device_choice_summits(few, *PATCH, "every_2")["base"]["contact"]["samples"] == samples - 1
+
+
+def test_youngs_modulus_changes_in_every_body_of_the_material_of_the_beam():
+    less, more = (jobs.modulus_contact(PLAN, *PATCH, side)["solid"]["young_modulus_GPa"] for side in ("less", "more"))
+    assert (less, more) == pytest.approx((164 * (1 - STEP), 164 * (1 + STEP)))
+    of_glass = {"materials": {"Glass": GLASS}, "surfaces": {"B2": {"material": "Glass"}}}
+    glass = jobs.modulus_contact(plan(**of_glass), *PATCH, "more")["materials"]
+    assert glass["beam"]["young_modulus_GPa"] == pytest.approx(70 * (1 + STEP))
+    assert glass["substrate"]["young_modulus_GPa"] == 164
+    both = merged(of_glass, {"surfaces": {"Sub1": {"material": "Glass"}}})
+    assert (
+        len({m["young_modulus_GPa"] for m in jobs.modulus_contact(plan(**both), *PATCH, "more")["materials"].values()})
+        == 1
+    )
+    assert jobs.budget(plan(**of_glass), "C1_rh067")["budget"]["young_modulus_GPa"] == 70
+    assert jobs.budget(plan(**of_glass), "S1_rh090")["budget"]["water"]["contact_angles_deg"] == [20, 0]
+
+
+def test_the_page_of_a_device_has_its_section_and_its_warnings_alone():
+    assert jobs.page(PLAN, "S1") == {
+        "name": "S1",
+        "device": PLAN.config["devices"]["S1"],
+        "warned": {"S1": {"pair": "b", "materials": []}},
+    }
+    assert set(jobs.page(PLAN, "C1")["warned"]) == {"C1"}
+
+
+@pytest.mark.parametrize(
+    ("change", "key", "message"),
+    [
+        ({"C1": {"uncertainty": {"thickness_um": 2.6}}}, "devices.C1.uncertainty.thickness_um", "below the dimension"),
+        ({"C1": {"uncertainty": {"gap_um": 21}}}, "devices.C1.uncertainty.gap_um", "below the dimension"),
+        ({"C1": {"uncertainty": {"residual_stress_MPa": 1}}}, "devices.C1.uncertainty", "without residual_stress_MPa"),
+        ({"S1": {"uncertainty": {"gap_um": 1}}}, "devices.S1.uncertainty", "without gap_um"),
+        ({"S1": {"uncertainty": {"humidity": 0.1}}}, "devices.S1.uncertainty.humidity", "above 0 and below 1"),
+    ],
+)
+def test_an_uncertainty_that_a_device_cannot_have_is_refused(change, key, message):
+    (line,) = problems(merged(PAPER, {"devices": merged(DEVICES, change)}))
+    assert line.startswith(key)
+    assert message in line
+
+
+def test_the_axis_of_the_worst_humidity_increases():
+    (line,) = problems(merged(PAPER, {"design": {"worst_humidities": [0.9, 0.4]}}))
+    assert line.startswith("design.worst_humidities")

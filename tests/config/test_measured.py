@@ -1,0 +1,327 @@
+"""Measured surfaces of a configuration: their files are checked before any job, once, and laws hold for them too."""
+
+import json
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from configurations import PAPER, SCHEMA, problems
+from drawn_scans import gaussian, published, truth
+from published import SURFACES
+from written_scans import BAD, SIDE, bad_files, etched, scans_of, write
+
+from stiction.config import files, jobs, measured
+from stiction.config.merging import merged
+from stiction.config.plan import Plan
+from stiction.config.relations import validate
+from stiction.config.units import typed
+from stiction.measured import estimate as stage_estimate
+from stiction.measured import heights, scan, spectrum
+from stiction.scans import estimate
+from stiction.scans.levelling import LEVELS, LINES, Levelling
+from stiction.scans.reading import UNITS, Source
+
+B2 = SURFACES["B2"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Folder with two scans of B2."""
+    path = tmp_path_factory.mktemp("scans")
+    scans_of(path, count=2)
+    return path
+
+
+def configured(*paths, **keys):
+    """Configuration of the paper with a measured surface."""
+    return merged(PAPER, etched(*paths, **keys))
+
+
+def both(folder):
+    return sorted(folder.glob("B2-*.gwy"))
+
+
+# Schema and normal form
+
+
+def test_the_choices_of_the_schema_are_those_of_the_code():
+    scans = SCHEMA["properties"]["surfaces"]["additionalProperties"]["properties"]["scans"]["properties"]
+    assert set(scans["height_unit"]["enum"]) == set(UNITS)
+    assert set(scans["level"]["enum"]) == set(LEVELS)
+    assert set(scans["lines"]["enum"]) == set(LINES)
+
+
+def test_keys_that_are_not_given_have_their_defaults(folder):
+    entry = files.normalised(configured(*both(folder)))["surfaces"]["Etched"]
+    assert entry == {"beyond": "cut", "heights": "moments", "psd": "fitted", "scans": entry["scans"]}
+    assert {key: entry["scans"][key] for key in ("fast_axis", "level", "lines")} == {
+        "fast_axis": "x",
+        "level": "plane",
+        "lines": "none",
+    }
+    assert typed(Source, measured.source(entry)) == Source()
+    assert typed(estimate.Settings, measured.evaluation(entry, PAPER["scans"])) == estimate.Settings()
+    given = configured(*both(folder), level="quadratic", lines="bow", fast_axis="y", heights="measured")
+    again = files.normalised(given)["surfaces"]["Etched"]
+    assert (again["scans"]["level"], again["heights"]) == ("quadratic", "measured")
+    assert typed(estimate.Settings, measured.evaluation(again, PAPER["scans"])).levelling == Levelling(
+        "quadratic", "bow"
+    )
+
+
+def test_values_have_units():
+    entry = measured.complete({"scans": {"files": ["a"], "size_um": [5, 10], "tip_radius_nm": 8, "shortest_nm": 60,
+                                         "channel": "Height", "height_unit": "nm"}})  # fmt: skip
+    assert typed(Source, measured.source(entry)) == Source("Height", "x", pytest.approx((5e-6, 10e-6)), "nm")
+    settings = typed(estimate.Settings, measured.evaluation(entry, PAPER["scans"]))
+    assert (settings.tip_radius, settings.shortest) == pytest.approx((8e-9, 60e-9))
+    assert (settings.tiles, settings.undefined_share) == (4, 0.01)
+
+
+def test_files_are_relative_to_the_folder_of_the_configuration_file_that_names_them(folder, tmp_path):
+    overlay = folder / "mine.yaml"
+    overlay.write_text(json.dumps(etched("B2-0.gwy", "B2-1.gwy")))
+    assert files.load(overlay)["surfaces"]["Etched"]["scans"]["files"] == [str(path) for path in both(folder)]
+    other = measured.anchored(etched("x.gwy"), etched("y.gwy"), tmp_path)
+    assert other == etched("x.gwy")
+    for broken in ({}, {"surfaces": 5}, {"surfaces": {"X": 1}}, {"surfaces": {"X": {"scans": {"files": 7}}}}):
+        assert measured.anchored(broken, broken, tmp_path) == broken
+
+
+# Preliminary numbers and laws
+
+
+def test_preliminary_numbers_are_those_of_the_scans(folder):
+    found = validate(configured(*both(folder)))["Etched"]
+    scans = published("B2", SIDE, 2)
+    pooled = estimate.inspect(scans, estimate.Settings())
+    assert np.log(1e-9 * found["rms_nm"]) == pytest.approx(pooled.moments[0], rel=1e-9)
+    assert found["measured"] == pytest.approx(list(pooled.moments[1:]), rel=1e-9)
+    assert found["feasible"] == pytest.approx(found["measured"])
+    assert abs(found["measured"][0] - truth("B2")[1]) < 0.3
+    entry = measured.view(configured(*both(folder)), {"Etched": found})["surfaces"]["Etched"]
+    psd = entry["published_psd"]
+    assert psd["cutoff_rad_per_um"] == pytest.approx(np.pi / 0.02)
+    assert psd["floor_nm4"] == pytest.approx(1e36 * float(pooled.fit.spectrum(np.pi / 20e-9)(np.pi / 20e-9)), rel=1e-6)
+    continued = configured(*both(folder), beyond="continued")
+    grid = measured.view(continued, {"Etched": found})["surfaces"]["Etched"]["published_psd"]["cutoff_rad_per_um"]
+    assert grid == pytest.approx(np.pi / 0.01)
+
+
+def test_a_configuration_with_good_scans_is_valid_and_its_surfaces_are_shifted_like_others(folder):
+    config = files.load(etched(*both(folder)))
+    plan = Plan(config)
+    assert plan.estimated == ["Etched"]
+    assert plan.described == ["Sub1"]
+    assert plan.measured == ["Sub1"]
+    assert plan.shifted_moments == ["rms", "skewness", "kurtosis"]
+    assert Plan(files.load(etched(*both(folder), heights="measured"))).shifted_moments == ["rms"]
+    assert plan.paper_pairs == []
+    assert not plan.has_mesh_of_paper("b_rh067")
+    assert plan.variant_summits("b", "psd_identified")["base"]["surfaces"]["Sub1"]["psd"] == "identified"
+    assert "Etched" not in plan.variant_summits("b", "psd_identified")["base"]["surfaces"]
+    assert jobs.table_1(plan)["measured"].keys() == {"Sub1"}
+    assert jobs.checks(plan)["targets"].keys() == {"Sub1"}
+
+
+def test_settings_know_a_file_by_content_and_name_and_not_by_folder(folder, tmp_path):
+    copy = shutil.copy(both(folder)[0], tmp_path)
+    first, second, other = (
+        jobs.scan(Plan(files.normalised(configured(path))), "Etched", "0")
+        for path in (*both(folder)[:1], copy, both(folder)[1])
+    )
+    assert first == second
+    assert first["sha256"] != other["sha256"]
+    with pytest.raises(KeyError):
+        jobs.scan(Plan(files.normalised(configured(copy))), "Etched", "1")
+
+
+def test_stages_take_exactly_the_settings_of_their_jobs(folder):
+    plan = Plan(files.load(etched(*both(folder), size_um=[5, 5], tip_radius_nm=10)))
+    settings = {
+        scan: jobs.scan(plan, "Etched", "0"),
+        stage_estimate: jobs.estimate(plan, "Etched"),
+        heights: jobs.heights_of_scans(plan, "Etched"),
+        spectrum: jobs.spectrum_of_scans(plan, "Etched"),
+    }
+    for stage, plain in settings.items():
+        assert json.loads(json.dumps(plain)) == plain
+        assert {key.removesuffix("_nm") for key in plain} == set(vars(typed(stage.Settings, plain)))
+    use = typed(spectrum.Settings, settings[spectrum]).use
+    assert (use.surface, use.strip_length, use.margin) == ("Etched", pytest.approx(1.5e-6), pytest.approx(1e-6))
+    evaluation = typed(stage_estimate.Settings, settings[stage_estimate]).evaluation
+    assert evaluation == estimate.Settings(tip_radius=pytest.approx(10e-9))
+    assert settings[stage_estimate]["files"] == ["B2-0.gwy", "B2-1.gwy"]
+
+
+#: Changes under which the laws refuse a good scan of B2: overlay, beginning of the line, part of it.
+LAWS = {
+    "margin": ({"sampling": {"margin_um": 0.3}}, "sampling.margin_um is 0.3, must be above the correlation length",
+               "surfaces.Etched.scans.files = ['B2-0.gwy']"),
+    "coarse grid": ({"sampling": {"spacing_nm": 300, "strip_length_um": 1.5}, "character": {"spacing_nm": 300},
+                     "identification": {"patch_um": 6}, "studies": {"variants": {"every": [], "spacing_nm": []}}},
+                    "surfaces.Etched.scans.files is ['B2-0.gwy'], which gives corner_rad_per_um = 1",
+                    "must be below the cut-off"),
+    "gap": ({"pairs": {"b": {"gap_um": 0.3}}}, "pairs.b.gap_um is 0.3, must be at least",
+            "surfaces.Etched.scans.files = ['B2-0.gwy']"),
+    "soft solid": ({"solid": {"young_modulus_GPa": 0.05}, "beam": {"thickness_um": 40}},
+                   "run.pairs[0] is 'b', must have surfaces rough", "surfaces.Etched.scans.files = ['B2-0.gwy']"),
+    "thin beam": ({"beam": {"thickness_um": 0.5}}, "sampling.strip_length_um is 1.5, must be at most",
+                  "surfaces.Etched.scans.files = ['B2-0.gwy']"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("overlay", "begins", "part"), LAWS.values(), ids=LAWS)
+def test_laws_of_the_configuration_hold_for_measured_surfaces_and_name_their_files(folder, overlay, begins, part):
+    assert problems(configured(both(folder)[0])) == ()
+    lines = [line for line in problems(merged(configured(both(folder)[0]), overlay)) if line.startswith(begins)]
+    assert any(part in line for line in lines), problems(merged(configured(both(folder)[0]), overlay))
+
+
+def test_gaussian_scans_are_not_refused(tmp_path):
+    for k, drawn in enumerate(gaussian(SIDE, 3)):
+        path = write(tmp_path / f"{k}.gwy", drawn.heights)
+        assert problems(configured(path)) == ()
+
+
+def test_moments_without_a_density_are_refused_unless_the_heights_are_measured(tmp_path):
+    z = published("B2", SIDE, 1)[0].heights.copy()
+    z[::50, ::50] += 60e-9
+    path = write(tmp_path / "dirt.gwy", z)
+    (line,) = problems(configured(path))
+    assert line.startswith("surfaces.Etched.heights is 'moments', but no maximum-entropy density has moments near the")
+    assert line.endswith("of dirt.gwy, must be measured")
+    assert problems(configured(path, heights="measured")) == ()
+
+
+#: Wrong keys of measured surfaces: keys, section of the surface, beginning of the only line.
+WRONG = {
+    "numbers beside": ({"rms_nm": 3, "kurtosis": 4}, "scans is {", "must not be given beside rms_nm, kurtosis; give"),
+    "published": ({"psd": "published"}, "psd is 'published'", "must be fitted or tabulated for a surface with sc"),
+    "identified": ({"psd": "identified"}, "psd is 'identified'", "must be fitted or tabulated for a surface with sc"),
+    "heights": ({"heights": "quantiles"}, "heights is 'quantiles'", "must be one of moments, measured"),
+    "beyond": ({"beyond": "continue"}, "beyond is 'continue'", "did you mean continued?"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("keys", "begins", "part"), WRONG.values(), ids=WRONG)
+def test_a_wrong_key_of_a_measured_surface_is_one_sentence(folder, keys, begins, part):
+    config = configured(both(folder)[0])
+    config["surfaces"]["Etched"] |= keys
+    (line,) = problems(config)
+    assert line.startswith(f"surfaces.Etched.{begins}")
+    assert part in line
+
+
+WRONG_SCANS = {
+    "no files": ({"files": []}, "scans.files is [], must be a list with at least one entry"),
+    "one file": ({"files": "a.gwy"}, "scans.files is 'a.gwy', must be a list"),
+    "twice": ({"files": ["a.gwy", "a.gwy"]}, "scans.files is ['a.gwy', 'a.gwy'], must list each file once; 'a.gwy' is"),
+    "level": ({"level": "cubic"}, "scans.level is 'cubic', must be one of mean, plane, quadratic"),
+    "lines": ({"lines": False}, "scans.lines is False, must be one of none, offset, tilt, bow"),
+    "axis": ({"fast_axis": "z"}, "scans.fast_axis is 'z', must be one of x, y"),
+    "sides": ({"size_um": [5]}, "scans.size_um is [5], must be a list with 2 entries"),
+    "side": ({"size_um": [5, 0]}, "scans.size_um[1] is 0, must be a number above 0"),
+    "unit": ({"height_unit": "furlong"}, "scans.height_unit is 'furlong', must be one of m, mm, µm"),
+    "key": ({"tip_radius": 10}, "scans.tip_radius is unknown (value 10), must be one of files, channel"),
+    "radius": ({"tip_radius_nm": -1}, "scans.tip_radius_nm is -1, must be a number above 0"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("keys", "line"), WRONG_SCANS.values(), ids=WRONG_SCANS)
+def test_a_wrong_key_of_scans_is_one_sentence(folder, keys, line):
+    config = configured(both(folder)[0])
+    config["surfaces"]["Etched"]["scans"] |= keys
+    (found,) = problems(config)
+    assert found.startswith(f"surfaces.Etched.{line}")
+
+
+@pytest.mark.parametrize("key", ["heights", "beyond"])
+def test_keys_of_measured_surfaces_are_not_given_for_others(key):
+    value = {"heights": "measured", "beyond": "cut"}[key]
+    (line,) = problems(merged(PAPER, {"surfaces": {"B2": {key: value}}}))
+    assert line == f"surfaces.B2.{key} is {value!r}, must not be given for a surface without scans"
+    (line,) = problems(merged(PAPER, {"surfaces": {"B2": {"psd": "fitted"}}}))
+    assert line.startswith("surfaces.B2.psd is 'fitted', must be published or identified for a surface without scans")
+
+
+# Bad files
+
+
+@pytest.fixture(scope="module")
+def bad(folder, tmp_path_factory):
+    """Folder with unusable files, and what is wrong with each."""
+    path = tmp_path_factory.mktemp("bad")
+    good = shutil.copy(both(folder)[0], path / "B2-0.gwy")
+    return path, bad_files(path, good)
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_an_unusable_file_is_one_sentence_about_the_key_that_helps(bad, capfd, name):
+    folder, known = bad
+    keys, key, sentence = known[name]
+    beside = keys.get("files", [])
+    others = {other: value for other, value in keys.items() if other != "files"}
+    (line,) = problems(configured(*beside, folder / name.strip(), **others))
+    assert line.startswith(f"surfaces.Etched.scans.{key} {sentence}")
+    assert len(line) < 300
+    assert capfd.readouterr() == ("", "")
+
+
+def test_every_unusable_file_is_tested(bad):
+    assert set(BAD) == set(bad[1])
+
+
+def test_problems_of_several_surfaces_are_found_at_once(bad):
+    config = configured(bad[0] / "empty.spm")
+    config["surfaces"]["Other"] = {"scans": {"files": [str(bad[0] / "missing.spm")]}}
+    lines = problems(config | {"seed": -1})
+    assert [line.split()[0] for line in lines] == [
+        "seed",
+        "surfaces.Etched.scans.files[0]",
+        "surfaces.Other.scans.files[0]",
+    ]
+
+
+# Once
+
+CHECK = """
+import json, sys
+from stiction.config import files, relations
+config = json.loads(sys.stdin.read())
+relations.validate(config, kept=sys.argv[1])
+print("SurfaceTopography" in sys.modules, any(name.startswith("stiction.scans") for name in sys.modules))
+"""
+
+
+def checked(config, kept):
+    """Whether a new process imports the library and the package of scans to check a configuration."""
+    words = [sys.executable, "-c", CHECK, str(kept)]
+    done = subprocess.run(words, input=json.dumps(config), capture_output=True, text=True, check=True)
+    assert done.stderr == ""
+    return done.stdout.split()
+
+
+def test_a_process_that_checks_known_files_reads_nothing_but_their_content(folder, tmp_path):
+    config = configured(both(folder)[0])
+    assert checked(config, tmp_path) == ["True", "True"]
+    assert checked(config, tmp_path) == ["False", "False"]
+    assert checked(merged(config, {"surfaces": {"Etched": {"scans": {"level": "mean"}}}}), tmp_path) == ["True", "True"]
+    for file in tmp_path.iterdir():
+        file.write_text("{")
+    assert checked(config, tmp_path) == ["True", "True"]
+
+
+def test_a_configuration_without_scans_imports_nothing_of_them(tmp_path):
+    assert checked(PAPER, tmp_path / "kept") == ["False", "False"]
+    assert not (tmp_path / "kept").exists()
+
+
+def test_other_content_in_the_same_file_is_read_again(folder, tmp_path):
+    path = tmp_path / "a.gwy"
+    shutil.copy(both(folder)[0], path)
+    before = validate(configured(path))["Etched"]
+    shutil.copy(both(folder)[1], path)
+    assert validate(configured(path))["Etched"]["rms_nm"] != before["rms_nm"]

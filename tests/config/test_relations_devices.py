@@ -1,0 +1,247 @@
+"""Devices and materials in a configuration: their keys, the relations between them, and what is computed for them."""
+
+import json
+from dataclasses import MISSING, fields
+
+import pytest
+from configurations import PAPER, SCHEMA, changed, leaves, problems
+from test_messages import UNITS
+
+from stiction.config import jobs, memory
+from stiction.config.designs import KEYS, Designs
+from stiction.config.files import load, normalised
+from stiction.config.merging import merged
+from stiction.config.plan import Plan
+from stiction.config.units import typed
+from stiction.designs import chart, cracks, findings, safe_lengths
+from stiction.stages import contact, curves
+from stiction.stages.cantilevers import Cantilevers, cantilever
+
+C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67, 0.44]}
+R1 = {"kind": "bridge", "pair": "b", "thickness_um": 2, "gap_um": 2, "width_um": 30, "residual_stress_MPa": 50}
+S1 = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.44, 0.9]}
+CHART = {"thicknesses_um": [2.0, 2.6], "gaps_um": [10, 20], "humidities": [0.4, 0.9]}
+GOLD = {"young_modulus_GPa": 79, "poisson_ratio": 0.42, "hardness_GPa": 1.2, "contact_angle_deg": 60}
+GOLD |= {"hamaker_constant_zJ": {"water": 250, "dry": 400}}
+UNCERTAIN = {"thickness_um": 0.05, "gap_um": 0.2, "young_modulus_GPa": 4, "humidity": 0.01, "scan_um": 10}
+UNCERTAIN |= {"temperature_K": 1, "contact_angle_deg": 5}
+DEVICES = {
+    "C1": C1 | {"chart": CHART, "strip_um": 1.2, "uncertainty": UNCERTAIN},
+    "R1": R1 | {"humidities": [0.67], "uncertainty": {"residual_stress_MPa": 5}},
+    "S1": S1,
+}
+ALL = merged(PAPER, {"devices": DEVICES, "materials": {"Gold": GOLD}, "surfaces": {"B2": {"material": "Gold"}}})
+
+
+def with_device(**keys):
+    """The paper's configuration with device C1 under changes."""
+    return merged(PAPER, {"devices": {"C1": C1 | keys}})
+
+
+def plan(**changes):
+    return Plan(load({"devices": {"C1": C1, "R1": R1 | {"humidities": [0.67]}}}, changes))
+
+
+def test_devices_and_materials_with_all_their_keys_are_valid():
+    assert problems(ALL) == ()
+    assert {key for keys in KEYS.values() for key in keys} <= {key for section in DEVICES.values() for key in section}
+
+
+@pytest.mark.parametrize(
+    "leaf",
+    [leaf for leaf in leaves(ALL, SCHEMA) if {"devices", "materials", "design", "material"} & set(leaf.path)],
+    ids=str,
+)
+def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
+    units = [UNITS[suffix] for key in leaf.path for suffix in sorted(UNITS, key=len) if key.endswith(suffix)][-1:]
+    text = "string" in (leaf.entry["type"], leaf.entry.get("items", {}).get("type"))
+    assert leaf.entry["description"].endswith(tuple(units or (["[name]", "[choice]"] if text else ["[-]"])))
+
+
+TIPS = "design: {tip_um: 0.055}\ndevices: {S1: {kind: stopper, pair: b, contact_um: [3, 3], "
+TIPS += "restoring_force_uN: 9, humidities: [0.5]}}"
+WRONG = [
+    ({"kind": "bridge"}, "devices.C1.kind", "must come with residual_stress_MPa"),
+    ({"residual_stress_MPa": 5}, "devices.C1.kind", "must come without residual_stress_MPa"),
+    ({"restoring_force_uN": 5, "contact_um": [1, 1]}, "devices.C1.kind", "without contact_um, restoring_force_uN"),
+    ({"kind": "plate"}, "devices.C1.kind", "one of cantilever, bridge, stopper"),
+    ({"pair": "d"}, "devices.C1.pair", "must be one of a, b, c"),
+    ({"humidities": [0.6, 0.6]}, "devices.C1.humidities", "listed twice"),
+    ({"humidities": [0.65001]}, "devices.C1.humidities", "at most 4 decimals"),
+    ({"gap_um": 0.1}, "devices.C1.gap_um", "20 times the height of the water film"),
+    ({"humidities": [0.9999]}, "devices.C1.gap_um", "must be at least 207.9"),
+    ({"thickness_um": 0.1}, "devices.C1.thickness_um", "must be so large that strips of 1.5 µm resolve its cracks"),
+    ({"strip_um": 0.75}, "devices.C1.strip_um", "above the correlation length of the surface"),
+    ({"strip_um": 1.505}, "devices.C1.strip_um", "whole number of contact points"),
+    ({"width_um": 30.005}, "devices.C1.width_um", "whole number of contact points"),
+    ({"width_um": 9000}, "devices.C1.kind", "within 8 GB of memory"),
+    ({"chart": CHART | {"humidities": [0.9, 0.4]}}, "devices.C1.chart.humidities", "in increasing order"),
+    ({"chart": CHART | {"thicknesses_um": [2, 2]}}, "devices.C1.chart.thicknesses_um", "each value once"),
+    ({"chart": CHART | {"gaps_um": [0.1, 20]}}, "devices.C1.chart.gaps_um", "20 times the height"),
+    ({"chart": CHART | {"thicknesses_um": [0.1, 2]}}, "devices.C1.chart.thicknesses_um", "so large that strips"),
+    ({"uncertainty": {"gap_um": -1}}, "devices.C1.uncertainty.gap_um", "at least 0"),
+]
+
+
+@pytest.mark.parametrize(("keys", "key", "message"), WRONG, ids=[str(row[0]) for row in WRONG])
+def test_a_wrong_device_is_refused_by_name(keys, key, message):
+    (line,) = problems(with_device(**keys))
+    assert line.startswith(f"{key} is ")
+    assert message in line
+
+
+@pytest.mark.parametrize(
+    ("overlay", "key", "message"),
+    [
+        (TIPS, "design.tip_um", "whole number of contact points"),
+        (TIPS.replace("0.055", "0.02"), "design.tip_um", "at least three contact points"),
+        ("design: {beams: 199}", "design.beams", "at least 200"),
+        ("design: {shares: [0.06]}", "design.shares[0]", "at most 0.05"),
+        ("surfaces: {B2: {material: Gold}}", "surfaces.B2.material", "must be one of"),
+        ("materials: {Gold: {hamaker_constant_zJ: {water: 250}}}", "materials.Gold.hamaker_constant_zJ.dry", "missing"),
+        ("materials: {Wax: {contact_angle_deg: 180}}\nsurfaces: {B2: {material: Wax}}", "pairs.b.beam",
+         "contact angles of 180 and 0 degrees"),
+        ("materials: {Gel: {young_modulus_GPa: 1.0e-4}}\nsurfaces: {Sub1: {material: Gel}}", "run.pairs[0]",
+         "solid stiff enough"),
+    ],
+)  # fmt: skip
+def test_wrong_sizes_and_materials_are_refused_by_name(overlay, key, message):
+    line = problems(changed(overlay))[0]
+    assert line.startswith(f"{key} is ")
+    assert message in line
+
+
+def test_a_device_whose_solids_do_not_resist_is_refused_although_its_pair_does_not_run():
+    soft = {"materials": {"Gel": {"young_modulus_GPa": 1.0e-4}}, "surfaces": {"Sub2": {"material": "Gel"}}}
+    config = merged(with_device(pair="c"), soft | {"run": {"pairs": ["b"]}})
+    (line,) = problems(config)
+    assert line.startswith("devices.C1.pair is 'c', must have surfaces rough enough")
+
+
+def test_the_patch_of_a_stopper_is_whole_on_the_grid():
+    (line,) = problems(merged(PAPER, {"devices": {"S1": S1 | {"contact_um": [3, 3.005]}}}))
+    assert line.startswith("devices.S1.contact_um is [3, 3.005], must be a whole number of contact points")
+
+
+def test_water_that_does_not_wet_makes_the_film_lower():
+    other = {"materials": {"Plain": {"contact_angle_deg": 80}}, "surfaces": {"B2": {"material": "Plain"}}}
+    low = with_device(gap_um=0.25, humidities=[0.92])
+    assert any(line.startswith("devices.C1.gap_um") for line in problems(low))
+    assert not any(line.startswith("devices.C1.gap_um") for line in problems(merged(low, other)))
+
+
+# Names
+
+
+def test_the_normal_form_sorts_the_humidities_of_devices():
+    assert normalised(with_device())["devices"]["C1"]["humidities"] == [0.44, 0.67]
+    assert "devices" not in load()
+
+
+def test_a_configuration_without_devices_has_no_cases():
+    none = Designs(load())
+    assert (none.cases, none.charted, none.pressed_pairs) == ([], [], [])
+
+
+def test_cases_are_beams_at_their_humidities():
+    designs = Designs(load({"devices": DEVICES}))
+    assert designs.cases == ["C1_rh044", "C1_rh067", "R1_rh067"]
+    assert designs.of_kind("stopper") == ["S1"]
+    assert designs.charted == ["C1"]
+    assert designs.pressed_pairs == ["b"]
+    other = {"pairs": {"d": PAPER["pairs"]["b"]}, "devices": {"C1": C1 | {"pair": "d"}}}
+    assert Designs(load(other)).pressed_pairs == []
+
+
+def test_strips_equal_to_those_of_the_main_line_share_their_contact():
+    designs = Designs(load({"devices": {"C1": C1, "C2": C1 | {"width_um": 20}, "C3": C1 | {"strip_um": 1.2}}}))
+    assert [designs.has_strips_of_pair(name) for name in ("C1", "C2", "C3")] == [True, False, False]
+    assert designs.strips("C2").name == "b_1500x20000"
+    assert designs.strips("C3").name == "b_1200x30000"
+    assert designs.tips("C2").name == "b_50x20000"
+
+
+def test_the_axis_of_a_chart_has_names_and_ends():
+    designs = Designs(load({"devices": DEVICES, "design": {"chart_points": 8}}))
+    axis = designs.axis("C1")
+    assert (axis[0], axis[-1], len(axis)) == (0.4, 0.9, 8)
+    assert designs.chart_cases("C1")[1] == "C1_rh04714"
+
+
+# Settings
+
+
+PLAN = Plan(normalised(ALL))
+JOBS = {
+    cracks: jobs.cracks(PLAN, "C1_rh067"),
+    safe_lengths: jobs.safe_lengths(PLAN, "R1_rh067"),
+    chart: jobs.chart(PLAN, "C1_rh067"),
+    contact: jobs.tip_contact(PLAN, "b", 50, 30000),
+}
+
+
+@pytest.mark.parametrize("stage", JOBS, ids=lambda stage: stage.__name__)
+def test_a_stage_takes_exactly_the_settings_of_its_jobs(stage):
+    settings = JOBS[stage]
+    found = typed(stage.Settings, settings)
+    optional = {field.name for field in fields(found) if not field.default is field.default_factory is MISSING}
+    assert set(vars(found)) - optional <= {key.removesuffix("_um") for key in settings}
+    assert json.loads(json.dumps(settings)) == settings
+
+
+def test_settings_in_si_are_those_of_the_device():
+    found = typed(cracks.Settings, JOBS[cracks])
+    assert found.device.beam.young_modulus == pytest.approx(79e9)
+    assert (found.device.thickness, found.device.strip) == pytest.approx((2.6e-6, 1.2e-6))
+    assert found.water == curves.Water(300, pytest.approx((1.0471975512, 0.0)))
+    bridge = typed(safe_lengths.Settings, JOBS[safe_lengths])
+    assert bridge.device.beam.tension == pytest.approx(50e6 * 60e-12)
+    assert bridge.tip == pytest.approx(0.05e-6)
+    assert typed(chart.Settings, JOBS[chart]).gaps == pytest.approx((10e-6, 20e-6))
+    assert jobs.chart(plan(devices={"C1": {"chart": {"thicknesses_um": [2], "humidities": [0.4, 0.5]}}}), "C1_rh045")[
+        "gaps_um"
+    ] == [20]
+
+
+def test_materials_reach_contact_forces_and_beams_and_nothing_changes_without_them():
+    found = typed(contact.Settings, JOBS[contact])
+    assert found.sampling.strip_length == pytest.approx(0.05e-6)
+    assert found.contact.samples == PAPER["design"]["beams"]
+    assert found.materials["beam"].hamaker_constant == pytest.approx({"water": 2.5e-19, "dry": 4e-19})
+    assert found.materials["substrate"].young_modulus == pytest.approx(164e9)
+    assert cantilever(typed(Cantilevers, jobs.cantilevers(PLAN, "b")), "b").young_modulus == pytest.approx(79e9)
+    paper = Plan(load())
+    assert "materials" not in jobs.contact(paper, "b")
+    assert jobs.forces(paper, "b_rh067") == {"water": {"temperature_K": 300}, "humidity": 0.67}
+    assert jobs.cantilevers(paper, "b")["pairs"] == {"b": {"gap_um": 20}}
+
+
+def test_each_property_of_a_material_affects_only_its_stages():
+    def with_gold(**properties):
+        return Plan(load({"materials": {"Gold": properties}, "surfaces": {"Sub1": {"material": "Gold"}}}))
+
+    bare, paper = with_gold(hardness_GPa=1.0), Plan(load())
+    wet = with_gold(contact_angle_deg=30)
+    assert jobs.contact(bare, "b") == jobs.contact(wet, "b") == jobs.contact(paper, "b")
+    assert jobs.plasticity(bare, "b") != jobs.plasticity(paper, "b") == jobs.plasticity(wet, "b")
+    assert jobs.forces(wet, "b_rh067")["water"]["contact_angles_deg"] == [0, 30]
+    assert jobs.forces(wet, "c_rh065") == jobs.forces(paper, "c_rh065")
+    assert jobs.contact(with_gold(young_modulus_GPa=79), "b") != jobs.contact(paper, "b")
+
+
+def test_the_uncertainty_of_a_device_is_no_setting_of_its_cracks():
+    assert "uncertainty" not in json.dumps([*JOBS.values(), jobs.beyond_the_model(PLAN)])
+
+
+def test_warnings_know_what_is_stated_of_a_material():
+    found = typed(findings.OfDevice, jobs.beyond_the_model(PLAN)["devices"]["C1"])
+    assert [name for name, _ in found.materials] == ["Gold"]
+    assert len(found.materials[0][1]) == 5
+    assert typed(findings.OfPairs, jobs.model_limits(PLAN)["pairs"]).sampling.strip_length == pytest.approx(1.5e-6)
+
+
+def test_patches_of_devices_count_for_the_memory_of_jobs():
+    wide = normalised(with_device(width_um=600))
+    assert memory.of_job(wide) == round(memory.of_field(2.5, 601, 10))
+    stopper = normalised(merged(PAPER, {"devices": {"S1": S1 | {"contact_um": [30, 40]}}}))
+    assert memory.of_job(stopper) == round(memory.of_field(31, 41, 10))

@@ -1,0 +1,104 @@
+"""Tables and figures of devices show the numbers of their datasets; equal data give equal files."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from stiction.designs import figures_devices, tables_devices
+from stiction.report.style import save
+
+sys.path.append(str(Path(__file__).parents[1] / "designs"))
+from ground import safe_with_tips, safe_without_tips  # noqa: E402
+
+WARNINGS = {("C1", 0.44): ["Too wet.", "Too thin."], ("C1", 0.67): ["Too thin."], ("R1", 0.67): []}
+
+
+@pytest.fixture(scope="module")
+def found():
+    tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(400))
+    return {
+        ("C1", 0.44): safe_with_tips(tips),
+        ("C1", 0.67): safe_with_tips(1.5 * tips),
+        ("R1", 0.67): safe_without_tips(),
+    }
+
+
+def charted(humidity, factor=1.0):
+    """Dataset of stage chart."""
+    thickness, gap, shape, share = [2e-6, 3e-6], [10e-6, 20e-6], ["S-shape", "S-shape or arc"], [1e-2, 1e-3]
+    lengths = factor * 1e-6 * np.arange(100, 116).reshape(2, 2, 2, 2)
+    return xr.Dataset(
+        {
+            "safe_length": (("thickness", "gap", "shape", "share"), lengths),
+            "flooded_length": (("thickness", "gap"), [[5e-5, 6e-5], [7e-5, 8e-5]]),
+            "humidity": humidity,
+        },
+        coords={"thickness": thickness, "gap": gap, "shape": shape, "share": share},
+    )
+
+
+def test_the_table_has_a_row_per_shape_and_share_with_the_numbers_of_the_dataset(found):
+    table = tables_devices.safe_lengths(found, WARNINGS)
+    assert len(table.frame) == 2 * 4 + 2 == len(table.cells)
+    row = table.frame[(table.frame.device == "C1") & (table.frame.relative_humidity == 0.67)].iloc[3]
+    one = found["C1", 0.67].isel(shape=1, share=1)
+    assert (row.held_by, row.share, row.basis) == ("beam or tip", 1e-3, "fitted")
+    stated = row.safe_length_um, row.estimate_um, row.estimate_se_beams_um, row.estimate_se_surfaces_um
+    held = one.safe_length, one.estimate, one.beams_error, one.surfaces_error
+    assert stated == pytest.approx([1e6 * float(value) for value in held], rel=1e-12)
+
+
+def test_warnings_are_numbered_in_the_cells_and_written_out_in_caption_and_csv(found):
+    table = tables_devices.safe_lengths(found, WARNINGS)
+    assert "(1) Too wet. (2) Too thin." in table.caption
+    assert list(table.cells.warnings) == ["1, 2"] * 4 + ["2"] * 4 + [""] * 2
+    assert "Too wet. Too thin." in table.csv
+    assert "curl" in table.caption
+
+
+def test_a_table_without_warnings_does_not_speak_of_them(found):
+    table = tables_devices.safe_lengths(found, dict.fromkeys(found, []))
+    assert "Warnings" not in table.caption
+
+
+def test_the_risk_shows_shares_bands_and_safe_lengths_of_every_device(found):
+    figure = figures_devices.risk(found, WARNINGS)
+    first, second = figure.axes
+    lines = [line for line in first.lines if len(line.get_xdata()) > 1]
+    one = found["C1", 0.44].isel(shape=0)
+    known = one.stuck.values > 0
+    np.testing.assert_allclose(lines[0].get_ydata(), one.stuck.values[known])
+    np.testing.assert_allclose(lines[0].get_xdata(), 1e6 * one.length.values[known])
+    points = {
+        (round(float(line.get_xdata()[0]), 6), float(line.get_ydata()[0]))
+        for line in first.lines
+        if len(line.get_xdata()) == 1
+    }
+    for dataset in (found["C1", 0.44], found["C1", 0.67]):
+        for shape in dataset["shape"].values:
+            for share in dataset.share.values:
+                assert (round(1e6 * float(dataset.safe_length.sel(shape=shape, share=share)), 6), share) in points
+    assert len(first.collections) == 4
+    assert len(second.collections) == 1
+    assert [text.get_text() for text in first.get_legend().get_texts()] == ["RH 0.44 (1) (2)", "RH 0.67 (2)"]
+    assert "(1) Too wet." in figure._supxlabel.get_text()
+
+
+def test_the_chart_shows_the_middle_share_of_every_thickness_and_gap():
+    found = {("C1", humidity): charted(humidity, factor) for humidity, factor in ((0.5, 1.0), (0.4, 2.0), (0.6, 0.5))}
+    figure = figures_devices.chart(found)
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["(a) C1, gap 10 µm", "(b) C1, gap 20 µm"]
+    curve = next(line for line in figure.axes[1].lines if len(line.get_xdata()) == 3)
+    np.testing.assert_allclose(curve.get_xdata(), [0.4, 0.5, 0.6])
+    np.testing.assert_allclose(curve.get_ydata(), np.array([2, 1, 0.5]) * 105)  # p = 0.001, thin, wide gap, S-shape
+    assert any(line.get_ydata()[0] == pytest.approx(60) for line in figure.axes[1].lines if len(line.get_ydata()) == 2)
+
+
+def test_equal_data_give_equal_files(found, tmp_path):
+    for name in ("one", "two"):
+        save(figures_devices.risk(found, WARNINGS), tmp_path / f"{name}.png", tmp_path / f"{name}.pdf")
+    for kind in ("png", "pdf"):
+        assert (tmp_path / f"one.{kind}").read_bytes() == (tmp_path / f"two.{kind}").read_bytes()

@@ -1,0 +1,97 @@
+"""Pages of devices show the answer, the numbers of the datasets, figures and warnings."""
+
+import base64
+import re
+
+import numpy as np
+import pytest
+from test_tables_budget import BUDGETS, STOPPERS, budget_dataset, stopper_dataset
+
+from stiction.designs import cracks, pages, safe_lengths
+from stiction.designs.pages import Page, Section
+from stiction.devices.limits import NOT_MODELLED
+from stiction.stages.curves import Water
+
+CANTILEVER = {
+    "kind": "cantilever",
+    "pair": "b",
+    "thickness_um": 2.6,
+    "gap_um": 20,
+    "width_um": 30,
+    "humidities": [0.67],
+}
+STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.44, 0.67]}
+
+
+def safe(kind="cantilever", longest=600e-6):
+    """Safe lengths of 400 devices that stick between two thirds of a length and this length."""
+    device = cracks.Device(kind, "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
+    settings = safe_lengths.Settings(1, Water(300.0), 0.67, device, (1e-2, 1e-3, 1e-4), 1.5e-7)
+    shapes = {safe_lengths.S_SHAPE: np.linspace(2 / 3, 1, 400) * longest}
+    if kind == "cantilever":
+        shapes[safe_lengths.EITHER] = 0.7 * shapes[safe_lengths.S_SHAPE]
+    bounds = {shape: safe_lengths.safe_lengths(values, settings) for shape, values in shapes.items()}
+    errors = {shape: np.full(3, 1e-6) for shape in shapes}
+    return safe_lengths.layout(shapes, bounds, errors, 1e-7, 3e-9, settings)
+
+
+@pytest.fixture(scope="module")
+def stopper():
+    budgets = {0.67: BUDGETS["S1", 0.67]}
+    return pages.of_stopper("S1", STOPPER, STOPPERS["S1"], budgets, ["Too hot."]).html
+
+
+def test_a_page_is_one_file_with_its_figures(stopper):
+    assert stopper.startswith("<!DOCTYPE html>")
+    pictures = re.findall(r'src="data:image/png;base64,([^"]+)"', stopper)
+    assert [base64.b64decode(picture)[:4] for picture in pictures] == [b"\x89PNG"] * 2
+    assert not re.findall(r'(?:src|href)="(?!data:)', stopper)
+
+
+def test_the_page_of_a_stopper_says_how_many_stick_and_in_which_air(stopper):
+    assert "0.67, 0 % of the stoppers (0 to 0.918 %) hold more than the restoring force of 18.99 µN" in stopper
+    assert "holds most at a relative humidity of 0.70; drier and wetter air, from 0.4 to 0.9" in stopper
+    assert "leaves at most 1 in 100 stuck" in stopper
+    assert "1 in 1000" not in stopper
+    assert "<td>3 x 3 µm</td>" in stopper
+
+
+def test_a_worst_humidity_at_the_end_is_stated_as_one():
+    assert pages.worst_sentence(stopper_dataset(peak=1.0)) == (
+        "Between relative humidities of 0.4 and 0.9, the stopper holds most at 0.9."
+    )
+
+
+def test_advice_warnings_and_what_is_not_modelled_are_shown(stopper):
+    assert "Relative humidity 0.67: Measure heights of B2 better" in stopper
+    assert "<p>Too hot.</p>" in stopper
+    assert NOT_MODELLED in stopper
+
+
+def test_the_page_of_a_beam_says_which_lengths_come_free():
+    found = safe()
+    sentence = pages.safe_sentence(0.67, found)
+    lengths = [1e6 * float(found.safe_length.sel(shape=shape, share=1e-3)) for shape in found["shape"].values]
+    assert f"up to {lengths[1]:.0f} µm come free" in sentence
+    assert "at most 1 in 1000 (95 % confidence)" in sentence
+    assert sentence.endswith(f"this is true of up to {lengths[0]:.0f} µm.")
+    assert "tip" not in pages.safe_sentence(0.67, safe("bridge"))
+
+
+def test_a_beam_without_chart_and_budget_has_neither():
+    plain = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, []).html
+    assert "How sure" not in plain
+    assert "Other thicknesses" not in plain
+    assert plain.count("<img") == 1
+    budgets = {0.44: budget_dataset(2.0), 0.67: budget_dataset()}
+    both = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, budgets, []).html
+    assert both.count("<img") == 2
+    assert all(f"RH {humidity}: effect [%]" in both for humidity in (0.44, 0.67))
+
+
+def test_text_is_escaped():
+    html = Page("A < B", {"x & y": "<1"}, ["a < b"], [Section("s > t", ["p & q"])], words={"<w>": "&"}).html
+    assert "<title>A &lt; B</title>" in html
+    assert "x &amp; y" in html
+    assert "<p>a &lt; b</p>" in html
+    assert "<w>" not in html

@@ -1,0 +1,206 @@
+"""Sheet and tables of measured surfaces show the numbers of their datasets."""
+
+import warnings
+from functools import cache
+
+import numpy as np
+import pytest
+from drawn_scans import published
+from numpy.testing import assert_allclose
+
+from stiction.measured import estimate as stage_estimate
+from stiction.measured import scan as stage_scan
+from stiction.measured.figures_scans import surface_sheet
+from stiction.measured.tables_scans import scan_uncertainty, scans
+from stiction.report.style import save
+from stiction.scans.estimate import Settings
+from stiction.scans.reading import ScanFile
+from stiction.studies import scan_uncertainty as study
+from stiction.surface import maxent
+
+SIDE = 5e-6
+
+
+@cache
+def maps():
+    return [stage_scan.layout(ScanFile(scan, "Height", "nm", ())) for scan in published("B2", SIDE, 2)]
+
+
+@cache
+def estimated():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        return stage_estimate.compute(maps(), "Etched", stage_estimate.Settings(1, Settings(), 8))
+
+
+def changed(**values):
+    """Estimate with other values."""
+    return estimated().assign(**{name: (estimated()[name].dims, value) for name, value in values.items()})
+
+
+LONG = "\n".join([
+    "skewness -5.17 with kurtosis 96.2 has no maximum-entropy density, nor have others within their errors; only "
+    "heights: measured can be used, and this sentence goes on until it needs a second line $ of _ the sheet",
+    "lines jump by 1.2 nm, against steps of 0.069 nm along a line; lines: offset levels them",
+] * 4)  # fmt: skip
+#: Estimates whose sheets differ most.
+SHEETS = {
+    "plain": {},
+    "long flags": {"flags": LONG},
+    "no flags": {"flags": ""},
+    "without density": {"feasible": np.full(3, np.nan), "goodness_chi2": np.nan, "goodness_p": np.nan},
+    "not square": {name: np.full(2, np.nan) for name in ("summits", "summit_errors", "model_summits")},
+}
+
+
+@cache
+def sheet(name):
+    return surface_sheet("Etched", changed(**SHEETS[name]))
+
+
+def panel(figure, title):
+    """Panel whose title contains a text."""
+    (found,) = [axes for axes in figure.axes if title in axes.get_title("left")]
+    return found
+
+
+@pytest.mark.parametrize("name", SHEETS)
+def test_no_text_of_a_sheet_covers_another_or_leaves_it(name, tmp_path):
+    figure = surface_sheet("Etched", changed(**SHEETS[name]))
+    save(figure, tmp_path / "sheet.png")
+    boxes = [figure._suptitle.get_window_extent(), figure._supxlabel.get_window_extent()]
+    for axes in figure.axes:
+        shown = [axes._left_title, axes.xaxis.label, axes.yaxis.label]
+        boxes += [text.get_window_extent() for text in shown if text.get_text()]
+    width, height = figure.get_size_inches() * figure.dpi
+    for k, box in enumerate(boxes):
+        assert -2 < box.x0 < box.x1 < width + 2
+        assert -2 < box.y0 < box.y1 < height + 2
+        assert not any(box.shrunk(0.98, 0.9).overlaps(other) for other in boxes[:k])
+
+
+def test_equal_estimates_give_equal_sheets(tmp_path):
+    for name in ("first.pdf", "second.pdf", "first.png", "second.png"):
+        save(surface_sheet("Etched", estimated()), tmp_path / name)
+    for kind in ("pdf", "png"):
+        assert (tmp_path / f"first.{kind}").read_bytes() == (tmp_path / f"second.{kind}").read_bytes()
+
+
+def test_the_title_shows_the_moments_with_their_errors_and_the_scans():
+    title = sheet("plain")._suptitle.get_text()
+    assert "Etched: 2 scans of 5 × 5 µm, 250 × 250 points" in title
+    rms, errors = 1e9 * stage_estimate.rms(estimated()), np.sqrt(np.diag(estimated().covariance))
+    assert f"rms {rms:.3f} ± {rms * errors[0]:.3f} nm" in title
+    assert f"skewness −{abs(float(estimated().moments[1])):.3f} ± {errors[1]:.3f}" in title
+    assert f"kurtosis {float(estimated().moments[2]):.2f} ± {errors[2]:.2f}" in title
+
+
+def test_the_map_is_levelled_and_white_at_its_mean():
+    (image,) = panel(sheet("plain"), "levelled heights").images
+    shown = image.get_array()
+    assert_allclose(shown, 1e9 * estimated().elevation.values.T, rtol=1e-6)
+    assert abs(shown.mean()) < 0.01
+    low, high = image.get_clim()
+    assert low == -high
+    assert_allclose(image.cmap(0.5)[:3], 1, atol=0.05)
+    assert_allclose(image.get_extent(), [0, 5, 0, 5])
+
+
+def test_undefined_points_are_grey():
+    z = estimated().elevation.values.copy()
+    z[10:20, 30:50] = np.nan
+    figure = surface_sheet("Etched", changed(elevation=z))
+    (image,) = panel(figure, "levelled heights").images
+    assert image.get_array().mask[30:50, 10:20].all()
+    assert image.get_array().mask.sum() == 200
+    red, green, blue, _ = image.cmap(np.ma.masked_all(1))[0]
+    assert red == green == blue < 0.8
+
+
+def test_densities_integrate_to_one_and_the_band_is_one_error_wide():
+    axes = panel(sheet("plain"), "density of the heights")
+    stairs = {patch.get_label(): patch.get_data() for patch in axes.patches}
+    measured = next(data for label, data in stairs.items() if label.startswith("measured"))
+    assert_allclose(np.sum(measured.values * np.diff(measured.edges)), 1, rtol=1e-6)
+    band = next(data for label, data in stairs.items() if not label.startswith("measured"))
+    inside = band.baseline > 0
+    error = estimated().histogram_error.values / (1e9 * stage_estimate.rms(estimated()))
+    assert_allclose((band.values - band.baseline)[inside], 2 * error[inside], rtol=1e-9)
+    curves = {line.get_label(): line.get_xydata() for line in axes.lines}
+    for name, density in (
+        ("Gaussian", maxent.GAUSSIAN),
+        ("maximum entropy", stage_estimate.density(estimated(), "moments")),
+    ):
+        z, p = curves[name].T
+        assert_allclose(np.trapezoid(p, z), 1, rtol=1e-3)
+        rms = 1e9 * stage_estimate.rms(estimated())
+        assert_allclose(p, density(z / rms) / rms, rtol=1e-6)
+    assert "maximum entropy" not in {line.get_label() for line in panel(sheet("without density"), "density").lines}
+
+
+def test_the_spectrum_is_grey_beyond_its_reach_and_shows_the_fit():
+    axes = panel(sheet("plain"), "spectrum")
+    measured, fitted = (line.get_xydata().T for line in axes.lines)
+    rings, reach, fit = (of(estimated()) for of in (stage_estimate.rings, stage_estimate.reach, stage_estimate.fit))
+    assert_allclose(measured[0], 1e-6 * rings.wavenumber[rings.wavenumber > 0])
+    assert_allclose(measured[1], 1e36 * rings.density[rings.wavenumber > 0])
+    inside = fitted[0] < 1e-6 * reach.nyquist
+    assert_allclose(fitted[1][inside], 1e36 * fit.spectrum(reach.nyquist)(1e6 * fitted[0][inside]), rtol=1e-9)
+    grey = sorted(
+        tuple(np.sort(patch.get_extents().transformed(axes.transData.inverted()).intervalx)) for patch in axes.patches
+    )
+    assert_allclose([grey[0][1], grey[1][0]], [1e-6 * reach.low, 1e-6 * reach.high], rtol=1e-6)
+
+
+def test_summits_of_scans_and_model_have_their_errors():
+    axes = panel(sheet("plain"), "summits")
+    for container, kind in zip(axes.containers, ("summit", "model_summit"), strict=True):
+        (radius, density), (error, density_error) = estimated()[f"{kind}s"].values, estimated()[f"{kind}_errors"].values
+        assert_allclose(container[0].get_xydata()[0], [1e6 * radius, 1e-12 * density])
+        bars = [np.ptp(bar.get_segments()[0], axis=0) / 2 for bar in container[2]]
+        assert_allclose(np.max(bars, axis=0), [1e6 * error, 1e-12 * density_error])
+    assert not panel(sheet("not square"), "summits").containers
+
+
+def test_every_flag_is_shown_in_full():
+    shown = " ".join(sheet("long flags")._supxlabel.get_text().replace("\\$", "$").split())
+    for flag in LONG.splitlines():
+        assert " ".join(flag.split()) in shown
+    assert sheet("no flags")._supxlabel.get_text() == "No flags."
+
+
+# Tables
+
+
+def test_every_scan_has_its_row_with_the_error_of_one_scan():
+    table = scans({"Etched": changed(flags="a flag")}, {"Etched": maps()})
+    assert list(table.frame.file) == ["B2-scan-0.spm", "B2-scan-1.spm"]
+    for row, scan in zip(table.frame.itertuples(), published("B2", SIDE, 2), strict=True):
+        assert row.rms_nm == pytest.approx(1e9 * scan.heights.std(), rel=0.02)  # levelled
+        assert (row.channel, row.points_fast, row.points_slow, row.undefined_percent) == ("Height", 250, 250, 0)
+        assert (row.size_fast_um, row.size_slow_um) == pytest.approx((5, 5))
+        assert row.skewness_se == pytest.approx(np.sqrt(2 * float(estimated().covariance[1, 1])))
+        assert row.rms_se_nm == pytest.approx(row.rms_nm * np.sqrt(2 * float(estimated().covariance[0, 0])))
+        assert row.flags == "a flag"
+    assert "- Etched: a flag" in table.markdown
+
+
+def uncertainty():
+    errors = np.array([[[0.1, 0.05], [0.02, 0.01], [0.01, 0.005], [0.08, 0.05]]])
+    return study.layout(["Etched"], (0.44, 0.88), errors, [3], {"beyond": [(-0.2, 0.02), (-0.05, 0.01)]})
+
+
+def test_errors_by_scans_are_tabulated_by_surface_and_for_the_pair():
+    table = scan_uncertainty({"mine": uncertainty()})
+    assert list(table.frame.surface) == ["Etched", "all"] * 2
+    first, both = table.frame.iloc[0], table.frame.iloc[1]
+    assert_allclose(
+        first[["rms_percent", "shape_percent", "spectrum_percent", "total_percent"]].astype(float), [10, 2, 1, 8]
+    )
+    assert_allclose([first.crack_length_percent, both.crack_length_percent], 2)
+    assert (first.scans, first.scans_needed) == (3, 8)
+    assert_allclose([both.beyond_percent, both.beyond_se_percent], [-20, 2])
+    assert np.isnan(first.beyond_percent)
+    cells = table.cells.iloc[1]
+    assert cells["other beyond [%]"] == "-20.0 ± 2.0"
+    assert cells["needed"] == "–"

@@ -1,0 +1,52 @@
+"""The histogram of heights is their density, and its errors are the scatter between scans of one surface."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from published import SURFACES
+from test_model_scans import MODEL, streams
+
+from stiction.scans.histogram import EDGES, histogram, histogram_errors
+from stiction.scans.scan import Frame
+
+CENTRES = (EDGES[1:] + EDGES[:-1]) / 2
+
+
+@pytest.fixture(scope="module")
+def scans():
+    return [MODEL.draw(rng) for rng in streams(80, "histogram")]
+
+
+def test_the_histogram_of_many_scans_is_the_density_of_the_surface(scans):
+    error = histogram_errors(MODEL) / np.sqrt(len(scans))
+    expected = np.array(
+        [np.mean(SURFACES["B2"].density(np.linspace(a, b, 21))) for a, b in zip(EDGES[:-1], EDGES[1:], strict=True)]
+    )
+    inside = np.abs(CENTRES) < 4
+    off = (histogram(scans) - expected) / np.maximum(error, 1e-6)
+    assert np.sqrt(np.mean(off[inside] ** 2)) < 2
+
+
+def test_errors_are_the_scatter_between_scans_with_the_true_rms(scans):
+    counts = np.array([np.histogram(z / MODEL.rms, EDGES)[0] / z.size for z in scans]) / np.diff(EDGES)
+    error = histogram_errors(MODEL)
+    often = error > 0.002  # bins that most scans have heights in
+    assert often.sum() > 30
+    ratio = counts.std(axis=0, ddof=1)[often] / error[often]
+    assert 0.85 < np.sqrt(np.mean(ratio**2)) < 1.15
+    assert np.all((ratio > 0.6) & (ratio < 1.4))
+    independent = np.sqrt(np.mean(counts, axis=0)[often] / np.diff(EDGES)[often] / scans[0].size)
+    assert np.median(error[often] / independent) > 2, "neighbouring pixels are not independent"
+
+
+def test_errors_fall_with_the_side_of_a_scan():
+    large = dataclasses.replace(MODEL, frame=Frame((400, 400), (8e-6, 8e-6)))
+    ratio = histogram_errors(large)[20:40] / histogram_errors(MODEL)[20:40]
+    np.testing.assert_allclose(ratio, 0.5, atol=0.05)
+
+
+def test_undefined_points_mean_and_scale_do_not_change_the_histogram(scans):
+    z = scans[0].copy()
+    holed = np.where(np.arange(z.size).reshape(z.shape) % 97 == 0, np.nan, 3 * z + 5e-9)
+    np.testing.assert_allclose(histogram([holed]), histogram([z[np.isfinite(holed)]]), rtol=1e-9)

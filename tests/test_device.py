@@ -1,0 +1,123 @@
+"""A device in Python: the same stages, settings and random numbers as in the workflow."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stiction
+from stiction.config import jobs
+from stiction.config.plan import Plan
+from stiction.config.units import typed
+from stiction.designs import budget, chart, cracks, safe_lengths, stoppers
+from stiction.models import OF_MOMENTS
+from stiction.stages import contact
+from stiction.studies import slope_contact
+from stiction.study import surface_datasets
+
+C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 10, "width_um": 6, "humidities": [0.88]}
+C1 |= {"chart": {"thicknesses_um": [2.6], "humidities": [0.8, 0.9]}}
+R1 = {"kind": "bridge", "pair": "b", "thickness_um": 2, "gap_um": 2, "width_um": 4, "residual_stress_MPa": 50}
+S1 = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 1, "humidities": [0.5]}
+CONFIG = stiction.load(
+    {
+        "devices": {"C1": C1, "R1": R1 | {"humidities": [0.88]}, "S1": S1},
+        "beam": {"width_um": 6},
+        "contact": {"samples": 40},
+        "chaos": {"order": 2},
+        "design": {"beams": 200, "shares": [0.02], "tip_um": 0.15},
+    }
+)
+PLAN = Plan(CONFIG)
+
+
+@pytest.fixture(scope="module")
+def device():
+    return stiction.Device.of(CONFIG, "C1")
+
+
+def drawn(settings):
+    surfaces = [surface_datasets(PLAN, name) for name in ("B2", "Sub1")]
+    return contact.compute(surfaces, "b", "NG", typed(contact.Settings, settings))
+
+
+def test_strips_that_equal_those_of_the_pair_are_its_strips(device):
+    xr.testing.assert_identical(device.contact, drawn(jobs.contact(PLAN, "b")))
+    xr.testing.assert_identical(device.tips, drawn(jobs.tip_contact(PLAN, "b", 50, 6000)))
+    assert device.tips.sizes["sample"] == 200
+
+
+def test_safe_lengths_are_those_of_the_stages(device):
+    wanted = typed(cracks.Settings, jobs.cracks(PLAN, "C1_rh088"))
+    found = cracks.compute(device.contact, wanted)
+    xr.testing.assert_identical(device.cracks(0.88), found)
+    settings = typed(safe_lengths.Settings, jobs.safe_lengths(PLAN, "C1_rh088"))
+    expected = safe_lengths.compute(found, device.tips, settings)
+    xr.testing.assert_identical(device.safe_lengths(0.88), expected)
+    assert np.all(expected.safe_length < expected.estimate)
+    sentences = device.warnings(expected)
+    assert sentences == [sentence for sentence in sentences if sentence.endswith(".")]
+
+
+def test_the_chart_at_the_size_of_the_device_has_its_safe_lengths(device):
+    settings = typed(chart.Settings, jobs.chart(PLAN, "C1_rh088"))
+    xr.testing.assert_identical(device.chart(0.88), chart.compute(device.contact, device.tips, settings))
+    alone = device.safe_lengths(0.88).safe_length.values
+    np.testing.assert_array_equal(device.chart(0.88).safe_length.values[0, 0], alone)
+
+
+def test_a_bridge_has_strips_of_its_own_width_and_no_tips():
+    bridge = stiction.Device.of(CONFIG, "R1")
+    assert bridge.tips is None
+    xr.testing.assert_identical(bridge.contact, drawn(jobs.device_contact(PLAN, "b", 1500, 4000)))
+
+
+def test_a_stopper_has_its_whole_area_and_the_forces_of_its_stage():
+    stopper = stiction.Device.of(CONFIG, "S1")
+    assert stopper.tips is None
+    xr.testing.assert_identical(stopper.contact, drawn(jobs.device_contact(PLAN, "b", 3000, 3000)))
+    settings = typed(stoppers.Settings, jobs.stoppers(PLAN, "S1"))
+    xr.testing.assert_identical(stopper.forces(), stoppers.compute(stopper.contact, settings))
+
+
+@pytest.fixture(scope="module")
+def uncertain():
+    """Device on strips of its pair, of which the gap, Young's modulus and the heights of one surface are uncertain."""
+    stated = {"gap_um": 0.1, "young_modulus_GPa": 5, "scan_um": 10}
+    variants = {"van_der_waals": ["none"], "psd": [], "every": [], "spacing_nm": [], "poisson_ratio": []}
+    studies = {"slopes": {"samples": 20}, "variants": variants}
+    few = {"design": {"budget_beams": 20}, "studies": studies, "pairs": {"b": {"substrate": "B2"}}}
+    return stiction.load(CONFIG, few, {"devices": {"C1": {"uncertainty": stated}}})
+
+
+def test_the_budget_is_that_of_its_stage_and_contacts(uncertain):
+    found = stiction.Device.of(uncertain, "C1").budget(0.88)
+    plan = Plan(uncertain)
+    described = surface_datasets(plan, "B2")
+    settings = typed(slope_contact.Settings, jobs.slope_contact(plan, "b"))
+
+    def with_(quantity):
+        return tuple(slope_contact.compute([described] * 2, "b", "B2", quantity, settings))
+
+    def of(plain):
+        return contact.compute([described] * 2, "b", "NG", typed(contact.Settings, plain))
+
+    base, none = (
+        jobs.contact(plan, "b"),
+        jobs.device_choice_summits(plan, "b", 1500, 6000, "van_der_waals_none")["base"],
+    )
+    wanted = typed(budget.Settings, jobs.budget(plan, "C1_rh088")["budget"])
+    expected = budget.compute(
+        of(base),
+        {("B2", quantity): with_(quantity) for quantity in OF_MOMENTS},
+        tuple(of(jobs.modulus_contact(plan, "b", 1500, 6000, side)) for side in ("less", "more")),
+        {"van_der_waals_none": of(base | {"contact": none["contact"], "van_der_waals": "none"})},
+        budget.covariances({"B2": described}, {}, wanted),
+        wanted,
+    )
+    xr.testing.assert_identical(found, expected)
+    assert list(found.input.values) == [*(f"{name} of B2" for name in OF_MOMENTS), "gap", "Young's modulus"]
+
+
+def test_a_device_that_does_not_exist_is_refused_with_those_that_do():
+    with pytest.raises(ValueError, match="no device C9; the configuration has C1, R1, S1"):
+        stiction.Device.of(CONFIG, "C9")

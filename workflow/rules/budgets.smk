@@ -1,0 +1,196 @@
+"""Stoppers, budgets of devices, and a page for each device; nothing for a configuration without devices."""
+
+
+use rule slope_contact as device_slope_contact with:
+    output:
+        expand(
+            "results/devices/contact/slopes/{{pair}}_{{length}}x{{width}}_{{surface}}_{{quantity}}_{side}.nc",
+            side=("less", "more"),
+        ),
+    log:
+        "results/logs/devices/contact/slopes/{pair}_{length}x{width}_{surface}_{quantity}.log",
+    params:
+        settings=lambda w: jobs.device_slope_contact(plan, w.pair, w.length, w.width),
+        code=code("slope_contact.py"),
+    message:
+        "Contact of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, with less and more "
+        "{wildcards.quantity} of {wildcards.surface}."
+
+
+use rule device_contact as modulus_contact with:
+    output:
+        "results/devices/contact/modulus/{pair}_{length}x{width}_{side}.nc",
+    log:
+        "results/logs/devices/contact/modulus/{pair}_{length}x{width}_{side}.log",
+    params:
+        settings=lambda w: jobs.modulus_contact(plan, w.pair, w.length, w.width, w.side),
+        code=code("device_contact.py"),
+    message:
+        "Contact of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, with {wildcards.side} of Young's "
+        "modulus."
+
+
+use rule variant_summits as device_choice_summits with:
+    output:
+        "results/devices/contact/summits/{pair}_{length}x{width}_{variant}.nc",
+    log:
+        "results/logs/devices/contact/summits/{pair}_{length}x{width}_{variant}.log",
+    params:
+        settings=lambda w: jobs.device_choice_summits(plan, w.pair, w.length, w.width, w.variant),
+        code=code("variant_summits.py"),
+    message:
+        "Summits of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, under {wildcards.variant}."
+
+
+use rule variant_contact as device_choice_contact with:
+    input:
+        summits=summits_of_choice,
+    output:
+        "results/devices/contact/choices/{pair}_{length}x{width}_{variant}.nc",
+    log:
+        "results/logs/devices/contact/choices/{pair}_{length}x{width}_{variant}.log",
+    message:
+        "Contact of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, under {wildcards.variant}."
+
+
+rule stoppers:
+    input:
+        contact=lambda w: ground_of(w.device),
+    output:
+        "results/devices/stoppers/{device}.nc",
+    log:
+        "results/logs/devices/stoppers/{device}.log",
+    localrule: True
+    params:
+        settings=lambda w: jobs.stoppers(plan, w.device),
+        code=code("stoppers.py"),
+    message:
+        "Pull-off force of stopper {wildcards.device}."
+    script:
+        "../scripts/stoppers.py"
+
+
+rule budget:
+    input:
+        unpack(surfaces_of_device),
+        contact=lambda w: ground_of(cases.pair_of(w.case)),
+        less=shifted_of("less"),
+        more=shifted_of("more"),
+        modulus=modulus_of,
+        choices=choices_of,
+        estimates=lambda w: expand(
+            "results/estimate/{surface}.nc",
+            surface=plan.scanned_sides(config["devices"][cases.pair_of(w.case)]["pair"]),
+        ),
+    output:
+        "results/devices/budget/{case}.nc",
+    log:
+        "results/logs/devices/budget/{case}.log",
+    params:
+        settings=lambda w: jobs.budget(plan, w.case),
+        code=code("budget.py"),
+    message:
+        "Budget of {wildcards.case}."
+    script:
+        "../scripts/budget.py"
+
+
+rule table_stoppers:
+    input:
+        stoppers=expand("results/devices/stoppers/{device}.nc", device=designs.stoppers),
+        plasticity=expand("results/studies/plasticity/{pair}.nc", pair=designs.pressed(*designs.stoppers)),
+    output:
+        **table_files("stoppers", "P(stuck) of stoppers"),
+    log:
+        "results/logs/tables/stoppers.log",
+    localrule: True
+    params:
+        settings=jobs.beyond_stoppers(plan),
+        code=code("table_stoppers.py"),
+    message:
+        "P(stuck) of all stoppers."
+    script:
+        "../scripts/table_stoppers.py"
+
+
+rule figure_stoppers:
+    input:
+        stoppers=expand("results/devices/stoppers/{device}.nc", device=designs.stoppers),
+        style=STYLE,
+    output:
+        **figure_files("stoppers", ON_DEVICES, "pull-off force of stoppers"),
+    log:
+        "results/logs/figures/stoppers.log",
+    localrule: True
+    params:
+        settings={"stoppers": designs.stoppers},
+        code=code("figure_stoppers.py"),
+    message:
+        "Pull-off force of all stoppers."
+    script:
+        "../scripts/figure_stoppers.py"
+
+
+rule table_budget:
+    input:
+        budgets=expand("results/devices/budget/{case}.nc", case=designs.budget_cases()),
+    output:
+        **table_files("budget", "uncertainty of devices, and what to measure better"),
+    log:
+        "results/logs/tables/budget.log",
+    localrule: True
+    params:
+        settings={"cases": designs.budget_cases()},
+        code=code("table_budget.py"),
+    message:
+        "Uncertainty of all devices."
+    script:
+        "../scripts/table_budget.py"
+
+
+rule figure_budget:
+    input:
+        budgets=expand("results/devices/budget/{case}.nc", case=designs.budget_cases()),
+        style=STYLE,
+    output:
+        **figure_files("budget", ON_DEVICES, "uncertainty of devices"),
+    log:
+        "results/logs/figures/budget.log",
+    localrule: True
+    params:
+        settings={"cases": designs.budget_cases()},
+        code=code("figure_budget.py"),
+    message:
+        "Uncertainty of all devices."
+    script:
+        "../scripts/figure_budget.py"
+
+
+rule device_page:
+    input:
+        unpack(results_of_device),
+        style=STYLE,
+    output:
+        report("results/devices/{device}.html", category=ON_DEVICES, labels={"shows": "{device}: what to build"}),
+    log:
+        "results/logs/devices/{device}.log",
+    localrule: True
+    params:
+        settings=lambda w: jobs.page(plan, w.device),
+        code=code("device_page.py"),
+    message:
+        "Page of device {wildcards.device}."
+    script:
+        "../scripts/device_page.py"
+
+
+rule devices:
+    input:
+        [rules.table_safe_lengths.output, rules.figure_risk.output] if designs.cases else [],
+        rules.figure_chart.output if designs.charted else [],
+        [rules.table_stoppers.output, rules.figure_stoppers.output] if designs.stoppers else [],
+        [rules.table_budget.output, rules.figure_budget.output] if designs.budgeted else [],
+        expand("results/devices/{device}.html", device=designs.devices),
+    localrule: True
+    message:
+        "Tables, figures and pages of the devices."

@@ -1,0 +1,26 @@
+"""Errors that the scans of measured surfaces leave in the adhesion energy of a pair."""
+
+from stiction.config.units import typed
+from stiction.run.logs import logged
+from stiction.stages import storage
+from stiction.stages.named import load_named
+from stiction.studies import scan_uncertainty
+
+
+def main(job):
+    """Multiply the slopes by the errors of the estimates, and compare the choices with the base."""
+    slopes = load_named(job.input.slopes, "slopes", lambda name: name.partition("_")[2])
+    estimates = load_named(job.input.estimates, "estimate")
+    choices = load_named(job.input.choices, "contact", lambda name: name.partition("_")[2])
+    base = storage.load(job.input.base, "contact")
+    quantities = {name: tuple(dataset["quantity"].values.tolist()) for name, dataset in slopes.items()}
+    errors = {name: scan_uncertainty.errors_of(dataset, quantities[name]) for name, dataset in estimates.items()}
+    dataset = scan_uncertainty.compute(
+        slopes, errors, base, choices, typed(scan_uncertainty.Settings, job.params.settings)
+    )
+    storage.save(dataset, job.output[0], "scan_uncertainty", job.params.settings, job.input)
+
+
+if __name__ == "__main__":
+    with logged(snakemake.log[0]):
+        main(snakemake)

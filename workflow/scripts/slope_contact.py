@@ -1,0 +1,21 @@
+"""Contact of a pair with one quantity of one surface slightly decreased or increased."""
+
+from stiction.config.units import typed
+from stiction.run.logs import logged
+from stiction.stages import storage
+from stiction.studies import slope_contact
+
+
+def main(job):
+    """Draw samples with the same random numbers for all values of the quantities."""
+    surfaces = list(zip(*(storage.load_all(job.input[stage], stage) for stage in ("heights", "spectrum")), strict=True))
+    wanted = typed(slope_contact.Settings, job.params.settings)
+    at = job.wildcards
+    contacts = slope_contact.compute(surfaces, at.pair, at.surface, at.quantity, wanted)
+    for dataset, path in zip(contacts, job.output, strict=True):
+        storage.save(dataset, path, "contact", job.params.settings, job.input)
+
+
+if __name__ == "__main__":
+    with logged(snakemake.log[0]):
+        main(snakemake)
