@@ -42,7 +42,7 @@ def drawn(settings):
 
 def test_strips_that_equal_those_of_the_pair_are_its_strips(device):
     xr.testing.assert_identical(device.contact, drawn(jobs.contact(PLAN, "b")))
-    xr.testing.assert_identical(device.tips, drawn(jobs.tip_contact(PLAN, "b", 50, 6000)))
+    xr.testing.assert_identical(device.tips, drawn(jobs.tip_contact(PLAN, "b", 150, 6000)))
     assert device.tips.sizes["sample"] == 200
 
 

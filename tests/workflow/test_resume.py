@@ -87,7 +87,7 @@ def assert_resumed(folder, reference, targets, tiny):
 
 
 def test_a_run_killed_in_its_longest_stage_resumes_without_unlocking(undisturbed, tiny, tmp_path):
-    end_in_stage("contact", signal.SIGKILL, tmp_path, [BEAMS], tiny, after=1.0)
+    end_in_stage("contact", signal.SIGKILL, tmp_path, [BEAMS], tiny, after=0.1)
     assert_only_whole_files(tmp_path, undisturbed)
     end_in_stage("beams", signal.SIGTERM, tmp_path, [BEAMS], tiny, after=0.0)
     assert_resumed(tmp_path, undisturbed, [BEAMS], tiny)
