@@ -1129,8 +1129,8 @@ MUTANTS = {
         ("dict.fromkeys(map(str, problems))", "map(str, problems)"),
     ],
     "run.fingerprint": [
-        ("if _name(module) not in SILENT", "if True"),
-        ("open_files += imports", "pass"),
+        ("if name not in SILENT", "if True"),
+        ("unread += imports", "pass"),
         ('fields["body"] = node.body[1:]', "pass"),
         ("for node in ast.walk(tree)", "for node in tree.body"),
         ("for end in (None, -1)]", "for end in (None,)]"),

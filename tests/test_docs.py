@@ -197,6 +197,7 @@ def test_citation_changelog_and_package_name_the_same_version():
 # The build
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     not all(map(importlib.util.find_spec, ("sphinx", "myst_parser", "furo"))),
     reason="Sphinx, MyST and Furo are not installed: pip install '.[docs]'",

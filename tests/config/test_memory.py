@@ -84,6 +84,7 @@ print(before, peak_memory())
 """
 
 
+@pytest.mark.slow
 def test_joining_the_chunks_of_many_samples_takes_at_most_the_stated_memory_and_at_least_half_of_what_it_adds(tmp_path):
     samples, chunks, rms = 40_000, 4, 7.2  # of pair c
     grid = contact.DistanceGrid.covering(-10 * rms * 1e-9, 7 * rms * 1e-9, 0.05e-9)

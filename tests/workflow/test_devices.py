@@ -12,6 +12,8 @@ from test_report import STYLE, faults
 import stiction
 from stiction.config.merging import merged
 
+pytestmark = pytest.mark.slow
+
 #: Few samples and inputs, so that a run takes a minute.
 SMALL = {
     "contact": {"samples": 60, "chunks": 2, "distance_step_nm": 0.2},

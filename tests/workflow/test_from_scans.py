@@ -34,6 +34,7 @@ def finished(tmp_path_factory):
     return run, [tiny, mine]
 
 
+@pytest.mark.slow
 def test_the_workflow_gives_the_numbers_of_one_process(finished):
     run, configs = finished
     with pytest.warns(UserWarning, match="^surface Etched: only"):
@@ -45,6 +46,7 @@ def test_the_workflow_gives_the_numbers_of_one_process(finished):
     assert_array_equal(beams.crack_length, study.beams(0.88)["crack_length"])
 
 
+@pytest.mark.slow
 def test_table_1_compares_with_the_estimate(finished):
     run, _ = finished
     found = estimate.statistics(dataset(run / "results/estimate/Etched.nc", "estimate"))
@@ -55,6 +57,7 @@ def test_table_1_compares_with_the_estimate(finished):
         assert float(cells[f"{key}_afm"]) == pytest.approx(value)
 
 
+@pytest.mark.slow
 def test_flags_are_in_the_log_and_in_the_dataset(finished):
     run, _ = finished
     flags = estimate.flags(dataset(run / "results/estimate/Etched.nc", "estimate"))
@@ -63,6 +66,7 @@ def test_flags_are_in_the_log_and_in_the_dataset(finished):
     assert all(f"UserWarning: surface Etched: {flag}\n" in log for flag in flags)
 
 
+@pytest.mark.slow
 def test_nothing_reruns_in_another_folder_with_copied_files_of_equal_content(finished, tmp_path):
     run, (tiny, mine) = finished
     copied(run, tmp_path / "run")

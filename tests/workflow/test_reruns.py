@@ -143,11 +143,10 @@ MATRIX = [
      "forces humidity sensitivity variant cracks safe_lengths chart table_1 table_2 table_3 checks model_limits", (), "contact/|/a_"),
     ("order of humidities", "pairs: {a: {humidities: [0.8, 0.6]}}", "", (), ""),
 ]  # fmt: skip
-# The fast tests cover at least one key of each section and the examples of the README; these rows are slow tests.
-FURTHER = {"radius of its summits", "its published spectrum", "length of strips", "spacing of Table I", "distance step"}
-FURTHER |= {"strips of Table I", "humidity of the figures", "scatter of beams", "one humidity removed"}
-FURTHER |= {"study: finer elements", "study: resampling", "order of humidities"}
-ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)) for name, *row in MATRIX]
+#: One change of each part of the workflow; the other rows are slow tests.
+FAST = {"kurtosis of one surface", "surface in a pair", "one humidity added", "van der Waals model", "water"}
+FAST |= {"number of samples", "chaos order", "number of beams", "study: variants", "a device added"}
+ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name not in FAST)) for name, *row in MATRIX]
 
 
 def behind(rules, read_by=READ_BY):
@@ -266,6 +265,7 @@ def test_adding_a_humidity_runs_no_contact_and_no_surface(tree):
     assert {name for name in made if not re.match("checks|figures|fit/", name)} == files | beams
 
 
+@pytest.mark.slow
 def test_adding_a_humidity_to_the_pair_of_the_figures_draws_no_surface_either(tree):
     rerun = tree.rerun(overlay="pairs: {b: {humidities: [0.7, 0.8]}}")
     assert {"forces", "chaos", "beams", "resampling", "sensitivity", "variant"} <= known(rerun)
@@ -306,6 +306,7 @@ def test_a_large_file_counts_as_changed_by_its_content_and_not_by_its_time(tree,
         os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
 
 
+@pytest.mark.slow
 def test_switching_to_another_branch_and_back_reruns_nothing(tree):
     tree.git("checkout", "-b", "other")
     tree.append("src/stiction/streams.py", "\nOTHER = 1\n")
@@ -350,6 +351,10 @@ SPOTS = [
     ("study", "", " ".join(RULES)),
     ("scans/estimate", "table_1 table_3", " ".join(RULES - {"table_1", "table_3"})),
 ]
+SPOT_ROWS = [
+    pytest.param(*row, id=row[0], marks=[pytest.mark.slow] * (row[0] not in {"contact/meniscus", "config/plan"}))
+    for row in SPOTS
+]
 #: The computation of a stage and the layout of its dataset are in one module, so that a new variable in the dataset is
 #: a change of that module only. It reruns the stage and the readers of its dataset, and nothing else.
 LAYOUTS = {
@@ -382,9 +387,8 @@ LAYOUTS = {
     "designs/safe_lengths": {"safe_lengths", "chart", "table_safe_lengths", "model_limits"},
     "designs/chart": {"chart"},
 }
-PLANNED = {"stages/forces", "stages/beams", "studies/sensitivity"}
 LAYOUT_ROWS = [
-    pytest.param(name, stages, id=name, marks=[pytest.mark.slow] * (name not in PLANNED))
+    pytest.param(name, stages, id=name, marks=[pytest.mark.slow] * (name != "stages/forces"))
     for name, stages in LAYOUTS.items()
 ]
 
@@ -398,7 +402,7 @@ def test_a_new_variable_in_a_dataset_reruns_its_stage_and_its_readers_and_no_oth
     assert known(tree.rerun()) == behind(stages)
 
 
-@pytest.mark.parametrize(("path", "must", "must_not"), SPOTS, ids=[spot[0] for spot in SPOTS])
+@pytest.mark.parametrize(("path", "must", "must_not"), SPOT_ROWS)
 def test_a_changed_module_reruns_the_rules_that_use_it(tree, path, must, must_not):
     tree.append(f"src/stiction/{path}.py", "\nCHANGED = 1\n")
     rerun = known(tree.rerun())
@@ -415,6 +419,7 @@ def test_a_figure_style_redraws_all_figures_and_nothing_else(tree):
     assert pages
 
 
+@pytest.mark.slow
 def test_a_change_of_the_drawing_code_reruns_no_computation(tree):
     drawing = sorted((tree.folder / "src" / "stiction" / "report").glob("figures*.py"))
     for path in drawing:

@@ -6,6 +6,8 @@ import re
 import pytest
 from test_reruns import Tree
 
+pytestmark = pytest.mark.slow
+
 #: A beam on the strips of its pair and a stopper on a patch of its own.
 SMALL = """
 run: {pairs: [b]}

@@ -7,6 +7,8 @@ import yaml
 from test_reruns import OF_DEVICES, READ_BY, RULES, Tree, behind
 from written_scans import etched, scans_of
 
+pytestmark = pytest.mark.slow
+
 #: Surface of the beam of pair b; pair a has none.
 CONFIG = {
     "run": {"pairs": ["a", "b"]},
@@ -48,9 +50,7 @@ MATRIX = [
     ("defaults written out", "surfaces: {Etched: {heights: moments, scans: {level: plane}}}", ""),
     ("moments of another surface", "surfaces: {B1: {kurtosis: 4.5}}", None),
 ]
-#: The other rows are slow tests.
-FAST = {"levelling", "form of the heights", "form of the spectrum"}
-ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name not in FAST)) for name, *row in MATRIX]
+ROWS = [pytest.param(*row, id=name) for name, *row in MATRIX]
 
 
 @pytest.fixture(scope="module")

@@ -129,6 +129,7 @@ def test_a_full_disk_in_any_stage_is_reported_and_leaves_no_partly_written_file(
     assert_resumed(tmp_path, everything, ALL, tiny)
 
 
+@pytest.mark.slow
 def test_a_full_disk_is_reported_and_leaves_no_partly_written_file(undisturbed, tiny, tmp_path):
     folder = copied(undisturbed, tmp_path / "run", ["beams"])
     (folder / "results" / "provenance.json").unlink()
@@ -215,6 +216,7 @@ DAMAGED = ["tables/fit_quality.csv", "tables/variants.md", "tables/resampling.ht
 DAMAGED += ["figures/figure_14.pdf", "figures/figure_07.png"]
 
 
+@pytest.mark.slow
 def test_a_table_or_figure_that_was_cut_off_is_made_again_and_nothing_else(smoke, tmp_path):
     folder = copied(smoke, tmp_path / "run")
     for name in DAMAGED:

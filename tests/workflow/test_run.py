@@ -79,6 +79,7 @@ def test_no_job_exceeds_the_resources_of_its_rule(smoke):
         assert seconds < 60 * minutes, rule
 
 
+@pytest.mark.slow
 def test_a_surface_and_pair_of_the_user_are_added_without_rerunning_others(smoke, overlay, tmp_path):
     folder = copied(smoke, tmp_path / "run")
     done = snakemake(folder, "tables", configs=(SMOKE, overlay(MINE)))

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 
+import pytest
 import xarray as xr
 from conftest import BEAMS, ROOT, command, datasets, snakemake
 
@@ -24,6 +25,7 @@ snakemake.cli.main()
 """
 
 
+@pytest.mark.slow
 def test_a_moved_checkout_gives_the_same_bytes_on_one_core_without_forks(undisturbed, tiny, tmp_path, overlay):
     for name in ("Snakefile", "config.yaml"):
         shutil.copy2(ROOT / name, tmp_path)

@@ -4,6 +4,7 @@ import json
 import shutil
 from pathlib import Path
 
+import pytest
 from conftest import snakemake
 
 
@@ -17,6 +18,7 @@ def test_all_checks_of_the_smoke_run_pass(smoke):
     assert "**FAILED**" not in (smoke / "results" / "checks.md").read_text()
 
 
+@pytest.mark.slow
 def test_a_failed_check_stops_the_run_with_a_message_and_the_report_is_kept(smoke, tmp_path):
     results = tmp_path / "results"
     results.mkdir()

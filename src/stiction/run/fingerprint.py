@@ -41,13 +41,13 @@ def fingerprint(script: str | Path, remember: Callable[[object, Callable[[], Any
     dict
         Names of the script and the modules, sorted, mapped to the first 8 hex digits of their hashes.
     """
-    reached, open_files = {}, [Path(script)]
-    while open_files:
-        path = open_files.pop()
-        name = _name(path)
+    path = Path(script)
+    reached, unread = {}, [(_name(path), path)]
+    while unread:
+        name, path = unread.pop()
         if name not in reached:
             reached[name], imports = _read(path, path.stat().st_mtime_ns, remember)
-            open_files += imports
+            unread += imports
     return dict(sorted(reached.items()))
 
 
@@ -60,11 +60,12 @@ def _name(path):
 
 @cache
 def _read(path, _modified, remember):
-    """Hash of one file and the files of the package that it imports."""
+    """Hash of one file, and names and files of the modules of the package that it imports."""
     text = path.read_bytes()
     code = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
     hashed, names = remember([code, hashlib.sha256(text).hexdigest()], lambda: _parsed(text))
-    return hashed, [module for name in names for module in files_of(name) if _name(module) not in SILENT]
+    modules = {_name(module): module for name in names for module in files_of(name)}
+    return hashed, [(name, module) for name, module in modules.items() if name not in SILENT]
 
 
 def _parsed(text):
