@@ -1,6 +1,8 @@
 """Files of earlier runs: those of other settings and damaged ones are recognised, all others are not."""
 
 import json
+import re
+from types import SimpleNamespace
 
 import netCDF4
 import pytest
@@ -26,6 +28,26 @@ def files(tmp_path, monkeypatch):
 def reasons(wanted, **changed):
     """Files that a run with these settings cannot use."""
     return dict(kept.foreign(["heights/B2.nc", "spectrum/B2.nc"], (wanted | changed).get))
+
+
+def rule(pattern, settings):
+    """A rule with one output, as Snakemake describes it."""
+    return SimpleNamespace(output=[re.compile(pattern)], params=SimpleNamespace(settings=settings))
+
+
+def test_settings_of_a_file_are_those_of_the_rule_that_writes_it():
+    moments = {"B1": {"rms_nm": 1.7}, "B2": {"rms_nm": 3.4}}
+    target = SimpleNamespace(output=[], params=None)
+    rules = [
+        target,
+        rule(r"heights/(?P<surface>\w+)\.nc$", lambda wildcards: moments[wildcards.surface]),
+        rule(r"orders\.nc$", {"draws": 5}),
+        rule(r"heights/\w+\.nc$", {"never": "reached"}),
+    ]
+    assert kept.settings("heights/B2.nc", rules) == {"rms_nm": 3.4}
+    assert kept.settings("orders.nc", rules) == {"draws": 5}
+    assert kept.settings("heights/Unknown.nc", rules) is None, "no surface of this configuration"
+    assert kept.settings("beams/b.nc", rules) is None, "no rule writes it"
 
 
 def test_a_dataset_names_the_settings_of_all_stages_before(files):
