@@ -14,10 +14,9 @@ from stiction.report.format import TO_MJ, UM, error_alone, number, percent, with
 from stiction.report.published import value
 from stiction.report.tables import Table
 from stiction.stages.forces import vectors
+from stiction.stages.named import Case
 from stiction.stages.releases import STATES, ended
 
-#: A case: pair, relative humidity and model.
-Case = tuple[str, float, str]
 #: Columns of the published Table III: mean and standard deviation of each model.
 _PUBLISHED = {"NG": ("ng", "ng_std"), "GEO": ("geo", "geo_std")}
 

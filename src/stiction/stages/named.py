@@ -10,6 +10,9 @@ import xarray as xr
 from stiction.config.cases import CASE, humidity_of, pair_of
 from stiction.stages.storage import load
 
+#: A case: pair, relative humidity [-] and model.
+Case = tuple[str, float, str]
+
 
 def load_named(paths: Iterable[str | Path], stage: str, key: Callable[[str], Any] = str) -> dict[Any, xr.Dataset]:
     """Datasets of a stage by file name without extension, or by the result of ``key`` for this name."""
