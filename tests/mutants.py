@@ -972,7 +972,6 @@ MUTANTS = {
         ("START * min(arrest_length(energy, beam), beam.length)", "arrest_length(energy, beam)"),
     ],
     "beam.energy": [
-        ("6 * beam.bending_stiffness", "3 * beam.bending_stiffness"),
         ("return 1.5 * beam.young_modulus", "return 3 * beam.young_modulus"),
         ("beam.thickness**3 / crack_length**4", "beam.thickness**3 / crack_length**3"),
         ("CRACK_LENGTH_POWER = -1 / 4", "CRACK_LENGTH_POWER = -1 / 5"),
@@ -1342,7 +1341,7 @@ MUTANTS = {
             "summits.mean_summit_radius, 2 * summits.summit_density",
         ),
         ('patches(), patches("control"))', "patches(), patches())"),
-        ('"identification", surface, *address)', '"identification", *address)'),
+        ('"identification", surface, *part, k)', '"identification", *part, k)'),
         ("parameters.refuse_long_correlation(surface, found.spectrum", "(surface, found.spectrum"),
         ("StripGrid(patch, patch, settings.spacing,", "StripGrid(patch, patch, settings.target_spacing,"),
     ],
