@@ -826,7 +826,7 @@ MUTANTS = {
         ("if not above.size:", "if False:"),
     ],
     "config.memory": [
-        ("_PER_POINT * (1e3 * length_um / spacing_nm)", "_PER_POINT * (1e3 * length_um)"),
+        ("(NM_PER_UM * length_um / spacing_nm)", "(NM_PER_UM * length_um)"),
         ('config["beam"]["width_um"] + sampling["margin_um"]', 'config["beam"]["width_um"]'),
         ("return max(USUAL, round(max(needed)))", "return min(USUAL, round(max(needed)))"),
         ("for spacing in spacings]", "for spacing in spacings[:1]]"),
