@@ -367,7 +367,7 @@ MUTANTS = {
         ("yields(stress, hardness)", "yields(stress)"),
     ],
     "stages.pairs": [
-        ("solids.composite_modulus(*met), attraction", "2 * solids.composite_modulus(*met), attraction"),
+        ("solids.composite_modulus(*both), attraction", "2 * solids.composite_modulus(*both), attraction"),
         ("settings.materials.get(side, both)", "both"),
         ("attraction(medium, constant)", "attraction(medium)"),
         ("step, every = settings.contact.distance_step", "step, every = 2 * settings.contact.distance_step"),
@@ -1471,12 +1471,12 @@ MUTANTS = {
     ],
     "studies.plasticity": [
         ("settings.strips, hardness)", "settings.strips)"),
-        ("grid.spacing * meeting.every)", "grid.spacing * 2)"),
+        ("grid.spacing * both.every)", "grid.spacing * 2)"),
         ("touching(height, curvature, settings.distance)", "touching(height, curvature, 0.9 * settings.distance)"),
         ("plastic_share(area, stress,", "plastic_share(stress, area,"),
         ("np.full(len(radius), k)", "np.full(len(radius), k // 2)"),
         ('surface_pair(surfaces, "NG", settings)', 'surface_pair(surfaces, "G", settings)'),
-        ("meeting.draw(*streams(k))", "meeting.draw(*streams(0))"),
+        ("both.draw(*streams(k))", "both.draw(*streams(0))"),
     ],
     "studies.fit": [
         ("np.flatnonzero(admissible(vectors, limit))", "np.arange(len(vectors))"),

@@ -62,7 +62,7 @@ def test_the_order_of_keys_does_not_change_a_label():
 
 
 @pytest.mark.usefixtures("files")
-def test_chunks_of_a_dataset_leave_no_trace():
+def test_chunks_of_a_dataset_are_not_listed():
     for chunk in ("0-of-2", "1-of-2"):
         storage.save(xr.Dataset(), f"contact/{chunk}.nc", "contact", {"samples": 9}, ["heights/B2.nc"])
     storage.save(xr.Dataset(), "contact/b.nc", "contact", {"samples": 9}, ["contact/0-of-2.nc", "contact/1-of-2.nc"])

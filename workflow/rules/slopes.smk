@@ -75,6 +75,6 @@ rule scan_uncertainty:
         settings=lambda w: jobs.sensitivity(plan, w.pair),
         code=code("scan_uncertainty.py"),
     message:
-        "Errors that the scans leave in the adhesion of pair {wildcards.pair}."
+        "Uncertainty of the adhesion of pair {wildcards.pair} due to finite scans."
     script:
         "../scripts/scan_uncertainty.py"

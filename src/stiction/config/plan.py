@@ -84,8 +84,8 @@ class Plan:
     @cached_property
     def surfaces(self) -> list[str]:
         """Surfaces of the pairs that run, in the order of the configuration."""
-        met = {name for pair in self.pairs for name in self.sides(pair)}
-        return [name for name in self.config["surfaces"] if name in met]
+        used = {name for pair in self.pairs for name in self.sides(pair)}
+        return [name for name in self.config["surfaces"] if name in used]
 
     @property
     def scanned(self) -> list[str]:

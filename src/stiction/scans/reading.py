@@ -37,7 +37,7 @@ _SAME_SIZE, _LONGEST_REASON = 0.01, 120
 
 @dataclass(frozen=True)
 class Source:
-    """What the configuration says of the files of a surface; every item is optional."""
+    """Settings for reading the files of a surface; every item is optional."""
 
     channel: str | None = None  #: name, or name#2 for the second of equal names
     fast_axis: str = "x"  #: axis of the file along which the microscope scans a line, x or y
@@ -47,7 +47,7 @@ class Source:
 
 @dataclass(frozen=True)
 class ScanFile:
-    """Content of a file: the scan, where it comes from, and what the user should know of it."""
+    """Content of a file: the scan, its origin, and notes on its limits."""
 
     scan: Scan
     channel: str  #: identifier of the channel that was read

@@ -1,4 +1,4 @@
-"""Datasets by what the names of their files stand for, so that no file is taken for another because of its position."""
+"""Datasets keyed by the case in their file names, so that files are never confused because of their order."""
 
 import re
 from collections.abc import Callable, Iterable
