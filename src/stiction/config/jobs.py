@@ -293,7 +293,7 @@ def _stated(plan, pair):
 
 
 def beyond_the_model(plan: Plan) -> dict:
-    """Cases of beams, and what the warnings about each device need: dimensions, strips of tips, stated properties."""
+    """Cases of beams, and the input of the warnings about each device: sizes, strips of tips, stated properties."""
     designs = Designs(plan.config)
     devices = {
         name: {"device": _device(plan, name), "materials": _stated(plan, plan.config["devices"][name]["pair"])}
@@ -369,7 +369,7 @@ def budget(plan: Plan, case: str) -> dict:
 
 
 def beyond_stoppers(plan: Plan) -> dict:
-    """What the warnings about stoppers need: their pairs and the stated properties of their materials."""
+    """Input of the warnings about stoppers: their pairs and the stated properties of their materials."""
     devices = {name: plan.config["devices"][name] for name in Designs(plan.config).stoppers}
     return {
         name: {"pair": device["pair"], "materials": _stated(plan, device["pair"])} for name, device in devices.items()
@@ -377,7 +377,7 @@ def beyond_stoppers(plan: Plan) -> dict:
 
 
 def page(plan: Plan, name: str) -> dict:
-    """Section of a device, and what its warnings need."""
+    """Section of a device, and the input of its warnings."""
     warned = beyond_the_model(plan)["devices"] | beyond_stoppers(plan)
     return {"name": name, "device": plan.config["devices"][name], "warned": {name: warned[name]}}
 

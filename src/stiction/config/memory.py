@@ -14,7 +14,7 @@ _BASE, _PER_POINT = 350, 60
 #: Number of distances at which the contact of a pair is stored, in single precision, times their step over the sum of
 #: both rms. Measured: 17 to 21 for the pairs of the paper.
 _DISTANCES = 30
-#: Memory that every job may use without asking for it [MB], and the most that a job may need.
+#: Memory that every job may use without a request [MB], and the most that a job may need.
 USUAL, LARGEST = 800, 8000
 #: Memory of an estimate from scans [bytes per point]: of the transforms, which have up to 2048 points along a side, of
 #: the map that is evaluated, of every scan. Measured: 640 MB for one scan of 1024² points, 726 MB for one of 2048².

@@ -18,7 +18,7 @@ from stiction.config.messages import ConfigError, duplicates, shown
 #: Numbers that YAML 1.1 reads in base 60 and in base 8.
 _BASE_60 = re.compile(r"[-+]?\d[\d_]*(:[0-5]?\d)+(\.[\d_]*)?")
 _BASE_8 = re.compile(r"[-+]?0[0-7_]+")
-#: What the parser says, and the likely cause.
+#: Messages of the parser and their likely causes.
 _CAUSES = {
     "'\\t' that cannot start any token": "indent with spaces, not with tabs",
     "expected a single document": "remove the line --- that starts a second document",

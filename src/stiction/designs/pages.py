@@ -1,4 +1,4 @@
-"""Pages of single devices for the report: the answer in words, tables, figures, warnings, and what the words mean."""
+"""Pages of single devices for the report: the answer in words, tables, figures, warnings and terms."""
 
 import base64
 from collections.abc import Mapping, Sequence

@@ -1,6 +1,6 @@
 """Result files of earlier runs: whether a run may use them.
 
-Snakemake compares settings only where its own record of a file exists, and never looks into a file. A dataset copied
+Snakemake compares settings only where its own record of a file exists, and never reads a file. A dataset copied
 from another run, or a table cut off by a full disk, would be used silently.
 """
 
@@ -50,7 +50,7 @@ def foreign(paths: Iterable[str | Path], expected: Callable[[str], dict[str, Any
     Yields
     ------
     tuple of str
-        File; and a clause that says what it holds, and what this run needs. Files that this run does not write are left
+        File; and a clause about its content and what this run needs. Files that this run does not write are left
         out.
     """
     for path in map(Path, paths):

@@ -1,4 +1,4 @@
-"""What stages identification and spectrum share: Eq. (7), or a table, in a dataset, and whether it can be used.
+"""Common to stages identification and spectrum: Eq. (7), or a table, in a dataset, and conditions on its use.
 
 A separate module, so that a change of the identification does not rerun published spectra.
 """
