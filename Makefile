@@ -2,7 +2,7 @@
 #   make paper      the whole paper: tables and figures in results/ (about 10 minutes)
 #   make smoke      the same with small samples (half a minute), in results/smoke/   (takes CONFIG=... too)
 #   make run CONFIG=mine.yaml    your own surfaces, pairs and beams; the file changes single keys of config.yaml
-#   make example    from drawn scans of two surfaces to crack lengths, beside the truth (3 minutes), in results/example/
+#   make example    crack lengths from drawn scans, compared with the true values (3 minutes), in results/example/
 #   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (about 10 minutes)
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)

@@ -4,12 +4,20 @@ Each number has one name, defined here; ``{{ name }}`` in ``docs/templates`` ins
 returns ``{name: text}``, without reading or writing a file (except `frame`).
 """
 
+import re
+
 import numpy as np
 import pandas as pd
 
-from stiction.report.format import with_error
+from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP
+from stiction.config.files import paper
+from stiction.devices.limits import FILMS
+from stiction.report.checks import MESH_OFF_OF_PAPER, RESOLVED
+from stiction.report.format import MISSING, TO_MJ, number, with_error
+from stiction.surface import feasible
 
-MJ = 1e3  # mJ/m² in J/m²
+#: Measured skewness and kurtosis of nearly Gaussian surfaces, as examples.
+NEARLY_GAUSSIAN = ((-0.1, 3.05), (0.05, 3.02), (-0.3, 3.5), (-0.5, 4.0))
 
 
 def numbers(tables):
@@ -23,7 +31,8 @@ def numbers(tables):
         | chaos(tables["resampling"])
     )
     found |= safe_lengths(tables["safe_lengths"]) | stoppers(tables["stoppers"]) | budget(tables["budget"])
-    return found | studies(tables["studies"]) | checks(tables["checks"])
+    found |= studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
+    return found | scans(tables["example_scans"]) | timings(tables["timings"]) | constants() | nearly_gaussian()
 
 
 def crack_lengths(table_3):
@@ -36,7 +45,7 @@ def crack_lengths(table_3):
 def crack_length(row):
     """Crack length of one row of Table III as text."""
     if np.isnan(row.crack_length_um):
-        return "all stick at the tip only" if row.share_arc == 1 else "–"
+        return "all stick at the tip only" if row.share_arc == 1 else MISSING
     share = "" if row.share_s_shape == 1 else f" ({100 * row.share_s_shape:.2g} % of beams)"
     return f"{row.crack_length_um:.0f} ± {row.crack_length_std_um:.0f}{share}"
 
@@ -56,8 +65,11 @@ def readme_table(table_3, pair="b"):
 
 
 def deviations(table_3):
-    """``published_a``: range of the deviations of model NG [%]; ``measured_rms_a``: root mean square [%]."""
-    found = {}
+    """``published_a``: range of the deviations of model NG [%]; ``measured_rms_a``: root mean square [%].
+
+    ``measured_scatter``: smallest relative standard deviation of a measured crack length [%].
+    """
+    found = {"measured_scatter": f"{100 * (table_3.experiment_std_um / table_3.experiment_um).min():.1f}"}
     for pair, rows in table_3[table_3.model == "NG"].groupby("pair"):
         off = rows.deviation_percent
         found[f"published_{pair}"] = f"{off.min():+.0f} to {off.max():+.0f}"
@@ -70,7 +82,7 @@ def energies(table_3):
     found = {}
     for row in table_3.itertuples():
         name = f"{_case(row)}_{row.model}"
-        found[f"e_{name}"] = f"{MJ * row.meso_energy_J_per_m2:.3g}"
+        found[f"e_{name}"] = f"{TO_MJ * row.meso_energy_J_per_m2:.3g}"
         found[f"cv_{name}"] = f"{100 * row.meso_energy_cv:.0f}"
         found[f"lawless_{name}"] = f"{100 * row.share_without_law:.2g}"
         found[f"lawful_{name}"] = f"{100 * (row.meso_energy_lawful_J_per_m2 / row.meso_energy_J_per_m2 - 1):.0f}"
@@ -134,8 +146,8 @@ def slopes(sensitivity):
     found = {}
     for row in sensitivity[sensitivity.statistic == "mean"].itertuples():
         name = f"{row.moment}_{_digits(row.relative_humidity)}"
-        found[f"slope_{name}"] = f"{row.slope:.2f} ± {row.slope_se:.2f}"
-        found[f"published_slope_{name}"] = "–" if np.isnan(row.published) else f"{row.published:g}"
+        found[f"slope_{name}"] = with_error(row.slope, row.slope_se)
+        found[f"published_slope_{name}"] = number(row.published, "g")
     return found
 
 
@@ -152,6 +164,55 @@ def studies(table):
 def checks(table):
     """``checks`` and ``checks_passed``: number of checks and of those that passed."""
     return {"checks": f"{len(table)}", "checks_passed": f"{int(table.passed.sum())}"}
+
+
+def mesh(checks):
+    """``mesh_off``: largest error of a crack length on uniform ground by the mesh of the paper [%]."""
+    messages = checks[checks["name"] == RESOLVED].message
+    off = [abs(float(re.search(r"([-+][\d.]+) % off", message)[1])) for message in messages]
+    return {"mesh_off": f"{max(off):.1f}", "mesh_allowed": f"{100 * MESH_OFF_OF_PAPER:g}"}
+
+
+def scans(table):
+    """Scans of the surface Etched of the example: Nyquist number, and errors over those of independent points."""
+    row = next(table[table.surface == "Etched"].itertuples())
+    independent = np.sqrt(6 / (row.points_fast * row.points_slow))
+    nyquist = np.pi * row.points_fast / row.size_fast_um
+    return {"scan_nyquist": f"{nyquist:.0f}", "scan_errors": f"{row.skewness_se / independent:.0f}"}
+
+
+def timings(table):
+    """``time_paper``: minutes and seconds, or seconds, of every row; and the ratio of both runs of the paper."""
+    seconds = dict(zip(table["name"], table.seconds, strict=True))
+    found = {f"time_{name}": _duration(value) for name, value in seconds.items()}
+    return found | {"time_ratio": f"{seconds['paper'] / seconds['paper_before']:.2f}"}
+
+
+def constants():
+    """Constants of the package and of the paper's configuration that pages state."""
+    return {
+        "longest_strip": f"{STRIP:g}",
+        "longest_element": f"{ELEMENT:g}",
+        "mesh_accuracy": f"{100 * ACCURACY:g}",
+        "films": f"{FILMS:g}",
+        "cutoff_B2": f"{paper()['surfaces']['B2']['published_psd']['cutoff_rad_per_um']:g}",
+    }
+
+
+def nearly_gaussian():
+    """``kurtosis_01``: largest at skewness ± 0.1; ``near_1``, ``near_1_off``: moments used for `NEARLY_GAUSSIAN`."""
+    errors = np.sqrt(np.diag(feasible.sampling_covariance(feasible.SAMPLE)))
+    found = {
+        f"kurtosis_{skewness:02.0f}": f"{feasible.largest_kurtosis(skewness / 10):.2f}" for skewness in (0, 1, 3, 5, 10)
+    }
+    found |= {"scan_heights": str(feasible.SAMPLE), "farthest": f"{feasible.LARGEST_DISTANCE:.2f}"}
+    found |= {f"error_of_{name}": f"{error:.2g}" for name, error in zip(("skewness", "kurtosis"), errors, strict=True)}
+    for k, measured in enumerate(NEARLY_GAUSSIAN, 1):
+        used = feasible.nearest_feasible(*measured)
+        found |= {f"near_{k}": f"{used.skewness:.3f}, {used.kurtosis:.3f}".replace("-", "−")}
+        found |= {f"near_{k}_off": f"{used.distance:.2f}"}
+        found |= {f"near_{k}_of": f"{measured[0]:g}, {measured[1]:g}".replace("-", "−")}
+    return found
 
 
 def safe_lengths(table):
@@ -195,6 +256,11 @@ def budget(table):
             quantity = entry.name.replace("'", "").replace(" ", "_")
             found[f"slope_{name}_{quantity}"] = with_error(entry.slope, entry.slope_se)
     return found
+
+
+def _duration(seconds):
+    """Seconds as ``8:02 min``, or as ``26 s`` below 100 s."""
+    return f"{seconds // 60:.0f}:{seconds % 60:02.0f} min" if seconds >= 100 else f"{seconds:g} s"
 
 
 def _case(row):

@@ -23,7 +23,16 @@ import pandas as pd
 from PIL import Image
 
 from stiction.analysis.convergence import sampling_distance
+from stiction.beam.foundation import foundation_length
+from stiction.config import jobs as settings
+from stiction.config.cases import pair_of
+from stiction.config.files import paper
+from stiction.config.plan import Plan
+from stiction.config.units import typed
 from stiction.contact import forcelaw
+from stiction.report.format import with_error
+from stiction.stages.cantilevers import Cantilevers, StripLength, cantilever
+from stiction.stages.forces import vectors
 from stiction.stages.storage import load
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "tests")]
@@ -126,9 +135,8 @@ def collect(results):
         for kind in ("csv", "md"):
             shutil.copyfile(results / "tables" / f"{name}.{kind}", DOCS / "tables" / f"{name}.{kind}")
     shutil.copyfile(results / "checks.csv", DOCS / "tables" / "checks.csv")
-    pd.DataFrame((scalars(results / "studies") | timing(results)).items(), columns=["name", "text"]).to_csv(
-        DOCS / "tables" / "studies.csv", index=False
-    )
+    found = scalars(results / "studies") | meshes(results) | timing(results)
+    pd.DataFrame(found.items(), columns=["name", "text"]).to_csv(DOCS / "tables" / "studies.csv", index=False)
     (DOCS / "tables" / "jobs.md").write_text(jobs.table(results), encoding="utf-8")
     for name, width in PICTURES.items():
         if (picture := results / "figures" / f"{name}.png").exists():
@@ -159,7 +167,7 @@ def scalars(studies):
     for path in sorted((studies / "plasticity").glob("*.nc")):
         study = load(path, "plasticity")
         share, error = 100 * float(study.plastic_share), 100 * float(study.plastic_share_error)
-        found[f"plastic_{path.stem}"] = f"{share:.2g} ± {error:.1g} %" if share > 0 else "0 %"
+        found[f"plastic_{path.stem}"] = f"{with_error(share, error)} %" if share > 0 else "0 %"
     sizes, orders, mesh, correlation = (
         load(studies / f"{name}.nc", name) for name in ("sample_sizes", "orders", "mesh", "correlation")
     )
@@ -174,6 +182,22 @@ def scalars(studies):
     for name, length in zip(correlation.surface.values, correlation.correlation_length.values, strict=True):
         found[f"correlation_{name}"] = f"{1e6 * float(length):.2f}"
     return found
+
+
+def meshes(results):
+    """Elements and strips of the beams in foundation lengths, over all cases; size of one stored sample of contact."""
+    plan, lengths = Plan(paper()), []
+    for case, model in plan.laws:
+        pair, (samples, limit) = pair_of(case), vectors(load(results / "forces" / f"{case}_{model}.nc", "forces"))
+        beam = cantilever(typed(Cantilevers, settings.cantilevers(plan, pair)), pair)
+        laws = forcelaw.coefficients(samples[forcelaw.admissible(samples, limit)], limit)
+        lengths.append(foundation_length(beam, laws))
+    strip = typed(StripLength, {"strip_length_um": plan.config["sampling"]["strip_length_um"]}).strip_length
+    found = {}
+    for name, size in (("elements", beam.element_length), ("strips", strip)):
+        found |= {f"{name}_least": f"{size / max(lengths):.2g}", f"{name}_most": f"{size / min(lengths):.2g}"}
+    contact = load(results / "contact" / f"{plan.figure_pair}_NG.nc", "contact")
+    return found | {"sample_kB": f"{4e-3 * (contact.sizes['distance'] + contact.sizes['height']):.1f}"}
 
 
 def timing(results):
@@ -223,7 +247,8 @@ def pages():
 def quoted_numbers():
     """Every number that may be quoted, by name."""
     frames = {
-        name: quoted.frame(DOCS / "tables" / f"{name}.csv") for name in (*TABLES, *DEVICE_TABLES, "studies", "checks")
+        name: quoted.frame(DOCS / "tables" / f"{name}.csv")
+        for name in (*TABLES, *DEVICE_TABLES, "example_scans", "studies", "checks", "timings")
     }
     return quoted.numbers(frames)
 

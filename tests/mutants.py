@@ -367,7 +367,7 @@ MUTANTS = {
         ("yields(stress, hardness)", "yields(stress)"),
     ],
     "stages.pairs": [
-        ("solids.composite_modulus(*met), attraction", "2 * solids.composite_modulus(*met), attraction"),
+        ("solids.composite_modulus(*both), attraction", "2 * solids.composite_modulus(*both), attraction"),
         ("settings.materials.get(side, both)", "both"),
         ("attraction(medium, constant)", "attraction(medium)"),
         ("step, every = settings.contact.distance_step", "step, every = 2 * settings.contact.distance_step"),
@@ -826,7 +826,7 @@ MUTANTS = {
         ("if not above.size:", "if False:"),
     ],
     "config.memory": [
-        ("_PER_POINT * (1e3 * length_um / spacing_nm)", "_PER_POINT * (1e3 * length_um)"),
+        ("(NM_PER_UM * length_um / spacing_nm)", "(NM_PER_UM * length_um)"),
         ('config["beam"]["width_um"] + sampling["margin_um"]', 'config["beam"]["width_um"]'),
         ("return max(USUAL, round(max(needed)))", "return min(USUAL, round(max(needed)))"),
         ("for spacing in spacings]", "for spacing in spacings[:1]]"),
@@ -972,7 +972,6 @@ MUTANTS = {
         ("START * min(arrest_length(energy, beam), beam.length)", "arrest_length(energy, beam)"),
     ],
     "beam.energy": [
-        ("6 * beam.bending_stiffness", "3 * beam.bending_stiffness"),
         ("return 1.5 * beam.young_modulus", "return 3 * beam.young_modulus"),
         ("beam.thickness**3 / crack_length**4", "beam.thickness**3 / crack_length**3"),
         ("CRACK_LENGTH_POWER = -1 / 4", "CRACK_LENGTH_POWER = -1 / 5"),
@@ -1342,7 +1341,7 @@ MUTANTS = {
             "summits.mean_summit_radius, 2 * summits.summit_density",
         ),
         ('patches(), patches("control"))', "patches(), patches())"),
-        ('"identification", surface, *address)', '"identification", *address)'),
+        ('"identification", surface, *part, k)', '"identification", *part, k)'),
         ("parameters.refuse_long_correlation(surface, found.spectrum", "(surface, found.spectrum"),
         ("StripGrid(patch, patch, settings.spacing,", "StripGrid(patch, patch, settings.target_spacing,"),
     ],
@@ -1472,12 +1471,12 @@ MUTANTS = {
     ],
     "studies.plasticity": [
         ("settings.strips, hardness)", "settings.strips)"),
-        ("grid.spacing * meeting.every)", "grid.spacing * 2)"),
+        ("grid.spacing * both.every)", "grid.spacing * 2)"),
         ("touching(height, curvature, settings.distance)", "touching(height, curvature, 0.9 * settings.distance)"),
         ("plastic_share(area, stress,", "plastic_share(stress, area,"),
         ("np.full(len(radius), k)", "np.full(len(radius), k // 2)"),
         ('surface_pair(surfaces, "NG", settings)', 'surface_pair(surfaces, "G", settings)'),
-        ("meeting.draw(*streams(k))", "meeting.draw(*streams(0))"),
+        ("both.draw(*streams(k))", "both.draw(*streams(0))"),
     ],
     "studies.fit": [
         ("np.flatnonzero(admissible(vectors, limit))", "np.arange(len(vectors))"),

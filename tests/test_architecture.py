@@ -19,6 +19,7 @@ devices: arcs bridges tail risk stoppers chart budget limits
 run: fingerprint logs folder atomic labels kept remembered provenance warmup forkserver hooks
 scans: reading
 config: units cases merging messages reading measured memory relations designs relations_devices files plan jobs
+config: paths
 stages: storage named heights parameters identification spectrum surfaces character pairs contact curves forces chaos
 stages: cantilevers releases beams
 measured: scan estimate heights spectrum choices

@@ -8,11 +8,14 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import pandas as pd
 import pytest
 import yaml
 from PIL import Image
 
 import stiction
+from stiction.report.checks import RESOLVED
+from stiction.surface.feasible import nearest_feasible
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -83,6 +86,34 @@ def test_tables_and_pictures_of_the_example_are_copied(tmp_path, monkeypatch):
     pictures = {"surface_sheet_Etched.png", "prediction.png"}
     assert made == {path.name for path in (DOCS / "tables").glob("example_*")} | pictures
     assert (tmp_path / "docs" / "tables" / "example_scans.md").read_text() == "results/tables/scans md"
+
+
+def test_numbers_of_checks_scans_and_timings_are_those_of_their_tables():
+    checks = pd.DataFrame(
+        {
+            "name": [RESOLVED, RESOLVED, "another"],
+            "message": ["crack is 9 µm, -1.38 % off that on", "is 7 µm, +0.41 % off that on a finer mesh", "-9 % off"],
+        }
+    )
+    assert quoted.mesh(checks)["mesh_off"] == "1.4"
+    row = {"surface": "Etched", "points_fast": 100, "points_slow": 600, "size_fast_um": 2.0, "skewness_se": 0.05}
+    assert quoted.scans(pd.DataFrame([row])) == {"scan_nyquist": "157", "scan_errors": "5"}
+    timings = quoted.timings(pd.DataFrame({"name": ["paper", "paper_before", "fork"], "seconds": [245, 490, 0.02]}))
+    assert timings == {
+        "time_paper": "4:05 min",
+        "time_paper_before": "8:10 min",
+        "time_fork": "0.02 s",
+        "time_ratio": "0.50",
+    }
+
+
+def test_nearest_feasible_moments_are_those_that_the_heights_get():
+    found = quoted.nearly_gaussian()
+    for k, measured in enumerate(quoted.NEARLY_GAUSSIAN, 1):
+        used = nearest_feasible(*measured)
+        assert [float(text.replace("−", "-")) for text in found[f"near_{k}"].split(", ")] == pytest.approx(
+            used[:2], abs=5e-4
+        )
 
 
 def test_markers_are_needed_once_each():
@@ -184,6 +215,16 @@ def test_yaml_examples_are_configurations_that_can_run(tmp_path):
         path = tmp_path / "mine.yaml"
         path.write_text(block, encoding="utf-8")
         assert stiction.load(path)["run"]["pairs"] == ["mine"]
+
+
+def test_every_rule_on_the_page_of_results_can_be_computed_by_its_name(tmp_path):
+    table = (DOCS / "results.md").read_text(encoding="utf-8").partition("| item | rule |")[2].partition("\n\n")[0]
+    named = {name for row in table.splitlines()[2:] for name in re.findall(r"`(\w+)`", row.split("|")[2])}
+    words = ["--snakefile", ROOT / "Snakefile", "--directory", tmp_path, "--list-target-rules"]
+    listed = subprocess.run([sys.executable, "-m", "snakemake", *words], capture_output=True, text=True, check=True)
+    targets = set(listed.stdout.split())
+    assert {"table_1", "figure_19", "verdict"} <= named <= targets
+    assert "identification" not in targets, "a rule with wildcards"
 
 
 def test_citation_changelog_and_package_name_the_same_version():

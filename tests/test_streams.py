@@ -1,3 +1,7 @@
+import ast
+from itertools import combinations
+from pathlib import Path
+
 import numpy as np
 import pytest
 from standard_errors import ALLOWED
@@ -59,3 +63,70 @@ def test_numpy_integer_is_the_same_address():
 def test_a_float_is_not_a_valid_address():
     with pytest.raises(TypeError, match="float"):
         stream(1, "humidity", 0.45)
+
+
+# Addresses spelled in the package
+
+PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
+
+
+def spelled(path):
+    """Addresses of the streams that a module makes, without the seed, and the number of its uses of `stream`.
+
+    A part is a text or number, ``None`` for a variable, or ``...`` for any number of further parts.
+    """
+    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+    if not any(isinstance(node, ast.ImportFrom) and node.module == "stiction.streams" for node in nodes):
+        return [], 0
+    calls = [node for node in nodes if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)]
+    direct = [call.args[1:] for call in calls if call.func.id == "stream"]
+    partial = [call.args[2:] for call in calls if call.func.id == "partial" and ast.unparse(call.args[0]) == "stream"]
+    found = [tuple(map(_part, parts)) for parts in direct] + [(*map(_part, parts), ...) for parts in partial]
+    return found, sum(isinstance(node, ast.Name) and node.id == "stream" for node in nodes)
+
+
+def _part(node):
+    """One part of an address."""
+    if isinstance(node, ast.Starred):
+        return ...
+    return node.value if isinstance(node, ast.Constant) else None
+
+
+def may_be_equal(one, other):
+    """Whether two addresses are equal for some values of their variables."""
+    if one[:1] == (...,):
+        return any(may_be_equal(one[1:], other[k:]) for k in range(len(other) + 1))
+    if other[:1] == (...,):
+        return may_be_equal(other, one)
+    if not (one and other):
+        return one == other
+    return (None in (one[0], other[0]) or one[0] == other[0]) and may_be_equal(one[1:], other[1:])
+
+
+def test_no_two_places_of_the_package_make_streams_of_the_same_address():
+    found = [(path.stem, address) for path in sorted(PACKAGE.rglob("*.py")) for address in spelled(path)[0] if address]
+    assert len(found) >= 15
+    for (module, one), (other_module, other) in combinations(found, 2):
+        assert not may_be_equal(one, other), f"{one} of {module} may be {other} of {other_module}"
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: path.stem)
+def test_every_use_of_a_stream_spells_its_address(path):
+    found, uses = spelled(path)
+    assert len(found) == uses
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "equal"),
+    [
+        (("character", None, None), ("character", None, "field", None), False),
+        (("beams", None, ...), ("beams", None, "mesh"), True),
+        (("identification", None, ..., None), ("identification", None, "control", None), True),
+        (("identification", None, ..., None), ("identification", None), False),
+        (("chaos", None, None), ("rejection", None, None), False),
+        (("estimate", None), ("estimate", "B2"), True),
+        ((...,), (), True),
+    ],
+)
+def test_addresses_that_may_be_equal_are_found(one, other, equal):
+    assert may_be_equal(one, other) == may_be_equal(other, one) == equal

@@ -98,6 +98,18 @@ def test_a_spectrum_that_is_to_be_identified_is_identified_first():
     assert_array_equal(pair.beam.underlying.density, expected.underlying)
 
 
+@pytest.mark.parametrize(
+    "extreme",
+    [{"solid": {"poisson_ratio": -0.99}}, {"surfaces": {"B2": {"rms_nm": 30}}}, {"pairs": {"b": {"gap_um": 0.318}}}],
+    ids=["stiffest solid", "rough surface", "small gap"],
+)
+def test_what_a_valid_configuration_allows_can_be_computed(extreme):
+    found = PairStudy.of(load(CONFIG, extreme, {"contact": {"samples": 20}, "chaos": {"order": 2}}), "b")
+    assert np.all(found.energies(HUMIDITY) > 0)
+    lengths = found.beams(HUMIDITY)["crack_length"]
+    assert np.all((lengths > 0) & (lengths <= found.beam.length))
+
+
 def test_an_undefined_pair_is_reported_by_name():
     with pytest.raises(ValueError, match="there is no pair nope; the configuration has a, b, c"):
         PairStudy.of(CONFIG, "nope")

@@ -1,4 +1,4 @@
-"""Crack lengths predicted from the drawn scans beside those of the true surfaces: ``python compare.py FOLDER``.
+"""Crack lengths predicted from the drawn scans compared with those of the true surfaces: ``python compare.py FOLDER``.
 
 Reads Table III of a run in the folder, and writes ``prediction.csv``, ``prediction.md`` and ``prediction.png``.
 """
@@ -58,7 +58,9 @@ def written(found):
         }
         for row in found.itertuples()
     ]
-    caption = "Crack length predicted from scans, ± standard error by the scans and by the simulation, and the truth."
+    caption = (
+        "Crack length predicted from scans, ± standard error by the scans and by the simulation, and its true value."
+    )
     return Table(found, caption, pd.DataFrame(rows))
 
 

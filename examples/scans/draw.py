@@ -1,4 +1,4 @@
-"""Draw scans of two surfaces whose truth is known, and write them as a microscope would: ``python draw.py FOLDER``.
+"""Draw scans of two known surfaces, and write them as files of two microscopes: ``python draw.py FOLDER``.
 
 The surfaces are B2 and Sub1 of the paper; every map is tilted, as a sample under a microscope is.
 """
@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 
 import stiction
+from stiction.config.units import typed
+from stiction.stages.heights import Settings as Moments
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore", ImportWarning)  # of NuMPI, without mpi4py
@@ -54,13 +56,12 @@ def main(folder, scans=SCANS):
 
 def rough_surface(entry, side):
     """Square of a surface from its section of the configuration."""
-    psd = {key.partition("_")[0]: value for key, value in entry["published_psd"].items()}
-    lengths = {name: 1e-36 * psd[name] for name in ("plateau", "floor")}
-    spectrum = stiction.CutoffSelfAffine(**lengths, **{name: 1e6 * psd[name] for name in ("corner", "cutoff")})
-    translation = stiction.Translation(stiction.maximum_entropy(entry["skewness"], entry["kurtosis"]))
+    spectrum = typed(stiction.CutoffSelfAffine, entry["published_psd"])
+    moments = typed(Moments, {key: entry[key] for key in ("rms_nm", "skewness", "kurtosis")})
+    translation = stiction.Translation(stiction.maximum_entropy(moments.skewness, moments.kurtosis))
     underlying, _ = stiction.underlying_spectrum(spectrum, translation, SPACING)
     grid = stiction.StripGrid(side, side, SPACING, margin=1e-6)
-    return stiction.RoughSurface(underlying, translation, 1e-9 * entry["rms_nm"], grid)
+    return stiction.RoughSurface(underlying, translation, moments.rms, grid)
 
 
 def write(path, heights, surface):

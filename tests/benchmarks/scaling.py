@@ -167,9 +167,9 @@ def draw(measured, path):
         drawn, ((left, right),) = panels(1, 2, (DOUBLE, 2.9))
         for k, (name, points) in enumerate(curves.items()):
             size, seconds, megabytes = np.array(points).T
-            look = {"marker": marker(k), "linestyle": dashes(k), "label": name}
-            left.loglog(size / size[0], seconds / seconds[0], **look)
-            right.loglog(size / size[0], megabytes, **look)
+            style = {"marker": marker(k), "linestyle": dashes(k), "label": name}
+            left.loglog(size / size[0], seconds / seconds[0], **style)
+            right.loglog(size / size[0], megabytes, **style)
         factor = np.array([1, 20])
         left.loglog(factor, factor, color="0.6", linewidth=0.8, label="proportional")
         left.set(xlabel="size / smallest size", ylabel="time / time of the smallest")

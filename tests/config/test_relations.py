@@ -59,6 +59,8 @@ def test_a_violated_relation_is_rejected_in_one_line_with_key_value_and_what_is_
         "beam: {length_um: 21, width_um: 20.98, elements: 7}",
         "pairs: {a: {humidities: [0.001, 0.998, 0.5]}}",
         "pairs: {b: {gap_um: 0.318}}",
+        "solid: {poisson_ratio: -0.99}",
+        "surfaces: {B2: {rms_nm: 30}}",
         "pairs: {c: {gap_um: 0.01}}\nrun: {pairs: [a, b]}",
         "figures: {humidity: 0.9902}\nrun: {pairs: [a, b]}",
         "beam: {thickness_um: 1.5}",

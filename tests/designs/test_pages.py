@@ -80,7 +80,7 @@ def test_the_page_of_a_beam_says_which_lengths_come_free():
 
 def test_a_beam_without_chart_and_budget_has_neither():
     plain = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, []).html
-    assert "How sure" not in plain
+    assert "Uncertainty, and" not in plain
     assert "Other thicknesses" not in plain
     assert plain.count("<img") == 1
     budgets = {0.44: budget_dataset(2.0), 0.67: budget_dataset()}

@@ -1,6 +1,8 @@
 """Files of earlier runs: those of other settings and damaged ones are recognised, all others are not."""
 
 import json
+import re
+from types import SimpleNamespace
 
 import netCDF4
 import pytest
@@ -28,6 +30,26 @@ def reasons(wanted, **changed):
     return dict(kept.foreign(["heights/B2.nc", "spectrum/B2.nc"], (wanted | changed).get))
 
 
+def rule(pattern, settings):
+    """A rule with one output, as Snakemake describes it."""
+    return SimpleNamespace(output=[re.compile(pattern)], params=SimpleNamespace(settings=settings))
+
+
+def test_settings_of_a_file_are_those_of_the_rule_that_writes_it():
+    moments = {"B1": {"rms_nm": 1.7}, "B2": {"rms_nm": 3.4}}
+    target = SimpleNamespace(output=[], params=None)
+    rules = [
+        target,
+        rule(r"heights/(?P<surface>\w+)\.nc$", lambda wildcards: moments[wildcards.surface]),
+        rule(r"orders\.nc$", {"draws": 5}),
+        rule(r"heights/\w+\.nc$", {"never": "reached"}),
+    ]
+    assert kept.settings("heights/B2.nc", rules) == {"rms_nm": 3.4}
+    assert kept.settings("orders.nc", rules) == {"draws": 5}
+    assert kept.settings("heights/Unknown.nc", rules) is None, "no surface of this configuration"
+    assert kept.settings("beams/b.nc", rules) is None, "no rule writes it"
+
+
 def test_a_dataset_names_the_settings_of_all_stages_before(files):
     storage.save(xr.Dataset(), "contact/b_NG.nc", "contact", {"samples": 9}, ["spectrum/B2.nc"])
     assert labels.read("contact/b_NG.nc").before == files
@@ -40,7 +62,7 @@ def test_the_order_of_keys_does_not_change_a_label():
 
 
 @pytest.mark.usefixtures("files")
-def test_chunks_of_a_dataset_leave_no_trace():
+def test_chunks_of_a_dataset_are_not_listed():
     for chunk in ("0-of-2", "1-of-2"):
         storage.save(xr.Dataset(), f"contact/{chunk}.nc", "contact", {"samples": 9}, ["heights/B2.nc"])
     storage.save(xr.Dataset(), "contact/b.nc", "contact", {"samples": 9}, ["contact/0-of-2.nc", "contact/1-of-2.nc"])

@@ -29,21 +29,41 @@ def test_an_invalid_record_is_reported_and_kept(tmp_path, text):
     assert path.read_text() == text
 
 
-def test_git_state_is_the_commit_and_whether_files_differ_from_it(tmp_path):
-    def git(*command):
-        identity = ["-c", "user.name=A", "-c", "user.email=a@b"]
-        subprocess.run(["git", "-C", tmp_path, *identity, *command], check=True, capture_output=True)
+@pytest.fixture
+def checkout(tmp_path):
+    """Checkout with one commit, and a function that runs git in it."""
 
-    assert provenance.git_state(tmp_path) is None
+    def git(*command):
+        identity = ["-c", "user.name=A", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"]
+        return subprocess.run(["git", "-C", tmp_path, *identity, *command], capture_output=True, text=True)
+
     git("init")
     (tmp_path / "law").write_text("1")
     git("add", "law")
-    git("-c", "commit.gpgsign=false", "commit", "-m", "law", "--no-verify")
-    clean = provenance.git_state(tmp_path)
+    git("commit", "-m", "law", "--no-verify")
+    return tmp_path, git
+
+
+def test_git_state_is_the_commit_and_whether_files_differ_from_it(checkout, tmp_path_factory):
+    folder, _ = checkout
+    clean = provenance.git_state(folder)
     assert len(clean["commit"]) == 40
     assert not clean["changed"]
-    (tmp_path / "law").write_text("2")
-    assert provenance.git_state(tmp_path) == clean | {"changed": True}
+    (folder / "law").write_text("2")
+    assert provenance.git_state(folder) == clean | {"changed": True}
+    assert provenance.git_state(tmp_path_factory.mktemp("bare")) is None
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can give a checkout to another user")
+def test_the_state_of_a_checkout_of_another_user_is_recorded(checkout, monkeypatch):
+    folder, git = checkout
+    for name in ("GIT_CONFIG_GLOBAL", "GIT_CONFIG_SYSTEM"):
+        monkeypatch.setenv(name, os.devnull)  # no exceptions of this machine
+    before = provenance.git_state(folder)
+    for path in (folder, *folder.rglob("*")):
+        os.chown(path, 65534, 65534)
+    assert "dubious ownership" in git("rev-parse", "HEAD").stderr
+    assert provenance.git_state(folder) == before is not None
 
 
 def test_a_library_that_is_not_installed_is_recorded_as_none(tmp_path, monkeypatch):

@@ -109,6 +109,22 @@ def test_datasets_are_keyed_by_the_names_of_their_files(tmp_path):
     assert [found.attrs["name"] for found in storage.load_all(reversed(paths), "forces")] == ["b_rh067_NG", "a_rh060_G"]
 
 
+def test_surfaces_are_loaded_in_the_order_of_their_files_each_with_its_spectrum(tmp_path):
+    for stage in ("heights", "spectrum"):
+        for name in ("Sub1", "B2"):
+            storage.save(dataset(), tmp_path / stage / f"{name}.nc", stage, {})
+    heights, spectra = (
+        [tmp_path / stage / f"{name}.nc" for name in ("B2", "Sub1")] for stage in ("heights", "spectrum")
+    )
+    found = storage.load_surfaces(heights, spectra)
+    assert [tuple((d.attrs["stage"], d.attrs["name"]) for d in surface) for surface in found] == [
+        (("heights", "B2"), ("spectrum", "B2")),
+        (("heights", "Sub1"), ("spectrum", "Sub1")),
+    ]
+    with pytest.raises(ValueError, match="shorter"):
+        storage.load_surfaces(heights, spectra[:1])
+
+
 def test_a_file_is_replaced_and_never_overwritten_while_it_is_read(tmp_path):
     path = tmp_path / "x.txt"
     atomic.save_text("old", path)

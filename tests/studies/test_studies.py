@@ -184,9 +184,9 @@ def test_stress_of_every_touching_summit_is_that_of_eq_14():
     modulus = reduced_modulus(164e9, 0.23)
     stress = 2 / np.pi * modulus * np.sqrt(found.interference / found.radius)
     assert_allclose(found.stress, stress, rtol=1e-5)
-    meeting = surface_pair(small.surfaces(), "NG", settings)
+    both = surface_pair(small.surfaces(), "NG", settings)
     for k in (0, 3):
-        height, curvature, _ = find_summits(meeting.draw(*streams_of_sides(small.SEED, "b")(k)), 10e-9)
+        height, curvature, _ = find_summits(both.draw(*streams_of_sides(small.SEED, "b")(k)), 10e-9)
         touching, ours = height > 5.7e-9, found.strip == k
         assert_allclose(found.interference[ours], height[touching] - 5.7e-9, rtol=1e-5)
         assert_allclose(found.radius[ours], 1 / curvature[touching], rtol=1e-5)

@@ -1,12 +1,12 @@
-"""Definitions shared by all rules: validated configuration and plan, code of a job, names of files."""
+"""Definitions shared by all rules: validated configuration and plan, code of a job, files of tables and figures."""
 
 from functools import cache
-from types import SimpleNamespace
 
 from snakemake.logging import logger
 
 from stiction.config import cases, files, jobs, measured, memory, messages
 from stiction.config.designs import Designs
+from stiction.config.paths import Paths, one_of, titled
 from stiction.config.plan import Plan
 from stiction.models import BEAM_MODELS, CHOICES, OF_MEASURED, OF_MOMENTS, OF_SPECTRUM, SURFACE_MODELS, surface_model
 from stiction.run import folder, hooks, kept, provenance
@@ -74,6 +74,7 @@ if not scanned:  # finding out takes the solver of densities
     shifted = ["shifted", config, code(BASE / "src" / "stiction" / "config" / "plan.py")]
     vars(plan)["shifted_moments"] = remember(shifted, lambda: plan.shifted_moments)
 designs = Designs(config)
+paths = Paths(plan)
 MEMORY = memory.of_job(config)  # of the jobs that draw surfaces [MB]
 SAMPLES = memory.of_samples(measured.view(config, preliminary))  # of the jobs that hold the contact of all samples [MB]
 STYLE = str(BASE / "src" / "stiction" / "report" / "stiction.mplstyle")
@@ -86,14 +87,7 @@ ON_DEVICES = "Devices"
 @cache
 def settings_of(path):
     """Settings of the job that writes a dataset; ``None`` if this configuration has no such job."""
-    for written_by in workflow.rules:
-        if found := next(filter(None, (output.match(path) for output in written_by.output)), None):
-            settings = written_by.params.settings
-            try:
-                return settings(SimpleNamespace(**found.groupdict())) if callable(settings) else settings
-            except KeyError:  # of a surface, pair or variant that this configuration does not contain
-                return None
-    return None
+    return kept.settings(path, workflow.rules)
 
 
 @cache
@@ -112,60 +106,14 @@ def planned(wildcards):
     return []
 
 
-def one_of(names):
-    """Pattern of a wildcard that is one of some names; matches nothing without names."""
-    return "|".join(sorted(names)) or "(?!)"
-
-
-def path_of_scan(surface, number):
-    """File of a scan, relative to the working directory, so that a moved folder changes nothing."""
-    return os.path.relpath(plan.scan_files(surface)[number])
-
-
-def identified(wildcards):
-    """Dataset of the identification if the spectrum is identified, otherwise nothing."""
-    source = config["surfaces"][wildcards.surface]["psd"]
-    return "results/identification/{surface}.nc" if source == "identified" else []
-
-
 def surfaces_of_pair(wildcards):
     """Datasets of the surfaces of beam and substrate, in this order."""
-    return datasets_of(plan.sides(wildcards.pair))
-
-
-def measured_surfaces_of_pair(wildcards):
-    """Datasets of those surfaces of beam and substrate that are described by scans."""
-    return datasets_of([name for name in plan.scanned if name in plan.sides(wildcards.pair)])
-
-
-def datasets_of(surfaces):
-    """Datasets from which surfaces are drawn, by stage."""
-    return {
-        stage: expand("results/{stage}/{surface}.nc", stage=stage, surface=surfaces)
-        for stage in ("heights", "spectrum")
-    }
-
-
-def contacts_of_slopes(wildcards):
-    """Contact with less and with more of every quantity of a surface."""
-    name = "results/studies/slopes/contact/{pair}_{surface}_{quantity}_{side}.nc"
-    quantities = plan.quantities(wildcards.surface)
-    return {side: expand(name, **wildcards, quantity=quantities, side=side) for side in ("less", "more")}
-
-
-def of_case(stage):
-    """Dataset of a stage independent of humidity, for the pair of a case."""
-    return lambda w: f"results/{stage}/{cases.pair_of(w.case)}_{w.model}.nc"
+    return paths.surfaces(wildcards.pair)
 
 
 def published(table):
     """File of published values."""
     return str(BASE / "workflow" / "resources" / f"{table}.csv")
-
-
-def titled(name, shows):
-    """Title of a result in the report, such as ``Figure 5: a force curve``."""
-    return f"{name.replace('_0', ' ').replace('_', ' ').capitalize()}: {shows}"
 
 
 def table_files(name, shows):

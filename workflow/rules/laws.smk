@@ -3,7 +3,7 @@
 
 rule forces:
     input:
-        contact=of_case("contact"),
+        contact=lambda w: paths.contact(w.case, w.model),
     output:
         "results/forces/{case}_{model}.nc",
     log:
@@ -39,7 +39,7 @@ rule chaos:
 
 rule fit:
     input:
-        contact=of_case("contact"),
+        contact=lambda w: paths.contact(w.case, w.model),
         forces="results/forces/{case}_{model}.nc",
     output:
         "results/fit/{case}_{model}.nc",

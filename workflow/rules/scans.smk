@@ -5,7 +5,7 @@ rule scan:
     input:
         planned,
         # The content of the file is among the settings; its time does not matter.
-        file=lambda w: ancient(path_of_scan(w.surface, w.number)),
+        file=lambda w: ancient(paths.scan(w.surface, w.number)),
     output:
         "results/scan/{surface}_{number}.nc",
     log:

@@ -21,7 +21,7 @@ rule slope_contact:
 
 rule slopes:
     input:
-        unpack(contacts_of_slopes),
+        unpack(lambda w: paths.shifted_contacts(w.pair, w.surface)),
     output:
         "results/studies/slopes/{pair}_{surface}.nc",
     log:
@@ -42,7 +42,7 @@ rule slopes:
 rule choice_contact:
     input:
         unpack(surfaces_of_pair),
-        estimates=lambda w: expand("results/estimate/{surface}.nc", surface=plan.scanned_sides(w.pair)),
+        estimates=lambda w: paths.estimates(w.pair),
     output:
         "results/studies/choices/{pair}_{choice}.nc",
     log:
@@ -63,7 +63,7 @@ rule scan_uncertainty:
         slopes=lambda w: expand(
             "results/studies/slopes/{pair}_{surface}.nc", pair=w.pair, surface=plan.scanned_sides(w.pair)
         ),
-        estimates=lambda w: expand("results/estimate/{surface}.nc", surface=plan.scanned_sides(w.pair)),
+        estimates=lambda w: paths.estimates(w.pair),
         base="results/contact/{pair}_NG.nc",
         choices=expand("results/studies/choices/{{pair}}_{choice}.nc", choice=CHOICES),
     output:
@@ -75,6 +75,6 @@ rule scan_uncertainty:
         settings=lambda w: jobs.sensitivity(plan, w.pair),
         code=code("scan_uncertainty.py"),
     message:
-        "Errors that the scans leave in the adhesion of pair {wildcards.pair}."
+        "Uncertainty of the adhesion of pair {wildcards.pair} due to finite scans."
     script:
         "../scripts/scan_uncertainty.py"

@@ -131,7 +131,7 @@ rule correlation:
 
 rule variant_summits:
     input:
-        unpack(measured_surfaces_of_pair),
+        unpack(lambda w: paths.measured_surfaces(w.pair)),
         identifications=lambda w: expand(
             "results/identification/{surface}.nc", surface=plan.variant_summits(w.pair, w.variant)["identified"]
         ),
@@ -153,7 +153,7 @@ rule variant_summits:
 
 rule variant_contact:
     input:
-        summits=lambda w: f"results/studies/variants/summits/{w.pair}_{plan.summits_under(w.pair, w.variant)}.nc",
+        summits=lambda w: paths.summits_of_variant(w.pair, w.variant),
     output:
         "results/studies/variants/contact/{pair}_{variant}.nc",
     log:
@@ -170,7 +170,7 @@ rule variant_contact:
 
 rule variant:
     input:
-        contact=lambda w: f"results/studies/variants/contact/{cases.pair_of(w.case)}_{plan.contact_under(w.variant)}.nc",
+        contact=lambda w: paths.contact_of_variant(w.case, w.variant),
     output:
         "results/studies/variants/{case}_{variant}.nc",
     log:

@@ -41,7 +41,7 @@ rule identification:
 rule spectrum:
     input:
         heights="results/heights/{surface}.nc",
-        identification=identified,
+        identification=lambda w: paths.identification(w.surface),
     output:
         "results/spectrum/{surface}.nc",
     log:

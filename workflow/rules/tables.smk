@@ -82,7 +82,7 @@ rule table_scan_uncertainty:
     input:
         studies=expand("results/studies/scan_uncertainty/{pair}.nc", pair=plan.scanned_pairs),
     output:
-        **table_files("scan_uncertainty", "errors that the scans leave"),
+        **table_files("scan_uncertainty", "uncertainty due to finite scans"),
     log:
         "results/logs/tables/scan_uncertainty.log",
     localrule: True
@@ -90,7 +90,7 @@ rule table_scan_uncertainty:
         settings={"pairs": plan.scanned_pairs},
         code=code("table_scan_uncertainty.py"),
     message:
-        "Errors that the scans leave in the adhesion energy."
+        "Uncertainty of the adhesion energy due to finite scans."
     script:
         "../scripts/table_scan_uncertainty.py"
 

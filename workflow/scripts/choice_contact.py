@@ -9,7 +9,7 @@ from stiction.stages.named import load_named
 
 def main(job):
     """Evaluate the estimates otherwise and draw samples with the random numbers of the pair."""
-    surfaces = list(zip(*(storage.load_all(job.input[stage], stage) for stage in ("heights", "spectrum")), strict=True))
+    surfaces = storage.load_surfaces(job.input.heights, job.input.spectrum)
     estimates = load_named(job.input.estimates, "estimate")
     at, wanted = job.wildcards, typed(choices.Settings, job.params.settings)
     dataset = choices.compute(surfaces, estimates, at.pair, at.choice, wanted)

@@ -7,7 +7,7 @@ from stiction.stages import contact, storage
 
 def main(job):
     """Draw surface pairs and compute their solid pressure and bearing area."""
-    surfaces = list(zip(*(storage.load_all(job.input[stage], stage) for stage in ("heights", "spectrum")), strict=True))
+    surfaces = storage.load_surfaces(job.input.heights, job.input.spectrum)
     wanted = typed(contact.Settings, job.params.settings)
     samples = contact.chunk(wanted.contact.samples, int(job.wildcards.chunk), int(job.wildcards.number))
     dataset = contact.compute(surfaces, job.wildcards.pair, job.wildcards.model, wanted, samples)

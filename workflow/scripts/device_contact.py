@@ -7,7 +7,7 @@ from stiction.stages import contact, storage
 
 def main(job):
     """Draw surface pairs and compute their solid pressure and bearing area."""
-    surfaces = list(zip(*(storage.load_all(job.input[stage], stage) for stage in ("heights", "spectrum")), strict=True))
+    surfaces = storage.load_surfaces(job.input.heights, job.input.spectrum)
     dataset = contact.compute(surfaces, job.wildcards.pair, "NG", typed(contact.Settings, job.params.settings))
     storage.save(dataset, job.output[0], "contact", job.params.settings, job.input)
 

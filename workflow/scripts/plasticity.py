@@ -8,7 +8,7 @@ from stiction.studies import plasticity
 
 def main(job):
     """Find the touching summits of all strips and the share of their area that yields."""
-    surfaces = list(zip(*(storage.load_all(job.input[stage], stage) for stage in ("heights", "spectrum")), strict=True))
+    surfaces = storage.load_surfaces(job.input.heights, job.input.spectrum)
     dataset = plasticity.compute(surfaces, job.wildcards.pair, typed(plasticity.Settings, job.params.settings))
     storage.save(dataset, job.output[0], "plasticity", job.params.settings, job.input)
 

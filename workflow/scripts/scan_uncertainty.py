@@ -1,4 +1,4 @@
-"""Errors that the scans of measured surfaces leave in the adhesion energy of a pair."""
+"""Uncertainty of the adhesion energy of a pair due to finite scans of measured surfaces."""
 
 from stiction.config.units import typed
 from stiction.run.logs import logged

@@ -8,7 +8,7 @@ from stiction.studies import sensitivity_contact
 
 def main(job):
     """Draw samples with the same random numbers for all values of the moments."""
-    surfaces = list(zip(*(storage.load_all(job.input[stage], stage) for stage in ("heights", "spectrum")), strict=True))
+    surfaces = storage.load_surfaces(job.input.heights, job.input.spectrum)
     wanted = typed(sensitivity_contact.Settings, job.params.settings)
     contacts = sensitivity_contact.compute(surfaces, job.wildcards.pair, wanted)
     for dataset, path in zip(contacts, job.output, strict=True):

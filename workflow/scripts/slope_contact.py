@@ -8,7 +8,7 @@ from stiction.studies import slope_contact
 
 def main(job):
     """Draw samples with the same random numbers for all values of the quantities."""
-    surfaces = list(zip(*(storage.load_all(job.input[stage], stage) for stage in ("heights", "spectrum")), strict=True))
+    surfaces = storage.load_surfaces(job.input.heights, job.input.spectrum)
     wanted = typed(slope_contact.Settings, job.params.settings)
     at = job.wildcards
     contacts = slope_contact.compute(surfaces, at.pair, at.surface, at.quantity, wanted)

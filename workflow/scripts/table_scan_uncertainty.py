@@ -1,4 +1,4 @@
-"""Errors that the scans of measured surfaces leave in the adhesion energy."""
+"""Uncertainty of the adhesion energy due to finite scans of measured surfaces."""
 
 from stiction.measured.tables_scans import scan_uncertainty
 from stiction.report.tables import save

@@ -1,1 +1,1 @@
-"""Formulas of what the paper shows beside its main result: sensitivity, validity, convergence (App. A–C)."""
+"""Formulas of the paper's additional studies: sensitivity, validity, convergence (App. A–C)."""

@@ -44,7 +44,7 @@ def arrest_on_uniform_ground(beam: Beam, law: np.ndarray, points: int) -> Arrest
 
 
 def finer_mesh(beam: Beam, law: np.ndarray, points: int) -> tuple[Beam, int]:
-    """Beam and number of points of a mesh that is at least twice as fine, and twice as fine as the law calls for.
+    """Beam and number of points of a mesh that is at least twice as fine, and twice as fine as the law requires.
 
     Elements are then wrong by an eighth, points by a quarter: ``tests/beam/test_release.py``.
     """

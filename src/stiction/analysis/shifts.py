@@ -20,7 +20,7 @@ from scipy.special import eval_hermitenorm
 from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import largest_kurtosis
-from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
+from stiction.surface.spectrum import CutoffSelfAffine, Spectrum
 
 #: Orders k of the modes. ASSUME: higher ones change only heights beyond those that touch or that a scan determines.
 ORDERS = [int(name.removeprefix("mode")) for name in OF_MEASURED[1:]]
@@ -36,7 +36,7 @@ class Description:
     rms: float  #: [m]
     skewness: float  #: [-]
     kurtosis: float  #: [-]
-    spectrum: CutoffSelfAffine | TabulatedSpectrum  #: of the heights, used up to a factor
+    spectrum: Spectrum  #: of the heights, used up to a factor
     form: MeasuredDensity | None = None  #: of the heights, maximum entropy of the moments by default
 
     @property

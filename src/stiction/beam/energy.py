@@ -1,4 +1,4 @@
-"""Adhesion energy from a crack length: elastic energy of an S-shaped beam and its release rate (Sec. IV, Eq. 13).
+"""Adhesion energy from a crack length: energy release rate of an S-shaped beam (Sec. IV, Eq. 13).
 
 The beam is clamped at the height h and flat on the substrate beyond the crack length l.
 """
@@ -12,17 +12,13 @@ from stiction.beam.cantilever import Beam
 CRACK_LENGTH_POWER = -1 / 4
 
 
-def s_shape_energy(crack_length: float | np.ndarray, beam: Beam) -> float | np.ndarray:
-    """Elastic energy of an S-shaped beam without tension, 6 EI h² / l³ [J]; crack length l [m], any shape."""
-    return 6 * beam.bending_stiffness * beam.gap**2 / crack_length**3
-
-
 def apparent_adhesion_energy(crack_length: float | np.ndarray, beam: Beam) -> float | np.ndarray:
     r"""Apparent adhesion energy Γ from a crack length, Eq. (13): energy release rate of the S-shape.
 
     .. math:: \Gamma = \frac{3}{2} E \frac{h^2 t^3}{l_s^4} = -\frac{1}{w} \frac{dU}{dl_s}
 
-    For a beam under tension, `stiction.beam.tension.release_rate`.
+    The elastic energy U of the S-shape is 6 E I h² / l_s³. For a beam under tension,
+    `stiction.beam.tension.release_rate`.
 
     Parameters
     ----------

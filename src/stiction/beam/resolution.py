@@ -16,7 +16,7 @@ ALONG_START = 4
 
 
 def resolved(beam: Beam, points: int, laws: np.ndarray) -> Beam:
-    """Beam with as many elements as its laws call for, at least its own number.
+    """Beam with as many elements as its laws require, and at least its original number.
 
     Parameters
     ----------

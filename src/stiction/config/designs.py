@@ -141,7 +141,7 @@ class Designs:
     def quantities(self, device: str) -> list[tuple[str, str]]:
         """Surfaces of a device and their uncertain quantities: of all scans, or of the heights alone if one is stated.
 
-        ASSUME: without scans, the spectrum of a surface counts as exact; that of one scan is worth 0.2 % of a length.
+        ASSUME: without scans, the spectrum counts as exact; the error of one scan's spectrum changes a length by 0.2 %.
         """
         pair = self.config["pairs"][self.devices[device]["pair"]]
         stated = OF_MOMENTS if self.devices[device].get("uncertainty", {}).get("scan_um") else ()

@@ -105,7 +105,7 @@ def character(plan: Plan) -> dict:
 # Sec. III-A
 
 
-def _meeting(plan, pair, properties=ELASTIC):
+def _surface_pair(plan, pair, properties=ELASTIC):
     """Settings for drawing a pair, with the names of the surfaces, because other input files alone rerun nothing."""
     shared = chosen(plan.config, ("seed", "sampling", "solid", "van_der_waals"))
     return shared | {"surfaces": plan.sides(pair), "beam": _width(plan)} | plan.materials(pair, properties)
@@ -118,7 +118,7 @@ def _search(plan, **more):
 
 def contact(plan: Plan, pair: str) -> dict:
     """Everything that the contact of a pair depends on; independent of humidity and of the number of chunks."""
-    return _meeting(plan, pair) | {"contact": _search(plan, samples=plan.config["contact"]["samples"])}
+    return _surface_pair(plan, pair) | {"contact": _search(plan, samples=plan.config["contact"]["samples"])}
 
 
 # Sec. III-B
@@ -164,12 +164,12 @@ def sensitivity_contact(plan: Plan, pair: str) -> dict:
     """As `contact`, with the number of samples, the moments and the step of Fig. 13."""
     study = plan.config["studies"]["sensitivity"]
     shifts = {"moments": plan.shifted_moments, "step": study["step"]}
-    return _meeting(plan, pair) | {"contact": _search(plan, samples=study["samples"])} | shifts
+    return _surface_pair(plan, pair) | {"contact": _search(plan, samples=study["samples"])} | shifts
 
 
 def slope_contact(plan: Plan, pair: str) -> dict:
     """As `contact`, with the number of samples of the slopes."""
-    return _meeting(plan, pair) | {"contact": _search(plan, samples=plan.config["studies"]["slopes"]["samples"])}
+    return _surface_pair(plan, pair) | {"contact": _search(plan, samples=plan.config["studies"]["slopes"]["samples"])}
 
 
 def choice_contact(plan: Plan, pair: str) -> dict:
@@ -188,7 +188,7 @@ def plasticity(plan: Plan, pair: str) -> dict:
     """As `contact`, with the number of strips and the distance of App. A."""
     study = plan.config["studies"]["plasticity"]
     size = {"strips": study["strips"], "distance_nm": study["distance_nm"][pair]}
-    return _meeting(plan, pair, (*ELASTIC, "hardness_GPa")) | {"contact": _search(plan)} | size
+    return _surface_pair(plan, pair, (*ELASTIC, "hardness_GPa")) | {"contact": _search(plan)} | size
 
 
 def sample_sizes(plan: Plan) -> dict:
@@ -230,7 +230,7 @@ def variant(plan: Plan, case: str, name: str) -> dict:
 def _on_patch(plan, pair, length, width, samples):
     """As `contact`, on a patch of another size [nm]."""
     size = {"strip_length_um": int(length) / NM_PER_UM}
-    found = _meeting(plan, pair) | {"contact": _search(plan, samples=samples)}
+    found = _surface_pair(plan, pair) | {"contact": _search(plan, samples=samples)}
     return found | {"sampling": found["sampling"] | size, "beam": {"width_um": int(width) / NM_PER_UM}}
 
 
@@ -293,7 +293,7 @@ def _stated(plan, pair):
 
 
 def beyond_the_model(plan: Plan) -> dict:
-    """Cases of beams, and what the warnings about each device need: dimensions, strips of tips, stated properties."""
+    """Cases of beams, and the input of the warnings about each device: sizes, strips of tips, stated properties."""
     designs = Designs(plan.config)
     devices = {
         name: {"device": _device(plan, name), "materials": _stated(plan, plan.config["devices"][name]["pair"])}
@@ -354,7 +354,7 @@ def device_choice_summits(plan: Plan, pair: str, length: int, width: int, varian
 
 
 def budget(plan: Plan, case: str) -> dict:
-    """Everything about a budget: its settings, and what its files stand for in their order."""
+    """Everything about a budget: its settings, and the quantities and choices of its files in their order."""
     name, designs = pair_of(case), Designs(plan.config)
     section = plan.config["devices"][name]
     pair = section["pair"]
@@ -369,7 +369,7 @@ def budget(plan: Plan, case: str) -> dict:
 
 
 def beyond_stoppers(plan: Plan) -> dict:
-    """What the warnings about stoppers need: their pairs and the stated properties of their materials."""
+    """Input of the warnings about stoppers: their pairs and the stated properties of their materials."""
     devices = {name: plan.config["devices"][name] for name in Designs(plan.config).stoppers}
     return {
         name: {"pair": device["pair"], "materials": _stated(plan, device["pair"])} for name, device in devices.items()
@@ -377,7 +377,7 @@ def beyond_stoppers(plan: Plan) -> dict:
 
 
 def page(plan: Plan, name: str) -> dict:
-    """Section of a device, and what its warnings need."""
+    """Section of a device, and the input of its warnings."""
     warned = beyond_the_model(plan)["devices"] | beyond_stoppers(plan)
     return {"name": name, "device": plan.config["devices"][name], "warned": {name: warned[name]}}
 

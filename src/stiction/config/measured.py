@@ -1,4 +1,4 @@
-"""Measured surfaces of a configuration: their files, evaluated once before any job, so that its laws hold for them too.
+"""Measured surfaces of a configuration, evaluated before any job so that relations between keys hold for them.
 
 The numbers are preliminary: they contain the bias that stage estimate removes. Results depend on them only through the
 question which studies are possible. They are kept by the content of the files, the settings and the code, so that a

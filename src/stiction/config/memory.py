@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from stiction.config.units import NM_PER_UM
 from stiction.models import SIDES
 
 #: Side of the periodic fields on which spectra are estimated [µm]; `stiction.stages.surfaces.FIELD`.
@@ -13,12 +14,14 @@ _BASE, _PER_POINT = 350, 60
 #: Number of distances at which the contact of a pair is stored, in single precision, times their step over the sum of
 #: both rms. Measured: 17 to 21 for the pairs of the paper.
 _DISTANCES = 30
-#: Memory that every job may use without asking for it [MB], and the most that a job may need.
+#: Memory that every job may use without a request [MB], and the most that a job may need.
 USUAL, LARGEST = 800, 8000
 #: Memory of an estimate from scans [bytes per point]: of the transforms, which have up to 2048 points along a side, of
 #: the map that is evaluated, of every scan. Measured: 640 MB for one scan of 1024² points, 726 MB for one of 2048².
 _PER_TRANSFORMED_POINT, _PER_SCANNED_POINT, _PER_STORED_POINT = 75, 30, 12
 _LARGEST_TRANSFORM = 2048
+#: Megabytes in a byte.
+_MB = 1e-6
 
 
 def of_field(length_um: float, width_um: float, spacing_nm: float) -> float:
@@ -29,7 +32,8 @@ def of_field(length_um: float, width_um: float, spacing_nm: float) -> float:
     >>> round(of_field(10.24, 10.24, 10))
     413
     """
-    return _BASE + 1e-6 * _PER_POINT * (1e3 * length_um / spacing_nm) * (1e3 * width_um / spacing_nm)
+    points = (NM_PER_UM * length_um / spacing_nm) * (NM_PER_UM * width_um / spacing_nm)
+    return _BASE + _MB * _PER_POINT * points
 
 
 def of_samples(config: dict) -> int:
@@ -40,7 +44,7 @@ def of_samples(config: dict) -> int:
     contact, surfaces = config["contact"], config["surfaces"]
     running = [config["pairs"][pair] for pair in config["run"]["pairs"]]
     rms = max(sum(surfaces[pair[side]]["rms_nm"] for side in SIDES) for pair in running)
-    stored = 4e-6 * contact["samples"] * _DISTANCES * rms / contact["distance_step_nm"]
+    stored = 4 * _MB * contact["samples"] * _DISTANCES * rms / contact["distance_step_nm"]
     return max(USUAL, round(_BASE + stored * (1 + 1 / contact["chunks"])))
 
 
@@ -68,4 +72,4 @@ def of_estimate(points: Sequence[int], files: int) -> int:
     """Memory to reserve for the estimate of a surface from scans with this number of points along each side [MB]."""
     transformed = min(2 * max(points), _LARGEST_TRANSFORM) ** 2
     scanned = math.prod(points) * (_PER_SCANNED_POINT + _PER_STORED_POINT * files)
-    return max(USUAL, round(_BASE + 1e-6 * (_PER_TRANSFORMED_POINT * transformed + scanned)))
+    return max(USUAL, round(_BASE + _MB * (_PER_TRANSFORMED_POINT * transformed + scanned)))

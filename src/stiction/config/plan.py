@@ -1,7 +1,7 @@
 """Plan of a configuration: the surfaces, cases, variants and figures to be computed.
 
 The rules of the workflow and the library use the same plan and therefore the same cases. Densities are imported where
-they are needed, because a plan that is made again knows the answers, see `stiction.run.remembered`.
+they are needed, because a repeated plan takes what it needs of them from `stiction.run.remembered`.
 """
 
 from collections.abc import Iterable, Sequence
@@ -84,8 +84,8 @@ class Plan:
     @cached_property
     def surfaces(self) -> list[str]:
         """Surfaces of the pairs that run, in the order of the configuration."""
-        met = {name for pair in self.pairs for name in self.sides(pair)}
-        return [name for name in self.config["surfaces"] if name in met]
+        used = {name for pair in self.pairs for name in self.sides(pair)}
+        return [name for name in self.config["surfaces"] if name in used]
 
     @property
     def scanned(self) -> list[str]:
@@ -315,7 +315,7 @@ class Plan:
         return next(name for name in self.variants if self._summits(pair, name) == wanted)
 
     def contact_under(self, variant: str) -> str:
-        """Variant whose contact a variant starts from: a finer beam meets the surfaces of the base."""
+        """Variant whose contact a variant has: that of the base if only the mesh of the beam is finer."""
         return "base" if variant in self.finer_beams else variant
 
     def _summits(self, pair, variant):

@@ -18,7 +18,7 @@ from stiction.config.messages import ConfigError, duplicates, shown
 #: Numbers that YAML 1.1 reads in base 60 and in base 8.
 _BASE_60 = re.compile(r"[-+]?\d[\d_]*(:[0-5]?\d)+(\.[\d_]*)?")
 _BASE_8 = re.compile(r"[-+]?0[0-7_]+")
-#: What the parser says, and the likely cause.
+#: Messages of the parser and their likely causes.
 _CAUSES = {
     "'\\t' that cannot start any token": "indent with spaces, not with tabs",
     "expected a single document": "remove the line --- that starts a second document",
@@ -37,16 +37,16 @@ def read(path: str | Path) -> dict:
     try:
         content = yaml.load(_text(path), _Strict)
     except Exception as reason:  # PyYAML does not wrap all exceptions: !!bool x raises a KeyError
-        said = _said(reason)
-        causes = [f"; {cause}" for symptom, cause in _CAUSES.items() if symptom in said]
-        raise ConfigError(f"{path} cannot be read: {said}{''.join(causes)}") from reason
+        message = _one_line(reason)
+        causes = [f"; {cause}" for symptom, cause in _CAUSES.items() if symptom in message]
+        raise ConfigError(f"{path} cannot be read: {message}{''.join(causes)}") from reason
     if not isinstance(content, dict):
         held = "is empty" if content is None else f"holds {shown(content)}"
         raise ConfigError(f"{path} {held}, must be sections such as 'contact: {{samples: 5000}}'")
     return content
 
 
-def _said(reason):
+def _one_line(reason):
     """An error in one line, that of the parser with the line of the file first."""
     mark = getattr(reason, "problem_mark", None)
     if mark is None:
@@ -83,8 +83,8 @@ class _Strict(yaml.SafeLoader):
         value, text = construct(node), str(node.value)
         for pattern, base in ((_BASE_60, 60), (_BASE_8, 8)):
             if pattern.fullmatch(text) and (base == 60 or value != int(text)):
-                said = f"YAML reads {text} in base {base}, as {shown(value)}: write the number that is meant"
-                raise yaml.constructor.ConstructorError(None, None, said, node.start_mark)
+                message = f"YAML reads {text} in base {base}, as {shown(value)}: write the number that is meant"
+                raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
         return value
 
 

@@ -156,7 +156,7 @@ def _checked(holds, paths, config, faults, files):
 
 
 def _known(path, value, files):
-    """Key and value of which the user knows: the numbers of a measured surface come from its files."""
+    """Key and value as given by the user: the numbers of a measured surface come from its files."""
     if len(path) > 2 and path[0] == "surfaces" and path[1] in files:
         return (*path[:2], "scans", "files"), [Path(file).name for file in files[path[1]]]
     return path, value
@@ -446,7 +446,7 @@ _MEETING = (
 @relation("pairs.*.gap_um", "pairs.*.humidities", *_MEETING)
 @relation("pairs.*.gap_um", "figures.humidity", *_MEETING)
 def beam_is_apart_from_the_film(gap, humidities, running, pair, temperature, *meeting):
-    """Along most of a crack, the beam of a pair that runs is far from the water film and the hills of the substrate."""
+    """Along most of a crack, the beam of a pair that runs is far from the water film and the peaks of the substrate."""
     sides = sides_of(*meeting[:-1]) if pair in running else []
     return not_apart(gap, humidities, temperature, sides, meeting[-1])
 

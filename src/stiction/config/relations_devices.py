@@ -70,7 +70,7 @@ def axis_increases(values):
 @relation("devices.*.gap_um", "devices.*.humidities", *_MEETING)
 @relation("devices.*.gap_um", "devices.*.chart.humidities", *_MEETING)
 def device_is_apart_from_the_film(gap, humidities, name, devices, pairs, surfaces, materials, temperature):
-    """The gap of a device is far above the film of water and the hills, as for pairs."""
+    """The gap of a device is far above the film of water and the peaks, as for pairs."""
     return not_apart(gap, humidities, temperature, _sides(devices[name], pairs, surfaces), materials)
 
 

@@ -19,7 +19,7 @@ import numpy as np
 
 
 class Attraction(Protocol):
-    """Attraction of two flats as a constant stress over a short range (Dugdale): what Maugis' theory needs of it."""
+    """Attraction of two flats as a constant stress over a short range (Dugdale), the input of Maugis' theory."""
 
     @property
     def work_of_adhesion(self) -> float:

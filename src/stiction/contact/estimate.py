@@ -20,7 +20,7 @@ from stiction.surface.spectrum import CutoffSelfAffine, NayakSummits
 
 #: Smallest α of a Gaussian surface.
 _NARROWEST = 1.5
-#: Smallest slope of a translation of heights, where highest hills are flat.
+#: Smallest slope of a translation of heights, where the highest peaks are flat.
 _FLATTEST = 0.05
 #: Ratio of f_limit to f_max.
 _LIMIT = 1.5

@@ -1,7 +1,7 @@
 """Stage budget: which input of a device moves its length, or the pull-off force of a stopper, by how much.
 
 Slopes are central differences with common random numbers: sample k of two contacts has the same random numbers, and
-device j meets the same samples on both sides. The chaos model is left out: devices meet the samples themselves.
+device j meets the same samples on both sides. The chaos model is left out: force laws are those of the samples.
 
 Dimensions and Young's modulus are changed by 5 %: a crack jumps from strip to strip, so that larger steps have smaller
 errors. Stress, air and contact angle are changed by their standard uncertainty, those that cannot be below zero in one
@@ -282,7 +282,7 @@ def of_air(state: State, stated: Uncertainty) -> Iterator[tuple[Input, float]]:
 def around(value: float, deviation: float, least: float = -np.inf) -> tuple[float, float]:
     """Values one standard uncertainty below and above, or from the value itself where it cannot be lower.
 
-    ASSUME: an input at its lower end, such as a contact angle of zero, errs upwards only; the secant over one standard
+    ASSUME: an input at its lower end, such as a zero contact angle, has a one-sided error; the secant over one standard
     uncertainty is its slope. The derivative of a length by a contact angle of zero vanishes.
     """
     below = value - deviation

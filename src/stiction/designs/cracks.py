@@ -1,6 +1,6 @@
-"""Stage cracks: where the cracks of long beams of a device stop at a humidity, and how far the sampled surfaces decide.
+"""Stage cracks: where the cracks of long beams of a device stop at a humidity, and the error of few sampled surfaces.
 
-One Monte Carlo of long beams answers all lengths (`stiction.devices.risk`). For the error due to the finite number of
+A simulation of long beams gives P(stuck) at every length (`stiction.devices.risk`). For the error due to the number of
 sampled surfaces, force laws are fitted to each of some groups of the samples alone, and the beams are released again
 with the same random numbers.
 
@@ -29,7 +29,7 @@ from stiction.stages import curves
 from stiction.streams import stream
 
 #: Length of the long beams, in crack lengths that Eq. (13) predicts from the mean adhesion energy. Cracks stop where
-#: surfaces hold best, so that they are shorter than this prediction.
+#: adhesion is strongest, so that they are shorter than this prediction.
 LONG = 1.3
 #: Strips of one part of a beam, which can be divided into elements of 5, 4, 3, 2 and 1 strips.
 PART = 60

@@ -1,4 +1,4 @@
-"""Pages of single devices for the report: the answer in words, tables, figures, warnings, and what the words mean."""
+"""Pages of single devices for the report: the answer in words, tables, figures, warnings and terms."""
 
 import base64
 from collections.abc import Mapping, Sequence
@@ -65,7 +65,7 @@ class Page:
         """The page as one file: figures are part of it."""
         parts = [_block("answer", self.answer), _facts(self.facts), *map(_section, self.sections)]
         parts += ["<h2>Limits of this prediction</h2>", _block("warning", [*self.warnings, NOT_MODELLED])]
-        parts += ["<h2>What the words mean</h2>", _words(self.words)]
+        parts += ["<h2>Terms</h2>", _words(self.words)]
         return _PAGE.format(title=escape(self.title), body="\n".join(parts))
 
 
@@ -261,7 +261,7 @@ def _sure(name, budgets):
         f"Relative humidity {humidity:g}: {tables_budget.advised(dataset)}" for humidity, dataset in budgets.items()
     ]
     cells, drawn = _side_by_side(tables_budget.budget(cases).cells), figures_budget.budget(cases)
-    return [Section("How sure is this, and what should be measured better?", advice, cells, drawn)]
+    return [Section("Uncertainty, and what should be measured better", advice, cells, drawn)]
 
 
 def _side_by_side(cells):

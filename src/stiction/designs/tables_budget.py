@@ -42,8 +42,8 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
         "restoring force that at most this share of all patches exceeds, with 95 % confidence; – where there are too "
         "few patches. Worst RH: humidity of the largest mean pull-off force."
     )
-    said = [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found]
-    caption = " ".join([caption, *(["Warnings:", *said] if said else []), NOT_MODELLED])
+    listed = [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found]
+    caption = " ".join([caption, *(["Warnings:", *listed] if listed else []), NOT_MODELLED])
     return Table(frame, caption, pd.DataFrame([_stopper_as_text(row) for _, row in frame.iterrows()]))
 
 

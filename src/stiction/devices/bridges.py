@@ -3,8 +3,8 @@
 Between its two cracks a bridge adheres and is flat; each crack is that of a cantilever under the same tension
 (`stiction.beam.tension`). A bridge of length L therefore sticks if the two crack lengths add up to less than L.
 
-ASSUME: the two cracks stop independently. The part that adheres may be as short as you like, which is on the safe side:
-the ends of two cracks need a few foundation lengths. Compression (buckling) is left out.
+ASSUME: the two cracks stop independently. The part that adheres may be arbitrarily short, which is conservative: the
+ends of two cracks need a few foundation lengths. Compression (buckling) is left out.
 """
 
 from dataclasses import replace

@@ -1,7 +1,7 @@
 r"""Chart of lengths over thickness and gap: a power law :math:`l = c \, t^\alpha h^\beta` between computed beams.
 
 The powers of Eq. (13) are 3/4 and 1/2; those of beams on rough surfaces differ a little, because a crack stops where
-the surfaces hold best, and a longer crack has more places to stop. The power law is fitted to beams by finite elements,
+adhesion is strongest, and a longer crack has more places to stop. The power law is fitted to beams by finite elements,
 and used only as far as beams that were left out confirm it.
 """
 

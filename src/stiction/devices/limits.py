@@ -23,7 +23,7 @@ STRETCH = 1.0
 #: Relevant to stiction, but not in the model at any setting.
 NOT_MODELLED = (
     "Not in the model: drying after release, the time that water needs to condense, electric charge and voltage, wear, "
-    "films that replicate each other, and curl by a stress gradient."
+    "conformal films, which correlate both surfaces, and curl by a stress gradient."
 )
 #: Inputs whose defaults are those of polysilicon and water.
 OF_THE_MATERIAL = ("Young's modulus", "Poisson's ratio", "hardness", "Hamaker constant", "contact angle")

@@ -1,7 +1,7 @@
 """Risk of beams: the share of beams that stick over their length, and the safe length.
 
 Every simulated device has a *sticking length*, the shortest one that sticks on its ground: a device of length L sticks
-if and only if its sticking length is smaller than L. One Monte Carlo of long beams thus answers all lengths.
+if and only if its sticking length is smaller than L. One simulation of long beams thus gives P(stuck) at every length.
 """
 
 from dataclasses import dataclass

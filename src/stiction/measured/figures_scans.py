@@ -25,7 +25,7 @@ _LINE, _LINE_HEIGHT, _PANELS = 150, 0.125, 5.8
 
 @styled
 def surface_sheet(name: str, estimate: xr.Dataset) -> Figure:
-    """Sheet of one measured surface: what its scans show, how sure that is, and the model drawn from it.
+    """Sheet of one measured surface: the measured quantities, their errors, and the model drawn from them.
 
     Parameters
     ----------

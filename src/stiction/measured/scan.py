@@ -22,7 +22,7 @@ class Settings:
 
 
 def compute(path: str | Path, settings: Settings) -> xr.Dataset:
-    """Read the heights of a file; a warning states what the user should know of the file.
+    """Read the heights of a file; a warning states the notes on its limits.
 
     Raises
     ------

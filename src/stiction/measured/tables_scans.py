@@ -1,4 +1,4 @@
-"""Tables of measured surfaces: their scans, and how unsure these leave the prediction."""
+"""Tables of measured surfaces: their scans, and the uncertainty of the prediction due to finite scans."""
 
 from collections.abc import Mapping, Sequence
 
@@ -70,7 +70,7 @@ def _cells_scan(row):
 
 
 def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
-    """Standard errors that the scans leave: a row per pair, humidity and surface, and one for all surfaces.
+    """Standard errors due to finite scans: a row per pair, humidity and surface, and one for all surfaces.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
     ]
     frame = pd.DataFrame(rows)
     caption = (
-        "Relative standard error of the mean adhesion energy ē that the finite scans of measured surfaces leave, by "
+        "Relative standard error of the mean adhesion energy ē due to the finite scans of measured surfaces, by "
         "what the scans measure (skewness and kurtosis with their correlation), and of the mean crack length l_s. "
         f"Needed: scans of this surface that would bring its part of the error of ē below {100 * GOAL:g} %. Last "
         "columns: change of ē if the measured surfaces had the other value of that key, ± standard error by sampling."

@@ -28,12 +28,11 @@ from stiction.report.format import TO_MJ, TO_NM, TO_UM, number, with_error
 from stiction.report.tables_surfaces import surface_statistics
 from stiction.stages.forces import vectors
 from stiction.stages.heights import measured, substitution
+from stiction.stages.named import Case
 from stiction.stages.parameters import misfits
 from stiction.stages.releases import ended
 from stiction.surface.feasible import LARGEST_DISTANCE
 
-#: A case: pair, relative humidity and model.
-Case = tuple[str, float, str]
 #: Standard errors by which an inequality must hold and within which a target must be met.
 ALLOWED = 4
 #: ASSUME: from this relative humidity on, just below the driest experiment, energies grow with it. In drier air menisci

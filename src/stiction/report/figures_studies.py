@@ -5,7 +5,6 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib import colormaps
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
@@ -29,6 +28,7 @@ from stiction.report.style import (
     marker,
     panels,
     plain_log,
+    shades,
     styled,
 )
 from stiction.report.tables_studies import variant_label
@@ -42,11 +42,6 @@ _PAPER_LENGTH, _PAPER_ERROR = 7.5, 2.5
 _FAINTEST = 0.3
 _TARGET = {"color": "black", "linestyle": "--", "linewidth": 0.8}
 _BOUND = {"color": "0.4", "linestyle": ":"}
-
-
-def _shades(count):
-    """Colours that darken from the first to the last, also when printed in grey."""
-    return colormaps["viridis_r"](np.linspace(0.15, 1, count))
 
 
 # Figure 13
@@ -172,7 +167,7 @@ def sample_convergence(
 def _densities(panel, sizes):
     """Densities of ē for increasing numbers of samples."""
     numbers = sizes["size"].values
-    for k, (size, shade) in enumerate(zip(numbers, _shades(len(numbers)), strict=True)):
+    for k, (size, shade) in enumerate(zip(numbers, shades(len(numbers)), strict=True)):
         density = sizes.density.sel(size=size)
         style = {"color": shade, "linestyle": dashes(len(numbers) - 1 - k), "label": f"m = {size}"}
         panel.plot(TO_MJ * sizes.energy, density / TO_MJ, **style)
@@ -228,7 +223,7 @@ def order_convergence(orders: xr.Dataset) -> Figure:
     for panel, eta in zip(axes.flat, orders.eta.values[:3], strict=False):
         found = orders.sel(eta=eta)
         panel.fill_between(orders.position, found.input_density, step="mid", color="0.85", label="samples")
-        for k, (order, shade) in enumerate(zip(shown, _shades(len(shown)), strict=True)):
+        for k, (order, shade) in enumerate(zip(shown, shades(len(shown)), strict=True)):
             style = {"color": shade, "linestyle": dashes(len(shown) - 1 - k), "label": f"$N_d$ = {order}"}
             panel.step(orders.position, found.density.sel(order=order), where="mid", **style)
         panel.set(xlabel=rf"$\eta_{eta}$ [–]", ylabel="density [–]", ylim=(0, None))
@@ -296,7 +291,7 @@ def _meshes(panel, mesh):
     excess = 100 * (mesh.energy.values / target - 1)
     inset = _small_differences(panel, excess, TO_UM * mesh.element_length.values)
     points = np.unique(mesh.point_distance.values)[::-1]
-    for k, (point, shade) in enumerate(zip(points, _shades(len(points)), strict=True)):
+    for k, (point, shade) in enumerate(zip(points, shades(len(points)), strict=True)):
         chosen = mesh.point_distance.values == point
         length, energy = TO_UM * mesh.element_length.values[chosen], TO_MJ * mesh.energy.values[chosen]
         style = {"marker": marker(k), "linestyle": dashes(k), "color": shade, "label": f"{TO_UM * point:.3g}"}

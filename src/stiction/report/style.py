@@ -4,13 +4,13 @@ The figures themselves are in the modules ``figures_*``: functions of datasets t
 """
 
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
 from string import ascii_lowercase
 
 import numpy as np
-from matplotlib import style
+from matplotlib import colormaps, style
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -58,6 +58,14 @@ def dashes(k: int) -> str | tuple:
     return _DASHES[k % len(_DASHES)]
 
 
+def shades(count: int, lightest: float = 0.15) -> np.ndarray:
+    """Colours that darken from the first to the last, also when printed in grey; (count, 4).
+
+    ``lightest`` is the darkness of the first one, between 0 and 1.
+    """
+    return colormaps["viridis_r"](np.linspace(lightest, 1, count))
+
+
 def panels(rows: int, columns: int, size: tuple[float, float], **shared) -> tuple[Figure, np.ndarray]:
     """New figure of ``size`` (width, height) [in] and its axes (rows, columns), ``shared`` as in Figure.subplots."""
     figure = Figure(figsize=size, layout="constrained")
@@ -65,7 +73,7 @@ def panels(rows: int, columns: int, size: tuple[float, float], **shared) -> tupl
 
 
 def columns_of_panels(
-    count: int, rows: int, width: float, height: float, **shared
+    count: int, rows: int, width: Callable[[int], float], height: float, **shared
 ) -> tuple[Figure, np.ndarray, list[np.ndarray]]:
     """New figure with one column of ``rows`` panels for each of ``count`` subjects, at most four columns side by side.
 

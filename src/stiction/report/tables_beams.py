@@ -14,10 +14,9 @@ from stiction.report.format import TO_MJ, UM, error_alone, number, percent, with
 from stiction.report.published import value
 from stiction.report.tables import Table
 from stiction.stages.forces import vectors
+from stiction.stages.named import Case
 from stiction.stages.releases import STATES, ended
 
-#: A case: pair, relative humidity and model.
-Case = tuple[str, float, str]
 #: Columns of the published Table III: mean and standard deviation of each model.
 _PUBLISHED = {"NG": ("ng", "ng_std"), "GEO": ("geo", "geo_std")}
 
@@ -40,7 +39,7 @@ def table_3(
     published : pandas.DataFrame
         The published table, rows of the paper's own pairs.
     by_scans : dict, optional
-        (pair, humidity) to the relative standard error of ē that finite scans leave, of pairs with measured surfaces.
+        (pair, humidity) to the relative standard error of ē due to finite scans, of pairs with measured surfaces.
     """
     rows = [_row_3(key, beams[key], forces[*key[:2], surface_model(key[2])], published) for key in beams]
     if by_scans:
@@ -53,7 +52,7 @@ def table_3(
         "depends on the length of the strips, so that it is no prediction."
     )
     if by_scans:
-        caption += " Scans: standard error of the mean that the finite scans of measured surfaces leave."
+        caption += " Scans: standard error of the mean due to the finite scans of measured surfaces."
     return Table(frame, caption, pd.DataFrame([_cells_3(row) for _, row in frame.iterrows()]))
 
 
@@ -98,7 +97,7 @@ def _simulated(beams, forces):
 
 
 def _by_scans(row, relative):
-    """Standard errors of the means of one case that finite scans leave.
+    """Standard errors of the means of one case due to finite scans.
 
     They are those of the surfaces in use: there are none for Gaussian heights.
     """

@@ -1,4 +1,4 @@
-"""What a run changes in Snakemake to save time: starts of jobs, timers of the scheduler, an import.
+"""Changes of Snakemake during a run, to save time: starts of jobs, timers of the scheduler, an import.
 
 Each change replaces a method that is not part of Snakemake's public interface. A version of Snakemake that has another
 method in its place remains as it is.

@@ -1,6 +1,6 @@
 """Result files of earlier runs: whether a run may use them.
 
-Snakemake compares settings only where its own record of a file exists, and never looks into a file. A dataset copied
+Snakemake compares settings only where its own record of a file exists, and never reads a file. A dataset copied
 from another run, or a table cut off by a full disk, would be used silently.
 """
 
@@ -9,11 +9,32 @@ import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import groupby
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from stiction.run import labels
 from stiction.run.atomic import DataError
 from stiction.run.logs import recorded
+
+
+def settings(path: str, rules: Iterable[Any]) -> dict[str, Any] | None:
+    """Settings of the job that writes a file; ``None`` if the configuration has no such job.
+
+    Parameters
+    ----------
+    path : str
+    rules : iterable
+        Rules of Snakemake. The parameter ``settings`` of a rule is a function if it depends on wildcards; it raises a
+        KeyError for a surface, pair or variant that the configuration does not contain.
+    """
+    for rule in rules:
+        if found := next(filter(None, (output.match(path) for output in rule.output)), None):
+            wanted = rule.params.settings
+            try:
+                return wanted(SimpleNamespace(**found.groupdict())) if callable(wanted) else wanted
+            except KeyError:
+                return None
+    return None
 
 
 def foreign(paths: Iterable[str | Path], expected: Callable[[str], dict[str, Any] | None]) -> Iterator[tuple[str, str]]:
@@ -29,7 +50,7 @@ def foreign(paths: Iterable[str | Path], expected: Callable[[str], dict[str, Any
     Yields
     ------
     tuple of str
-        File; and a clause that says what it holds, and what this run needs. Files that this run does not write are left
+        File; and a clause about its content and what this run needs. Files that this run does not write are left
         out.
     """
     for path in map(Path, paths):

@@ -11,7 +11,7 @@ from stiction.run.atomic import DataError
 
 
 class Label(NamedTuple):
-    """What a dataset says about its origin."""
+    """Origin of a dataset."""
 
     stage: str | None  #: ``None`` if the file is no result of this study
     name: str | None  #: name under which the file was written, without extension
@@ -28,7 +28,7 @@ class Label(NamedTuple):
 def made_from(inputs: Iterable[str | Path], stage: str, name: str, settings: dict[str, Any]) -> Label:
     """Label of a dataset that a stage computes from other datasets.
 
-    Datasets of the same stage are its chunks. They have its settings and leave no trace, because their number does not
+    Datasets of the same stage are its chunks. They have its settings and are not listed, because their number does not
     affect the result.
 
     Raises

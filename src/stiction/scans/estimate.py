@@ -1,4 +1,4 @@
-"""From the scans of a surface to everything that the model needs of it, with errors and with what the user should know.
+"""From the scans of a surface to everything that the model needs of it, with errors and notes on its limits.
 
 The scans of a surface have equal numbers of points and equal size.
 """

@@ -98,7 +98,7 @@ def covariance(translation: Translation, underlying: Spectrum, size: tuple[float
 def overlap_integrals(underlying: Spectrum, size: tuple[float, float], reach: float, terms: int) -> np.ndarray:
     """Integrals I_1 … I_terms of the powers of the autocorrelation over the scan, (terms,) [-].
 
-    The angle is integrated in closed form; lags beyond the shorter side have no weight worth counting.
+    The angle is integrated in closed form; lags beyond the shorter side have a negligible weight.
     """
     longest = min(*size, reach)
     lag = longest * np.linspace(0, 1, _LAGS) ** 2  # dense near 0, where high powers decay

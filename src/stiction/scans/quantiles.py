@@ -19,7 +19,7 @@ from stiction.surface.spectrum import Spectrum
 
 #: Scores at which quantiles are measured.
 SCORES = np.linspace(-3, 3, 49)
-#: Scores at which the form is compared: both sides, the upper tail in more points, as only hills touch.
+#: Scores at which the form is compared: both sides, the upper tail in more points, as only the highest summits touch.
 COMPARED = np.searchsorted(SCORES, (-2.0, 1.0, 2.0, 2.5, 3.0))
 #: Fewest correlation areas beyond the outermost measured quantile that is used.
 _AREAS_BEYOND = 10

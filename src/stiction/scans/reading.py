@@ -28,7 +28,7 @@ _DIRECTION = {"scan", "trace", "retrace", "forward", "backward", "measured", "ra
 _NAMELESS = re.compile(r"(default|channel \d+)$", re.IGNORECASE)
 #: Formats that any file of a certain length has: recognised by the ending of the file only.
 _WITHOUT_MAGIC = {"hgt", "nms"}
-#: Metadata of instruments that tell whether the stored heights are levelled, and their values if they are not.
+#: Metadata of instruments on whether the stored heights are levelled, and their values if they are not.
 _LEVELLED = re.compile(r"offline planefit|(?:planefit|flattenorder) (\d+)", re.IGNORECASE)
 _NOT_LEVELLED = {"none", "-1", "0", ""}
 #: Largest relative difference between the size in the file and the size given, and longest quoted reason.
@@ -37,7 +37,7 @@ _SAME_SIZE, _LONGEST_REASON = 0.01, 120
 
 @dataclass(frozen=True)
 class Source:
-    """What the configuration says of the files of a surface; every item is optional."""
+    """Settings for reading the files of a surface; every item is optional."""
 
     channel: str | None = None  #: name, or name#2 for the second of equal names
     fast_axis: str = "x"  #: axis of the file along which the microscope scans a line, x or y
@@ -47,7 +47,7 @@ class Source:
 
 @dataclass(frozen=True)
 class ScanFile:
-    """Content of a file: the scan, where it comes from, and what the user should know of it."""
+    """Content of a file: the scan, its origin, and notes on its limits."""
 
     scan: Scan
     channel: str  #: identifier of the channel that was read
@@ -252,7 +252,7 @@ def _heights(channel, path):
 
 
 def _instrument_levelling(channel, name):
-    """Note that the instrument has levelled the stored heights already, if the metadata tell so."""
+    """Note that the instrument has levelled the stored heights already, according to the metadata."""
     found = []
     for key, value in channel.info.get("raw_metadata", {}).items():
         known = _LEVELLED.fullmatch(str(key))

@@ -45,11 +45,11 @@ def compute_each(
 
     A surface with the same tuple of datasets in several choices is drawn once for all of them.
     """
-    meetings = surface_pairs(alternatives, model, settings)
+    pairs = surface_pairs(alternatives, model, settings)
     samples = range(settings.contact.samples) if samples is None else samples
     streams = streams_of_sides(settings.seed, pair)
-    found = contacts_of_samples(meetings, streams, progress(samples, "surface pairs"))
-    return [layout(*curves, meeting.distances, samples) for curves, meeting in zip(found, meetings, strict=True)]
+    found = contacts_of_samples(pairs, streams, progress(samples, "surface pairs"))
+    return [layout(*curves, one.distances, samples) for curves, one in zip(found, pairs, strict=True)]
 
 
 def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceGrid, samples: range) -> xr.Dataset:

@@ -10,6 +10,7 @@ from stiction.surface import maxent
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import Moments, nearest_feasible
 from stiction.surface.maxent import GAUSSIAN, HeightDensity
+from stiction.surface.translation import Density
 
 
 @dataclass(frozen=True)
@@ -41,12 +42,13 @@ def compute(settings: Settings) -> xr.Dataset:
     return dataset
 
 
-def layout(density: HeightDensity | MeasuredDensity, moments: Settings, measured: Moments | None = None) -> xr.Dataset:
+def layout(density: Density, moments: Settings, measured: Moments | None = None) -> xr.Dataset:
     """Dataset of the height density of one surface.
 
     Parameters
     ----------
-    density : HeightDensity or MeasuredDensity
+    density : Density
+        Maximum-entropy or measured density.
     moments : Settings
         Moments of this density.
     measured : Moments, optional
@@ -93,7 +95,7 @@ def _measured(moments):
     }
 
 
-def density(heights: xr.Dataset, model: str) -> HeightDensity | MeasuredDensity:
+def density(heights: xr.Dataset, model: str) -> Density:
     """Height density of model ``NG``, or the Gaussian one of model ``G``."""
     if model == "G":
         return GAUSSIAN

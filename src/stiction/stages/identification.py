@@ -60,9 +60,9 @@ def compute(heights: xr.Dataset, surface: str, settings: Settings) -> xr.Dataset
     target = SummitTarget(moments(heights).rms, *wanted, settings.target_spacing)
     grid = StripGrid(patch, patch, settings.spacing, margin=0.0)
 
-    def patches(*address):
-        address = (settings.seed, "identification", surface, *address)
-        return lambda: (stream(*address, k) for k in range(settings.identification.patches))
+    def patches(*part):
+        numbers = range(settings.identification.patches)
+        return lambda: (stream(settings.seed, "identification", surface, *part, k) for k in numbers)
 
     found = identify(target, Translation(density(heights, "NG")), grid, patches(), patches("control"))
     parameters.refuse_long_correlation(surface, found.spectrum, {"identification.patch_um": patch})

@@ -1,4 +1,4 @@
-"""Datasets by what the names of their files stand for, so that no file is taken for another because of its position."""
+"""Datasets keyed by the case in their file names, so that files are never confused because of their order."""
 
 import re
 from collections.abc import Callable, Iterable
@@ -9,6 +9,9 @@ import xarray as xr
 
 from stiction.config.cases import CASE, humidity_of, pair_of
 from stiction.stages.storage import load
+
+#: A case: pair, relative humidity [-] and model.
+Case = tuple[str, float, str]
 
 
 def load_named(paths: Iterable[str | Path], stage: str, key: Callable[[str], Any] = str) -> dict[Any, xr.Dataset]:

@@ -77,9 +77,9 @@ def bodies(settings: Solids) -> tuple[solids.Solid, solids.Solid]:
 
 def asperity_of(settings: Solids) -> Asperity:
     """Model of one summit of the two bodies."""
-    met, medium = bodies(settings), settings.van_der_waals
-    constant = None if medium == "none" else solids.hamaker_constant(*met, medium)
-    return asperity(solids.composite_modulus(*met), attraction(medium, constant))
+    both, medium = bodies(settings), settings.van_der_waals
+    constant = None if medium == "none" else solids.hamaker_constant(*both, medium)
+    return asperity(solids.composite_modulus(*both), attraction(medium, constant))
 
 
 def equivalent_surface(

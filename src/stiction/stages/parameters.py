@@ -1,4 +1,4 @@
-"""What stages identification and spectrum share: Eq. (7), or a table, in a dataset, and whether it can be used.
+"""Common to stages identification and spectrum: Eq. (7), or a table, in a dataset, and conditions on its use.
 
 A separate module, so that a change of the identification does not rerun published spectra.
 """
@@ -7,12 +7,12 @@ from collections.abc import Mapping
 
 import xarray as xr
 
-from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum, correlation_length
+from stiction.surface.spectrum import CutoffSelfAffine, Spectrum, TabulatedSpectrum, correlation_length
 
 _UNITS = {"plateau": "m4", "floor": "m4", "corner": "rad m-1", "cutoff": "rad m-1"}
 
 
-def variables(spectrum: CutoffSelfAffine | TabulatedSpectrum) -> xr.Dataset:
+def variables(spectrum: Spectrum) -> xr.Dataset:
     """Dataset of the four parameters of Eq. (7), or of a table and its cut-off."""
     if isinstance(spectrum, CutoffSelfAffine):
         return xr.Dataset({name: ((), getattr(spectrum, name), {"units": unit}) for name, unit in _UNITS.items()})
@@ -25,7 +25,7 @@ def variables(spectrum: CutoffSelfAffine | TabulatedSpectrum) -> xr.Dataset:
     )
 
 
-def spectrum_of(dataset: xr.Dataset) -> CutoffSelfAffine | TabulatedSpectrum:
+def spectrum_of(dataset: xr.Dataset) -> Spectrum:
     """Eq. (7) from the dataset of stage identification, the spectrum from that of stage spectrum."""
     if "node" in dataset.dims:
         return TabulatedSpectrum(dataset.table_wavenumber.values, dataset.table_density.values, float(dataset.cutoff))
@@ -34,14 +34,14 @@ def spectrum_of(dataset: xr.Dataset) -> CutoffSelfAffine | TabulatedSpectrum:
 
 def refuse_long_correlation(
     surface: str,
-    spectrum: CutoffSelfAffine | TabulatedSpectrum,
+    spectrum: Spectrum,
     lengths: Mapping[str, float],
     source: str = "identified from its summits",
 ) -> None:
     """Raise a ValueError if the heights are correlated over any of the lengths, by key of the configuration [m].
 
-    The same law as for published spectra, see `stiction.config.relations.length_exceeds_the_correlation`. The message
-    states the source of the spectrum.
+    The same condition as for published spectra, see `stiction.config.relations.length_exceeds_the_correlation`. The
+    message states the source of the spectrum.
     """
     bound = correlation_length(spectrum)
     for key, length in lengths.items():

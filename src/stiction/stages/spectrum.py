@@ -7,7 +7,7 @@ import xarray as xr
 
 from stiction.stages import parameters
 from stiction.stages.heights import density
-from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
+from stiction.surface.spectrum import CutoffSelfAffine, Spectrum, TabulatedSpectrum
 from stiction.surface.translation import Translation, spectrum_of_heights, underlying_spectrum
 
 #: Largest ratio, or smallest inverse ratio, of identified to measured radius and density of summits. ASSUME: 2; beyond,
@@ -29,7 +29,7 @@ class Settings:
     """Everything that a spectrum depends on apart from the height density."""
 
     spacing: float  #: of the grid on which the surface will be drawn [m]
-    psd: CutoffSelfAffine | TabulatedSpectrum | str  #: spectrum of the heights, used up to a factor, or ``identified``
+    psd: CutoffSelfAffine | str  #: spectrum of the heights, used up to a factor, or ``identified``
     identified: Use | None = None  #: what an identified spectrum is used for
 
 
@@ -59,7 +59,7 @@ def compute(heights: xr.Dataset, identification: xr.Dataset | None, settings: Se
     return on_grid(target, heights, settings.spacing)
 
 
-def on_grid(target: CutoffSelfAffine | TabulatedSpectrum, heights: xr.Dataset, spacing: float) -> xr.Dataset:
+def on_grid(target: Spectrum, heights: xr.Dataset, spacing: float) -> xr.Dataset:
     """Dataset of a spectrum of the heights, for surfaces drawn on a grid of this spacing [m]."""
     translation = Translation(density(heights, "NG"))
     underlying, defect = underlying_spectrum(target, translation, spacing)
@@ -87,7 +87,7 @@ def refuse_misuse(identification: xr.Dataset, use: Use) -> None:
 
 
 def layout(
-    target: CutoffSelfAffine | TabulatedSpectrum,
+    target: Spectrum,
     underlying: TabulatedSpectrum,
     achieved: TabulatedSpectrum,
     defect: float,
@@ -107,7 +107,7 @@ def layout(
     )
 
 
-def underlying(spectrum: xr.Dataset, model: str) -> CutoffSelfAffine | TabulatedSpectrum:
+def underlying(spectrum: xr.Dataset, model: str) -> Spectrum:
     """Spectrum of the Gaussian field underlying a surface; for model ``G`` it is the spectrum of the heights."""
     target = parameters.spectrum_of(spectrum)
     if model == "G":

@@ -64,3 +64,8 @@ def load(path: str | Path, stage: str) -> xr.Dataset:
 def load_all(paths: Iterable[str | Path], stage: str) -> list[xr.Dataset]:
     """Datasets of a stage in the order of their files; raises the errors of `load`."""
     return [load(path, stage) for path in paths]
+
+
+def load_surfaces(heights: Iterable[str | Path], spectra: Iterable[str | Path]) -> list[tuple[xr.Dataset, xr.Dataset]]:
+    """Datasets (heights, spectrum) of surfaces in the order of their files; raises the errors of `load`."""
+    return list(zip(load_all(heights, "heights"), load_all(spectra, "spectrum"), strict=True))

@@ -26,18 +26,18 @@ class Settings(pairs.Settings):
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
     """Find the touching summits of all strips and the share of their contact area that yields."""
-    meeting = surface_pair(surfaces, "NG", settings)
+    both = surface_pair(surfaces, "NG", settings)
     streams = streams_of_sides(settings.seed, pair)
     found = []
     for k in progress(range(settings.strips), "strips"):
-        height, curvature, _ = find_summits(meeting.draw(*streams(k)), meeting.beam.grid.spacing * meeting.every)
+        height, curvature, _ = find_summits(both.draw(*streams(k)), both.beam.grid.spacing * both.every)
         interference, radius = plasticity.touching(height, curvature, settings.distance)
         found.append((interference, radius, np.full(len(radius), k)))
     interference, radius, strip = np.hstack(found)
-    met = bodies(settings)
-    stress = hertz_maximum_stress(interference, radius, solids.composite_modulus(*met))
+    materials = bodies(settings)
+    stress = hertz_maximum_stress(interference, radius, solids.composite_modulus(*materials))
     area = plasticity.contact_area(interference, radius)
-    hardness = solids.softer_hardness(*met)
+    hardness = solids.softer_hardness(*materials)
     share = plasticity.plastic_share(area, stress, strip.astype(int), settings.strips, hardness)
     summits = {"interference": interference, "radius": radius, "stress": stress, "strip": strip.astype(int)}
     return layout(summits, share, settings.distance, hardness)

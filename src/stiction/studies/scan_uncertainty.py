@@ -1,6 +1,6 @@
-"""Study scan_uncertainty: how unsure the finite scans of measured surfaces leave the adhesion energy of a pair.
+"""Study scan_uncertainty: uncertainty of the adhesion energy of a pair due to finite scans of measured surfaces.
 
-To first order ln ē differs from the truth by its slopes times the errors of the estimate, so that its variance is
+To first order the error of ln ē is the product of its slopes and the errors of the estimate, so that its variance is
 g C g with the covariance C of the estimate. The errors of skewness and kurtosis of a scan largely compensate: without
 their correlation the result would be three times too large.
 """

@@ -18,8 +18,7 @@ _INTERVAL = 0.01
 
 @dataclass(frozen=True)
 class MeasuredDensity:
-    """Density given by measured quantiles; takes the place of a `stiction.surface.maxent.HeightDensity` in a
-    `stiction.surface.translation.Translation`.
+    """The `stiction.surface.translation.Density` of measured quantiles.
 
     ASSUME: beyond the outermost quantiles that have enough of the scan beyond them, heights are straight lines in the
     score, with the slope of the last part.

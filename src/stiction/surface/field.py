@@ -90,10 +90,6 @@ class RoughSurface:
         """Heights of equally spaced normal scores, (n,) float32 [m]."""
         return (self.rms * self.translation.table).astype(np.float32)
 
-    def draw_scores(self, rng: np.random.Generator) -> np.ndarray:
-        """Draw one strip of the standard Gaussian field u, Eq. (4); (n1, n2) float32 [-]."""
-        return self._field(rng)[:, : self.grid.shape[1]]
-
     def draw(self, rng: np.random.Generator) -> np.ndarray:
         """Draw one strip of heights z = rms · g(u), Eq. (5); (n1, n2) float32 [m]."""
         heights = np.zeros(self.grid.shape, np.float32)

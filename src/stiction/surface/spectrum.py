@@ -24,6 +24,14 @@ class Spectrum(Protocol):
     def cutoff(self) -> float:
         """Wave number beyond which there is no roughness [rad m⁻¹]."""
 
+    @property
+    def corner(self) -> float:
+        """Wave number at which the density begins to fall [rad m⁻¹]."""
+
+    @property
+    def variance(self) -> float:
+        """Second moment m₂ of the heights [m²]."""
+
     def __call__(self, wavenumber: float | np.ndarray) -> float | np.ndarray:
         """s_Z at |ζ| [m⁴], shape of ``wavenumber`` [rad m⁻¹]."""
 
@@ -147,9 +155,7 @@ def autocovariance(spectrum: Spectrum, lag: np.ndarray, panels: int = 4000) -> n
     return 2 * np.pi * j0(np.outer(lag, zeta)) @ (weights * zeta * spectrum(zeta))
 
 
-def correlation_length(
-    spectrum: CutoffSelfAffine | TabulatedSpectrum, threshold: float = 0.01, reach: float = 6.0
-) -> float:
+def correlation_length(spectrum: Spectrum, threshold: float = 0.01, reach: float = 6.0) -> float:
     """Distance l^m beyond which r_Z remains below ``threshold`` · m₂ (Sec. III) [m].
 
     Searched up to ``reach`` wavelengths of the corner; the slowest decay, that of a pure plateau, needs 4.7.

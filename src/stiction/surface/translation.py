@@ -16,13 +16,22 @@ import numpy as np
 from scipy import fft
 
 from stiction.errors import NotConverged
-from stiction.surface.maxent import HeightDensity
 from stiction.surface.spectrum import Spectrum, TabulatedSpectrum, ring_means
 
 #: Largest normal score considered; the probability of a larger one is 1e-15.
 LARGEST_SCORE = 8.0
 _SCORES = np.linspace(-LARGEST_SCORE, LARGEST_SCORE, 4097)
 _TERMS = 24
+
+
+class Density(Protocol):
+    """Density of the standardised heights; all classes with this signature are interchangeable."""
+
+    def __call__(self, height: float | np.ndarray) -> float | np.ndarray:
+        """Probability density at the standardised ``height``, any shape [-]."""
+
+    def quantile_of_normal(self, score: float | np.ndarray) -> np.ndarray:
+        """Standardised height C_Z⁻¹(Φ(u)) of the normal score u, Eq. (5); any shape, |u| <= ``LARGEST_SCORE`` [-]."""
 
 
 class TranslationMap(Protocol):
@@ -43,7 +52,7 @@ class TranslationMap(Protocol):
 class Translation:
     """The `TranslationMap` of a height density: g = C_Z⁻¹ ∘ Φ, Eq. (5)."""
 
-    density: HeightDensity
+    density: Density
 
     @cached_property
     def table(self) -> np.ndarray:

@@ -13,7 +13,7 @@ from stiction.variants import summits as variant_summits
 
 @dataclass(frozen=True)
 class Settings:
-    """The solids of a pair; everything else about the contact is settled by the summits."""
+    """The solids of a pair; everything else about the contact is determined by the summits."""
 
     solid: Solid
     van_der_waals: str

@@ -1,4 +1,4 @@
-"""Summits of a pair under a variant: what the contact needs of its surfaces, so that variants of the solids share them.
+"""Summits of a pair under a variant: all that its contact depends on besides the solids, whose variants share them.
 
 The dataset depends neither on the elasticity of the solids nor on their attraction.
 """
@@ -78,14 +78,14 @@ def compute(
             identification, stage_spectrum.Use(name, changed.sampling.strip_length, changed.sampling.margin)
         )
     surfaces = surfaces_of(base.pairs[pair], base.surfaces, base.sampling.spacing, identifications, measured)
-    meeting = equivalent_surface(surfaces, "NG", changed)
+    equivalent = equivalent_surface(surfaces, "NG", changed)
     streams = streams_of_sides(changed.seed, pair)
     summits, areas = [], []
     for k in progress(range(changed.contact.samples), "surface pairs"):
-        drawn = meeting.draw(*streams(k))
-        summits.append(meeting.summits(drawn))
-        areas.append(meeting.bearing_area(drawn))
-    return layout(summits, areas, meeting.distances)
+        drawn = equivalent.draw(*streams(k))
+        summits.append(equivalent.summits(drawn))
+        areas.append(equivalent.bearing_area(drawn))
+    return layout(summits, areas, equivalent.distances)
 
 
 def surfaces_of(
