@@ -1,5 +1,8 @@
 """Names of the files on which the results of devices depend."""
 
+CONTACT = memory.of_contact(measured.view(config, preliminary))  # of the jobs that hold all samples they draw [MB]
+CHARTS = [f"results/devices/chart/{case}.nc" for name in designs.charted for case in designs.chart_cases(name)]
+
 
 def strips_of(wildcards):
     """Contact of the strips along a device: that of its pair in the main line if the strips are equal."""
