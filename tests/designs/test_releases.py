@@ -12,6 +12,7 @@ from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
 from stiction.beam.release import START
 from stiction.beam.resolution import ALONG_START
 from stiction.chaos.model import fit
+from stiction.config.files import load
 from stiction.contact import forcelaw
 from stiction.designs import releases
 from stiction.streams import stream
@@ -51,6 +52,15 @@ def test_a_beam_that_its_strips_do_not_resolve_is_refused_with_the_key_that_help
     with pytest.raises(ValueError, match="strips of 1.5 µm do not resolve") as refused:
         releases.long_beam(replace(C1, thickness=0.5 * UM), uniform_laws(20))
     assert "strip_um, here 1.5 µm" in refused.value.__notes__[0]
+
+
+def test_what_the_configuration_lets_pass_near_the_limit_is_refused_on_the_force_laws():
+    # The relation takes the foundation length from an estimated law, up to a quarter too long.
+    thickness = 1.2
+    load({"devices": {"C1": {"kind": "cantilever", "pair": "b", "thickness_um": thickness, "gap_um": 20, "width_um": 30,
+                             "humidities": [0.67]}}})  # fmt: skip
+    with pytest.raises(ValueError, match=r"strips of 1.5 µm .* strips of at most 1.43 µm \(foundation length 2.05 µm"):
+        releases.long_beam(replace(C1, thickness=thickness * UM), uniform_laws(20))
 
 
 def test_a_bridge_has_two_cracks_and_its_half_is_under_its_tension():

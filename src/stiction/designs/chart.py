@@ -15,6 +15,7 @@ from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
 from stiction.contact.meniscus import meniscus_height
 from stiction.designs import releases, sticking
+from stiction.designs.patches import on_patch
 from stiction.designs.releases import Device
 from stiction.devices import arcs
 from stiction.devices.chart import checked_power_law, flooded_energy, flooded_length
@@ -48,9 +49,11 @@ class Filled:
 
 def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
     """Safe lengths of all thicknesses and gaps; inputs as in the stages cracks and safe_lengths."""
-    model = releases.fitted(*curves.vectors(contact, settings.humidity, settings.water), settings.chaos)
+    with on_patch(settings.device.strip, settings.device.width):
+        model = releases.fitted(*curves.vectors(contact, settings.humidity, settings.water), settings.chaos)
     laws = draw_laws(model, releases.LAWS, releases.addresses(settings)("mesh"))
-    energies = None if tips is None else curves.energies(tips, settings.humidity, settings.water)
+    with on_patch(settings.tip, settings.device.width):
+        energies = None if tips is None else curves.energies(tips, settings.humidity, settings.water)
 
     def by_elements(thickness, gap):
         """Safe lengths of beams of one size (shapes, shares) [m]."""

@@ -14,6 +14,7 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
 from stiction.contact import forcelaw
+from stiction.designs.patches import on_patch
 from stiction.designs.releases import LAWS, Device, addresses, crack_lengths, fitted, long_beam, surface_rms
 from stiction.stages import curves
 
@@ -41,7 +42,8 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
     ValueError
         If the strips of the device do not resolve its cracks.
     """
-    vectors, limit = curves.vectors(contact, settings.humidity, settings.water)
+    with on_patch(settings.device.strip, settings.device.width):
+        vectors, limit = curves.vectors(contact, settings.humidity, settings.water)
     model = fitted(vectors, limit, settings.chaos)
     address = addresses(settings)
     laws = draw_laws(model, LAWS, address("mesh"))

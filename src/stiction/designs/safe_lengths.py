@@ -8,6 +8,7 @@ import xarray as xr
 
 from stiction.contact.meniscus import meniscus_height
 from stiction.designs import cracks as stage_cracks
+from stiction.designs.patches import on_patch
 from stiction.designs.releases import Device
 from stiction.designs.sticking import mean_wedge, safe_lengths, sticking_lengths
 from stiction.devices import arcs, risk
@@ -44,7 +45,8 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
     found, of_group, foundation = stage_cracks.lengths(cracks)
     device, held, wedge = settings.device, None, np.nan
     if tips is not None:
-        held = arcs.arc_length(curves.energies(tips, settings.humidity, settings.water), device.beam)
+        with on_patch(settings.tip, device.width):
+            held = arcs.arc_length(curves.energies(tips, settings.humidity, settings.water), device.beam)
         wedge = mean_wedge(tips, arcs.tip_slope(float(np.median(held)), device.gap), settings)
     sticking = sticking_lengths(found, foundation, device, held)
     groups = [sticking_lengths(one, foundation, device, held) for one in of_group]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.designs.patches import on_patch
 from stiction.devices.risk import samples_for
 from stiction.devices.stoppers import pull_off_force, safe_force, stuck_patches, worst_humidity
 from stiction.estimates import mean_with_error
@@ -34,7 +35,8 @@ class Settings:
 def forces(contact: xr.Dataset, humidity: float, settings: Settings) -> np.ndarray:
     """Pull-off forces of all sampled patches at a relative humidity (m,) [N]."""
     area = settings.contact[0] * settings.contact[1]
-    return pull_off_force(pull_offs(contact, humidity, settings.water), area)
+    with on_patch(*settings.contact):
+        return pull_off_force(pull_offs(contact, humidity, settings.water), area)
 
 
 def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
