@@ -227,7 +227,7 @@ def safe_lengths(table):
 def stoppers(table):
     """``worst_S1``: worst humidity; ``stuck_S1_067``: P(stuck) [%]; ``force_S1_067_1e02``: safe force [µN]."""
     found = {}
-    for row in table.to_dict("records"):
+    for row in table.dropna(subset=["relative_humidity"]).to_dict("records"):
         name = f"{row['device']}_{_digits(row['relative_humidity'])}"
         found[f"worst_{row['device']}"] = f"{row['worst_humidity']:.2f}"
         found[f"stuck_{name}"] = f"{100 * row['share_stuck']:.2g}"

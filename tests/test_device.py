@@ -9,22 +9,23 @@ from stiction.config import jobs
 from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.designs import budget, chart, cracks, safe_lengths, stoppers
+from stiction.devices import limits
 from stiction.models import OF_MOMENTS
 from stiction.stages import contact
 from stiction.studies import slope_contact
 from stiction.study import surface_datasets
 
-C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 10, "width_um": 6, "humidities": [0.88]}
+C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 10, "width_um": 20, "humidities": [0.88]}
 C1 |= {"chart": {"thicknesses_um": [2.6], "humidities": [0.8, 0.9]}}
 R1 = {"kind": "bridge", "pair": "b", "thickness_um": 2, "gap_um": 2, "width_um": 4, "residual_stress_MPa": 50}
 S1 = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 1, "humidities": [0.5]}
 CONFIG = stiction.load(
     {
         "devices": {"C1": C1, "R1": R1 | {"humidities": [0.88]}, "S1": S1},
-        "beam": {"width_um": 6},
+        "beam": {"width_um": 20},
         "contact": {"samples": 40},
         "chaos": {"order": 2},
-        "design": {"beams": 200, "shares": [0.02], "tip_um": 0.15},
+        "design": {"beams": 200, "shares": [0.02]},
     }
 )
 PLAN = Plan(CONFIG)
@@ -42,7 +43,7 @@ def drawn(settings):
 
 def test_strips_that_equal_those_of_the_pair_are_its_strips(device):
     xr.testing.assert_identical(device.contact, drawn(jobs.contact(PLAN, "b")))
-    xr.testing.assert_identical(device.tips, drawn(jobs.tip_contact(PLAN, "b", 150, 6000)))
+    xr.testing.assert_identical(device.tips, drawn(jobs.tip_contact(PLAN, "b", 50, 20000)))
     assert device.tips.sizes["sample"] == 200
 
 
@@ -54,8 +55,23 @@ def test_safe_lengths_are_those_of_the_stages(device):
     expected = safe_lengths.compute(found, device.tips, settings)
     xr.testing.assert_identical(device.safe_lengths(0.88), expected)
     assert np.all(expected.safe_length < expected.estimate)
-    sentences = device.warnings(expected)
-    assert sentences == [sentence for sentence in sentences if sentence.endswith(".")]
+
+
+def test_cracks_are_computed_once_for_each_humidity(device, monkeypatch):
+    first = device.cracks(0.88)
+    monkeypatch.setattr(cracks, "compute", lambda *_: pytest.fail("computed again"))
+    assert device.cracks(0.88) is first
+    device.safe_lengths(0.88)
+
+
+def test_warnings_are_those_of_all_shapes_and_that_plasticity_is_not_checked(device):
+    found = device.safe_lengths(0.88)
+    assert device.warnings(found) == [limits.plastic_contact(np.nan)]
+    length = float(found.estimate.sel(shape="S-shape").min())
+    said = device.warnings(found.assign(estimate=found.estimate * 100e-6 / length))
+    assert said[0] == limits.large_rotation(10e-6, 100e-6)
+    assert sum("slope" in sentence for sentence in said) == 2  # of beam and tip
+    assert len(said) == len(set(said))
 
 
 def test_the_chart_at_the_size_of_the_device_has_its_safe_lengths(device):
@@ -76,7 +92,9 @@ def test_a_stopper_has_its_whole_area_and_the_forces_of_its_stage():
     assert stopper.tips is None
     xr.testing.assert_identical(stopper.contact, drawn(jobs.device_contact(PLAN, "b", 3000, 3000)))
     settings = typed(stoppers.Settings, jobs.stoppers(PLAN, "S1"))
-    xr.testing.assert_identical(stopper.forces(), stoppers.compute(stopper.contact, settings))
+    found = stopper.forces()
+    xr.testing.assert_identical(found, stoppers.compute(stopper.contact, settings))
+    assert stopper.warnings(found) == [limits.plastic_contact(np.nan)]
 
 
 @pytest.fixture(scope="module")
@@ -85,8 +103,9 @@ def uncertain():
     stated = {"gap_um": 0.1, "young_modulus_GPa": 5, "scan_um": 10}
     variants = {"van_der_waals": ["none"], "psd": [], "every": [], "spacing_nm": [], "poisson_ratio": []}
     studies = {"slopes": {"samples": 20}, "variants": variants}
-    few = {"design": {"budget_beams": 20}, "studies": studies, "pairs": {"b": {"substrate": "B2"}}}
-    return stiction.load(CONFIG, few, {"devices": {"C1": {"uncertainty": stated}}})
+    few = {"design": {"budget_beams": 20, "tip_um": 0.15}, "studies": studies, "pairs": {"b": {"substrate": "B2"}}}
+    narrow = {"beam": {"width_um": 6}, "devices": {"C1": {"width_um": 6, "uncertainty": stated}}}
+    return stiction.load(CONFIG, few, narrow)
 
 
 def test_the_budget_is_that_of_its_stage_and_contacts(uncertain):
@@ -121,3 +140,18 @@ def test_the_budget_is_that_of_its_stage_and_contacts(uncertain):
 def test_a_device_that_does_not_exist_is_refused_with_those_that_do():
     with pytest.raises(ValueError, match="no device C9; the configuration has C1, R1, S1"):
         stiction.Device.of(CONFIG, "C9")
+
+
+@pytest.mark.parametrize(
+    ("name", "ask", "message"),
+    [
+        ("S1", lambda device: device.safe_lengths(0.5), "S1 is a stopper; only a cantilever or bridge has this"),
+        ("S1", lambda device: device.chart(0.5), "S1 is a stopper"),
+        ("C1", lambda device: device.forces(), "C1 is a cantilever; only a stopper has this"),
+        ("R1", lambda device: device.chart(0.5), "R1 has no chart: state devices.R1.chart"),
+        ("C1", lambda device: device.budget(0.5), "C1 has no uncertainty: state devices.C1.uncertainty"),
+    ],
+)
+def test_what_a_device_does_not_have_is_refused_by_name(name, ask, message):
+    with pytest.raises(ValueError, match=message):
+        ask(stiction.Device(name, None, None, CONFIG, []))

@@ -10,7 +10,7 @@ import xarray as xr
 
 from stiction.config import jobs
 from stiction.config.cases import case_id
-from stiction.config.designs import Designs
+from stiction.config.designs import BEAMS, Designs
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
@@ -73,20 +73,26 @@ class Device:
         return cls(name, ground, tips, config, surfaces)
 
     def cracks(self, humidity: float) -> xr.Dataset:
-        """Crack lengths of long beams; dataset of `stiction.designs.cracks`, half a minute."""
-        return cracks.compute(self.contact, self._settings(cracks, jobs.cracks, humidity))
+        """Crack lengths of long beams; dataset of `stiction.designs.cracks`. The first call takes half a minute."""
+        self._must_be(*BEAMS)
+        if humidity not in self._known_cracks:
+            self._known_cracks[humidity] = cracks.compute(self.contact, self._settings(cracks, jobs.cracks, humidity))
+        return self._known_cracks[humidity]
 
     def safe_lengths(self, humidity: float) -> xr.Dataset:
         """P(stuck) over the length, and safe lengths; dataset of `stiction.designs.safe_lengths`."""
-        settings = self._settings(safe_lengths, jobs.safe_lengths, humidity)
-        return safe_lengths.compute(self.cracks(humidity), self.tips, settings)
+        found, settings = self.cracks(humidity), self._settings(safe_lengths, jobs.safe_lengths, humidity)
+        return safe_lengths.compute(found, self.tips, settings)
 
     def chart(self, humidity: float) -> xr.Dataset:
         """Safe lengths of the thicknesses and gaps of its chart; dataset of `stiction.designs.chart`."""
+        self._must_be(*BEAMS)
+        self._must_state("chart", self._section.get("chart"))
         return chart.compute(self.contact, self.tips, self._settings(chart, jobs.chart, humidity))
 
     def forces(self) -> xr.Dataset:
         """Pull-off forces of a stopper, P(stuck) and the worst humidity; dataset of `stiction.designs.stoppers`."""
+        self._must_be("stopper")
         return stoppers.compute(self.contact, typed(stoppers.Settings, jobs.stoppers(Plan(self.config), self.name)))
 
     def budget(self, humidity: float) -> xr.Dataset:
@@ -94,10 +100,11 @@ class Device:
 
         The first call draws the surfaces with every uncertain input changed, a few minutes.
         """
+        self._must_state("uncertainty", any(self._section.get("uncertainty", {}).values()))
         plan = Plan(self.config)
         plain = jobs.budget(plan, case_id(self.name, humidity))
         settings = typed(budget.Settings, plain["budget"])
-        described = dict(zip(plan.sides(self.config["devices"][self.name]["pair"]), self.surfaces, strict=True))
+        described = dict(zip(plan.sides(self._section["pair"]), self.surfaces, strict=True))
         uncertain = {name: described[name] for name, _ in plain["quantities"]}
         estimates = {name: estimate_of(plan, name) for name in uncertain if name in plan.scanned}
         known = budget.covariances(uncertain, estimates, settings)
@@ -107,8 +114,7 @@ class Device:
     def _changed(self):
         """Contacts with less and with more of every input, and under other choices of the model."""
         plan, designs = Plan(self.config), Designs(self.config)
-        section, ground = self.config["devices"][self.name], designs.ground(self.name)
-        pair, stated = section["pair"], section.get("uncertainty", {})
+        pair, stated, ground = self._section["pair"], self._section["uncertainty"], designs.ground(self.name)
         shared = designs.has_strips_of_pair(self.name)
         plain = jobs.slope_contact(plan, pair) if shared else jobs.device_slope_contact(plan, *ground)
         shifts = typed(slope_contact.Settings, plain)
@@ -140,9 +146,35 @@ class Device:
         return variant_contact.compute(found, typed(variant_contact.Settings, plan.variant_contact(pair, variant)))
 
     def warnings(self, found: xr.Dataset) -> list[str]:
-        """Where safe lengths (`safe_lengths`) are beyond the limits of the model, one sentence each."""
-        plain = jobs.beyond_the_model(Plan(self.config))["devices"][self.name]
-        return findings.of_device(found, typed(findings.OfDevice, plain))
+        """Where a result of `safe_lengths` or `forces` is beyond the limits of the model, one sentence each.
+
+        Plasticity is not checked, which is one of the sentences.
+        """
+        plan = Plan(self.config)
+        if self._section["kind"] == "stopper":
+            return findings.of_stoppers({}, jobs.beyond_stoppers(plan))[self.name]
+        plain = jobs.beyond_the_model(plan)["devices"][self.name]
+        return findings.numbered(findings.of_device(found, typed(findings.OfDevice, plain)))[0]
+
+    @property
+    def _section(self):
+        """Its section of the configuration."""
+        return self.config["devices"][self.name]
+
+    @cached_property
+    def _known_cracks(self):
+        """Cracks by humidity, as far as they were computed."""
+        return {}
+
+    def _must_be(self, *kinds):
+        """Refuse a result that other kinds of devices have."""
+        if self._section["kind"] not in kinds:
+            raise ValueError(f"device {self.name} is a {self._section['kind']}; only a {' or '.join(kinds)} has this")
+
+    def _must_state(self, key, stated):
+        """Refuse a result without the key of the device on which it depends."""
+        if not stated:
+            raise ValueError(f"device {self.name} has no {key}: state devices.{self.name}.{key}")
 
     def _settings(self, stage, job, humidity):
         """Settings of a stage at a humidity."""

@@ -112,6 +112,31 @@ def test_the_roughest_pair_that_runs_determines_the_memory_of_the_samples():
     assert memory.USUAL < sizes["[a]"] < sizes["[b]"] < sizes["[a, b, c]"]
 
 
+STICKING = """
+contact: {samples: 100000, chunks: 100}
+run: {pairs: [a]}
+devices: {D1: {kind: stopper, pair: PAIR, contact_um: [1.5, 30], restoring_force_uN: 1, humidities: [0.5]}}
+"""
+
+
+def test_the_pairs_of_devices_and_their_tips_count_for_the_memory_of_the_samples():
+    alone, of_a, of_c = (
+        memory.of_samples(changed(overlay))
+        for overlay in (STICKING.partition("devices")[0], STICKING.replace("PAIR", "a"), STICKING.replace("PAIR", "c"))
+    )
+    assert memory.USUAL < alone <= of_a < of_c
+    tips = memory.of_samples(changed(STICKING.replace("PAIR", "c") + "design: {beams: 100000}"))
+    assert tips - 350 == pytest.approx(2 * (of_c - 350), rel=0.02)
+
+
+def test_a_job_that_draws_all_samples_holds_field_and_curves():
+    plain = changed(STICKING.replace("PAIR", "c"))
+    few = changed(STICKING.replace("PAIR", "c").replace("100000", "100"))
+    stored = memory.of_contact(plain) - memory.of_field(2.5, 31, 5)
+    assert memory.of_contact(few) == memory.of_job(few) == memory.USUAL
+    assert stored == pytest.approx(2 * (memory.of_samples(plain) - 350), rel=0.02)
+
+
 #: Points along a side, number of scans and peak memory [MB] of estimates measured one by one.
 MEASURED = [(512, 1, 399), (1024, 1, 640), (1024, 3, 677), (2048, 1, 726)]
 

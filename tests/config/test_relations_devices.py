@@ -12,6 +12,7 @@ from stiction.config.designs import KEYS, Designs
 from stiction.config.files import load, normalised
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
+from stiction.config.relations import summit_density
 from stiction.config.units import typed
 from stiction.designs import chart, cracks, findings, safe_lengths
 from stiction.stages import contact, curves
@@ -71,6 +72,8 @@ WRONG = [
     ({"gap_um": 0.1}, "devices.C1.gap_um", "20 times the height of the water film"),
     ({"humidities": [0.9999]}, "devices.C1.gap_um", "must be at least 207.9"),
     ({"thickness_um": 0.1}, "devices.C1.thickness_um", "must be so large that strips of 1.5 µm resolve its cracks"),
+    ({"thickness_um": 0.5}, "devices.C1.thickness_um", "at RH 0.67 they must be below about"),
+    ({"thickness_um": 1}, "devices.C1.thickness_um", "at RH 0.67 they must be below about"),
     ({"strip_um": 0.75}, "devices.C1.strip_um", "above the correlation length of the surface"),
     ({"strip_um": 1.505}, "devices.C1.strip_um", "whole number of contact points"),
     ({"width_um": 30.005}, "devices.C1.width_um", "whole number of contact points"),
@@ -79,6 +82,7 @@ WRONG = [
     ({"chart": CHART | {"thicknesses_um": [2, 2]}}, "devices.C1.chart.thicknesses_um", "each value once"),
     ({"chart": CHART | {"gaps_um": [0.1, 20]}}, "devices.C1.chart.gaps_um", "20 times the height"),
     ({"chart": CHART | {"thicknesses_um": [0.1, 2]}}, "devices.C1.chart.thicknesses_um", "so large that strips"),
+    ({"width_um": 4}, "design.tip_um", "0.05 x 4 µm of pair b hold about 4.2 (given devices.C1.width_um = 4)"),
     ({"uncertainty": {"gap_um": -1}}, "devices.C1.uncertainty.gap_um", "at least 0"),
 ]
 
@@ -116,6 +120,57 @@ def test_a_device_whose_solids_do_not_resist_is_refused_although_its_pair_does_n
     config = merged(with_device(pair="c"), soft | {"run": {"pairs": ["b"]}})
     (line,) = problems(config)
     assert line.startswith("devices.C1.pair is 'c', must have surfaces rough enough")
+
+
+@pytest.mark.parametrize(
+    ("device", "key", "message"),
+    [
+        (R1 | {"humidities": [0.67], "width_um": 0.5}, "width_um", "1.5 x 0.5 µm of pair b hold about 16 (given"),
+        (R1 | {"humidities": [0.67], "width_um": 1, "strip_um": 1.2}, "width_um", ""),
+        (R1 | {"humidities": [0.67], "width_um": 0.7, "strip_um": 1.2}, "width_um", "1.2 x 0.7 µm of pair b"),
+        (S1 | {"contact_um": [1, 0.8]}, "contact_um", "1 x 0.8 µm of pair b hold about 17"),
+        (S1 | {"contact_um": [1, 0.9]}, "contact_um", ""),
+    ],
+)
+def test_patches_with_too_few_summits_are_refused(device, key, message):
+    found = problems(merged(PAPER, {"devices": {"D1": device}}))
+    assert len(found) == bool(message)
+    assert all(line.startswith(f"devices.D1.{key} is ") and message in line for line in found)
+
+
+@pytest.mark.parametrize("name", ["B1", "B2", "Sub2"])
+def test_the_density_of_summits_is_that_of_the_rougher_surface_or_half_of_its_spectrum(name):
+    rough, smooth = PAPER["surfaces"][name], PAPER["surfaces"]["Sub1"]
+    stated = rough["summit_density_per_um2"]
+    assert summit_density([smooth, rough]) == summit_density([rough, smooth]) == stated
+    unstated = {key: value for key, value in rough.items() if key != "summit_density_per_um2"}
+    assert summit_density([smooth, unstated]) == pytest.approx(stated, rel=0.3)
+
+
+def test_only_cantilevers_have_tips():
+    assert problems(merged(PAPER, {"devices": {"R1": R1 | {"humidities": [0.67], "width_um": 4}}})) == ()
+
+
+@pytest.mark.parametrize(
+    ("angles", "deviation", "refused"),
+    [
+        ((95, 80), 5, True),
+        ((95, 80), 1, False),
+        ((0, 0), 90, True),
+        ((0, 0), 89, False),
+        ((170, 5), 2, False),
+        ((170, 5), 20, True),
+    ],
+)
+def test_uncertain_contact_angles_leave_water(angles, deviation, refused):
+    named = {name: {"contact_angle_deg": angle} for name, angle in zip(("One", "Other"), angles, strict=True)}
+    surfaces = {"B2": {"material": "One"}, "Sub1": {"material": "Other"}}
+    config = merged(
+        with_device(uncertainty={"contact_angle_deg": deviation}), {"materials": named, "surfaces": surfaces}
+    )
+    found = [line for line in problems(config) if "uncertainty" in line]
+    assert len(found) == refused
+    assert all(line.startswith("devices.C1.uncertainty.contact_angle_deg is ") for line in found)
 
 
 def test_the_patch_of_a_stopper_is_whole_on_the_grid():

@@ -11,13 +11,14 @@ from stiction.beam.cantilever import Beam
 from stiction.chaos.model import Truncation
 from stiction.contact import forcelaw
 from stiction.designs import cracks, safe_lengths
+from stiction.designs.releases import Device
 from stiction.stages import curves
 from stiction.streams import stream
 
 UM = 1e-6
 WATER = curves.Water(300.0)
-C1 = cracks.Device("cantilever", "b", 2.6 * UM, 20 * UM, 30 * UM, 164e9, 1.5 * UM)
-R1 = cracks.Device("bridge", "b", 2 * UM, 2 * UM, 30 * UM, 164e9, 1.5 * UM, residual_stress=50e6)
+C1 = Device("cantilever", "b", 2.6 * UM, 20 * UM, 30 * UM, 164e9, 1.5 * UM)
+R1 = Device("bridge", "b", 2 * UM, 2 * UM, 30 * UM, 164e9, 1.5 * UM, residual_stress=50e6)
 #: Largest attraction of the strips of tips [Pa].
 PULL = 3e5
 #: Root mean square of the heights of both surfaces [m].
@@ -64,13 +65,9 @@ def safe_without_tips(device=R1, **more):
 
 def safe_with_tips(energies, **more):
     """Dataset of stage safe_lengths of a cantilever whose tips have given adhesion energies (n,) [J m⁻²]."""
-    curve = -PULL * np.ones(3)
-    with (
-        patch.object(curves, "energies", lambda *_: energies),
-        patch.object(curves, "force_curves", lambda *_: (None, lambda _: curve)),
-    ):
-        tips = xr.Dataset(coords={"sample": np.arange(len(energies))})
-        return safe_lengths.compute(lognormal_cracks(len(energies), **more), tips, wanted())
+    pulls = np.full(len(energies), PULL)
+    with patch.object(curves, "energies", lambda *_: energies), patch.object(curves, "pull_offs", lambda *_: pulls):
+        return safe_lengths.compute(lognormal_cracks(len(energies), **more), xr.Dataset(), wanted())
 
 
 def rng(*address):

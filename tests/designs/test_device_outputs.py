@@ -1,6 +1,7 @@
 """Tables and figures of devices show the numbers of their datasets; equal data give equal files."""
 
 import sys
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,9 @@ from stiction.report.style import save
 sys.path.append(str(Path(__file__).parents[1] / "designs"))
 from ground import safe_with_tips, safe_without_tips  # noqa: E402
 
-WARNINGS = {("C1", 0.44): ["Too wet.", "Too thin."], ("C1", 0.67): ["Too thin."], ("R1", 0.67): []}
+S_SHAPE, EITHER = "S-shape", "S-shape or arc"
+WARNINGS = {("C1", 0.44, S_SHAPE): ["Too wet."], ("C1", 0.44, EITHER): ["Too wet.", "Too thin."]}
+WARNINGS |= {("C1", 0.67, S_SHAPE): [], ("C1", 0.67, EITHER): ["Too thin."], ("R1", 0.67, S_SHAPE): []}
 
 
 @pytest.fixture(scope="module")
@@ -26,18 +29,25 @@ def found():
     }
 
 
-def charted(humidity, factor=1.0):
-    """Dataset of stage chart."""
-    thickness, gap, shape, share = [2e-6, 3e-6], [10e-6, 20e-6], ["S-shape", "S-shape or arc"], [1e-2, 1e-3]
+def charted(humidity, factor=1.0, error=0.004):
+    """Dataset of stage chart, in which a power law gave the thinner beam at the wider gap."""
     lengths = factor * 1e-6 * np.arange(100, 116).reshape(2, 2, 2, 2)
+    limits = 1e-6 * np.arange(50, 58).reshape(2, 2, 2)
     return xr.Dataset(
         {
             "safe_length": (("thickness", "gap", "shape", "share"), lengths),
-            "flooded_length": (("thickness", "gap"), [[5e-5, 6e-5], [7e-5, 8e-5]]),
+            "flooded_length": (("thickness", "gap", "shape"), limits),
+            "by_elements": (("thickness", "gap"), [[1, 0], [1, 1]]),
+            "power_law_error": error,
             "humidity": humidity,
         },
-        coords={"thickness": thickness, "gap": gap, "shape": shape, "share": share},
+        coords={"thickness": [2e-6, 3e-6], "gap": [10e-6, 20e-6], "shape": [S_SHAPE, EITHER], "share": [1e-2, 1e-3]},
     )
+
+
+CHARTS = {("C1", humidity): charted(humidity, factor) for humidity, factor in ((0.5, 1.0), (0.4, 2.0), (0.6, 0.5))}
+CURVES = list(product(("C1",), (2e-6, 3e-6), (10e-6, 20e-6), (S_SHAPE, EITHER)))
+STEEP = dict.fromkeys(CURVES, []) | {CURVES[2]: ["Too steep."], CURVES[3]: ["Too steep.", "Too short."]}
 
 
 def test_the_table_has_a_row_per_shape_and_share_with_the_numbers_of_the_dataset(found):
@@ -54,13 +64,13 @@ def test_the_table_has_a_row_per_shape_and_share_with_the_numbers_of_the_dataset
 def test_warnings_are_numbered_in_the_cells_and_written_out_in_caption_and_csv(found):
     table = tables_devices.safe_lengths(found, WARNINGS)
     assert "(1) Too wet. (2) Too thin." in table.caption
-    assert list(table.cells.warnings) == ["1, 2"] * 4 + ["2"] * 4 + [""] * 2
+    assert list(table.cells.warnings) == ["1"] * 2 + ["1, 2"] * 2 + [""] * 2 + ["2"] * 2 + [""] * 2
     assert "Too wet. Too thin." in table.csv
     assert "curl" in table.caption
 
 
 def test_a_table_without_warnings_does_not_speak_of_them(found):
-    table = tables_devices.safe_lengths(found, dict.fromkeys(found, []))
+    table = tables_devices.safe_lengths(found, dict.fromkeys(WARNINGS, []))
     assert "Warnings" not in table.caption
 
 
@@ -87,14 +97,71 @@ def test_the_risk_shows_shares_bands_and_safe_lengths_of_every_device(found):
     assert "(1) Too wet." in figure._supxlabel.get_text()
 
 
+def test_the_table_of_charts_has_every_length_and_where_it_is_from():
+    table = tables_devices.chart(CHARTS, STEEP)
+    assert len(table.frame) == 3 * 16
+    assert len(table.cells) == 3 * 8
+    chosen = (table.frame.thickness_um == 2) & (table.frame.gap_um == 20) & (table.frame.held_by == "beam or tip")
+    rows = table.frame[chosen & (table.frame.share == 1e-3)]
+    assert list(rows.relative_humidity) == [0.4, 0.5, 0.6]
+    np.testing.assert_allclose(rows.safe_length_um, [214, 107, 53.5])
+    assert list(rows["from"].unique()) == ["power law"]
+    np.testing.assert_allclose(rows.power_law_error_percent, 0.4)
+    np.testing.assert_allclose(rows.saturated_air_um, 53)
+    computed = table.frame[table.frame.thickness_um == 3]
+    assert list(computed["from"].unique()) == ["finite elements"]
+    assert computed.power_law_error_percent.isna().all()
+
+
+def test_a_line_of_a_chart_has_all_shares_and_its_warnings():
+    table = tables_devices.chart(CHARTS, STEEP)
+    line = table.cells.iloc[3 * 3 + 1]  # fourth curve, second humidity
+    assert dict(line) == {
+        "device": "C1",
+        "thickness [µm]": "2",
+        "gap [µm]": "20",
+        "held by": "beam or tip",
+        "RH": "0.5",
+        "p = 0.01 [µm]": "106.0",
+        "p = 0.001 [µm]": "107.0",
+        "from": "power law, ± 0.4 %",
+        "saturated air [µm]": "53.0",
+        "warnings": "1, 2",
+    }
+    assert "Warnings: (1) Too steep. (2) Too short." in table.caption
+    assert "Too steep. Too short." in table.csv
+    assert table.cells["from"].iloc[0] == "finite elements"
+
+
 def test_the_chart_shows_the_middle_share_of_every_thickness_and_gap():
-    found = {("C1", humidity): charted(humidity, factor) for humidity, factor in ((0.5, 1.0), (0.4, 2.0), (0.6, 0.5))}
-    figure = figures_devices.chart(found)
+    figure = figures_devices.chart(CHARTS, STEEP)
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["(a) C1, gap 10 µm", "(b) C1, gap 20 µm"]
     curve = next(line for line in figure.axes[1].lines if len(line.get_xdata()) == 3)
     np.testing.assert_allclose(curve.get_xdata(), [0.4, 0.5, 0.6])
     np.testing.assert_allclose(curve.get_ydata(), np.array([2, 1, 0.5]) * 105)  # p = 0.001, thin, wide gap, S-shape
-    assert any(line.get_ydata()[0] == pytest.approx(60) for line in figure.axes[1].lines if len(line.get_ydata()) == 2)
+
+
+def test_the_chart_shows_the_limit_of_saturated_air_of_every_shape():
+    panel = figures_devices.chart(CHARTS, STEEP).axes[1]
+    limits = sorted({float(line.get_ydata()[0]) for line in panel.lines if list(line.get_xdata()) == [0, 1]})
+    np.testing.assert_allclose(limits, [52, 53, 56, 57])
+
+
+def test_the_chart_marks_what_a_power_law_gave_and_how_far_it_errs():
+    first, second = figures_devices.chart(CHARTS, STEEP).axes
+    marked = [line for line in second.lines if line.get_marker() == "o" and len(line.get_xdata())]
+    np.testing.assert_allclose([line.get_ydata() for line in marked], np.outer([105, 107], [2, 1, 0.5]))
+    assert not [line for line in first.lines if line.get_marker() == "o" and len(line.get_xdata())]
+    assert "by a power law, ± 0.4 %" in second.get_legend_handles_labels()[1]
+    assert not [label for label in first.get_legend_handles_labels()[1] if "power" in label]
+
+
+def test_the_chart_has_its_warnings_below_and_their_numbers_beside_the_thickness():
+    figure = figures_devices.chart(CHARTS, STEEP)
+    labels = figure.axes[1].get_legend_handles_labels()[1]
+    assert "thickness 2 µm (1) (2)" in labels
+    assert "thickness 3 µm" in labels
+    assert figure._supxlabel.get_text() == "(1) Too steep.\n(2) Too short."
 
 
 def test_equal_data_give_equal_files(found, tmp_path):

@@ -5,10 +5,12 @@ import re
 
 import numpy as np
 import pytest
+from test_device_outputs import charted
 from test_tables_budget import BUDGETS, STOPPERS, budget_dataset, stopper_dataset
 
-from stiction.designs import cracks, pages, safe_lengths
+from stiction.designs import findings, pages, safe_lengths, sticking
 from stiction.designs.pages import Page, Section
+from stiction.designs.releases import Device
 from stiction.devices.limits import NOT_MODELLED
 from stiction.stages.curves import Water
 
@@ -25,12 +27,12 @@ STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_forc
 
 def safe(kind="cantilever", longest=600e-6):
     """Safe lengths of 400 devices that stick between two thirds of a length and this length."""
-    device = cracks.Device(kind, "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
+    device = Device(kind, "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
     settings = safe_lengths.Settings(1, Water(300.0), 0.67, device, (1e-2, 1e-3, 1e-4), 1.5e-7)
-    shapes = {safe_lengths.S_SHAPE: np.linspace(2 / 3, 1, 400) * longest}
+    shapes = {sticking.S_SHAPE: np.linspace(2 / 3, 1, 400) * longest}
     if kind == "cantilever":
-        shapes[safe_lengths.EITHER] = 0.7 * shapes[safe_lengths.S_SHAPE]
-    bounds = {shape: safe_lengths.safe_lengths(values, settings) for shape, values in shapes.items()}
+        shapes[sticking.EITHER] = 0.7 * shapes[sticking.S_SHAPE]
+    bounds = {shape: sticking.safe_lengths(values, settings) for shape, values in shapes.items()}
     errors = {shape: np.full(3, 1e-6) for shape in shapes}
     return safe_lengths.layout(shapes, bounds, errors, 1e-7, 3e-9, settings)
 
@@ -51,14 +53,21 @@ def test_a_page_is_one_file_with_its_figures(stopper):
 def test_the_page_of_a_stopper_says_how_many_stick_and_in_which_air(stopper):
     assert "0.67, 0 % of the stoppers (0 to 0.918 %) hold more than the restoring force of 18.99 µN" in stopper
     assert "holds most at a relative humidity of 0.70; drier and wetter air, from 0.4 to 0.9" in stopper
-    assert "leaves at most 1 in 100 stuck" in stopper
+    assert "In no air of this range do more than 0 % (0 to 0.918 %) stick." in stopper
+    found = STOPPERS["S1"].sel(share=1e-2)
+    stated, any_air = (
+        1e6 * float(force.max()) for force in (found.safe_force.sel(part="safe"), found.safe_force_along)
+    )
+    assert f"a restoring force of {stated:.3g} µN leaves at most 1 in 100 stuck (95 % confidence)" in stopper
+    assert f"and at any from 0.4 to 0.9, one of {any_air:.3g} µN." in stopper
     assert "1 in 1000" not in stopper
     assert "<td>3 x 3 µm</td>" in stopper
 
 
 def test_a_worst_humidity_at_the_end_is_stated_as_one():
     assert pages.worst_sentence(stopper_dataset(peak=1.0)) == (
-        "Between relative humidities of 0.4 and 0.9, the stopper holds most at 0.9."
+        "Between relative humidities of 0.4 and 0.9, the stopper holds most at 0.9. "
+        "In no air of this range do more than 0 % (0 to 0.918 %) stick."
     )
 
 
@@ -78,15 +87,39 @@ def test_the_page_of_a_beam_says_which_lengths_come_free():
     assert "tip" not in pages.safe_sentence(0.67, safe("bridge"))
 
 
+SHAPES = sticking.S_SHAPE, sticking.EITHER
+
+
 def test_a_beam_without_chart_and_budget_has_neither():
-    plain = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, []).html
+    silent = {("C1", 0.67, shape): [] for shape in SHAPES}
+    plain = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).html
     assert "Uncertainty, and" not in plain
     assert "Other thicknesses" not in plain
     assert plain.count("<img") == 1
     budgets = {0.44: budget_dataset(2.0), 0.67: budget_dataset()}
-    both = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, budgets, []).html
+    both = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, budgets, silent).html
     assert both.count("<img") == 2
     assert all(f"RH {humidity}: effect [%]" in both for humidity in (0.44, 0.67))
+
+
+def test_warnings_of_a_beam_have_the_numbers_of_its_tables():
+    warned = {("C1", 0.67, shape): ["Too steep."] * (shape == sticking.EITHER) for shape in SHAPES}
+    curves = [("C1", *curve) for curve in findings.curves(charted(0.5))]
+    warned |= dict.fromkeys(curves, []) | {curves[0]: ["Too thin.", "Too steep."]}
+    page = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {0.5: charted(0.5)}, {}, warned).html
+    assert "<p>(1) Too steep.</p>\n<p>(2) Too thin.</p>" in page
+    rows = re.findall(r"<td>([^<]*)</td>\s*</tr>", page.partition("How long")[2])  # last cells
+    assert rows == [""] * 3 + ["1"] * 3 + ["2, 1"] + [""] * 7
+    assert page.count("<img") == 2
+    assert "<details>" not in page
+
+
+def test_a_long_table_is_folded():
+    charts = {humidity: charted(humidity) for humidity in np.linspace(0.4, 0.9, 9).round(3)}
+    silent = {("C1", 0.67, shape): [] for shape in SHAPES}
+    silent |= {("C1", *curve): [] for curve in findings.curves(charted(0.5))}
+    page = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, charts, {}, silent).html
+    assert page.count("<details><summary>Table of 72 rows</summary>") == 1
 
 
 def test_text_is_escaped():

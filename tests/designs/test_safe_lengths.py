@@ -2,17 +2,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ground import C1, PULL, R1, UM, lognormal_cracks, safe_with_tips, safe_without_tips, wanted
+from ground import C1, PULL, R1, lognormal_cracks, safe_with_tips, safe_without_tips, wanted
 from numpy.testing import assert_allclose, assert_array_equal
 
-from stiction.beam.energy import apparent_adhesion_energy
-from stiction.constants import WATER_SURFACE_ENERGY
-from stiction.designs import cracks, safe_lengths
+from stiction.designs import cracks, safe_lengths, sticking
 from stiction.devices import arcs, risk
 from stiction.stages import curves
 from stiction.streams import stream
 
-EITHER, S_SHAPE = safe_lengths.EITHER, safe_lengths.S_SHAPE
+EITHER, S_SHAPE = sticking.EITHER, sticking.S_SHAPE
 
 
 def energies(mean, number=400):
@@ -29,9 +27,9 @@ def test_shares_are_those_of_the_sticking_lengths(cantilever):
     found, _, foundation = cracks.lengths(lognormal_cracks())
     alone = found + 2 * foundation
     either = np.minimum(alone, arcs.arc_length(energies(2e-3), C1.beam))
-    for shape, sticking in ((S_SHAPE, alone), (EITHER, either)):
+    for shape, lengths in ((S_SHAPE, alone), (EITHER, either)):
         one = cantilever.sel(shape=shape)
-        stuck, low, high = risk.stuck_share(one.length.values, sticking)
+        stuck, low, high = risk.stuck_share(one.length.values, lengths)
         assert_array_equal(one.stuck, stuck)
         assert_array_equal(one.stuck_band, [low, high])
     assert np.any(cantilever.stuck[1] > cantilever.stuck[0])
@@ -76,12 +74,6 @@ def test_a_bridge_sticks_at_the_sum_of_its_two_cracks():
     assert_array_equal(found.stuck[0], risk.stuck_share(found.length.values, sums)[0])
 
 
-def test_beams_without_a_crack_stick_at_no_known_length():
-    sticking = safe_lengths.sticking_lengths(np.array([7e-4, np.inf]), 3e-6, C1, np.array([1e-3, 1e-3]))
-    assert_array_equal(sticking[S_SHAPE], [7e-4 + 6e-6, np.inf])
-    assert_array_equal(sticking[EITHER], [7e-4 + 6e-6, 1e-3])
-
-
 def test_the_axis_of_lengths_is_finite_although_some_beams_never_stick():
     dataset = lognormal_cracks()
     dataset["crack_length"][:20] = np.inf
@@ -91,20 +83,14 @@ def test_the_axis_of_lengths_is_finite_although_some_beams_never_stick():
 
 
 def test_limits_of_the_model_are_stated(cantilever):
-    flat = apparent_adhesion_energy(float(cantilever.flooded_length), C1.beam)
-    assert_allclose(flat, 2 * WATER_SURFACE_ENERGY, rtol=1e-12)
-    bridge = safe_without_tips(replace(R1, residual_stress=0.0))
-    assert_allclose(float(bridge.flooded_length), (24 * 164e9 * (2 * UM) ** 5 / 0.144) ** 0.25, rtol=1e-9)
     assert float(cantilever.film) == pytest.approx(2 * 0.072 * 1.8e-5 / (8.314462618 * 300 * -np.log(0.67)))
-    assert np.isnan(bridge.wedge)
+    assert np.isnan(safe_without_tips().wedge)
     # e / f_max over the slope 3 h / 2 L of the median arc
     length = np.median(arcs.arc_length(energies(2e-3), C1.beam))
     assert_allclose(float(cantilever.wedge), energies(2e-3).mean() / PULL / (1.5 * 20e-6 / length), rtol=1e-9)
 
 
-def test_contact_angles_reduce_the_film_and_the_limit_of_saturated_air():
+def test_contact_angles_reduce_the_film():
     tilted = replace(wanted(R1), water=curves.Water(300.0, (np.radians(60), 0.0)))
     found = safe_lengths.compute(lognormal_cracks(800), None, tilted)
-    plain = safe_without_tips()
-    assert_allclose(float(found.film / plain.film), 0.75, rtol=1e-12)
-    assert float(found.flooded_length) > float(plain.flooded_length)
+    assert_allclose(float(found.film / safe_without_tips().film), 0.75, rtol=1e-12)

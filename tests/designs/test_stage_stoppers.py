@@ -71,6 +71,22 @@ def test_the_worst_humidity_is_that_of_the_largest_mean_force_unless_it_is_an_en
     assert stoppers.is_at_an_end(beyond)
 
 
+def test_safe_forces_along_the_axis_are_those_at_its_humidities():
+    axis = np.linspace(0.5, 0.9, 3)
+    forces = np.arange(1, 401) / 100
+    at = stoppers.layout(SETTINGS, np.stack([forces, 2 * forces]), axis, np.stack([forces, 3 * forces, 2 * forces]))
+    assert_array_equal(at.safe_force_along[[0, 2]], at.safe_force.sel(part="safe"))
+    stuck, safe = stoppers.in_any_air(at)
+    assert_allclose(safe[0], 3 * at.safe_force_along[0, 0], rtol=1e-12)
+    assert np.isnan(safe[1:]).all()
+    assert stuck == tuple(map(float, at.stuck_along[:, 1]))
+
+
+def test_the_error_of_the_worst_humidity_contains_the_step_of_the_axis():
+    found = synthetic(100, peak=0.7123)  # without scatter: all patches have their peak there
+    assert_allclose(found.worst_humidity_error, 0.02 / np.sqrt(12), rtol=1e-9)
+
+
 def test_a_stopper_comes_back_from_its_file(found, tmp_path):
     storage.save(found, tmp_path / "S1.nc", "stoppers", {})
     again = storage.load(tmp_path / "S1.nc", "stoppers")

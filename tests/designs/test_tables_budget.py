@@ -97,9 +97,21 @@ def test_numbers_of_stoppers_are_those_of_the_dataset():
     assert np.isnan(row["safe_force_uN_0.001"])
 
 
+def test_the_last_row_of_a_stopper_bounds_all_humidities_of_the_axis():
+    dataset = STOPPERS["S1"].assign(stuck_along=STOPPERS["S1"].stuck_along + 0.01 * np.arange(11))
+    table = tables_budget.stoppers({"S1": dataset}, WARNINGS)
+    row = table.frame.iloc[2]
+    assert np.isnan(row.relative_humidity)
+    assert table.cells.RH[2] == "0.4 to 0.9"
+    assert_allclose(row.share_stuck, 0.1, rtol=1e-12)
+    assert_allclose(row.pull_off_uN, 1e6 * dataset.mean_along.max(), rtol=1e-12)
+    assert_allclose(row["safe_force_uN_0.01"], 1e6 * dataset.safe_force_along.sel(share=1e-2).max(), rtol=1e-12)
+    assert np.isnan(row["safe_force_uN_0.001"])
+
+
 def test_a_worst_humidity_at_the_end_of_the_axis_may_lie_beyond_it():
     cells = tables_budget.stoppers(STOPPERS, WARNINGS).cells
-    assert list(cells["worst RH"]) == ["0.7000 ± 0.0020"] * 2 + ["0.9 or beyond"] * 2
+    assert list(cells["worst RH"]) == ["0.700 ± 0.015"] * 3 + ["0.9 or beyond"] * 3
     assert set(cells["safe force, 0.001 [µN]"]) == {"–"}
 
 
@@ -118,14 +130,17 @@ def test_bars_of_a_tornado_are_the_effects_the_largest_first():
 
 
 def test_a_stopper_shows_the_share_of_patches_over_the_restoring_force():
-    figure = figures_budget.stoppers(STOPPERS)
+    figure = figures_budget.stoppers(STOPPERS, WARNINGS)
     line = figure.axes[0].lines[0]
+    assert figure._supxlabel.get_text() == "(1) S2: Beware."
     force, share = line.get_data()
     assert_allclose(share, 1 - np.arange(1, 401) / 400, atol=1e-12)
     assert_allclose(force, 0.05 * np.arange(1, 401), rtol=1e-12)
 
 
-@pytest.mark.parametrize("draw", [lambda: figures_budget.budget(BUDGETS), lambda: figures_budget.stoppers(STOPPERS)])
+@pytest.mark.parametrize(
+    "draw", [lambda: figures_budget.budget(BUDGETS), lambda: figures_budget.stoppers(STOPPERS, WARNINGS)]
+)
 def test_equal_data_give_equal_files(draw, tmp_path):
     for name in ("one", "two"):
         save(draw(), tmp_path / f"{name}.png")

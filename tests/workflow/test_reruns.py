@@ -59,19 +59,21 @@ READ_BY = {
     "variant_contact": "variant",
     "chaos": "beams orders checks",
     "beams": "table_3 checks model_limits",
-    "plasticity": "model_limits table_safe_lengths",
+    "plasticity": "model_limits table_safe_lengths table_chart device_limits",
     "device_contact": "cracks",
     "tip_contact": "safe_lengths chart",
     "cracks": "safe_lengths",
-    "safe_lengths": "table_safe_lengths model_limits",
+    "safe_lengths": "table_safe_lengths device_limits",
+    "chart": "table_chart device_limits",
     "resampling": "checks",
     "checks": "verdict",
 }
 RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())
 #: Rules of pair b only.
 OF_FIGURE = {"sensitivity_contact", "sensitivity", "sample_sizes", "orders", "mesh"}
-#: Rules of devices, which belong to pair b as well, apart from the warnings about all pairs.
-OF_DEVICES = {"device_contact", "tip_contact", "cracks", "safe_lengths", "chart", "table_safe_lengths"}
+#: Rules of devices, which belong to pair b as well.
+OF_DEVICES = {"device_contact", "tip_contact", "cracks", "safe_lengths", "chart", "table_safe_lengths", "table_chart"}
+OF_DEVICES |= {"device_limits"}
 OF_FIGURE |= OF_DEVICES
 
 #: Description of a change; overlay; rules that it affects directly, whose readers rerun as well; rules excepted because
@@ -131,11 +133,11 @@ MATRIX = [
     ("study: a Poisson's ratio added", "studies: {variants: {poisson_ratio: [0.18, 0.28, 0.3]}}", "variant_contact",
      (), "variants/summits|_base|0.18|0.28"),
     ("study: finer elements", "studies: {variants: {strips_per_element: [2, 1]}}", "variant", (), "_base|_element_2"),
-    ("one humidity of a device", "devices: {C1: {humidities: [0.7, 0.9]}}", "cracks table_safe_lengths model_limits",
+    ("one humidity of a device", "devices: {C1: {humidities: [0.7, 0.9]}}", "cracks table_safe_lengths device_limits",
      (), "contact|C1_rh070|R1|chart/"),
     ("a device added", "devices: {C2: {kind: cantilever, pair: a, thickness_um: 3, gap_um: 20, width_um: 30, "
-     "humidities: [0.6]}}", "tip_contact cracks table_safe_lengths model_limits", {"chart"}, "contact/[ab]_|tips/b_|C1|R1|beams"),
-    ("thickness of a device", "devices: {C1: {thickness_um: 3}}", "cracks safe_lengths chart table_safe_lengths model_limits", (), "contact|R1"),
+     "humidities: [0.6]}}", "tip_contact cracks table_safe_lengths device_limits", {"chart", "table_chart"}, "contact/[ab]_|tips/b_|C1|R1|beams"),
+    ("thickness of a device", "devices: {C1: {thickness_um: 3}}", "cracks safe_lengths chart", (), "contact|R1"),
     ("thicknesses of a chart", "devices: {C1: {chart: {thicknesses_um: [2.6]}}}", "chart", (), "contact|R1|safe"),
     ("uncertainty of a device", "devices: {C1: {uncertainty: {gap_um: 1}}}", "", (), ""),
     ("beams of devices", "design: {beams: 300}", "tip_contact cracks chart", (), "results/contact"),
@@ -349,6 +351,8 @@ SPOTS = [
     ("variants/summits", "variant_summits", "heights spectrum contact_chunk plasticity sensitivity_contact"),
     ("variants/contact", "variant_contact", "variant_summits contact_chunk plasticity sensitivity_contact"),
     ("study", "", " ".join(RULES)),
+    ("designs/releases", "cracks chart", "heights spectrum contact_chunk tip_contact beams"),
+    ("designs/sticking", "safe_lengths chart", "heights spectrum contact_chunk tip_contact beams cracks"),
     ("scans/estimate", "table_1 table_3", " ".join(RULES - {"table_1", "table_3"})),
 ]
 SPOT_ROWS = [
@@ -383,8 +387,8 @@ LAYOUTS = {
     "studies/resampling": {"resampling"},
     "variants/summits": {"variant_summits"},
     "variants/beams": {"variant"},
-    "designs/cracks": {"cracks", "safe_lengths", "chart", "table_safe_lengths", "model_limits"},
-    "designs/safe_lengths": {"safe_lengths", "chart", "table_safe_lengths", "model_limits"},
+    "designs/cracks": {"cracks", "safe_lengths"},
+    "designs/safe_lengths": {"safe_lengths"},
     "designs/chart": {"chart"},
 }
 LAYOUT_ROWS = [

@@ -61,6 +61,8 @@ rule stoppers:
     log:
         "results/logs/devices/stoppers/{device}.log",
     localrule: True
+    resources:
+        mem_mb=SAMPLES,
     params:
         settings=lambda w: jobs.stoppers(plan, w.device),
         code=code("stoppers.py"),
@@ -86,6 +88,9 @@ rule budget:
         "results/devices/budget/{case}.nc",
     log:
         "results/logs/devices/budget/{case}.log",
+    resources:
+        runtime=120,
+        mem_mb=SAMPLES,
     params:
         settings=lambda w: jobs.budget(plan, w.case),
         code=code("budget.py"),
@@ -116,6 +121,7 @@ rule table_stoppers:
 rule figure_stoppers:
     input:
         stoppers=expand("results/devices/stoppers/{device}.nc", device=designs.stoppers),
+        plasticity=expand("results/studies/plasticity/{pair}.nc", pair=designs.pressed(*designs.stoppers)),
         style=STYLE,
     output:
         **figure_files("stoppers", ON_DEVICES, "pull-off force of stoppers"),
@@ -123,7 +129,7 @@ rule figure_stoppers:
         "results/logs/figures/stoppers.log",
     localrule: True
     params:
-        settings={"stoppers": designs.stoppers},
+        settings=jobs.beyond_stoppers(plan),
         code=code("figure_stoppers.py"),
     message:
         "Pull-off force of all stoppers."
@@ -187,10 +193,11 @@ rule device_page:
 rule devices:
     input:
         [rules.table_safe_lengths.output, rules.figure_risk.output] if designs.cases else [],
-        rules.figure_chart.output if designs.charted else [],
+        [rules.table_chart.output, rules.figure_chart.output] if designs.charted else [],
         [rules.table_stoppers.output, rules.figure_stoppers.output] if designs.stoppers else [],
         [rules.table_budget.output, rules.figure_budget.output] if designs.budgeted else [],
         expand("results/devices/{device}.html", device=designs.devices),
+        rules.device_limits.output if designs.devices else [],
     localrule: True
     message:
         "Tables, figures and pages of the devices."

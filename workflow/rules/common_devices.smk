@@ -1,5 +1,8 @@
 """Input functions of the rules for devices."""
 
+CONTACT = memory.of_contact(measured.view(config, preliminary))  # of the jobs that hold all samples they draw [MB]
+CHARTS = [f"results/devices/chart/{case}.nc" for name in designs.charted for case in designs.chart_cases(name)]
+
 
 def of_device(found):
     """Input function of a rule for the cases of a device, from a function of the name of the device."""

@@ -10,7 +10,7 @@ rule device_contact:
         "results/logs/devices/contact/{pair}_{length}x{width}.log",
     resources:
         runtime=120,
-        mem_mb=MEMORY,
+        mem_mb=CONTACT,
     params:
         settings=lambda w: jobs.device_contact(plan, w.pair, w.length, w.width),
         code=code("device_contact.py"),
@@ -39,6 +39,9 @@ rule cracks:
         "results/devices/cracks/{case}.nc",
     log:
         "results/logs/devices/cracks/{case}.log",
+    resources:
+        runtime=120,
+        mem_mb=SAMPLES,
     params:
         settings=lambda w: jobs.cracks(plan, w.case),
         code=code("cracks.py"),
@@ -57,6 +60,8 @@ rule safe_lengths:
     log:
         "results/logs/devices/safe_lengths/{case}.log",
     localrule: True
+    resources:
+        mem_mb=SAMPLES,
     params:
         settings=lambda w: jobs.safe_lengths(plan, w.case),
         code=code("safe_lengths.py"),
@@ -74,6 +79,9 @@ rule chart:
         "results/devices/chart/{case}.nc",
     log:
         "results/logs/devices/chart/{case}.log",
+    resources:
+        runtime=120,
+        mem_mb=SAMPLES,
     params:
         settings=lambda w: jobs.chart(plan, w.case),
         code=code("chart.py"),
@@ -120,9 +128,28 @@ rule figure_risk:
         "../scripts/figure_risk.py"
 
 
+rule table_chart:
+    input:
+        charts=CHARTS,
+        plasticity=expand("results/studies/plasticity/{pair}.nc", pair=designs.pressed(*designs.charted)),
+    output:
+        **table_files("chart", "safe length over the relative humidity"),
+    log:
+        "results/logs/tables/chart.log",
+    localrule: True
+    params:
+        settings=jobs.charts(plan),
+        code=code("table_chart.py"),
+    message:
+        "Safe lengths along the axes of all charts."
+    script:
+        "../scripts/table_chart.py"
+
+
 rule figure_chart:
     input:
-        charts=[f"results/devices/chart/{case}.nc" for name in designs.charted for case in designs.chart_cases(name)],
+        charts=CHARTS,
+        plasticity=expand("results/studies/plasticity/{pair}.nc", pair=designs.pressed(*designs.charted)),
         style=STYLE,
     output:
         **figure_files("chart", ON_DEVICES, "safe length over the relative humidity"),
@@ -130,7 +157,7 @@ rule figure_chart:
         "results/logs/figures/chart.log",
     localrule: True
     params:
-        settings={name: designs.chart_cases(name) for name in designs.charted},
+        settings=jobs.charts(plan),
         code=code("figure_chart.py"),
     message:
         "Safe length over the relative humidity."
@@ -138,14 +165,29 @@ rule figure_chart:
         "../scripts/figure_chart.py"
 
 
+rule device_limits:
+    input:
+        lengths=expand("results/devices/safe_lengths/{case}.nc", case=designs.cases),
+        charts=CHARTS,
+        plasticity=expand("results/studies/plasticity/{pair}.nc", pair=designs.pressed(*designs.devices)),
+    output:
+        "results/devices/warnings.md",
+    log:
+        "results/logs/devices/warnings.log",
+    localrule: True
+    params:
+        settings=jobs.device_limits(plan),
+        code=code("device_limits.py"),
+    message:
+        "Where the results of devices are beyond the model."
+    script:
+        "../scripts/device_limits.py"
+
+
 rule model_limits:
     input:
         beams=[f"results/beams/{case}_{model}.nc" for case, model in plan.outcomes],
-        plasticity=expand(
-            "results/studies/plasticity/{pair}.nc",
-            pair=dict.fromkeys([*plan.pressed_pairs, *designs.pressed(*designs.devices)]),
-        ),
-        lengths=expand("results/devices/safe_lengths/{case}.nc", case=designs.cases),
+        plasticity=expand("results/studies/plasticity/{pair}.nc", pair=plan.pressed_pairs),
     output:
         "results/warnings.md",
     log:
@@ -155,6 +197,6 @@ rule model_limits:
         settings=jobs.model_limits(plan),
         code=code("model_limits.py"),
     message:
-        "Where the results are beyond the model."
+        "Where the results of pairs are beyond the model."
     script:
         "../scripts/model_limits.py"

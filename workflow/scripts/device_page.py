@@ -20,7 +20,9 @@ def main(job):
         found, charts = _by_humidity(job.input.safe_lengths, "safe_lengths"), _by_humidity(job.input.charts, "chart")
         cases = {(name, humidity): dataset for humidity, dataset in found.items()}
         warnings = findings.of_devices(cases, plasticity, settings["warned"])
-        page = pages.of_beam(name, section, found, charts, budgets, findings.numbered(warnings)[0])
+        axis = {(name, humidity): dataset for humidity, dataset in charts.items()}
+        warnings |= findings.of_charts(axis, plasticity, settings["warned"])
+        page = pages.of_beam(name, section, found, charts, budgets, warnings)
     save_text(page.html, job.output[0])
 
 

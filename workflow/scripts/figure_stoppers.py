@@ -1,5 +1,6 @@
 """Pull-off force of all stoppers."""
 
+from stiction.designs import findings
 from stiction.designs.figures_budget import stoppers
 from stiction.report.style import save
 from stiction.run.logs import logged
@@ -7,8 +8,10 @@ from stiction.stages.named import load_named
 
 
 def main(job):
-    """Draw P(stuck) over the restoring force, and the force over the humidity."""
-    save(stoppers(load_named(job.input.stoppers, "stoppers")), *job.output)
+    """Draw P(stuck) over the restoring force, and the force over the humidity, with the warnings below."""
+    found = load_named(job.input.stoppers, "stoppers")
+    warnings = findings.of_stoppers(load_named(job.input.plasticity, "plasticity"), job.params.settings)
+    save(stoppers(found, warnings), *job.output)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ from pathlib import Path
 from stiction.config import measured
 from stiction.config.cases import humidity_of, pair_of
 from stiction.config.designs import Designs
+from stiction.config.files import paper
 from stiction.config.merging import merged
 from stiction.config.plan import ELASTIC, MOMENTS, SUMMITS, Plan, chosen
 from stiction.config.units import NM_PER_UM
@@ -285,11 +286,17 @@ _PROPERTIES = {
 }
 
 
+#: ASSUME: a solid is polysilicon if its Young's modulus differs from that of the paper by no more than this share.
+_POLYSILICON = 0.1
+
+
 def _stated(plan, pair):
-    """Names of the materials of a pair, each with its stated properties in words."""
-    named = plan.config.get("materials", {})
-    used = (plan.config["surfaces"][surface].get("material") for surface in plan.sides(pair))
-    return [[name, [_PROPERTIES[key] for key in named[name]]] for name in dict.fromkeys(used) if name]
+    """Names of the materials of a pair, each with its stated properties in words; section solid if it is one."""
+    named, solid = plan.config.get("materials", {}), plan.config["solid"]
+    if abs(solid["young_modulus_GPa"] / paper()["solid"]["young_modulus_GPa"] - 1) > _POLYSILICON:
+        named = named | {"the solid": solid}
+    used = dict.fromkeys(plan.config["surfaces"][surface].get("material", "the solid") for surface in plan.sides(pair))
+    return [[name, [_PROPERTIES[key] for key in named[name]]] for name in used if name in named]
 
 
 def beyond_the_model(plan: Plan) -> dict:
@@ -303,11 +310,23 @@ def beyond_the_model(plan: Plan) -> dict:
     return {"cases": designs.cases, "pressed": designs.pressed_pairs, "devices": devices}
 
 
+def charts(plan: Plan) -> dict:
+    """Cases of all charts, and as `beyond_the_model` of their devices."""
+    designs, beyond = Designs(plan.config), beyond_the_model(plan)["devices"]
+    cases = {name: designs.chart_cases(name) for name in designs.charted}
+    return {"charts": cases, "pressed": designs.pressed(*cases), "devices": chosen(beyond, cases)}
+
+
+def device_limits(plan: Plan) -> dict:
+    """As `beyond_the_model`, with all charts and stoppers."""
+    return beyond_the_model(plan) | {"charts": charts(plan)["charts"], "stoppers": beyond_stoppers(plan)}
+
+
 def model_limits(plan: Plan) -> dict:
-    """As `beyond_the_model`, with the cases, the nominal beams and the strips of all pairs."""
+    """Cases, nominal beams, strips and stated properties of all pairs that run."""
     pairs = {"sampling": _strip(plan)} | cantilevers(plan, *plan.pairs)
-    shown = {"outcomes": plan.outcomes, "pressed_pairs": plan.pressed_pairs}
-    return beyond_the_model(plan) | {"pairs": pairs, "stoppers": beyond_stoppers(plan)} | shown
+    materials = {pair: _stated(plan, pair) for pair in plan.pairs}
+    return {"outcomes": plan.outcomes, "pressed": plan.pressed_pairs, "pairs": pairs, "materials": materials}
 
 
 # Stoppers and budgets of devices

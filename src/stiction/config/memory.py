@@ -39,13 +39,19 @@ def of_field(length_um: float, width_um: float, spacing_nm: float) -> float:
 def of_samples(config: dict) -> int:
     """Memory to reserve for any job that holds the contact of all samples of a pair of a configuration [MB].
 
-    The chunks are joined one at a time.
+    The chunks are joined one at a time. Jobs of devices hold the contact of the tips of all beams as well.
     """
-    contact, surfaces = config["contact"], config["surfaces"]
-    running = [config["pairs"][pair] for pair in config["run"]["pairs"]]
-    rms = max(sum(surfaces[pair[side]]["rms_nm"] for side in SIDES) for pair in running)
-    stored = 4 * _MB * contact["samples"] * _DISTANCES * rms / contact["distance_step_nm"]
-    return max(USUAL, round(_BASE + stored * (1 + 1 / contact["chunks"])))
+    contact, devices = config["contact"], config.get("devices", {}).values()
+    running = _stored(config, config["run"]["pairs"]) * contact["samples"] * (1 + 1 / contact["chunks"])
+    samples = contact["samples"] + config["design"]["beams"]
+    sticking = _stored(config, [device["pair"] for device in devices]) * samples
+    return max(USUAL, round(_BASE + max(running, sticking)))
+
+
+def _stored(config, pairs):
+    """Contact of one sample of the roughest of some pairs [MB]; 0 without pairs."""
+    rms = [[config["surfaces"][config["pairs"][pair][side]]["rms_nm"] for side in SIDES] for pair in pairs]
+    return 4 * _MB * _DISTANCES * max(map(sum, rms), default=0) / config["contact"]["distance_step_nm"]
 
 
 def patch_of(device: dict, sampling: dict) -> tuple[float, float]:
@@ -57,6 +63,19 @@ def patch_of(device: dict, sampling: dict) -> tuple[float, float]:
 
 def of_job(config: dict) -> int:
     """Memory to reserve for any job that draws surfaces of a configuration [MB]."""
+    return max(USUAL, round(_of_largest_field(config)))
+
+
+def of_contact(config: dict) -> int:
+    """Memory to reserve for any job that draws all samples of a device and holds their contact [MB]."""
+    pairs = [device["pair"] for device in config.get("devices", {}).values()]
+    samples = max(config["contact"]["samples"], config["design"]["beams"])
+    # The curves of the samples are collected before they become one array.
+    return max(USUAL, round(_of_largest_field(config) + 2 * samples * _stored(config, pairs)))
+
+
+def _of_largest_field(config):
+    """Memory of a job that draws the largest of all fields [MB]."""
     sampling, patch = config["sampling"], config["identification"]["patch_um"]
     strip = sampling["strip_length_um"] + sampling["margin_um"], config["beam"]["width_um"] + sampling["margin_um"]
     spacings = sampling["spacing_nm"], *config["studies"]["variants"]["spacing_nm"]
@@ -64,8 +83,7 @@ def of_job(config: dict) -> int:
     needed = [of_field(*side, spacings[0]) for side in sides] + [of_field(*strip, spacing) for spacing in spacings]
     patches = (patch_of(device, sampling) for device in config.get("devices", {}).values())
     margin = sampling["margin_um"]
-    needed += [of_field(length + margin, width + margin, spacings[0]) for length, width in patches]
-    return max(USUAL, round(max(needed)))
+    return max(needed + [of_field(length + margin, width + margin, spacings[0]) for length, width in patches])
 
 
 def of_estimate(points: Sequence[int], files: int) -> int:

@@ -135,7 +135,8 @@ def _reach(force, start, level):
             return i
     raise ValueError(
         "the force does not rise to zero or to f_limit at any distance between the mean planes: the surfaces are too "
-        "smooth or the solid is too soft to resist the adhesion, or the air is too dry"
+        "smooth or the solid is too soft to resist the adhesion, the air is too dry, or the patch of surface is too "
+        "small, so that a sample has too few summits"
     )
 
 

@@ -20,7 +20,7 @@ from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.beam.montecarlo import Experiment, columns, simulate
 from stiction.beam.release import EndState
 from stiction.contact import forcelaw
-from stiction.designs.cracks import Device, addresses, long_beam
+from stiction.designs.releases import Device, addresses, long_beam
 from stiction.devices import bridges
 from stiction.devices.budget import STEP, Budget, choice_effect, joined, log_slope
 from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM

@@ -1,10 +1,10 @@
 """Stage chart: safe lengths of beams of other thicknesses and gaps than those of a device, at one humidity of an axis.
 
 Beams are computed by finite elements. Between the smallest and the largest thickness and gap, a power law is used if it
-predicts a beam in the middle, to which it was not fitted, within 1 %.
+predicts beams in the middle, to which it was not fitted, within 1 %.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -13,9 +13,12 @@ import xarray as xr
 
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
-from stiction.designs import cracks, safe_lengths
-from stiction.designs.cracks import Device
-from stiction.devices.chart import checked_power_law, flooded_length
+from stiction.contact.meniscus import meniscus_height
+from stiction.designs import releases, sticking
+from stiction.designs.patches import on_patch
+from stiction.designs.releases import Device
+from stiction.devices import arcs
+from stiction.devices.chart import checked_power_law, flooded_energy, flooded_length
 from stiction.stages import curves
 
 
@@ -35,108 +38,125 @@ class Settings:
     gaps: tuple[float, ...]  #: increasing [m]
 
 
+@dataclass(frozen=True)
+class Filled:
+    """Lengths of beams of all sizes, and where they come from."""
+
+    lengths: np.ndarray  #: (sizes, ...) [m]
+    by_elements: np.ndarray  #: whether each size was computed by finite elements (sizes,) bool
+    error: float  #: largest error of the power laws at the sizes in the middle [-]; 0 if none is used
+
+
 def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
     """Safe lengths of all thicknesses and gaps; inputs as in the stages cracks and safe_lengths."""
-    model = cracks.fitted(*curves.vectors(contact, settings.humidity, settings.water), settings)
-    laws = draw_laws(model, cracks.LAWS, cracks.addresses(settings)("mesh"))
-    sizes = np.array(list(product(settings.thicknesses, settings.gaps)))
+    with on_patch(settings.device.strip, settings.device.width):
+        model = releases.fitted(*curves.vectors(contact, settings.humidity, settings.water), settings.chaos)
+    laws = draw_laws(model, releases.LAWS, releases.addresses(settings)("mesh"))
+    with on_patch(settings.tip, settings.device.width):
+        energies = None if tips is None else curves.energies(tips, settings.humidity, settings.water)
 
-    def by_elements(size):
+    def by_elements(thickness, gap):
         """Safe lengths of beams of one size (shapes, shares) [m]."""
-        device = replace(settings.device, thickness=float(size[0]), gap=float(size[1]))
-        return _safe_lengths(device, model, laws, tips, settings)
+        return _safe_lengths(_of_size(settings, thickness, gap), model, laws, energies, settings)
 
-    lengths, computed, error = filled(sizes, by_elements)
-    shapes = [safe_lengths.S_SHAPE] if tips is None else [safe_lengths.S_SHAPE, safe_lengths.EITHER]
-    limits = [_limit(settings, *size) for size in sizes]
-    return layout(lengths, computed, error, limits, shapes, settings)
+    found = filled(settings.thicknesses, settings.gaps, by_elements)
+    shortest, gaps = found.lengths[:, -1].min(axis=-1), np.tile(settings.gaps, len(settings.thicknesses))
+    slopes = arcs.tip_slope(shortest, gaps)
+    wedges = np.full(len(gaps), np.nan) if tips is None else sticking.mean_wedge(tips, slopes, settings)
+    return layout(found, wedges, releases.surface_rms(contact), settings)
 
 
-def _safe_lengths(device, model, laws, tips, settings):
+def _of_size(settings, thickness, gap):
+    """Device of a thickness and a gap [m]."""
+    return replace(settings.device, thickness=float(thickness), gap=float(gap))
+
+
+def _safe_lengths(device, model, laws, energies, settings):
     """Safe lengths of a device, (shapes, shares) [m]."""
-    of_size = replace(settings, device=device)
-    beam, points = cracks.long_beam(device, laws)
-    number, address = settings.beams * device.cracks, cracks.addresses(settings)
-    found = cracks.crack_lengths(model, beam, points, number, address)
-    held = None if tips is None else safe_lengths.tip_arcs(tips, of_size)
-    sticking = safe_lengths.sticking_lengths(found, foundation_length(beam, laws), device, held)
-    return np.array(
-        [[one.length for one in safe_lengths.safe_lengths(values, of_size)] for values in sticking.values()]
-    )
+    beam, points = releases.long_beam(device, laws)
+    number, address = settings.beams * device.cracks, releases.addresses(settings)
+    cracks = releases.crack_lengths(model, beam, points, number, address)
+    held = None if energies is None else arcs.arc_length(energies, device.beam)
+    lengths = sticking.sticking_lengths(cracks, foundation_length(beam, laws), device, held)
+    return np.array([[one.length for one in sticking.safe_lengths(values, settings)] for values in lengths.values()])
 
 
-def _limit(settings, thickness, gap):
-    """Crack length, of a bridge detachment length, at the adhesion energy of flooded flats [m]."""
-    device, water = replace(settings.device, thickness=float(thickness), gap=float(gap)), settings.water
-    return device.cracks * flooded_length(device.beam, water.temperature, water.contact_angles)
-
-
-def filled(sizes: np.ndarray, by_elements: Callable) -> tuple[np.ndarray, np.ndarray, float]:
+def filled(
+    thicknesses: Sequence[float], gaps: Sequence[float], by_elements: Callable[[float, float], np.ndarray]
+) -> Filled:
     """Lengths of beams of all sizes: computed by finite elements where a power law is not good enough.
 
     Parameters
     ----------
-    sizes : (n, 2) array
-        Thickness and gap of every beam [m]; products of two axes, in their order.
+    thicknesses, gaps : sequences
+        Increasing [m]; the sizes are their products, in this order.
     by_elements : callable
-        Lengths of beams of one size by finite elements, (2,) -> array of any shape [m].
-
-    Returns
-    -------
-    lengths : (n, ...) array
-        [m]
-    computed : (n,) bool
-        Whether each size was computed by finite elements.
-    error : float
-        Largest error of the power laws at the size that was left out [-]; 0 if none is used.
+        Lengths of beams of a thickness and a gap by finite elements, array of any shape [m].
     """
-    extreme = np.all((sizes == sizes.min(axis=0)) | (sizes == sizes.max(axis=0)), axis=1)
-    test = np.arange(len(sizes)) == len(sizes) // 2
-    found = {k: by_elements(sizes[k]) for k in np.flatnonzero(extreme | test)}
-    error = 0.0
-    if len(found) < len(sizes):
-        known = list(found)
-        columns = np.array([found[k] for k in known]).reshape(len(known), -1).T
-        try:
-            laws = [checked_power_law(*sizes[known].T, column, test[known]) for column in columns]
-        except ValueError:  # the power law errs too much
-            found |= {k: by_elements(sizes[k]) for k in range(len(sizes)) if k not in found}
-        else:
-            error = max(error for _, error in laws)
-            values = np.array([law(*sizes.T) for law, _ in laws]).T
-            shape = found[known[0]].shape
-            found = {k: values[k].reshape(shape) for k in range(len(sizes))} | found
-            return np.array([found[k] for k in range(len(sizes))]), extreme | test, error
-    return np.array([found[k] for k in range(len(sizes))]), np.full(len(sizes), True), error
+    sizes = np.array(list(product(thicknesses, gaps)))
+    corner, test = corners_and_tests(len(thicknesses), len(gaps))
+    found = {k: by_elements(*sizes[k]) for k in np.flatnonzero(corner | test)}
+    if laws := _power_laws(sizes, found, test):
+        between = np.array([law(*sizes.T) for law, _ in laws]).T.reshape(-1, *found[0].shape)
+        lengths = [found.get(k, length) for k, length in enumerate(between)]
+        return Filled(np.array(lengths), corner | test, max(error for _, error in laws))
+    lengths = [found[k] if k in found else by_elements(*size) for k, size in enumerate(sizes)]
+    return Filled(np.array(lengths), np.full(len(sizes), True), 0.0)
 
 
-def layout(
-    lengths: np.ndarray, computed: np.ndarray, error: float, limits: list[float], shapes: list[str], settings: Settings
-) -> xr.Dataset:
+def corners_and_tests(thicknesses: int, gaps: int) -> tuple[np.ndarray, np.ndarray]:
+    """Sizes to which a power law is fitted and those that test it, (thicknesses * gaps,) bool each.
+
+    It is tested in the middle of both axes, and in the middle of each along the least value of the other: departures
+    along the two axes may cancel where both are met. No corner tests it.
+    """
+    corner, test = np.zeros((2, thicknesses, gaps), bool)
+    corner[np.ix_([0, -1], [0, -1])] = True
+    middle = thicknesses // 2, gaps // 2
+    test[middle] = test[middle[0], 0] = test[0, middle[1]] = True
+    return corner.ravel(), (test & ~corner).ravel()
+
+
+def _power_laws(sizes, found, test):
+    """Power law of each shape and share with its error; none if no size is left or one of them errs too much."""
+    known = list(found)
+    if len(known) == len(sizes):
+        return []
+    columns = np.reshape([found[k] for k in known], (len(known), -1)).T
+    try:
+        return [checked_power_law(*sizes[known].T, column, test[known]) for column in columns]
+    except ValueError:
+        return []
+
+
+def layout(found: Filled, wedges: np.ndarray, rms: float, settings: Settings) -> xr.Dataset:
     """Dataset of safe lengths over thickness and gap at one humidity.
 
     Parameters
     ----------
-    lengths : (sizes, shapes, shares) array
-        [m]
-    computed : (sizes,) bool
-        Whether each was computed by finite elements.
-    error : float
-        Largest error of the power laws [-].
-    limits : (sizes,) array
-        Lengths of saturated air [m].
-    shapes : sequence of str
+    found : Filled
+        Lengths (sizes, shapes, shares) [m].
+    wedges : (sizes,) array
+        Length of the wedge at the tip of the shortest beam of each size, NaN for a bridge [m].
+    rms : float
+        Of the sum of both surfaces [m].
     settings : Settings
     """
     grid, size = (len(settings.thicknesses), len(settings.gaps)), ("thickness", "gap")
-    metres = {"units": "m"}
+    shapes = sticking.shapes(settings.device)
+    film = meniscus_height(settings.humidity, settings.water.temperature, settings.water.contact_angles)
+    limits = [_limits(settings, *one) for one in product(settings.thicknesses, settings.gaps)]
+    metres, none = {"units": "m"}, {"units": "1"}
     return xr.Dataset(
         {
-            "safe_length": ((*size, "shape", "share"), lengths.reshape(*grid, *lengths.shape[1:]), metres),
-            "flooded_length": (size, np.reshape(limits, grid), metres),
-            "by_elements": (size, np.reshape(computed, grid).astype(np.int8), {"units": "1"}),
-            "power_law_error": ((), error, {"units": "1"}),
-            "humidity": ((), settings.humidity, {"units": "1"}),
+            "safe_length": ((*size, "shape", "share"), found.lengths.reshape(*grid, len(shapes), -1), metres),
+            "flooded_length": ((*size, "shape"), np.reshape(limits, (*grid, -1)), metres),
+            "wedge": (size, wedges.reshape(grid), metres),
+            "by_elements": (size, found.by_elements.reshape(grid).astype(np.int8), none),
+            "power_law_error": ((), found.error, none),
+            "film": ((), float(film), metres),
+            "rms": ((), rms, metres),
+            "humidity": ((), settings.humidity, none),
         },
         coords={
             "thickness": ("thickness", list(settings.thicknesses), metres),
@@ -145,3 +165,10 @@ def layout(
             "share": list(settings.shares),
         },
     )
+
+
+def _limits(settings, thickness, gap):
+    """Lengths that stick in saturated air by shape: at the adhesion energy of flooded flats [m]."""
+    device, water = _of_size(settings, thickness, gap), (settings.water.temperature, settings.water.contact_angles)
+    alone = device.cracks * flooded_length(device.beam, *water)
+    return [alone] if device.kind == "bridge" else [alone, arcs.arc_length(flooded_energy(*water), device.beam)]

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from stiction.designs.budget import budget_of, groups_of
+from stiction.designs.figures_devices import below
 from stiction.designs.tables_budget import RESPONSES, SCATTER, TOTAL
 from stiction.devices.risk import stuck_share
 from stiction.report.format import TO_UN
@@ -34,13 +35,15 @@ _BAR, _AROUND = 0.17, 0.62
 
 
 @styled
-def stoppers(datasets: Mapping[str, xr.Dataset]) -> Figure:
+def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence[str]]) -> Figure:
     """Stoppers: P(stuck) over the restoring force, and pull-off force over the humidity; a column for each.
 
     Parameters
     ----------
     datasets : dict
         Device to the dataset of stage stoppers.
+    warnings : dict
+        Device to sentences, which are written below the figure.
     """
     figure, columns, lines = columns_of_panels(len(datasets), 2, lambda n: min(DOUBLE, SINGLE * n), 4.4)
     for column, dataset in zip(columns, datasets.values(), strict=True):
@@ -50,6 +53,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset]) -> Figure:
         line[0, 0].set_ylabel("P(stuck) [–]")
         line[1, 0].set_ylabel("pull-off force [µN]")
     letter(np.concatenate([line.ravel() for line in lines]), [name for name in datasets for _ in range(2)])
+    below(figure, [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found])
     return figure
 
 

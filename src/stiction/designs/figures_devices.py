@@ -1,7 +1,7 @@
 """Figures of devices: share of stuck beams over their length, safe length over the relative humidity."""
 
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 import xarray as xr
@@ -24,6 +24,8 @@ from stiction.report.style import (
 
 #: Line style of each shape in which a beam sticks, and what holds it.
 _SHAPES = {"S-shape": ("--", "held by the beam"), "S-shape or arc": ("-", "held by beam or tip")}
+#: Line style of their limits in saturated air.
+_SATURATED = {"S-shape": ":", "S-shape or arc": "-."}
 #: Marker of each basis of a safe length.
 _BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x"}
 #: Characters in a line of warnings.
@@ -40,7 +42,7 @@ def _shades(count):
     return colormaps["viridis_r"](np.linspace(0.25, 1, count))
 
 
-def _below(figure, sentences):
+def below(figure: Figure, sentences: Sequence[str]) -> None:
     """Write numbered sentences below a figure."""
     lines = [textwrap.fill(f"({k}) {sentence}", _LINE) for k, sentence in enumerate(sentences, 1)]
     if lines:
@@ -48,7 +50,7 @@ def _below(figure, sentences):
 
 
 @styled
-def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float], list]) -> Figure:
+def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, str], list]) -> Figure:
     """Share of stuck beams over their length, with bands of 95 % and safe lengths, one panel for each device.
 
     Parameters
@@ -56,7 +58,7 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
     found : dict
         Name and humidity to the dataset of stage safe_lengths.
     warnings : dict
-        Name and humidity to sentences, which are written below the figure.
+        Name, humidity and shape to sentences, which are written below the figure.
     """
     names = list(dict.fromkeys(name for name, _ in found))
     sentences, numbers = numbered(warnings)
@@ -65,9 +67,9 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
         cases = {humidity: dataset for (device, humidity), dataset in found.items() if device == name}
         named = []
         for (humidity, dataset), shade in zip(cases.items(), _shades(len(cases)), strict=True):
-            marks = "".join(f" ({k})" for k in numbers[name, humidity])
             _shares(panel, dataset, shade)
-            named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=f"RH {humidity:g}{marks}"))
+            label = f"RH {humidity:g}{_marks(numbers, name, humidity)}"
+            named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=label))
         panel.legend(handles=named, loc="lower right")
         shares = np.concatenate([dataset.share.values for dataset in cases.values()])
         panel.set(yscale="log", ylim=(shares.min() / 2, 1.3), xlabel="length of the device [µm]")
@@ -76,8 +78,14 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
     letter_lines(lines, names)
     _explain(columns[0, 0], found)
     figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=5)
-    _below(figure, sentences)
+    below(figure, sentences)
     return figure
+
+
+def _marks(numbers: Mapping[tuple, Iterable[int]], *subject) -> str:
+    """Numbers of the warnings about all shapes of a subject."""
+    found = {k for (*about, _), marks in numbers.items() if tuple(about) == subject for k in marks}
+    return "".join(f" ({k})" for k in sorted(found))
 
 
 def _shares(panel: Axes, dataset, colour):
@@ -104,14 +112,19 @@ def _explain(panel, found):
 
 
 @styled
-def chart(found: Mapping[tuple[str, float], xr.Dataset]) -> Figure:
+def chart(
+    found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, float, str], list]
+) -> Figure:
     """Safe length over the relative humidity, one panel for each device and gap, for the middle one of the shares.
 
     Parameters
     ----------
     found : dict
         Name and humidity to the dataset of stage chart.
+    warnings : dict
+        Name, thickness [m], gap [m] and shape to sentences, which are written below the figure.
     """
+    sentences, numbers = numbered(warnings)
     devices = {}
     for (name, humidity), dataset in sorted(found.items()):
         devices.setdefault(name, []).append(dataset.expand_dims(relative_humidity=[humidity]))
@@ -120,27 +133,35 @@ def chart(found: Mapping[tuple[str, float], xr.Dataset]) -> Figure:
     subjects = [(name, gap) for name, whole in axes.items() for gap in whole.gap.values]
     figure, columns, lines = columns_of_panels(len(subjects), 1, _width, 3.2)
     for panel, (name, gap) in zip(columns[:, 0], subjects, strict=True):
-        _thicknesses(panel, axes[name].sel(gap=gap))
+        whole = axes[name].sel(gap=gap)
+        marks = {size: _marks(numbers, name, size, gap) for size in whole.thickness.values}
+        _thicknesses(panel, whole, marks)
         panel.set(xlabel="relative humidity [–]", ylim=(0, None))
         humidity_axis(panel)
     for line in lines:
         line[0, 0].set_ylabel("safe length [µm]")
     letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm" for name, gap in subjects])
     figure.legend(*handles(*columns[:, 0]), loc="outside upper center", ncols=4)
+    below(figure, sentences)
     return figure
 
 
-def _thicknesses(panel, whole):
-    """Curves of all thicknesses of one device and gap, and their limits in saturated air."""
+def _thicknesses(panel, whole, marks):
+    """Curves of all thicknesses of one device and gap, their limits in saturated air, and what a power law gave."""
     share = whole.share.values[len(whole.share) // 2]
     for thickness, shade in zip(whole.thickness.values, _shades(whole.sizes["thickness"]), strict=True):
         one = whole.sel(thickness=thickness, share=share)
+        between = one.by_elements.values == 0
         for shape in whole["shape"].values:
             line, text = _SHAPES[shape]
             lengths = TO_UM * one.safe_length.sel(shape=shape)
             panel.plot(one.relative_humidity, lengths, line, color=shade)
+            panel.plot(one.relative_humidity[between], lengths[between], "o", color=shade, fillstyle="none")
             panel.plot([], [], line, color="0.3", label=f"{text}, p = {share:g}")
-        limit = TO_UM * float(one.flooded_length.isel(relative_humidity=0))
-        panel.axhline(limit, color=shade, linestyle=":", linewidth=0.8)
-        panel.plot([], [], "s", color=shade, label=f"thickness {TO_UM * thickness:g} µm")
-    panel.plot([], [], ":", color="0.3", label="beam in saturated air")
+            limit = TO_UM * float(one.flooded_length.sel(shape=shape).isel(relative_humidity=0))
+            panel.axhline(limit, color=shade, linestyle=_SATURATED[shape], linewidth=0.8)
+            panel.plot([], [], color="0.3", linestyle=_SATURATED[shape], label=f"{text}, saturated air")
+        panel.plot([], [], "s", color=shade, label=f"thickness {TO_UM * thickness:g} µm{marks[thickness]}")
+    if not whole.by_elements.all():
+        error = 100 * float(whole.power_law_error.max())
+        panel.plot([], [], "o", color="0.3", fillstyle="none", label=f"by a power law, ± {error:.2g} %")

@@ -1,7 +1,8 @@
 """Where results of pairs and devices are beyond the limits of the model, in sentences of `stiction.devices.limits`."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -9,14 +10,18 @@ import xarray as xr
 
 from stiction.beam.cantilever import Beam
 from stiction.config.units import typed
-from stiction.designs.cracks import Device
-from stiction.designs.safe_lengths import EITHER
+from stiction.designs.releases import Device
+from stiction.designs.sticking import EITHER, S_SHAPE
 from stiction.devices import limits
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever
 from stiction.stages.releases import ended
 
 #: Warnings by their subject, such as ``pair b, RH 0.67, G``.
 Warnings = dict[str, list[str]]
+#: Names of materials, each with the properties that are stated.
+Materials = Sequence[tuple[str, Sequence[str]]]
+#: Shapes in words: what holds a device that sticks.
+HELD_BY = {S_SHAPE: "beam", EITHER: "beam or tip"}
 
 
 @dataclass(frozen=True)
@@ -35,8 +40,7 @@ class OfDevice:
 
     device: Device
     tip: float  #: length of the strips of tips [m]
-    #: Names of the materials of its pair, each with the properties that are stated.
-    materials: tuple[tuple[str, Sequence[str]], ...] = ()
+    materials: Materials = ()  #: of its pair
 
 
 def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
@@ -54,8 +58,10 @@ def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
     return limits.given(*warnings)
 
 
-def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan) -> list[str]:
-    """Warnings about a device at a humidity.
+def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan) -> dict[str, list[str]]:
+    """Warnings about a device at a humidity, by the shape in which it sticks.
+
+    Each shape is checked at the shortest of its lengths, where slopes are largest.
 
     Parameters
     ----------
@@ -65,16 +71,54 @@ def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan) -> list[
     plastic : float
         Plastic share of the contact area; NaN if it was not studied [-].
     """
+    shortest = found.estimate.min("share")
+    return {
+        shape: _of_length(float(shortest.sel(shape=shape)), shape, found, of, plastic)
+        for shape in map(str, found["shape"].values)
+    }
+
+
+def of_chart(
+    found: Sequence[xr.Dataset], of: OfDevice, plastic: float = np.nan
+) -> dict[tuple[float, float, str], list[str]]:
+    """Warnings about the chart of a device by thickness [m], gap [m] and shape, each at its shortest length.
+
+    Parameters
+    ----------
+    found : sequence
+        Datasets of stage chart, one for each humidity.
+    of, plastic
+        As in `of_device`.
+    """
+    warnings = {}
+    for thickness, gap, shape in curves(found[0]):
+        along = [one.sel(thickness=thickness, gap=gap, shape=shape) for one in found]
+        shortest = min(along, key=lambda one: float(one.safe_length.min()))
+        of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
+        length = float(shortest.safe_length.min())
+        warnings[thickness, gap, shape] = _of_length(length, shape, shortest, of_size, plastic)
+    return warnings
+
+
+def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
+    """Thickness [m], gap [m] and shape of every curve of a dataset of stage chart."""
+    return list(product(*(chart[name].values.tolist() for name in ("thickness", "gap", "shape"))))
+
+
+def _of_length(length, shape, found, of, plastic):
+    """Warnings about a device of a length [m] in a shape; film, rms and wedge from a dataset."""
     device = of.device
-    # Slopes are largest and cracks shortest for the shortest of the lengths.
-    crack = float(found.estimate.min()) / device.cracks
-    sizes = device.gap, device.width, device.thickness, crack, float(found.film), float(found.rms)
-    return limits.of_cantilever(*sizes) + limits.given(
+    sizes = device.gap, device.width, device.thickness, length / device.cracks
+    return limits.of_cantilever(*sizes, float(found.film), float(found.rms)) + limits.given(
         limits.stretched_bridge(device.gap, device.thickness) if device.kind == "bridge" else None,
-        limits.short_wedge(of.tip, float(found.wedge)) if EITHER in found["shape"] else None,
-        None if np.isnan(plastic) else limits.plastic_contact(plastic),
-        *(limits.default_material(name, stated) for name, stated in of.materials),
+        limits.short_wedge(of.tip, float(found.wedge)) if shape == EITHER else None,
+        *_of_contact(plastic, of.materials),
     )
+
+
+def _of_contact(plastic, materials):
+    """Warnings, or None, about the contact of a pair."""
+    return [limits.plastic_contact(plastic), *(limits.default_material(name, stated) for name, stated in materials)]
 
 
 def _plastic_share(plasticity, pair):
@@ -83,7 +127,10 @@ def _plastic_share(plasticity, pair):
 
 
 def of_pairs(
-    beams: Mapping[tuple[str, float, str], xr.Dataset], plasticity: Mapping[str, xr.Dataset], plain: dict[str, Any]
+    beams: Mapping[tuple[str, float, str], xr.Dataset],
+    plasticity: Mapping[str, xr.Dataset],
+    materials: Mapping[str, Materials],
+    plain: dict[str, Any],
 ) -> Warnings:
     """Warnings about the main line.
 
@@ -93,12 +140,16 @@ def of_pairs(
         Pair, humidity and model to the dataset of stage beams.
     plasticity : dict
         Pair to the dataset of study plasticity, as far as it was studied.
+    materials : dict
+        Pair to the names of its materials, each with the properties that are stated.
     plain : dict
         Settings of a job, `OfPairs` in units of the configuration.
     """
     settings = typed(OfPairs, plain)
-    shares = {pair: _plastic_share(plasticity, pair) for pair in settings.pairs}
-    found = {f"pair {pair}": limits.given(limits.plastic_contact(share)) for pair, share in shares.items() if share > 0}
+    found = {
+        f"pair {pair}": limits.given(*_of_contact(_plastic_share(plasticity, pair), materials[pair]))
+        for pair in settings.pairs
+    }
     for (pair, humidity, model), dataset in beams.items():
         nominal = cantilever(settings, pair)
         found[f"pair {pair}, RH {humidity:g}, {model}"] = of_beams(dataset, nominal, settings.sampling.strip_length)
@@ -109,8 +160,8 @@ def of_devices(
     found: Mapping[tuple[str, float], xr.Dataset],
     plasticity: Mapping[str, xr.Dataset],
     plain: Mapping[str, dict[str, Any]],
-) -> dict[tuple[str, float], list[str]]:
-    """Warnings about all devices by name and humidity.
+) -> dict[tuple[str, float, str], list[str]]:
+    """Warnings about all devices by name, humidity and shape.
 
     Parameters
     ----------
@@ -123,9 +174,26 @@ def of_devices(
     """
     settings = {name: typed(OfDevice, section) for name, section in plain.items()}
     return {
-        (name, humidity): of_device(dataset, settings[name], _plastic_share(plasticity, settings[name].device.pair))
+        (name, humidity, shape): sentences
         for (name, humidity), dataset in found.items()
+        for share in [_plastic_share(plasticity, settings[name].device.pair)]
+        for shape, sentences in of_device(dataset, settings[name], share).items()
     }
+
+
+def of_charts(
+    found: Mapping[tuple[str, float], xr.Dataset],
+    plasticity: Mapping[str, xr.Dataset],
+    plain: Mapping[str, dict[str, Any]],
+) -> dict[tuple[str, float, float, str], list[str]]:
+    """Warnings about all charts by name, thickness [m], gap [m] and shape; parameters as in `of_devices`."""
+    warnings = {}
+    for name in dict.fromkeys(name for name, _ in found):
+        of = typed(OfDevice, plain[name])
+        datasets = [dataset for (device, _), dataset in found.items() if device == name]
+        of_curves = of_chart(datasets, of, _plastic_share(plasticity, of.device.pair))
+        warnings |= {(name, *curve): sentences for curve, sentences in of_curves.items()}
+    return warnings
 
 
 def of_stoppers(plasticity: Mapping[str, xr.Dataset], plain: Mapping[str, dict[str, Any]]) -> dict[str, list[str]]:
@@ -138,12 +206,8 @@ def of_stoppers(plasticity: Mapping[str, xr.Dataset], plain: Mapping[str, dict[s
     plain : dict
         Settings of a job: name to its ``pair`` and the ``materials`` as in `OfDevice`.
     """
-    shares = {name: _plastic_share(plasticity, section["pair"]) for name, section in plain.items()}
     return {
-        name: limits.given(
-            None if np.isnan(shares[name]) else limits.plastic_contact(shares[name]),
-            *(limits.default_material(material, stated) for material, stated in section["materials"]),
-        )
+        name: limits.given(*_of_contact(_plastic_share(plasticity, section["pair"]), section["materials"]))
         for name, section in plain.items()
     }
 
@@ -160,9 +224,23 @@ def numbered(warnings: Mapping[Any, list[str]]) -> tuple[list[str], dict[Any, li
     return sentences, {key: [sentences.index(one) + 1 for one in found] for key, found in warnings.items()}
 
 
-def as_markdown(of_pairs: Warnings, of_devices: Mapping[tuple[str, float], list[str]]) -> str:
-    """All warnings of a run as a page."""
-    subjects = of_pairs | {f"{name}, RH {humidity:g}": found for (name, humidity), found in of_devices.items()}
-    lines = [f"- {subject}: {sentence}" for subject, found in subjects.items() for sentence in found]
+def subjects(
+    devices: Mapping[tuple[str, float, str], list[str]],
+    charts: Mapping[tuple[str, float, float, str], list[str]],
+    stoppers: Mapping[str, list[str]],
+) -> Warnings:
+    """Warnings of `of_devices`, `of_charts` and `of_stoppers` by their subjects in words."""
+    found = {f"{name}, RH {rh:g}, held by the {HELD_BY[shape]}": each for (name, rh, shape), each in devices.items()}
+    for (name, thickness, gap, shape), each in charts.items():
+        size = f"{1e6 * thickness:g} µm thick, gap {1e6 * gap:g} µm"
+        found[f"{name}, chart, {size}, held by the {HELD_BY[shape]}"] = each
+    return found | stoppers
+
+
+def as_markdown(warnings: Warnings) -> str:
+    """Warnings as a page, each sentence with all its subjects."""
+    sentences, _ = numbered(warnings)
+    about = [[subject for subject, found in warnings.items() if sentence in found] for sentence in sentences]
+    lines = [f"- {'; '.join(names)}: {sentence}" for names, sentence in zip(about, sentences, strict=True)]
     none = ["No result is beyond the limits of the model that are checked."]
     return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", limits.NOT_MODELLED, ""])

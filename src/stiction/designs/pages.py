@@ -10,8 +10,8 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from stiction.designs import figures_budget, figures_devices, tables_budget, tables_devices
-from stiction.designs.stoppers import is_at_an_end, shares_stuck
+from stiction.designs import figures_budget, figures_devices, findings, tables_budget, tables_devices
+from stiction.designs.stoppers import in_any_air, is_at_an_end, shares_stuck
 from stiction.devices.limits import NOT_MODELLED
 from stiction.report.format import UM, UN
 from stiction.report.style import png
@@ -35,8 +35,8 @@ dt {{ font-weight: bold }} dd {{ margin: 0 0 .5em 1.5em }}
 {body}
 </html>
 """
-#: Pixels of a page for one inch of a figure.
-_PIXELS = 120
+#: Pixels of a page for one inch of a figure, and most rows of a table that is not folded.
+_PIXELS, _ROWS = 120, 60
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,9 @@ def _facts(facts):
 def _section(section):
     parts = [f"<h2>{escape(section.title)}</h2>", _paragraphs(section.paragraphs)]
     if section.cells is not None:
-        parts.append(section.cells.to_html(index=False, border=0))
+        table = section.cells.to_html(index=False, border=0)
+        folded = f"<details><summary>Table of {len(section.cells)} rows</summary>{table}</details>"
+        parts.append(table if len(section.cells) <= _ROWS else folded)
     if section.figure is not None:
         picture, width = base64.b64encode(png(section.figure)).decode(), round(_PIXELS * section.figure.get_figwidth())
         parts.append(f'<img alt="{escape(section.title)}" width="{width}" src="data:image/png;base64,{picture}">')
@@ -139,7 +141,7 @@ def of_beam(
     found: Mapping[float, xr.Dataset],
     charts: Mapping[float, xr.Dataset],
     budgets: Mapping[float, xr.Dataset],
-    warnings: Sequence[str],
+    warnings: Mapping[tuple, Sequence[str]],
 ) -> Page:
     """Page of a cantilever or bridge.
 
@@ -150,20 +152,21 @@ def of_beam(
         Its section of the configuration.
     found, charts, budgets : dict
         Humidity to the datasets of the stages safe_lengths, chart and budget; the last two may be empty.
-    warnings : sequence of str
-        Where the model ends for this device.
+    warnings : dict
+        Where the model ends: those of `findings.of_devices` and of `findings.of_charts` for this device.
     """
     cases = {(name, humidity): dataset for humidity, dataset in found.items()}
-    silent = dict.fromkeys(cases, ())
-    table = tables_devices.safe_lengths(cases, silent).cells.drop(columns=["device", "warnings"])
-    sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, silent))]
+    table = tables_devices.safe_lengths(cases, warnings).cells.drop(columns="device")
+    sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, {}))]
     if charts:
-        drawn = figures_devices.chart({(name, humidity): dataset for humidity, dataset in charts.items()})
-        sections.append(Section("Other thicknesses and humidities", (), None, drawn))
+        axis = {(name, humidity): dataset for humidity, dataset in charts.items()}
+        table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
+        sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets)
     answer = [safe_sentence(humidity, dataset) for humidity, dataset in found.items()]
+    listed = [f"({k}) {sentence}" for k, sentence in enumerate(findings.numbered(warnings)[0], 1)]
     words = _OF_BEAMS | (_OF_BUDGETS if budgets else {})
-    return Page(_title(name, section), _facts_of(section), answer, sections, warnings, words)
+    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
 
 
 def of_stopper(
@@ -173,9 +176,9 @@ def of_stopper(
     budgets: Mapping[float, xr.Dataset],
     warnings: Sequence[str],
 ) -> Page:
-    """Page of a stopper; parameters as in `of_beam`, with one dataset of stage stoppers."""
+    """Page of a stopper; parameters as in `of_beam`, with one dataset of stage stoppers and a list of warnings."""
     table = tables_budget.stoppers({name: found}, {name: []}).cells.drop(columns=["device"])
-    sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: found}))]
+    sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: found}, {}))]
     sections += _sure(name, budgets)
     answer = [*(stuck_sentence(*row, force=float(found.restoring_force)) for row in shares_stuck(found))]
     answer += [*safe_force_sentences(found), worst_sentence(found)]
@@ -230,26 +233,36 @@ def stuck_sentence(humidity: float, stuck: float, low: float, high: float, force
 
 
 def safe_force_sentences(found: xr.Dataset) -> list[str]:
-    """Restoring forces that would suffice at every humidity of a stopper, for the shares that its patches can bound."""
-    safe = found.safe_force.sel(part="safe").max("humidity")
+    """Restoring forces that would suffice at the humidities of a stopper, and in any air of its fine axis.
+
+    For the shares that its patches can bound.
+    """
+    stated, (low, high) = found.safe_force.sel(part="safe").max("humidity"), _ends(found)
     return [
         f"At all these humidities, a restoring force of {float(force) / UN:.3g} µN leaves at most 1 in "
-        f"{1 / float(force.share):g} stuck (95 % confidence)."
-        for force in safe
+        f"{1 / float(force.share):g} stuck (95 % confidence), and at any from {low} to {high}, one of "
+        f"{float(more) / UN:.3g} µN."
+        for force, more in zip(stated, in_any_air(found)[1], strict=True)
         if np.isfinite(force)
     ]
 
 
 def worst_sentence(found: xr.Dataset) -> str:
     """The worst humidity of a stopper in words."""
-    worst = float(found.worst_humidity)
-    low, high = (f"{float(found.axis[end]):g}" for end in (0, -1))
+    worst, (low, high) = float(found.worst_humidity), _ends(found)
+    share, least, most = (100 * share for share in in_any_air(found)[0])
+    stuck = f"In no air of this range do more than {share:.3g} % ({least:.3g} to {most:.3g} %) stick."
     if is_at_an_end(found):
-        return f"Between relative humidities of {low} and {high}, the stopper holds most at {worst:g}."
+        return f"Between relative humidities of {low} and {high}, the stopper holds most at {worst:g}. {stuck}"
     return (
         f"The stopper holds most at a relative humidity of {worst:.2f}; drier and wetter air, from {low} to {high}, "
-        "are less critical."
+        f"are less critical. {stuck}"
     )
+
+
+def _ends(found):
+    """Ends of the axis of humidities along which the worst was sought."""
+    return [f"{float(found.axis[end]):g}" for end in (0, -1)]
 
 
 def _sure(name, budgets):

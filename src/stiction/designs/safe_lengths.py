@@ -8,14 +8,13 @@ import xarray as xr
 
 from stiction.contact.meniscus import meniscus_height
 from stiction.designs import cracks as stage_cracks
-from stiction.designs.cracks import Device
-from stiction.devices import arcs, bridges, chart, risk
+from stiction.designs.patches import on_patch
+from stiction.designs.releases import Device
+from stiction.designs.sticking import mean_wedge, safe_lengths, sticking_lengths
+from stiction.devices import arcs, risk
 from stiction.devices.risk import SafeLength
 from stiction.stages import curves
-from stiction.streams import stream
 
-#: Shapes in which a device may stick: cracks stop on the way, or the tip holds as well. A bridge has no tip.
-S_SHAPE, EITHER = "S-shape", "S-shape or arc"
 #: Points along the axis of the lengths.
 _POINTS = 300
 
@@ -44,55 +43,19 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
     settings : Settings
     """
     found, of_group, foundation = stage_cracks.lengths(cracks)
-    held = None if tips is None else tip_arcs(tips, settings)
-    sticking = sticking_lengths(found, foundation, settings.device, held)
-    groups = [sticking_lengths(one, foundation, settings.device, held) for one in of_group]
+    device, held, wedge = settings.device, None, np.nan
+    if tips is not None:
+        with on_patch(settings.tip, device.width):
+            held = arcs.arc_length(curves.energies(tips, settings.humidity, settings.water), device.beam)
+        wedge = mean_wedge(tips, arcs.tip_slope(float(np.median(held)), device.gap), settings)
+    sticking = sticking_lengths(found, foundation, device, held)
+    groups = [sticking_lengths(one, foundation, device, held) for one in of_group]
     safe = {shape: safe_lengths(values, settings) for shape, values in sticking.items()}
     estimates = {
         shape: [[one.estimate for one in safe_lengths(group[shape], settings)] for group in groups] for shape in safe
     }
     errors = {shape: risk.error_of_surfaces(found) for shape, found in estimates.items()}
-    wedge = np.nan if tips is None else mean_wedge(tips, float(np.median(held)), settings)
     return layout(sticking, safe, errors, wedge, float(cracks.rms), settings)
-
-
-def tip_arcs(tips: xr.Dataset, settings: Settings) -> np.ndarray:
-    """Longest arcs that come free of each strip of tips (n,) [m]."""
-    return arcs.arc_length(curves.energies(tips, settings.humidity, settings.water), settings.device.beam)
-
-
-def mean_wedge(tips: xr.Dataset, length: float, settings: Settings) -> float:
-    """Length of the wedge at the tip of a beam of a length [m], from mean energy and mean pull-off force [m]."""
-    _, curve = curves.force_curves(tips, settings.humidity, settings.water)
-    pull_off = np.mean([-curve(k).min() for k in range(tips.sizes["sample"])])
-    energy = curves.energies(tips, settings.humidity, settings.water).mean()
-    return float(energy / pull_off / arcs.tip_slope(length, settings.device.beam))
-
-
-def sticking_lengths(
-    cracks: np.ndarray, foundation: float, device: Device, held: np.ndarray | None
-) -> dict[str, np.ndarray]:
-    """Sticking lengths of devices by shape, (n,) each [m].
-
-    Parameters
-    ----------
-    cracks : (n,) or, for bridges, (2n,) array
-        Crack lengths, infinite for beams that are not S-shaped [m].
-    foundation : float
-        Foundation length [m].
-    device : Device
-    held : (n,) array or None
-        Longest arcs that come free [m].
-    """
-    if device.kind == "bridge":
-        return {S_SHAPE: bridges.sticking_lengths(cracks)}
-    alone = risk.sticking_lengths(cracks, np.isfinite(cracks), foundation)
-    return {S_SHAPE: alone, EITHER: risk.with_arcs(alone, held)}
-
-
-def safe_lengths(sticking: np.ndarray, settings: Settings) -> list[SafeLength]:
-    """Safe length for every share, from sticking lengths (n,) [m]."""
-    return [risk.safe_length(sticking, share, stream(settings.seed, "safe length")) for share in settings.shares]
 
 
 def layout(
@@ -119,7 +82,6 @@ def layout(
         Of the sum of both surfaces [m].
     settings : Settings
     """
-    device, water = settings.device, settings.water
     known = np.concatenate([values[np.isfinite(values)] for values in sticking.values()])
     axis = np.linspace(0.9 * known.min(), 1.02 * known.max(), _POINTS)
     stuck = np.array([risk.stuck_share(axis, values) for values in sticking.values()])
@@ -130,13 +92,8 @@ def layout(
         "beams_error": ([[one.error for one in rows] for rows in safe.values()], "standard error, number of beams"),
         "surfaces_error": (list(surfaces.values()), "standard error, number of sampled surfaces"),
     }
-    flooded = chart.flooded_length(device.beam, water.temperature, water.contact_angles) * device.cracks
-    scalars = {
-        "film": float(meniscus_height(settings.humidity, water.temperature, water.contact_angles)),
-        "wedge": wedge,
-        "rms": rms,
-        "flooded_length": flooded,
-    }
+    film = float(meniscus_height(settings.humidity, settings.water.temperature, settings.water.contact_angles))
+    scalars = {"film": film, "wedge": wedge, "rms": rms}
     return xr.Dataset(
         {
             "stuck": (("shape", "length"), stuck[:, 0], {"units": "1"}),

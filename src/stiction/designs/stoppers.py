@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.designs.patches import on_patch
 from stiction.devices.risk import samples_for
 from stiction.devices.stoppers import pull_off_force, safe_force, stuck_patches, worst_humidity
 from stiction.estimates import mean_with_error
@@ -34,7 +35,8 @@ class Settings:
 def forces(contact: xr.Dataset, humidity: float, settings: Settings) -> np.ndarray:
     """Pull-off forces of all sampled patches at a relative humidity (m,) [N]."""
     area = settings.contact[0] * settings.contact[1]
-    return pull_off_force(pull_offs(contact, humidity, settings.water), area)
+    with on_patch(*settings.contact):
+        return pull_off_force(pull_offs(contact, humidity, settings.water), area)
 
 
 def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
@@ -54,6 +56,8 @@ def fine_axis(low: float, high: float) -> np.ndarray:
 def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.ndarray) -> xr.Dataset:
     """Dataset of the pull-off forces of a stopper.
 
+    The error of the worst humidity contains that of a place between two points of the axis, their distance / √12.
+
     Parameters
     ----------
     settings : Settings
@@ -65,10 +69,11 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
         Pull-off forces along it [N].
     """
     newton, none = {"units": "N"}, {"units": "1"}
-    worst, worst_error = worst_humidity(axis, along.T)
+    worst, scatter = worst_humidity(axis, along.T)
+    worst_error = float(np.hypot(scatter, (axis[1] - axis[0]) / np.sqrt(12)))
     stuck = np.array([_stuck(row, settings.restoring_force) for row in along]).T
     stuck_chosen = np.array([_stuck(row, settings.restoring_force) for row in chosen]).T
-    safe = np.array([[_safe(row, share) for share in SHARES] for row in chosen])
+    safe, safe_along = (np.array([[_safe(row, p) for p in SHARES] for row in rows]) for rows in (chosen, along))
     mean, error = mean_with_error(along.T)
     return xr.Dataset(
         {
@@ -80,6 +85,7 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
             "mean_along_error": ("axis", error, newton),
             "quantile_along": (("probability", "axis"), np.quantile(along, PROBABILITIES, axis=1), newton),
             "stuck_along": (("bound", "axis"), stuck, none),
+            "safe_force_along": (("axis", "share"), safe_along[..., 0], newton),
             "worst_humidity": ((), worst, none),
             "worst_humidity_error": ((), worst_error, none),
         },
@@ -107,6 +113,12 @@ def _safe(pull_off, share):
 def is_at_an_end(dataset: xr.Dataset) -> bool:
     """Whether the worst humidity is an end of the fine axis, so that the largest force may lie beyond it."""
     return float(dataset.worst_humidity) in (float(dataset.axis[0]), float(dataset.axis[-1]))
+
+
+def in_any_air(dataset: xr.Dataset) -> tuple[tuple[float, float, float], xr.DataArray]:
+    """Largest P(stuck) along the fine axis with the ends of its band, and largest safe force for every share [N]."""
+    worst = dataset.stuck_along.isel(axis=int(dataset.stuck_along.sel(bound="estimate").argmax("axis")))
+    return tuple(map(float, worst)), dataset.safe_force_along.max("axis", skipna=False)
 
 
 def shares_stuck(dataset: xr.Dataset) -> Sequence[tuple[float, float, float, float]]:

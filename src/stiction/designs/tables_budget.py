@@ -7,7 +7,7 @@ import pandas as pd
 import xarray as xr
 
 from stiction.designs.budget import budget_of, groups_of
-from stiction.designs.stoppers import is_at_an_end, shares_stuck
+from stiction.designs.stoppers import in_any_air, is_at_an_end, shares_stuck
 from stiction.devices.budget import advice
 from stiction.devices.limits import NOT_MODELLED
 from stiction.estimates import mean_with_error
@@ -40,7 +40,8 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
         "Stoppers: force that pulls a patch off, mean ± standard error and standard deviation over the patches; "
         "P(stuck): share of the patches that hold more than the restoring force, with its 95 % band; safe force: "
         "restoring force that at most this share of all patches exceeds, with 95 % confidence; – where there are too "
-        "few patches. Worst RH: humidity of the largest mean pull-off force."
+        "few patches. The last row of a stopper has the largest values along a fine axis of humidities. Worst RH: "
+        "humidity of the largest mean pull-off force along this axis."
     )
     listed = [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found]
     caption = " ".join([caption, *(["Warnings:", *listed] if listed else []), NOT_MODELLED])
@@ -49,26 +50,34 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
 
 def _of_stopper(device, dataset):
     """Numbers of one stopper at each of its humidities."""
-    for humidity, stuck, low, high in shares_stuck(dataset):
+    for humidity, *stuck in shares_stuck(dataset):
         forces = dataset.pull_off.sel(humidity=humidity).values / UN
-        mean, error = mean_with_error(forces)
-        safe = dataset.safe_force.sel(humidity=humidity, part="safe").to_series() / UN
-        row = {"device": device, "relative_humidity": humidity}
-        row |= {"pull_off_uN": mean, "pull_off_se_uN": error, "pull_off_std_uN": forces.std(ddof=1)}
-        row |= {"restoring_force_uN": float(dataset.restoring_force) / UN}
-        row |= {"share_stuck": stuck, "share_stuck_low": low, "share_stuck_high": high}
-        row |= {f"safe_force_uN_{share:g}": force for share, force in safe.items()}
-        row |= {"worst_humidity": float(dataset.worst_humidity)}
-        row |= {"worst_humidity_se": float(dataset.worst_humidity_error), "worst_is_an_end": is_at_an_end(dataset)}
-        yield row
+        pull = *mean_with_error(forces), forces.std(ddof=1)
+        safe = dataset.safe_force.sel(humidity=humidity, part="safe")
+        yield {"device": device, "relative_humidity": humidity} | _stopper(dataset, pull, stuck, safe)
+    worst = dataset.isel(axis=int(dataset.mean_along.argmax("axis")))
+    pull = float(worst.mean_along) / UN, float(worst.mean_along_error) / UN, np.nan
+    yield {"device": device, "relative_humidity": np.nan} | _stopper(dataset, pull, *in_any_air(dataset))
+
+
+def _stopper(dataset, pull, stuck, safe):
+    """Numbers of a row: pull-off force with its error and standard deviation, P(stuck) with its band, safe forces."""
+    row = dict(zip(("pull_off_uN", "pull_off_se_uN", "pull_off_std_uN"), pull, strict=True))
+    row |= {"restoring_force_uN": float(dataset.restoring_force) / UN}
+    row |= dict(zip(("share_stuck", "share_stuck_low", "share_stuck_high"), stuck, strict=True))
+    row |= {f"safe_force_uN_{float(force.share):g}": float(force) / UN for force in safe}
+    row |= {"lowest_humidity": float(dataset.axis[0]), "highest_humidity": float(dataset.axis[-1])}
+    row |= {"worst_humidity": float(dataset.worst_humidity)}
+    return row | {"worst_humidity_se": float(dataset.worst_humidity_error), "worst_is_an_end": is_at_an_end(dataset)}
 
 
 def _stopper_as_text(row):
     """One row as text."""
     safe = {name: force for name, force in row.items() if name.startswith("safe_force")}
+    any_air = f"{row.lowest_humidity:g} to {row.highest_humidity:g}"
     return {
         "device": row.device,
-        "RH": f"{row.relative_humidity:g}",
+        "RH": any_air if np.isnan(row.relative_humidity) else f"{row.relative_humidity:g}",
         "pull-off force [µN]": with_error(row.pull_off_uN, row.pull_off_se_uN),
         "std [µN]": number(row.pull_off_std_uN, ".3g"),
         "restoring force [µN]": number(row.restoring_force_uN, "g"),

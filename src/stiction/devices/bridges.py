@@ -12,7 +12,6 @@ from dataclasses import replace
 import numpy as np
 
 from stiction.beam.cantilever import Beam
-from stiction.beam.energy import arrest_length
 
 
 def half_of_bridge(beam: Beam, residual_stress: float) -> Beam:
@@ -41,11 +40,3 @@ def sticking_lengths(crack_lengths: np.ndarray) -> np.ndarray:
     if len(crack_lengths) % 2:
         raise ValueError(f"bridges have two cracks each, got {len(crack_lengths)} cracks")
     return np.asarray(crack_lengths).reshape(-1, 2).sum(axis=1)
-
-
-def bridge_length(energy: float | np.ndarray, half: Beam) -> float | np.ndarray:
-    """Detachment length of a bridge on uniform ground, twice the crack length of its half [m]; energy [J m⁻²].
-
-    Without tension (24 E t³ h² / e)^(1/4), the peel number of two S-shapes.
-    """
-    return 2 * arrest_length(energy, half)

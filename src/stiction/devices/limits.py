@@ -3,9 +3,8 @@
 Lengths are in metres, angles of rotation in radians, shares between 0 and 1.
 """
 
+import math
 from collections.abc import Sequence
-
-from stiction.beam.foundation import ELEMENT, STRIP
 
 #: Largest plastic share of the contact area. Pair c has 58 %, and its beams stick at 72 % of the predicted length.
 PLASTIC = 0.02
@@ -49,29 +48,10 @@ def cut_off_mean(share: float, mean: float, length: float) -> str | None:
     )
 
 
-def coarse_mesh(strip: float, element: float, foundation: float) -> str | None:
-    """Elements or strips that do not resolve the foundation length l_f."""
-    if strip <= STRIP * foundation and element <= ELEMENT * foundation:
-        return None
-    return (
-        f"Strips of {strip * 1e6:.3g} µm and elements of {element * 1e6:.3g} µm do not resolve the foundation length "
-        f"of {foundation * 1e6:.3g} µm: cracks come out too short. Use strips of at most "
-        f"{STRIP * foundation * 1e6:.3g} µm and elements of at most {ELEMENT * foundation * 1e6:.3g} µm."
-    )
-
-
-def correlated_strips(strip: float, correlation_length: float) -> str | None:
-    """Strips as short as the correlation length of the surfaces, which are no longer independent."""
-    if strip > correlation_length:
-        return None
-    return (
-        f"Strips of {strip * 1e6:.3g} µm are no longer than the correlation length of the surfaces, "
-        f"{correlation_length * 1e6:.3g} µm: neighbouring strips are not independent, as the model takes them to be."
-    )
-
-
 def plastic_contact(share: float) -> str | None:
-    """Plastic contact, which makes surfaces stick more than the elastic model predicts."""
+    """Plastic contact, which makes surfaces stick more than the elastic model predicts; NaN if it was not studied."""
+    if math.isnan(share):
+        return "Whether the contact is plastic was not checked: give its distance in studies.plasticity.distance_nm."
     if share <= PLASTIC:
         return None
     return (
@@ -81,11 +61,14 @@ def plastic_contact(share: float) -> str | None:
 
 
 def default_material(name: str, stated: Sequence[str]) -> str | None:
-    """Defaults of polysilicon that are used for another material; ``stated`` lists inputs that are given."""
+    """Defaults that are used for another material than polysilicon; ``stated`` lists inputs that are given."""
     missing = [quantity for quantity in OF_THE_MATERIAL if quantity not in stated]
     if name == "polysilicon" or not missing:
         return None
-    return f"{len(missing)} properties of {name} are not stated; those of polysilicon are used: {', '.join(missing)}."
+    return (
+        f"{len(missing)} properties of {name} are not stated; those of section solid and of polysilicon are used: "
+        f"{', '.join(missing)}."
+    )
 
 
 def least_gap(film: float, rms: float) -> float:
@@ -108,7 +91,10 @@ def large_rotation(gap: float, crack_length: float) -> str | None:
     slope = 1.5 * gap / crack_length
     if slope <= ROTATION:
         return None
-    return f"The beam reaches a slope of {slope:.2g}, above {ROTATION}: the linear theory of beams does not hold."
+    return (
+        f"At a length of {crack_length * 1e6:.0f} µm the beam reaches a slope of {slope:.2g}, above {ROTATION}: the "
+        "linear theory of beams does not hold."
+    )
 
 
 def stubby_beam(crack_length: float, thickness: float) -> str | None:
@@ -117,8 +103,8 @@ def stubby_beam(crack_length: float, thickness: float) -> str | None:
     if ratio >= SLENDER:
         return None
     return (
-        f"The crack is only {ratio:.3g} times as long as the beam is thick, less than {SLENDER:.0f}: shear and the "
-        "compliance of the clamp are not in the model."
+        f"A crack of {crack_length * 1e6:.0f} µm is only {ratio:.3g} times as long as the beam is thick, less than "
+        f"{SLENDER:.0f}: shear and the compliance of the clamp are not in the model."
     )
 
 
@@ -128,7 +114,8 @@ def wide_beam(gap: float, width: float, thickness: float, crack_length: float) -
     if ratio <= PLATE:
         return None
     return (
-        f"6 h w² / (t l²) is {ratio:.3g}, above {PLATE:.0f}: the beam bends as a plate, with the modulus E / (1 - ν²)."
+        f"At a length of {crack_length * 1e6:.0f} µm, 6 h w² / (t l²) is {ratio:.3g}, above {PLATE:.0f}: the beam "
+        "bends as a plate, with the modulus E / (1 - ν²)."
     )
 
 

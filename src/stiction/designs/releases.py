@@ -1,0 +1,114 @@
+"""Release of long beams of a device at a humidity, shared by stage cracks, charts and budgets.
+
+Separate from `stiction.designs.cracks`, so that a change of the dataset of that stage reruns no chart and no budget.
+
+Random numbers have the address of the pair, not of the device, its dimensions or the humidity, so that devices are
+compared with common random numbers.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Protocol
+
+import numpy as np
+import xarray as xr
+
+from stiction.beam.cantilever import Beam
+from stiction.beam.energy import arrest_length
+from stiction.beam.montecarlo import Experiment, columns, simulate
+from stiction.beam.release import EndState
+from stiction.beam.resolution import resolved
+from stiction.chaos.model import ChaosModel, Truncation, draw_laws, fit
+from stiction.contact import forcelaw
+from stiction.devices.bridges import half_of_bridge
+from stiction.progress import progress
+from stiction.streams import stream
+
+#: Length of the long beams, in crack lengths that Eq. (13) predicts from the mean adhesion energy. Cracks stop where
+#: adhesion is strongest, so that they are shorter than this prediction.
+LONG = 1.3
+#: Strips of one part of a beam, which can be divided into elements of 5, 4, 3, 2 and 1 strips.
+PART = 60
+#: Strips per element where the force laws allow it, as in the paper.
+PER_ELEMENT = 5
+#: Number of force laws from which length and elements of the beams are chosen.
+LAWS = 10_000
+
+
+@dataclass(frozen=True)
+class Device:
+    """Dimensions of a beam that must come free, and its ground."""
+
+    kind: str  #: ``cantilever`` or ``bridge``
+    pair: str  #: part of the addresses of random numbers
+    thickness: float  #: t [m]
+    gap: float  #: h [m]
+    width: float  #: w [m]
+    young_modulus: float  #: E [Pa]
+    strip: float  #: length of a strip along the beam [m]
+    residual_stress: float = 0.0  #: σ_R [Pa]
+
+    @property
+    def cracks(self) -> int:
+        """Number of cracks of one beam."""
+        return 2 if self.kind == "bridge" else 1
+
+    @property
+    def beam(self) -> Beam:
+        """One part of the beam in one element, under the tension of a bridge."""
+        beam = Beam(PART * self.strip, self.width, self.thickness, self.young_modulus, self.gap, elements=1)
+        return half_of_bridge(beam, self.residual_stress)
+
+
+class Seeded(Protocol):
+    """Settings of any job that releases beams of a device."""
+
+    seed: int
+    device: Device
+
+
+def fitted(vectors: np.ndarray, limit: float, chaos: Truncation) -> ChaosModel:
+    """Chaos model of the force laws of some samples (m, 4)."""
+    return fit(vectors, limit, chaos.order, chaos.dimension_tolerance)
+
+
+def addresses(settings: Seeded) -> Callable:
+    """Streams of the beams of a device: ``(number) -> numpy.random.Generator``."""
+    return partial(stream, settings.seed, "devices", settings.device.pair)
+
+
+def long_beam(device: Device, laws: np.ndarray) -> tuple[Beam, int]:
+    """Beam of a device that is longer than its cracks, with elements that resolve them, and its number of strips.
+
+    Raises
+    ------
+    ValueError
+        If the strips are too long for the force laws (n, 4).
+    """
+    part = device.beam
+    parts = int(np.ceil(LONG * arrest_length(forcelaw.energy(laws).mean(), part) / part.length))
+    points = parts * PART
+    beam = replace(part, length=parts * part.length, elements=points // PER_ELEMENT)
+    try:
+        return resolved(beam, points, laws), points
+    except ValueError as error:
+        error.add_note(f"The length of the strips of a device is its strip_um, here {1e6 * device.strip:g} µm.")
+        raise
+
+
+def crack_lengths(
+    model: ChaosModel, beam: Beam, points: int, number: int, address: Callable, threads: int = 1
+) -> np.ndarray:
+    """Crack lengths of beams on force laws drawn from a chaos model, infinite for beams that are not S-shaped (n,)."""
+    experiment = Experiment(beam, points, partial(draw_laws, model))
+    outcomes = simulate(experiment, range(number), address, threads)
+    found = columns(list(progress(outcomes, "beams", total=number)))
+    return np.where(found["state"] == EndState.S_SHAPE, found["crack_length"], np.inf)
+
+
+def surface_rms(contact: xr.Dataset) -> float:
+    r"""Root mean square of z₁ + z₂ from the mean bearing area, :math:`m_2 = 2 \int z (A(z) - [z < 0]) dz` [m]."""
+    height = contact.height.values
+    area = contact.bearing_area.values.mean(axis=0, dtype=float)
+    return float(np.sqrt(2 * float(contact.step) * np.sum(height * (area - (height < 0)))))

@@ -1,0 +1,39 @@
+from dataclasses import replace
+
+import numpy as np
+from ground import C1, R1, wanted
+from numpy.testing import assert_allclose, assert_array_equal
+
+from stiction.designs import sticking
+from stiction.devices import risk
+from stiction.stages import curves
+from stiction.streams import stream
+
+EITHER, S_SHAPE = sticking.EITHER, sticking.S_SHAPE
+
+
+def test_beams_without_a_crack_stick_at_no_known_length():
+    found = sticking.sticking_lengths(np.array([7e-4, np.inf]), 3e-6, C1, np.array([1e-3, 1e-3]))
+    assert_array_equal(found[S_SHAPE], [7e-4 + 6e-6, np.inf])
+    assert_array_equal(found[EITHER], [7e-4 + 6e-6, 1e-3])
+
+
+def test_a_bridge_sticks_at_the_sum_of_its_cracks_and_has_no_tip():
+    found = sticking.sticking_lengths(np.array([7e-4, 6e-4, 5e-4, 5e-4]), 3e-6, R1, None)
+    assert list(found) == sticking.shapes(R1) == [S_SHAPE]
+    assert_array_equal(found[S_SHAPE], [13e-4, 10e-4])
+    assert sticking.shapes(C1) == [S_SHAPE, EITHER]
+
+
+def test_there_is_one_safe_length_for_every_share():
+    lengths = 7e-4 * np.exp(0.02 * np.random.default_rng(3).standard_normal(400))
+    shares = (1e-2, 1e-3, 1e-4)
+    found = sticking.safe_lengths(lengths, replace(wanted(), shares=shares))
+    assert found == [risk.safe_length(lengths, share, stream(2021, "safe length")) for share in shares]
+
+
+def test_the_wedge_of_a_tip_is_mean_energy_over_mean_pull_off_and_slope(monkeypatch):
+    energies, pulls = np.array([1e-3, 3e-3]), np.array([1e5, 3e5])
+    monkeypatch.setattr(curves, "energies", lambda *_: energies)
+    monkeypatch.setattr(curves, "pull_offs", lambda *_: pulls)
+    assert_allclose(sticking.mean_wedge(None, np.array([0.04, 0.08]), wanted()), [2.5e-7, 1.25e-7], rtol=1e-12)
