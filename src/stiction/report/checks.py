@@ -30,7 +30,7 @@ from stiction.stages.forces import vectors
 from stiction.stages.heights import measured, substitution
 from stiction.stages.parameters import misfits
 from stiction.stages.releases import ended
-from stiction.surface.feasible import LARGEST_DISTANCE
+from stiction.surface.feasible import LARGEST_DISTANCE_OF_SCANS
 
 #: A case: pair, relative humidity and model.
 Case = tuple[str, float, str]
@@ -108,7 +108,7 @@ def heights_are_as_measured(case: str, heights: xr.Dataset) -> Check:
     """The height density has the measured moments, or the nearest feasible ones within the error of a measurement."""
     distance = measured(heights).distance
     message = substitution(heights) or f"skewness {float(heights.skewness):.4g}, kurtosis {float(heights.kurtosis):.4g}"
-    return Check("heights have the measured moments", case, distance <= LARGEST_DISTANCE, message)
+    return Check("heights have the measured moments", case, distance <= LARGEST_DISTANCE_OF_SCANS, message)
 
 
 def moments_meet_targets(
