@@ -107,6 +107,18 @@ def test_the_content_of_a_file_counts_and_not_its_time(done):
         path.write_bytes(content)
 
 
+def test_another_version_of_the_library_that_reads_files_reads_them_again(done):
+    installed = done.folder / "src" / "SurfaceTopography-99.dist-info"
+    installed.mkdir()
+    try:
+        (installed / "METADATA").write_text("Metadata-Version: 2.1\nName: SurfaceTopography\nVersion: 99\n")
+        rerun = done.rerun()
+        assert known(rerun) == behind(["scan"], READ)
+        assert of_pair_a(rerun) == []
+    finally:
+        shutil.rmtree(installed)
+
+
 def test_another_scan_reruns_the_estimate_and_reads_only_the_new_file(done):
     rerun = done.rerun(overlay="surfaces: {Etched: {scans: {files: [B2-0.gwy, B2-1.gwy, B2-2.gwy]}}}")
     assert [name for name, rule in rerun.items() if rule == "scan"] == ["results/scan/Etched_2.nc"]
