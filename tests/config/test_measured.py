@@ -22,10 +22,9 @@ from stiction.measured import estimate as stage_estimate
 from stiction.measured import heights, scan, spectrum
 from stiction.scans import estimate
 from stiction.scans.levelling import LEVELS, LINES, Levelling
-from stiction.scans.quantiles import SCORES
+from stiction.scans.quantiles import SCORES, measured_density, quantiles
 from stiction.scans.reading import UNITS, Source
 from stiction.streams import stream
-from stiction.surface.empirical import MeasuredDensity
 
 B2 = SURFACES["B2"]
 
@@ -104,11 +103,8 @@ def test_preliminary_numbers_are_those_of_the_scans(folder):
     assert np.log(1e-9 * found["rms_nm"]) == pytest.approx(pooled.moments[0], rel=1e-9)
     assert found["measured"] == pytest.approx(list(pooled.moments[1:]), rel=1e-9)
     assert found["feasible"] == pytest.approx(found["measured"])
-    scores, heights = map(np.array, found["form"])
-    assert scores[-1] == -scores[0] > 1.5
-    np.testing.assert_allclose(
-        MeasuredDensity(scores, heights).quantile_of_normal(1.0), heights[scores == 1], rtol=0.02
-    )
+    form = measured_density(quantiles(pooled.levelled), pooled.areas)
+    np.testing.assert_allclose(found["form"], [form.scores, form.heights], rtol=1e-9)
     assert abs(found["measured"][0] - truth("B2")[1]) < 0.3
     entry = measured.view(configured(*both(folder)), {"Etched": found})["surfaces"]["Etched"]
     psd = entry["published_psd"]
