@@ -1,9 +1,11 @@
 """Measured surfaces of a configuration: their files are checked before any job, once, and laws hold for them too."""
 
 import json
+import os
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,8 +25,9 @@ from stiction.measured import heights, scan, spectrum
 from stiction.scans import estimate
 from stiction.scans.levelling import LEVELS, LINES, Levelling
 from stiction.scans.quantiles import SCORES, measured_density, quantiles
-from stiction.scans.reading import UNITS, Source
-from stiction.streams import stream
+from stiction.scans.reading import UNITS, ScanFile, Source
+from stiction.stages import parameters
+from stiction.stages.heights import measured as measured_moments
 
 B2 = SURFACES["B2"]
 
@@ -223,15 +226,17 @@ def test_gaussian_scans_are_not_refused(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::UserWarning")
 def test_none_of_forty_gaussian_scans_is_refused_before_a_run_or_in_it(tmp_path):
     distances = []
     for k, drawn in enumerate(gaussian(4e-6, 40)):
         path = write(tmp_path / f"{k}.gwy", drawn.heights, drawn.size)
         (found,) = validate(configured(path)).values()
-        estimated = estimate.estimate([drawn], rngs=lambda number: (stream(1, "gaussian", number, j) for j in range(8)))
         assert found["feasible"] is not None
-        assert np.isfinite(estimated.density("moments").quantile_of_normal(3.0))
-        distances.append(estimated.feasible.distance)
+        read = scan.layout(ScanFile(drawn, "Height", "nm", ()))
+        estimated = stage_estimate.compute([read], "Etched", stage_estimate.Settings(1, estimate.Settings(), 8))
+        used = heights.compute(estimated, heights.Settings("Etched", "moments"))
+        distances.append(measured_moments(used).distance)
     assert 8 < np.count_nonzero(distances) < 32  # every other one is beyond the border
 
 
@@ -353,6 +358,31 @@ def test_problems_of_several_surfaces_are_found_at_once(bad):
         "surfaces.Etched.scans.files[0]",
         "surfaces.Other.scans.files[0]",
     ]
+
+
+#: Folder of files of real microscopes, which are not part of the project.
+REAL = os.environ.get("STICTION_SCANS")
+
+
+@pytest.mark.skipif(not REAL, reason="STICTION_SCANS does not name a folder of real scans")
+@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.parametrize(
+    "path", sorted(Path(REAL).glob("*.*")) if REAL else [None], ids=lambda path: path and path.name
+)
+def test_a_real_file_gives_heights_and_a_spectrum_or_is_refused_in_sentences_that_name_it(path, capfd):
+    config = configured(path, heights="measured")
+    if lines := problems(config):
+        assert all(path.name in line and line.count("\n") == 0 and len(line) < 400 for line in lines)
+    else:
+        plan = Plan(files.normalised(config))
+        read = scan.compute(path, typed(scan.Settings, jobs.scan(plan, "Etched", "0")))
+        found = stage_estimate.compute([read], "Etched", typed(stage_estimate.Settings, jobs.estimate(plan, "Etched")))
+        used = heights.compute(found, typed(heights.Settings, jobs.heights_of_scans(plan, "Etched")))
+        drawn = spectrum.compute(found, used, typed(spectrum.Settings, jobs.spectrum_of_scans(plan, "Etched")))
+        assert np.isfinite(stage_estimate.rms(found))
+        assert np.all(np.isfinite(found.covariance))
+        assert parameters.spectrum_of(drawn).variance > 0
+    assert capfd.readouterr() == ("", "")
 
 
 # Once

@@ -21,7 +21,7 @@ READ_BY = {
 }
 READ = READ_BY | {
     "scan": "estimate",
-    "estimate": "heights_of_scans spectrum_of_scans table_1 choice_contact scan_uncertainty",
+    "estimate": "heights_of_scans spectrum_of_scans table_1 slope_contact choice_contact scan_uncertainty",
     "heights_of_scans": READ_BY["heights"].replace("identification spectrum ", "")
     + " spectrum_of_scans variant_summits slope_contact choice_contact",
     "spectrum_of_scans": READ_BY["spectrum"].replace("table_2 ", "") + " variant_summits slope_contact choice_contact",
