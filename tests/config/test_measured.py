@@ -1,9 +1,11 @@
 """Measured surfaces of a configuration: their files are checked before any job, once, and laws hold for them too."""
 
 import json
+import os
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,13 +17,17 @@ from written_scans import BAD, SIDE, bad_files, etched, scans_of, write
 from stiction.config import files, jobs, measured
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
-from stiction.config.relations import validate
+from stiction.config.relations import longest_strip
+from stiction.config.relations_devices import validate
 from stiction.config.units import typed
 from stiction.measured import estimate as stage_estimate
 from stiction.measured import heights, scan, spectrum
 from stiction.scans import estimate
 from stiction.scans.levelling import LEVELS, LINES, Levelling
-from stiction.scans.reading import UNITS, Source
+from stiction.scans.quantiles import SCORES, measured_density, quantiles
+from stiction.scans.reading import UNITS, ScanFile, Source
+from stiction.stages import parameters
+from stiction.stages.heights import measured as measured_moments
 
 B2 = SURFACES["B2"]
 
@@ -100,6 +106,8 @@ def test_preliminary_numbers_are_those_of_the_scans(folder):
     assert np.log(1e-9 * found["rms_nm"]) == pytest.approx(pooled.moments[0], rel=1e-9)
     assert found["measured"] == pytest.approx(list(pooled.moments[1:]), rel=1e-9)
     assert found["feasible"] == pytest.approx(found["measured"])
+    form = measured_density(quantiles(pooled.levelled), pooled.areas)
+    np.testing.assert_allclose(found["form"], [form.scores, form.heights], rtol=1e-9)
     assert abs(found["measured"][0] - truth("B2")[1]) < 0.3
     entry = measured.view(configured(*both(folder)), {"Etched": found})["surfaces"]["Etched"]
     psd = entry["published_psd"]
@@ -173,17 +181,63 @@ LAWS = {
 }  # fmt: skip
 
 
+@pytest.mark.parametrize("heights", ["moments", "measured"])
 @pytest.mark.parametrize(("overlay", "begins", "part"), LAWS.values(), ids=LAWS)
-def test_laws_of_the_configuration_hold_for_measured_surfaces_and_name_their_files(folder, overlay, begins, part):
-    assert problems(configured(both(folder)[0])) == ()
-    lines = [line for line in problems(merged(configured(both(folder)[0]), overlay)) if line.startswith(begins)]
-    assert any(part in line for line in lines), problems(merged(configured(both(folder)[0]), overlay))
+def test_laws_of_the_configuration_hold_for_measured_surfaces_and_name_their_files(
+    folder, overlay, begins, part, heights
+):
+    config = configured(both(folder)[0], heights=heights)
+    config["surfaces"]["Unmet"] = {"scans": {"files": [str(both(folder)[1])]}}
+    assert problems(config) == ()
+    found = problems(merged(config, overlay))
+    lines = [line for line in found if line.startswith(begins)]
+    assert any(part in line for line in lines), found
+    if "coarse grid" not in begins:
+        assert not [line for line in lines if "rms_nm" in line]
+        assert not [line for line in lines if "Unmet" in line and "sampling.margin_um" not in line]
+
+
+#: A cantilever on the measured surface.
+CANTILEVER = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.9]}
+
+
+@pytest.mark.parametrize("heights", ["moments", "measured"])
+def test_the_strips_of_a_device_on_scans_resolve_its_cracks(folder, heights):
+    config = configured(both(folder)[0], heights=heights) | {"devices": {"C1": CANTILEVER}}
+    config["surfaces"]["Unmet"] = {"scans": {"files": [str(both(folder)[1])]}}
+    assert problems(config) == ()
+    (line,) = problems(merged(config, {"devices": {"C1": {"thickness_um": 0.2}}}))
+    assert line.startswith("devices.C1.thickness_um is 0.2, must be so large that strips of 1.5 µm resolve its cracks")
+    assert "surfaces.Etched.scans.files = ['B2-0.gwy']" in line
+    assert "Unmet" not in line
+
+
+def test_the_bound_on_strips_is_the_same_for_moments_and_for_the_form_that_they_have():
+    numbers = {"rms_nm": 1e9 * B2.rms, "skewness": B2.skewness, "kurtosis": B2.kurtosis}
+    form = {"rms_nm": 1e9 * B2.rms, "form": (tuple(SCORES), tuple(B2.density.quantile_of_normal(SCORES)))}
+    bounds = [longest_strip(2.6, 164, 0.95, 300, [side, side], {}) for side in (numbers, form)]
+    assert bounds[1] == pytest.approx(bounds[0], rel=0.1)  # the highest points are those of straight tails
 
 
 def test_gaussian_scans_are_not_refused(tmp_path):
     for k, drawn in enumerate(gaussian(SIDE, 3)):
         path = write(tmp_path / f"{k}.gwy", drawn.heights)
         assert problems(configured(path)) == ()
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_none_of_forty_gaussian_scans_is_refused_before_a_run_or_in_it(tmp_path):
+    distances = []
+    for k, drawn in enumerate(gaussian(4e-6, 40)):
+        path = write(tmp_path / f"{k}.gwy", drawn.heights, drawn.size)
+        (found,) = validate(configured(path)).values()
+        assert found["feasible"] is not None
+        read = scan.layout(ScanFile(drawn, "Height", "nm", ()))
+        estimated = stage_estimate.compute([read], "Etched", stage_estimate.Settings(1, estimate.Settings(), 8))
+        used = heights.compute(estimated, heights.Settings("Etched", "moments"))
+        distances.append(measured_moments(used).distance)
+    assert 8 < np.count_nonzero(distances) < 32  # every other one is beyond the border
 
 
 def test_moments_without_a_density_are_refused_unless_the_heights_are_measured(tmp_path):
@@ -274,6 +328,27 @@ def test_every_unusable_file_is_tested(bad):
     assert set(BAD) == set(bad[1])
 
 
+def test_equal_contents_under_two_names_are_not_two_scans(folder, tmp_path):
+    copy = shutil.copy(both(folder)[0], tmp_path / "copy.gwy")
+    (line,) = problems(configured(*both(folder), copy))
+    wanted = "surfaces.Etched.scans.files[2] is 'copy.gwy', which has the same content as B2-0.gwy; a scan counts once"
+    assert line == wanted
+
+
+def test_files_of_equal_names_are_told_apart_by_their_folders(bad, folder, tmp_path):
+    paths = [tmp_path / day / "scan.gwy" for day in ("monday", "tuesday")]
+    for path, content in zip(paths, (both(folder)[0], bad[0] / "half.gwy"), strict=True):
+        path.parent.mkdir()
+        shutil.copy(content, path)
+    (line,) = problems(configured(*paths, both(folder)[1]))
+    assert line.startswith(f"surfaces.Etched.scans.files[1] is {str(paths[1])!r}, which cannot be read")
+    shutil.copy(both(folder)[1], paths[1])
+    assert problems(configured(*paths)) == ()
+    write(paths[1], np.zeros((40, 40)) + np.eye(40))
+    (line,) = problems(configured(*paths))
+    assert line.startswith(f"surfaces.Etched.scans.files[1] is {str(paths[1])!r}, which has 40 x 40 points on")
+
+
 def test_problems_of_several_surfaces_are_found_at_once(bad):
     config = configured(bad[0] / "empty.spm")
     config["surfaces"]["Other"] = {"scans": {"files": [str(bad[0] / "missing.spm")]}}
@@ -283,6 +358,31 @@ def test_problems_of_several_surfaces_are_found_at_once(bad):
         "surfaces.Etched.scans.files[0]",
         "surfaces.Other.scans.files[0]",
     ]
+
+
+#: Folder of files of real microscopes, which are not part of the project.
+REAL = os.environ.get("STICTION_SCANS")
+
+
+@pytest.mark.skipif(not REAL, reason="STICTION_SCANS does not name a folder of real scans")
+@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.parametrize(
+    "path", sorted(Path(REAL).glob("*.*")) if REAL else [None], ids=lambda path: path and path.name
+)
+def test_a_real_file_gives_heights_and_a_spectrum_or_is_refused_in_sentences_that_name_it(path, capfd):
+    config = configured(path, heights="measured")
+    if lines := problems(config):
+        assert all(path.name in line and line.count("\n") == 0 and len(line) < 400 for line in lines)
+    else:
+        plan = Plan(files.normalised(config))
+        read = scan.compute(path, typed(scan.Settings, jobs.scan(plan, "Etched", "0")))
+        found = stage_estimate.compute([read], "Etched", typed(stage_estimate.Settings, jobs.estimate(plan, "Etched")))
+        used = heights.compute(found, typed(heights.Settings, jobs.heights_of_scans(plan, "Etched")))
+        drawn = spectrum.compute(found, used, typed(spectrum.Settings, jobs.spectrum_of_scans(plan, "Etched")))
+        assert np.isfinite(stage_estimate.rms(found))
+        assert np.all(np.isfinite(found.covariance))
+        assert parameters.spectrum_of(drawn).variance > 0
+    assert capfd.readouterr() == ("", "")
 
 
 # Once
@@ -317,6 +417,17 @@ def test_a_process_that_checks_known_files_reads_nothing_but_their_content(folde
 def test_a_configuration_without_scans_imports_nothing_of_them(tmp_path):
     assert checked(PAPER, tmp_path / "kept") == ["False", "False"]
     assert not (tmp_path / "kept").exists()
+
+
+def test_another_version_of_the_library_reads_the_files_again(folder, monkeypatch):
+    config = configured(both(folder)[0])
+    validate(config)
+    known = set(measured._KNOWN)
+    monkeypatch.setattr(measured, "version_of", lambda library: f"another {library}")
+    measured._code.cache_clear()
+    validate(config)
+    measured._code.cache_clear()
+    assert len(set(measured._KNOWN) - known) == 1
 
 
 def test_other_content_in_the_same_file_is_read_again(folder, tmp_path):

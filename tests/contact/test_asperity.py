@@ -23,6 +23,7 @@ from stiction.contact.asperity import (
     reduced_modulus,
     touching_radius,
     transition_parameter,
+    weak_load,
 )
 from stiction.contact.vanderwaals import DugdaleAttraction, attraction
 from stiction.surface.summits import find_summits
@@ -351,9 +352,29 @@ def test_any_solid_and_any_height_of_a_summit_have_the_force_of_the_exact_soluti
     np.testing.assert_allclose(total[near > 0.02], exact[near > 0.02], rtol=5e-4, atol=0.03 * pull)
 
 
-@pytest.mark.parametrize("count", [1, 3])
-def test_summits_too_sharp_for_a_continuum_are_counted_once_each(count):
-    heights = np.zeros((3, 2 * count + 1), np.float32)
-    heights[1, 1::2] = 1e-3
-    with pytest.raises(ValueError, match=rf"^{count} summits are too sharp: their Maugis' λ is below 0.0097, a radius"):
-        WATER.add_forces(*summits(heights, 10e-9), 1e-6, np.zeros(1000))
+@pytest.mark.parametrize("transition", [1e-5, 1e-3, 9e-3])
+def test_weak_attraction_is_the_limit_of_maugis_in_contact_and_apart(transition):
+    load, delta = maugis_branch(transition, points=100_000)
+    apart, contact = np.linspace(0.999 * delta[0], -1, 500), np.linspace(0, 300, 500)
+    found = np.array([[weak_load(x, transition) for x in at] for at in (apart, contact)])
+    exact = np.interp([apart, contact], delta, load)
+    np.testing.assert_allclose(found[0], exact[0], rtol=0, atol=0.003)
+    assert np.all(exact[1] > found[1] - 1e-3)
+    assert np.all(exact[1] < found[1] + np.minimum(1, 8 * np.sqrt(transition) * (1 + contact) ** 0.5))
+    assert weak_load(1.001 * delta[0], transition) == 0
+
+
+@pytest.mark.parametrize("transition", [1e-4, 3e-3, 9e-3])
+def test_summits_before_the_table_have_the_force_of_the_exact_solution(transition):
+    radius, step = 3e-7, 0.02e-9
+    strong = transition_parameter(radius, POLYSILICON, WATER.attraction)
+    # λ grows with the Hamaker constant to the power of two thirds.
+    pull = attraction("water", WATER.attraction.hamaker_constant * (transition / strong) ** 1.5)
+    solid, total = MaugisTable(POLYSILICON, pull), np.ones(300)
+    solid.add_forces(np.array([2e-9, 1e-9]), np.full(2, 1 / radius), step, total)
+    exact = sum(solid.force(top - step * np.arange(300), radius) for top in (2e-9, 1e-9))
+    scale = np.pi * pull.work_of_adhesion * radius
+    np.testing.assert_allclose(total - 1, exact, rtol=2e-4, atol=2 * scale)  # each sphere by its scale at most
+    apart = step * np.arange(300) > 2e-9
+    assert np.count_nonzero(exact[apart]) > 5
+    np.testing.assert_allclose(total[apart] - 1, exact[apart], rtol=0, atol=0.01 * scale)

@@ -187,7 +187,9 @@ def test_every_scan_has_its_row_with_the_error_of_one_scan():
 
 def uncertainty():
     errors = np.array([[[0.1, 0.05], [0.02, 0.01], [0.01, 0.005], [0.08, 0.05]]])
-    return study.layout(["Etched"], (0.44, 0.88), errors, [3], {"beyond": [(-0.2, 0.02), (-0.05, 0.01)]})
+    found = study.Uncertainty(errors, np.array([[0.004, 0.002]]), np.array([[0.15, 0.05]]))
+    choices = {"beyond": [(-0.2, 0.02), (-0.05, 0.01)], "heights": [(0.1, 0.08), (0.02, 0.01)]}
+    return study.layout(["Etched"], (0.44, 0.88), found, [3], choices)
 
 
 def test_errors_by_scans_are_tabulated_by_surface_and_for_the_pair():
@@ -198,9 +200,14 @@ def test_errors_by_scans_are_tabulated_by_surface_and_for_the_pair():
         first[["rms_percent", "shape_percent", "spectrum_percent", "total_percent"]].astype(float), [10, 2, 1, 8]
     )
     assert_allclose([first.crack_length_percent, both.crack_length_percent], 2)
-    assert (first.scans, first.scans_needed) == (3, 8)
+    assert (first.scans, first.scans_needed) == (both.scans, both.scans_needed) == (3, 8)
+    assert_allclose([first.total_se_percent, both.total_se_percent], 0.4)
     assert_allclose([both.beyond_percent, both.beyond_se_percent], [-20, 2])
+    assert_allclose([both.heights_percent, both.heights_se_percent], [10, 17])
     assert np.isnan(first.beyond_percent)
     cells = table.cells.iloc[1]
     assert cells["other beyond [%]"] == "-20.0 ± 2.0"
-    assert cells["needed"] == "–"
+    assert cells["other heights [%]"] == "+10 ± 17"
+    assert cells["ē: total [%]"] == "8.00 ± 0.40"
+    assert cells["ē: rms [%]"] == "–"
+    assert cells["needed"] == "8"

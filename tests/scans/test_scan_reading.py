@@ -1,6 +1,7 @@
 """Files written by SurfaceTopography and by hand, read back; files that cannot be used, refused in one sentence."""
 
 import logging
+import struct
 import subprocess
 import sys
 import warnings
@@ -63,6 +64,46 @@ def test_units_of_the_file_are_converted(tmp_path, unit, metres):
     scan = read(written(tmp_path, "nc", topography(HEIGHTS / metres, tuple(x / metres for x in SIZE), unit))).scan
     np.testing.assert_allclose(scan.heights, HEIGHTS, rtol=1e-12)
     np.testing.assert_allclose(scan.size, SIZE, rtol=1e-7)
+
+
+def igor(path, heights, lateral, unit):
+    """Write a map of heights as a binary wave of Igor, version 5, with lengths in two units."""
+    wave = bytearray(320)
+    struct.pack_into("<ih", wave, 12, heights.size, 4)  # 64-bit numbers
+    struct.pack_into("<4i", wave, 68, *heights.shape, 1, 0)
+    struct.pack_into(
+        "<2d", wave, 84, *(x / n / reading.UNITS[lateral] for x, n in zip(SIZE, heights.shape, strict=True))
+    )
+    for offset, text in ((148, unit), (152, lateral), (156, lateral)):
+        struct.pack_into("3s", wave, offset, text.encode())
+    head = struct.pack("<hhi14i", 5, 0, len(wave) + 8 * heights.size, *[0] * 14)
+    path.write_bytes(head + wave + np.fliplr(heights).tobytes("F"))
+    return path
+
+
+@pytest.mark.parametrize(("lateral", "unit"), [("um", "nm"), ("nm", "um"), ("m", "nm"), ("um", "um")])
+def test_heights_in_another_unit_than_the_sides_are_not_scaled_twice(tmp_path, lateral, unit):
+    path = igor(tmp_path / "scan.ibw", HEIGHTS / reading.UNITS[unit], lateral, unit)
+    found = read(path, Source(channel="no name (1)"))
+    np.testing.assert_allclose(found.scan.heights, HEIGHTS, rtol=1e-12)
+    np.testing.assert_allclose(found.scan.size, SIZE)
+    assert reading.UNITS[found.unit] == reading.UNITS[unit]
+
+
+def test_an_ampere_in_a_file_is_no_angstrom(tmp_path):
+    with pytest.raises(ScanError, match="^channel: scan.ibw has channel no name .* in A, which is not a length"):
+        read(igor(tmp_path / "scan.ibw", HEIGHTS, "um", "A"), Source(channel="no name (1)"))
+
+
+#: Lateral unit and unit of the values of a channel, and the unit in which the library returns its heights.
+DELIVERED = [("µm", "nm", "µm"), ("nm", "nm", "nm"), (("um", None), "nm", "nm"), (None, "nm", "nm"), ("V", "m", "m")]
+
+
+@pytest.mark.parametrize(("lateral", "unit", "expected"), DELIVERED)
+def test_the_library_returns_heights_in_the_lateral_unit_if_that_is_a_length(lateral, unit, expected):
+    (channel,) = channels(("Height", unit))
+    channel.unit = lateral
+    assert reading._delivered(channel, unit) == expected
 
 
 @pytest.mark.parametrize(("unit", "metres"), [("nm", 1e-9), ("um", 1e-6), ("Å", 1e-10), ("pm", 1e-12)])
@@ -135,6 +176,7 @@ REFUSED_CHANNELS = {
     "a height without length": ([("Height", ("nm", None))], None, "no channel that is named as a height"),
     "an error of the height": ([("Height Error", "nm"), ("Sensor", "nm")], None, "no channel that is named as"),
     "a height in volts": ([("Height", "V")], None, "no channel that is named as a height"),
+    "a height in amperes": ([("Height", "A")], None, "no channel that is named as a height"),
     "a single other channel": ([("Friction", "nm")], None, "no channel that is named as a height"),
     "two kinds of heights": ([("Height", "nm"), ("ZSensor", "nm")], None, "name one of: Height, ZSensor"),
     "an unknown name": ([("Height", "nm")], "height", "no channel height, only: Height"),
@@ -148,7 +190,7 @@ def test_without_one_channel_of_heights_the_file_is_refused_with_the_list(named,
     assert (caught.value.key, caught.value.file) == ("channel", "scan.spm")
 
 
-@pytest.mark.parametrize("unit", ["V", "deg", ("um", None)])
+@pytest.mark.parametrize("unit", ["V", "deg", "A", ("um", None)])
 def test_a_named_channel_must_be_a_length(unit):
     (channel,) = channels(("Deflection", unit))
     with pytest.raises(ScanError, match="channel: scan.spm has channel Deflection in .*, which is not a length"):
@@ -236,13 +278,22 @@ def test_a_size_given_for_a_file_that_has_one_must_agree(tmp_path):
     np.testing.assert_allclose(read(path, Source(size=(6.43e-6, 4e-6), height_unit="m")).scan.size, SIZE)
 
 
+LIBRARY = reading._library("a.spm")
+
+
 @pytest.mark.parametrize(
     ("reason", "quoted"),
     [("truncated.\nat byte 7", " (truncated)"), ("x" * 121, ""), ("", ""), ("x" * 120, f" ({'x' * 120})")],
 )
-def test_a_reason_is_quoted_by_its_first_line_if_that_is_short(tmp_path, reason, quoted):
-    error = reading._unreadable(tmp_path / "a.spm", IndexError(reason))
+def test_an_error_of_the_library_is_quoted_by_its_first_line_if_that_is_short(tmp_path, reason, quoted):
+    error = reading._unreadable(LIBRARY, tmp_path / "a.spm", LIBRARY.error(reason))
     assert str(error) == f"files: a.spm cannot be read as any known format, or is damaged{quoted}"
+
+
+@pytest.mark.parametrize("error", [IndexError("list index out of range"), KeyError("wave"), MemoryError(), None])
+def test_errors_from_inside_the_library_are_not_quoted(tmp_path, error):
+    refused = reading._unreadable(LIBRARY, tmp_path / "a.spm", error)
+    assert str(refused) == "files: a.spm cannot be read as any known format, or is damaged"
 
 
 def test_what_libraries_print_log_and_warn_of_is_not_shown(capfd, caplog):
@@ -262,13 +313,52 @@ def test_a_folder_is_not_a_file(tmp_path):
         read(tmp_path)
 
 
-def test_damage_that_shows_only_when_heights_are_read_is_told(tmp_path):
-    def topography(**_):
-        raise IndexError("list index out of range\nin some reader")
+class Damaged:
+    """Reader and channel of a damaged file, which fails where it is asked for one thing."""
 
-    channel = SimpleNamespace(physical_sizes=None, nb_grid_pts=(64, 64), topography=topography)
-    with pytest.raises(ScanError, match="^files: a.tiff cannot be read .* damaged [(]list index out of range[)]$"):
-        reading._heights(channel, tmp_path / "a.tiff")
+    index, name, channel_id, unit, data_unit = 0, "Height", "Height", "nm", "nm"
+    dim, physical_sizes, nb_grid_pts, is_uniform = 2, (64.0, 40.0), (64, 40), True
+
+    def __init__(self, where, error):
+        self.where, self.error = where, error
+
+    def __getattribute__(self, name):
+        if name == object.__getattribute__(self, "where"):
+            raise object.__getattribute__(self, "error")
+        return object.__getattribute__(self, name)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def topography(self, **_):
+        return self
+
+    def heights(self):
+        return HEIGHTS
+
+    @property
+    def channels(self):
+        return [self]
+
+    @property
+    def info(self):
+        return {}
+
+
+@pytest.mark.parametrize("where", ["channels", "dim", "channel_id", "physical_sizes", "topography", "heights", "info"])
+def test_damage_that_shows_only_later_is_told_in_the_same_sentence(tmp_path, monkeypatch, where):
+    path = tmp_path / "a.tiff"
+    path.write_bytes(b"anything")
+    for error, quoted in (
+        (IndexError("list index out of range\nin some reader"), ""),
+        (SurfaceTopography.Exceptions.CorruptFile("File is too short."), r" [(]File is too short[)]"),
+    ):
+        monkeypatch.setattr(reading, "_opened", lambda *_, error=error: Damaged(where, error))
+        with pytest.raises(ScanError, match=f"^files: a.tiff cannot be read as any .* or is damaged{quoted}$"):
+            read(path)
 
 
 def test_without_the_library_the_message_tells_how_to_install_it(tmp_path, monkeypatch):

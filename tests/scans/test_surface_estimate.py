@@ -9,10 +9,12 @@ from scipy import stats
 from stiction.errors import ScanError
 from stiction.scans.estimate import Settings, _residual, estimate, inspect
 from stiction.scans.levelling import Levelling
+from stiction.scans.model_scans import ModelScans
 from stiction.scans.quantiles import SCORES, Feasible
 from stiction.scans.scan import Scan
 from stiction.streams import stream
 from stiction.surface import maxent
+from stiction.surface.feasible import LARGEST_DISTANCE_OF_SCANS, is_feasible
 from stiction.surface.translation import Translation
 
 SIDE = 5e-6
@@ -209,6 +211,14 @@ def test_gaussian_scans_are_never_refused():
         assert found.feasible is not None
         density = found.density("moments")
         np.testing.assert_allclose(density.quantile_of_normal(1.0), 1.0, atol=0.1)
+
+
+def test_moments_that_are_accepted_before_their_bias_is_known_are_not_refused_afterwards(monkeypatch):
+    monkeypatch.setattr(ModelScans, "bias", lambda *_: np.array([0.0, 0.0, -2.0]))
+    (found,) = estimates(gaussian(4e-6, 1), count=12)
+    assert found.moments[2] > 4.5
+    assert found.feasible.distance > LARGEST_DISTANCE_OF_SCANS
+    assert is_feasible(found.feasible.skewness, found.feasible.kurtosis)
 
 
 def test_a_density_that_four_moments_do_not_describe_is_told_from_one_that_they_do():

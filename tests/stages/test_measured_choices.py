@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 import pytest
 import small
+import xarray as xr
 from numpy.testing import assert_allclose, assert_array_equal
 from published import SURFACES
 from written_scans import etched, scans_of
@@ -12,6 +13,7 @@ from written_scans import etched, scans_of
 from stiction.analysis.shifts import ORDERS
 from stiction.config import jobs
 from stiction.config.files import load
+from stiction.config.measured import quantities as measured_quantities
 from stiction.config.plan import Plan
 from stiction.designs import budget
 from stiction.measured import choices, estimate, heights, scan, spectrum
@@ -129,8 +131,9 @@ def test_modes_have_the_errors_of_all_scans_together(estimated):
 @pytest.mark.parametrize(("source", "names"), [("moments", OF_MOMENTS), ("measured", OF_MEASURED)])
 def test_quantities_of_the_plan_are_those_of_the_surface_and_have_errors(files, estimated, source, names):
     plan = plan_of(files, heights=source)
-    assert plan.quantities("Etched") == names + OF_SPECTRUM
-    assert slope_contact.description(*surfaces(plan, estimated)[0]).quantities == plan.quantities("Etched")
+    own = slope_contact.description(*surfaces(plan, estimated)[0]).quantities
+    assert own == measured_quantities(plan.config["surfaces"]["Etched"]) == names + OF_SPECTRUM
+    assert sorted(plan.quantities("Etched")) == sorted({*own, *OF_MEASURED[1:]})
     assert plan.quantities("Sub1") == OF_MOMENTS + OF_SPECTRUM
     assert (plan.scanned_pairs, plan.scanned_sides("b")) == (["b"], ["Etched"])
     errors = scan_uncertainty.errors_of(estimated, plan.quantities("Etched"))
@@ -139,6 +142,7 @@ def test_quantities_of_the_plan_are_those_of_the_surface_and_have_errors(files, 
     assert errors.heights.shape == (len(names), len(names))
     assert_allclose(errors.heights[0, 0], float(estimated.covariance[0, 0]), rtol=0.05)
     assert_allclose(errors.spectrum, estimated.fit_covariance[1:, 1:])
+    assert_allclose(errors.modes, estimated.mode_covariance[1:, 1:])
 
 
 @pytest.mark.parametrize("quantity", ["mode3", "rms"])
@@ -160,6 +164,19 @@ def test_slopes_of_measured_heights_keep_their_form_but_for_a_mode(files, estima
         assert np.all((forms[0] - forms[1])[[0, 2]] > (forms[0] - forms[1])[1])
         assert float(changed.rms) == float(before.rms)
     assert slope_contact.difference(found) == pytest.approx(0.1 if quantity == "rms" else 0.04)
+
+
+def test_modes_of_a_surface_with_the_heights_of_its_moments_are_those_of_its_measured_heights(
+    files, estimated, monkeypatch
+):
+    asked, contact = [], small.contact_of_pair()
+    monkeypatch.setattr(stage_contact, "compute_each", lambda *given: asked.append(given[0]) or [contact, contact])
+    for plan in (plan_of(files), plan_of(files, heights="measured")):
+        settings = small.settings_of(slope_contact, jobs.slope_contact(plan, "b"))
+        slope_contact.compute(surfaces(plan, estimated), "b", "Etched", "mode4", settings, estimated)
+    for from_moments, from_measured in zip(*asked, strict=True):
+        for ours, theirs in zip(from_moments[0], from_measured[0], strict=True):
+            xr.testing.assert_allclose(ours, theirs, rtol=1e-6)
 
 
 @pytest.mark.parametrize(("form", "names"), [("moments", OF_MOMENTS), ("measured", OF_MEASURED)])

@@ -6,7 +6,13 @@ from scipy.stats import skew
 
 from stiction.streams import stream
 from stiction.surface import feasible, maxent
-from stiction.surface.feasible import LARGEST_DISTANCE, is_feasible, largest_kurtosis, nearest_feasible
+from stiction.surface.feasible import (
+    LARGEST_DISTANCE,
+    LARGEST_DISTANCE_OF_SCANS,
+    is_feasible,
+    largest_kurtosis,
+    nearest_feasible,
+)
 
 #: |skewness| and the largest kurtosis, found by hand with solutions on a grid of moments.
 BORDER = {0: 3.000, 0.05: 3.006, 0.1: 3.026, 0.2: 3.107, 0.3: 3.242, 0.4: 3.454, 0.5: 3.804, 0.6: 4.362, 1.0: 7.78}
@@ -31,6 +37,12 @@ def test_moments_of_a_gaussian_stay_as_they_are():
     assert nearest_feasible(0.0, 3.0) == (0.0, 3.0, 0.0)
 
 
+def distance_to_border(skewness, measured, covariance):
+    """Distance from measured moments to the largest kurtosis at a skewness [standard errors]."""
+    off = np.subtract((skewness, largest_kurtosis(float(skewness))), measured)
+    return np.sqrt(off @ np.linalg.solve(covariance, off))
+
+
 @pytest.mark.parametrize(("skewness", "kurtosis"), NEARLY_GAUSSIAN)
 def test_no_point_of_the_border_is_nearer(skewness, kurtosis):
     found = nearest_feasible(skewness, kurtosis)
@@ -39,8 +51,25 @@ def test_no_point_of_the_border_is_nearer(skewness, kurtosis):
     off = np.subtract(found[:2], (skewness, kurtosis)) / errors
     assert 0 < found.distance == pytest.approx(np.linalg.norm(off), rel=1e-9)
     for trial in skewness + np.linspace(-2.4, 2.4, 13) * errors[0]:
-        border = np.subtract((trial, largest_kurtosis(float(trial))), (skewness, kurtosis)) / errors
-        assert np.linalg.norm(border) >= found.distance - 1e-4
+        border = distance_to_border(trial, (skewness, kurtosis), np.diag(errors**2))
+        assert border >= found.distance - 1e-4
+
+
+@pytest.mark.parametrize(("skewness", "kurtosis"), [(0.0, 4.6), (0.05, 3.6), (-0.2, 4.0)])
+@pytest.mark.parametrize("correlation", [-0.8, 0.0, 0.8])
+def test_without_a_limit_the_nearest_moments_are_found_at_any_distance_on_either_side(skewness, kurtosis, correlation):
+    errors = np.array([0.06, 0.12])
+    covariance = np.outer(errors, errors) * [[1, correlation], [correlation, 1]]
+    found = nearest_feasible(skewness, kurtosis, covariance, np.inf)
+    assert found.distance > LARGEST_DISTANCE
+    trials = skewness + np.linspace(-0.9, 0.9, 37)
+    assert min(distance_to_border(t, (skewness, kurtosis), covariance) for t in trials) >= found.distance - 1e-3
+
+
+def test_large_errors_lead_to_near_moments():
+    # Moments below the lower bound of the kurtosis are within these errors as well.
+    found = nearest_feasible(0.05, 3.3, np.diag([0.2, 0.7]) ** 2, LARGEST_DISTANCE_OF_SCANS)
+    assert found.distance < 0.5
 
 
 def test_mirrored_moments_have_mirrored_neighbours():
@@ -89,10 +118,20 @@ def test_distant_moments_are_refused_with_the_largest_kurtosis(skewness, kurtosi
         nearest_feasible(skewness, kurtosis)
 
 
-def test_the_largest_distance_is_that_of_one_measurement_in_twenty():
+@pytest.mark.parametrize(("largest", "likely"), [(LARGEST_DISTANCE, 0.05), (LARGEST_DISTANCE_OF_SCANS, 0.001)])
+def test_the_largest_distance_is_that_of_one_measurement_in_twenty_and_of_one_scan_in_a_thousand(largest, likely):
     drawn = stream(3, "feasible").standard_normal((100_000, 2))
-    share = np.mean(np.linalg.norm(drawn, axis=1) > LARGEST_DISTANCE)
-    assert share == pytest.approx(0.05, abs=4 * np.sqrt(0.05 * 0.95 / 1e5))
+    share = np.mean(np.linalg.norm(drawn, axis=1) > largest)
+    assert share == pytest.approx(likely, abs=4 * np.sqrt(likely * (1 - likely) / 1e5))
+
+
+def test_the_limit_decides_what_is_too_far():
+    covariance = feasible.sampling_covariance(feasible.SAMPLE)
+    distance = nearest_feasible(0.0, 3.4, covariance, np.inf).distance
+    assert LARGEST_DISTANCE < distance < LARGEST_DISTANCE_OF_SCANS
+    assert nearest_feasible(0.0, 3.4, covariance, LARGEST_DISTANCE_OF_SCANS).distance == distance
+    with pytest.raises(ValueError, match="within 2.45 standard errors"):
+        nearest_feasible(0.0, 3.4, covariance)
 
 
 def test_moments_that_no_density_has_are_never_replaced():

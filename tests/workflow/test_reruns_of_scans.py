@@ -23,7 +23,7 @@ READ_BY = {
 }
 READ = READ_BY | {
     "scan": "estimate",
-    "estimate": "heights_of_scans spectrum_of_scans table_1 choice_contact scan_uncertainty",
+    "estimate": "heights_of_scans spectrum_of_scans table_1 slope_contact choice_contact scan_uncertainty",
     "heights_of_scans": READ_BY["heights"].replace("identification spectrum ", "")
     + " spectrum_of_scans variant_summits slope_contact choice_contact",
     "spectrum_of_scans": READ_BY["spectrum"].replace("table_2 ", "") + " variant_summits slope_contact choice_contact",
@@ -105,6 +105,18 @@ def test_the_content_of_a_file_counts_and_not_its_time(done):
         assert "results/scan/Etched_0.nc" not in rerun
     finally:
         path.write_bytes(content)
+
+
+def test_another_version_of_the_library_that_reads_files_reads_them_again(done):
+    installed = done.folder / "src" / "SurfaceTopography-99.dist-info"
+    installed.mkdir()
+    try:
+        (installed / "METADATA").write_text("Metadata-Version: 2.1\nName: SurfaceTopography\nVersion: 99\n")
+        rerun = done.rerun()
+        assert known(rerun) == behind(["scan"], READ)
+        assert of_pair_a(rerun) == []
+    finally:
+        shutil.rmtree(installed)
 
 
 def test_another_scan_reruns_the_estimate_and_reads_only_the_new_file(done):

@@ -13,7 +13,7 @@ rule scan:
     localrule: True
     params:
         settings=lambda w: jobs.scan(plan, w.surface, w.number),
-        code=code("scan.py"),
+        code=code("scan.py") | {"SurfaceTopography": provenance.version_of("SurfaceTopography")},
     message:
         "Read scan {wildcards.number} of surface {wildcards.surface}."
     script:

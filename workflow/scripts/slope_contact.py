@@ -11,7 +11,8 @@ def main(job):
     surfaces = storage.load_surfaces(job.input.heights, job.input.spectrum)
     wanted = typed(slope_contact.Settings, job.params.settings)
     at = job.wildcards
-    contacts = slope_contact.compute(surfaces, at.pair, at.surface, at.quantity, wanted)
+    of_modes = storage.load_all(job.input.estimates, "estimate")
+    contacts = slope_contact.compute(surfaces, at.pair, at.surface, at.quantity, wanted, *of_modes)
     for dataset, path in zip(contacts, job.output, strict=True):
         storage.save(dataset, path, "contact", job.params.settings, job.input)
 

@@ -9,6 +9,7 @@ import hashlib
 import json
 import math
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from stiction.errors import ScanError
 from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
 from stiction.run.atomic import save_text
 from stiction.run.fingerprint import fingerprint
+from stiction.run.provenance import version_of
 
 #: Values of the keys of a measured surface that are not given.
 _DEFAULTS = {"heights": "moments", "psd": "fitted", "beyond": "cut"}
@@ -149,22 +151,38 @@ def _unusable(faults):
 
 def _evaluated(entry, section, kept):
     """Preliminary numbers of one surface, computed if they are not known yet."""
-    contents = []
-    for path in entry["scans"]["files"]:
-        try:
-            contents.append([Path(path).name, digest(path)])
-        except OSError as reason:
-            raise ScanError(Path(path).name, "files", f"cannot be opened: {reason.strerror} ({path})") from None
-    settings = source(entry), evaluation(entry, section)
+    files = dict(zip(_labels(entry), entry["scans"]["files"], strict=True))
+    contents, settings = _contents(files), (source(entry), evaluation(entry, section))
     text = json.dumps([contents, settings, _code()], sort_keys=True)
     key = hashlib.sha256(text.encode()).hexdigest()
     if key not in _KNOWN:
         file = None if kept is None else Path(kept) / f"{key}.json"
-        _KNOWN[key] = _read(file) or _preliminary(entry["scans"]["files"], *settings)
+        _KNOWN[key] = _read(file) or _preliminary(files, *settings)
         if file is not None and not file.exists():
             file.parent.mkdir(parents=True, exist_ok=True)
             save_text(json.dumps(_KNOWN[key]), file)
     return _KNOWN[key]
+
+
+def _labels(entry):
+    """What messages call the files of a surface: their names without folders, or the paths of those of equal names."""
+    files = entry["scans"]["files"]
+    names = [Path(file).name for file in files]
+    return [file if names.count(name) > 1 else name for file, name in zip(files, names, strict=True)]
+
+
+def _contents(files):
+    """Name and SHA-256 of every file, by label; refuses equal contents, because scans are independent samples."""
+    seen = {}
+    for label, path in files.items():
+        try:
+            content = digest(path)
+        except OSError as reason:
+            raise ScanError(label, "files", f"cannot be opened: {reason.strerror} ({path})") from None
+        if content in seen:
+            raise ScanError(label, "files", f"has the same content as {seen[content]}; a scan counts once")
+        seen[content] = label
+    return [[Path(path).name, content] for path, content in zip(files.values(), seen, strict=True)]
 
 
 #: Preliminary numbers that this process knows, by content, settings and code.
@@ -181,25 +199,27 @@ def _read(file):
 
 @cache
 def _code():
-    """Fingerprint of the code that evaluates scans."""
+    """Fingerprint of the code that evaluates scans, and the version of the library that reads them."""
     folder = Path(__file__).parents[1] / "scans"
-    return fingerprint(folder / "estimate.py") | fingerprint(folder / "reading.py")
+    return [fingerprint(folder / "estimate.py") | fingerprint(folder / "reading.py"), version_of("SurfaceTopography")]
 
 
 def _preliminary(files, reading, evaluating):
     """Read and evaluate the scans of a surface, without model scans; raises the ScanErrors of both."""
     # Imported here: configurations without scans need neither.
     from stiction.scans import estimate
-    from stiction.scans.reading import Source, read
+    from stiction.scans.quantiles import measured_density, quantiles
 
-    scans = [read(path, typed(Source, reading)).scan for path in files]
+    scans = [_scan(path, label, reading) for label, path in files.items()]
     found = estimate.inspect(scans, typed(estimate.Settings, evaluating))
     nearest = estimate.nearest_density(found)
+    form = measured_density(quantiles(found.levelled), found.areas)
     ln_rms, skewness, kurtosis = map(float, found.moments)
     return {
         "rms_nm": 1e9 * math.exp(ln_rms),
         "measured": [skewness, kurtosis],
         "feasible": None if nearest is None else [nearest.skewness, nearest.kurtosis],
+        "form": [form.scores.tolist(), form.heights.tolist()],
         "plateau_nm4": 1e36 * found.fit.plateau,
         "corner_rad_per_um": 1e-6 * found.fit.corner,
         "slope": found.fit.slope,
@@ -209,6 +229,16 @@ def _preliminary(files, reading, evaluating):
     }
 
 
+def _scan(path, label, settings):
+    """Scan in a file, named by its label."""
+    from stiction.scans.reading import Source, read
+
+    try:
+        return replace(read(path, typed(Source, settings)).scan, name=label)
+    except ScanError as refusal:
+        raise ScanError(label, refusal.key, refusal.reason) from None
+
+
 def _without_density(name, entry, found):
     """Problem of a surface whose moments have no maximum-entropy density, if it is to have it."""
     if found["feasible"] or complete(entry)["heights"] != "moments":
@@ -216,21 +246,16 @@ def _without_density(name, entry, found):
     skewness, kurtosis = found["measured"]
     reason = (
         f"is 'moments', but no maximum-entropy density has moments near the skewness {skewness:.3g} and kurtosis "
-        f"{kurtosis:.3g} of {', '.join(_names(entry))}, must be measured"
+        f"{kurtosis:.3g} of {', '.join(_labels(entry))}, must be measured"
     )
     return [Problem(("surfaces", name, "heights"), reason)]
-
-
-def _names(entry):
-    """Names of the files of a surface without folders."""
-    return [Path(file).name for file in entry["scans"]["files"]]
 
 
 def _problem(name, entry, refusal):
     """Problem with the key that a refusal of scans is about."""
     if refusal.key == "files":
-        names = _names(entry)
-        index = (names.index(refusal.file),) if refusal.file in names else ()
+        labels = _labels(entry)
+        index = (labels.index(refusal.file),) if refusal.file in labels else ()
         return Problem(("surfaces", name, "scans", "files", *index), f"is {refusal.file!r}, which {refusal.reason}")
     path, section = ("surfaces", name, "scans", refusal.key), entry["scans"]
     given = f"is {section[refusal.key]!r}" if refusal.key in section else "is missing"
@@ -245,7 +270,7 @@ def view(config: dict[str, Any], found: Mapping[str, dict]) -> dict[str, Any]:
 
 
 def _described(entry, found, spacing):
-    """Section of a surface by numbers; without skewness and kurtosis if these do not give its heights."""
+    """Section of a surface by numbers: skewness and kurtosis, or the measured form if that gives its heights."""
     grid = math.pi / spacing * NM_PER_UM
     cutoff = min(found["nyquist_rad_per_um"], grid) if entry["beyond"] == "cut" else grid
     plateau, corner = found["plateau_nm4"], found["corner_rad_per_um"]
@@ -255,6 +280,8 @@ def _described(entry, found, spacing):
         "corner_rad_per_um": corner,
         "cutoff_rad_per_um": cutoff,
     }
-    moments = found["feasible"] if entry["heights"] == "moments" else None
-    shape = dict(zip(("skewness", "kurtosis"), moments or (), strict=False))
+    if entry["heights"] == "measured":
+        shape = {"form": tuple(map(tuple, found["form"]))}
+    else:
+        shape = dict(zip(("skewness", "kurtosis"), found["feasible"] or (), strict=False))
     return {"rms_nm": found["rms_nm"], **shape, "psd": "published", "published_psd": psd}

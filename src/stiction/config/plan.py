@@ -13,7 +13,7 @@ from stiction.config.cases import case_id, humidity_of, pair_of
 from stiction.config.files import paper
 from stiction.config.measured import evaluated, is_measured, quantities
 from stiction.config.merging import merged
-from stiction.models import BEAM_MODELS, SIDES, SURFACE_MODELS
+from stiction.models import BEAM_MODELS, OF_MEASURED, SIDES, SURFACE_MODELS
 
 #: Properties of a material on which contact depends.
 ELASTIC = ("young_modulus_GPa", "poisson_ratio", "hamaker_constant_zJ")
@@ -117,8 +117,9 @@ class Plan:
         return [pair for pair in self.pairs if self.scanned_sides(pair)]
 
     def quantities(self, surface: str) -> tuple[str, ...]:
-        """Quantities of a surface on which its slopes depend, see `stiction.analysis.shifts`."""
-        return quantities(self.config["surfaces"][surface])
+        """Quantities of a surface for its slopes, see `stiction.analysis.shifts`: of scans, those of both `heights`."""
+        modes = OF_MEASURED[1:] if surface in self.scanned else ()
+        return tuple(dict.fromkeys((*quantities(self.config["surfaces"][surface]), *modes)))
 
     @cached_property
     def measured(self) -> list[str]:

@@ -30,6 +30,7 @@ from stiction.errors import NotConverged
 from stiction.models import SIDES
 from stiction.numbers import is_multiple
 from stiction.surface import maxent
+from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import nearest_feasible
 from stiction.surface.identify import SummitTarget, estimated_spectrum
 from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
@@ -152,7 +153,7 @@ def _checked(holds, paths, config, faults, files):
         return []
     path, value = _known(paths[0], values[0], files)
     number = "" if path == paths[0] else f", which gives {paths[0][-1]} = {values[0]:.4g}"
-    return [Problem(path, f"is {shown(value)}{number}, {message}{_given(paths[1:], values[1:], files)}")]
+    return [Problem(path, f"is {shown(value)}{number}, {message}{_given(paths, values, files)}")]
 
 
 def _known(path, value, files):
@@ -164,13 +165,25 @@ def _known(path, value, files):
 
 def _given(paths, values, files):
     """The other values of a violated relation, except names and whole sections of the configuration."""
-    given = [_known(path, value, files) for path, value in zip(paths, values, strict=True) if path[-1] not in "#@"]
-    if ("surfaces",) in paths:
-        given += [_known(("surfaces", name, "rms_nm"), None, files) for name in files]
-    others = [
-        f"{dotted(path)} = {shown(value)}" for path, value in given if len(path) > 1 or not isinstance(value, dict)
+    given = [
+        _known(path, value, files)
+        for path, value in zip(paths[1:], values[1:], strict=True)
+        if path[-1] not in "#@" and (len(path) > 1 or not isinstance(value, dict))
     ]
+    if ("surfaces",) in paths:
+        given += [_known(("surfaces", name, "rms_nm"), None, files) for name in files if name in _met(paths, values)]
+    others = [f"{dotted(path)} = {shown(value)}" for path, value in given]
     return f" (given {', '.join(dict.fromkeys(others))})" if others else ""
+
+
+def _met(paths, values):
+    """Names among the values of a relation, and those to which the devices and pairs of these names refer."""
+    sections = {path: value for path, value in zip(paths, values, strict=True) if isinstance(value, dict)}
+    names = {value for value in values if isinstance(value, str)}
+    for section in (("devices",), ("pairs",)):
+        entries = [entry for name, entry in sections.get(section, {}).items() if name in names]
+        names |= {value for entry in entries for value in entry.values() if isinstance(value, str)}
+    return names
 
 
 def _overlap(path, fault):
@@ -486,9 +499,8 @@ def longest_strip(
 
     It is infinite where nothing is known without the contact.
     """
-    shapes = [_shape(side.get("skewness"), side.get("kurtosis")) for side in sides]
-    angles = wetting(sides, materials)
-    if not angles or None in shapes:
+    shapes, angles = _shapes(sides), wetting(sides, materials)
+    if not angles or not shapes:
         return math.inf
     (beam, substrate), highest = zip(*shapes, strict=True)
     rms = np.array([1e-9 * side["rms_nm"] for side in sides])
@@ -507,9 +519,8 @@ def estimated_strip(
     thickness: float, solid: dict, medium: str, humidity: float, temperature: float, sides: list, materials: dict
 ) -> float:
     """As `longest_strip`, from the estimated force law, which is far closer but no bound; section ``solid``."""
-    shapes = [_shape(side["skewness"], side["kurtosis"]) for side in sides]
-    angles = wetting(sides, materials)
-    if not angles or None in shapes:
+    shapes, angles = _shapes(sides), wetting(sides, materials)
+    if not angles or not shapes:
         return math.inf
     bodies = [typed(Solid, solid | stated) for stated in of_material(sides, materials)]
     constant = None if medium == "none" else hamaker_constant(*bodies, medium)
@@ -555,16 +566,25 @@ def wetting(sides: list[dict], materials: dict, more: float = 0) -> tuple[float,
     return tuple(angles) if sum(map(math.cos, angles)) > 1e-9 else ()
 
 
+def _shapes(sides):
+    """Equally probable heights and the highest one of each side, in units of its rms; empty if one has no density."""
+    found = [_shape(side.get("skewness"), side.get("kurtosis"), side.get("form")) for side in sides]
+    return [] if None in found else found
+
+
 @functools.cache
-def _shape(skewness, kurtosis):
-    """Equally probable heights and the highest one, in units of the rms; ``None`` without a density, as above."""
-    if skewness is None:  # of a surface with measured heights
+def _shape(skewness, kurtosis, form):
+    """As `_shapes`, of moments or of the form of measured heights; ``None`` without a density, as above."""
+    if form:
+        density = MeasuredDensity(*map(np.array, form))
+    elif skewness is None:  # of scans whose moments have no density, which is reported with their files
         return None
-    try:
-        moments = nearest_feasible(skewness, kurtosis)
-    except (ValueError, NotConverged):
-        return None
-    density = maxent.solve(moments.skewness, moments.kurtosis)
+    else:
+        try:
+            moments = nearest_feasible(skewness, kurtosis)
+        except (ValueError, NotConverged):
+            return None
+        density = maxent.solve(moments.skewness, moments.kurtosis)
     return tuple(density.quantile_of_normal(_SCORES)), float(density.quantile_of_normal(_HIGHEST))
 
 
@@ -633,7 +653,8 @@ def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature
         f"must have surfaces rough enough and a solid stiff enough for its humidities: at {humidity}"
         f"{' and others' if len(stuck) > 1 else ''}, water and van der Waals forces pull with an estimated "
         f"{1e-6 * pull:.3g} MPa and the summits resist with {1e-6 * max(repulsion, 0):.3g} MPa where the mean planes "
-        f"meet, where {_SAFE} times the pull is needed; increase rms_nm or young_modulus_GPa, or lower the humidity"
+        f"meet, where {_SAFE} times the pull is needed; increase the roughness or young_modulus_GPa, or lower the "
+        "humidity"
     )
 
 

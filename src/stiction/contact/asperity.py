@@ -140,6 +140,19 @@ def deep_load(interference: float, transition: float) -> float:
     return a * (a**2 - 2 * transition * width)
 
 
+@numba.njit(cache=True, nogil=True)
+def weak_load(interference: float, transition: float) -> float:
+    r"""Load P̄ of a sphere at an interference δ̄ and a small λ [-]: the limit λ → 0 of Maugis' theory, DMT.
+
+    .. math:: \bar P = \max(\bar\delta, 0)^{3/2} - 2 \min\bigl(1 + \tfrac\pi2 \lambda \bar\delta, 1\bigr) ,
+              \quad \bar\delta > -\frac{2}{\pi\lambda}
+
+    For λ < 0.01 the load of Maugis is equal to 0.003 πwR without contact, and higher by at most 1 πwR in contact: 2e-3
+    of the load at an interference as large as the range of the attraction.
+    """
+    return max(interference, 0.0) ** 1.5 - 2 * min(max(1 + 0.5 * np.pi * transition * interference, 0.0), 1.0)
+
+
 class Asperity(Protocol):
     """Elastic sphere on a flat; interchangeable models of one asperity."""
 
@@ -157,11 +170,6 @@ class Asperity(Protocol):
             Of the distances [m].
         force : (n,) float64 array
             Receives the sum at the distances ``step * arange(n)`` [N].
-
-        Raises
-        ------
-        ValueError
-            If a summit is sharper than the model allows.
         """
 
 
@@ -197,7 +205,8 @@ class MaugisTable:
     """An `Asperity` with attraction: its load tabulated over ln λ and √(δ̄ - δ̄_min).
 
     The square root removes the vertical tangent of the load at the point of snap-off. Beyond the table the load has the
-    closed form of deep contact, `deep_load`, and beyond its last row that of this row: JKR within 3e-3 πwR.
+    closed form of deep contact, `deep_load`, beyond its last row that of this row: JKR within 3e-3 πwR, and before its
+    first row that of λ → 0, `weak_load`: DMT.
     """
 
     modulus: float  #: reduced modulus E' [Pa]
@@ -255,12 +264,7 @@ class MaugisTable:
 
     def add_forces(self, tops: np.ndarray, curvatures: np.ndarray, step: float, force: np.ndarray) -> None:
         """Add the force of all summits by interpolation in the table, see `Asperity`."""
-        sharp = _add_maugis(tops, curvatures, step, self.scales, self.snap_off, self.load, force)
-        if sharp:
-            raise ValueError(
-                f"{sharp} summits are too sharp: their Maugis' λ is below {self.rows[0]:.2g}, a radius below "
-                f"{1e9 * (self.rows[0] / np.exp(self.scales.log_transition)) ** 3:.2g} nm, beyond any continuum"
-            )
+        _add_maugis(tops, curvatures, step, self.scales, self.snap_off, self.load, force)
 
 
 def asperity(modulus: float, attraction: Attraction | None) -> Asperity:
@@ -281,28 +285,30 @@ def _add_hertz(tops, curvatures, step, modulus, force):
 
 @numba.njit(cache=True, nogil=True)
 def _add_maugis(tops, curvatures, step, scales, snap_off, load, force):
-    """Add the Maugis force of every summit, by interpolation in the table; returns the number of summits before it."""
-    sharp, roots = 0, np.empty(force.size)
+    """Add the Maugis force of every summit, by interpolation in the table."""
+    roots = np.empty(force.size)
     for n in range(tops.size):
         if tops[n] > 0:
-            sharp += not _add_sphere((tops[n], 1 / curvatures[n]), step, scales, snap_off, load, roots, force)
-    return sharp
+            _add_sphere((tops[n], 1 / curvatures[n]), step, scales, snap_off, load, roots, force)
 
 
 @numba.njit(cache=True, nogil=True)
 def _add_sphere(sphere, step, scales, snap_off, load, roots, force):
-    """Add the force of one sphere (top, radius); returns False if it is before the table. ``roots``: workspace."""
+    """Add the force of one sphere (top, radius). ``roots``: workspace."""
     top, radius = sphere
     third = radius ** (1 / 3)
     place = (scales.log_transition + np.log(third) - scales.first) / scales.log_step
     row = int(np.floor(place))
     share = place - row
     row += scales.before
-    if row < 0:
-        return False
+    inverse, weight = 1 / (scales.interference * third), scales.force * radius
+    if row < 0:  # DMT
+        transition = np.exp(scales.log_transition) * third
+        for k in range(force.size):
+            force[k] += weight * weak_load((top - k * step) * inverse, transition)
+        return
     if row >= len(snap_off) - 1:  # JKR
         row, share = len(snap_off) - 2, 1.0
-    inverse, weight = 1 / (scales.interference * third), scales.force * radius
     deepest = (1 - share) * snap_off[row] + share * snap_off[row + 1]
     held = min(max(int(np.floor((top - deepest / inverse) / step)) + 1, 0), len(force))
     _roots(top, step, inverse, deepest, scales.root_step, roots[:held])
@@ -312,7 +318,6 @@ def _add_sphere(sphere, step, scales, snap_off, load, roots, force):
         force[deep] += weight * deep_load((top - deep * step) * inverse, transition)
         deep += 1
     _add_loads(roots[deep:held], load[row], load[row + 1], share, weight, force[deep:])
-    return True
 
 
 # Two loops, because only one without a look-up computes several distances at a time.

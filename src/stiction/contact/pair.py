@@ -119,24 +119,13 @@ class SurfacePair(EquivalentSurface):
             p_s at ``distances.solid`` [Pa].
         bearing_area : (n_bearing,) array
             A at ``distances.bearing`` [-].
-
-        Raises
-        ------
-        ValueError
-            If a summit is too sharp for the model of the asperities.
         """
         solid = solid_pressure(self.asperity, self.summits(heights), self.distances)
         return solid, self.bearing_area(heights)
 
 
 def solid_pressure(asperity: Asperity, summits: Summits, distances: DistanceGrid) -> np.ndarray:
-    """Pressure p_s of the summits at ``distances.solid``, (n_solid,) [Pa].
-
-    Raises
-    ------
-    ValueError
-        If a summit is too sharp for the model of the asperities.
-    """
+    """Pressure p_s of the summits at ``distances.solid``, (n_solid,) [Pa]."""
     force = np.zeros(distances.above)
     asperity.add_forces(summits.tops, summits.curvatures, distances.step, force)
     return force / summits.area
@@ -193,11 +182,7 @@ def contacts_of_samples(
     found = [([], []) for _ in pairs]
     for k in samples:
         for curves, pair, heights in zip(found, pairs, _drawn(pairs, streams, k), strict=True):
-            try:
-                contact = pair.contact(heights)
-            except ValueError as error:
-                raise ValueError(f"sample {k}: {error}") from error
-            for column, curve in zip(curves, contact, strict=True):
+            for column, curve in zip(curves, pair.contact(heights), strict=True):
                 column.append(curve.astype(np.float32))
     return [(np.array(solid), np.array(bearing)) for solid, bearing in found]
 

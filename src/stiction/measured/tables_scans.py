@@ -9,6 +9,7 @@ import xarray as xr
 from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.measured import estimate as stage_estimate
 from stiction.measured import scan as stage_scan
+from stiction.models import CHOICES
 from stiction.report.format import NM, UM, number, with_error
 from stiction.report.tables import Table
 from stiction.studies.scan_uncertainty import GOAL
@@ -82,10 +83,12 @@ def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
     ]
     frame = pd.DataFrame(rows)
     caption = (
-        "Relative standard error of the mean adhesion energy ē due to the finite scans of measured surfaces, by "
-        "what the scans measure (skewness and kurtosis with their correlation), and of the mean crack length l_s. "
-        f"Needed: scans of this surface that would bring its part of the error of ē below {100 * GOAL:g} %. Last "
-        "columns: change of ē if the measured surfaces had the other value of that key, ± standard error by sampling."
+        "Relative standard error of the mean adhesion energy ē due to the finite scans of measured surfaces, by what the "
+        "scans measure (skewness and kurtosis with their correlation), and of the mean crack length l_s; the total ± its "
+        "standard error by sampling. Needed: scans of each surface, the fewest in all, with which the error of ē is below "
+        f"{100 * GOAL:g} %. Last columns: change of ē if the measured surfaces had the other value of that key, ± standard "
+        "error by sampling and, for heights, by the scans, which measure the shape of the height density less precisely "
+        "than the moments."
     )
     return Table(frame, caption, pd.DataFrame([_cells(row) for row in frame.to_dict("records")]))
 
@@ -97,14 +100,18 @@ def _rows(pair, study, k):
     for name in study.surface.values:
         one = case.sel(surface=name)
         parts = {f"{part}_percent": 100 * float(one.error.sel(part=part)) for part in _PARTS}
+        parts |= {"total_se_percent": 100 * float(one.error_sampling)}
         number_of = {"scans": int(one.scans), "scans_needed": int(one.scans_needed)}
         yield key | {"surface": str(name)} | parts | _crack_length(float(one.error.sel(part="total"))) | number_of
     changes = {}
     for choice in study.choice.values:
         one = case.sel(choice=choice)
-        changes |= {f"{choice}_percent": 100 * float(one.change), f"{choice}_se_percent": 100 * float(one.change_error)}
+        errors = float(one.change_error), float(one.change_error_scans)
+        changes |= {f"{choice}_percent": 100 * float(one.change), f"{choice}_se_percent": 100 * np.hypot(*errors)}
     total = float(case.pair_error)
-    yield key | {"surface": "all"} | {"total_percent": 100 * total} | _crack_length(total) | changes
+    parts = {"total_percent": 100 * total, "total_se_percent": 100 * float(case.pair_error_sampling)}
+    number_of = {"scans": int(case.scans.sum()), "scans_needed": int(case.scans_needed.sum())}
+    yield key | {"surface": "all"} | parts | _crack_length(total) | number_of | changes
 
 
 def _crack_length(error):
@@ -116,9 +123,10 @@ def _cells(row):
     """One row as text."""
     cells = {"pair": row["pair"], "RH": f"{row['relative_humidity']:g}", "surface": row["surface"]}
     cells |= {f"ē: {title} [%]": number(row[f"{part}_percent"], ".2g") for part, title in _PARTS.items()}
+    cells |= {f"ē: {_PARTS['total']} [%]": with_error(row["total_percent"], row["total_se_percent"])}
     cells |= {"l_s [%]": number(row["crack_length_percent"], ".2g")}
     cells |= {title: number(row[name], ".0f") for name, title in (("scans", "scans"), ("scans_needed", "needed"))}
-    choices = [name.removesuffix("_se_percent") for name in row if name.endswith("_se_percent")]
+    choices = [name for name in CHOICES if f"{name}_percent" in row]
     return cells | {
         f"other {choice} [%]": with_error(row[f"{choice}_percent"], row[f"{choice}_se_percent"], "+")
         for choice in choices

@@ -31,7 +31,7 @@ from stiction.stages.heights import measured, substitution
 from stiction.stages.named import Case
 from stiction.stages.parameters import misfits
 from stiction.stages.releases import ended
-from stiction.surface.feasible import LARGEST_DISTANCE
+from stiction.surface.feasible import LARGEST_DISTANCE_OF_SCANS
 
 #: Standard errors by which an inequality must hold and within which a target must be met.
 ALLOWED = 4
@@ -107,7 +107,7 @@ def heights_are_as_measured(case: str, heights: xr.Dataset) -> Check:
     """The height density has the measured moments, or the nearest feasible ones within the error of a measurement."""
     distance = measured(heights).distance
     message = substitution(heights) or f"skewness {float(heights.skewness):.4g}, kurtosis {float(heights.kurtosis):.4g}"
-    return Check("heights have the measured moments", case, distance <= LARGEST_DISTANCE, message)
+    return Check("heights have the measured moments", case, distance <= LARGEST_DISTANCE_OF_SCANS, message)
 
 
 def moments_meet_targets(

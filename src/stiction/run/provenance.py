@@ -66,14 +66,14 @@ def _run(checkout, config):
     """Date, machine, code, libraries and configuration of a run that is starting."""
     return {
         "started": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-        "versions": {"python": platform.python_version()} | {name: _version(name) for name in LIBRARIES},
+        "versions": {"python": platform.python_version()} | {name: version_of(name) for name in LIBRARIES},
         "git": git_state(checkout),
         "machine": {"host": platform.node(), "system": platform.platform(), "cpu": _cpu(), "cores": os.cpu_count()},
         "config": config,
     }
 
 
-def _version(library):
+def version_of(library: str) -> str | None:
     """Version of a library; ``None`` if it is not installed, e.g. Snakemake where only the package is used."""
     try:
         return metadata.version(library)

@@ -36,6 +36,7 @@ from stiction.scans.scan import Frame, Scan
 from stiction.scans.whittle import Reach, WhittleFit, fit, reach, tabulated, tip_reach
 from stiction.streams import stream
 from stiction.surface.empirical import MeasuredDensity
+from stiction.surface.feasible import LARGEST_DISTANCE_OF_SCANS
 from stiction.surface.maxent import HeightDensity
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 
@@ -222,13 +223,15 @@ def estimate(
     found = inspect(scans, settings)
     measured = quantiles(found.levelled)
     values = found.moments
+    model, nearest = _model(found, values, measured)
+    # The verdict on the scans as they are is final: moments that are accepted before a run are not refused in it.
+    largest = LARGEST_DISTANCE_OF_SCANS if nearest is None else np.inf
     residuals = []
     for number in range(_ROUNDS):
-        model, nearest = _model(found, values, measured)
         drawn = draw_model_scans(model, settings.levelling, rngs(number))
         values = found.moments - drawn.bias(model.moments, len(scans))
         residuals.append(_residual(nearest, drawn.quantiles, moments(drawn.powers)))
-    model, nearest = _model(found, values, measured)
+        model, nearest = _model(found, values, measured, largest)
     return SurfaceEstimate(
         inspection=found,
         moments=values,
@@ -262,7 +265,7 @@ def _streams(scans):
     return lambda round_number: (stream(0, "estimate", round_number, k) for k in range(max(_MODEL_SCANS, scans)))
 
 
-def _model(found, values, measured):
+def _model(found, values, measured, largest=LARGEST_DISTANCE_OF_SCANS):
     """Surface with these moments, or with the measured density if there is none, and the maximum-entropy density."""
     spectrum = found.fit.spectrum(found.reach.nyquist)
     correlation = _CORRELATED * 2 * np.pi / found.fit.corner
@@ -272,7 +275,7 @@ def _model(found, values, measured):
 
     try:
         fallback = surface(measured_density(measured, found.areas))
-        density = feasible(*map(float, values[1:]), lambda: fallback.covariance[1:, 1:] / len(found.names))
+        density = feasible(*map(float, values[1:]), lambda: fallback.covariance[1:, 1:] / len(found.names), largest)
         model = fallback if density is None else surface(density.density)
         model.underlying  # noqa: B018
     except (ValueError, NotConverged) as reason:

@@ -13,7 +13,7 @@ from scipy.special import ndtr, ndtri
 from stiction.errors import NotConverged
 from stiction.surface import maxent
 from stiction.surface.empirical import MeasuredDensity
-from stiction.surface.feasible import Moments, is_feasible, nearest_feasible
+from stiction.surface.feasible import LARGEST_DISTANCE_OF_SCANS, Moments, is_feasible, nearest_feasible
 from stiction.surface.maxent import HeightDensity
 from stiction.surface.spectrum import Spectrum
 
@@ -73,7 +73,12 @@ class Feasible:
     distance: float  #: from the measured ones in standard errors, 0 if they have a density [-]
 
 
-def feasible(skewness: float, kurtosis: float, covariance: Callable[[], np.ndarray]) -> Feasible | None:
+def feasible(
+    skewness: float,
+    kurtosis: float,
+    covariance: Callable[[], np.ndarray],
+    largest: float = LARGEST_DISTANCE_OF_SCANS,
+) -> Feasible | None:
     """Maximum-entropy density of measured moments, or of the nearest that have one; ``None`` if none is near.
 
     Parameters
@@ -82,12 +87,14 @@ def feasible(skewness: float, kurtosis: float, covariance: Callable[[], np.ndarr
         [-]
     covariance : callable
         Returns the covariance of both, (2, 2); called only if they have no density.
+    largest : float, optional
+        Largest accepted distance, any if it is infinite [standard errors].
     """
     try:
         found = (
             Moments(skewness, kurtosis, 0.0)
             if is_feasible(skewness, kurtosis)
-            else nearest_feasible(skewness, kurtosis, covariance())
+            else nearest_feasible(skewness, kurtosis, covariance(), largest)
         )
         return Feasible(maxent.solve(found.skewness, found.kurtosis), *found)
     except (ValueError, NotConverged):

@@ -19,8 +19,9 @@ import numpy as np
 from stiction.errors import ScanError
 from stiction.scans.scan import Scan
 
-#: Units of length [m].
+#: Units of length [m], and those of them that files have: an A in a file may be an ampere.
 UNITS = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6, "nm": 1e-9, "Å": 1e-10, "A": 1e-10, "pm": 1e-12}
+STORED = set(UNITS) - {"A"}
 #: Names of height channels consist of these words: at least one of the first set, others only of the second and third.
 _HEIGHT, _SENSOR = {"height", "topography", "z"}, {"axis", "sensor"}
 _DIRECTION = {"scan", "trace", "retrace", "forward", "backward", "measured", "raw", "channel", "data"}
@@ -71,23 +72,25 @@ def read(path: str | Path, source: Source | None = None) -> ScanFile:
     path = Path(path)
     _refuse_empty(path)
     with _silenced():
+        library = _library(path.name)
         try:
-            return _read(path, source or Source())
+            return _read(library, path, source or Source())
         except ScanError as reason:  # ends here with all that it refers to, so that files are closed in silence
             refused = ScanError(reason.file, reason.key, reason.reason)
+        except Exception as reason:  # whatever a reader raises on a damaged file
+            refused = _unreadable(library, path, reason)
     raise refused
 
 
-def _read(path, source):
+def _read(library, path, source):
     """`ScanFile` of a file that is not empty."""
     name = path.name
-    library = _library(name)
     with _opened(library, path) as reader:
         channel, notes = _height_channel(reader.channels, source.channel, name)
         if channel.dim != 2:
             raise ScanError(name, "files", "is a profile; a map of heights is needed")
         unit, size = _unit(channel, source, name), _size(channel, source, name)
-        heights = UNITS[unit] * _heights(channel, path)
+        heights = UNITS[_delivered(channel, unit)] * _heights(channel, name)
         notes += _instrument_levelling(channel, name)
         identifier = channel.channel_id
     if source.fast_axis == "y":
@@ -123,7 +126,7 @@ def _silenced():
 
 
 def _library(name):
-    """Functions and exceptions of SurfaceTopography that are used."""
+    """Functions and exceptions of SurfaceTopography that are used; only its own errors are sentences for users."""
     try:
         from SurfaceTopography import IO
     except ImportError:
@@ -133,6 +136,7 @@ def _library(name):
     return SimpleNamespace(
         open=IO.open_topography,
         unknown=IO.CannotDetectFileFormat,
+        error=IO.ReadFileError,
         endings={ending: kind for kind in IO.readers for ending in (kind.format(), *(kind.file_extensions() or ()))},
     )
 
@@ -142,12 +146,10 @@ def _opened(library, path):
     try:
         reader = library.open(str(path))
     except library.unknown:
-        raise _unreadable(path, _reason_of_its_format(library, path)) from None
-    except Exception as reason:  # whatever a reader of some format raises on a damaged file
-        raise _unreadable(path, reason) from None
+        raise _unreadable(library, path, _error_of_its_format(library, path)) from None
     if reader.format() in _WITHOUT_MAGIC and reader.format() != _ending(path):
         reader.close()
-        raise _unreadable(path, _reason_of_its_format(library, path))
+        raise _unreadable(library, path, _error_of_its_format(library, path))
     return reader
 
 
@@ -155,21 +157,22 @@ def _ending(path):
     return path.suffix.lower().removeprefix(".")
 
 
-def _reason_of_its_format(library, path):
-    """Why the reader for the ending of a file does not accept it; empty if no format has this ending."""
+def _error_of_its_format(library, path):
+    """Why the reader for the ending of a file does not accept it; ``None`` if no format has this ending."""
     kind = library.endings.get(_ending(path))
     if kind is None:
-        return ""
+        return None
     try:
         kind(str(path)).close()
-    except Exception as reason:  # as in `_opened`
-        return reason
-    return ""
+    except Exception as error:  # whatever a reader raises on a damaged file
+        return error
+    return None
 
 
-def _unreadable(path, reason):
-    """One sentence, with the first line of the reason if it is short."""
-    line = next(iter(str(reason).strip().splitlines()), "").rstrip(". ")
+def _unreadable(library, path, error):
+    """One sentence, with the first line of an error of the library itself if that is short."""
+    said = str(error) if isinstance(error, library.error) else ""
+    line = next(iter(said.strip().splitlines()), "").rstrip(". ")
     quoted = f" ({line})" if 0 < len(line) <= _LONGEST_REASON else ""
     return ScanError(path.name, "files", f"cannot be read as any known format, or is damaged{quoted}")
 
@@ -183,7 +186,7 @@ def _is_height(channel):
     """Whether name and unit of a channel are those of heights."""
     words = _words(channel.name)
     named = bool(words & _HEIGHT) and words <= _HEIGHT | _SENSOR | _DIRECTION
-    return named and (_unit_of(channel) is None or _unit_of(channel) in UNITS)
+    return named and (_unit_of(channel) is None or _unit_of(channel) in STORED)
 
 
 def _unit_of(channel):
@@ -217,7 +220,7 @@ def _unit(channel, source, name):
     stored = _unit_of(channel)
     if stored is None and source.height_unit is None:
         raise ScanError(name, "height_unit", f"has no unit; give one of {', '.join(UNITS)}")
-    if stored is not None and stored not in UNITS:
+    if stored is not None and stored not in STORED:
         shown = stored if isinstance(stored, str) else "no single unit"
         raise ScanError(name, "channel", f"has channel {channel.channel_id} in {shown}, which is not a length")
     if None not in (stored, source.height_unit) and UNITS[stored] != UNITS[source.height_unit]:
@@ -225,9 +228,14 @@ def _unit(channel, source, name):
     return stored or source.height_unit
 
 
+def _delivered(channel, unit):
+    """Unit of the heights that the library returns: it converts lengths to the lateral unit, if that is a length."""
+    return channel.unit if channel.unit in STORED else unit
+
+
 def _size(channel, source, name):
     """Size along x and y [m], from the file or, if it has none, from the configuration."""
-    if channel.physical_sizes is None or channel.unit not in UNITS:
+    if channel.physical_sizes is None or channel.unit not in STORED:
         if source.size is None:
             raise ScanError(name, "size_um", "has no size in a unit of length; give the size along x and y")
         return source.size
@@ -238,17 +246,13 @@ def _size(channel, source, name):
     return stored
 
 
-def _heights(channel, path):
-    """Heights of a channel in the unit of the file, (n_x, n_y) float64, NaN where undefined."""
+def _heights(channel, name):
+    """Heights of a channel, (n_x, n_y) float64, NaN where undefined [unit `_delivered`]."""
     size = None if channel.physical_sizes is not None else channel.nb_grid_pts
-    try:
-        topography = channel.topography(physical_sizes=size)
-        heights = topography.heights()
-    except Exception as reason:  # damage that shows only when the data are read
-        raise _unreadable(path, reason) from None
+    topography = channel.topography(physical_sizes=size)
     if not topography.is_uniform:
-        raise ScanError(path.name, "files", "has unequal distances between its points; a regular map is needed")
-    return np.ma.filled(np.ma.asarray(heights, dtype=float), np.nan)
+        raise ScanError(name, "files", "has unequal distances between its points; a regular map is needed")
+    return np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
 
 
 def _instrument_levelling(channel, name):

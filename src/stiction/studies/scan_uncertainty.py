@@ -3,10 +3,13 @@
 To first order the error of ln ē is the product of its slopes and the errors of the estimate, so that its variance is
 g C g with the covariance C of the estimate. The errors of skewness and kurtosis of a scan largely compensate: without
 their correlation the result would be three times too large.
+
+ASSUME: the errors of moments and spectrum are independent, and the form of measured heights errs in its modes alone.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -14,7 +17,7 @@ import xarray as xr
 from stiction.analysis.variants import relative_shift
 from stiction.devices.budget import Budget, joined
 from stiction.measured import estimate as stage_estimate
-from stiction.models import OF_MOMENTS, OF_SPECTRUM
+from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
 from stiction.stages.curves import energies
 from stiction.studies import slopes as study_slopes
 from stiction.studies.slopes import Settings
@@ -31,16 +34,26 @@ class Errors:
 
     names: tuple[str, ...]  #: quantities of the heights, ``rms`` first, see `stiction.analysis.shifts`
     heights: np.ndarray  #: their covariance, (k, k) [-]
+    modes: np.ndarray  #: covariance of the modes of the measured form, (7, 7) [-]
     spectrum: np.ndarray  #: covariance of (ln corner, slope) of Eq. (7), (2, 2) [-]
     scans: int  #: number of scans
 
 
+class Uncertainty(NamedTuple):
+    """Relative standard errors of ē by the scans of several surfaces [-]."""
+
+    parts: np.ndarray  #: of the `PARTS` of the estimates, (n_surfaces, parts, n_rh)
+    sampling: np.ndarray  #: standard errors of the total by the samples of the slopes, (n_surfaces, n_rh)
+    form: np.ndarray  #: of the measured form, whatever the heights of the surface are, (n_surfaces, n_rh)
+
+
 def errors_of(estimate: xr.Dataset, quantities: Sequence[str]) -> Errors:
-    """Errors of some quantities of a surface, from its dataset of stage estimate."""
-    names = tuple(name for name in quantities if name not in OF_SPECTRUM)
-    covariance = estimate.covariance if names == OF_MOMENTS else estimate.mode_covariance
+    """Errors of a surface from its dataset of stage estimate; its heights have the moments if these have slopes."""
+    names = OF_MOMENTS if set(OF_MOMENTS) <= set(quantities) else OF_MEASURED
+    modes = estimate.mode_covariance.values
+    heights = estimate.covariance.values if names == OF_MOMENTS else modes
     scans = len(stage_estimate.files(estimate))
-    return Errors(names, covariance.values, estimate.fit_covariance.values[1:, 1:], scans)
+    return Errors(names, heights, modes[1:, 1:], estimate.fit_covariance.values[1:, 1:], scans)
 
 
 def compute(
@@ -51,8 +64,6 @@ def compute(
     settings: Settings,
 ) -> xr.Dataset:
     """Relative standard errors of ē by surface and part, the scans that would be sufficient, and the effect of choices.
-
-    ASSUME: the errors of moments and spectrum are independent.
 
     Parameters
     ----------
@@ -66,21 +77,40 @@ def compute(
         Choice, key of `stiction.models.CHOICES`, to the contact with its other value.
     settings : Settings
     """
-    found = {name: _parts(dataset, errors[name]) for name, dataset in slopes.items()}
+
+    def of_all(of_one):
+        return np.array([of_one(dataset, errors[name]) for name, dataset in slopes.items()])
+
+    found = Uncertainty(*map(of_all, (_parts, _sampling, _form)))
     changes = {name: _changes(contact, base, settings) for name, contact in choices.items()}
-    parts = np.array(list(found.values()))
-    return layout(list(found), settings.humidities, parts, [errors[name].scans for name in found], changes)
+    return layout(list(slopes), settings.humidities, found, [errors[name].scans for name in slopes], changes)
+
+
+def _budgets(slopes, errors):
+    """Budget of ln ē and the standard errors of its slopes, one after the other for every humidity."""
+    names = (*errors.names, *OF_SPECTRUM)
+    of_slopes = zip(study_slopes.of(slopes, names), study_slopes.errors_of(slopes, names), strict=True)
+    count = len(errors.names)
+    for values, uncertain in of_slopes:
+        heights = Budget(errors.names, values[:count], errors.heights)
+        yield joined([heights, Budget(OF_SPECTRUM, values[count:], errors.spectrum)]), uncertain
 
 
 def _parts(slopes, errors):
     """Relative errors of ē by the parts of one surface, (parts, n_rh) [-]."""
     groups = errors.names[:1], errors.names[1:], OF_SPECTRUM
-    columns = []
-    for of_heights, of_spectrum in zip(*(study_slopes.of(slopes, n) for n in (errors.names, OF_SPECTRUM)), strict=True):
-        heights = Budget(errors.names, of_heights, errors.heights)
-        budget = joined([heights, Budget(OF_SPECTRUM, of_spectrum, errors.spectrum)])
-        columns.append([*map(budget.effect, groups), budget.total])
-    return np.transpose(columns)
+    return np.transpose([[*map(budget.effect, groups), budget.total] for budget, _ in _budgets(slopes, errors)])
+
+
+def _sampling(slopes, errors):
+    """Standard errors of the total of one surface by the slopes, (n_rh,) [-]."""
+    return [budget.error_of_effect(budget.names, uncertain) for budget, uncertain in _budgets(slopes, errors)]
+
+
+def _form(slopes, errors):
+    """Relative error of ē by the measured form of one surface, (n_rh,) [-]."""
+    modes = OF_MEASURED[1:]
+    return [Budget(modes, values, errors.modes).total for values in study_slopes.of(slopes, modes)]
 
 
 def _changes(contact, base, settings):
@@ -93,7 +123,7 @@ def _changes(contact, base, settings):
 def layout(
     surfaces: Sequence[str],
     humidities: Sequence[float],
-    errors: np.ndarray,
+    found: Uncertainty,
     scans: Sequence[int],
     choices: Mapping[str, Sequence[tuple[float, float]]],
 ) -> xr.Dataset:
@@ -105,21 +135,30 @@ def layout(
         Names.
     humidities : sequence
         Relative humidities RH [-].
-    errors : (n_surfaces, parts, n_rh) array
-        Of the `PARTS` of an estimate [-].
+    found : Uncertainty
     scans : sequence
         Number of scans of each surface.
     choices : dict
-        Choice to the relative change of ē and its standard error, (n_rh, 2) [-].
+        Choice to the relative change of ē and its standard error by sampling, (n_rh, 2) [-].
     """
-    total = errors[:, -1]
+    total = found.parts[:, -1]
+    pair, form = np.linalg.norm(total, axis=0), np.linalg.norm(found.form, axis=0)
     changes = np.array(list(choices.values())).reshape(len(choices), len(humidities), 2)
+    by_scans = np.array([form if name == "heights" else 0 * form for name in choices]).reshape(changes.shape[:2])
+    by_slopes = {"units": "1", "long_name": "standard error of the error by the samples of the slopes"}
     return xr.Dataset(
         {
-            "error": (("surface", "part", "humidity"), errors, {"units": "1", "long_name": "standard error of ln e"}),
-            "pair_error": ("humidity", np.sqrt(np.sum(total**2, axis=0)), {"units": "1"}),
+            "error": (
+                ("surface", "part", "humidity"),
+                found.parts,
+                {"units": "1", "long_name": "standard error of ln e"},
+            ),
+            "error_sampling": (("surface", "humidity"), found.sampling, by_slopes),
+            "pair_error": ("humidity", pair, {"units": "1"}),
+            "pair_error_sampling": ("humidity", np.linalg.norm(total * found.sampling, axis=0) / pair, by_slopes),
             "change": (("choice", "humidity"), changes[..., 0], {"units": "1", "long_name": "relative change of e"}),
             "change_error": (("choice", "humidity"), changes[..., 1], {"units": "1"}),
+            "change_error_scans": (("choice", "humidity"), by_scans, {"units": "1", "long_name": "by the scans"}),
             "scans": ("surface", list(scans)),
             "scans_needed": (("surface", "humidity"), scans_needed(total, np.array(scans)[:, None], GOAL)),
         },
@@ -127,15 +166,31 @@ def layout(
     )
 
 
-def scans_needed(error: np.ndarray, scans: np.ndarray, goal: float) -> np.ndarray:
-    """Number of scans that reduces an error from a number of scans to the goal; it falls with the root of the number.
+def scans_needed(errors: np.ndarray, scans: np.ndarray, goal: float) -> np.ndarray:
+    r"""Numbers of scans of the surfaces of a pair that reduce its error to the goal with the fewest scans in all.
+
+    With the error σᵢ of one scan of surface i, that of the pair is √(Σ σᵢ² / nᵢ). The sum of the numbers is least for
+
+    .. math:: n_i = \frac{\sigma_i \sum_j \sigma_j}{\text{goal}^2} .
+
+    Parameters
+    ----------
+    errors : (n_surfaces, ...) array
+        By the present scans [-].
+    scans : array
+        Their numbers, broadcast to the errors.
+    goal : float
+        [-]
 
     Examples
     --------
-    >>> int(scans_needed(0.129, 1, 0.05))
-    7
+    >>> scans_needed(np.array([0.129]), 1, 0.05).tolist()
+    [7]
+    >>> scans_needed(np.array([0.05, 0.05]), 1, 0.05).tolist()
+    [2, 2]
     """
-    return np.ceil(scans * (error / goal) ** 2).astype(int)
+    of_one = errors * np.sqrt(scans)
+    return np.ceil(of_one * of_one.sum(axis=0) / goal**2).astype(int)
 
 
 def pair_errors(dataset: xr.Dataset) -> dict[float, float]:

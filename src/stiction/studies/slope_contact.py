@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import xarray as xr
 
 from stiction.analysis.shifts import Description, bracketed
+from stiction.measured import heights as measured_heights
 from stiction.stages import contact as stage_contact
 from stiction.stages import heights as stage_heights
 from stiction.stages import parameters
@@ -18,7 +19,12 @@ from stiction.surface.empirical import MeasuredDensity
 
 
 def compute(
-    surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, surface: str, quantity: str, settings: Settings
+    surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]],
+    pair: str,
+    surface: str,
+    quantity: str,
+    settings: Settings,
+    estimate: xr.Dataset | None = None,
 ) -> list[xr.Dataset]:
     """Contact with less and with more of a quantity, in this order; the samples have the same random numbers.
 
@@ -33,9 +39,13 @@ def compute(
     quantity : str
         Key of `stiction.analysis.shifts.STEPS`.
     settings : Settings
+    estimate : Dataset, optional
+        Of stage estimate: the heights of the surface are the measured ones, around which their modes are shifted.
     """
-    as_is = description(*surfaces[settings.surfaces.index(surface)])
-    both, difference = bracketed(as_is, quantity)
+    heights, spectrum = surfaces[settings.surfaces.index(surface)]
+    if estimate is not None:
+        heights = measured_heights.compute(estimate, measured_heights.Settings(surface, "measured"))
+    both, difference = bracketed(description(heights, spectrum), quantity)
     alternatives = []
     for changed in both:
         drawn = drawn_as(changed, settings.sampling.spacing)

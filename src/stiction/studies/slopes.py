@@ -54,3 +54,8 @@ def layout(
 def of(dataset: xr.Dataset, quantities: Sequence[str]) -> np.ndarray:
     """Slopes of ln ē with respect to some quantities at every humidity, (n_rh, n_quantities) [-]."""
     return dataset.slope.sel(quantity=list(quantities)).values.T
+
+
+def errors_of(dataset: xr.Dataset, quantities: Sequence[str]) -> np.ndarray:
+    """Standard errors of these slopes, (n_rh, n_quantities) [-]."""
+    return dataset.standard_error.sel(quantity=list(quantities)).values.T

@@ -18,8 +18,9 @@ from stiction.surface.translation import LARGEST_SCORE
 #: 10 µm x 10 µm of a surface like B2 contains A m₂ / (4 π² s(0)) = 2036 areas of correlated heights.
 SAMPLE = 2000
 #: Largest distance of the substituted moments from the measured ones [standard errors]: if the measured ones are an
-#: estimate of feasible ones, their distance from these is larger with a probability of 5 %.
-LARGEST_DISTANCE = float(np.sqrt(-2 * np.log(0.05)))
+#: estimate of feasible ones, their distance from these is larger with a probability of 5 %, of 0.1 % for scans, whose
+#: errors are known. ASSUME: to refuse a Gaussian surface is worse than to accept one that is beyond the border.
+LARGEST_DISTANCE, LARGEST_DISTANCE_OF_SCANS = (float(np.sqrt(-2 * np.log(p))) for p in (0.05, 0.001))
 
 #: Kurtosis above skewness² + 1 that is feasible at any skewness of a surface.
 _FEASIBLE = 0.5
@@ -75,7 +76,9 @@ def sampling_covariance(heights: float) -> np.ndarray:
     return np.diag([6.0, 24.0]) / heights
 
 
-def nearest_feasible(skewness: float, kurtosis: float, covariance: np.ndarray | None = None) -> Moments:
+def nearest_feasible(
+    skewness: float, kurtosis: float, covariance: np.ndarray | None = None, largest: float = LARGEST_DISTANCE
+) -> Moments:
     r"""Feasible moments nearest to measured ones; the measured ones themselves if they are feasible.
 
     .. math:: d^2 = \delta^\mathsf{T} C^{-1} \delta
@@ -88,12 +91,14 @@ def nearest_feasible(skewness: float, kurtosis: float, covariance: np.ndarray | 
         Measured moments, Eq. (2) [-].
     covariance : (2, 2) array, optional
         C [-]; by default that of ``SAMPLE`` independent Gaussian heights.
+    largest : float, optional
+        Largest accepted d; any if it is infinite [-].
 
     Raises
     ------
     ValueError
-        If no feasible moments are within ``LARGEST_DISTANCE``, or no density has the measured ones because their
-        kurtosis is too low.
+        If no feasible moments are within ``largest``, or no density has the measured ones because their kurtosis is too
+        low.
     NotConverged
         If the density is not found because the kurtosis is near its lower bound.
 
@@ -109,34 +114,36 @@ def nearest_feasible(skewness: float, kurtosis: float, covariance: np.ndarray | 
     if kurtosis < skewness**2 + 1 + _FEASIBLE:
         _solve(skewness, kurtosis)  # raises: moments near the lower bound are not replaced
     covariance = sampling_covariance(SAMPLE) if covariance is None else np.asarray(covariance, float)
-    errors = np.sqrt(np.diag(covariance))
-    reach, drop = LARGEST_DISTANCE * errors
-    # The largest kurtosis grows with |skewness|: no point within the distance is feasible if this corner is not.
-    if not is_feasible(abs(skewness) + reach, kurtosis - drop):
-        raise _too_far(skewness, kurtosis, errors)
-    inverse = np.linalg.inv(covariance)
+    errors, inverse = np.sqrt(np.diag(covariance)), np.linalg.inv(covariance)
 
     def on_border(trial):
         border = largest_kurtosis(float(trial))
         off = np.array([trial - skewness, border - kurtosis])
         return Moments(float(trial), border, float(np.sqrt(off @ inverse @ off)))
 
-    best = minimize_scalar(
-        lambda trial: on_border(trial).distance,
-        bounds=(skewness - reach, skewness + reach),
-        method="bounded",
-        options={"xatol": _STEP * errors[0]},
-    )
-    # Below the measured moments is the nearest point if their skewness is 0, which the search only approximates.
-    found = min(on_border(skewness), on_border(best.x), key=lambda moments: moments.distance)
-    if found.distance > LARGEST_DISTANCE:
-        raise _too_far(skewness, kurtosis, errors)
+    straight = on_border(skewness)
+    reach = min(straight.distance, largest) * errors[0]  # a point at another skewness beyond it is farther away
+    # The largest kurtosis grows with |skewness|: no point within the distance is feasible if this corner is not.
+    if largest_kurtosis(float(abs(skewness) + reach)) < kurtosis - largest * errors[1]:
+        raise _too_far(skewness, kurtosis, errors, largest)
+    sides = [
+        minimize_scalar(
+            lambda trial: on_border(trial).distance,
+            bounds=sorted((skewness, end)),
+            method="bounded",
+            options={"xatol": _STEP * errors[0]},
+        )
+        for end in (skewness - reach, skewness + reach)
+    ]
+    found = min(straight, *(on_border(side.x) for side in sides), key=lambda moments: moments.distance)
+    if found.distance > largest:
+        raise _too_far(skewness, kurtosis, errors, largest)
     return found
 
 
-def _too_far(skewness, kurtosis, errors):
+def _too_far(skewness, kurtosis, errors, largest):
     return ValueError(
-        f"no maximum-entropy density has moments within {LARGEST_DISTANCE:.3g} standard errors ({errors[0]:.2g} and "
+        f"no maximum-entropy density has moments within {largest:.3g} standard errors ({errors[0]:.2g} and "
         f"{errors[1]:.2g}) of skewness {skewness} and kurtosis {kurtosis}; at this skewness the largest kurtosis is "
         f"{largest_kurtosis(skewness):.4g}"
     )
