@@ -128,7 +128,7 @@ def _spectrum(panel, estimate):
     ends = low / 2, zeta[-1]
     panel.axvspan(ends[0], low, **_BEYOND)
     panel.axvspan(high, ends[1], **_BEYOND, label="beyond the reach")
-    limits = fitted[-1] / _HEADROOM, _HEADROOM * fitted[0]
+    limits = fitted[-1] / _HEADROOM, 10 * _HEADROOM * fitted[0]
     panel.set(xscale="log", yscale="log", xlim=ends, ylim=limits)
     panel.set(xlabel=r"wave number $\zeta$ [rad/µm]", ylabel="spectrum $s_Z$ [nm$^4$]")
     panel.text(0.04, 0.04, _minus(_fit(fit)), transform=panel.transAxes, linespacing=1.4, **_CORNER)
