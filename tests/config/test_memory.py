@@ -9,6 +9,8 @@ import yaml
 from configurations import PAPER, ROOT, changed
 
 from stiction.config import memory
+from stiction.scans.estimate import _CORRELATED
+from stiction.scans.model_scans import _PERIOD, _POINTS
 from stiction.stages import contact, storage
 from stiction.stages.surfaces import FIELD
 
@@ -141,13 +143,41 @@ def test_a_job_that_draws_all_samples_holds_field_and_curves():
 MEASURED = [(512, 1, 399), (1024, 1, 640), (1024, 3, 677), (2048, 1, 726)]
 
 
-@pytest.mark.parametrize(("points", "files", "used"), MEASURED)
-def test_an_estimate_takes_at_most_the_reserved_memory(points, files, used):
-    assert used < memory.of_estimate((points, points), files)
+def of_estimate(points, pixel, files, corner=12):
+    return memory.of_estimate({"points": points, "pixel_nm": pixel, "corner_rad_per_um": corner}, files)
+
+
+#: Points, pixel [nm], number of scans and peak memory [MB] of estimates of B2 measured one by one.
+MEASURED = [
+    ((512, 512), (20, 20), 1, 366),
+    ((1024, 1024), (10, 10), 3, 480),
+    ((2048, 2048), (10, 10), 1, 694),
+    ((3072, 3072), (20, 20), 1, 1235),
+    ((2048, 256), (2.5, 20), 1, 1134),
+]
+
+
+@pytest.mark.parametrize(("points", "pixel", "files", "used"), MEASURED)
+def test_an_estimate_takes_at_most_the_reserved_memory(points, pixel, files, used):
+    assert used < of_estimate(points, pixel, files) < 2.3 * used
 
 
 def test_memory_of_an_estimate_grows_with_the_points_of_its_scans_and_their_number():
-    assert memory.of_estimate((512, 512), 1) == memory.USUAL
-    one, three, larger = (memory.of_estimate((4096, n), files) for n, files in ((4096, 1), (4096, 3), (8192, 1)))
+    one, three, larger = (of_estimate((4096, n), (20, 20), files) for n, files in ((4096, 1), (4096, 3), (8192, 1)))
     assert three - one == pytest.approx(24e-6 * 4096**2, abs=1)
-    assert larger - one == pytest.approx(42e-6 * 4096**2, abs=1)
+    assert larger - one == pytest.approx(97e-6 * 4096**2, abs=1)
+
+
+def test_scans_with_few_wavelengths_of_the_corner_need_wide_transforms():
+    many, few = (of_estimate((4096, 4096), (20, 20), 1, corner) for corner in (4, 2))
+    assert few - many == pytest.approx(75e-6 * ((16 * np.pi / 0.02) ** 2 - (8 * np.pi / 0.02) ** 2), abs=1)
+    assert of_estimate((4096, 4096), (20, 20), 1, 0.5) == of_estimate((4096, 4096), (20, 20), 1, 0.1)
+
+
+def test_scans_with_oblong_pixels_need_square_maps():
+    square, oblong = (of_estimate((4096, n), (20, 20 * 4096 / n), 1) for n in (4096, 512))
+    assert square - oblong == pytest.approx(12e-6 * 4096 * (4096 - 512), abs=1)
+
+
+def test_the_transforms_are_those_of_the_evaluation():
+    assert (memory._PERIOD, memory._TRANSFORMED) == (_PERIOD * _CORRELATED, _POINTS)

@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+import xarray as xr
 from drawn_scans import published
 from numpy.testing import assert_allclose
 
@@ -49,13 +50,21 @@ SHEETS = {
     "long flags": {"flags": LONG},
     "no flags": {"flags": ""},
     "without density": {"feasible": np.full(3, np.nan), "goodness_chi2": np.nan, "goodness_p": np.nan},
-    "not square": {name: np.full(2, np.nan) for name in ("summits", "summit_errors", "model_summits")},
+    "not square": {name: np.full(2, np.nan) for name in ("summits", "summit_errors", "model_summits")}
+    | {"points": np.array([250, 125]), "pixel": np.array([20e-9, 40e-9])},
+    "too few summits": {"summits": np.full(2, np.nan)},
 }
+#: Flag of stage spectrum.
+CLIPPED = "the spectrum ends at the Nyquist number of the grid"
+
+
+def spectrum(sentences=""):
+    return xr.Dataset({"flags": ((), sentences)})
 
 
 @cache
 def sheet(name):
-    return surface_sheet("Etched", changed(**SHEETS[name]))
+    return surface_sheet("Etched", changed(**SHEETS[name]), spectrum())
 
 
 def panel(figure, title):
@@ -66,7 +75,7 @@ def panel(figure, title):
 
 @pytest.mark.parametrize("name", SHEETS)
 def test_no_text_of_a_sheet_covers_another_or_leaves_it(name, tmp_path):
-    figure = surface_sheet("Etched", changed(**SHEETS[name]))
+    figure = surface_sheet("Etched", changed(**SHEETS[name]), spectrum(CLIPPED))
     save(figure, tmp_path / "sheet.png")
     boxes = [figure._suptitle.get_window_extent(), figure._supxlabel.get_window_extent()]
     for axes in figure.axes:
@@ -81,7 +90,7 @@ def test_no_text_of_a_sheet_covers_another_or_leaves_it(name, tmp_path):
 
 def test_equal_estimates_give_equal_sheets(tmp_path):
     for name in ("first.pdf", "second.pdf", "first.png", "second.png"):
-        save(surface_sheet("Etched", estimated()), tmp_path / name)
+        save(surface_sheet("Etched", estimated(), spectrum()), tmp_path / name)
     for kind in ("pdf", "png"):
         assert (tmp_path / f"first.{kind}").read_bytes() == (tmp_path / f"second.{kind}").read_bytes()
 
@@ -93,6 +102,9 @@ def test_the_title_shows_the_moments_with_their_errors_and_the_scans():
     assert f"rms {rms:.3f} ± {rms * errors[0]:.3f} nm" in title
     assert f"skewness −{abs(float(estimated().moments[1])):.3f} ± {errors[1]:.3f}" in title
     assert f"kurtosis {float(estimated().moments[2]):.2f} ± {errors[2]:.2f}" in title
+    sectors, error = estimated().sectors.values, estimated().sector_errors.values.max()
+    ratio = sectors.max() / sectors.min()
+    assert f"largest over smallest sector {ratio:.3f} ± {np.sqrt(2) * ratio * error:.3f}" in title
 
 
 def test_the_map_is_levelled_and_white_at_its_mean():
@@ -109,7 +121,7 @@ def test_the_map_is_levelled_and_white_at_its_mean():
 def test_undefined_points_are_grey():
     z = estimated().elevation.values.copy()
     z[10:20, 30:50] = np.nan
-    figure = surface_sheet("Etched", changed(elevation=z))
+    figure = surface_sheet("Etched", changed(elevation=z), spectrum())
     (image,) = panel(figure, "levelled heights").images
     assert image.get_array().mask[30:50, 10:20].all()
     assert image.get_array().mask.sum() == 200
@@ -140,10 +152,11 @@ def test_densities_integrate_to_one_and_the_band_is_one_error_wide():
 
 def test_the_spectrum_is_grey_beyond_its_reach_and_shows_the_fit():
     axes = panel(sheet("plain"), "spectrum")
-    measured, fitted = (line.get_xydata().T for line in axes.lines)
+    measured, slow, fitted = (line.get_xydata().T for line in axes.lines)
     rings, reach, fit = (of(estimated()) for of in (stage_estimate.rings, stage_estimate.reach, stage_estimate.fit))
     assert_allclose(measured[0], 1e-6 * rings.wavenumber[rings.wavenumber > 0])
     assert_allclose(measured[1], 1e36 * rings.density[rings.wavenumber > 0])
+    assert_allclose(slow, [1e-6 * estimated().slow_wavenumber[1:], 1e36 * estimated().slow_density[1:]])
     inside = fitted[0] < 1e-6 * reach.nyquist
     assert_allclose(fitted[1][inside], 1e36 * fit.spectrum(reach.nyquist)(1e6 * fitted[0][inside]), rtol=1e-9)
     grey = sorted(
@@ -159,7 +172,10 @@ def test_summits_of_scans_and_model_have_their_errors():
         assert_allclose(container[0].get_xydata()[0], [1e6 * radius, 1e-12 * density])
         bars = [np.ptp(bar.get_segments()[0], axis=0) / 2 for bar in container[2]]
         assert_allclose(np.max(bars, axis=0), [1e6 * error, 1e-12 * density_error])
-    assert not panel(sheet("not square"), "summits").containers
+    for name, reason in (("not square", "pixels are not square"), ("too few summits", "too few summits")):
+        axes = panel(sheet(name), "summits")
+        assert not axes.containers
+        assert axes.texts[0].get_text().startswith(reason)
 
 
 def test_every_flag_is_shown_in_full():
@@ -167,13 +183,15 @@ def test_every_flag_is_shown_in_full():
     for flag in LONG.splitlines():
         assert " ".join(flag.split()) in shown
     assert sheet("no flags")._supxlabel.get_text() == "No flags."
+    clipped = surface_sheet("Etched", changed(flags=""), spectrum(CLIPPED))._supxlabel.get_text()
+    assert clipped.startswith("– the spectrum ends at the Nyquist number")
 
 
 # Tables
 
 
 def test_every_scan_has_its_row_with_the_error_of_one_scan():
-    table = scans({"Etched": changed(flags="a flag")}, {"Etched": maps()})
+    table = scans({"Etched": changed(flags="a flag")}, {"Etched": spectrum(CLIPPED)}, {"Etched": maps()})
     assert list(table.frame.file) == ["B2-scan-0.spm", "B2-scan-1.spm"]
     for row, scan in zip(table.frame.itertuples(), published("B2", SIDE, 2), strict=True):
         assert row.rms_nm == pytest.approx(1e9 * scan.heights.std(), rel=0.02)  # levelled
@@ -181,8 +199,8 @@ def test_every_scan_has_its_row_with_the_error_of_one_scan():
         assert (row.size_fast_um, row.size_slow_um) == pytest.approx((5, 5))
         assert row.skewness_se == pytest.approx(np.sqrt(2 * float(estimated().covariance[1, 1])))
         assert row.rms_se_nm == pytest.approx(row.rms_nm * np.sqrt(2 * float(estimated().covariance[0, 0])))
-        assert row.flags == "a flag"
-    assert "- Etched: a flag" in table.markdown
+        assert row.flags == f"a flag; {CLIPPED}"
+    assert f"- Etched: a flag\n- Etched: {CLIPPED}" in table.markdown
 
 
 def uncertainty():

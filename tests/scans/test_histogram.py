@@ -8,9 +8,17 @@ from published import SURFACES
 from test_model_scans import MODEL, streams
 
 from stiction.scans.histogram import EDGES, histogram, histogram_errors
+from stiction.scans.levelling import Levelling, level
+from stiction.scans.quantiles import SCORES, quantiles
 from stiction.scans.scan import Frame
 
 CENTRES = (EDGES[1:] + EDGES[:-1]) / 2
+
+
+def as_measured(scans):
+    """Histogram without a correction of the quantiles."""
+    found = quantiles(scans)
+    return histogram(scans, found, found)
 
 
 @pytest.fixture(scope="module")
@@ -24,8 +32,21 @@ def test_the_histogram_of_many_scans_is_the_density_of_the_surface(scans):
         [np.mean(SURFACES["B2"].density(np.linspace(a, b, 21))) for a, b in zip(EDGES[:-1], EDGES[1:], strict=True)]
     )
     inside = np.abs(CENTRES) < 4
-    off = (histogram(scans) - expected) / np.maximum(error, 1e-6)
+    off = (as_measured(scans) - expected) / np.maximum(error, 1e-6)
     assert np.sqrt(np.mean(off[inside] ** 2)) < 2
+
+
+def test_the_bias_of_levelling_is_taken_out_of_the_histogram_by_that_of_the_quantiles(scans):
+    bowed = [level(z, Levelling("plane", "bow")) for z in scans]
+    raw, levelled = as_measured(scans), as_measured(bowed)
+    corrected = histogram(bowed, quantiles(bowed), quantiles(scans))
+    assert np.abs(corrected - raw).max() < 0.3 * np.abs(levelled - raw).max()
+
+
+def test_heights_beyond_the_outermost_quantiles_move_as_these_do():
+    z = np.array([[-5.0, 5.0, *np.zeros(48)]])  # of unit variance
+    share = histogram([z], SCORES, SCORES + 0.15)
+    np.testing.assert_allclose(CENTRES[share > 0], [-4.9, 0.1, 5.1])
 
 
 def test_errors_are_the_scatter_between_scans_with_the_true_rms(scans):
@@ -49,4 +70,4 @@ def test_errors_fall_with_the_side_of_a_scan():
 def test_undefined_points_mean_and_scale_do_not_change_the_histogram(scans):
     z = scans[0].copy()
     holed = np.where(np.arange(z.size).reshape(z.shape) % 97 == 0, np.nan, 3 * z + 5e-9)
-    np.testing.assert_allclose(histogram([holed]), histogram([z[np.isfinite(holed)]]), rtol=1e-9)
+    np.testing.assert_allclose(as_measured([holed]), as_measured([z[np.isfinite(holed)]]), rtol=1e-9)

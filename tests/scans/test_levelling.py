@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from drawn_scans import published
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -76,13 +77,31 @@ def test_residuals_of_a_plane_are_orthogonal_to_it():
         assert abs(np.mean(levelled * form)) < 1e-14
 
 
+SQUARE = (1.0, 1.0)
+
+
 def test_jumps_of_lines_stand_out_of_the_steps_along_them():
-    slow, fast = line_jump(ROUGH)
+    slow, fast = line_jump(ROUGH, SQUARE)
     assert 0.5 < slow / fast < 2
     jumps = 5 * stream(1, "lines").standard_normal(40)
-    slow, fast = line_jump(ROUGH + jumps)
+    slow, fast = line_jump(ROUGH + jumps, SQUARE)
     np.testing.assert_allclose(slow, np.sqrt(np.mean(np.diff(jumps) ** 2)), rtol=0.1)
     assert slow > 10 * fast
+
+
+@pytest.mark.parametrize("every", [(1, 3), (3, 1), (2, 5)])
+def test_steps_are_compared_at_equal_distance(every):
+    (scan,) = published("B2", 5e-6, 1)
+    pixel = tuple(20e-9 * n for n in every)
+    slow, fast = line_jump(scan.heights[:: every[0], :: every[1]], pixel)
+    assert 0.7 < slow / fast < 1.4
+    assert not 0.7 < np.divide(*line_jump(scan.heights[:: every[0], :: every[1]], SQUARE)) < 1.4
+
+
+def test_lines_without_any_height_do_not_count_as_jumps():
+    holed = ROUGH.copy()
+    holed[:, 7], holed[11] = np.nan, np.nan
+    np.testing.assert_allclose(line_jump(holed, SQUARE), line_jump(ROUGH, SQUARE), rtol=0.2)
 
 
 @pytest.mark.parametrize("name", LINE_DEGREES)

@@ -86,6 +86,7 @@ def test_bias_of_scans_is_that_of_their_mean_powers():
         powers=np.array([0.0, 1.0, 0.3, 4.0]) + 0.1 * rng.standard_normal((7, 4)),
         influence=rng.standard_normal((7, 3)),
         quantiles=np.empty((7, 49)),
+        levelled_off=np.empty((7, 49)),
         summits=np.empty((7, 2)),
     )
     pairs = [slice(0, 2), slice(2, 4), slice(4, 6)]  # the seventh has no partner
@@ -99,6 +100,24 @@ def test_bias_of_scans_taken_together_is_smaller_but_that_of_levelling_is_not():
     assert abs(four[2]) < abs(one[2])
     tilted = draw_model_scans(MODEL, Levelling("plane", "bow"), streams(24))
     np.testing.assert_allclose(tilted.bias(MODEL.moments, 4)[0], tilted.bias(MODEL.moments, 1)[0], rtol=0.3)
+
+
+def test_the_error_of_the_bias_is_its_scatter_between_sets_of_model_scans():
+    sets = [draw_model_scans(MODEL, Levelling("plane", "tilt"), streams(12, f"set{k}")) for k in range(40)]
+    scatter = np.std([one.bias(MODEL.moments, 2) for one in sets], axis=0, ddof=1)
+    errors = np.sqrt(np.mean([np.diag(one.bias_covariance) for one in sets], axis=0))
+    # Single scans vary a bit more than the pairs of the bias do.
+    assert np.all((scatter / errors > 0.6) & (scatter / errors < 1.25)), scatter / errors
+    assert errors[0] < 0.7 * np.sqrt(MODEL.covariance[0, 0] / 12)
+
+
+def test_levelling_changes_the_quantiles_by_what_is_levelled_off():
+    drawn = draw_model_scans(MODEL, Levelling("plane", "tilt"), streams(40))
+    raw = draw_model_scans(MODEL, Levelling("mean"), streams(40))
+    np.testing.assert_allclose(drawn.quantiles - drawn.levelled_off, raw.quantiles, atol=1e-12)
+    np.testing.assert_allclose(raw.levelled_off, 0, atol=1e-12)
+    mean, error = mean_with_error(drawn.levelled_off)
+    assert np.any(np.abs(mean) > 5 * error)
 
 
 def test_quantiles_of_model_scans_are_those_of_the_density():
@@ -116,3 +135,21 @@ def test_summits_are_counted_per_area_where_pixels_are_square():
         radius_and_density(summits_per_area(z, FRAME)), [1 / curvature.mean(), density], rtol=1e-12
     )
     assert np.isnan(summits_per_area(z, Frame((200, 200), (4e-6, 4.1e-6)))).all()
+
+
+def test_a_map_without_summits_has_none_of_them_and_no_radius():
+    slope = np.add.outer(np.arange(40.0), np.arange(40.0))
+    found = summits_per_area(slope, Frame((40, 40), (1e-6, 1e-6)))
+    np.testing.assert_array_equal(found, [0, 0])
+    assert np.isnan(radius_and_density(found)).all()
+
+
+@pytest.mark.parametrize(("side", "pixel"), [(4e-6, 20e-9), (20e-6, 5e-9)])
+def test_the_transforms_hold_the_whole_correlation(side, pixel):
+    points = round(side / pixel)
+    wide = dataclasses.replace(MODEL, frame=Frame((points, points), (side, side)))
+    period = 2 * np.pi / wide.underlying.wavenumber[1]
+    least = max(8 * MODEL.correlation, 512 * pixel)
+    assert least <= period * (1 + 1e-9) < 1.1 * least
+    # 16 wavelengths of the corner give about as many wave numbers on the plateau.
+    assert np.sum(wide.underlying.wavenumber < B2.spectrum.corner) >= 15

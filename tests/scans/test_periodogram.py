@@ -57,23 +57,39 @@ def test_a_wave_along_the_fast_axis_is_at_its_wave_number():
     np.testing.assert_allclose([abs(first[i, 0]), second[0, j]], [2 * np.pi * 10 / 6.4, 0])
 
 
-def test_rings_of_independent_heights_are_flat_with_the_stated_number_of_modes():
-    size, count = (2.0, 3.0), 300
+@pytest.mark.parametrize("tapered", [0.0, 0.5])
+def test_rings_of_independent_heights_are_flat_with_the_stated_numbers_of_independent_values(monkeypatch, tapered):
+    monkeypatch.setattr(spectra, "_TAPERED", tapered)
+    size, count = (2.0, 3.0), 2000
     found = [rings(periodogram([stream(1, "white", k).standard_normal((48, 32))], size)) for k in range(count)]
     density = np.array([ring.density for ring in found])
     expected = 6.0 / (48 * 32) / (4 * np.pi**2)
     inner = slice(3, 16)
-    # The correlation by the taper reaches beyond a ring: one ring has more independent values than its share of all.
-    total = np.average(density[:, inner], weights=found[0].modes[inner], axis=1)
+    np.testing.assert_allclose(
+        density.var(axis=0)[inner] / expected**2 * found[0].modes[inner], 1, rtol=0, atol=5 * np.sqrt(2 / count)
+    )
+    total = np.average(density[:, inner], weights=found[0].weight[inner], axis=1)
     np.testing.assert_allclose(total.mean(), expected, rtol=4 * total.std() / expected / np.sqrt(count))
-    np.testing.assert_allclose(total.var() / expected**2 * found[0].modes[inner].sum(), 1, rtol=0, atol=0.4)
+    np.testing.assert_allclose(
+        total.var() / expected**2 * found[0].weight[inner].sum(), 1, rtol=0, atol=4 * np.sqrt(2 / count)
+    )
+    neighbours = np.corrcoef(density[:, 9], density[:, 10])[0, 1]
+    assert (neighbours > 0.1) == (tapered > 0), "only the taper makes neighbouring rings dependent"
 
 
 def test_several_scans_have_the_mean_spectrum_and_the_modes_of_all():
     single = [rings(periodogram([z], SIZE)) for z in MAPS]
     found = rings(ISOTROPIC)
     np.testing.assert_allclose(found.density, np.mean([one.density for one in single], axis=0))
-    np.testing.assert_allclose(found.modes, len(MAPS) * single[0].modes)
+    for name in ("modes", "weight"):
+        np.testing.assert_allclose(getattr(found, name), len(MAPS) * getattr(single[0], name))
+
+
+def test_rings_between_two_wave_numbers_keep_their_values():
+    found = rings(ISOTROPIC)
+    some = found.between(found.wavenumber[3], found.wavenumber[7])
+    for name in ("wavenumber", "density", "modes", "weight"):
+        np.testing.assert_array_equal(getattr(some, name), getattr(found, name)[3:8])
 
 
 def test_offsets_and_tilts_of_lines_stay_in_the_band_near_the_slow_axis():
@@ -106,15 +122,24 @@ def test_there_are_no_empty_rings_and_their_wave_numbers_increase(size):
     assert found.modes.min() > 0
 
 
-def test_sectors_of_isotropic_surfaces_are_equal():
-    found = sectors(ISOTROPIC, 5e6, 80e6)
+def sectors_of(scans, size, low, high):
+    found = periodogram(scans, size)
+    return sectors(found, rings(found), low, high)
+
+
+def test_sectors_of_isotropic_surfaces_are_equal_within_their_errors():
+    found, error = sectors_of(MAPS, SIZE, 5e6, 80e6)
     np.testing.assert_allclose(found, 1, atol=0.1)
+    single, errors = zip(*(sectors_of([z], SIZE, 5e6, 80e6) for z in MAPS), strict=True)
+    np.testing.assert_allclose(np.sqrt(10) * error, errors[0])
+    scatter = np.std(single, axis=0, ddof=1) / errors[0]
+    np.testing.assert_allclose(np.sqrt(np.mean(scatter**2)), 1, rtol=0, atol=4 / np.sqrt(2 * 72))
 
 
 @pytest.mark.parametrize(("stretch", "along"), [((1.25, 1.0), {3, 4}), ((1.0, 1.25), {0, 7})])
 def test_a_stretched_surface_has_more_short_waves_across_the_stretch(stretch, along):
     size = tuple(SIDE * factor for factor in stretch)
-    found = sectors(periodogram(MAPS, size), 5e6, 60e6)
+    found, _ = sectors_of(MAPS, size, 5e6, 60e6)
     assert found.max() / found.min() > 1.8
     assert set(np.argsort(found)[-2:]) == along
 
@@ -124,7 +149,7 @@ def test_sectors_turn_with_the_waves():
     angle = np.deg2rad(33.75)  # centre of the second sector
     wave = np.cos(0.8 * (np.cos(angle) * x[:, None] + np.sin(angle) * x))
     noise = 0.01 * stream(1, "white").standard_normal((128, 128))
-    assert np.argmax(sectors(periodogram([wave + noise], (128.0, 128.0)), 0.3, 1.5)) == 1
+    assert np.argmax(sectors_of([wave + noise], (128.0, 128.0), 0.3, 1.5)[0]) == 1
 
 
 def test_levelling_and_spectrum_agree_with_those_of_the_library(monkeypatch):

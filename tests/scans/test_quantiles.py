@@ -16,6 +16,7 @@ from stiction.scans.quantiles import (
 )
 from stiction.streams import stream
 from stiction.surface import maxent
+from stiction.surface.feasible import largest_kurtosis
 from stiction.surface.translation import Translation
 
 B2 = SURFACES["B2"]
@@ -102,14 +103,20 @@ def test_moments_far_from_the_domain_have_no_density():
     assert feasible(2.0, 4.5, lambda: COVARIANCE) is None  # below the lower bound
 
 
-def test_slopes_of_the_quantiles_are_differences_of_densities():
-    slopes = compared_slopes(-0.76, 3.9)
+@pytest.mark.parametrize("skewness", [-0.76, 0.76])
+def test_slopes_of_the_quantiles_are_differences_of_densities(skewness):
+    slopes = compared_slopes(skewness, 3.9)
     for shift, step in (((0.03, 0.0), 0), ((0.0, 0.08), 1)):
         more, less = (
-            maxent.solve(-0.76 + sign * shift[0], 3.9 + sign * shift[1]).quantile_of_normal(SCORES[COMPARED])
+            maxent.solve(skewness + sign * shift[0], 3.9 + sign * shift[1]).quantile_of_normal(SCORES[COMPARED])
             for sign in (1, -1)
         )
-        np.testing.assert_allclose((more - less) / (2 * sum(shift)), slopes[step], rtol=0.1, atol=0.02)
+        np.testing.assert_allclose((more - less) / (2 * sum(shift)), slopes[step], rtol=0.1, atol=0.07)
+
+
+@pytest.mark.parametrize("skewness", [-1.0, -0.76, -0.3, 0.0, 0.3, 1.0])
+def test_slopes_exist_at_the_largest_kurtosis(skewness):
+    assert np.isfinite(compared_slopes(skewness, largest_kurtosis(skewness))).all()
 
 
 def test_compared_scores_reach_far_into_the_upper_tail():

@@ -6,12 +6,15 @@ import pytest
 from drawn_scans import PIXELS, published
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from published import SURFACES
+from published import SPACING, SURFACES
 
+from stiction.estimates import mean_with_error
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.periodogram import Rings, periodogram, rings
-from stiction.scans.whittle import fit, reach, tabulated, tip_reach
+from stiction.scans.scan import Scan
+from stiction.scans.whittle import fit, fit_to_the_end, reach, tabulated, tip_reach
 from stiction.streams import stream
+from stiction.surface.field import StripGrid
 
 SIDE = 10e-6
 SIZE = (SIDE, SIDE)
@@ -22,10 +25,15 @@ MODES = 0.6 * np.pi * np.arange(1.0, 250)
 B2 = SURFACES["B2"].spectrum
 
 
-def measured(rng, spectrum=B2):
-    """Rings of one scan of Gaussian heights: χ² variables about the spectrum."""
-    values = spectrum(WAVENUMBER) * rng.gamma(MODES) / MODES
-    return Rings(WAVENUMBER, values, MODES)
+def measured(rng, spectrum=B2, modes=MODES):
+    """Rings of one scan of Gaussian heights that are independent of each other: χ² variables about the spectrum."""
+    wavenumber = WAVENUMBER[: len(modes)]
+    return Rings(wavenumber, spectrum(wavenumber) * rng.gamma(modes) / modes, modes, modes)
+
+
+def rings_of(scans):
+    """Rings of all scans together."""
+    return rings(periodogram([level(scan.heights, Levelling()) for scan in scans], scans[0].size))
 
 
 def parameters(found):
@@ -57,7 +65,7 @@ def test_an_exact_spectrum_is_found_again(corner, slope, scale):
         fit(measured(stream(1)), REACH), plateau=np.exp(scale), corner=1e6 * corner, slope=slope
     )
     density = exact.spectrum(REACH.nyquist)(WAVENUMBER)
-    found = fit(Rings(WAVENUMBER, np.where(density > 0, density, 1.0), MODES), REACH)
+    found = fit(Rings(WAVENUMBER, np.where(density > 0, density, 1.0), MODES, MODES), REACH)
     np.testing.assert_allclose(parameters(found), parameters(exact), rtol=1e-3, atol=1e-3)
     assert found.chi2 < 1e-3
 
@@ -65,34 +73,83 @@ def test_an_exact_spectrum_is_found_again(corner, slope, scale):
 def test_errors_are_those_of_the_scatter_and_chi_square_is_one_per_degree_of_freedom():
     found = [fit(measured(stream(1, "whittle", k)), REACH) for k in range(300)]
     values = np.array([parameters(one) for one in found])
-    errors = np.sqrt(np.diag(found[0].covariance)) / 1.15  # of Gaussian heights
+    covariance = found[0].covariance / max(found[0].chi2 / found[0].freedom, 1)
+    errors = np.sqrt(np.diag(covariance)) / 1.15  # of Gaussian heights
     np.testing.assert_allclose(values.std(axis=0, ddof=1) / errors, 1, rtol=0, atol=4 / np.sqrt(600))
     assert np.all(np.abs(values.mean(axis=0) - TRUTH) < 4 * errors / np.sqrt(300))
-    correlation = np.corrcoef(values.T)[0, 1] - found[0].covariance[0, 1] / 1.15**2 / np.prod(errors[:2])
+    correlation = np.corrcoef(values.T)[0, 1] - covariance[0, 1] / 1.15**2 / np.prod(errors[:2])
     assert abs(correlation) < 0.2
     assert np.mean([one.chi2 / one.freedom for one in found]) == pytest.approx(1, abs=0.06)
 
 
-def test_a_smooth_knee_has_a_large_chi_square():
-    knee = (1 + (WAVENUMBER / B2.corner) ** 2) ** (B2.slope / 2)
-    modes = 3 * MODES  # of three scans
-    found = fit(Rings(WAVENUMBER, knee * stream(1, "knee").gamma(modes) / modes, modes), REACH)
-    assert found.chi2 / found.freedom > 3
+def test_a_smooth_knee_has_a_large_chi_square_and_larger_errors():
+    def knee(wavenumber):
+        return (1 + (wavenumber / B2.corner) ** 2) ** (B2.slope / 2)
+
+    exact, smooth = (fit(measured(stream(1, "knee"), spectrum, 3 * MODES), REACH) for spectrum in (B2, knee))
+    ratio = smooth.chi2 / smooth.freedom
+    assert ratio > 3
+    errors = [np.sqrt(np.diag(found.covariance))[0] for found in (smooth, exact)]
+    assert errors[0] / errors[1] == pytest.approx(np.sqrt(ratio), rel=0.25)
 
 
 def test_the_fitted_spectrum_is_that_of_drawn_scans():
-    levelled = [level(scan.heights, Levelling()) for scan in published("B2", SIDE, 3)]
-    found = fit(rings(periodogram(levelled, SIZE)), REACH)
+    found = fit(rings_of(published("B2", SIDE, 3)), REACH)
     scale = SURFACES["B2"].rms ** 2 / B2.variance
     errors = np.sqrt(np.diag(found.covariance))
     assert np.all(np.abs(parameters(found) - TRUTH - [np.log(scale), 0, 0]) < 3.5 * errors)
-    assert found.chi2 / found.freedom < 1.5
+
+
+def test_errors_cover_the_truth_of_drawn_scans_and_chi_square_is_one_per_degree_of_freedom():
+    found = [fit(rings_of([scan]), reach(scan.size, PIXELS)) for scan in published("B2", 5e-6, 60, "coverage")]
+    off = np.array([(parameters(one) - TRUTH)[1:] / np.sqrt(np.diag(one.covariance))[1:] for one in found])
+    within = np.mean(np.abs(off) < 1, axis=0)
+    assert np.all((within > 0.56) & (within < 0.86)), within
+    assert np.all(np.mean(np.abs(off) < 2, axis=0) > 0.88)
+    mean, error = mean_with_error([one.chi2 / one.freedom for one in found])
+    assert abs(mean - 1) < 4 * error < 0.12
+
+
+def test_the_end_of_a_measured_spectrum_is_found():
+    ring = rings_of(published("B2", SIDE, 1))  # ends at 125 rad/µm, the Nyquist number is 157 rad/µm
+    found, within = fit_to_the_end(ring, REACH)
+    assert within.end == pytest.approx(B2.cutoff, rel=0.01)
+    assert (within.high, found.slope) == (REACH.high, fit(ring, REACH).slope)
+
+
+def test_a_spectrum_that_ends_within_the_reach_is_fitted_up_to_its_end():
+    surface = SURFACES["B2"].on(StripGrid(5e-6, 5e-6, SPACING, 1e-6))
+    fine = rings_of([Scan(surface.draw(stream(1, "fine")).astype(float), (5e-6, 5e-6))])
+    whole = reach((5e-6, 5e-6), (10e-9, 10e-9))  # up to 157 rad/µm
+    found, within = fit_to_the_end(fine, whole)
+    assert within.high == within.end == pytest.approx(B2.cutoff, rel=0.01)
+    errors = np.sqrt(np.diag(found.covariance))
+    assert np.all(np.abs(parameters(found) - TRUTH)[1:] < 3.5 * errors[1:])
+    assert abs(fit(fine, whole).slope - B2.slope) > 10 * errors[2]
+
+
+@pytest.mark.parametrize("name", ["Sub1", "Sub2"])
+def test_a_spectrum_that_goes_on_has_no_end(name):
+    assert fit_to_the_end(rings_of(published(name, SIDE, 1)), REACH)[1] == REACH
+
+
+def test_noise_hides_the_end_of_a_spectrum():
+    (scan,) = published("B2", SIDE, 1)
+    noise = 0.1e-9 * stream(1, "noise").standard_normal(scan.heights.shape)
+    assert fit_to_the_end(rings_of([Scan(scan.heights + noise, SIZE)]), REACH)[1] == REACH
+
+
+def test_chance_is_no_end_even_in_few_rings():
+    power_law = dataclasses.replace(B2, cutoff=1e9, floor=B2.plateau * (1e9 / B2.corner) ** B2.slope)
+    within = dataclasses.replace(REACH, nyquist=16.5 * 2e6 * np.pi / 10, high=11.5 * 2e6 * np.pi / 10)
+    for k in range(300):
+        drawn = measured(stream(1, "chance", k), power_law, MODES[:16])
+        assert fit_to_the_end(drawn, within)[1].end == within.nyquist
 
 
 def test_aliases_bias_a_fit_beyond_half_of_the_nyquist_number():
     # Sub1 has roughness up to 264 rad/µm, the Nyquist number is 157 rad/µm.
-    levelled = [level(scan.heights, Levelling()) for scan in published("Sub1", SIDE, 4)]
-    ring = rings(periodogram(levelled, SIZE))
+    ring = rings_of(published("Sub1", SIDE, 4))
     half, most = (fit(ring, reach(SIZE, PIXELS, shortest=pixels * 20e-9)) for pixels in (4, 8 / 3))
     true = SURFACES["Sub1"].spectrum.slope
     assert abs(half.slope / true - 1) < 0.015 < 0.02 < abs(most.slope / true - 1)

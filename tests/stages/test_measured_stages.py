@@ -65,9 +65,7 @@ def b2():
 def object_of_b2():
     """The estimate as an object, from the same scans and streams."""
     maps = [scan.scan_of(dataset) for dataset in scans()]
-    return evaluation.estimate(
-        maps, SETTINGS.evaluation, lambda number: [stream(3, "estimate", "Etched", number, k) for k in range(8)]
-    )
+    return evaluation.estimate(maps, 3, SETTINGS.evaluation, "Etched", 8)
 
 
 # Scan
@@ -125,8 +123,11 @@ def test_an_estimate_comes_back_from_its_dataset(through_a_file):
     for field in dataclasses.fields(fit):
         assert_array_equal(getattr(fit, field.name), getattr(expected.inspection.fit, field.name))
     assert estimate.reach(found) == expected.inspection.reach
-    for name in ("wavenumber", "density", "modes"):
+    for name in ("wavenumber", "density", "modes", "weight"):
         assert_array_equal(getattr(estimate.rings(found), name), getattr(expected.inspection.rings, name))
+    assert estimate.frame(found).shape == expected.inspection.frame.shape
+    assert_allclose(estimate.frame(found).size, expected.inspection.frame.size, rtol=1e-12)
+    assert_array_equal(found.sector_errors, expected.sector_errors)
     assert estimate.density(found, "moments") == expected.density("moments")
     assert_array_equal(estimate.density(found, "measured").heights, expected.density("measured").heights)
     for psd in ("fitted", "tabulated"):
@@ -161,17 +162,26 @@ def test_random_numbers_depend_on_seed_and_surface_and_not_on_the_names_of_files
     assert np.all(estimated(dataclasses.replace(SETTINGS, seed=4)).moments != moments)
 
 
-def test_there_are_at_least_as_many_model_scans_as_scans(monkeypatch):
-    counts = []
+def test_an_estimate_has_the_model_scans_that_are_asked_for(monkeypatch):
+    asked = []
+    monkeypatch.setattr(evaluation, "estimate", lambda *given: asked.extend(given[1:]) or object_of_b2())
+    estimated(dataclasses.replace(SETTINGS, seed=5, model_scans=17), surface="Other")
+    assert asked == [5, SETTINGS.evaluation, "Other", 17]
 
-    def evaluate(maps, _, streams):
-        counts.append((len(maps), len(list(streams(0))), len(list(streams(1)))))
-        return object_of_b2()
 
-    monkeypatch.setattr(evaluation, "estimate", evaluate)
-    for number in (2, 10):
-        estimated(found=[scans()[0]] * number)
-    assert counts == [(2, 8, 8), (10, 10, 10)]
+def test_the_band_near_the_slow_axis_holds_jumps_of_lines():
+    z = published("B2", SIDE, 1)[0]
+    jumps = 0.3 * B2.rms * stream(1, "lines").standard_normal(z.heights.shape[1])
+    jumping = estimated(found=[dataset_of(dataclasses.replace(z, heights=z.heights + jumps))])
+    clean = estimated(found=[dataset_of(z)])
+    far = jumping.slow_wavenumber.values > 5e7
+    assert np.median(jumping.slow_density.values[far] / clean.slow_density.values[far]) > 20
+    inside = clean.wavenumber.values < 5e7
+    assert_allclose(jumping.density[inside], clean.density[inside], rtol=0.05)
+
+
+def test_errors_of_modes_and_moments_agree_on_the_rms():
+    assert float(b2().mode_covariance[0, 0]) == float(b2().covariance[0, 0])
 
 
 # Heights
@@ -233,9 +243,10 @@ def spectrum_with(found=None, use=USE, spacing=10e-9, **choices):
     )
 
 
-def test_a_fitted_spectrum_ends_at_the_nyquist_number_of_the_scans_or_of_the_grid(through_a_file):
+def test_a_fitted_spectrum_ends_where_that_of_the_scans_does_or_at_the_nyquist_number_of_the_grid(through_a_file):
     cut, continued = through_a_file(spectrum_with()), spectrum_with(beyond="continued")
-    assert parameters.spectrum_of(cut) == estimate.fit(b2()).spectrum(np.pi / 20e-9)
+    assert parameters.spectrum_of(cut) == estimate.fit(b2()).spectrum(estimate.reach(b2()).end)
+    assert parameters.spectrum_of(cut).cutoff == pytest.approx(B2.spectrum.cutoff, rel=0.01)
     assert parameters.spectrum_of(continued) == estimate.fit(b2()).spectrum(np.pi / 10e-9)
     assert str(cut["flags"].item()) == ""
     assert isinstance(stage_spectrum.underlying(cut, "G"), CutoffSelfAffine)
@@ -250,7 +261,7 @@ def test_a_tabulated_spectrum_is_that_of_the_rings(through_a_file):
     assert_allclose(table(rings.wavenumber[inside]), rings.density[inside], rtol=0.05)
     zeta = found.wavenumber.values
     assert_allclose(2 * np.pi * np.trapezoid(zeta * found.target, zeta), 1, rtol=0.05)
-    assert stage_spectrum.underlying(found, "G").cutoff == table.cutoff == pytest.approx(np.pi / 20e-9)
+    assert stage_spectrum.underlying(found, "G").cutoff == table.cutoff == estimate.reach(b2()).end
 
 
 @pytest.mark.parametrize("choice", ["moments", "measured"])
@@ -267,7 +278,9 @@ def test_a_grid_that_cuts_the_spectrum_off_is_a_warning():
     ):
         found = spectrum_with(spacing=30e-9)
     assert float(found.cutoff) == pytest.approx(np.pi / 30e-9)
-    assert "below that of the scans, 157.1 rad/µm; a finer sampling.spacing_nm" in str(found["flags"].item())
+    (sentence,) = spectrum.flags(found)
+    assert sentence.endswith("before that of the scans, 125.1 rad/µm; a finer sampling.spacing_nm keeps more")
+    assert spectrum.flags(spectrum_with()) == ()
 
 
 @pytest.mark.parametrize("psd", ["fitted", "tabulated"])

@@ -213,6 +213,7 @@ rule figure_overview:
 rule surface_sheet:
     input:
         estimate="results/estimate/{surface}.nc",
+        spectrum="results/spectrum/{surface}.nc",
         style=STYLE,
     output:
         **figure_files("surface_sheet_{surface}", ON_SURFACES, "scans of {surface}", caption="surface_sheet"),

@@ -28,7 +28,7 @@ rule estimate:
     log:
         "results/logs/estimate/{surface}.log",
     resources:
-        mem_mb=lambda w: memory.of_estimate(preliminary[w.surface]["points"], len(plan.scan_files(w.surface))),
+        mem_mb=lambda w: memory.of_estimate(preliminary[w.surface], len(plan.scan_files(w.surface))),
     params:
         settings=lambda w: jobs.estimate(plan, w.surface),
         code=code("estimate.py"),

@@ -63,6 +63,7 @@ rule table_3:
 rule table_scans:
     input:
         estimates=expand("results/estimate/{surface}.nc", surface=plan.scanned),
+        spectra=expand("results/spectrum/{surface}.nc", surface=plan.scanned),
         scans=[f"results/scan/{surface}_{number}.nc" for surface in plan.scanned for number in plan.scan_files(surface)],
     output:
         **table_files("scans", "scans of the measured surfaces"),

@@ -8,7 +8,8 @@ from stiction.stages import storage
 
 def main(job):
     """Draw what the scans show and what is drawn from it."""
-    save(surface_sheet(job.wildcards.surface, storage.load(job.input.estimate, "estimate")), *job.output)
+    estimate, spectrum = (storage.load(job.input.get(stage), stage) for stage in ("estimate", "spectrum"))
+    save(surface_sheet(job.wildcards.surface, estimate, spectrum), *job.output)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Memory of jobs: that draw surfaces, by their largest field; that hold the contact of all samples, by their number."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping
 
 from stiction.config.units import NM_PER_UM
 from stiction.models import SIDES
@@ -16,10 +16,13 @@ _BASE, _PER_POINT = 350, 60
 _DISTANCES = 30
 #: Memory that every job may use without a request [MB], and the most that a job may need.
 USUAL, LARGEST = 800, 8000
-#: Memory of an estimate from scans [bytes per point]: of the transforms, which have up to 2048 points along a side, of
-#: the map that is evaluated, of every scan. Measured: 640 MB for one scan of 1024² points, 726 MB for one of 2048².
-_PER_TRANSFORMED_POINT, _PER_SCANNED_POINT, _PER_STORED_POINT = 75, 30, 12
-_LARGEST_TRANSFORM = 2048
+#: Memory of an estimate from scans [bytes per point]: of the transforms, of the map with square pixels that is drawn,
+#: of every scan. Measured: 694 MB for one scan of 2048² points with 38 wavelengths of the corner, 1134 MB for one of
+#: 2048 x 256 points with 10, which are eight times as far apart in one direction.
+_PER_TRANSFORMED_POINT, _PER_DRAWN_POINT, _PER_STORED_POINT = 75, 85, 12
+#: Period of the transforms in wavelengths of the corner, least and largest number of its points;
+#: `stiction.scans.model_scans`.
+_PERIOD, _TRANSFORMED = 16, (512, 4096)
 #: Megabytes in a byte.
 _MB = 1e-6
 
@@ -86,8 +89,20 @@ def _of_largest_field(config):
     return max(needed + [of_field(length + margin, width + margin, spacings[0]) for length, width in patches])
 
 
-def of_estimate(points: Sequence[int], files: int) -> int:
-    """Memory to reserve for the estimate of a surface from scans with this number of points along each side [MB]."""
-    transformed = min(2 * max(points), _LARGEST_TRANSFORM) ** 2
-    scanned = math.prod(points) * (_PER_SCANNED_POINT + _PER_STORED_POINT * files)
-    return max(USUAL, round(_BASE + _MB * (_PER_TRANSFORMED_POINT * transformed + scanned)))
+def of_estimate(found: Mapping, files: int) -> int:
+    """Memory to reserve for the estimate of a surface from a number of scans [MB].
+
+    Parameters
+    ----------
+    found : mapping
+        Preliminary numbers of the surface, see `stiction.config.measured.evaluated`.
+    files : int
+        Number of scans.
+    """
+    points, pixel = found["points"], found["pixel_nm"]
+    period = _PERIOD * 2 * math.pi / found["corner_rad_per_um"] * NM_PER_UM / min(pixel)
+    transformed = min(max(period, _TRANSFORMED[0]), _TRANSFORMED[1]) ** 2
+    drawn = math.prod(n * p / min(pixel) for n, p in zip(points, pixel, strict=True))
+    stored = math.prod(points) * files
+    of_arrays = _PER_TRANSFORMED_POINT * transformed + _PER_DRAWN_POINT * drawn + _PER_STORED_POINT * stored
+    return max(USUAL, round(_BASE + _MB * of_arrays))

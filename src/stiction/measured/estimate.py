@@ -11,14 +11,15 @@ from stiction.analysis.shifts import ORDERS
 from stiction.measured import scan as stage_scan
 from stiction.models import OF_MEASURED
 from stiction.scans import estimate as evaluation
+from stiction.scans import periodogram as spectra
 from stiction.scans import whittle
 from stiction.scans.estimate import SurfaceEstimate
 from stiction.scans.histogram import EDGES, histogram, histogram_errors
 from stiction.scans.moments import mode_covariance, moments
 from stiction.scans.periodogram import Rings
 from stiction.scans.quantiles import SCORES, measured_density
+from stiction.scans.scan import Frame
 from stiction.scans.whittle import Reach, WhittleFit
-from stiction.streams import stream
 from stiction.surface import maxent
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.maxent import HeightDensity
@@ -56,12 +57,8 @@ def compute(scans: Sequence[xr.Dataset], surface: str, settings: Settings) -> xr
     ScanError
         If the scans cannot be used, or no surface has their heights and spectrum.
     """
-    number = max(settings.model_scans, len(scans))
-
-    def streams(round_number):
-        return (stream(settings.seed, "estimate", surface, round_number, k) for k in range(number))
-
-    found = evaluation.estimate([stage_scan.scan_of(dataset) for dataset in scans], settings.evaluation, streams)
+    maps = [stage_scan.scan_of(dataset) for dataset in scans]
+    found = evaluation.estimate(maps, settings.seed, settings.evaluation, surface, settings.model_scans)
     for sentence in found.flags:
         warnings.warn(f"surface {surface}: {sentence}", stacklevel=2)
     return layout(found, [note for dataset in scans for note in stage_scan.notes(dataset)])
@@ -80,6 +77,7 @@ def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
     frame, rings, within, fit = inspection.frame, inspection.rings, inspection.reach, inspection.fit
     nearest = found.feasible
     near = (np.nan,) * 3 if nearest is None else (nearest.skewness, nearest.kurtosis, nearest.distance)
+    slow = spectra.rings(inspection.periodogram, inspection.periodogram.near_slow_axis)
     wave = {"units": "rad m-1"}
     return xr.Dataset(
         {
@@ -94,6 +92,9 @@ def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
             "wavenumber": ("ring", rings.wavenumber, wave),
             "density": ("ring", rings.density, {"units": "m4"}),
             "modes": ("ring", rings.modes, {"units": "1", "long_name": "independent values of a ring"}),
+            "weight": ("ring", rings.weight, {"units": "1", "long_name": "independent values of a ring among many"}),
+            "slow_wavenumber": ("slow_ring", slow.wavenumber, wave),
+            "slow_density": ("slow_ring", slow.density, {"units": "m4", "long_name": "near the slow axis"}),
             "plateau": ((), fit.plateau, {"units": "m4"}),
             "corner": ((), fit.corner, wave),
             "slope": ((), fit.slope, {"units": "1"}),
@@ -108,14 +109,20 @@ def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
             "highest": ((), within.high, wave | {"long_name": "largest wave number of the fit"}),
             "nyquist": ((), within.nyquist, wave),
             "tip": ((), within.tip, wave | {"long_name": "wave number beyond which the tip rounds the surface"}),
+            "end": ((), within.end, wave | {"long_name": "wave number beyond which the scans show no roughness"}),
             "wavelengths": ((), inspection.wavelengths, {"units": "1", "long_name": "of the corner along a scan"}),
             "areas": ((), inspection.areas, {"units": "1", "long_name": "correlation areas of all scans"}),
             "sectors": ("sector", found.sectors, {"units": "1", "long_name": "spectrum relative to its mean"}),
+            "sector_errors": ("sector", found.sector_errors, {"units": "1"}),
             "quantile": ("score", found.quantiles, {"units": "1", "long_name": "standardised height"}),
             "quantile_error": ("score", found.quantile_errors, {"units": "1"}),
             "goodness_chi2": ((), found.goodness[0], _CHI2),
             "goodness_p": ((), found.goodness[1], _P),
-            "histogram": ("bin", histogram(inspection.levelled), {"units": "1", "long_name": "density of z / rms"}),
+            "histogram": (
+                "bin",
+                histogram(inspection.levelled, inspection.quantiles, found.quantiles),
+                {"units": "1", "long_name": "density of z / rms"},
+            ),
             "histogram_error": ("bin", histogram_errors(found.model) / np.sqrt(len(inspection.names)), {"units": "1"}),
             "edge": ("edges", EDGES, {"units": "1", "long_name": "edges of the bins of z / rms"}),
             "mode_covariance": (("mode", "other_mode"), _mode_covariance(found), {"long_name": "of ln rms and modes"}),
@@ -152,7 +159,9 @@ def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
 def _mode_covariance(found):
     """Covariance of the quantities of a measured density, `stiction.models.OF_MEASURED`."""
     model = found.model
-    return mode_covariance(model.translation, model.overlaps, ORDERS) / len(found.inspection.names)
+    covariance = mode_covariance(model.translation, model.overlaps, ORDERS) / len(found.inspection.names)
+    covariance[0, 0] = found.covariance[0, 0]
+    return covariance
 
 
 def files(estimate: xr.Dataset) -> tuple[str, ...]:
@@ -183,12 +192,18 @@ def fit(estimate: xr.Dataset) -> WhittleFit:
 
 def rings(estimate: xr.Dataset) -> Rings:
     """Measured spectrum."""
-    return Rings(*(estimate[name].values for name in ("wavenumber", "density", "modes")))
+    return Rings(*(estimate[name].values for name in ("wavenumber", "density", "modes", "weight")))
+
+
+def frame(estimate: xr.Dataset) -> Frame:
+    """Points and size of the scans."""
+    points, pixel = estimate.points.values, estimate.pixel.values
+    return Frame(tuple(map(int, points)), tuple(map(float, points * pixel)))
 
 
 def reach(estimate: xr.Dataset) -> Reach:
     """Wave numbers that the scans resolve."""
-    return Reach(*(float(estimate[name]) for name in ("lowest", "highest", "nyquist", "tip")))
+    return Reach(*(float(estimate[name]) for name in ("lowest", "highest", "nyquist", "tip", "end")))
 
 
 def distance(estimate: xr.Dataset) -> float:

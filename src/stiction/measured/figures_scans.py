@@ -11,12 +11,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stiction.measured import estimate as stage_estimate
+from stiction.measured import spectrum as stage_spectrum
 from stiction.report.format import PER_UM2, TO_NM, TO_UM, UM, with_error
 from stiction.report.style import DOUBLE, MODELS, OUTLINED, letter, panels, styled
 
 _MEASURED, _MODEL = {"color": "black"}, {"color": MODELS["NG"]["color"]}
 _BAND, _BEYOND = {"color": "0.75", "linewidth": 0}, {"color": "0.92", "linewidth": 0, "zorder": 0}
 _CORNER = {"fontsize": 7, "path_effects": OUTLINED}
+_SLOW = {"color": "0.5", "linewidth": 0.5}
 #: Colours of the map saturate at this number of rms; decades of densities below their largest value, factor above it.
 _SATURATED, _DECADES, _HEADROOM = 3, 6, 60
 #: Characters of a line of sentences, height of a line and of the panels with their title [in].
@@ -24,17 +26,17 @@ _LINE, _LINE_HEIGHT, _PANELS = 150, 0.125, 5.8
 
 
 @styled
-def surface_sheet(name: str, estimate: xr.Dataset) -> Figure:
+def surface_sheet(name: str, estimate: xr.Dataset, spectrum: xr.Dataset) -> Figure:
     """Sheet of one measured surface: the measured quantities, their errors, and the model drawn from them.
 
     Parameters
     ----------
     name : str
         Of the surface.
-    estimate : Dataset
-        Of stage estimate.
+    estimate, spectrum : Dataset
+        Of stages estimate and spectrum.
     """
-    lines = _lines(stage_estimate.flags(estimate))
+    lines = _lines([*stage_estimate.flags(estimate), *stage_spectrum.flags(spectrum)])
     figure, axes = panels(2, 2, (DOUBLE, _PANELS + _LINE_HEIGHT * len(lines)))
     _map(figure, axes[0, 0], estimate)
     _density(axes[0, 1], estimate)
@@ -56,19 +58,20 @@ def _lines(sentences: Sequence[str]):
 
 def _title(name, estimate):
     """Scans and numbers with their errors."""
-    points, pixel = estimate.points.values, estimate.pixel.values
-    files = len(stage_estimate.files(estimate))
-    size = " × ".join(f"{TO_UM * n * step:.4g}" for n, step in zip(points, pixel, strict=True))
+    frame, files = stage_estimate.frame(estimate), len(stage_estimate.files(estimate))
+    size, points = " × ".join(f"{TO_UM * length:.4g}" for length in frame.size), " × ".join(map(str, frame.shape))
     rms, errors = TO_NM * stage_estimate.rms(estimate), np.sqrt(np.diag(estimate.covariance))
     skewness, kurtosis = stage_estimate.shape(estimate)
     tiles = np.max(estimate.tile_errors.values / errors)
     sectors = float(estimate.sectors.max() / estimate.sectors.min())
+    sector_error = np.sqrt(2) * sectors * float(estimate.sector_errors.max())
     numbers = (
         f"rms {with_error(rms, rms * errors[0])} nm, skewness {with_error(skewness, errors[1])}, "
         f"kurtosis {with_error(kurtosis, errors[2])}; "
-        f"errors by tiles over closed form {tiles:.2g}, largest over smallest sector {sectors:.2g}"
+        f"errors by tiles over closed form {tiles:.2g}, "
+        f"largest over smallest sector {with_error(sectors, sector_error)}"
     )
-    scans = f"{files} scan{'s' * (files > 1)} of {size} µm, {points[0]} × {points[1]} points"
+    scans = f"{files} scan{'s' * (files > 1)} of {size} µm, {points} points"
     return f"{name}: {scans}\n{_minus(numbers)}"
 
 
@@ -81,8 +84,8 @@ def _map(figure: Figure, panel: Axes, estimate):
     """Levelled heights of the first scan: blue below and red above the mean, undefined points grey."""
     z = TO_NM * estimate.elevation.values
     limit = _SATURATED * np.nanstd(z)
-    extent = [0, TO_UM * float(estimate.points[0] * estimate.pixel[0]), 0, 0]
-    extent[3] = TO_UM * float(estimate.points[1] * estimate.pixel[1])
+    length, width = stage_estimate.frame(estimate).size
+    extent = [0, TO_UM * length, 0, TO_UM * width]
     colours = colormaps["RdBu_r"].with_extremes(bad="0.6")
     shades = {"cmap": colours, "vmin": -limit, "vmax": limit}
     image = panel.imshow(np.ma.masked_invalid(z.T), origin="lower", extent=extent, interpolation="nearest", **shades)
@@ -109,13 +112,15 @@ def _density(panel, estimate):
 
 
 def _spectrum(panel, estimate):
-    """Rings with their errors and Eq. (7); grey beyond the reach of the microscope."""
+    """Rings with their errors, the band near the slow axis and Eq. (7); grey beyond the reach of the microscope."""
     rings, reach = stage_estimate.rings(estimate), stage_estimate.reach(estimate)
     inside = rings.wavenumber > 0
     zeta, density = rings.wavenumber[inside] / TO_UM, TO_NM**4 * rings.density[inside]
     error = density / np.sqrt(rings.modes[inside])
     panel.fill_between(zeta, np.maximum(density - error, density / 10), density + error, **_BAND)
     panel.plot(zeta, density, **_MEASURED, label="measured, ± 1 standard error")
+    slow = estimate.isel(slow_ring=slice(1, None))
+    panel.plot(slow.slow_wavenumber / TO_UM, TO_NM**4 * slow.slow_density, **_SLOW, label="near the slow axis")
     fit = stage_estimate.fit(estimate)
     fitted = TO_NM**4 * fit.spectrum(2e6 * zeta[-1])(1e6 * zeta)
     panel.plot(zeta, fitted, **_MODEL, label="Eq. (7)")
@@ -123,7 +128,7 @@ def _spectrum(panel, estimate):
     ends = low / 2, zeta[-1]
     panel.axvspan(ends[0], low, **_BEYOND)
     panel.axvspan(high, ends[1], **_BEYOND, label="beyond the reach")
-    limits = fitted[-1] / _HEADROOM, _HEADROOM * fitted[0]
+    limits = fitted[-1] / _HEADROOM, 10 * _HEADROOM * fitted[0]
     panel.set(xscale="log", yscale="log", xlim=ends, ylim=limits)
     panel.set(xlabel=r"wave number $\zeta$ [rad/µm]", ylabel="spectrum $s_Z$ [nm$^4$]")
     panel.text(0.04, 0.04, _minus(_fit(fit)), transform=panel.transAxes, linespacing=1.4, **_CORNER)
@@ -144,7 +149,8 @@ def _summits(panel, estimate):
     """Radius and density of the summits of the scans, and of scans drawn from the model."""
     panel.set(xlabel="summit radius [µm]", ylabel="summit density [µm$^{-2}$]")
     if np.isnan(estimate.summits).any():
-        panel.text(0.5, 0.5, "pixels are not square:\nno summits", transform=panel.transAxes, ha="center", va="center")
+        reason = "too few summits" if stage_estimate.frame(estimate).square else "pixels are not square:\nno summits"
+        panel.text(0.5, 0.5, reason, transform=panel.transAxes, ha="center", va="center")
         return
     for kind, style, mark, label in (
         ("summit", _MEASURED, "o", "measured, ± 1 standard error"),

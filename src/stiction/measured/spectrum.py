@@ -18,7 +18,7 @@ class Settings:
     """Source of the spectrum, its cut-off, and what it is used for."""
 
     psd: str  #: ``fitted`` (Eq. (7)) or ``tabulated``
-    beyond: str  #: ``cut`` at the Nyquist number of the scans, or ``continued`` to that of the grid
+    beyond: str  #: ``cut`` at the end of the measured spectrum, or ``continued`` to the Nyquist number of the grid
     spacing: float  #: of the grid on which the surface will be drawn [m]
     use: Use
 
@@ -26,7 +26,7 @@ class Settings:
 def compute(estimate: xr.Dataset, heights: xr.Dataset, settings: Settings) -> xr.Dataset:
     """Fit or table of the measured spectrum up to its cut-off, and the spectrum of the Gaussian field.
 
-    ASSUME: with ``cut`` there is no roughness that the scans do not resolve, as in the identification from summits.
+    ASSUME: with ``cut`` there is no roughness that the scans do not show, as in the identification from summits.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def compute(estimate: xr.Dataset, heights: xr.Dataset, settings: Settings) -> xr
         If strips are not longer than the correlation length, or no Gaussian field has these heights and this spectrum.
     """
     use, source = settings.use, f"from {', '.join(stage_estimate.files(estimate))}"
-    cutoff, clipped = cutoff_and_clipping(stage_estimate.reach(estimate).nyquist, settings)
+    cutoff, clipped = cutoff_and_clipping(stage_estimate.reach(estimate).end, settings)
     if clipped:
         warnings.warn(f"surface {use.surface}: {clipped}", stacklevel=2)
     try:
@@ -53,17 +53,22 @@ def compute(estimate: xr.Dataset, heights: xr.Dataset, settings: Settings) -> xr
     return found.assign(flags=((), clipped))
 
 
-def cutoff_and_clipping(nyquist: float, settings: Settings) -> tuple[float, str]:
+def cutoff_and_clipping(end: float, settings: Settings) -> tuple[float, str]:
     """Cut-off [rad m⁻¹], and a sentence if the grid cuts the measured spectrum off; empty if it does not.
 
     Parameters
     ----------
-    nyquist : float
-        Of the scans [rad m⁻¹].
+    end : float
+        Of the measured spectrum, the Nyquist number of the scans at most [rad m⁻¹].
     settings : Settings
     """
     grid = np.pi / settings.spacing
-    if nyquist <= grid:
-        return (nyquist if settings.beyond == "cut" else grid), ""
-    shown = f"{1e-6 * grid:.4g} rad/µm, below that of the scans, {1e-6 * nyquist:.4g} rad/µm"
+    if end <= grid:
+        return (end if settings.beyond == "cut" else grid), ""
+    shown = f"{1e-6 * grid:.4g} rad/µm, before that of the scans, {1e-6 * end:.4g} rad/µm"
     return grid, f"the spectrum ends at the Nyquist number of the grid, {shown}; a finer sampling.spacing_nm keeps more"
+
+
+def flags(spectrum: xr.Dataset) -> tuple[str, ...]:
+    """Sentences on what the spectrum leaves out of the measured one."""
+    return tuple(str(spectrum["flags"].item()).splitlines())

@@ -9,6 +9,7 @@ import xarray as xr
 from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.measured import estimate as stage_estimate
 from stiction.measured import scan as stage_scan
+from stiction.measured import spectrum as stage_spectrum
 from stiction.models import CHOICES
 from stiction.report.format import NM, UM, number, with_error
 from stiction.report.tables import Table
@@ -18,22 +19,36 @@ from stiction.studies.scan_uncertainty import GOAL
 _PARTS = {"rms": "rms", "shape": "skewness and kurtosis", "spectrum": "spectrum", "total": "total"}
 
 
-def scans(estimates: Mapping[str, xr.Dataset], maps: Mapping[str, Sequence[xr.Dataset]]) -> Table:
+def scans(
+    estimates: Mapping[str, xr.Dataset],
+    spectra: Mapping[str, xr.Dataset],
+    maps: Mapping[str, Sequence[xr.Dataset]],
+) -> Table:
     """Scans of the measured surfaces, one row per file.
 
     Parameters
     ----------
-    estimates : dict
-        Surface to its dataset of stage estimate.
+    estimates, spectra : dict
+        Surface to its datasets of stages estimate and spectrum.
     maps : dict
         Surface to the datasets of stage scan of its files, in the order of the configuration.
     """
-    frame = pd.DataFrame([row for name, estimate in estimates.items() for row in _scans(name, estimate, maps[name])])
+    limits = {
+        name: [*stage_estimate.flags(estimate), *stage_spectrum.flags(spectra[name])]
+        for name, estimate in estimates.items()
+    }
+    frame = pd.DataFrame(
+        [
+            row | {"flags": "; ".join(limits[name])}
+            for name, estimate in estimates.items()
+            for row in _scans(name, estimate, maps[name])
+        ]
+    )
     caption = (
         "Scans of the measured surfaces: moments of the levelled heights of each file, ± standard error of one scan of "
         "its size. The moments of a surface are in Table I, without the bias of levelling."
     )
-    flags = [f"- {name}: {flag}" for name, estimate in estimates.items() for flag in stage_estimate.flags(estimate)]
+    flags = [f"- {name}: {flag}" for name, found in limits.items() for flag in found]
     return Table(
         frame,
         "\n".join([caption, *([""] if flags else []), *flags]),
@@ -44,7 +59,6 @@ def scans(estimates: Mapping[str, xr.Dataset], maps: Mapping[str, Sequence[xr.Da
 def _scans(name, estimate, maps):
     """Rows of one surface."""
     errors = np.sqrt(np.diag(estimate.covariance) * len(maps))
-    flags = "; ".join(stage_estimate.flags(estimate))
     for dataset, moments in zip(maps, estimate.scan_moments.values, strict=True):
         scan = stage_scan.scan_of(dataset)
         rms = np.exp(moments[0]) / NM
@@ -53,7 +67,7 @@ def _scans(name, estimate, maps):
         row |= {f"points_{axis}": n for axis, n in zip(("fast", "slow"), scan.heights.shape, strict=True)}
         row |= {"undefined_percent": 100 * scan.undefined_share, "rms_nm": rms, "rms_se_nm": rms * errors[0]}
         row |= {"skewness": moments[1], "skewness_se": errors[1], "kurtosis": moments[2], "kurtosis_se": errors[2]}
-        yield row | {"flags": flags}
+        yield row
 
 
 def _cells_scan(row):
@@ -83,12 +97,12 @@ def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
     ]
     frame = pd.DataFrame(rows)
     caption = (
-        "Relative standard error of the mean adhesion energy ē due to the finite scans of measured surfaces, by what the "
-        "scans measure (skewness and kurtosis with their correlation), and of the mean crack length l_s; the total ± its "
-        "standard error by sampling. Needed: scans of each surface, the fewest in all, with which the error of ē is below "
-        f"{100 * GOAL:g} %. Last columns: change of ē if the measured surfaces had the other value of that key, ± standard "
-        "error by sampling and, for heights, by the scans, which measure the shape of the height density less precisely "
-        "than the moments."
+        "Relative standard error of the mean adhesion energy ē due to the finite scans of measured surfaces, by what "
+        "the scans measure (skewness and kurtosis with their correlation), and of the mean crack length l_s; the total "
+        "± its standard error by sampling. Needed: scans of each surface, the fewest in all, with which the error of ē "
+        f"is below {100 * GOAL:g} %. Last columns: change of ē if the measured surfaces had the other value of that "
+        "key, ± standard error by sampling and, for heights, by the scans, which measure the shape of the height "
+        "density less precisely than the moments."
     )
     return Table(frame, caption, pd.DataFrame([_cells(row) for row in frame.to_dict("records")]))
 

@@ -3,11 +3,12 @@
 The scans of a surface have equal numbers of points and equal size.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy import stats
 
 from stiction.errors import NotConverged, ScanError
 from stiction.estimates import jackknife
@@ -33,7 +34,7 @@ from stiction.scans.quantiles import (
     quantiles,
 )
 from stiction.scans.scan import Frame, Scan
-from stiction.scans.whittle import Reach, WhittleFit, fit, reach, tabulated, tip_reach
+from stiction.scans.whittle import Reach, WhittleFit, fit_to_the_end, reach, tabulated, tip_reach
 from stiction.streams import stream
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import LARGEST_DISTANCE_OF_SCANS
@@ -46,13 +47,16 @@ FEWEST_WAVELENGTHS, ENOUGH_WAVELENGTHS = 4, 10
 _SAME_SIZE = 0.01
 #: Number of times that the bias of levelling is estimated: the second time on the surface without the first bias.
 _ROUNDS = 2
-#: Fewest model scans of a round, unless others are given.
-_MODEL_SCANS = 24
+#: Fewest model scans of a round per scan: the error of the bias is small beside that of the scans.
+_PER_SCAN = 8
 #: Heights farther apart than this number of wavelengths of the corner are not correlated.
 _CORRELATED = 2
-#: Limits of the flags: error by tiles over that of the closed form, χ² per degree of freedom, sector ratio, p, and step
-#: between lines over step along them.
-_TILES, _MISFIT, _ANISOTROPY, _UNLIKELY, _JUMP = 2.0, 3.0, 1.5, 0.01, 2.0
+#: Limits of the flags: error by tiles over that of the closed form, χ² per degree of freedom, sector ratio, p, step
+#: between lines over step along them, and difference of the summits in standard errors.
+_TILES, _MISFIT, _ANISOTROPY, _UNLIKELY, _JUMP, _SUMMITS = 2.0, 2.0, 1.5, 0.01, 2.0, 4.0
+#: Difference of the largest and the smallest of 8 normal values that is exceeded with the probability 0.01, in standard
+#: deviations (studentized range).
+_RANGE_OF_SECTORS = 4.99
 
 
 @dataclass(frozen=True)
@@ -89,6 +93,16 @@ class Inspection:
         """Moments (ln rms, skewness, kurtosis) of all scans together, (3,)."""
         return moments(self.powers.mean(axis=0))
 
+    @cached_property
+    def quantiles(self) -> np.ndarray:
+        """Standardised heights of all scans together at `stiction.scans.quantiles.SCORES`, (49,) [-]."""
+        return quantiles(self.levelled)
+
+    @property
+    def spectrum(self) -> CutoffSelfAffine:
+        """Fit, up to the end of the measured spectrum."""
+        return self.fit.spectrum(self.reach.end)
+
     @property
     def wavelengths(self) -> float:
         """Wavelengths of the corner along the shorter side [-]."""
@@ -97,8 +111,7 @@ class Inspection:
     @property
     def areas(self) -> float:
         """Correlation areas of all scans [-]."""
-        spectrum = self.fit.spectrum(self.reach.nyquist)
-        return correlation_areas(spectrum, np.exp(2 * self.moments[0]), self.frame.area * len(self.names))
+        return correlation_areas(self.spectrum, np.exp(2 * self.moments[0]), self.frame.area * len(self.names))
 
 
 def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
@@ -122,7 +135,7 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
     within = reach(frame.size, frame.pixel, settings.shortest, tip)
     rings = spectra.rings(spectrum)
     try:
-        fitted = fit(rings, within)
+        fitted, within = fit_to_the_end(rings, within)
     except ValueError as reason:
         raise ScanError(", ".join(names), "files", f"cannot give a spectrum: {reason}") from None
     found = Inspection(names, frame, settings, levelled, spectrum, rings, within, fitted)
@@ -152,16 +165,17 @@ class SurfaceEstimate:
 
     inspection: Inspection
     moments: np.ndarray  #: without the bias of levelling and finite size, (3,)
-    covariance: np.ndarray  #: of the moments, (3, 3)
+    covariance: np.ndarray  #: of the moments, by the finite scans and the finite number of model scans, (3, 3)
     tile_errors: np.ndarray  #: standard errors of the moments from the scatter of tiles, (3,)
     homogeneity: tuple[np.ndarray, np.ndarray]  #: χ² of the scatter between scans and p, (3,) each
     model: SurfaceModel  #: surface of which the model scans were drawn
     feasible: Feasible | None  #: maximum-entropy density of the model, ``None`` if it has the measured density
-    quantiles: np.ndarray  #: at `stiction.scans.quantiles.SCORES`, (49,) [-]
+    quantiles: np.ndarray  #: at `stiction.scans.quantiles.SCORES`, without the bias of levelling, (49,) [-]
     quantile_errors: np.ndarray  #: (49,) [-]
     goodness: tuple[float, float]  #: χ² of the quantiles against the four-moment density, and p; ``nan`` without it
     sectors: np.ndarray  #: mean of the spectrum in directions relative to that in all, (8,) [-]
-    summits: np.ndarray  #: radius [m] and density [m⁻²], (2,); ``nan`` if pixels are not square
+    sector_errors: np.ndarray  #: (8,) [-]
+    summits: np.ndarray  #: radius [m] and density [m⁻²], (2,); ``nan`` without summits or square pixels
     summit_errors: np.ndarray  #: (2,)
     model_summits: np.ndarray  #: of the model scans, (2,)
     model_summit_errors: np.ndarray  #: scatter between model scans, (2,)
@@ -200,52 +214,56 @@ class SurfaceEstimate:
 
 
 def estimate(
-    scans: Sequence[Scan],
-    settings: Settings | None = None,
-    rngs: Callable[[int], Iterable[np.random.Generator]] | None = None,
+    scans: Sequence[Scan], seed: int, settings: Settings | None = None, surface: str = "", model_scans: int = 24
 ) -> SurfaceEstimate:
     """Estimate a surface from its scans.
 
     Parameters
     ----------
     scans : sequence of Scan
+    seed : int
+        Of the random numbers of the model scans.
     settings : Settings, optional
-    rngs : callable, optional
-        Returns the streams of the model scans of round 0 or 1, one per model scan; in each round at least 8 and as many
-        as scans.
+    surface : str
+        Its name, part of the addresses of these numbers.
+    model_scans : int
+        Model scans of a round, more if there are many scans.
 
     Raises
     ------
     ScanError
         If the scans cannot be used, or no surface has their heights and spectrum.
     """
-    settings, rngs = settings or Settings(), rngs or _streams(len(scans))
+    settings = settings or Settings()
     found = inspect(scans, settings)
-    measured = quantiles(found.levelled)
-    values = found.moments
-    model, nearest = _model(found, values, measured)
+    values, heights = found.moments, found.quantiles
+    model, nearest = _model(found, values, heights)
     # The verdict on the scans as they are is final: moments that are accepted before a run are not refused in it.
     largest = LARGEST_DISTANCE_OF_SCANS if nearest is None else np.inf
     residuals = []
     for number in range(_ROUNDS):
-        drawn = draw_model_scans(model, settings.levelling, rngs(number))
+        rngs = (stream(seed, "estimate", surface, number, k) for k in range(max(model_scans, _PER_SCAN * len(scans))))
+        drawn = draw_model_scans(model, settings.levelling, rngs)
         values = found.moments - drawn.bias(model.moments, len(scans))
+        heights = found.quantiles - drawn.levelled_off.mean(axis=0)
         residuals.append(_residual(nearest, drawn.quantiles, moments(drawn.powers)))
-        model, nearest = _model(found, values, measured, largest)
+        model, nearest = _model(found, values, heights, largest)
+    sectors, sector_errors = spectra.sectors(found.periodogram, found.rings, found.reach.low, found.reach.high)
     return SurfaceEstimate(
         inspection=found,
         moments=values,
-        covariance=model.covariance / len(scans),
+        covariance=model.covariance / len(scans) + drawn.bias_covariance,
         tile_errors=tile_errors(found.levelled, settings.tiles),
         homogeneity=homogeneity(moments(found.powers), model.covariance),
         model=model,
         feasible=nearest,
-        quantiles=measured,
+        quantiles=heights,
         quantile_errors=drawn.quantiles.std(axis=0, ddof=1) / np.sqrt(len(scans)),
-        goodness=goodness(_residual(nearest, measured, found.moments), np.vstack(residuals), len(scans)),
-        sectors=spectra.sectors(found.periodogram, found.reach.low, found.reach.high),
+        goodness=goodness(_residual(nearest, found.quantiles, found.moments), np.vstack(residuals), len(scans)),
+        sectors=sectors,
+        sector_errors=sector_errors,
         **_summits(found, drawn),
-        line_jump=max(line_jump(z) for z in found.levelled),
+        line_jump=max(line_jump(z, found.frame.pixel) for z in found.levelled),
     )
 
 
@@ -257,24 +275,18 @@ def nearest_density(found: Inspection) -> Feasible | None:
     ScanError
         If no surface has the heights and the spectrum of the scans.
     """
-    return _model(found, found.moments, quantiles(found.levelled))[1]
+    return _model(found, found.moments, found.quantiles)[1]
 
 
-def _streams(scans):
-    """Streams of 24 model scans, or as many as there are scans, by round."""
-    return lambda round_number: (stream(0, "estimate", round_number, k) for k in range(max(_MODEL_SCANS, scans)))
-
-
-def _model(found, values, measured, largest=LARGEST_DISTANCE_OF_SCANS):
-    """Surface with these moments, or with the measured density if there is none, and the maximum-entropy density."""
-    spectrum = found.fit.spectrum(found.reach.nyquist)
+def _model(found, values, heights, largest=LARGEST_DISTANCE_OF_SCANS):
+    """Surface with these moments, or with the density of these quantiles if they have none, and that of the moments."""
     correlation = _CORRELATED * 2 * np.pi / found.fit.corner
 
     def surface(density):
-        return SurfaceModel(density, spectrum, correlation, float(np.exp(values[0])), found.frame)
+        return SurfaceModel(density, found.spectrum, correlation, float(np.exp(values[0])), found.frame)
 
     try:
-        fallback = surface(measured_density(measured, found.areas))
+        fallback = surface(measured_density(heights, found.areas))
         density = feasible(*map(float, values[1:]), lambda: fallback.covariance[1:, 1:] / len(found.names), largest)
         model = fallback if density is None else surface(density.density)
         model.underlying  # noqa: B018
@@ -288,13 +300,18 @@ def _model(found, values, measured, largest=LARGEST_DISTANCE_OF_SCANS):
 def _residual(nearest: Feasible | None, quantile: np.ndarray, moment: np.ndarray):
     """Compared quantiles less those of maximum entropy with the moments (..., 3) of the same scan, (..., 5) [-].
 
-    The moments are near those of ``nearest``, so that the density is not solved for every scan; ``nan`` without it.
+    The moments are near those of ``nearest``, so that the density is not solved for every scan; ``nan`` without it, or
+    without others near it.
     """
+    unknown = np.full_like(quantile[..., COMPARED], np.nan)
     if nearest is None:
-        return np.full_like(quantile[..., COMPARED], np.nan)
+        return unknown
+    try:
+        slopes = compared_slopes(nearest.skewness, nearest.kurtosis)
+    except (ValueError, NotConverged):
+        return unknown
     shift = moment[..., 1:] - [nearest.skewness, nearest.kurtosis]
-    expected = nearest.density.quantile_of_normal(SCORES[COMPARED])
-    return quantile[..., COMPARED] - expected - shift @ compared_slopes(nearest.skewness, nearest.kurtosis)
+    return quantile[..., COMPARED] - nearest.density.quantile_of_normal(SCORES[COMPARED]) - shift @ slopes
 
 
 def _summits(found, drawn):
@@ -304,12 +321,12 @@ def _summits(found, drawn):
         summits_per_area(tile, _tile_frame(found.frame, tile)) for z in found.levelled for tile in tiles(z, count)
     ]
     values, errors = jackknife(radius_and_density, np.array(per_tile))
-    modelled = np.array([radius_and_density(row) for row in drawn.summits])
+    modelled, error = jackknife(radius_and_density, drawn.summits)
     return {
         "summits": values,
         "summit_errors": errors,
-        "model_summits": modelled.mean(axis=0),
-        "model_summit_errors": modelled.std(axis=0, ddof=1),
+        "model_summits": modelled,
+        "model_summit_errors": np.sqrt(len(drawn.summits)) * error,
     }
 
 
@@ -345,15 +362,23 @@ def _scans_differ(found):
 
 
 def _spectrum_misfits(found):
-    ratio = found.inspection.fit.chi2 / found.inspection.fit.freedom
-    if ratio > _MISFIT:
+    fit = found.inspection.fit
+    ratio = fit.chi2 / fit.freedom
+    if ratio > _MISFIT and stats.chi2.sf(fit.chi2, fit.freedom) < _UNLIKELY:
         return f"the spectrum is not of the form of Eq. (7) (chi²/dof {ratio:.2g}); psd: tabulated follows it"
+    return ""
+
+
+def _spectrum_ends(found):
+    within = found.inspection.reach
+    if within.end < within.nyquist:
+        return f"the spectrum ends near {1e-6 * within.end:.3g} rad/µm; beyond: cut ends there, too"
     return ""
 
 
 def _anisotropic(found):
     ratio = found.sectors.max() / found.sectors.min()
-    if not ratio > _ANISOTROPY:
+    if not np.log(ratio) > max(np.log(_ANISOTROPY), _RANGE_OF_SECTORS * found.sector_errors.max()):
         return ""
     width = 180 / spectra.SECTORS
     direction = (np.argmax(found.sectors) + 0.5) * width
@@ -393,8 +418,22 @@ def _lines_jump(found):
     return ""
 
 
+def _summits_differ(found):
+    # ASSUME: the spectrum of the model errs as much as the summits of its scans scatter; its rms changes all radii.
+    variance = found.summit_errors**2 + found.model_summit_errors**2 / len(found.inspection.names)
+    variance[0] += (found.errors[0] * found.summits[0]) ** 2
+    if not np.any(np.abs(found.summits - found.model_summits) > _SUMMITS * np.sqrt(variance)):
+        return ""
+    radius, density = found.summits / found.model_summits
+    reason = "noise, or short waves that the fit does not have" if radius < 1 else "the fit has too many short waves"
+    return f"summits have {radius:.2g} times the radius and {density:.2g} times the density of the model: {reason}"
+
+
 def _no_summits(found):
-    return "" if found.inspection.frame.square else "pixels are not square: summits are not compared"
+    if np.isfinite(found.summits + found.summit_errors).all():
+        return ""
+    reason = "there are too few" if found.inspection.frame.square else "pixels are not square"
+    return f"{reason}: summits are not compared"
 
 
 _FLAGS = (
@@ -402,10 +441,12 @@ _FLAGS = (
     _not_homogeneous,
     _scans_differ,
     _spectrum_misfits,
+    _spectrum_ends,
     _anisotropic,
     _moments_have_no_density,
     _moments_do_not_describe,
     _tip_rounds,
     _lines_jump,
+    _summits_differ,
     _no_summits,
 )

@@ -15,10 +15,20 @@ from stiction.surface.translation import LARGEST_SCORE, hermite_coefficients
 EDGES = np.linspace(-6, 6, 61)
 
 
-def histogram(scans: Sequence[np.ndarray]) -> np.ndarray:
-    """Density of the heights of all scans, less their mean and over their rms, in the bins of `EDGES`, (60,) [-]."""
+def histogram(scans: Sequence[np.ndarray], measured: np.ndarray, corrected: np.ndarray) -> np.ndarray:
+    """Density of the standardised heights of all scans in the bins of `EDGES`, (60,) [-].
+
+    Parameters
+    ----------
+    scans : sequence of arrays
+        Levelled heights [m].
+    measured, corrected : (49,) arrays
+        Their `stiction.scans.quantiles.quantiles`, and the same without the bias of levelling: all heights between two
+        of them move with these [-].
+    """
     z = np.concatenate([scan[np.isfinite(scan)] for scan in scans])
-    counts, _ = np.histogram((z - z.mean()) / z.std(), EDGES)
+    z = (z - z.mean()) / z.std()
+    counts, _ = np.histogram(z + np.interp(z, measured, corrected - measured), EDGES)
     return counts / len(z) / np.diff(EDGES)
 
 

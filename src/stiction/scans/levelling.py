@@ -59,20 +59,28 @@ def _legendre(points, degree):
     return np.polynomial.legendre.legvander(np.linspace(-1, 1, points), degree)
 
 
-def line_jump(heights: np.ndarray) -> tuple[float, float]:
-    """Typical step from one line to the next, and from one point of a line to the next [m].
+def line_jump(heights: np.ndarray, pixel: tuple[float, float]) -> tuple[float, float]:
+    """Typical step across the lines, and along them over about the same distance [m].
 
     Parameters
     ----------
     heights : (n1, n2) array
         Fast axis first, NaN where undefined [m].
+    pixel : (2,) tuple
+        Distances of the points; the steps are as wide as the larger one [m].
 
     Returns
     -------
     slow, fast : float
         Root mean squares of the medians of the steps across the lines and along them. Without jumps of the lines both
-        are equal on an isotropic surface with square pixels.
+        are about equal on an isotropic surface.
     """
-    return tuple(
-        float(np.sqrt(np.nanmean(np.nanmedian(np.diff(heights, axis=axis), axis=1 - axis) ** 2))) for axis in (1, 0)
-    )
+    points = [round(max(pixel) / p) for p in pixel]
+    return _typical_step(heights.T, points[1]), _typical_step(heights, points[0])
+
+
+def _typical_step(heights, points):
+    """Root mean square of the medians of the steps between rows that are this number of points apart [m]."""
+    steps = heights[points:] - heights[:-points]
+    known = steps[np.isfinite(steps).any(axis=1)]
+    return float(np.sqrt(np.mean(np.nanmedian(known, axis=1) ** 2)))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy import fft
 
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.moments import covariance, influence, moments, moments_of, overlap_integrals, powers
@@ -17,8 +18,9 @@ from stiction.surface.spectrum import Spectrum, TabulatedSpectrum
 from stiction.surface.summits import find_summits
 from stiction.surface.translation import Translation, underlying_spectrum
 
-#: Fewest and largest number of points along a side of the transforms from the heights to the underlying Gaussian field.
-_POINTS = 512, 2048
+#: Period of the transforms from the heights to the underlying Gaussian field over the correlation; least and largest
+#: number of its points.
+_PERIOD, _POINTS = 8, (512, 4096)
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class SurfaceModel:
 
     @property
     def _points(self):
-        return int(np.clip(2 * max(self.frame.shape), *_POINTS))
+        return fft.next_fast_len(int(np.clip(_PERIOD * self.correlation / min(self.frame.pixel), *_POINTS)))
 
     @cached_property
     def covariance(self) -> np.ndarray:
@@ -72,13 +74,15 @@ class SurfaceModel:
         Pixels that are not square hold the nearest point of a grid of square ones.
         """
         shape, pixel = self.frame.shape, self.frame.pixel
-        spacing = min(pixel)
-        length, width = ((n + 1) * p for n, p in zip(shape, pixel, strict=True))
-        drawn = RoughSurface(
-            self.underlying, self.translation, self.rms, StripGrid(length, width, spacing, self.correlation)
-        ).draw(rng)
-        rows, columns = (np.rint(np.arange(n) * p / spacing).astype(int) for n, p in zip(shape, pixel, strict=True))
-        return drawn[np.ix_(rows, columns)].astype(float)
+        rows, columns = (np.rint(np.arange(n) * p / min(pixel)).astype(int) for n, p in zip(shape, pixel, strict=True))
+        return self._surface.draw(rng)[np.ix_(rows, columns)].astype(float)
+
+    @cached_property
+    def _surface(self):
+        """The surface on a grid of square pixels."""
+        length, width = ((n + 1) * p for n, p in zip(self.frame.shape, self.frame.pixel, strict=True))
+        grid = StripGrid(length, width, min(self.frame.pixel), self.correlation)
+        return RoughSurface(self.underlying, self.translation, self.rms, grid)
 
 
 @dataclass(frozen=True)
@@ -88,6 +92,7 @@ class ModelScans:
     powers: np.ndarray  #: means of z … z⁴, (n, 4)
     influence: np.ndarray  #: means of the influence functions over the scans before levelling; expectation 0, (n, 3)
     quantiles: np.ndarray  #: at `stiction.scans.quantiles.SCORES`, (n, 49)
+    levelled_off: np.ndarray  #: change of the quantiles by levelling, (n, 49)
     summits: np.ndarray  #: `summits_per_area`, (n, 2)
 
     def bias(self, truth: np.ndarray, scans: int) -> np.ndarray:
@@ -101,6 +106,11 @@ class ModelScans:
         )
         return np.mean(moments(found) - expected, axis=0) - truth
 
+    @property
+    def bias_covariance(self) -> np.ndarray:
+        """Covariance of `bias` by the finite number of model scans, (3, 3)."""
+        return np.cov((moments(self.powers) - self.influence).T) / len(self.powers)
+
 
 def draw_model_scans(model: SurfaceModel, levelling: Levelling, rngs: Iterable[np.random.Generator]) -> ModelScans:
     """Draw scans of a model, one per generator, and level them."""
@@ -108,11 +118,13 @@ def draw_model_scans(model: SurfaceModel, levelling: Levelling, rngs: Iterable[n
     for rng in rngs:
         raw = model.draw(rng)
         levelled = level(raw, levelling)
+        heights = quantiles([levelled])
         rows.append(
             (
                 powers(levelled),
                 influence(powers(raw) / model.rms ** np.arange(1, 5), *model.moments[1:]),
-                quantiles([levelled]),
+                heights,
+                heights - quantiles([raw]),
                 summits_per_area(levelled, model.frame),
             )
         )
@@ -124,9 +136,9 @@ def summits_per_area(heights: np.ndarray, frame: Frame) -> np.ndarray:
     if not frame.square:
         return np.full(2, np.nan)
     _, curvature, density = find_summits(heights, frame.pixel[0])
-    return np.array([density, density * curvature.mean()])
+    return np.array([density, density * curvature.mean()]) if len(curvature) else np.zeros(2)
 
 
 def radius_and_density(per_area: np.ndarray) -> np.ndarray:
-    """Radius 1 / mean curvature [m] and density [m⁻²] of summits from `summits_per_area`, (2,)."""
-    return np.array([per_area[0] / per_area[1], per_area[0]])
+    """Radius 1 / mean curvature [m] and density [m⁻²] of summits from `summits_per_area`, (2,); ``nan`` without any."""
+    return np.array([per_area[0] / per_area[1], per_area[0]]) if per_area[1] > 0 else np.full(2, np.nan)

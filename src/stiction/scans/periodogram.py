@@ -5,7 +5,8 @@ microscope holds drift and jumps of lines; the wave numbers next to it are left 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from itertools import product
 
 import numpy as np
 from scipy import fft
@@ -17,6 +18,8 @@ _TAPERED = 0.5
 _SLOW_BAND = 3
 #: Number of sectors of 180°/8 in which the spectrum of an isotropic surface is equal.
 SECTORS = 8
+#: Values of a tapered periodogram farther apart than this number of steps along an axis are not correlated.
+_CORRELATED = 2
 
 
 @dataclass(frozen=True)
@@ -25,7 +28,13 @@ class Periodogram:
 
     power: np.ndarray  #: s_Z, (n1, n2) [m⁴]
     size: tuple[float, float]  #: of a scan [m]
-    independence: float  #: independent values per wave number: number of scans, less the correlation by the taper [-]
+    scans: int  #: number of scans
+    correlation: np.ndarray  #: by the taper, of values 0, 1, 2 steps apart along either axis, (2, 3) [-]
+
+    @property
+    def independence(self) -> float:
+        """Independent values per wave number and its opposite in means over many: 1/2, less the correlation [-]."""
+        return self.scans / 2 / np.prod(2 * self.correlation.sum(axis=1) - 1)
 
     @property
     def wavenumbers(self) -> tuple[np.ndarray, np.ndarray]:
@@ -48,16 +57,28 @@ class Rings:
     wavenumber: np.ndarray  #: mean |ζ| of each ring, (n,) [rad m⁻¹]
     density: np.ndarray  #: s_Z, (n,) [m⁴]
     modes: np.ndarray  #: effective number of independent values: relative variance of ``density`` is 1 / modes, (n,)
+    weight: np.ndarray  #: part in the independent values of many rings: neighbouring rings are correlated, too, (n,)
+
+    def between(self, low: float, high: float) -> "Rings":
+        """Rings from the wave number ``low`` to ``high`` [rad m⁻¹]."""
+        inside = (self.wavenumber >= low) & (self.wavenumber <= high)
+        return Rings(*(getattr(self, field.name)[inside] for field in fields(self)))
 
 
 def periodogram(scans: Sequence[np.ndarray], size: tuple[float, float]) -> Periodogram:
     """Mean periodogram of levelled scans (n1, n2) of equal size; undefined points are at the level."""
     n1, n2 = scans[0].shape
-    window = np.outer(*(tukey(n + 1, _TAPERED)[:n] for n in (n1, n2)))
-    square, fourth = np.mean(window**2), np.mean(window**4)
+    tapers = [tukey(n + 1, _TAPERED)[:n] for n in (n1, n2)]
+    window = np.outer(*tapers)
     power = sum(np.abs(fft.fft2(np.nan_to_num(z) * window)) ** 2 for z in scans) / len(scans)
-    scale = size[0] * size[1] / (n1 * n2) ** 2 / (square * 4 * np.pi**2)
-    return Periodogram(scale * power, size, len(scans) * square**2 / fourth)
+    scale = size[0] * size[1] / (n1 * n2) ** 2 / (np.mean(window**2) * 4 * np.pi**2)
+    return Periodogram(scale * power, size, len(scans), np.array(list(map(_correlation, tapers))))
+
+
+def _correlation(taper):
+    """Squared correlation of the waves of tapered white noise that are 0, 1, 2 steps apart, (3,) [-]."""
+    overlap = np.abs(fft.rfft(taper**2)[: _CORRELATED + 1])
+    return (overlap / overlap[0]) ** 2
 
 
 def rings(spectrum: Periodogram, inside: np.ndarray | None = None) -> Rings:
@@ -72,15 +93,36 @@ def rings(spectrum: Periodogram, inside: np.ndarray | None = None) -> Rings:
     first, second = spectrum.wavenumbers
     radius = np.hypot(first, second)
     counted = np.broadcast_to(~spectrum.near_slow_axis if inside is None else inside, radius.shape)
-    number = np.rint(radius * min(spectrum.size) / (2 * np.pi)).astype(int)[counted]
-    count = np.bincount(number)
+    number = np.where(counted, np.rint(radius * min(spectrum.size) / (2 * np.pi)).astype(np.int32), -1)
+    count = np.bincount(number[counted])
     taken = np.flatnonzero(count)
-    mean = [np.bincount(number, values[counted])[taken] / count[taken] for values in (radius, spectrum.power)]
-    return Rings(*mean, count[taken] / 2 * spectrum.independence)  # ζ and -ζ have the same value
+    mean = [np.bincount(number[counted], values[counted])[taken] / count[taken] for values in (radius, spectrum.power)]
+    modes = spectrum.scans / 2 * count**2 / np.maximum(_correlated(number, count, spectrum.correlation), 1)
+    return Rings(*mean, modes[taken], spectrum.independence * count[taken])
 
 
-def sectors(spectrum: Periodogram, low: float, high: float) -> np.ndarray:
-    """Means of the spectrum in sectors relative to the mean of each ring, (8,) [-].
+def _correlated(number, count, correlation):
+    """Sum of the squared correlations of all pairs of values in the same ring, each with itself included, (rings,).
+
+    Parameters
+    ----------
+    number : (n1, n2) int array
+        Of the ring of each value, -1 for those in none.
+    count : (rings,) int array
+        Number of values in each ring.
+    correlation : (2, 3) array
+        Of `Periodogram`.
+    """
+    total = count.astype(float)
+    for i, j in product(range(_CORRELATED + 1), range(-_CORRELATED, _CORRELATED + 1)):
+        if (i, j) > (0, 0):  # and as many pairs in the opposite direction
+            same = number[(number == np.roll(number, (i, j), (0, 1))) & (number >= 0)]
+            total += 2 * correlation[0, i] * correlation[1, abs(j)] * np.bincount(same, minlength=len(count))
+    return total
+
+
+def sectors(spectrum: Periodogram, mean: Rings, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
+    """Means of the spectrum in sectors relative to the mean of each ring, and their standard errors, (8,) each [-].
 
     Sector i holds the directions from 22.5° i to 22.5° (i + 1) against the fast axis, and the opposite ones. All are 1
     on an isotropic surface.
@@ -88,14 +130,16 @@ def sectors(spectrum: Periodogram, low: float, high: float) -> np.ndarray:
     Parameters
     ----------
     spectrum : Periodogram
+    mean : Rings
+        Its rings.
     low, high : float
         Range of |ζ| [rad m⁻¹].
     """
     first, second = spectrum.wavenumbers
     radius = np.hypot(first, second)
-    mean = rings(spectrum)
     inside = (radius >= low) & (radius <= high) & ~spectrum.near_slow_axis
     white = spectrum.power[inside] / np.interp(radius[inside], mean.wavenumber, mean.density)
     angle = np.broadcast_to(np.arctan2(second, first), radius.shape)[inside] % np.pi
     sector = (angle * SECTORS / np.pi).astype(int) % SECTORS
-    return np.bincount(sector, white, SECTORS) / np.bincount(sector, minlength=SECTORS)
+    count = np.bincount(sector, minlength=SECTORS)
+    return np.bincount(sector, white, SECTORS) / count, 1 / np.sqrt(spectrum.independence * count)

@@ -104,18 +104,21 @@ def feasible(
 def compared_slopes(skewness: float, kurtosis: float) -> np.ndarray:
     """Slopes of the compared quantiles of maximum entropy with skewness and kurtosis, (2, 5) [-].
 
-    The differences are taken at a slightly smaller kurtosis, where a density exists on both sides.
+    The differences are taken at a slightly smaller kurtosis and towards a larger |skewness|, where a density exists.
+
+    Raises
+    ------
+    ValueError, NotConverged
+        If there is none nevertheless.
     """
-    base = kurtosis - _STEP
+    base, step = kurtosis - _STEP, np.copysign(_STEP / 2, skewness)
 
     def compared(s, k):
         return maxent.solve(s, k).quantile_of_normal(SCORES[COMPARED])
 
     centre = compared(skewness, base)
-    return (
-        np.array([(compared(skewness + _STEP / 2, base) - centre) * 2, centre - compared(skewness, base - _STEP)])
-        / _STEP
-    )
+    of_skewness = (compared(skewness + step, base) - centre) / step
+    return np.array([of_skewness, (centre - compared(skewness, base - _STEP)) / _STEP])
 
 
 def goodness(residual: np.ndarray, model_residuals: np.ndarray, scans: int) -> tuple[float, float]:

@@ -5,7 +5,7 @@ minimises :math:`\sum n (\ln s_Z + P / s_Z)`.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import minimize
@@ -21,6 +21,8 @@ _SHORTEST_WAVE = 4
 _TIP_SAFETY = 0.5
 #: ASSUME: the errors of rings on non-Gaussian heights exceed those of Gaussian ones by the scatter of drawn scans.
 _NON_GAUSSIAN = 1.15
+#: A spectrum has ended where it is below this share of the fit in all further rings, and the fewest of these.
+_ENDED, _RINGS_BEYOND = 0.5, 4
 #: Starting points of the search: corners per decade of the range, and exponents of the power law.
 _CORNERS, _SLOPES = 12, -np.geomspace(0.5, 12, 16)
 #: Steepest and flattest exponent of the search.
@@ -36,6 +38,7 @@ class Reach:
     high: float  #: [rad m⁻¹]
     nyquist: float  #: of the wider distance of points [rad m⁻¹]
     tip: float  #: wave number beyond which the tip rounds the surface; infinite if it does not [rad m⁻¹]
+    end: float  #: wave number beyond which the scan shows no roughness, the Nyquist number at most [rad m⁻¹]
 
 
 def reach(
@@ -54,7 +57,7 @@ def reach(
     """
     nyquist = np.pi / max(pixel)
     high = 2 * np.pi / (_SHORTEST_WAVE * max(pixel) if shortest is None else shortest)
-    return Reach(2 * np.pi / (_LONGEST_WAVE * min(size)), min(high, nyquist, tip), nyquist, tip)
+    return Reach(2 * np.pi / (_LONGEST_WAVE * min(size)), min(high, nyquist, tip), nyquist, tip, nyquist)
 
 
 def tip_reach(scans: Sequence[np.ndarray], pixel: float, radius: float) -> float:
@@ -103,22 +106,48 @@ class WhittleFit:
         return CutoffSelfAffine(self.plateau, self.plateau * (cutoff / self.corner) ** self.slope, self.corner, cutoff)
 
 
+def fit_to_the_end(rings: Rings, within: Reach) -> tuple[WhittleFit, Reach]:
+    """`fit` up to the end of the measured spectrum at most, and the reach with that end.
+
+    Aliases and noise raise a spectrum, so that a drop is real: the surface, or what tip and instrument leave of it, has
+    no shorter waves.
+    """
+    while True:
+        found = fit(rings, within)
+        end = _end(rings, within, found)
+        if end >= within.high:
+            return found, replace(within, end=end)
+        within = replace(within, high=end)
+
+
+def _end(rings, within, found):
+    """Wave number beyond which all rings are below half of the fit, the Nyquist number if there is none [rad m⁻¹]."""
+    known = rings.between(within.low, within.nyquist)
+    last = np.flatnonzero(known.density >= _ENDED * found.spectrum(within.nyquist)(known.wavenumber))[-1]
+    if len(known.wavenumber) - 1 - last < _RINGS_BEYOND:
+        return within.nyquist
+    return float(known.wavenumber[last : last + 2].mean())
+
+
 def fit(rings: Rings, within: Reach) -> WhittleFit:
     """Fit plateau, corner and slope of Eq. (7) to the rings within the reach.
+
+    Where Eq. (7) misfits, the covariance grows by χ² per degree of freedom.
 
     Raises
     ------
     ValueError
         If fewer than 8 rings are within the reach.
     """
-    wavenumber, density, modes = _within(rings, within)
+    known = rings.between(within.low, within.high)
+    wavenumber, density, weight = known.wavenumber, known.density, known.weight
     if len(wavenumber) < 8:
         raise ValueError(f"8 rings are needed within the reach of the scan, there are {len(wavenumber)}")
 
     def objective(parameters):
         shape = _shape(wavenumber, *parameters)
-        plateau = np.average(density / shape, weights=modes)
-        return np.log(plateau) + np.average(np.log(shape), weights=modes)  # P / s is 1 on average at its optimum
+        plateau = np.average(density / shape, weights=weight)
+        return np.log(plateau) + np.average(np.log(shape), weights=weight)  # P / s is 1 on average at its optimum
 
     decades = np.log10(wavenumber[-1] / wavenumber[0])
     corners = np.linspace(*np.log(wavenumber[[0, -1]]), int(_CORNERS * decades) + 3)[:-1]
@@ -128,22 +157,10 @@ def fit(rings: Rings, within: Reach) -> WhittleFit:
         objective, start, method="Nelder-Mead", bounds=bounds, options={"xatol": 1e-5, "fatol": 1e-10}
     ).x
     shape = _shape(wavenumber, corner, slope)
-    plateau = np.average(density / shape, weights=modes)
-    chi2 = np.sum(modes * (density / (plateau * shape) - 1) ** 2)
-    return WhittleFit(
-        float(plateau),
-        float(np.exp(corner)),
-        float(slope),
-        _covariance(wavenumber, modes, corner, slope),
-        float(chi2),
-        len(wavenumber) - 3,
-    )
-
-
-def _within(rings, within):
-    """Wave number, density and modes of the rings within the reach."""
-    inside = (rings.wavenumber >= within.low) & (rings.wavenumber <= within.high)
-    return rings.wavenumber[inside], rings.density[inside], rings.modes[inside]
+    plateau = np.average(density / shape, weights=weight)
+    chi2, freedom = float(np.sum(known.modes * (density / (plateau * shape) - 1) ** 2)), len(wavenumber) - 3
+    covariance = max(chi2 / freedom, 1.0) * _covariance(wavenumber, weight, corner, slope)
+    return WhittleFit(float(plateau), float(np.exp(corner)), float(slope), covariance, chi2, freedom)
 
 
 def _shape(wavenumber, log_corner, slope):
@@ -151,12 +168,12 @@ def _shape(wavenumber, log_corner, slope):
     return np.maximum(wavenumber / np.exp(log_corner), 1.0) ** slope
 
 
-def _covariance(wavenumber, modes, log_corner, slope):
+def _covariance(wavenumber, weight, log_corner, slope):
     """Inverse of Fisher's information for (ln plateau, ln corner, slope), (3, 3)."""
     decay = np.log(wavenumber) - log_corner
     gradient = np.where(decay > 0, [np.ones_like(decay), np.full_like(decay, -slope), decay], 0.0)
     gradient[0] = 1.0
-    return _NON_GAUSSIAN**2 * np.linalg.pinv(gradient * modes @ gradient.T, hermitian=True)
+    return _NON_GAUSSIAN**2 * np.linalg.pinv(gradient * weight @ gradient.T, hermitian=True)
 
 
 def tabulated(rings: Rings, within: Reach, slope: float, cutoff: float) -> TabulatedSpectrum:
@@ -174,8 +191,8 @@ def tabulated(rings: Rings, within: Reach, slope: float, cutoff: float) -> Tabul
     cutoff : float
         [rad m⁻¹]
     """
-    known, density, _ = _within(rings, within)
-    wavenumber = np.linspace(0, cutoff, _POINTS)
-    inner = np.interp(np.log(np.maximum(wavenumber, known[0])), np.log(known), np.log(density))
+    inside = rings.between(within.low, within.high)
+    known, wavenumber = inside.wavenumber, np.linspace(0, cutoff, _POINTS)
+    inner = np.interp(np.log(np.maximum(wavenumber, known[0])), np.log(known), np.log(inside.density))
     beyond = slope * np.log(np.maximum(wavenumber / known[-1], 1.0))
     return TabulatedSpectrum(wavenumber, np.exp(inner + beyond), cutoff)
