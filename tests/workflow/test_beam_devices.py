@@ -4,7 +4,7 @@ import csv
 
 import pytest
 from conftest import snakemake
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.config.files import load
 from stiction.device import Device
@@ -45,9 +45,22 @@ def test_a_run_gives_table_figures_and_warnings(finished):
         ("R1", "beam", "0.001"),
     ]
     assert all(float(row["safe_length_um"]) < float(row["estimate_um"]) for row in rows)
-    assert "Not in the model" in (results / "warnings.md").read_text()
+    assert "Not in the model" in (results / "devices" / "warnings.md").read_text()
+    assert not (results / "warnings.md").exists()  # of the pairs that run
     for name in ("risk", "chart"):
         assert (results / "figures" / f"{name}.pdf").stat().st_size > 5000
+
+
+@pytest.mark.slow
+def test_the_table_of_a_chart_has_the_numbers_of_its_datasets(finished):
+    results = finished[0] / "results"
+    with (results / "tables" / "chart.csv").open() as file:
+        rows = [row for row in csv.DictReader(file) if row["relative_humidity"] == "0.92"]
+    chart = storage.load(results / "devices" / "chart" / "C1_rh092.nc", "chart")
+    assert [(row["held_by"], row["share"], row["from"]) for row in rows] == [
+        (held, share, "finite elements") for held in ("beam", "beam or tip") for share in ("0.01", "0.001")
+    ]
+    assert_allclose([float(row["safe_length_um"]) for row in rows], 1e6 * chart.safe_length.values.ravel(), rtol=1e-9)
 
 
 @pytest.mark.slow

@@ -60,8 +60,16 @@ def run(shared):
 def test_every_device_has_a_page_and_every_table_and_figure_is_there(run):
     results = run / "results"
     assert {path.stem for path in (results / "devices").glob("*.html")} == {"C1", "R1", "S1"}
-    assert {path.stem for path in (results / "tables").glob("*.html")} == {"safe_lengths", "stoppers", "budget"}
+    tables = {"safe_lengths", "chart", "stoppers", "budget"}
+    assert {path.stem for path in (results / "tables").glob("*.html")} == tables
     assert {path.stem for path in (results / "figures").glob("*.png")} == {"risk", "chart", "stoppers", "budget"}
+
+
+def test_warnings_of_all_devices_are_listed_and_the_plasticity_of_their_pair_is_checked(run):
+    text = (run / "results" / "devices" / "warnings.md").read_text(encoding="utf-8")
+    assert "R1, RH 0.67, held by the beam: The gap is 1 times the thickness" in text
+    assert "was not checked" not in text
+    assert "Not in the model" in text
 
 
 def test_the_library_gives_the_same_forces_and_budget_as_the_workflow(run):

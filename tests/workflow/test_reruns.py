@@ -103,10 +103,10 @@ MATRIX = [
      "contact_chunk beams mesh resampling sensitivity_contact plasticity variant_contact variant checks device_contact "
      "tip_contact cracks safe_lengths chart", (), "variants/summits"),
     ("grid of surfaces", "sampling: {spacing_nm: 5}", "identification spectrum variant_summits", (), "heights"),
-    ("length of strips", "sampling: {strip_length_um: 2.5}",
+    ("length of strips", "sampling: {strip_length_um: 2.5}\ndevices: {R1: {thickness_um: 3}}",
      "character contact_chunk beams resampling sensitivity_contact plasticity variant_summits checks device_contact "
-     "tip_contact cracks safe_lengths chart", (),
-     "heights|identification|spectrum"),
+     "cracks safe_lengths chart", (),
+     "heights|identification|spectrum|tips"),
     ("strips of Table I", "character: {strips: 50}", "character", (), "contact|forces"),
     ("spacing of Table I", "character: {spacing_nm: 10}", "identification character", (), "results/contact|forces"),
     ("patches of identification", "identification: {patches: 4}", "identification", (), "spectrum|_base"),
