@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -20,8 +21,13 @@ from scipy import fft  # noqa: E402
 from stiction.beam.montecarlo import Experiment, simulate  # noqa: E402
 from stiction.chaos import model as chaos  # noqa: E402
 from stiction.config import files  # noqa: E402
+from stiction.scans.estimate import estimate  # noqa: E402
+from stiction.scans.levelling import Levelling  # noqa: E402
+from stiction.scans.model_scans import draw_model_scans  # noqa: E402
+from stiction.scans.scan import Scan  # noqa: E402
 from stiction.streams import stream  # noqa: E402
 from stiction.study import PairStudy  # noqa: E402
+from stiction.surface.field import StripGrid  # noqa: E402
 from stiction.surface.normals import standard_normal  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
@@ -90,6 +96,21 @@ def law_rows():
         yield f"one beam, {model.dimension} coordinates", f"{10 * (time.perf_counter() - start):.1f} ms", "15 ms"
 
 
+def scan_rows():
+    """Estimate of one scan of 512² points, and its model scans alone."""
+    points, pixel = 512, 20e-9
+    surface = PairStudy.of(CONFIG, "b").surfaces.beam
+    side = points * pixel
+    drawn = replace(surface, grid=StripGrid(side, side, surface.grid.spacing, 1e-6)).draw(stream(6))
+    every = round(pixel / surface.grid.spacing)
+    scan = Scan(drawn[::every, ::every].astype(float), (side, side))
+    seconds = timed(lambda k: estimate([scan], k), 3)
+    yield f"estimate of one scan of {points}² points", f"{seconds:.1f} s", "5 s"
+    model = estimate([scan], 1).model
+    seconds = timed(lambda k: draw_model_scans(model, Levelling(), (stream(k, n) for n in range(24))), 3)
+    yield f"24 model scans of {points}² points", f"{seconds:.1f} s", "10 s"
+
+
 def dry_run_row():
     """Planning the whole paper."""
     with tempfile.TemporaryDirectory() as folder:
@@ -107,7 +128,7 @@ def main():
     model = next((line.split(":")[1].strip() for line in cpu if line.startswith("model name")), "?")
     print(f"{model}, {os.cpu_count()} cores, Python {platform.python_version()}, one core used\n")  # noqa: T201
     print("| stage | measured | wanted at most |\n|---|---|---|")  # noqa: T201
-    for rows in (contact_rows, law_rows, dry_run_row):
+    for rows in (contact_rows, law_rows, scan_rows, dry_run_row):
         for row in rows():
             print("| " + " | ".join(row) + " |", flush=True)  # noqa: T201
     print(f"\npeak memory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")  # noqa: T201
