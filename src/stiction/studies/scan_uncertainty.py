@@ -4,7 +4,8 @@ To first order ln ē differs from the truth by its slopes times the errors of th
 g C g with the covariance C of the estimate. The errors of skewness and kurtosis of a scan largely compensate: without
 their correlation the result would be three times too large.
 
-ASSUME: the errors of moments and spectrum are independent, and the form of measured heights errs in its modes alone.
+ASSUME: the errors of moments and spectrum are independent, and so are those of the slopes. The form of measured heights
+errs in its modes alone.
 """
 
 from collections.abc import Mapping, Sequence
