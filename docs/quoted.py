@@ -206,6 +206,7 @@ def nearly_gaussian():
         f"kurtosis_{skewness:02.0f}": f"{feasible.largest_kurtosis(skewness / 10):.2f}" for skewness in (0, 1, 3, 5, 10)
     }
     found |= {"scan_heights": str(feasible.SAMPLE), "farthest": f"{feasible.LARGEST_DISTANCE:.2f}"}
+    found |= {"farthest_scans": f"{feasible.LARGEST_DISTANCE_OF_SCANS:.2f}"}
     found |= {f"error_of_{name}": f"{error:.2g}" for name, error in zip(("skewness", "kurtosis"), errors, strict=True)}
     for k, measured in enumerate(NEARLY_GAUSSIAN, 1):
         used = feasible.nearest_feasible(*measured)

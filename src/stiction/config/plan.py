@@ -117,7 +117,7 @@ class Plan:
         return [pair for pair in self.pairs if self.scanned_sides(pair)]
 
     def quantities(self, surface: str) -> tuple[str, ...]:
-        """Quantities of a surface for its slopes, see `stiction.analysis.shifts`: of scans, those of both `heights`."""
+        """Quantities of a surface that have slopes, see `stiction.analysis.shifts`; those of scans include modes."""
         modes = OF_MEASURED[1:] if surface in self.scanned else ()
         return tuple(dict.fromkeys((*quantities(self.config["surfaces"][surface]), *modes)))
 

@@ -4,7 +4,8 @@ To first order the error of ln ē is the product of its slopes and the errors of
 g C g with the covariance C of the estimate. The errors of skewness and kurtosis of a scan largely compensate: without
 their correlation the result would be three times too large.
 
-ASSUME: the errors of moments and spectrum are independent, and the form of measured heights errs in its modes alone.
+ASSUME: the errors of moments and spectrum are independent, and so are those of the slopes. The form of measured heights
+errs in its modes alone.
 """
 
 from collections.abc import Mapping, Sequence
