@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from test_tables_budget import BUDGETS, STOPPERS, budget_dataset, stopper_dataset
+from test_tables_budget import BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_dataset
 
 from stiction.designs import cracks, pages, safe_lengths
 from stiction.designs.pages import Page, Section
@@ -37,7 +37,7 @@ def safe(kind="cantilever", longest=600e-6):
 
 @pytest.fixture(scope="module")
 def stopper():
-    budgets = {0.67: BUDGETS["S1", 0.67]}
+    budgets = {(0.67,): BUDGETS["S1", 0.67]}
     return pages.of_stopper("S1", STOPPER, STOPPERS["S1"], budgets, ["Too hot."]).html
 
 
@@ -83,10 +83,14 @@ def test_a_beam_without_chart_and_budget_has_neither():
     assert "How sure" not in plain
     assert "Other thicknesses" not in plain
     assert plain.count("<img") == 1
-    budgets = {0.44: budget_dataset(2.0), 0.67: budget_dataset()}
+    budgets = {(0.44,): budget_dataset(2.0), (0.67,): budget_dataset(), (0.67, "tip"): budget_dataset(0.5, TIPS)}
     both = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, budgets, []).html
     assert both.count("<img") == 2
     assert all(f"RH {humidity}: effect [%]" in both for humidity in (0.44, 0.67))
+    assert both.count("Counted as exact: ") == 1
+    assert "1 in 1000 tips hold (arc) would fall" in both
+    rows = re.findall(r"<td>(beam|tip)</td>\s*<td>thickness</td>", both)
+    assert rows == ["beam", "tip"]
 
 
 def test_text_is_escaped():

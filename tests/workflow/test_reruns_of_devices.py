@@ -20,8 +20,10 @@ devices:
 """
 #: Rules of this test, and the rules that read their outputs, listed by hand.
 READ_BY = {
-    "heights": "identification spectrum contact_chunk device_contact slope_contact modulus_contact budget",
-    "spectrum": "contact_chunk device_contact slope_contact modulus_contact budget",
+    "heights": "identification spectrum contact_chunk device_contact slope_contact modulus_contact budget tip_contact "
+    "tip_slope_contact tip_choice_contact tip_budget",
+    "spectrum": "contact_chunk device_contact slope_contact modulus_contact budget tip_contact tip_slope_contact "
+    "tip_choice_contact tip_budget",
     "identification": "device_choice_summits",
     "contact_chunk": "contact",
     "contact": "budget",
@@ -31,8 +33,12 @@ READ_BY = {
     "modulus_contact": "budget",
     "device_choice_summits": "device_choice_contact",
     "device_choice_contact": "budget",
+    "tip_contact": "tip_budget",
+    "tip_slope_contact": "tip_budget",
+    "tip_choice_contact": "tip_budget",
     "stoppers": "table_stoppers figure_stoppers device_page",
     "budget": "table_budget figure_budget device_page",
+    "tip_budget": "table_budget figure_budget device_page",
 }
 RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())
 COMPUTING = set(READ_BY)
@@ -40,26 +46,30 @@ COMPUTING = set(READ_BY)
 #: Description of a change; overlay; rules that it affects directly; pattern of files that must not rerun.
 MATRIX = [
     ("restoring force", "devices: {S1: {restoring_force_uN: 30}}", "stoppers", "C1|budget"),
-    ("uncertainty of a dimension", "devices: {C1: {uncertainty: {gap_um: 0.5}}}", "budget", "S1|contact"),
-    ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget", "S1|contact"),
+    ("uncertainty of a dimension", "devices: {C1: {uncertainty: {gap_um: 0.5}}}", "budget tip_budget", "S1|contact"),
+    ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget tip_budget", "S1|contact"),
     ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget",
      "C1|slopes/contact|stoppers"),
     ("one humidity of a stopper", "devices: {S1: {humidities: [0.7, 0.9]}}", "stoppers budget", "C1|contact|S1_rh070"),
     ("area of a stopper", "devices: {S1: {contact_um: [3, 2]}}", "device_contact modulus_contact device_choice_summits",
      "C1|1500x30000"),
     ("samples of slopes", "studies: {slopes: {samples: 200}}", "slope_contact modulus_contact device_choice_summits", "stoppers"),
-    ("beams of slopes", "design: {budget_beams: 100}", "budget", "S1|contact"),
+    ("beams of slopes", "design: {budget_beams: 100}", "budget", "S1|contact|tip"),
+    ("beams, each with a tip", "design: {beams: 900}", "tip_contact tip_slope_contact tip_choice_contact", "S1|budget/C1_rh070.nc"),
+    ("strips of tips", "design: {tip_um: 0.1}", "tip_contact tip_slope_contact tip_choice_contact", "S1|50x30000"),
+    ("middle share", "design: {shares: [1.0e-2]}", "tip_budget", "S1|contact|budget/C1_rh070.nc"),
     ("range of the worst humidity", "design: {worst_humidities: [0.5, 0.9]}", "stoppers", "C1|budget|contact"),
-    ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}", "device_choice_contact",
+    ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
+     "device_choice_contact tip_choice_contact",
      "none|identified|slopes|modulus|stoppers"),
-    ("water", "water: {temperature_K: 310}", "stoppers budget", "contact"),
+    ("water", "water: {temperature_K: 310}", "stoppers budget tip_budget", "contact"),
     ("skewness of a surface", "surfaces: {B2: {skewness: -0.7}}", "heights device_choice_summits", "Sub1.nc"),
     ("skewness of another surface", "surfaces: {B1: {skewness: -0.7}}", "", ""),
     ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", "slopes|modulus|choices"),
     ("chunks", "contact: {chunks: 2}", "", ""),
 ]  # fmt: skip
 #: Modules, and the rules whose datasets a new variable changes.
-LAYOUTS = {"designs/stoppers": {"stoppers"}, "designs/budget": {"budget"}}
+LAYOUTS = {"designs/stoppers": {"stoppers"}, "designs/budget": {"budget", "tip_budget"}}
 
 
 def behind(rules):

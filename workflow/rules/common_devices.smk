@@ -25,40 +25,41 @@ def ground_of(device):
 
 
 def surfaces_of_device(wildcards):
-    """Datasets of the uncertain surfaces of a device, by stage."""
-    names = dict.fromkeys(surface for surface, _ in designs.quantities(cases.pair_of(wildcards.case)))
-    return {stage: expand("results/{stage}/{name}.nc", stage=stage, name=names) for stage in ("heights", "spectrum")}
-
-
-def shifted_of(side):
-    """Contacts of the patch of a device with less or more of every uncertain quantity of its surfaces."""
-
-    def paths(wildcards):
-        device = cases.pair_of(wildcards.case)
-        pair, name = config["devices"][device]["pair"], designs.ground(device).name
-        begin = f"results/devices/contact/slopes/{name}"
-        if designs.has_strips_of_pair(device):
-            begin = f"results/studies/slopes/contact/{pair}"
-        return [f"{begin}_{surface}_{quantity}_{side}.nc" for surface, quantity in designs.quantities(device)]
-
-    return paths
-
-
-def modulus_of(wildcards):
-    """Contacts of the patch of a device with less and with more of Young's modulus, if that is uncertain."""
+    """Datasets of the uncertain surfaces of a device, by stage; estimates of those described by scans."""
     device = cases.pair_of(wildcards.case)
-    if not config["devices"][device]["uncertainty"].get("young_modulus_GPa"):
-        return []
-    return expand(
-        "results/devices/contact/modulus/{name}_{side}.nc", name=designs.ground(device).name, side=("less", "more")
+    names = dict.fromkeys(surface for surface, _ in designs.quantities(device))
+    scanned = plan.scanned_sides(config["devices"][device]["pair"])
+    return datasets_of(names) | {"estimates": [f"results/estimate/{name}.nc" for name in scanned]}
+
+
+def contacts_of_budget(wildcards):
+    """Contact of the patch of a device, with less and more of every uncertain input, and under other choices."""
+    device = cases.pair_of(wildcards.case)
+    pair, folder = config["devices"][device]["pair"], "results/devices/contact"
+    shared, name = designs.has_strips_of_pair(device), designs.ground(device).name
+    slopes = f"results/studies/slopes/contact/{pair}" if shared else f"{folder}/slopes/{name}"
+    return {"contact": ground_of(device)} | changed_contacts(device, slopes, folder, name, plan.choices(pair))
+
+
+def contacts_of_tip_budget(wildcards):
+    """As `contacts_of_budget`, of the tips of a cantilever."""
+    device, folder = cases.pair_of(wildcards.case), "results/devices/contact/tips"
+    tips = designs.tips(device)
+    found = changed_contacts(
+        device, f"{folder}/slopes/{tips.name}", folder, tips.name, plan.choices_of_solids(tips.pair)
     )
+    return {"contact": f"{folder}/{tips.name}.nc"} | found
 
 
-def choices_of(wildcards):
-    """Contacts of the patch of a device under other choices of the model."""
-    device = cases.pair_of(wildcards.case)
-    chosen = plan.choices(config["devices"][device]["pair"])
-    return [f"results/devices/contact/choices/{designs.ground(device).name}_{variant}.nc" for variant in chosen]
+def changed_contacts(device, slopes, folder, name, choices):
+    """Contacts of a patch with less and more of every uncertain input of a device, and under choices of the model."""
+    quantities = [f"{slopes}_{surface}_{quantity}" for surface, quantity in designs.quantities(device)]
+    stated = config["devices"][device].get("uncertainty", {}).get("young_modulus_GPa")
+    sides = ("less", "more")
+    return {side: [f"{start}_{side}.nc" for start in quantities] for side in sides} | {
+        "modulus": [f"{folder}/modulus/{name}_{side}.nc" for side in sides] if stated else [],
+        "choices": [f"{folder}/choices/{name}_{variant}.nc" for variant in choices],
+    }
 
 
 def summits_of_choice(wildcards):
@@ -71,12 +72,12 @@ def results_of_device(wildcards):
     """Everything that the page of a device shows."""
     name = wildcards.device
     section = config["devices"][name]
-    of_cases = [cases.case_id(name, humidity) for humidity in section["humidities"]]
-    found = {"budgets": of_cases if name in designs.budgeted else [], "charts": [], "safe_lengths": [], "stoppers": []}
+    budgets = designs.budgets(name) if name in designs.budgeted else []
+    found = {"budgets": budgets, "charts": [], "safe_lengths": [], "stoppers": []}
     if section["kind"] == "stopper":
         found["stoppers"] = [name]
     else:
-        found["safe_lengths"] = of_cases
+        found["safe_lengths"] = [cases.case_id(name, humidity) for humidity in section["humidities"]]
         found["charts"] = designs.chart_cases(name) if name in designs.charted else []
     folders = {"budgets": "budget", "charts": "chart"}
     paths = {

@@ -67,7 +67,7 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
         for (humidity, dataset), shade in zip(cases.items(), _shades(len(cases)), strict=True):
             marks = "".join(f" ({k})" for k in numbers[name, humidity])
             _shares(panel, dataset, shade)
-            named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=f"RH {humidity:g}{marks}"))
+            named.append(Line2D([], [], color=shade, linewidth=3, label=f"RH {humidity:g}{marks}"))
         panel.legend(handles=named, loc="lower right")
         shares = np.concatenate([dataset.share.values for dataset in cases.values()])
         panel.set(yscale="log", ylim=(shares.min() / 2, 1.3), xlabel="length of the device [µm]")

@@ -138,7 +138,7 @@ def of_beam(
     section: Mapping,
     found: Mapping[float, xr.Dataset],
     charts: Mapping[float, xr.Dataset],
-    budgets: Mapping[float, xr.Dataset],
+    budgets: Mapping[tuple, xr.Dataset],
     warnings: Sequence[str],
 ) -> Page:
     """Page of a cantilever or bridge.
@@ -148,8 +148,10 @@ def of_beam(
     name : str
     section : dict
         Its section of the configuration.
-    found, charts, budgets : dict
-        Humidity to the datasets of the stages safe_lengths, chart and budget; the last two may be empty.
+    found, charts : dict
+        Humidity to the datasets of the stages safe_lengths and chart; the latter may be empty.
+    budgets : dict
+        Humidity and, for tips, more to the dataset of stage budget; may be empty.
     warnings : sequence of str
         Where the model ends for this device.
     """
@@ -170,7 +172,7 @@ def of_stopper(
     name: str,
     section: Mapping,
     found: xr.Dataset,
-    budgets: Mapping[float, xr.Dataset],
+    budgets: Mapping[tuple, xr.Dataset],
     warnings: Sequence[str],
 ) -> Page:
     """Page of a stopper; parameters as in `of_beam`, with one dataset of stage stoppers."""
@@ -253,19 +255,20 @@ def worst_sentence(found: xr.Dataset) -> str:
 
 
 def _sure(name, budgets):
-    """Section on the uncertainty of the result and what to measure better; none without a stated uncertainty."""
+    """Section on the uncertainty of the result and what to measure better; none if no input is uncertain."""
     if not budgets:
         return []
-    cases = {(name, humidity): dataset for humidity, dataset in budgets.items()}
-    advice = [
-        f"Relative humidity {humidity:g}: {tables_budget.advised(dataset)}" for humidity, dataset in budgets.items()
-    ]
+    cases = {(name, *key): dataset for key, dataset in budgets.items()}
+    said = [f"Relative humidity {humidity:g}: {tables_budget.advised(one)}" for (humidity, *_), one in budgets.items()]
+    said += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
     cells, drawn = _side_by_side(tables_budget.budget(cases).cells), figures_budget.budget(cases)
-    return [Section("How sure is this, and what should be measured better?", advice, cells, drawn)]
+    return [Section("How sure is this, and what should be measured better?", said, cells, drawn)]
 
 
 def _side_by_side(cells):
     """Cells of the budget of one device with a pair of columns for every humidity."""
-    parts = [cells[humidity == cells.RH].set_index("what") for humidity in cells.RH.unique()]
-    shown = [part[["effect [%]", "remaining [%]"]].add_prefix(f"RH {part.RH.iloc[0]}: ") for part in parts]
+    shown = [
+        part.set_index(["held by", "what"])[["effect [%]", "remaining [%]"]].add_prefix(f"RH {humidity}: ")
+        for humidity, part in cells.groupby("RH", sort=False)
+    ]
     return pd.concat(shown, axis=1).reset_index()

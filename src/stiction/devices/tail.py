@@ -12,8 +12,8 @@ from scipy.special import ndtri
 
 #: Share of the samples that is fitted.
 TAIL = 0.05
-#: Smallest number of fitted samples.
-FEWEST = 10
+#: Smallest number of fitted samples, so that 200 samples can be fitted without one of the 20 groups of a jackknife.
+FEWEST = 9
 
 
 @dataclass(frozen=True)

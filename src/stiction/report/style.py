@@ -10,7 +10,7 @@ from pathlib import Path
 from string import ascii_lowercase
 
 import numpy as np
-from matplotlib import style
+from matplotlib import colormaps, style
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -56,6 +56,14 @@ def marker(k: int) -> str:
 def dashes(k: int) -> str | tuple:
     """Line style of curve number ``k``."""
     return _DASHES[k % len(_DASHES)]
+
+
+def shades(count: int, lightest: float = 0.15) -> np.ndarray:
+    """Colours that darken from the first to the last, also when printed in grey; (count, 4).
+
+    ``lightest`` is the darkness of the first one, between 0 and 1.
+    """
+    return colormaps["viridis_r"](np.linspace(lightest, 1, count))
 
 
 def panels(rows: int, columns: int, size: tuple[float, float], **shared) -> tuple[Figure, np.ndarray]:
