@@ -73,7 +73,7 @@ def test_the_page_of_a_beam_says_which_lengths_come_free():
     sentence = pages.safe_sentence(0.67, found)
     lengths = [1e6 * float(found.safe_length.sel(shape=shape, share=1e-3)) for shape in found["shape"].values]
     assert f"up to {lengths[1]:.0f} µm come free" in sentence
-    assert "at most 1 in 1000 (95 % confidence)" in sentence
+    assert "at most 1 in 1000 (95 % confidence, given the drawn surfaces)" in sentence
     assert sentence.endswith(f"this is true of up to {lengths[0]:.0f} µm.")
     assert "tip" not in pages.safe_sentence(0.67, safe("bridge"))
 

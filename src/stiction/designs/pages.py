@@ -110,13 +110,17 @@ _FACTS = {
     "restoring_force_uN": ("restoring force", "µN"),
 }
 _OF_BEAMS = {
-    "Safe length": "Largest length of which at most the stated share sticks, with a confidence of 95 %.",
+    "Safe length": (
+        "Largest length of which at most the stated share sticks, with a confidence of 95 %. The confidence counts the "
+        "simulated beams, given the drawn surfaces. The error due to the number of drawn surfaces stands beside the "
+        "estimate (se, surfaces), what the measurements leave unsure further below."
+    ),
     "Estimate": "Length at which exactly the stated share sticks, as well as it is known; it is no bound.",
     "Held by the beam": "The beam touches down behind an open crack and stays flat there (S-shape).",
     "Held by the tip": "Only the free end touches and holds the beam (arc). Shorter beams can be held in this way.",
     "Sampled, fitted, extrapolated": (
-        "What a length rests on: on simulated beams alone; on a line through the shortest 5 % of them, within what was "
-        "verified; or on that line beyond it."
+        "What a length rests on: simulated beams alone; a line through the shortest 5 % of them, within what many more "
+        "beams, tips and bridges on the surfaces of the paper's pair b confirmed; or that line beyond it."
     ),
 }
 _OF_STOPPERS = {
@@ -208,7 +212,7 @@ def safe_sentence(humidity: float, found: xr.Dataset) -> str:
     shortest = min(lengths.values())
     sentence = (
         f"At a relative humidity of {humidity:g}, devices of up to {shortest:.0f} µm come free after they were pressed "
-        f"down, except for at most 1 in {1 / share:g} (95 % confidence)."
+        f"down, except for at most 1 in {1 / share:g} (95 % confidence, given the drawn surfaces)."
     )
     longest = max(lengths.values())
     if longest == shortest:
