@@ -101,6 +101,13 @@ def test_the_text_lists_once_for_each_device_what_counts_as_exact():
     assert tables_budget.counted_as_exact(BEAMS["C1", 0.67]).endswith(", the temperature, the contact angles.")
 
 
+def test_an_exact_slope_is_shown_without_an_error():
+    exact = BEAMS["C1", 0.67].assign(slope_error=("input", [0.02, 0.03, 0.0]))
+    cells = tables_budget.budget({("C1", 0.67): exact}).cells.set_index("what")["effect [%]"]
+    assert cells["thickness"] == "0.8"
+    assert "±" in cells["heights of B2"]
+
+
 def test_without_uncertainties_no_advice_is_given():
     exact = BUDGETS["C1", 0.67].assign(covariance=0 * BUDGETS["C1", 0.67].covariance)
     assert tables_budget.advised(exact) == "No uncertainty of an input is stated."

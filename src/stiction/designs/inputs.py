@@ -7,6 +7,7 @@ direction only.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -97,8 +98,11 @@ class Known:
     covariance: np.ndarray  #: of their errors (k, k)
 
 
-#: Inputs whose errors have a common cause, and their covariance.
-Block = tuple[list[Input], np.ndarray]
+class Block(NamedTuple):
+    """Inputs whose errors have a common cause."""
+
+    inputs: list[Input]
+    covariance: np.ndarray  #: of their errors (k, k)
 
 
 def uncertain(
@@ -125,8 +129,8 @@ def uncertain(
     stated = settings.uncertainty
     blocks = [of_surface(state, name, shifted, measured) for name, measured in known.items()]
     blocks += [*of_dimensions(state, stated), *of_material(state, modulus, settings), *of_air(state, stated)]
-    inputs = [entry for entries, _ in blocks for entry in entries]
-    return inputs, block_diag(np.empty((0, 0)), *(covariance for _, covariance in blocks))
+    inputs = [entry for block in blocks for entry in block.inputs]
+    return inputs, block_diag(np.empty((0, 0)), *(block.covariance for block in blocks))
 
 
 def countable(settings: Settings) -> list[str]:
@@ -149,12 +153,12 @@ def of_surface(
         contacts = shifted[surface, quantity]
         both = tuple(replace(state, contact=contact) for contact in contacts)
         inputs.append(Input(f"{quantity} of {surface}", f"the {kind} of {surface}", both, difference(contacts[0])))
-    return inputs, known.covariance
+    return Block(inputs, known.covariance)
 
 
 def _alone(name, group, states, step, deviation):
     """Block of one input."""
-    return [Input(name, group, tuple(states), step)], np.array([[deviation**2]])
+    return Block([Input(name, group, tuple(states), step)], np.array([[deviation**2]]))
 
 
 def of_dimensions(state: State, stated: Uncertainty) -> Iterator[Block]:
@@ -198,7 +202,7 @@ def of_air(state: State, stated: Uncertainty) -> Iterator[Block]:
         yield _alone("temperature", "the temperature", both, ends[1] - ends[0], deviation)
     if deviation := stated.contact_angle:
         inputs = [_contact_angle(state, side, deviation) for side in range(len(SIDES))]
-        yield inputs, np.full((len(SIDES), len(SIDES)), deviation**2)
+        yield Block(inputs, np.full((len(SIDES), len(SIDES)), deviation**2))
 
 
 def _contact_angle(state, side, deviation):

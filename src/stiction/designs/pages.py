@@ -26,7 +26,7 @@ h1 {{ font-size: 1.5em }} h2 {{ font-size: 1.15em; margin-top: 1.6em }}
 table {{ border-collapse: collapse; margin: .6em 0 }}
 td, th {{ padding: 2px 12px; text-align: right; border-bottom: 1px solid #ddd }}
 td:first-child, th:first-child {{ text-align: left }}
-td {{ white-space: nowrap }} img {{ max-width: 100% }}
+td {{ white-space: nowrap }} img {{ max-width: 100% }} .table {{ overflow-x: auto }}
 .answer {{ font-size: 1.1em; border-left: 4px solid #0072B2; padding: .2em 1em }}
 .warning {{ border-left: 4px solid #D55E00; padding: .2em 1em }}
 dt {{ font-weight: bold }} dd {{ margin: 0 0 .5em 1.5em }}
@@ -85,7 +85,7 @@ def _facts(facts):
 def _section(section):
     parts = [f"<h2>{escape(section.title)}</h2>", _paragraphs(section.paragraphs)]
     if section.cells is not None:
-        parts.append(section.cells.to_html(index=False, border=0))
+        parts.append(f'<div class="table">{section.cells.to_html(index=False, border=0)}</div>')
     if section.figure is not None:
         picture, width = base64.b64encode(png(section.figure)).decode(), round(_PIXELS * section.figure.get_figwidth())
         parts.append(f'<img alt="{escape(section.title)}" width="{width}" src="data:image/png;base64,{picture}">')

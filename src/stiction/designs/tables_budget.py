@@ -176,7 +176,7 @@ def _effect(budget, inputs, slope_errors):
 def _budget_as_text(row):
     """One row as text."""
     effect = number(row.effect_percent, ".2g")
-    if not np.isnan(row.effect_se_percent):
+    if row.effect_se_percent > 0:
         effect = with_error(row.effect_percent, row.effect_se_percent, "+" if row.part == "choice" else "")
     return {
         "device": row.device,
