@@ -241,10 +241,13 @@ def stoppers(table):
 
 
 def budget(table):
-    """``total_C1_067``, ``independent_C1_067`` and ``scatter_C1_067`` [%]; ``best_C1_067``: what to measure better."""
+    """``total_C1_067``, ``independent_C1_067`` and ``scatter_C1_067`` [%]; ``best_C1_067``: what to measure better.
+
+    Those of tips are called ``total_C1_067_tip`` and so on.
+    """
     found = {}
-    for (device, humidity), rows in table.groupby(["device", "relative_humidity"]):
-        name = f"{device}_{_digits(humidity)}"
+    for (device, humidity, held_by), rows in table.groupby(["device", "relative_humidity", "held_by"]):
+        name = f"{device}_{_digits(humidity)}" + ("_tip" if held_by == "tip" else "")
         totals = rows[rows.part == "total"].effect_percent.values
         found |= {
             f"{what}_{name}": f"{value:.1f}" for what, value in zip(("total", "independent"), totals, strict=True)

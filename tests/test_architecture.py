@@ -26,7 +26,7 @@ measured: scan estimate heights spectrum choices
 studies: iteration fit humidity slope_contact slopes sensitivity_contact sensitivity plasticity sample_sizes orders mesh
 studies: correlation resampling scan_uncertainty
 variants: summits contact beams
-designs: patches releases sticking cracks safe_lengths chart findings stoppers budget
+designs: patches releases sticking cracks safe_lengths chart findings stoppers inputs budget
 study device
 report: format published tables tables_surfaces tables_beams tables_studies style figures_surfaces figures_forces
 report: figures_beams figures_studies figures_overview checks

@@ -8,7 +8,7 @@ import stiction
 from stiction.config import jobs
 from stiction.config.plan import Plan
 from stiction.config.units import typed
-from stiction.designs import budget, chart, cracks, safe_lengths, stoppers
+from stiction.designs import budget, chart, cracks, inputs, safe_lengths, stoppers
 from stiction.devices import limits
 from stiction.models import OF_MOMENTS
 from stiction.stages import contact
@@ -124,17 +124,44 @@ def test_the_budget_is_that_of_its_stage_and_contacts(uncertain):
         jobs.contact(plan, "b"),
         jobs.device_choice_summits(plan, "b", 1500, 6000, "van_der_waals_none")["base"],
     )
-    wanted = typed(budget.Settings, jobs.budget(plan, "C1_rh088")["budget"])
+    wanted = typed(inputs.Settings, jobs.budget(plan, "C1_rh088")["budget"])
     expected = budget.compute(
         of(base),
         {("B2", quantity): with_(quantity) for quantity in OF_MOMENTS},
         tuple(of(jobs.modulus_contact(plan, "b", 1500, 6000, side)) for side in ("less", "more")),
         {"van_der_waals_none": of(base | {"contact": none["contact"], "van_der_waals": "none"})},
-        budget.covariances({"B2": described}, {}, wanted),
+        inputs.covariances({"B2": described}, {}, wanted),
         wanted,
     )
     xr.testing.assert_identical(found, expected)
     assert list(found.input.values) == [*(f"{name} of B2" for name in OF_MOMENTS), "gap", "Young's modulus"]
+
+
+@pytest.mark.slow
+def test_the_budget_of_the_tips_is_that_of_their_contacts(uncertain):
+    found = stiction.Device.of(uncertain, "C1").tip_budget(0.88)
+    plan, described = Plan(uncertain), surface_datasets(Plan(uncertain), "B2")
+    patch = "b", 150, 6000
+    tips, shifts = jobs.tip_contact(plan, *patch), typed(slope_contact.Settings, jobs.tip_contact(plan, *patch))
+
+    def of(plain):
+        return contact.compute([described] * 2, "b", "NG", typed(contact.Settings, plain))
+
+    wanted = typed(inputs.Settings, jobs.tip_budget(plan, "C1_rh088")["budget"])
+    expected = budget.compute(
+        of(tips),
+        {
+            ("B2", quantity): tuple(slope_contact.compute([described] * 2, "b", "B2", quantity, shifts))
+            for quantity in OF_MOMENTS
+        },
+        tuple(of(jobs.tip_modulus_contact(plan, *patch, side)) for side in ("less", "more")),
+        {"van_der_waals_none": of(tips | {"van_der_waals": "none"})},
+        inputs.covariances({"B2": described}, {}, wanted),
+        wanted,
+    )
+    xr.testing.assert_identical(found, expected)
+    assert found.slope.sel(input="gap") == pytest.approx(0.5, rel=1e-9)
+    assert found.centre.attrs["response"] == "arc"
 
 
 def test_a_device_that_does_not_exist_is_refused_with_those_that_do():

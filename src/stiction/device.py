@@ -14,7 +14,7 @@ from stiction.config.designs import BEAMS, Designs
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
-from stiction.designs import budget, chart, cracks, findings, safe_lengths, stoppers
+from stiction.designs import budget, chart, cracks, findings, inputs, safe_lengths, stoppers
 from stiction.stages import contact as stage_contact
 from stiction.stages import identification
 from stiction.studies import slope_contact
@@ -96,39 +96,64 @@ class Device:
         return stoppers.compute(self.contact, typed(stoppers.Settings, jobs.stoppers(Plan(self.config), self.name)))
 
     def budget(self, humidity: float) -> xr.Dataset:
-        """Uncertainty of length or force; dataset of `stiction.designs.budget`.
+        """Uncertainty of the mean length or force; dataset of `stiction.designs.budget`.
 
         The first call draws the surfaces with every uncertain input changed, a few minutes.
         """
-        self._must_state("uncertainty", any(self._section.get("uncertainty", {}).values()))
+        self._must_state("uncertainty", self.name in Designs(self.config).budgeted)
+        return self._budget(self.contact, self._changed, jobs.budget, humidity)
+
+    def tip_budget(self, humidity: float) -> xr.Dataset:
+        """As `budget`, of the length that the tip of a cantilever holds."""
+        self._must_be("cantilever")
+        self._must_state("uncertainty", self.name in Designs(self.config).budgeted)
+        return self._budget(self.tips, self._changed_tips, jobs.tip_budget, humidity)
+
+    def _budget(self, contact, changed, job, humidity):
+        """Budget with the contacts of the device or of its tips."""
         plan = Plan(self.config)
-        plain = jobs.budget(plan, case_id(self.name, humidity))
-        settings = typed(budget.Settings, plain["budget"])
+        plain = job(plan, case_id(self.name, humidity))
+        settings = typed(inputs.Settings, plain["budget"])
         described = dict(zip(plan.sides(self._section["pair"]), self.surfaces, strict=True))
         uncertain = {name: described[name] for name, _ in plain["quantities"]}
         estimates = {name: estimate_of(plan, name) for name in uncertain if name in plan.scanned}
-        known = budget.covariances(uncertain, estimates, settings)
-        return budget.compute(self.contact, *self._changed, known, settings)
+        known = inputs.covariances(uncertain, estimates, settings)
+        return budget.compute(contact, *changed, known, settings)
 
     @cached_property
     def _changed(self):
         """Contacts with less and with more of every input, and under other choices of the model."""
         plan, designs = Plan(self.config), Designs(self.config)
-        pair, stated, ground = self._section["pair"], self._section["uncertainty"], designs.ground(self.name)
+        pair, ground = self._section["pair"], designs.ground(self.name)
         shared = designs.has_strips_of_pair(self.name)
-        plain = jobs.slope_contact(plan, pair) if shared else jobs.device_slope_contact(plan, *ground)
-        shifts = typed(slope_contact.Settings, plain)
+        shifts = jobs.slope_contact(plan, pair) if shared else jobs.device_slope_contact(plan, *ground)
+        choices = {name: self._choice(plan, *ground, name) for name in plan.choices(pair)}
+        return *self._changes(ground, shifts, jobs.modulus_contact), choices
+
+    @cached_property
+    def _changed_tips(self):
+        """As `_changed`, of the strips that hold the tips."""
+        plan, tips = Plan(self.config), Designs(self.config).tips(self.name)
+        chosen = plan.choices_of_solids(tips.pair)
+        choices = {name: self._met(tips.pair, jobs.tip_choice_contact(plan, *tips, name)) for name in chosen}
+        return *self._changes(tips, jobs.tip_contact(plan, *tips), jobs.tip_modulus_contact), choices
+
+    def _changes(self, patch, shifts, modulus_job):
+        """Contacts of a patch with less and with more of every input."""
+        shifting = typed(slope_contact.Settings, shifts)
         shifted = {
-            key: tuple(slope_contact.compute(self.surfaces, pair, *key, shifts))
-            for key in designs.quantities(self.name)
+            key: tuple(slope_contact.compute(self.surfaces, patch.pair, *key, shifting))
+            for key in Designs(self.config).quantities(self.name)
         }
         modulus = None
-        if stated.get("young_modulus_GPa"):
-            plains = (jobs.modulus_contact(plan, *ground, side) for side in ("less", "more"))
-            both = (typed(stage_contact.Settings, plain) for plain in plains)
-            modulus = tuple(stage_contact.compute(self.surfaces, pair, "NG", settings) for settings in both)
-        choices = {name: self._choice(plan, *ground, name) for name in plan.choices(pair)}
-        return shifted, modulus, choices
+        if self._section.get("uncertainty", {}).get("young_modulus_GPa"):
+            plains = (modulus_job(Plan(self.config), *patch, side) for side in ("less", "more"))
+            modulus = tuple(self._met(patch.pair, plain) for plain in plains)
+        return shifted, modulus
+
+    def _met(self, pair, plain):
+        """Contact of the surfaces under the settings of a job."""
+        return stage_contact.compute(self.surfaces, pair, "NG", typed(stage_contact.Settings, plain))
 
     def _choice(self, plan, pair, length, width, variant):
         """Contact under another choice of the model."""

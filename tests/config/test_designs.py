@@ -12,9 +12,9 @@ from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
-from stiction.designs import budget, stoppers
+from stiction.designs import inputs, stoppers
 from stiction.devices.budget import STEP
-from stiction.models import OF_MOMENTS
+from stiction.models import OF_MOMENTS, OF_SPECTRUM
 from stiction.stages import contact
 from stiction.studies import slope_contact
 from stiction.variants import summits
@@ -36,13 +36,16 @@ def designs(**changes):
 
 
 PLAN = plan()
-PATCH = "b", 3000, 2000
+PATCH, TIP = ("b", 3000, 2000), ("b", 50, 30000)
 #: Stage and the settings of one of its jobs.
 JOBS = [
     (stoppers, jobs.stoppers(PLAN, "S1")),
-    (budget, jobs.budget(PLAN, "C1_rh067")["budget"]),
-    (budget, jobs.budget(PLAN, "S1_rh090")["budget"]),
+    (inputs, jobs.budget(PLAN, "C1_rh067")["budget"]),
+    (inputs, jobs.budget(PLAN, "S1_rh090")["budget"]),
+    (inputs, jobs.tip_budget(PLAN, "C1_rh067")["budget"]),
     (contact, jobs.modulus_contact(PLAN, *PATCH, "more")),
+    (contact, jobs.tip_modulus_contact(PLAN, *TIP, "more")),
+    (contact, jobs.tip_choice_contact(PLAN, *TIP, "van_der_waals_dry")),
     (slope_contact, jobs.device_slope_contact(PLAN, *PATCH)),
     (summits, jobs.device_choice_summits(PLAN, *PATCH, "every_2")["base"]),
 ]
@@ -68,12 +71,19 @@ def test_a_stopper_sticks_with_its_whole_area_and_a_beam_with_its_strips():
     assert found.stoppers == ["S1"]
 
 
-def test_only_devices_with_a_stated_uncertainty_have_a_budget():
+def test_only_devices_with_an_uncertain_input_have_a_budget_and_cantilevers_one_of_their_tips():
     found = designs()
     assert found.budgeted == ["C1", "S1"]
-    assert found.budget_cases() == ["C1_rh067", "S1_rh044", "S1_rh090"]
-    assert found.budget_cases("C2") == ["C2_rh067"]
+    assert found.budgets() == ["C1_rh067", "C1_rh067_tip", "S1_rh044", "S1_rh090"]
+    assert found.budgets("C2") == ["C2_rh067", "C2_rh067_tip"]
     assert designs(devices={"S1": {"uncertainty": {"humidity": 0}}}).budgeted == ["C1"]
+
+
+def test_a_device_on_scans_has_a_budget_without_a_stated_uncertainty():
+    scanned = {"scans": {"files": ["a.npy"]}, "heights": "moments", "psd": "fitted"}
+    found = Designs(merged(PLAN.config, {"surfaces": {"B2": scanned}}))
+    assert found.budgeted == ["C1", "C2", "S1"]
+    assert found.quantities("C2") == [("B2", quantity) for quantity in OF_MOMENTS + OF_SPECTRUM]
 
 
 def test_heights_are_uncertain_if_a_scan_is_stated():
@@ -90,6 +100,27 @@ def test_choices_of_the_model_change_the_contact_and_leave_the_mesh():
     assert not set(found) & {"base", *PLAN.finer_beams}
     identified = plan(surfaces={name: {"psd": "identified"} for name in ("B2", "Sub1")})
     assert "psd_identified" not in identified.choices("b")
+
+
+def test_choices_of_solids_leave_the_surfaces_as_they_are():
+    found = PLAN.choices_of_solids("b")
+    assert found == [f"van_der_waals_{medium}" for medium in ("dry", "none")] + [
+        "poisson_ratio_0.18",
+        "poisson_ratio_0.28",
+    ]
+    settings = jobs.tip_choice_contact(PLAN, *TIP, "poisson_ratio_0.28")
+    assert settings == jobs.tip_contact(PLAN, *TIP) | {"solid": PLAN.config["solid"] | {"poisson_ratio": 0.28}}
+
+
+def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_tips_as_beams():
+    found = jobs.tip_budget(PLAN, "C1_rh067")
+    of_beam = jobs.budget(PLAN, "C1_rh067")
+    assert found["budget"].pop("share") == 1e-3
+    assert found["budget"] == {key: value for key, value in of_beam["budget"].items() if key != "beams"}
+    assert (found["quantities"], found["choices"]) == (of_beam["quantities"], PLAN.choices_of_solids("b"))
+    number = PLAN.config["design"]["beams"]
+    assert jobs.tip_modulus_contact(PLAN, *TIP, "less")["contact"]["samples"] == number
+    assert jobs.tip_modulus_contact(PLAN, *TIP, "less")["solid"] == jobs.modulus_contact(PLAN, *TIP, "less")["solid"]
 
 
 def test_contacts_of_a_budget_are_on_the_patch_of_the_device_with_the_samples_of_slopes():

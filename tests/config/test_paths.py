@@ -75,7 +75,7 @@ def test_a_measured_surface_of_a_pair_is_listed_once_and_no_other_is():
 def test_slopes_need_contacts_with_less_and_with_more_of_every_quantity_of_the_surface():
     found = MEASURED.shifted_contacts("mine", "Mine")
     quantities = MEASURED.plan.quantities("Mine")
-    assert len(quantities) == 5
+    assert quantities == ("rms", "skewness", "kurtosis", "corner", "slope", *(f"mode{k}" for k in range(2, 9)))
     for side in ("less", "more"):
         assert found[side] == [f"results/studies/slopes/contact/mine_Mine_{name}_{side}.nc" for name in quantities]
 
@@ -101,25 +101,48 @@ def test_only_a_cantilever_has_a_tip():
     assert PAPER.tips("R1") == []
 
 
+def test_uncertain_surfaces_of_a_device_have_estimates_if_they_are_described_by_scans():
+    assert PAPER.uncertain_surfaces("C1") == of_surfaces(["B2", "Sub1"]) | {"estimates": []}
+    assert PAPER.uncertain_surfaces("R1") == of_surfaces([]) | {"estimates": []}
+    scanned = Paths(Plan(merged(MEASURED.plan.config, {"devices": {"R1": {"pair": "mine"}}})))
+    assert scanned.uncertain_surfaces("R1") == of_surfaces(["Mine"]) | {"estimates": ["results/estimate/Mine.nc"]}
+
+
 def test_uncertain_quantities_are_shifted_on_the_patch_of_the_device():
-    assert PAPER.uncertain_surfaces("C1") == of_surfaces(["B2", "Sub1"])
-    assert PAPER.uncertain_surfaces("R1") == of_surfaces([])
     main = [f"results/studies/slopes/contact/b_{name}_less.nc" for name in SHIFTED]
     own = [f"results/devices/contact/slopes/b_3000x2000_{name}_more.nc" for name in SHIFTED]
-    assert PAPER.shifted_ground("C1", "less") == main
-    assert PAPER.shifted_ground("S1", "more") == own
+    assert PAPER.contacts_of_budget("C1")["less"] == main
+    assert PAPER.contacts_of_budget("S1")["more"] == own
+    assert PAPER.contacts_of_budget("C1")["contact"] == PAPER.ground("C1")
 
 
 def test_only_an_uncertain_modulus_is_shifted():
     folder = "results/devices/contact/modulus"
-    assert PAPER.shifted_modulus("S1") == [f"{folder}/b_3000x2000_less.nc", f"{folder}/b_3000x2000_more.nc"]
+    stated = PAPER.contacts_of_budget("S1")["modulus"]
+    assert stated == [f"{folder}/b_3000x2000_less.nc", f"{folder}/b_3000x2000_more.nc"]
+    assert PAPER.contacts_of_budget("R1")["modulus"] == []
     exact = merged(PAPER.plan.config, {"devices": {"S1": {"uncertainty": {"young_modulus_GPa": 0}}}})
-    assert Paths(Plan(exact)).shifted_modulus("S1") == []
+    assert Paths(Plan(exact)).contacts_of_budget("S1")["modulus"] == []
 
 
 def test_choices_are_the_variants_that_change_the_contact():
-    assert len(PAPER.choices("S1")) == len(PAPER.plan.choices("b")) == 7
-    assert "results/devices/contact/choices/b_3000x2000_van_der_waals_dry.nc" in PAPER.choices("S1")
+    found = PAPER.contacts_of_budget("S1")["choices"]
+    assert len(found) == len(PAPER.plan.choices("b")) == 7
+    assert "results/devices/contact/choices/b_3000x2000_van_der_waals_dry.nc" in found
+
+
+def test_a_budget_of_tips_needs_contacts_of_the_tips_alone():
+    folder = "results/devices/contact/tips"
+    assert PAPER.contacts_of_tip_budget("C1") == {
+        "contact": f"{folder}/b_50x30000.nc",
+        "less": [f"{folder}/slopes/b_50x30000_{name}_less.nc" for name in SHIFTED],
+        "more": [f"{folder}/slopes/b_50x30000_{name}_more.nc" for name in SHIFTED],
+        "modulus": [f"{folder}/modulus/b_50x30000_less.nc", f"{folder}/modulus/b_50x30000_more.nc"],
+        "choices": [
+            f"{folder}/choices/b_50x30000_{name}.nc"
+            for name in ("van_der_waals_dry", "van_der_waals_none", "poisson_ratio_0.18", "poisson_ratio_0.28")
+        ],
+    }
 
 
 @pytest.mark.parametrize(
@@ -128,7 +151,7 @@ def test_choices_are_the_variants_that_change_the_contact():
         (
             "C1",
             {
-                "budgets": ["budget/C1_rh044", "budget/C1_rh067"],
+                "budgets": ["budget/C1_rh044", "budget/C1_rh067", "budget/C1_rh044_tip", "budget/C1_rh067_tip"],
                 "charts": ["chart/C1_rh060", "chart/C1_rh080"],
                 "safe_lengths": ["safe_lengths/C1_rh044", "safe_lengths/C1_rh067"],
                 "stoppers": [],

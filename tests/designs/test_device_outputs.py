@@ -58,7 +58,13 @@ def test_the_table_has_a_row_per_shape_and_share_with_the_numbers_of_the_dataset
     assert (row.held_by, row.share, row.basis) == ("beam or tip", 1e-3, "fitted")
     stated = row.safe_length_um, row.estimate_um, row.estimate_se_beams_um, row.estimate_se_surfaces_um
     held = one.safe_length, one.estimate, one.beams_error, one.surfaces_error
-    assert stated == pytest.approx([1e6 * float(value) for value in held], rel=1e-12)
+    assert stated == pytest.approx([1e6 * float(value) for value in held], rel=1e-12, nan_ok=True)
+
+
+def test_arcs_have_no_error_of_surfaces_of_their_own(found):
+    cells = tables_devices.safe_lengths(found, WARNINGS).cells
+    assert set(cells["se, surfaces"][cells["held by"] == "beam or tip"]) == {"–"}
+    assert "–" not in set(cells["se, surfaces"][cells["held by"] == "beam"])
 
 
 def test_warnings_are_numbered_in_the_cells_and_written_out_in_caption_and_csv(found):
@@ -95,6 +101,8 @@ def test_the_risk_shows_shares_bands_and_safe_lengths_of_every_device(found):
     assert len(second.collections) == 1
     assert [text.get_text() for text in first.get_legend().get_texts()] == ["RH 0.44 (1) (2)", "RH 0.67 (2)"]
     assert "(1) Too wet." in figure._supxlabel.get_text()
+    # A humidity is a line, so that it cannot be taken for a safe length.
+    assert {(line.get_linestyle(), line.get_marker()) for line in first.get_legend().get_lines()} == {("-", "None")}
 
 
 def test_the_table_of_charts_has_every_length_and_where_it_is_from():

@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 from test_device_outputs import charted
-from test_tables_budget import BUDGETS, STOPPERS, budget_dataset, stopper_dataset
+from test_tables_budget import BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_dataset
 
 from stiction.designs import findings, pages, safe_lengths, sticking
 from stiction.designs.pages import Page, Section
@@ -39,7 +39,7 @@ def safe(kind="cantilever", longest=600e-6):
 
 @pytest.fixture(scope="module")
 def stopper():
-    budgets = {0.67: BUDGETS["S1", 0.67]}
+    budgets = {(0.67,): BUDGETS["S1", 0.67]}
     return pages.of_stopper("S1", STOPPER, STOPPERS["S1"], budgets, ["Too hot."]).html
 
 
@@ -82,7 +82,7 @@ def test_the_page_of_a_beam_says_which_lengths_come_free():
     sentence = pages.safe_sentence(0.67, found)
     lengths = [1e6 * float(found.safe_length.sel(shape=shape, share=1e-3)) for shape in found["shape"].values]
     assert f"up to {lengths[1]:.0f} µm come free" in sentence
-    assert "at most 1 in 1000 (95 % confidence)" in sentence
+    assert "at most 1 in 1000 (95 % confidence, given the drawn surfaces)" in sentence
     assert sentence.endswith(f"this is true of up to {lengths[0]:.0f} µm.")
     assert "tip" not in pages.safe_sentence(0.67, safe("bridge"))
 
@@ -96,10 +96,14 @@ def test_a_beam_without_chart_and_budget_has_neither():
     assert "Uncertainty, and" not in plain
     assert "Other thicknesses" not in plain
     assert plain.count("<img") == 1
-    budgets = {0.44: budget_dataset(2.0), 0.67: budget_dataset()}
+    budgets = {(0.44,): budget_dataset(2.0), (0.67,): budget_dataset(), (0.67, "tip"): budget_dataset(0.5, TIPS)}
     both = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, budgets, silent).html
     assert both.count("<img") == 2
     assert all(f"RH {humidity}: effect [%]" in both for humidity in (0.44, 0.67))
+    assert both.count("Counted as exact: ") == 1
+    assert "1 in 1000 tips hold (arc) would fall" in both
+    rows = re.findall(r"<td>(beam|tip)</td>\s*<td>thickness</td>", both)
+    assert rows == ["beam", "tip"]
 
 
 def test_warnings_of_a_beam_have_the_numbers_of_its_tables():

@@ -1,5 +1,7 @@
 """Tables and figures of stoppers and budgets show the numbers of their datasets."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -7,7 +9,9 @@ from numpy.testing import assert_allclose
 from stiction.designs import budget as study_budget
 from stiction.designs import figures_budget, tables_budget
 from stiction.designs import stoppers as study_stoppers
-from stiction.designs.budget import Input, State
+from stiction.designs.budget import Responses
+from stiction.designs.inputs import Input, Settings, State, Uncertainty
+from stiction.designs.releases import Device
 from stiction.report.style import save
 from stiction.stages.curves import Water
 
@@ -16,12 +20,18 @@ NAMES = {"rms of B2": "heights of B2", "skewness of B2": "heights of B2", "thick
 COVARIANCE = np.array([[4e-4, -1e-4, 0], [-1e-4, 4e-4, 0], [0, 0, 1e-4]])
 
 
-def budget_dataset(factor=1.0, unit="m"):
+C1 = Device("cantilever", "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
+#: Settings of the budgets of a beam, of its tips and of a stopper.
+BEAM = Settings(1, Water(300.0), 0.5, Uncertainty(), ("B2", "Sub1"), 164e9, C1)
+TIPS, PATCH = replace(BEAM, share=1e-3), replace(BEAM, device=None)
+
+
+def budget_dataset(factor=1.0, settings=BEAM):
     """Budget of three inputs, two of them correlated, and one choice."""
     inputs = [Input(name, group, (STATE, STATE), 0.1) for name, group in NAMES.items()]
     slopes = np.array([[1.0, 0.02], [1.0, 0.03], [0.8, 0.01]]) * [factor, 1]
-    lengths = np.array([690e-6, 700e-6, 710e-6])
-    return study_budget.layout(inputs, slopes, COVARIANCE, lengths, {"van_der_waals_dry": (-0.042, 0.003)}, unit)
+    devices = Responses(np.array([[690e-6, 700e-6, 710e-6]]), np.mean)
+    return study_budget.layout(inputs, slopes, COVARIANCE, devices, {"van_der_waals_dry": (-0.042, 0.003)}, settings)
 
 
 def stopper_dataset(peak=0.7):
@@ -33,14 +43,15 @@ def stopper_dataset(peak=0.7):
     return study_stoppers.layout(settings, np.stack([forces, 0.5 * forces]), axis, along)
 
 
-BUDGETS = {("C1", 0.44): budget_dataset(2.0), ("C1", 0.67): budget_dataset(), ("S1", 0.67): budget_dataset(1, "N")}
+BEAMS = {("C1", 0.44): budget_dataset(2.0), ("C1", 0.67): budget_dataset()}
+BUDGETS = BEAMS | {("C1", 0.67, "tip"): budget_dataset(0.5, TIPS), ("S1", 0.67): budget_dataset(1, PATCH)}
 WARNINGS = {"S1": [], "S2": ["Beware."]}
 STOPPERS = {"S1": stopper_dataset(), "S2": stopper_dataset(peak=1.0)}
 
 
-def part(frame, name, humidity=0.67, device="C1"):
-    chosen = frame[(frame.part == name) & (frame.relative_humidity == humidity) & (frame.device == device)]
-    return chosen.set_index("name")
+def part(frame, name, humidity=0.67, device="C1", held_by="beam"):
+    case = (frame.relative_humidity == humidity) & (frame.device == device) & (frame.held_by == held_by)
+    return frame[(frame.part == name) & case].set_index("name")
 
 
 def test_effects_are_those_of_the_covariance():
@@ -49,6 +60,8 @@ def test_effects_are_those_of_the_covariance():
     assert_allclose(effects["heights of B2"], 100 * np.sqrt(6e-4), rtol=1e-12)
     assert_allclose(effects["thickness"], 0.8, rtol=1e-12)
     assert_allclose(part(frame, "measurement", 0.44).effect_percent, 2 * effects, rtol=1e-12)
+    assert_allclose(part(frame, "measurement", held_by="tip").effect_percent, effects / 2, rtol=1e-12)
+    assert_allclose(part(frame, "measurement", device="S1", held_by="whole area").effect_percent, effects, rtol=1e-12)
     inputs = part(frame, "input")
     assert_allclose(inputs.standard_uncertainty, [0.02, 0.02, 0.01], rtol=1e-12)
     assert_allclose(inputs.effect_percent, np.abs(inputs.slope) * 100 * inputs.standard_uncertainty, rtol=1e-12)
@@ -73,10 +86,26 @@ def test_the_text_names_what_to_measure_better():
     table = tables_budget.budget(BUDGETS)
     assert "C1, RH 0.67: Measure heights of B2 better" in table.caption
     assert "uncertainty of the mean pull-off force would fall from 2.6 to 0.8 %" in table.caption
+    assert "uncertainty of the mean sticking length (S-shape) would fall from 2.6 to 0.8 %" in table.caption
+    assert "uncertainty of the length that 1 in 1000 tips hold (arc) would fall from 1.3 to 0.4 %" in table.caption
     assert "rms of B2" not in set(table.cells.what)
     assert "choice: vdW: dry" in set(table.cells.what)
     row = table.cells[(table.cells.what == "choice: vdW: dry") & (table.cells.device == "C1")].iloc[0]
     assert row["effect [%]"] == "-4.20 ± 0.30"
+
+
+def test_the_text_lists_once_for_each_device_what_counts_as_exact():
+    caption = tables_budget.budget(BUDGETS).caption
+    assert caption.count("C1: Counted as exact: the heights of B2, ") == 1
+    assert "S1: Counted as exact: " in caption
+    assert tables_budget.counted_as_exact(BEAMS["C1", 0.67]).endswith(", the temperature, the contact angles.")
+
+
+def test_an_exact_slope_is_shown_without_an_error():
+    exact = BEAMS["C1", 0.67].assign(slope_error=("input", [0.02, 0.03, 0.0]))
+    cells = tables_budget.budget({("C1", 0.67): exact}).cells.set_index("what")["effect [%]"]
+    assert cells["thickness"] == "0.8"
+    assert "±" in cells["heights of B2"]
 
 
 def test_without_uncertainties_no_advice_is_given():
@@ -115,18 +144,48 @@ def test_a_worst_humidity_at_the_end_of_the_axis_may_lie_beyond_it():
     assert set(cells["safe force, 0.001 [µN]"]) == {"–"}
 
 
+def drawn(panel):
+    """Names of the rows of a panel from top to bottom, and the bars [%]."""
+    return [text.get_text() for text in panel.get_yticklabels()], panel.patches
+
+
 def test_bars_of_a_tornado_are_the_effects_the_largest_first():
-    figure = figures_budget.budget(BUDGETS)
-    first, second = figure.axes
-    names = [text.get_text() for text in first.get_yticklabels()]
-    assert names[:2] == ["heights of B2", "thickness"]
-    assert names[-1] == "choice: vdW: dry"
-    widths = [bar.get_width() for bar in first.patches]
-    assert_allclose(widths[:2], [4 * 100 * np.sqrt(6e-4), 2 * 100 * np.sqrt(6e-4)], rtol=1e-9)
-    choice = first.patches[-1]
-    assert_allclose([choice.get_x(), choice.get_x() + choice.get_width()], [-4.2, 0], atol=1e-12)
-    assert "mean sticking length" in first.get_xlabel()
-    assert "mean pull-off force" in second.get_xlabel()
+    figure = figures_budget.budget(BEAMS)
+    measured, chosen = figure.axes
+    names, bars = drawn(measured)
+    assert names == ["heights of B2", "thickness", tables_budget.TOTAL]
+    assert_allclose([bar.get_width() for bar in bars[:2]], 100 * np.sqrt(6e-4) * np.array([4, 2]), rtol=1e-9)
+    assert_allclose([bar.get_x() for bar in bars], [-bar.get_width() / 2 for bar in bars])
+    assert_allclose(bars[4].get_width(), 2 * 2 * 100 * np.sqrt(6e-4 + 0.64e-4), rtol=1e-9)
+    names, bars = drawn(chosen)
+    assert names == ["vdW: dry"]
+    assert_allclose([bars[0].get_x(), bars[0].get_x() + bars[0].get_width()], [-4.2, 0], atol=1e-12)
+    assert "mean sticking length" in measured.get_title(loc="left")
+    assert measured.get_xlabel().endswith("scatter between devices: 1.4, 1.4 %")
+
+
+def test_beam_and_tip_have_panels_of_their_own():
+    figure = figures_budget.budget(BEAMS | {("C1", rh, "tip"): budget_dataset(0.5, TIPS) for rh in (0.44, 0.67)})
+    titles = [panel.get_title(loc="left") for panel in figure.axes]
+    assert titles[::2] == ["(a) mean sticking length (S-shape)", "(c) length that 1 in 1000 tips hold (arc)"]
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["RH 0.44", "RH 0.67"]
+
+
+def test_six_humidities_fit_a_screen_with_bars_that_darken_and_do_not_meet():
+    humidities = np.linspace(0.4, 0.9, 6)
+    cases = {("C1", h): budget_dataset(1 + h) for h in humidities}
+    cases |= {("C1", h, "tip"): budget_dataset(h, TIPS) for h in humidities}
+    figure = figures_budget.budget(cases)
+    assert figure.get_figheight() < 8
+    bars = figure.axes[0].patches
+    places = [bar.get_y() for bar in bars]
+    assert_allclose(places, np.sort(places))
+    assert np.all(np.diff(places) > 0.99 * bars[0].get_height())
+    light = [sum(bar.get_facecolor()[:3]) for bar in bars[:6]]
+    assert np.all(np.diff(light) < 0)
+    (legend,) = figure.legends
+    assert [patch.get_facecolor() for patch in legend.get_patches()] == [bar.get_facecolor() for bar in bars[:6]]
 
 
 def test_a_stopper_shows_the_share_of_patches_over_the_restoring_force():
@@ -139,14 +198,9 @@ def test_a_stopper_shows_the_share_of_patches_over_the_restoring_force():
 
 
 @pytest.mark.parametrize(
-    "draw", [lambda: figures_budget.budget(BUDGETS), lambda: figures_budget.stoppers(STOPPERS, WARNINGS)]
+    "draw", [lambda: figures_budget.budget(BEAMS), lambda: figures_budget.stoppers(STOPPERS, WARNINGS)]
 )
 def test_equal_data_give_equal_files(draw, tmp_path):
     for name in ("one", "two"):
         save(draw(), tmp_path / f"{name}.png")
     assert (tmp_path / "one.png").read_bytes() == (tmp_path / "two.png").read_bytes()
-
-
-def test_one_case_and_many_cases_are_drawn():
-    for cases in ({("C1", 0.67): BUDGETS["C1", 0.67]}, {(f"C{k}", 0.5): budget_dataset() for k in range(4)}):
-        assert len(figures_budget.budget(cases).axes) == len({device for device, _ in cases})

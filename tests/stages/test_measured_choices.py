@@ -15,7 +15,7 @@ from stiction.config import jobs
 from stiction.config.files import load
 from stiction.config.measured import quantities as measured_quantities
 from stiction.config.plan import Plan
-from stiction.designs import budget
+from stiction.designs import inputs
 from stiction.measured import choices, estimate, heights, scan, spectrum
 from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
 from stiction.scans.histogram import EDGES, histogram
@@ -190,11 +190,11 @@ def test_modes_of_a_surface_with_the_heights_of_its_moments_are_those_of_its_mea
 def test_the_budget_of_a_device_takes_the_covariance_of_the_estimate(files, estimated, form, names):
     plan = plan_of(files, heights=form)
     drawn = heights.compute(estimated, small.settings_of(heights, jobs.heights_of_scans(plan, "Etched")))
-    found = budget.of_scans(estimated, drawn)
-    assert found.names == (*names, *OF_SPECTRUM)
+    found = inputs.of_scans(estimated, drawn)
+    assert found.quantities == (*names, *OF_SPECTRUM)
     of_heights = estimated.covariance if form == "moments" else estimated.mode_covariance
     assert_array_equal(found.covariance[: len(names), : len(names)], of_heights)
     assert_array_equal(found.covariance[len(names) :, len(names) :], estimated.fit_covariance[1:, 1:])
     assert not np.any(found.covariance[: len(names), len(names) :])
     described = {"Etched": (drawn, None)}
-    assert budget.covariances(described, {"Etched": estimated}, None)["Etched"].names == found.names
+    assert inputs.covariances(described, {"Etched": estimated}, None)["Etched"].quantities == found.quantities

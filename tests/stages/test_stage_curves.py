@@ -1,10 +1,12 @@
 """Force curves from stored datasets."""
 
 import numpy as np
+import pytest
 
 from stiction.contact.pair import DistanceGrid
+from stiction.devices.chart import flooded_energy
 from stiction.stages import contact
-from stiction.stages.curves import Water, force_curves
+from stiction.stages.curves import Water, energies, force_curves, tip_energies
 
 
 def test_force_at_a_humidity_is_solid_pressure_less_tension_on_the_wet_area():
@@ -30,3 +32,15 @@ def test_contact_angles_lower_the_film_and_keep_the_tension():
     for k in (5, 12):
         wet = np.interp(distance[k] - height, grid.bearing, bearing[0])
         np.testing.assert_allclose(-curve(0)[k] / 59.7e6, wet, rtol=2e-3)
+
+
+def test_a_tip_that_no_solid_stops_is_flooded_and_others_have_the_energy_of_their_curve():
+    grid = DistanceGrid(0.5e-9, 10, 40)
+    bearing = np.tile(1 / (1 + np.exp(grid.bearing / 2e-9)), (2, 1))
+    solid = np.array([np.exp(-grid.solid / 2e-9) * 1e8, np.zeros(40)])
+    wet, dataset = Water(300.0, (0.3, 0.0)), contact.layout(solid, bearing, grid, range(2))
+    held = energies(dataset.isel(sample=[0]), 0.65, wet)
+    np.testing.assert_array_equal(tip_energies(dataset, 0.65, wet), [*held, flooded_energy(300.0, (0.3, 0.0))])
+    assert held < flooded_energy(300.0, (0.3, 0.0))
+    with pytest.raises(ValueError, match="sample 1: the force does not rise"):
+        energies(dataset, 0.65, wet)

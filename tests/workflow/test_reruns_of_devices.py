@@ -25,13 +25,14 @@ devices:
 #: Rules of this test, and the rules that read their outputs, listed by hand.
 READ_BY = {
     "heights": "identification spectrum contact_chunk device_contact tip_contact slope_contact modulus_contact plasticity"
-    " budget",
-    "spectrum": "contact_chunk device_contact tip_contact slope_contact modulus_contact plasticity budget",
+    " budget tip_slope_contact tip_choice_contact tip_budget",
+    "spectrum": "contact_chunk device_contact tip_contact slope_contact modulus_contact plasticity budget tip_slope_contact"
+    " tip_choice_contact tip_budget",
     "identification": "device_choice_summits",
     "contact_chunk": "contact",
     "contact": "cracks chart budget",
     "device_contact": "cracks stoppers budget",
-    "tip_contact": "safe_lengths chart",
+    "tip_contact": "safe_lengths chart tip_budget",
     "slope_contact": "budget",
     "device_slope_contact": "budget",
     "modulus_contact": "budget",
@@ -42,8 +43,11 @@ READ_BY = {
     "cracks": "safe_lengths",
     "safe_lengths": "table_safe_lengths figure_risk device_limits device_page",
     "chart": "table_chart figure_chart device_limits device_page",
+    "tip_slope_contact": "tip_budget",
+    "tip_choice_contact": "tip_budget",
     "stoppers": "table_stoppers figure_stoppers device_page",
     "budget": "table_budget figure_budget device_page",
+    "tip_budget": "table_budget figure_budget device_page",
 }
 RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())
 COMPUTING = set(READ_BY)
@@ -56,8 +60,9 @@ BODY = "surfaces: {B2: {material: Other}}\nmaterials: {Other: "
 #: their files do not depend on it; pattern of files that must not rerun.
 MATRIX = [
     ("restoring force", "devices: {S1: {restoring_force_uN: 30}}", "stoppers", (), "C1|R1|budget"),
-    ("uncertainty of a dimension", "devices: {C1: {uncertainty: {gap_um: 0.5}}}", "budget", (), "R1|S1|contact|chart"),
-    ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget", (), "R1|S1|contact|chart"),
+    ("uncertainty of a dimension", "devices: {C1: {uncertainty: {gap_um: 0.5}}}", "budget tip_budget", (),
+     "R1|S1|contact|chart"),
+    ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget tip_budget", (), "R1|S1|contact|chart"),
     ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget", (),
      "C1|R1|slopes/contact|stoppers"),
     ("one humidity of a stopper", "devices: {S1: {humidities: [0.7, 0.9]}}", "stoppers budget", (),
@@ -65,30 +70,34 @@ MATRIX = [
     ("area of a stopper", "devices: {S1: {contact_um: [3, 2]}}", "device_contact modulus_contact device_choice_summits",
      OF_BEAMS, "C1|R1|1500x"),
     ("samples of slopes", "studies: {slopes: {samples: 200}}", "slope_contact modulus_contact device_choice_summits", (),
-     "stoppers|chart|cracks"),
-    ("beams of slopes", "design: {budget_beams: 100}", "budget", (), "S1|contact|chart|cracks"),
+     "stoppers|chart|cracks|tip"),
+    ("beams of slopes", "design: {budget_beams: 100}", "budget", (), "S1|contact|chart|cracks|tip"),
+    ("beams, each with a tip", "design: {beams: 900}", "cracks tip_contact tip_slope_contact tip_choice_contact chart", (),
+     "S1|budget/C1_rh070.nc"),
     ("range of the worst humidity", "design: {worst_humidities: [0.5, 0.9]}", "stoppers", (), "C1|R1|budget|contact"),
-    ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}", "device_choice_contact", (),
-     "none|identified|slopes|modulus|stoppers|cracks"),
-    ("water", "water: {temperature_K: 310}", "cracks safe_lengths chart stoppers budget", (), "contact"),
+    ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
+     "device_choice_contact tip_choice_contact", (), "none|identified|slopes|modulus|stoppers|cracks"),
+    ("water", "water: {temperature_K: 310}", "cracks safe_lengths chart stoppers budget tip_budget", (), "contact"),
     ("skewness of a surface", "surfaces: {B2: {skewness: -0.7}}", "heights device_choice_summits", (), "Sub1.nc"),
     ("skewness of another surface", "surfaces: {B1: {skewness: -0.7}}", "", (), ""),
-    ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (), "slopes|modulus|choices|tips"),
+    ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (), "slopes|modulus|choices|tip"),
     ("chunks", "contact: {chunks: 2}", "", (), ""),
-    ("strips of tips", "design: {tip_um: 0.06}", "tip_contact safe_lengths", (), "cracks|S1|budget|contact/b"),
-    ("shares", "design: {shares: [0.02]}", "safe_lengths chart", (), "cracks|S1|budget|contact"),
+    ("strips of tips", "design: {tip_um: 0.06}", "tip_contact tip_slope_contact tip_choice_contact safe_lengths", (),
+     "cracks|S1|contact/b|budget/C1_rh070.nc"),
+    ("shares", "design: {shares: [0.02]}", "safe_lengths chart tip_budget", (), "cracks|S1|contact|budget/C1_rh070.nc"),
     ("points of charts", "design: {chart_points: 3}", "chart", (), "rh060|rh080|cracks|safe|S1|R1|contact"),
     ("humidities of a chart", "devices: {C1: {chart: {humidities: [0.6, 0.9]}}}", "chart", (),
      "rh060|cracks|safe|S1|R1|contact"),
-    ("gap of a beam", "devices: {C1: {gap_um: 19}}", "cracks safe_lengths chart budget", (), "contact|S1|R1"),
+    ("gap of a beam", "devices: {C1: {gap_um: 19}}", "cracks safe_lengths chart budget tip_budget", (), "contact|S1|R1"),
     ("width of a beam", "devices: {C1: {width_um: 24}}",
-     "device_contact tip_contact device_slope_contact device_choice_summits", OF_STOPPERS, "S1|R1|b_NG"),
+     "device_contact tip_contact device_slope_contact device_choice_summits tip_slope_contact tip_choice_contact",
+     OF_STOPPERS, "S1|R1|b_NG"),
     ("strips of a beam", "devices: {C1: {strip_um: 1.2}}",
      "device_contact device_slope_contact device_choice_summits chart", OF_STOPPERS, "S1|R1|b_NG|tips"),
     ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "cracks safe_lengths", (), "contact|C1|S1|chart"),
     ("Hamaker constant of a body", BODY + "{hamaker_constant_zJ: {water: 20, dry: 200}}}",
-     "contact_chunk device_contact tip_contact slope_contact modulus_contact device_choice_contact plasticity", (),
-     "heights|spectrum|summits"),
+     "contact_chunk device_contact tip_contact slope_contact modulus_contact device_choice_contact plasticity"
+     " tip_slope_contact tip_choice_contact", (), "heights|spectrum|summits"),
     ("hardness of a body", BODY + "{hardness_GPa: 9}}", "plasticity", (), "contact|cracks|stoppers/|budget"),
 ]  # fmt: skip
 # One row of each kind is fast; these are slow tests.
@@ -104,7 +113,7 @@ FURTHER |= {"humidities of a chart", "width of a beam", "strips of a beam", "str
 FURTHER |= {"Hamaker constant of a body"}
 ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)) for name, *row in MATRIX]
 #: Modules, and the rules whose datasets a new variable changes.
-LAYOUTS = {"designs/stoppers": {"stoppers"}, "designs/budget": {"budget"}, "designs/chart": {"chart"}}
+LAYOUTS = {"designs/stoppers": {"stoppers"}, "designs/budget": {"budget", "tip_budget"}, "designs/chart": {"chart"}}
 LAYOUTS |= {"designs/cracks": {"cracks", "safe_lengths"}, "designs/safe_lengths": {"safe_lengths"}}
 
 

@@ -30,6 +30,46 @@ use rule device_contact as modulus_contact with:
         "modulus."
 
 
+use rule device_slope_contact as tip_slope_contact with:
+    output:
+        expand(
+            "results/devices/contact/tips/slopes/{{pair}}_{{length}}x{{width}}_{{surface}}_{{quantity}}_{side}.nc",
+            side=("less", "more"),
+        ),
+    log:
+        "results/logs/devices/contact/tips/slopes/{pair}_{length}x{width}_{surface}_{quantity}.log",
+    params:
+        settings=lambda w: jobs.tip_contact(plan, w.pair, w.length, w.width),
+        code=code("slope_contact.py"),
+    message:
+        "Contact of pair {wildcards.pair} at the tips of beams, with less and more {wildcards.quantity} of "
+        "{wildcards.surface}."
+
+
+use rule modulus_contact as tip_modulus_contact with:
+    output:
+        "results/devices/contact/tips/modulus/{pair}_{length}x{width}_{side}.nc",
+    log:
+        "results/logs/devices/contact/tips/modulus/{pair}_{length}x{width}_{side}.log",
+    params:
+        settings=lambda w: jobs.tip_modulus_contact(plan, w.pair, w.length, w.width, w.side),
+        code=code("device_contact.py"),
+    message:
+        "Contact of pair {wildcards.pair} at the tips of beams, with {wildcards.side} of Young's modulus."
+
+
+use rule device_contact as tip_choice_contact with:
+    output:
+        "results/devices/contact/tips/choices/{pair}_{length}x{width}_{variant}.nc",
+    log:
+        "results/logs/devices/contact/tips/choices/{pair}_{length}x{width}_{variant}.log",
+    params:
+        settings=lambda w: jobs.tip_choice_contact(plan, w.pair, w.length, w.width, w.variant),
+        code=code("device_contact.py"),
+    message:
+        "Contact of pair {wildcards.pair} at the tips of beams, under {wildcards.variant}."
+
+
 use rule variant_summits as device_choice_summits with:
     output:
         "results/devices/contact/summits/{pair}_{length}x{width}_{variant}.nc",
@@ -75,15 +115,7 @@ rule stoppers:
 rule budget:
     input:
         unpack(surfaces_of_device),
-        contact=lambda w: ground_of(cases.pair_of(w.case)),
-        less=shifted_of("less"),
-        more=shifted_of("more"),
-        modulus=modulus_of,
-        choices=choices_of,
-        estimates=lambda w: expand(
-            "results/estimate/{surface}.nc",
-            surface=plan.scanned_sides(config["devices"][cases.pair_of(w.case)]["pair"]),
-        ),
+        unpack(contacts_of_budget),
     output:
         "results/devices/budget/{case}.nc",
     log:
@@ -98,6 +130,21 @@ rule budget:
         "Budget of {wildcards.case}."
     script:
         "../scripts/budget.py"
+
+
+use rule budget as tip_budget with:
+    input:
+        unpack(surfaces_of_device),
+        unpack(contacts_of_tip_budget),
+    output:
+        "results/devices/budget/{case}_tip.nc",
+    log:
+        "results/logs/devices/budget/{case}_tip.log",
+    params:
+        settings=lambda w: jobs.tip_budget(plan, w.case),
+        code=code("budget.py"),
+    message:
+        "Budget of the tips of {wildcards.case}."
 
 
 rule table_stoppers:
@@ -139,14 +186,14 @@ rule figure_stoppers:
 
 rule table_budget:
     input:
-        budgets=expand("results/devices/budget/{case}.nc", case=designs.budget_cases()),
+        budgets=expand("results/devices/budget/{name}.nc", name=designs.budgets()),
     output:
         **table_files("budget", "uncertainty of devices, and what to measure better"),
     log:
         "results/logs/tables/budget.log",
     localrule: True
     params:
-        settings={"cases": designs.budget_cases()},
+        settings={"budgets": designs.budgets()},
         code=code("table_budget.py"),
     message:
         "Uncertainty of all devices."
@@ -156,18 +203,18 @@ rule table_budget:
 
 rule figure_budget:
     input:
-        budgets=expand("results/devices/budget/{case}.nc", case=designs.budget_cases()),
+        budgets=lambda w: expand("results/devices/budget/{name}.nc", name=designs.budgets(w.device)),
         style=STYLE,
     output:
-        **figure_files("budget", ON_DEVICES, "uncertainty of devices"),
+        **figure_files("budget_{device}", ON_DEVICES, "uncertainty of {device}", caption="budget"),
     log:
-        "results/logs/figures/budget.log",
+        "results/logs/figures/budget_{device}.log",
     localrule: True
     params:
-        settings={"cases": designs.budget_cases()},
+        settings=lambda w: {"budgets": designs.budgets(w.device)},
         code=code("figure_budget.py"),
     message:
-        "Uncertainty of all devices."
+        "Uncertainty of device {wildcards.device}."
     script:
         "../scripts/figure_budget.py"
 
@@ -195,7 +242,8 @@ rule devices:
         [rules.table_safe_lengths.output, rules.figure_risk.output] if designs.cases else [],
         [rules.table_chart.output, rules.figure_chart.output] if designs.charted else [],
         [rules.table_stoppers.output, rules.figure_stoppers.output] if designs.stoppers else [],
-        [rules.table_budget.output, rules.figure_budget.output] if designs.budgeted else [],
+        rules.table_budget.output if designs.budgeted else [],
+        expand("results/figures/budget_{device}.{kind}", device=designs.budgeted, kind=("pdf", "png")),
         expand("results/devices/{device}.html", device=designs.devices),
         rules.device_limits.output if designs.devices else [],
     localrule: True

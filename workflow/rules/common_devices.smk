@@ -12,12 +12,9 @@ def of_device(found):
 ground_of = paths.ground
 strips_of, tips_of = of_device(paths.ground), of_device(paths.tips)
 surfaces_of_device = of_device(paths.uncertain_surfaces)
-modulus_of, choices_of = of_device(paths.shifted_modulus), of_device(paths.choices)
-
-
-def shifted_of(side):
-    """Input function for the contacts of a device with ``less`` or ``more`` of every uncertain quantity."""
-    return of_device(lambda device: paths.shifted_ground(device, side))
+contacts_of_budget, contacts_of_tip_budget = of_device(paths.contacts_of_budget), of_device(
+    paths.contacts_of_tip_budget
+)
 
 
 def summits_of_choice(wildcards):

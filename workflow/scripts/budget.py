@@ -1,7 +1,7 @@
 """Which input of a device moves its length, or the pull-off force of a stopper, by how much."""
 
 from stiction.config.units import typed
-from stiction.designs import budget
+from stiction.designs import budget, inputs
 from stiction.run.logs import logged
 from stiction.stages import storage
 from stiction.stages.named import load_named
@@ -10,25 +10,38 @@ from stiction.stages.named import load_named
 def main(job):
     """Compare contacts with less and with more of every input, and those under other choices of the model."""
     plain = job.params.settings
-    settings = typed(budget.Settings, plain["budget"])
-    less, more, modulus, choices = (
-        storage.load_all(paths, "contact")
-        for paths in (job.input.less, job.input.more, job.input.modulus, job.input.choices)
+    settings = typed(inputs.Settings, plain["budget"])
+    less, more = (load_named(paths, "contact", _quantity) for paths in (job.input.less, job.input.more))
+    modulus = load_named(job.input.modulus, "contact", lambda name: name.rpartition("_")[2])
+    heights, spectra, estimates = (
+        load_named(paths, stage)
+        for paths, stage in (
+            (job.input.heights, "heights"),
+            (job.input.spectrum, "spectrum"),
+            (job.input.estimates, "estimate"),
+        )
     )
-    names = [tuple(entry) for entry in plain["quantities"]]
-    surfaces = dict.fromkeys(surface for surface, _ in names)
-    described = zip(*(storage.load_all(job.input[stage], stage) for stage in ("heights", "spectrum")), strict=True)
-    estimates = load_named(job.input.estimates, "estimate")
-    known = budget.covariances(dict(zip(surfaces, described, strict=True)), estimates, settings)
+    choices = load_named(job.input.choices, "contact", _choice)
+    described = {name: (heights[name], spectra[name]) for name, _ in plain["quantities"]}
     dataset = budget.compute(
         storage.load(job.input.contact, "contact"),
-        dict(zip(names, zip(less, more, strict=True), strict=True)),
-        tuple(modulus) or None,
-        dict(zip(plain["choices"], choices, strict=True)),
-        known,
+        {key: (less[key], more[key]) for key in less},
+        (modulus["less"], modulus["more"]) if modulus else None,
+        {name: choices[name] for name in plain["choices"]},
+        inputs.covariances(described, estimates, settings),
         settings,
     )
     storage.save(dataset, job.output[0], "budget", plain, job.input)
+
+
+def _quantity(name):
+    """Surface and quantity in a name such as ``b_1500x30000_B2_rms_less``."""
+    return tuple(name.split("_")[-3:-1])
+
+
+def _choice(name):
+    """Choice of the model in a name such as ``b_1500x30000_van_der_waals_dry``."""
+    return name.split("_", 2)[2]
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ def main(job):
     settings = job.params.settings
     name, section = settings["name"], settings["device"]
     plasticity = load_named(job.input.plasticity, "plasticity")
-    budgets = _by_humidity(job.input.budgets, "budget")
+    budgets = {tuple(key): dataset for (_, *key), dataset in load_named(job.input.budgets, "budget", key_of).items()}
     if section["kind"] == "stopper":
         (found,) = load_named(job.input.stoppers, "stoppers").values()
         warnings = findings.of_stoppers(plasticity, settings["warned"])[name]

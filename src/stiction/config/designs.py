@@ -131,12 +131,17 @@ class Designs:
 
     @property
     def budgeted(self) -> list[str]:
-        """Devices with a stated uncertainty."""
-        return [name for name, device in self.devices.items() if any(device.get("uncertainty", {}).values())]
+        """Devices with an uncertain input: with a stated uncertainty, or on a surface described by scans."""
+        stated = {name: any(device.get("uncertainty", {}).values()) for name, device in self.devices.items()}
+        return [name for name in self.devices if stated[name] or self.quantities(name)]
 
-    def budget_cases(self, *devices: str) -> list[str]:
-        """Devices, all with a stated uncertainty by default, at each of their humidities."""
-        return [case_id(name, h) for name in devices or self.budgeted for h in self.devices[name]["humidities"]]
+    def budgets(self, *devices: str) -> list[str]:
+        """Budgets of devices, of all with an uncertain input by default: at each humidity, and those of tips."""
+        found = []
+        for name in devices or self.budgeted:
+            parts = ("", "_tip") if self.devices[name]["kind"] == "cantilever" else ("",)
+            found += [case_id(name, humidity) + part for part in parts for humidity in self.devices[name]["humidities"]]
+        return found
 
     def quantities(self, device: str) -> list[tuple[str, str]]:
         """Surfaces of a device and their uncertain quantities: of all scans, or of the heights alone if one is stated.

@@ -351,7 +351,21 @@ def device_slope_contact(plan: Plan, pair: str, length: int, width: int) -> dict
 
 def modulus_contact(plan: Plan, pair: str, length: int, width: int, side: str) -> dict:
     """As `device_slope_contact`, with less or more of Young's modulus of the beam's material, in both bodies of it."""
-    found = _on_patch(plan, pair, length, width, _samples_of_slopes(plan))
+    return _with_modulus(_on_patch(plan, pair, length, width, _samples_of_slopes(plan)), side)
+
+
+def tip_modulus_contact(plan: Plan, pair: str, length: int, width: int, side: str) -> dict:
+    """As `tip_contact`, with less or more of Young's modulus of the beam's material, in both bodies of it."""
+    return _with_modulus(tip_contact(plan, pair, length, width), side)
+
+
+def tip_choice_contact(plan: Plan, pair: str, length: int, width: int, variant: str) -> dict:
+    """As `tip_contact`, with the solids of a choice of the model."""
+    return tip_contact(plan, pair, length, width) | plan.variant_contact(pair, variant)
+
+
+def _with_modulus(found, side):
+    """Settings of a contact with less or more of Young's modulus of the beam's material."""
     factor = 1 - STEP if side == "less" else 1 + STEP
 
     def changed(material):
@@ -373,18 +387,26 @@ def device_choice_summits(plan: Plan, pair: str, length: int, width: int, varian
 
 
 def budget(plan: Plan, case: str) -> dict:
-    """Everything about a budget: its settings, and the quantities and choices of its files in their order."""
+    """Everything about a budget: its settings, the quantities of its surfaces and its choices of the model."""
     name, designs = pair_of(case), Designs(plan.config)
     section = plan.config["devices"][name]
     pair = section["pair"]
-    found = chosen(plan.config, ["seed"]) | chosen(section, ["uncertainty"])
-    found |= {"water": plan.water(pair), "humidity": humidity_of(case)}
+    found = chosen(plan.config, ["seed"]) | {"uncertainty": section.get("uncertainty", {})}
+    found |= {"water": plan.water(pair), "humidity": humidity_of(case), "surfaces": plan.sides(pair)}
     found |= chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(pair)
     if section["kind"] == "stopper":
         found |= chosen(section, ["contact_um"])
     else:
         found |= {"device": _device(plan, name), "beams": plan.config["design"]["budget_beams"]}
     return {"budget": found, "quantities": list(map(list, designs.quantities(name))), "choices": plan.choices(pair)}
+
+
+def tip_budget(plan: Plan, case: str) -> dict:
+    """As `budget`, of the length that the tip of a cantilever holds, for the middle one of the shares."""
+    found, shares = budget(plan, case), plan.config["design"]["shares"]
+    settings = {key: value for key, value in found["budget"].items() if key != "beams"}
+    choices = plan.choices_of_solids(plan.config["devices"][pair_of(case)]["pair"])
+    return found | {"budget": settings | {"share": shares[len(shares) // 2]}, "choices": choices}
 
 
 def beyond_stoppers(plan: Plan) -> dict:

@@ -15,6 +15,8 @@ from stiction.config.plan import Plan
 
 #: The two values of a shifted quantity, in the order in which rules name their files.
 LESS_AND_MORE = ("less", "more")
+#: Folder of the contacts of devices.
+_CONTACT = "results/devices/contact"
 
 
 def one_of(names: Iterable[str]) -> str:
@@ -91,7 +93,7 @@ class Paths:
     def shifted_contacts(self, pair: str, surface: str) -> dict[str, list[str]]:
         """Contacts of a pair with less and with more of every quantity of a surface."""
         quantities = self.plan.quantities(surface)
-        return {side: [_shifted(f"{pair}_{surface}_{name}_{side}") for name in quantities] for side in LESS_AND_MORE}
+        return {side: [f"{_shifted(pair)}_{surface}_{name}_{side}.nc" for name in quantities] for side in LESS_AND_MORE}
 
     def summits_of_variant(self, pair: str, variant: str) -> str:
         """Summits of a pair under a variant, which other variants may share."""
@@ -107,39 +109,49 @@ class Paths:
         """Contact of the patch on which a device sticks: that of its pair in the main line if both are equal."""
         if self._designs.has_strips_of_pair(device):
             return f"results/contact/{self._section(device)['pair']}_NG.nc"
-        return f"results/devices/contact/{self._designs.ground(device).name}.nc"
+        return f"{_CONTACT}/{self._designs.ground(device).name}.nc"
 
     def tips(self, device: str) -> str | list:
         """Contact of the strips that hold the tips of a cantilever; an empty list for a bridge."""
         if self._section(device)["kind"] == "bridge":
             return []
-        return f"results/devices/contact/tips/{self._designs.tips(device).name}.nc"
+        return f"{_CONTACT}/tips/{self._designs.tips(device).name}.nc"
 
     def uncertain_surfaces(self, device: str) -> dict[str, list[str]]:
-        """Datasets of the surfaces of a device with uncertain quantities, by stage."""
-        return of_surfaces(dict.fromkeys(surface for surface, _ in self._designs.quantities(device)))
+        """Datasets of the surfaces of a device with uncertain quantities, and estimates of those described by scans."""
+        names = dict.fromkeys(surface for surface, _ in self._designs.quantities(device))
+        return of_surfaces(names) | {"estimates": self.estimates(self._section(device)["pair"])}
 
-    def shifted_ground(self, device: str, side: str) -> list[str]:
-        """Contacts of the patch of a device with less or more of every uncertain quantity of its surfaces."""
-        names = [f"{surface}_{quantity}_{side}" for surface, quantity in self._designs.quantities(device)]
-        if self._designs.has_strips_of_pair(device):
-            return [_shifted(f"{self._section(device)['pair']}_{name}") for name in names]
-        return [f"results/devices/contact/slopes/{self._patch(device)}_{name}.nc" for name in names]
+    def contacts_of_budget(self, device: str) -> dict[str, str | list[str]]:
+        """Contact of the patch of a device, with less and more of every uncertain input, and under other choices."""
+        pair, patch = self._section(device)["pair"], self._designs.ground(device).name
+        slopes = _shifted(pair) if self._designs.has_strips_of_pair(device) else f"{_CONTACT}/slopes/{patch}"
+        changed = self._changed_contacts(device, slopes, _CONTACT, patch, self.plan.choices(pair))
+        return {"contact": self.ground(device)} | changed
 
-    def shifted_modulus(self, device: str) -> list[str]:
-        """Contacts of the patch of a device with less and with more of Young's modulus, if that is uncertain."""
-        if not self._section(device)["uncertainty"].get("young_modulus_GPa"):
-            return []
-        return [f"results/devices/contact/modulus/{self._patch(device)}_{side}.nc" for side in LESS_AND_MORE]
+    def contacts_of_tip_budget(self, device: str) -> dict[str, str | list[str]]:
+        """As `contacts_of_budget`, of the tips of a cantilever."""
+        tips, folder = self._designs.tips(device), f"{_CONTACT}/tips"
+        slopes, choices = f"{folder}/slopes/{tips.name}", self.plan.choices_of_solids(tips.pair)
+        return {"contact": self.tips(device)} | self._changed_contacts(device, slopes, folder, tips.name, choices)
 
-    def choices(self, device: str) -> list[str]:
-        """Contacts of the patch of a device under other choices of the model."""
-        variants = self.plan.choices(self._section(device)["pair"])
-        return [f"results/devices/contact/choices/{self._patch(device)}_{variant}.nc" for variant in variants]
+    def _changed_contacts(self, device, slopes, folder, patch, choices):
+        """Contacts of a patch with less and more of every uncertain input of a device, and under choices of the model.
+
+        ``slopes`` is the beginning of the names of those with a shifted quantity of a surface.
+        """
+        quantities = [f"{slopes}_{surface}_{quantity}" for surface, quantity in self._designs.quantities(device)]
+        shifted = {side: [f"{begin}_{side}.nc" for begin in quantities] for side in LESS_AND_MORE}
+        stated = self._section(device).get("uncertainty", {}).get("young_modulus_GPa")
+        modulus = [f"{folder}/modulus/{patch}_{side}.nc" for side in LESS_AND_MORE] if stated else []
+        return shifted | {
+            "modulus": modulus,
+            "choices": [f"{folder}/choices/{patch}_{variant}.nc" for variant in choices],
+        }
 
     def summits_of_choice(self, pair: str, size: str, variant: str) -> str:
         """Summits of a patch of a pair, of a size such as ``1500x30000`` [nm], under a choice of the model."""
-        return f"results/devices/contact/summits/{pair}_{size}_{self.plan.summits_under(pair, variant)}.nc"
+        return f"{_CONTACT}/summits/{pair}_{size}_{self.plan.summits_under(pair, variant)}.nc"
 
     def results(self, device: str) -> dict[str, list[str]]:
         """Everything that the page of a device shows, by stage."""
@@ -147,7 +159,7 @@ class Paths:
         cases = [case_id(device, humidity) for humidity in section["humidities"]]
         stopper = section["kind"] == "stopper"
         found = {
-            "budgets": [f"budget/{case}" for case in cases if device in designs.budgeted],
+            "budgets": [f"budget/{name}" for name in (designs.budgets(device) if device in designs.budgeted else [])],
             "charts": [f"chart/{case}" for case in (designs.chart_cases(device) if device in designs.charted else [])],
             "safe_lengths": [] if stopper else [f"safe_lengths/{case}" for case in cases],
             "stoppers": [f"stoppers/{device}"] if stopper else [],
@@ -158,11 +170,7 @@ class Paths:
     def _section(self, device):
         return self.plan.config["devices"][device]
 
-    def _patch(self, device):
-        """Part of file names for the patch on which a device sticks."""
-        return self._designs.ground(device).name
 
-
-def _shifted(name):
-    """Contact of a pair with a shifted quantity, by the names of pair, surface, quantity and side."""
-    return f"results/studies/slopes/contact/{name}.nc"
+def _shifted(pair):
+    """Beginning of the names of the contacts of a pair with a shifted quantity."""
+    return f"results/studies/slopes/contact/{pair}"

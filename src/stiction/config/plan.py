@@ -333,6 +333,10 @@ class Plan:
         contacts = [name for name in self.variants if self.contact_under(name) == name != "base"]
         return [name for name in contacts if self._under(pair, name) != self._under(pair, "base")]
 
+    def choices_of_solids(self, pair: str) -> list[str]:
+        """Those of `choices` that leave the surfaces as they are, on patches of any size."""
+        return [name for name in self.choices(pair) if self.summits_under(pair, name) == "base"]
+
     @cached_property
     def studied(self) -> list[tuple[str, str]]:
         """Pairs and their variants, without those that change nothing for the pair."""

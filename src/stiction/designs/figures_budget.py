@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 
 from stiction.designs.budget import budget_of, groups_of
 from stiction.designs.figures_devices import below
-from stiction.designs.tables_budget import RESPONSES, SCATTER, TOTAL
+from stiction.designs.tables_budget import SCATTER, TOTAL, response_text
 from stiction.devices.risk import stuck_share
 from stiction.report.format import TO_UN
 from stiction.report.style import (
@@ -21,14 +21,14 @@ from stiction.report.style import (
     humidity_axis,
     letter,
     panels,
+    shades,
     styled,
 )
 from stiction.report.tables_studies import variant_label
 
-_COLOUR, _CHOICE, _NEUTRAL = "#0072B2", "#D55E00", "0.6"
-_BESIDE = {"xycoords": "data", "textcoords": "offset points", "fontsize": 6, "va": "center"}
-#: Height of one bar and of everything else in a panel of the budget [in].
-_BAR, _AROUND = 0.17, 0.62
+_COLOUR = "#0072B2"
+#: Heights of a row of a budget, of everything else in its panel, and of the legend [in]; share of a row with bars.
+_ROW, _AROUND, _LEGEND, _FILLED = 0.22, 0.62, 0.3, 0.8
 
 
 # Stoppers
@@ -98,75 +98,78 @@ def _force_over_humidity(panel, dataset):
 
 
 @styled
-def budget(datasets: Mapping[tuple[str, float], xr.Dataset]) -> Figure:
-    """Tornado of every device: effect of each measurement, total, scatter and choices of the model, at every humidity.
+def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
+    """Tornado of a device: effect of each measurement and their total; beside it, choices of the model.
 
     Parameters
     ----------
     datasets : dict
-        (device, humidity) to the dataset of stage budget.
+        Device, humidity and, for tips, more to the dataset of stage budget.
     """
-    devices = {device: {h: data for (name, h), data in datasets.items() if name == device} for device, _ in datasets}
-    bars = {device: _bars(cases) for device, cases in devices.items()}
-    heights = [_BAR * sum(len(row) for row in rows.values()) + _AROUND for rows in bars.values()]
-    figure, axes = panels(len(devices), 1, (DOUBLE, sum(heights) + 0.3), height_ratios=heights)
-    for panel, (device, rows) in zip(axes[:, 0], bars.items(), strict=True):
-        _tornado(panel, rows, list(devices[device]))
-        response = RESPONSES[next(iter(devices[device].values()))["mean"].attrs["units"]]
-        panel.set_xlabel(f"change of the {response} [%]")
-    letter(axes, list(devices))
-    marks = {"measurements": _COLOUR, "total and scatter": _NEUTRAL, "choices of the model": _CHOICE}
-    figure.legend(
-        [Patch(color=colour) for colour in marks.values()], list(marks), loc="outside lower center", ncols=len(marks)
-    )
+    parts = {}
+    for (_, humidity, *_), dataset in datasets.items():
+        parts.setdefault(response_text(dataset), {})[humidity] = dataset
+    bars = [(_measurements(cases), _choices(cases)) for cases in parts.values()]
+    heights = [_ROW * max(map(len, both)) + _AROUND for both in bars]
+    size = DOUBLE, sum(heights) + _LEGEND
+    figure, axes = panels(len(bars), 2, size, height_ratios=heights, width_ratios=(3, 2))
+    for line, both, cases in zip(axes, bars, parts.values(), strict=True):
+        for panel, rows in zip(line, both, strict=True):
+            _tornado(panel, rows)
+        scatter = ", ".join(f"{100 * float(dataset.scatter):.2g}" for dataset in cases.values())
+        line[0].set_xlabel(f"standard uncertainty [%]; {SCATTER}: {scatter} %")
+        line[1].set_xlabel("change [%]")
+    letter(axes, [title for text in parts for title in (text, "choices of the model")])
+    humidities = list(next(iter(parts.values())))
+    marks = [
+        Patch(color=shade, label=f"RH {h:g}") for h, shade in zip(humidities, shades(len(humidities)), strict=True)
+    ]
+    figure.legend(handles=marks, loc="outside lower center", ncols=8)
     return figure
 
 
-def _bars(cases):
-    """Rows of a tornado, the largest measurement first: name to (low, high, error, colour) at every humidity [%]."""
-    first = next(iter(cases.values()))
+def _measurements(cases):
+    """Rows of all measurements, the largest first, and of the total: name to bars [%] by humidity."""
     found = {humidity: budget_of(dataset) for humidity, dataset in cases.items()}
-    groups = groups_of(first)
-    largest = sorted(groups, key=lambda name: -max(budget.effect(groups[name]) for budget in found.values()))
-    rows = {}
-    for name in largest:
-        rows[name] = [
-            _both_sides(budget.effect(groups[name]), budget.error_of_effect(groups[name], data.slope_error.values))
-            for budget, data in zip(found.values(), cases.values(), strict=True)
+    groups = groups_of(next(iter(cases.values())))
+    largest = sorted(groups, key=lambda name: -max(one.effect(groups[name]) for one in found.values()))
+    rows = {name: groups[name] for name in largest} | {TOTAL: next(iter(found.values())).names}
+    errors = [dataset.slope_error.values for dataset in cases.values()]
+    return {
+        name: [
+            _both_sides(one.effect(inputs), one.error_of_effect(inputs, error))
+            for one, error in zip(found.values(), errors, strict=True)
         ]
-    rows[TOTAL] = [
-        _both_sides(budget.total, budget.error_of_effect(budget.names, data.slope_error.values), _NEUTRAL)
-        for budget, data in zip(found.values(), cases.values(), strict=True)
-    ]
-    rows[SCATTER] = [_both_sides(float(data.scatter), 0.0, _NEUTRAL) for data in cases.values()]
-    for choice in first.choice.values:
-        chosen = [data.sel(choice=choice) for data in cases.values()]
-        rows[f"choice: {variant_label(str(choice))}"] = [
-            (*sorted((0.0, 100 * float(data.effect))), 100 * float(data.effect_error), _CHOICE) for data in chosen
+        for name, inputs in rows.items()
+    }
+
+
+def _both_sides(effect, error):
+    """Bar of an effect in both directions, and its error [%]."""
+    return -100 * effect, 100 * effect, 100 * error
+
+
+def _choices(cases):
+    """Rows of all choices of the model: name to bars from zero, with errors [%], by humidity."""
+    rows = {}
+    for choice in next(iter(cases.values())).choice.values:
+        chosen = [dataset.sel(choice=choice) for dataset in cases.values()]
+        rows[variant_label(str(choice))] = [
+            (*sorted((0.0, 100 * float(one.effect))), 100 * float(one.effect_error)) for one in chosen
         ]
     return rows
 
 
-def _both_sides(effect, error, colour=_COLOUR):
-    """Bar of an effect in both directions."""
-    return -100 * effect, 100 * effect, 100 * error, colour
-
-
-def _tornado(panel, rows: Mapping[str, Sequence[tuple]], humidities: Sequence[float]):
-    """Draw the rows from top to bottom; the bars of a row are those of the humidities, which a text names."""
-    place, ticks = 0.0, []
-    widest = max(max(-low, high) + error for row in rows.values() for low, high, error, _ in row)
-    for row in rows.values():
-        ticks.append(place + (len(row) - 1) / 2)
-        for k, (low, high, error, colour) in enumerate(row):
-            panel.barh(place + k, high - low, 0.8, left=low, color=colour, alpha=1 - 0.25 * k, linewidth=0)
-            end = high if high > -low else low
-            panel.errorbar(end, place + k, xerr=error, color="black", linewidth=0.6, capsize=1)
-            if len(humidities) > 1:
-                beyond = high + error * (end == high)
-                panel.annotate(f"RH {humidities[k]:g}", (beyond, place + k), (4, 0), **_BESIDE)
-        place += len(row) + 0.6
+def _tornado(panel, rows: Mapping[str, Sequence[tuple]]):
+    """Draw rows of bars (low, high, error) from top to bottom; the bars of a row are those of the humidities."""
+    for place, bars in enumerate(rows.values()):
+        height = _FILLED / len(bars)
+        for k, ((low, high, error), shade) in enumerate(zip(bars, shades(len(bars)), strict=True)):
+            at = place + (k - (len(bars) - 1) / 2) * height
+            panel.barh(at, high - low, height, left=low, color=shade, linewidth=0)
+            panel.errorbar(high if high > -low else low, at, xerr=error, color="black", linewidth=0.6, capsize=1)
+    widest = max((max(-low, high) + error for bars in rows.values() for low, high, error in bars), default=1.0)
     panel.axvline(0, color="black", linewidth=0.6)
-    panel.set_yticks(ticks, list(rows))
+    panel.set_yticks(range(len(rows)), list(rows))
     panel.tick_params(axis="y", length=0)
-    panel.set(ylim=(place - 0.8, -0.8), xlim=(-1.1 * widest, 1.2 * widest))
+    panel.set(ylim=(len(rows) - 0.4, -0.6), xlim=(-1.1 * widest, 1.1 * widest))

@@ -69,7 +69,7 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
         for (humidity, dataset), shade in zip(cases.items(), _shades(len(cases)), strict=True):
             _shares(panel, dataset, shade)
             label = f"RH {humidity:g}{_marks(numbers, name, humidity)}"
-            named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=label))
+            named.append(Line2D([], [], color=shade, linewidth=3, label=label))
         panel.legend(handles=named, loc="lower right")
         shares = np.concatenate([dataset.share.values for dataset in cases.values()])
         panel.set(yscale="log", ylim=(shares.min() / 2, 1.3), xlabel="length of the device [µm]")

@@ -26,7 +26,7 @@ h1 {{ font-size: 1.5em }} h2 {{ font-size: 1.15em; margin-top: 1.6em }}
 table {{ border-collapse: collapse; margin: .6em 0 }}
 td, th {{ padding: 2px 12px; text-align: right; border-bottom: 1px solid #ddd }}
 td:first-child, th:first-child {{ text-align: left }}
-td {{ white-space: nowrap }} img {{ max-width: 100% }}
+td {{ white-space: nowrap }} img {{ max-width: 100% }} .table {{ overflow-x: auto }}
 .answer {{ font-size: 1.1em; border-left: 4px solid #0072B2; padding: .2em 1em }}
 .warning {{ border-left: 4px solid #D55E00; padding: .2em 1em }}
 dt {{ font-weight: bold }} dd {{ margin: 0 0 .5em 1.5em }}
@@ -85,7 +85,7 @@ def _facts(facts):
 def _section(section):
     parts = [f"<h2>{escape(section.title)}</h2>", _paragraphs(section.paragraphs)]
     if section.cells is not None:
-        table = section.cells.to_html(index=False, border=0)
+        table = f'<div class="table">{section.cells.to_html(index=False, border=0)}</div>'
         folded = f"<details><summary>Table of {len(section.cells)} rows</summary>{table}</details>"
         parts.append(table if len(section.cells) <= _ROWS else folded)
     if section.figure is not None:
@@ -112,13 +112,17 @@ _FACTS = {
     "restoring_force_uN": ("restoring force", "µN"),
 }
 _OF_BEAMS = {
-    "Safe length": "Largest length of which at most the stated share sticks, with a confidence of 95 %.",
+    "Safe length": (
+        "Largest length of which at most the stated share sticks, with a confidence of 95 %. The confidence counts the "
+        "simulated beams, given the drawn surfaces. The error due to the number of drawn surfaces stands beside the "
+        "estimate (se, surfaces), what the measurements leave unsure further below."
+    ),
     "Estimate": "Length at which exactly the stated share sticks, as well as it is known; it is no bound.",
     "Held by the beam": "The beam touches down behind an open crack and stays flat there (S-shape).",
     "Held by the tip": "Only the free end touches and holds the beam (arc). Shorter beams can be held in this way.",
     "Sampled, fitted, extrapolated": (
-        "What a length rests on: on simulated beams alone; on a line through the shortest 5 % of them, within what was "
-        "verified; or on that line beyond it."
+        "What a length rests on: simulated beams alone; a line through the shortest 5 % of them, within what many more "
+        "beams, tips and bridges on the surfaces of the paper's pair b confirmed; or that line beyond it."
     ),
 }
 _OF_STOPPERS = {
@@ -140,7 +144,7 @@ def of_beam(
     section: Mapping,
     found: Mapping[float, xr.Dataset],
     charts: Mapping[float, xr.Dataset],
-    budgets: Mapping[float, xr.Dataset],
+    budgets: Mapping[tuple, xr.Dataset],
     warnings: Mapping[tuple, Sequence[str]],
 ) -> Page:
     """Page of a cantilever or bridge.
@@ -150,8 +154,10 @@ def of_beam(
     name : str
     section : dict
         Its section of the configuration.
-    found, charts, budgets : dict
-        Humidity to the datasets of the stages safe_lengths, chart and budget; the last two may be empty.
+    found, charts : dict
+        Humidity to the datasets of the stages safe_lengths and chart; the latter may be empty.
+    budgets : dict
+        Humidity and, for tips, more to the dataset of stage budget; may be empty.
     warnings : dict
         Where the model ends: those of `findings.of_devices` and of `findings.of_charts` for this device.
     """
@@ -173,7 +179,7 @@ def of_stopper(
     name: str,
     section: Mapping,
     found: xr.Dataset,
-    budgets: Mapping[float, xr.Dataset],
+    budgets: Mapping[tuple, xr.Dataset],
     warnings: Sequence[str],
 ) -> Page:
     """Page of a stopper; parameters as in `of_beam`, with one dataset of stage stoppers and a list of warnings."""
@@ -209,7 +215,7 @@ def safe_sentence(humidity: float, found: xr.Dataset) -> str:
     shortest = min(lengths.values())
     sentence = (
         f"At a relative humidity of {humidity:g}, devices of up to {shortest:.0f} µm come free after they were pressed "
-        f"down, except for at most 1 in {1 / share:g} (95 % confidence)."
+        f"down, except for at most 1 in {1 / share:g} (95 % confidence, given the drawn surfaces)."
     )
     longest = max(lengths.values())
     if longest == shortest:
@@ -266,19 +272,20 @@ def _ends(found):
 
 
 def _sure(name, budgets):
-    """Section on the uncertainty of the result and what to measure better; none without a stated uncertainty."""
+    """Section on the uncertainty of the result and what to measure better; none if no input is uncertain."""
     if not budgets:
         return []
-    cases = {(name, humidity): dataset for humidity, dataset in budgets.items()}
-    advice = [
-        f"Relative humidity {humidity:g}: {tables_budget.advised(dataset)}" for humidity, dataset in budgets.items()
-    ]
+    cases = {(name, *key): dataset for key, dataset in budgets.items()}
+    said = [f"Relative humidity {humidity:g}: {tables_budget.advised(one)}" for (humidity, *_), one in budgets.items()]
+    said += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
     cells, drawn = _side_by_side(tables_budget.budget(cases).cells), figures_budget.budget(cases)
-    return [Section("Uncertainty, and what should be measured better", advice, cells, drawn)]
+    return [Section("Uncertainty, and what should be measured better", said, cells, drawn)]
 
 
 def _side_by_side(cells):
     """Cells of the budget of one device with a pair of columns for every humidity."""
-    parts = [cells[humidity == cells.RH].set_index("what") for humidity in cells.RH.unique()]
-    shown = [part[["effect [%]", "remaining [%]"]].add_prefix(f"RH {part.RH.iloc[0]}: ") for part in parts]
+    shown = [
+        part.set_index(["held by", "what"])[["effect [%]", "remaining [%]"]].add_prefix(f"RH {humidity}: ")
+        for humidity, part in cells.groupby("RH", sort=False)
+    ]
     return pd.concat(shown, axis=1).reset_index()

@@ -6,7 +6,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.designs.budget import budget_of, groups_of
+from stiction.designs.budget import budget_of, groups_of, response_of
+from stiction.designs.inputs import ARC, FORCE, S_SHAPE
 from stiction.designs.stoppers import in_any_air, is_at_an_end, shares_stuck
 from stiction.devices.budget import advice
 from stiction.devices.limits import NOT_MODELLED
@@ -17,8 +18,9 @@ from stiction.report.tables_studies import variant_label
 
 #: Rows of a budget below those of its measurements.
 TOTAL, INDEPENDENT, SCATTER = "total", "total, if all errors were independent", "scatter between devices"
-#: What the length of a budget is, by its unit.
-RESPONSES = {"m": "mean sticking length", "N": "mean pull-off force"}
+#: What the inputs of a budget move, and what holds the device.
+_RESPONSES = {S_SHAPE: "mean sticking length (S-shape)", FORCE: "mean pull-off force"}
+_HELD_BY = {S_SHAPE: "beam", ARC: "tip", FORCE: "whole area"}
 
 
 # Stoppers
@@ -112,7 +114,7 @@ def worst_humidity(humidity: float, error: float, is_an_end: bool) -> str:
 # Budget
 
 
-def budget(datasets: Mapping[tuple[str, float], xr.Dataset]) -> Table:
+def budget(datasets: Mapping[tuple, xr.Dataset]) -> Table:
     """Uncertainty of every device: effect of each measurement, total, scatter, choices of the model.
 
     The numbers hold every input with its slope; the text is by measurement, with a sentence on what to measure better.
@@ -120,16 +122,18 @@ def budget(datasets: Mapping[tuple[str, float], xr.Dataset]) -> Table:
     Parameters
     ----------
     datasets : dict
-        (device, humidity) to the dataset of stage budget.
+        Device, humidity and, for tips, more to the dataset of stage budget.
     """
-    frame = pd.DataFrame([row for case, dataset in datasets.items() for row in _of_budget(case, dataset)])
-    sentences = [f"{device}, RH {humidity:g}: {advised(dataset)}" for (device, humidity), dataset in datasets.items()]
+    frame = pd.DataFrame([row for (device, rh, *_), one in datasets.items() for row in _of_budget(device, rh, one)])
+    sentences = [f"{device}, RH {humidity:g}: {advised(one)}" for (device, humidity, *_), one in datasets.items()]
+    omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in datasets.items()}
     caption = (
-        "Uncertainty of the mean length at which beams stick and of the mean pull-off force of stoppers: relative "
-        "standard uncertainty due to every measurement, the others being exact, ± standard error of the "
-        "simulation. Remaining: what would be left if the measurement were exact. Scatter between devices and other "
-        "choices of the model, with the sign of their effect, are no part of the total. " + " ".join(sentences)
-    )
+        "Relative standard uncertainty of the mean length at which beams stick as S-shapes, of the length at which "
+        "few are held by their tip, and of the mean pull-off force of stoppers, due to every measurement, the others "
+        "being exact, ± standard error of the simulation. Remaining: what would be left if the measurement were exact. "
+        "Scatter between devices and other choices of the model, with the sign of their effect, are no part of the "
+        "total. "
+    ) + " ".join([*sentences, *omitted])
     shown = frame[frame.part != "input"]
     return Table(frame, caption, pd.DataFrame([_budget_as_text(row) for _, row in shown.iterrows()]))
 
@@ -139,13 +143,24 @@ def advised(dataset: xr.Dataset) -> str:
     found = budget_of(dataset)
     if found.total == 0:
         return "No uncertainty of an input is stated."
-    return advice(found, groups_of(dataset), RESPONSES[dataset["mean"].attrs["units"]])
+    return advice(found, groups_of(dataset), response_text(dataset))
 
 
-def _of_budget(case, dataset):
+def response_text(dataset: xr.Dataset) -> str:
+    """What the inputs move, in words."""
+    response, share = response_of(dataset)
+    return f"length that 1 in {1 / share:g} tips hold (arc)" if response == ARC else _RESPONSES[response]
+
+
+def counted_as_exact(dataset: xr.Dataset) -> str:
+    """Sentence on what has no stated uncertainty."""
+    return f"Counted as exact: {', '.join(map(str, dataset.exact.values))}."
+
+
+def _of_budget(device, humidity, dataset):
     """Numbers of one device at one humidity: inputs, measurements, totals, scatter, choices."""
     found, errors = budget_of(dataset), dataset.slope_error.values
-    head = dict(zip(("device", "relative_humidity"), case, strict=True))
+    head = {"device": device, "relative_humidity": humidity, "held_by": _HELD_BY[response_of(dataset)[0]]}
     deviations = np.sqrt(np.diag(found.covariance))
     for name, slope, error, deviation in zip(found.names, found.slopes, errors, deviations, strict=True):
         numbers = {"slope": slope, "slope_se": error, "standard_uncertainty": deviation}
@@ -170,11 +185,12 @@ def _effect(budget, inputs, slope_errors):
 def _budget_as_text(row):
     """One row as text."""
     effect = number(row.effect_percent, ".2g")
-    if not np.isnan(row.effect_se_percent):
+    if row.effect_se_percent > 0:
         effect = with_error(row.effect_percent, row.effect_se_percent, "+" if row.part == "choice" else "")
     return {
         "device": row.device,
         "RH": f"{row.relative_humidity:g}",
+        "held by": row.held_by,
         "what": f"choice: {variant_label(row['name'])}" if row.part == "choice" else row["name"],
         "effect [%]": effect,
         "remaining [%]": MISSING if np.isnan(row.remaining_percent) else number(row.remaining_percent, ".2g"),

@@ -13,9 +13,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 #: Relative change of dimensions and of Young's modulus in either direction for their slopes.
 STEP = 0.05
+#: Relative error of a slope below which all devices have the same slope, but for rounding.
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -69,10 +72,6 @@ class Budget:
         known = shared @ np.linalg.pinv(self.covariance[np.ix_(of, of)], hermitian=True) @ shared
         return float(np.sqrt(max(self.total**2 - known, 0.0)))
 
-    def shifted(self, shifts: Mapping[str, float]) -> float:
-        """Factor of the length if inputs are shifted by these amounts [-]."""
-        return float(np.exp(sum(self.slopes[self.names.index(name)] * shift for name, shift in shifts.items())))
-
     def _places(self, group):
         """Positions of inputs."""
         return [self.names.index(name) for name in group]
@@ -81,18 +80,8 @@ class Budget:
 def joined(budgets: Sequence[Budget]) -> Budget:
     """Budget of inputs from independent measurements."""
     names = tuple(name for budget in budgets for name in budget.names)
-    covariance = np.zeros((len(names), len(names)))
-    start = 0
-    for budget in budgets:
-        end = start + len(budget.names)
-        covariance[start:end, start:end] = budget.covariance
-        start = end
-    return Budget(names, np.concatenate([budget.slopes for budget in budgets]), covariance)
-
-
-def covariance_of(uncertainties: np.ndarray, correlation: np.ndarray) -> np.ndarray:
-    """Covariance (k, k) from standard uncertainties (k,) and a correlation matrix (k, k)."""
-    return np.outer(uncertainties, uncertainties) * correlation
+    slopes = np.concatenate([budget.slopes for budget in budgets])
+    return Budget(names, slopes, block_diag(*(budget.covariance for budget in budgets)))
 
 
 def log_slope(
@@ -117,8 +106,9 @@ def log_slope(
 
     group = np.arange(len(less)) % groups
     left_out = np.array([slope(group != k) for k in range(groups)])
-    error = np.sqrt((groups - 1) / groups * np.sum((left_out - left_out.mean()) ** 2))
-    return float(slope(np.ones(len(less), bool))), float(error)
+    error = float(np.sqrt((groups - 1) / groups * np.sum((left_out - left_out.mean()) ** 2)))
+    whole = float(slope(np.ones(len(less), bool)))
+    return whole, error if error > _ROUNDING * abs(whole) else 0.0
 
 
 def choice_effect(base: float, changed: float) -> float:

@@ -8,6 +8,7 @@ import xarray as xr
 
 from stiction.contact import forcelaw
 from stiction.contact.meniscus import laplace_pressure, meniscus_height
+from stiction.devices.chart import flooded_energy
 from stiction.stages.contact import tables
 
 
@@ -29,6 +30,22 @@ def force_curves(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np
 def energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
     return forcelaw.adhesion_energies(*force_curves(contact, humidity, water), contact.sizes["sample"])
+
+
+def tip_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
+    """Adhesion energies e of strips as short as the wedge at the tip of a beam (m,) [J m⁻²].
+
+    ASSUME: where the solids stop the attraction at no distance between the mean planes, because a short strip lies low
+    as a whole (1 of 40 000 tips of pair b), the energy is that of flooded flats, the largest that water alone can give.
+    """
+    distance, curve = force_curves(contact, humidity, water)
+    flooded = flooded_energy(water.temperature, water.contact_angles)
+
+    def energy(force):
+        resists = force[: int(np.argmin(force)) + 1].max() >= 0
+        return forcelaw.adhesion_energy(distance, force) if resists else flooded
+
+    return np.array([energy(curve(k)) for k in range(contact.sizes["sample"])])
 
 
 def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
