@@ -113,9 +113,9 @@ _FACTS = {
 }
 _OF_BEAMS = {
     "Safe length": (
-        "Largest length of which at most the stated share sticks, with a confidence of 95 %. The confidence counts the "
-        "simulated beams, given the drawn surfaces. The error due to the number of drawn surfaces stands beside the "
-        "estimate (se, surfaces), what the measurements leave unsure further below."
+        "Largest length of which at most the stated share sticks, with a confidence of 95 %. The confidence is that of "
+        "the simulated beams, given the drawn surfaces. The error due to the number of drawn surfaces is next to the "
+        "estimate (se, surfaces), the uncertainty due to the measurements further below."
     ),
     "Estimate": "Length at which exactly the stated share sticks, as well as it is known; it is no bound.",
     "Held by the beam": "The beam touches down behind an open crack and stays flat there (S-shape).",
