@@ -18,6 +18,11 @@ def test_a_case_is_named_after_its_pair_and_the_decimals_of_its_humidity(humidit
     assert (pair_of(case), humidity_of(case)) == ("b", humidity)
 
 
+@pytest.mark.parametrize("name", ["b", "Mine2", "rh0"])
+def test_the_pair_of_a_case_may_have_any_name(name):
+    assert pair_of(case_id(name, 0.67)) == name
+
+
 @given(st.integers(1, 9999))
 def test_every_humidity_of_four_decimals_is_recovered_from_its_case_name(tenthousandths):
     humidity = tenthousandths / 10000

@@ -15,7 +15,6 @@ from stiction.streams import stream
 HUMIDITIES = (0.5, 0.7)
 LIMIT = 3e6
 LENGTHS = 1e-6 * np.array([600, 650, 700, 1500])
-RNG = stream(4)
 PUBLISHED = pd.DataFrame(
     {
         "pair": ["b", "b"],
@@ -31,11 +30,11 @@ PUBLISHED = pd.DataFrame(
 def character():
     """Heights of 40 x 30 points, 0.1 µm apart."""
     axes = {name: (name, 1e-7 * np.arange(n)) for name, n in (("x", 40), ("y", 30))}
-    return xr.Dataset({"elevation": (("x", "y"), 3e-9 * RNG.standard_normal((40, 30)))}, axes)
+    return xr.Dataset({"elevation": (("x", "y"), 3e-9 * stream(4, "heights").standard_normal((40, 30)))}, axes)
 
 
 def forces(n=21):
-    vectors = np.array([7e-3, 2e6, 8e-9, 6.5e-9]) * (1 + 0.05 * RNG.standard_normal((n, 4)))
+    vectors = np.array([7e-3, 2e6, 8e-9, 6.5e-9]) * (1 + 0.05 * stream(4, "vectors").standard_normal((n, 4)))
     distance = np.linspace(4e-9, 30e-9, 400)
     law = forcelaw.coefficients(vectors, LIMIT)
     return stage_forces.layout(vectors, LIMIT, distance, forcelaw.pressure(law[:, None], distance))
@@ -58,10 +57,14 @@ def draw(models=("NG", "GEO"), published=PUBLISHED):
     return overview("b", character(), forces(), beams(), released, published)
 
 
+def bars(panel):
+    """Error bars of a panel by their label."""
+    return {c.get_label(): c for c in panel.containers if isinstance(c, ErrorbarContainer)}
+
+
 def curves(panel):
     """Label to the points (2, n) of the error bars of a panel."""
-    found = [c for c in panel.containers if isinstance(c, ErrorbarContainer)]
-    return {c.get_label(): np.array(c[0].get_data(orig=False), float) for c in found}
+    return {label: np.array(found[0].get_data(orig=False), float) for label, found in bars(panel).items()}
 
 
 def test_overview_is_written_without_a_warning_and_no_panel_covers_another(tmp_path):
@@ -86,6 +89,33 @@ def test_surface_is_a_square_piece_of_the_simulated_one():
     (image,) = overview("b", one, forces(), beams(), released, PUBLISHED).axes[0].images
     np.testing.assert_allclose(image.get_array(), 1e9 * one.elevation.values[:30, :30].T)
     np.testing.assert_allclose(image.get_extent(), [0, 3, 0, 3])  # µm
+
+
+def test_the_law_is_that_of_the_sample_of_median_energy():
+    dataset = forces()
+    vectors, limit = stage_forces.vectors(dataset)
+    median = vectors[np.argsort(vectors[:, 0])[len(vectors) // 2]]
+    panel = overview("b", character(), dataset, beams(), {(0.5, "NG"): beams()}, PUBLISHED).axes[1]
+    distance, force = next(line for line in panel.lines if line.get_label() == "Eq. (12)").get_data()
+    law = forcelaw.coefficients(median[None], limit)[0]
+    np.testing.assert_allclose(force, 1e-6 * forcelaw.pressure(law, 1e-9 * distance), rtol=1e-6)
+
+
+def test_the_first_s_shaped_beam_is_highlighted():
+    released = beams()
+    lines = draw().axes[2].lines
+    (highlighted,) = (line for line in lines if line.get_linewidth() > 1)
+    np.testing.assert_allclose(highlighted.get_ydata(), 1e6 * released.deflection.values[0])
+
+
+def test_bars_are_the_standard_deviations_over_the_beams_and_those_published():
+    halves = {
+        label: [np.ptp(segment[:, 1]) / 2 for segment in found[2][0].get_segments()]
+        for label, found in bars(draw().axes[3]).items()
+    }
+    np.testing.assert_allclose(halves["computed here"], [50, 50])  # of 600, 650 and 700 µm
+    np.testing.assert_allclose(halves["published"], PUBLISHED.geo_std)
+    np.testing.assert_allclose(halves["experiment"], PUBLISHED.experiment_std)
 
 
 def test_law_of_the_typical_curve_lies_on_it():

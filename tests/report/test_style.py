@@ -319,6 +319,25 @@ def test_law_in_figure_5_passes_through_the_marked_parameters(drawn, forces, fit
         assert f"{value:.3g} {unit}" in shown
 
 
+def test_figure_5_marks_both_ends_of_the_law_states_its_error_and_follows_it_to_a_hundredth_of_its_depth(
+    drawn, forces, fit
+):
+    axes = drawn["05"].axes[0]
+    k = typical(fit, 30)
+    _, f_max, d_max, d_limit = stage_forces.vectors(forces)[0][k]
+    (marked,) = (line.get_xydata() for line in axes.lines if line.get_marker() == "o")
+    np.testing.assert_allclose(marked, [[1e9 * d_limit, 1e-6 * LIMIT], [1e9 * d_max, -1e-6 * f_max]])
+    error = 100 * float(fit.curve_error.sel(sample=k))
+    assert axes.get_legend().get_title().get_text() == f"sample {k}, error {error:.2g} %"
+    assert curve(axes, "Eq. (12)")[1][-1] == pytest.approx(-1e-8 * f_max, rel=0.01)
+
+
+def test_force_curves_end_at_twice_the_largest_attraction_in_repulsion(drawn, forces):
+    for panel in drawn["12"].axes[3:6]:
+        highest = max(segment[:, 1].max() for segment in panel.collections[0].get_segments() if len(segment))
+        assert 1 < highest / (-1e-6 * float(forces.force.min())) < 2
+
+
 def test_force_curves_are_those_kept_and_those_of_the_generated_laws(drawn, forces):
     crowd, highlighted = (c for c in drawn["12"].axes[0].collections if isinstance(c, LineCollection))
     assert len(crowd.get_segments()) == 30

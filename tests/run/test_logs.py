@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from stiction.progress import progress
-from stiction.run.logs import logged
+from stiction.run.logs import logged, recorded
 
 
 def test_a_successful_job_logs_progress_warnings_time_and_memory(tmp_path):
@@ -20,6 +20,15 @@ def test_a_successful_job_logs_progress_warnings_time_and_memory(tmp_path):
     seconds, _, megabytes, _ = log.splitlines()[-1].removeprefix("took ").split()
     assert float(seconds) >= 0
     assert int(megabytes) > 20  # an interpreter with its libraries
+
+
+def test_a_log_records_the_checksums_of_the_final_results_of_its_job(tmp_path):
+    result = tmp_path / "table 1.csv"
+    with logged(tmp_path / "logs" / "tables" / "table_1.log", [str(result)]):
+        result.write_bytes(b"abc")
+    # SHA-256 of "abc", FIPS 180-2, App. B.1.
+    known = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+    assert recorded(tmp_path / "logs") == {str(result): known}
 
 
 def test_the_logged_memory_is_the_peak(tmp_path):

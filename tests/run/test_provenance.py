@@ -1,6 +1,9 @@
 import json
 import os
+import platform
+import re
 import subprocess
+from pathlib import Path
 
 import numpy
 import pytest
@@ -18,6 +21,14 @@ def test_every_run_appends_its_code_machine_and_configuration_to_the_record(tmp_
     assert {"started", "versions", "git", "machine", "config"} == set(runs[0])
     assert runs[0]["machine"]["cores"] == os.cpu_count()
     assert [file.name for file in path.parent.iterdir()] == ["provenance.json"], "no draft is left"
+
+
+@pytest.mark.skipif(not Path("/proc/cpuinfo").exists(), reason="the system does not list its processors")
+def test_the_processor_is_that_which_the_system_reports(tmp_path):
+    provenance.record(tmp_path / "provenance.json", tmp_path, {})
+    (run,) = json.loads((tmp_path / "provenance.json").read_text())
+    named = re.search(r"^model name\s*:\s*(.*)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+    assert run["machine"]["cpu"].strip() == (named[1].strip() if named else platform.processor())
 
 
 @pytest.mark.parametrize("text", ["[1, 2", "{}"])

@@ -1,0 +1,44 @@
+"""The lock on the folder of a run."""
+
+import fcntl
+import subprocess
+import sys
+
+import pytest
+
+from stiction.run import folder
+
+
+def test_only_one_run_uses_a_folder_until_it_ends(tmp_path):
+    lock = tmp_path / "running"
+    held = folder.reserved(lock)
+    with pytest.raises(RuntimeError, match="Another run is using this folder"):
+        folder.reserved(lock)
+    held.close()
+    folder.reserved(lock).close()
+
+
+def test_other_folders_stay_free(tmp_path):
+    with folder.reserved(tmp_path / "one"), folder.reserved(tmp_path / "other"):
+        pass
+
+
+def test_the_lock_of_a_killed_run_is_released(tmp_path):
+    hold = "import sys, time; from stiction.run import folder; f = folder.reserved('running'); print(1, flush=True)"
+    with subprocess.Popen(
+        [sys.executable, "-c", f"{hold}; time.sleep(60)"], cwd=tmp_path, stdout=subprocess.PIPE
+    ) as run:
+        run.stdout.readline()
+        with pytest.raises(RuntimeError, match="Another run"):
+            folder.reserved(tmp_path / "running")
+        run.kill()
+    folder.reserved(tmp_path / "running").close()
+
+
+def test_a_disk_without_locks_is_reported_with_the_remedy(tmp_path, monkeypatch):
+    def flock(*_):
+        raise OSError(95, "Operation not supported")
+
+    monkeypatch.setattr(fcntl, "flock", flock)
+    with pytest.raises(RuntimeError, match=r"cannot be locked \(.*not supported\)\. Choose a --directory"):
+        folder.reserved(tmp_path / "running")
