@@ -36,7 +36,7 @@ dt {{ font-weight: bold }} dd {{ margin: 0 0 .5em 1.5em }}
 </html>
 """
 #: Pixels of a page for one inch of a figure, and most rows of a table that is not folded.
-_PIXELS, _ROWS = 120, 60
+_PIXELS, _ROWS = 120, 30
 
 
 @dataclass(frozen=True)
@@ -121,6 +121,13 @@ _OF_BEAMS = {
         "verified; or on that line beyond it."
     ),
 }
+_OF_CHARTS = {
+    "Finite elements, power law": (
+        "Lengths of simulated beams, or a power of thickness and gap between them, with its largest error at simulated "
+        "beams that it had to predict."
+    ),
+    "Saturated air": "Length that sticks where water fills all gaps: wetter air cannot hold shorter beams.",
+}
 _OF_STOPPERS = {
     "Pull-off force": "Largest force with which the two surfaces hold each other while they are separated.",
     "P(stuck)": "Share of equal stoppers whose pull-off force exceeds the restoring force.",
@@ -165,7 +172,7 @@ def of_beam(
     sections += _sure(name, budgets)
     answer = [safe_sentence(humidity, dataset) for humidity, dataset in found.items()]
     listed = [f"({k}) {sentence}" for k, sentence in enumerate(findings.numbered(warnings)[0], 1)]
-    words = _OF_BEAMS | (_OF_BUDGETS if budgets else {})
+    words = _OF_BEAMS | (_OF_CHARTS if charts else {}) | (_OF_BUDGETS if budgets else {})
     return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
 
 
