@@ -160,7 +160,7 @@ def of_beam(
     found, charts, budgets : dict
         Humidity to the datasets of the stages safe_lengths, chart and budget; the last two may be empty.
     warnings : dict
-        Where the model ends: those of `findings.of_devices` and of `findings.of_charts` for this device.
+        Where the model ends for this device: warnings of `stiction.designs.findings.of_devices` and ``of_charts``.
     """
     cases = {(name, humidity): dataset for humidity, dataset in found.items()}
     table = tables_devices.safe_lengths(cases, warnings).cells.drop(columns="device")
