@@ -141,3 +141,9 @@ def test_the_axis_of_humidities_runs_from_the_driest_to_the_most_humid():
 def test_studies_with_shifted_surfaces_have_their_own_number_of_samples(settings, study):
     samples = settings(PLAN, "b")["contact"]["samples"]
     assert samples == PLAN.config["studies"][study]["samples"] != PLAN.config["contact"]["samples"]
+
+
+@pytest.mark.parametrize(("modulus", "known"), [(164, True), (150, True), (178, True), (140, False), (190, False)])
+def test_a_solid_counts_as_polysilicon_if_its_modulus_is_near_that_of_the_paper(modulus, known):
+    found = jobs.model_limits(Plan(load({"solid": {"young_modulus_GPa": modulus}})))["materials"]
+    assert found == dict.fromkeys("abc", [] if known else [["the solid", ["Poisson's ratio", "Young's modulus"]]])

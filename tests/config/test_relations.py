@@ -177,3 +177,18 @@ def test_values_within_the_schema_can_only_violate_relations(values):
     for line in problems(config):
         assert re.match(r"[\w.\[\]]+ is .*, must ", line)
         assert not any(leaf.entry["description"] in line for leaf in SCALARS)
+
+
+@pytest.mark.parametrize("name", ["B1", "B2", "Sub2"])
+def test_the_density_of_summits_is_that_of_the_rougher_surface_or_half_of_its_spectrum(name):
+    rough, smooth = PAPER["surfaces"][name], PAPER["surfaces"]["Sub1"]
+    stated = rough["summit_density_per_um2"]
+    assert relations.summit_density([smooth, rough]) == relations.summit_density([rough, smooth]) == stated
+    unstated = {key: value for key, value in rough.items() if key != "summit_density_per_um2"}
+    assert relations.summit_density([smooth, unstated]) == pytest.approx(stated, rel=0.3)
+
+
+@pytest.mark.parametrize(("more", "wet"), [(0, True), (4.9, True), (5.1, False)])
+def test_water_condenses_up_to_contact_angles_that_add_up_to_180_degrees(more, wet):
+    named = {"One": {"contact_angle_deg": 100}, "Other": {"contact_angle_deg": 70}}
+    assert bool(relations.wetting([{"material": "One"}, {"material": "Other"}], named, more)) == wet

@@ -12,7 +12,6 @@ from stiction.config.designs import KEYS, Designs
 from stiction.config.files import load, normalised
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
-from stiction.config.relations import summit_density
 from stiction.config.units import typed
 from stiction.designs import chart, cracks, findings, safe_lengths
 from stiction.stages import contact, curves
@@ -136,15 +135,6 @@ def test_patches_with_too_few_summits_are_refused(device, key, message):
     found = problems(merged(PAPER, {"devices": {"D1": device}}))
     assert len(found) == bool(message)
     assert all(line.startswith(f"devices.D1.{key} is ") and message in line for line in found)
-
-
-@pytest.mark.parametrize("name", ["B1", "B2", "Sub2"])
-def test_the_density_of_summits_is_that_of_the_rougher_surface_or_half_of_its_spectrum(name):
-    rough, smooth = PAPER["surfaces"][name], PAPER["surfaces"]["Sub1"]
-    stated = rough["summit_density_per_um2"]
-    assert summit_density([smooth, rough]) == summit_density([rough, smooth]) == stated
-    unstated = {key: value for key, value in rough.items() if key != "summit_density_per_um2"}
-    assert summit_density([smooth, unstated]) == pytest.approx(stated, rel=0.3)
 
 
 def test_only_cantilevers_have_tips():

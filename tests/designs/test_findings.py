@@ -52,7 +52,7 @@ def test_beams_that_all_end_as_arcs_have_no_mean_to_warn_about():
 @pytest.mark.parametrize(
     ("beam", "words"),
     [
-        (replace(PAPER, gap=60 * UM), "slope of 0.13"),
+        (replace(PAPER, gap=60 * UM), "700 µm the beam reaches a slope of 0.129"),
         (replace(PAPER, thickness=50 * UM), "14 times as long"),
         (replace(PAPER, width=700 * UM), "bends as a plate"),
     ],
@@ -160,7 +160,7 @@ def test_a_shape_has_the_warnings_of_its_own_length():
     steep = replace(of, device=replace(C1, gap=0.08 / 1.5 * alone * UM))
     assert only(found, steep, S_SHAPE) == []
     (sentence,) = only(found, steep, EITHER)
-    assert sentence.startswith(f"At a length of {tip:.0f} µm the beam reaches a slope of {0.08 * alone / tip:.2g}")
+    assert sentence.startswith(f"At a length of {tip:.0f} µm the beam reaches a slope of {0.08 * alone / tip:.3g}")
     assert only(found, replace(of, tip=1.5 * UM), S_SHAPE) == []  # strips of tips do not matter to the beam alone
 
 

@@ -562,7 +562,7 @@ def wetting(sides: list[dict], materials: dict, more: float = 0) -> tuple[float,
     ``more`` degrees are added to both angles.
     """
     stated = (material.get("contact_angle_deg", 0) for material in of_material(sides, materials))
-    angles = [math.radians(min(angle + more, 180)) for angle in stated]
+    angles = [math.radians(angle + more) for angle in stated]
     return tuple(angles) if sum(map(math.cos, angles)) > 1e-9 else ()
 
 

@@ -134,9 +134,9 @@ def chart(
     figure, columns, lines = columns_of_panels(len(subjects), 1, _width, 3.2)
     for panel, (name, gap) in zip(columns[:, 0], subjects, strict=True):
         whole = axes[name].sel(gap=gap)
-        marks = {size: _marks(numbers, name, size, gap) for size in whole.thickness.values}
-        _thicknesses(panel, whole, marks)
-        panel.set(xlabel="relative humidity [–]", ylim=(0, None))
+        marks = [_marks(numbers, name, thickness, gap) for thickness in whole.thickness.values]
+        panel.legend(handles=_thicknesses(panel, whole, marks), loc="upper right")
+        panel.set(xlabel="relative humidity [–]", ylim=(0, 1.4 * panel.dataLim.y1))  # room for the legend
         humidity_axis(panel)
     for line in lines:
         line[0, 0].set_ylabel("safe length [µm]")
@@ -147,9 +147,12 @@ def chart(
 
 
 def _thicknesses(panel, whole, marks):
-    """Curves of all thicknesses of one device and gap, their limits in saturated air, and what a power law gave."""
-    share = whole.share.values[len(whole.share) // 2]
-    for thickness, shade in zip(whole.thickness.values, _shades(whole.sizes["thickness"]), strict=True):
+    """Curves of all thicknesses of one device and gap, their limits in saturated air, and what a power law gave.
+
+    Returns the entries of a legend of the thicknesses.
+    """
+    share, named = whole.share.values[len(whole.share) // 2], []
+    for thickness, shade, mark in zip(whole.thickness.values, _shades(len(marks)), marks, strict=True):
         one = whole.sel(thickness=thickness, share=share)
         between = one.by_elements.values == 0
         for shape in whole["shape"].values:
@@ -161,7 +164,9 @@ def _thicknesses(panel, whole, marks):
             limit = TO_UM * float(one.flooded_length.sel(shape=shape).isel(relative_humidity=0))
             panel.axhline(limit, color=shade, linestyle=_SATURATED[shape], linewidth=0.8)
             panel.plot([], [], color="0.3", linestyle=_SATURATED[shape], label=f"{text}, saturated air")
-        panel.plot([], [], "s", color=shade, label=f"thickness {TO_UM * thickness:g} µm{marks[thickness]}")
+        label = f"thickness {TO_UM * thickness:g} µm{mark}"
+        named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=label))
     if not whole.by_elements.all():
-        error = 100 * float(whole.power_law_error.max())
-        panel.plot([], [], "o", color="0.3", fillstyle="none", label=f"by a power law, ± {error:.2g} %")
+        label = f"by a power law, ± {100 * float(whole.power_law_error.max()):.2g} %"
+        named.append(Line2D([], [], color="0.3", marker="o", fillstyle="none", linestyle="", label=label))
+    return named

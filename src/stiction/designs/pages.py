@@ -36,7 +36,7 @@ dt {{ font-weight: bold }} dd {{ margin: 0 0 .5em 1.5em }}
 </html>
 """
 #: Pixels of a page for one inch of a figure, and most rows of a table that is not folded.
-_PIXELS, _ROWS = 120, 60
+_PIXELS, _ROWS = 120, 30
 
 
 @dataclass(frozen=True)
@@ -125,6 +125,13 @@ _OF_BEAMS = {
         "beams, tips and bridges on the surfaces of the paper's pair b confirmed; or that line beyond it."
     ),
 }
+_OF_CHARTS = {
+    "Finite elements, power law": (
+        "Lengths of simulated beams, or a power of thickness and gap between them, with its largest error at simulated "
+        "beams that it had to predict."
+    ),
+    "Saturated air": "Length that sticks where water fills all gaps: wetter air cannot hold shorter beams.",
+}
 _OF_STOPPERS = {
     "Pull-off force": "Largest force with which the two surfaces hold each other while they are separated.",
     "P(stuck)": "Share of equal stoppers whose pull-off force exceeds the restoring force.",
@@ -159,7 +166,7 @@ def of_beam(
     budgets : dict
         Humidity and, for tips, more to the dataset of stage budget; may be empty.
     warnings : dict
-        Where the model ends: those of `findings.of_devices` and of `findings.of_charts` for this device.
+        Where the model ends for this device: warnings of `stiction.designs.findings.of_devices` and ``of_charts``.
     """
     cases = {(name, humidity): dataset for humidity, dataset in found.items()}
     table = tables_devices.safe_lengths(cases, warnings).cells.drop(columns="device")
@@ -171,7 +178,7 @@ def of_beam(
     sections += _sure(name, budgets)
     answer = [safe_sentence(humidity, dataset) for humidity, dataset in found.items()]
     listed = [f"({k}) {sentence}" for k, sentence in enumerate(findings.numbered(warnings)[0], 1)]
-    words = _OF_BEAMS | (_OF_BUDGETS if budgets else {})
+    words = _OF_BEAMS | (_OF_CHARTS if charts else {}) | (_OF_BUDGETS if budgets else {})
     return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
 
 

@@ -92,7 +92,7 @@ def large_rotation(gap: float, crack_length: float) -> str | None:
     if slope <= ROTATION:
         return None
     return (
-        f"At a length of {crack_length * 1e6:.0f} µm the beam reaches a slope of {slope:.2g}, above {ROTATION}: the "
+        f"At a length of {crack_length * 1e6:.0f} µm the beam reaches a slope of {slope:.3g}, above {ROTATION}: the "
         "linear theory of beams does not hold."
     )
 
