@@ -378,6 +378,7 @@ MUTANTS = {
         ("variance = found.summit_errors**2 +", "variance ="),
         ("variance[0] += (found.errors[0] * found.summits[0]) ** 2", "pass"),
         ("_SUMMITS * np.sqrt(variance)", "3 * _SUMMITS * np.sqrt(variance)"),
+        ("sharper = radius < 1 < density", "sharper = radius < 1"),
         ("np.isfinite(found.summits + found.summit_errors)", "np.isfinite(found.summits)"),
         ("- shift @ slopes", ""),
         ("if number < ENOUGH_WAVELENGTHS", "if number < 2"),

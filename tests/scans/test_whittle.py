@@ -143,7 +143,7 @@ def test_chance_is_no_end_even_in_few_rings():
     power_law = dataclasses.replace(B2, cutoff=1e9, floor=B2.plateau * (1e9 / B2.corner) ** B2.slope)
     within = dataclasses.replace(REACH, nyquist=16.5 * 2e6 * np.pi / 10, high=11.5 * 2e6 * np.pi / 10)
     for k in range(300):
-        drawn = measured(stream(1, "chance", k), power_law, MODES[:16])
+        drawn = measured(stream(1, "chance", k), power_law, MODES[:16] / 3)
         assert fit_to_the_end(drawn, within)[1].end == within.nyquist
 
 

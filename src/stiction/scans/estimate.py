@@ -425,7 +425,8 @@ def _summits_differ(found):
     if not np.any(np.abs(found.summits - found.model_summits) > _SUMMITS * np.sqrt(variance)):
         return ""
     radius, density = found.summits / found.model_summits
-    reason = "noise, or short waves that the fit does not have" if radius < 1 else "the fit has too many short waves"
+    sharper = radius < 1 < density
+    reason = "noise, or short waves that the fit does not have" if sharper else "its short waves differ from the scans"
     return f"summits have {radius:.2g} times the radius and {density:.2g} times the density of the model: {reason}"
 
 
