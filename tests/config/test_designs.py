@@ -84,6 +84,7 @@ def test_a_device_on_scans_has_a_budget_without_a_stated_uncertainty():
     found = Designs(merged(PLAN.config, {"surfaces": {"B2": scanned}}))
     assert found.budgeted == ["C1", "C2", "S1"]
     assert found.quantities("C2") == [("B2", quantity) for quantity in OF_MOMENTS + OF_SPECTRUM]
+    assert typed(inputs.Settings, jobs.budget(PLAN, "C2_rh067")["budget"]).uncertainty == inputs.Uncertainty()
 
 
 def test_heights_are_uncertain_if_a_scan_is_stated():

@@ -89,6 +89,13 @@ def test_common_random_numbers_make_slopes_of_few_devices_exact():
     assert shuffled[1] > 5 * common[1]
 
 
+def test_an_exact_power_has_no_error_by_rounding():
+    base = np.random.default_rng(2).lognormal(size=40)
+    slope, error = budget.log_slope(np.mean, 0.99**0.75 * base, 1.01**0.75 * base, np.log(1.01 / 0.99))
+    assert_allclose(slope, 0.75, rtol=1e-12)
+    assert error == 0
+
+
 def test_the_error_of_a_slope_is_the_scatter_of_repeated_studies():
     rng, found = np.random.default_rng(3), []
     for _ in range(300):

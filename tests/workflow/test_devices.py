@@ -62,7 +62,8 @@ def test_every_device_has_a_page_and_every_table_and_figure_is_there(run):
     assert {path.stem for path in (results / "devices").glob("*.html")} == {"C1", "R1", "S1"}
     tables = {"safe_lengths", "chart", "stoppers", "budget"}
     assert {path.stem for path in (results / "tables").glob("*.html")} == tables
-    assert {path.stem for path in (results / "figures").glob("*.png")} == {"risk", "chart", "stoppers", "budget"}
+    figures = {"risk", "chart", "stoppers", *(f"budget_{device}" for device in ("C1", "R1", "S1"))}
+    assert {path.stem for path in (results / "figures").glob("*.png")} == figures
 
 
 def test_warnings_of_all_devices_are_listed_and_the_plasticity_of_their_pair_is_checked(run):
@@ -73,8 +74,12 @@ def test_warnings_of_all_devices_are_listed_and_the_plasticity_of_their_pair_is_
 
 
 def test_the_library_gives_the_same_forces_and_budget_as_the_workflow(run):
-    stopper = stiction.Device.of(stiction.load(example()), "S1")
-    for path, found in (("stoppers/S1", stopper.forces()), ("budget/S1_rh090", stopper.budget(0.9))):
+    stopper, beam = (stiction.Device.of(stiction.load(example()), name) for name in ("S1", "C1"))
+    for path, found in (
+        ("stoppers/S1", stopper.forces()),
+        ("budget/S1_rh090", stopper.budget(0.9)),
+        ("budget/C1_rh067_tip", beam.tip_budget(0.67)),
+    ):
         with xr.open_dataset(run / "results" / "devices" / f"{path}.nc") as dataset:
             xr.testing.assert_equal(dataset.load(), found)
 
