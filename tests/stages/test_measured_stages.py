@@ -14,6 +14,7 @@ from written_scans import SIDE, scans_of, write
 from stiction.errors import ScanError
 from stiction.measured import estimate, heights, scan, spectrum
 from stiction.scans import estimate as evaluation
+from stiction.scans.histogram import histogram
 from stiction.scans.quantiles import Feasible
 from stiction.scans.reading import ScanFile, Source
 from stiction.stages import heights as stage_heights
@@ -128,6 +129,8 @@ def test_an_estimate_comes_back_from_its_dataset(through_a_file):
     assert estimate.frame(found).shape == expected.inspection.frame.shape
     assert_allclose(estimate.frame(found).size, expected.inspection.frame.size, rtol=1e-12)
     assert_array_equal(found.sector_errors, expected.sector_errors)
+    levelled = expected.inspection.levelled
+    assert_allclose(found.histogram, histogram(levelled, expected.inspection.quantiles, expected.quantiles))
     assert estimate.density(found, "moments") == expected.density("moments")
     assert_array_equal(estimate.density(found, "measured").heights, expected.density("measured").heights)
     for psd in ("fitted", "tabulated"):

@@ -36,7 +36,7 @@ def of_field(length_um: float, width_um: float, spacing_nm: float) -> float:
     413
     """
     points = (NM_PER_UM * length_um / spacing_nm) * (NM_PER_UM * width_um / spacing_nm)
-    return _BASE + _MB * _PER_POINT * points
+    return _BASE + _MB * (_PER_POINT * points)
 
 
 def of_samples(config: dict) -> int:
