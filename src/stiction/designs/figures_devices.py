@@ -141,7 +141,7 @@ def chart(
     for line in lines:
         line[0, 0].set_ylabel("safe length [µm]")
     letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm" for name, gap in subjects])
-    figure.legend(*handles(*columns[:, 0]), loc="outside upper center", ncols=4)
+    figure.legend(*handles(*columns[:, 0]), loc="outside upper center", ncols=2)
     below(figure, sentences)
     return figure
 
