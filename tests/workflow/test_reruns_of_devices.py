@@ -93,7 +93,7 @@ MATRIX = [
      "device_contact tip_contact device_slope_contact device_choice_summits tip_slope_contact tip_choice_contact",
      OF_STOPPERS, "S1|R1|b_NG"),
     ("strips of a beam", "devices: {C1: {strip_um: 1.2}}",
-     "device_contact device_slope_contact device_choice_summits chart", OF_STOPPERS, "S1|R1|b_NG|tips"),
+     "device_contact device_slope_contact device_choice_summits chart tip_budget", OF_STOPPERS, "S1|R1|b_NG|tips"),
     ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "cracks safe_lengths", (), "contact|C1|S1|chart"),
     ("Hamaker constant of a body", BODY + "{hamaker_constant_zJ: {water: 20, dry: 200}}}",
      "contact_chunk device_contact tip_contact slope_contact modulus_contact device_choice_contact plasticity"
