@@ -17,14 +17,13 @@ from written_scans import BAD, SIDE, bad_files, etched, scans_of, write
 from stiction.config import files, jobs, measured
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
-from stiction.config.relations import longest_strip
 from stiction.config.relations_devices import validate
 from stiction.config.units import typed
 from stiction.measured import estimate as stage_estimate
 from stiction.measured import heights, scan, spectrum
 from stiction.scans import estimate
 from stiction.scans.levelling import LEVELS, LINES, Levelling
-from stiction.scans.quantiles import SCORES, measured_density, quantiles
+from stiction.scans.quantiles import measured_density, quantiles
 from stiction.scans.reading import UNITS, ScanFile, Source
 from stiction.stages import parameters
 from stiction.stages.heights import measured as measured_moments
@@ -112,6 +111,10 @@ def test_preliminary_numbers_are_those_of_the_scans(folder):
     entry = measured.view(configured(*both(folder)), {"Etched": found})["surfaces"]["Etched"]
     psd = entry["published_psd"]
     assert psd["cutoff_rad_per_um"] == pytest.approx(np.pi / 0.02)
+    assert (entry["skewness"], entry["kurtosis"]) == tuple(found["feasible"])
+    entry = measured.view(configured(*both(folder), heights="measured"), {"Etched": found})["surfaces"]["Etched"]
+    assert {"skewness", "kurtosis"}.isdisjoint(entry)
+    np.testing.assert_array_equal(entry["form"], found["form"])
     assert psd["floor_nm4"] == pytest.approx(1e36 * float(pooled.fit.spectrum(np.pi / 20e-9)(np.pi / 20e-9)), rel=1e-6)
     continued = configured(*both(folder), beyond="continued")
     grid = measured.view(continued, {"Etched": found})["surfaces"]["Etched"]["published_psd"]["cutoff_rad_per_um"]
@@ -210,13 +213,6 @@ def test_the_strips_of_a_device_on_scans_resolve_its_cracks(folder, heights):
     assert line.startswith("devices.C1.thickness_um is 0.2, must be so large that strips of 1.5 µm resolve its cracks")
     assert "surfaces.Etched.scans.files = ['B2-0.gwy']" in line
     assert "Unmet" not in line
-
-
-def test_the_bound_on_strips_is_the_same_for_moments_and_for_the_form_that_they_have():
-    numbers = {"rms_nm": 1e9 * B2.rms, "skewness": B2.skewness, "kurtosis": B2.kurtosis}
-    form = {"rms_nm": 1e9 * B2.rms, "form": (tuple(SCORES), tuple(B2.density.quantile_of_normal(SCORES)))}
-    bounds = [longest_strip(2.6, 164, 0.95, 300, [side, side], {}) for side in (numbers, form)]
-    assert bounds[1] == pytest.approx(bounds[0], rel=0.1)  # the highest points are those of straight tails
 
 
 def test_gaussian_scans_are_not_refused(tmp_path):

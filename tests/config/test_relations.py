@@ -3,14 +3,17 @@
 import copy
 import re
 
+import numpy as np
 import pytest
 from configurations import LEAVES, NUMBERS, PAPER, ROOT, SCHEMA, changed, problems, without
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from published import SURFACES
 from wrong_configurations import WRONG_RELATIONS
 
 from stiction.chaos.model import MAX_ORDER
 from stiction.config import relations
+from stiction.scans.quantiles import SCORES
 
 FUZZ = settings(max_examples=250, suppress_health_check=[HealthCheck.too_slow])
 
@@ -94,8 +97,27 @@ def test_all_problems_are_found_at_once_and_each_only_once():
     assert (keys, len(lines)) == (expected, 6)
 
 
+def test_the_bound_on_strips_is_the_same_for_moments_and_for_the_form_that_they_have():
+    b2 = SURFACES["B2"]
+    numbers = {"rms_nm": 1e9 * b2.rms, "skewness": b2.skewness, "kurtosis": b2.kurtosis}
+    form = {"rms_nm": 1e9 * b2.rms, "form": (tuple(SCORES), tuple(b2.density.quantile_of_normal(SCORES)))}
+    bounds = [relations.longest_strip(2.6, 164, 0.95, 300, [side, side], {}) for side in (numbers, form)]
+    assert bounds[1] == pytest.approx(bounds[0], rel=0.1)  # the highest points are those of straight tails
+    without_density = numbers | {"kurtosis": None, "skewness": None}
+    assert relations.longest_strip(2.6, 164, 0.95, 300, [form, without_density], {}) == np.inf
+
+
+def test_the_surfaces_that_meet_are_those_of_the_devices_and_pairs_of_a_relation():
+    pairs = {"b": {"beam": "B2", "substrate": "Sub1", "gap_um": 20}, "a": {"beam": "B1", "substrate": "Sub1"}}
+    devices = {"C1": {"pair": "b", "humidities": [0.5]}, "C2": {"pair": "a"}}
+    of_device = relations._met([("devices", "C1", "@"), ("devices",), ("pairs",)], ["C1", devices, pairs])
+    assert {"B1", "B2", "Sub1"} & of_device == {"B2", "Sub1"}
+    assert {"B1", "B2"} & relations._met([("run", "pairs", 0), ("pairs",)], ["a", pairs]) == {"B1"}
+    assert "B2" in relations._met([("pairs", "b", "beam"), ("surfaces",)], ["B2", {}])
+
+
 def test_numbers_of_measured_surfaces_are_named_by_their_files():
-    files = {"B2": ["folder/a.spm", "folder/b.spm"]}
+    files = {"B2": ["folder/a.spm", "folder/b.spm"], "B1": ["c.spm"]}
     overlay = "surfaces: {B2: {kurtosis: 1.2}}\nsampling: {margin_um: 0.1}\npairs: {b: {gap_um: 0.1}}"
     lines = [str(problem) for problem in relations._broken_relations(relations._OPTIONAL | changed(overlay), [], files)]
     shown = "surfaces.B2.scans.files = ['a.spm', 'b.spm']"
@@ -109,7 +131,7 @@ def test_numbers_of_measured_surfaces_are_named_by_their_files():
     assert [
         line for line in lines if line.startswith("sampling.margin_um is 0.1") and line.endswith(f"(given {shown})")
     ]
-    others = [line for line in lines if "surfaces.B1.published_psd = {" in line]
+    others = [line for line in lines if "surfaces.Sub1.published_psd = {" in line]
     assert others
     assert not any(shown in line for line in others)
 

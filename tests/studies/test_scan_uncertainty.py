@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 import small
+import xarray as xr
 from drawn_scans import published
 from numpy.testing import assert_allclose
 from published import SURFACES
@@ -59,6 +60,18 @@ def study(errors=ERRORS, values=SLOPES, choices=None):
     )
 
 
+@pytest.mark.parametrize(("quantities", "names"), [(QUANTITIES, OF_MOMENTS), (OF_MEASURED + OF_SPECTRUM, OF_MEASURED)])
+def test_errors_are_those_of_the_heights_that_have_slopes(quantities, names):
+    modes, fit = np.diag(np.arange(1.0, 9.0)), np.diag([7.0, 8.0, 9.0])
+    covariances = {"covariance": ERRORS.heights, "mode_covariance": modes, "fit_covariance": fit}
+    estimate = xr.Dataset({name: ((f"{name}_1", f"{name}_2"), value) for name, value in covariances.items()})
+    found = scan_uncertainty.errors_of(estimate.assign(files="a\nb"), quantities)
+    assert (found.names, found.scans) == (names, 2)
+    assert_allclose(found.heights, ERRORS.heights if names == OF_MOMENTS else modes)
+    assert_allclose(np.diag(found.modes), np.arange(2, 9))
+    assert_allclose(np.diag(found.spectrum), [8, 9])
+
+
 def test_parts_add_up_with_their_correlations():
     found = study().sel(surface="B2")
     for k in range(3):
@@ -85,12 +98,6 @@ def test_the_error_of_the_slopes_is_carried_on_to_the_error_by_the_scans():
     found = study()
     assert_allclose(found.error_sampling.sel(surface="B2"), scatter, rtol=0.15)
     assert_allclose(found.pair_error_sampling, found.error_sampling.sel(surface="B2"), rtol=1e-9)
-
-
-def test_errors_of_slopes_are_those_of_their_own_quantities():
-    dataset = slopes.layout(QUANTITIES, HUMIDITIES, SLOPES, 0.1 * np.abs(SLOPES))
-    chosen = ["kurtosis", "rms"]
-    assert_allclose(slopes.errors_of(dataset, chosen), 0.1 * np.abs(slopes.of(dataset, chosen)))
 
 
 @pytest.mark.parametrize("scans", [1, 3])

@@ -21,6 +21,7 @@ from stiction.config.merging import merged
 from stiction.contact.asperity import reduced_modulus
 from stiction.contact.forcelaw import admissible, coefficients, energy, pressure
 from stiction.contact.solids import Solid
+from stiction.measured import heights as measured_heights
 from stiction.stages import chaos, curves, forces, heights, parameters, spectrum
 from stiction.stages import contact as stage_contact
 from stiction.stages.cantilevers import cantilever
@@ -41,6 +42,7 @@ from stiction.studies import (
     slopes,
 )
 from stiction.studies import fit as study_fit
+from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.spectrum import autocovariance
 from stiction.surface.summits import find_summits
 from stiction.variants import beams as variant_beams
@@ -146,6 +148,23 @@ def test_a_surface_on_both_sides_is_shifted_on_both(asked):
     slope_contact.compute(twice, "b", "B2", "rms", slope_settings(surfaces=("B2", "B2")))
     more = asked[0][0][1]
     assert [heights.moments(changed[0]).rms for changed in more] == pytest.approx([3.4e-9 * np.exp(0.05)] * 2)
+
+
+def test_modes_are_shifted_around_the_measured_heights_of_an_estimate(asked, monkeypatch):
+    kept, moments = [], heights.moments(small.surfaces()[0][0])
+    form = heights.layout(MeasuredDensity(np.linspace(-2, 2, 9), np.linspace(-2, 2, 9)), moments)
+    monkeypatch.setattr(measured_heights, "compute", lambda *given: kept.append(given) or form)
+    slope_contact.compute(small.surfaces(), "b", "B2", "mode3", slope_settings(), "estimate of B2")
+    assert kept == [("estimate of B2", measured_heights.Settings("B2", "measured"))]
+    less, more = (heights.density(changed[0][0], "NG").quantile_of_normal(2.0) for changed in asked[0][0])
+    assert more > less
+
+
+def test_slopes_and_their_errors_are_those_of_the_chosen_quantities():
+    values = np.arange(6.0).reshape(3, 2)
+    dataset = slopes.layout(["rms", "skewness", "kurtosis"], (0.44, 0.88), values, 0.1 * values)
+    assert_allclose(slopes.of(dataset, ["kurtosis", "rms"]), [[4, 0], [5, 1]])
+    assert_allclose(slopes.errors_of(dataset, ["kurtosis", "rms"]), [[0.4, 0], [0.5, 0.1]])
 
 
 def test_slopes_are_those_of_the_energies_at_both_values_and_of_their_own_quantity():

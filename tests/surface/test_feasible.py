@@ -125,13 +125,14 @@ def test_the_largest_distance_is_that_of_one_measurement_in_twenty_and_of_one_sc
     assert share == pytest.approx(likely, abs=4 * np.sqrt(likely * (1 - likely) / 1e5))
 
 
-def test_the_limit_decides_what_is_too_far():
+@pytest.mark.parametrize("kurtosis", [3.3, 3.4])
+def test_the_limit_decides_what_is_too_far(kurtosis):
     covariance = feasible.sampling_covariance(feasible.SAMPLE)
-    distance = nearest_feasible(0.0, 3.4, covariance, np.inf).distance
+    distance = nearest_feasible(0.0, kurtosis, covariance, np.inf).distance
     assert LARGEST_DISTANCE < distance < LARGEST_DISTANCE_OF_SCANS
-    assert nearest_feasible(0.0, 3.4, covariance, LARGEST_DISTANCE_OF_SCANS).distance == distance
+    assert nearest_feasible(0.0, kurtosis, covariance, LARGEST_DISTANCE_OF_SCANS).distance == distance
     with pytest.raises(ValueError, match="within 2.45 standard errors"):
-        nearest_feasible(0.0, 3.4, covariance)
+        nearest_feasible(0.0, kurtosis, covariance)
 
 
 def test_moments_that_no_density_has_are_never_replaced():
