@@ -60,7 +60,7 @@ def test_infeasible_moments_are_replaced_by_the_nearest_ones_and_both_are_stated
     measured = heights.Settings(2e-9, -0.1, 3.05)
     nearest = nearest_feasible(-0.1, 3.05)
     with pytest.warns(
-        UserWarning, match=r"skewness -0.1 and kurtosis 3.05; the heights have .* -0.103 and 3.028, 0.21"
+        UserWarning, match=r"skewness -0.1 and kurtosis 3.05; the heights have .* -0.1028 and 3.028, 0.21"
     ):
         found = through_a_file(heights.compute(measured))
     assert heights.moments(found) == heights.Settings(2e-9, nearest.skewness, nearest.kurtosis)

@@ -7,7 +7,7 @@ import pytest
 from browser import Browser, missing
 from conftest import ROOT, snakemake
 
-pytestmark = [pytest.mark.browser, pytest.mark.skipif(bool(missing()), reason=missing())]
+pytestmark = [pytest.mark.slow, pytest.mark.browser, pytest.mark.skipif(bool(missing()), reason=missing())]
 
 STYLE = ROOT / "workflow" / "report" / "style.css"
 #: Width of the open picture, if its upper edge can be seen.
