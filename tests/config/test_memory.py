@@ -1,5 +1,6 @@
 """The estimated memory of a job exceeds what it takes, and rules reserve it."""
 
+import re
 import subprocess
 import sys
 
@@ -181,3 +182,15 @@ def test_scans_with_oblong_pixels_need_square_maps():
 
 def test_the_transforms_are_those_of_the_evaluation():
     assert (memory._PERIOD, memory._TRANSFORMED) == (_PERIOD * _CORRELATED, _POINTS)
+
+
+#: Rules of jobs of devices that run on a cluster, and the name of the memory that they reserve.
+RESERVED = {"device_contact": "CONTACT", "cracks": "SAMPLES", "chart": "SAMPLES", "budget": "SAMPLES"}
+
+
+@pytest.mark.parametrize(("rule", "reserved"), RESERVED.items())
+def test_rules_of_devices_reserve_memory_and_more_time_than_the_default(rule, reserved):
+    text = "".join(path.read_text(encoding="utf-8") for path in sorted((ROOT / "workflow" / "rules").glob("*.smk")))
+    (block,) = re.findall(rf"^rule {rule}:\n(.*?)^(?:rule|use rule) ", text, re.MULTILINE | re.DOTALL)
+    assert f"        mem_mb={reserved},\n" in block
+    assert "        runtime=120,\n" in block
