@@ -74,7 +74,8 @@ def test_the_worst_humidity_is_that_of_the_largest_mean_force_unless_it_is_an_en
 def test_safe_forces_along_the_axis_are_those_at_its_humidities():
     axis = np.linspace(0.5, 0.9, 3)
     forces = np.arange(1, 401) / 100
-    at = stoppers.layout(SETTINGS, np.stack([forces, 2 * forces]), axis, np.stack([forces, 3 * forces, 2 * forces]))
+    weak = replace(SETTINGS, restoring_force=1.0)
+    at = stoppers.layout(weak, np.stack([forces, 2 * forces]), axis, np.stack([forces, 3 * forces, 2 * forces]))
     assert_array_equal(at.safe_force_along[[0, 2]], at.safe_force.sel(part="safe"))
     stuck, safe = stoppers.in_any_air(at)
     assert_allclose(safe[0], 3 * at.safe_force_along[0, 0], rtol=1e-12)
