@@ -10,6 +10,9 @@ from hypothesis import settings
 settings.register_profile("steady", deadline=None, derandomize=True)
 settings.load_profile("steady")
 
+# The output of a process is buffered, as that of most users is.
+os.environ.pop("PYTHONUNBUFFERED", None)
+
 if "PYTEST_XDIST_WORKER" in os.environ:
     from numba.core.caching import IndexDataCacheFile
 

@@ -187,6 +187,7 @@ def _status(error):
     """Exit status after an exception that a script does not catch; prints what the interpreter prints."""
     if isinstance(error, SystemExit) and isinstance(error.code, int | None):
         return (error.code or 0) & 0xFF
+    sys.stdout.flush()  # an interpreter writes what was printed before the message of an error
     if isinstance(error, SystemExit):
         print(error.code, file=sys.stderr)  # noqa: T201
         return 1
