@@ -1211,7 +1211,7 @@ MUTANTS = {
         (', version_of("SurfaceTopography")]', "]"),
         (".scan, name=label)", ".scan)"),
         ("raise ScanError(label, refusal.key, refusal.reason) from None", "raise"),
-        ('cutoff = min(found["nyquist_rad_per_um"], grid) if', 'cutoff = found["nyquist_rad_per_um"] if'),
+        ('cutoff = min(found["end_rad_per_um"], grid) if', 'cutoff = found["nyquist_rad_per_um"] if'),
         ('entry["beyond"] == "cut"', 'entry["beyond"] != "cut"'),
         ('if entry["heights"] == "measured":', "if False:"),
         ("form.heights.tolist()", "form.scores.tolist()"),

@@ -116,7 +116,7 @@ def computed(device, thicknesses, gaps, tips=None, shares=(1e-2,)):
     wanted = chart.Settings(2021, Truncation(3, 0.001), WATER, 0.67, device, 200, shares, 0.15e-6, thicknesses, gaps)
     with (
         patch.object(curves, "vectors", lambda *_: (VECTORS, 1.2 * VECTORS[:, 1].max())),
-        patch.object(curves, "energies", lambda *_: tips),
+        patch.object(curves, "tip_energies", lambda *_: tips),
         patch.object(curves, "pull_offs", lambda *_: np.full(len(tips), PULL)),
     ):
         return chart.compute(contact(), None if tips is None else xr.Dataset(), wanted), wanted

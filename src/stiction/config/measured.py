@@ -223,7 +223,7 @@ def _preliminary(files, reading, evaluating):
         "plateau_nm4": 1e36 * found.fit.plateau,
         "corner_rad_per_um": 1e-6 * found.fit.corner,
         "slope": found.fit.slope,
-        "nyquist_rad_per_um": 1e-6 * float(found.reach.nyquist),
+        "end_rad_per_um": 1e-6 * float(found.reach.end),
         "points": list(found.frame.shape),
         "pixel_nm": [1e9 * pixel for pixel in found.frame.pixel],
     }
@@ -272,7 +272,7 @@ def view(config: dict[str, Any], found: Mapping[str, dict]) -> dict[str, Any]:
 def _described(entry, found, spacing):
     """Section of a surface by numbers: skewness and kurtosis, or the measured form if that gives its heights."""
     grid = math.pi / spacing * NM_PER_UM
-    cutoff = min(found["nyquist_rad_per_um"], grid) if entry["beyond"] == "cut" else grid
+    cutoff = min(found["end_rad_per_um"], grid) if entry["beyond"] == "cut" else grid
     plateau, corner = found["plateau_nm4"], found["corner_rad_per_um"]
     psd = {
         "plateau_nm4": plateau,

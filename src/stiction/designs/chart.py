@@ -53,7 +53,7 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
         model = releases.fitted(*curves.vectors(contact, settings.humidity, settings.water), settings.chaos)
     laws = draw_laws(model, releases.LAWS, releases.addresses(settings)("mesh"))
     with on_patch(settings.tip, settings.device.width):
-        energies = None if tips is None else curves.energies(tips, settings.humidity, settings.water)
+        energies = None if tips is None else curves.tip_energies(tips, settings.humidity, settings.water)
 
     def by_elements(thickness, gap):
         """Safe lengths of beams of one size (shapes, shares) [m]."""

@@ -46,7 +46,7 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
     device, held, wedge = settings.device, None, np.nan
     if tips is not None:
         with on_patch(settings.tip, device.width):
-            held = arcs.arc_length(curves.energies(tips, settings.humidity, settings.water), device.beam)
+            held = arcs.arc_length(curves.tip_energies(tips, settings.humidity, settings.water), device.beam)
         wedge = mean_wedge(tips, arcs.tip_slope(float(np.median(held)), device.gap), settings)
     sticking = sticking_lengths(found, foundation, device, held)
     groups = [sticking_lengths(one, foundation, device, held) for one in of_group]

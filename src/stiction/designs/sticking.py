@@ -34,7 +34,7 @@ def shapes(device: Device) -> list[str]:
 
 def mean_wedge(tips: xr.Dataset, slope: float | np.ndarray, settings: Settings) -> float | np.ndarray:
     """Length of the wedge at a tip with a slope, any shape, from mean energy and mean pull-off force [m]."""
-    energies, pulls = (of(tips, settings.humidity, settings.water) for of in (curves.energies, curves.pull_offs))
+    energies, pulls = (of(tips, settings.humidity, settings.water) for of in (curves.tip_energies, curves.pull_offs))
     return arcs.wedge_length(energies.mean(), pulls.mean(), slope)
 
 

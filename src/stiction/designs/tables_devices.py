@@ -12,17 +12,17 @@ from stiction.report.format import UM, error_alone, number
 from stiction.report.tables import Table
 
 _SAFE_LENGTHS = (
-    "Safe length: the largest length of which, with a confidence of 95 %, at most a share p of the devices sticks. "
-    "A device is held by its beam (S-shape) or by its tip alone (arc). Estimate: length at which a share p sticks, "
-    "with its standard errors due to the number of beams and to the number of sampled surfaces. Every beam "
-    "has its own tip, whose scatter is part of the first. Basis: sampled, by "
-    "order statistics; fitted, by a line through the shortest 5 %; extrapolated, beyond what was verified."
+    "Safe length: the largest length of which, with a confidence of 95 % given the drawn surfaces, at most a share p "
+    "of the devices sticks. A device is held by its beam (S-shape) or by its tip alone (arc). Estimate: length at "
+    "which a share p sticks, with its standard errors due to the number of beams and to that of sampled surfaces. "
+    "Every beam has its own tip, whose scatter is part of the first. Basis: sampled, by order statistics; fitted, by "
+    "a line through the shortest 5 %; extrapolated, beyond what was verified."
 )
 _CHART = (
     "Safe length of beams of the thicknesses and gaps of a chart over the relative humidity: the largest length of "
-    "which, with a confidence of 95 %, at most a share p of the devices sticks. From: finite elements, or a power law "
-    "between them, with its largest error at beams to which it was not fitted. Saturated air: length that sticks where "
-    "water fills all gaps. The warnings are about the shortest length of each thickness and gap."
+    "which, with a confidence of 95 % given the drawn surfaces, at most a share p sticks. From: finite elements, or a "
+    "power law between them, with its largest error at beams to which it was not fitted. Saturated air: length that "
+    "sticks where water fills all gaps. The warnings are about the shortest length of each thickness and gap."
 )
 
 
