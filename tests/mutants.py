@@ -1199,6 +1199,7 @@ MUTANTS = {
         ("if _unusable(faults):", "if False:"),
         ("problems += _without_density(name, entry, found[name])", "pass"),
         ("[contents, settings, _code()]", "[contents, _code()]"),
+        ('modules = __file__, folder / "estimate.py"', 'modules = (folder / "estimate.py",)  #'),
         ("[contents, settings, _code()]", "[settings, _code()]"),
         ("_read(file) or _preliminary", "_preliminary"),
         ("if file is not None and not file.exists():", "if False:"),

@@ -427,6 +427,21 @@ def test_another_version_of_the_library_reads_the_files_again(folder, monkeypatc
     assert len(set(measured._KNOWN) - known) == 1
 
 
+@pytest.mark.parametrize("changed", ["config/measured.py", "scans/estimate.py", "scans/reading.py"])
+def test_another_evaluation_reads_the_files_again(folder, monkeypatch, changed):
+    def fingerprint(module):
+        return "another" if str(module).endswith(changed) else "the same"
+
+    config, sizes = configured(both(folder)[0]), []
+    for code in (lambda _: "the same", fingerprint):
+        monkeypatch.setattr(measured, "fingerprint", code)
+        measured._code.cache_clear()
+        validate(config)
+        sizes.append(len(measured._KNOWN))
+    measured._code.cache_clear()
+    assert sizes[1] == sizes[0] + 1
+
+
 def test_other_content_in_the_same_file_is_read_again(folder, tmp_path):
     path = tmp_path / "a.gwy"
     shutil.copy(both(folder)[0], path)

@@ -199,9 +199,10 @@ def _read(file):
 
 @cache
 def _code():
-    """Fingerprint of the code that evaluates scans, and the version of the library that reads them."""
+    """Fingerprint of the code that evaluates scans, this module included, and the version of the library for files."""
     folder = Path(__file__).parents[1] / "scans"
-    return [fingerprint(folder / "estimate.py") | fingerprint(folder / "reading.py"), version_of("SurfaceTopography")]
+    modules = __file__, folder / "estimate.py", folder / "reading.py"
+    return [list(map(fingerprint, modules)), version_of("SurfaceTopography")]
 
 
 def _preliminary(files, reading, evaluating):
