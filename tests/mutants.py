@@ -941,10 +941,6 @@ MUTANTS = {
         ("2 * min(max(1 + 0.5 * np.pi", "2 * min(max(1 + np.pi"),
         ("max(interference, 0.0) ** 1.5 - 2 *", "max(interference, 0.0) ** 1.5 - 1.5 *"),
         ("    if row < 0:  # DMT", "    if False:  # DMT"),
-        (
-            "- 1:\n        transition = np.exp(scales.log_transition) * third",
-            "- 1:\n        transition = np.exp(scales.log_transition)",
-        ),
         ("# DMT\n        transition = np.exp(scales.log_transition) * third", "# DMT\n        transition = 0.01"),
         ("min(1e-2, 0.1 / transition)", "1e-2"),
     ],
