@@ -1551,7 +1551,7 @@ MUTANTS = {
     ],
     "stages.beams": [
         ('columns["deflection"].shape[1] - 1', "settings.beam.elements"),
-        ("case, settings, shapes=_KEPT)", "case, settings, shapes=1)"),
+        ("case, settings, threads, shapes=_KEPT)", "case, settings, shapes=1)"),
         ('columns["energy"], {"units"', 'columns["crack_length"], {"units"'),
         ("elements=elements).nodes", "elements=elements).nodes[::-1]"),
         ('" ".join(releases.STATES)', '" ".join(releases.STATES[::-1])'),
@@ -1766,9 +1766,9 @@ MUTANTS = {
         ('{"scatter": scatter}', '{"scatter": 0.0}'),
         ("for side in plan.sides(name)]", "for side in plan.sides(name)[::-1]]"),
         ('if settings.psd == "identified":', "if False:"),
-        ("fit(*self.forces(humidity), wanted.order,", "fit(*self.forces(humidity), 1,"),
+        ("self.model, settings)", '"NG", settings)'),
         ('if name not in config["pairs"]:', "if False:"),
-        ("releases.Settings, plain), threads)", "releases.Settings, plain), threads, 1)"),
+        ("jobs.beams(Plan(self.config), case,", 'jobs.beams(Plan(self.config), case_id("a", humidity),'),
         ("case = case_id(self.name, humidity)", 'case = case_id("a", humidity)'),
     ],
     "config.cases": [

@@ -5,13 +5,14 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.beam.energy import arrest_length
+from stiction.chaos.model import Truncation
 from stiction.config import jobs
 from stiction.config.cases import case_id
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
-from stiction.stages import heights, identification, pairs, spectrum
+from stiction.stages import chaos, heights, identification, pairs, spectrum
 from stiction.stages.parameters import spectrum_of
 from stiction.study import PairStudy
 from stiction.variants import beams as variant_beams
@@ -71,7 +72,17 @@ def test_humidity_makes_surfaces_stick_and_van_der_waals_forces_help(study):
 
 
 def test_energies_are_those_of_the_vectors(study):
-    assert_array_equal(study.energies(HUMIDITY), study.forces(HUMIDITY)[0][:, 0])
+    assert_array_equal(study.energies(HUMIDITY), study.forces(HUMIDITY).adhesion_energy)
+
+
+@pytest.mark.parametrize("model", ["G", "NG"])
+def test_the_chaos_model_is_that_of_its_stage(model):
+    study = PairStudy.of(merged(CONFIG, {"contact": {"samples": 20}}), "b", model)
+    settings = chaos.Settings(Truncation(3, CONFIG["chaos"]["dimension_tolerance"]), CONFIG["seed"])
+    expected, other = (chaos.compute(study.forces(HUMIDITY), "b_rh080", of, settings) for of in (model, "other"))
+    found = study.chaos(HUMIDITY)
+    assert found.equals(expected)
+    assert not found.equals(other)
 
 
 def test_the_base_of_the_variants_is_the_pair_itself_and_a_variant_is_not(study):

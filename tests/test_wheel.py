@@ -36,7 +36,7 @@ print(json.dumps([stiction.__version__, stiction.load(), files]))
 """
 BEAMS = """
 study = stiction.PairStudy.of(stiction.load("mine.yaml"), "b")
-print(json.dumps(study.beams(0.8)["crack_length"].tolist()))
+print(json.dumps(study.beams(0.8).crack_length.values.tolist()))
 """
 MINE = """
 contact: {samples: 40}

@@ -10,14 +10,13 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
-from stiction.chaos.model import ChaosModel, Truncation, fit
 from stiction.config import jobs
 from stiction.config.cases import case_id
 from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.contact.pair import SurfacePair
+from stiction.stages import beams, chaos, curves, forces, heights, identification, pairs, spectrum
 from stiction.stages import contact as stage_contact
-from stiction.stages import curves, heights, identification, pairs, releases, spectrum
 from stiction.stages.cantilevers import Cantilevers, cantilever
 
 
@@ -29,10 +28,11 @@ class PairStudy:
     --------
     >>> import stiction
     >>> study = stiction.PairStudy.of(stiction.load(), "b")  # doctest: +SKIP
-    >>> study.beams(0.67)["crack_length"]  # doctest: +SKIP
+    >>> study.beams(0.67).crack_length  # doctest: +SKIP
     """
 
     name: str  #: name of the pair, part of the addresses of random numbers
+    model: str  #: ``NG``, or ``G`` for surfaces with Gaussian heights
     surfaces: SurfacePair  #: the two surfaces, from which samples can be drawn
     contact: xr.Dataset  #: dataset of stage contact
     config: dict  #: complete configuration
@@ -64,23 +64,27 @@ class PairStudy:
         surfaces = [surface_datasets(plan, side) for side in plan.sides(name)]
         settings = typed(stage_contact.Settings, jobs.contact(plan, name))
         pair = pairs.surface_pair(surfaces, model, settings)
-        return cls(name, pair, stage_contact.compute(surfaces, name, model, settings), config)
+        return cls(name, model, pair, stage_contact.compute(surfaces, name, model, settings), config)
 
     def energies(self, humidity: float) -> np.ndarray:
         """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
         return curves.energies(self.contact, humidity, self._water)
 
-    def forces(self, humidity: float) -> tuple[np.ndarray, float]:
-        """Vectors v of Eq. (11), (m, 4) [SI], and f_limit [Pa] at a relative humidity (Sec. III-B1)."""
-        return curves.vectors(self.contact, humidity, self._water)
+    def forces(self, humidity: float) -> xr.Dataset:
+        """Vectors v of Eq. (11) and f_limit at a relative humidity (Sec. III-B1); dataset of stage forces."""
+        settings = typed(forces.Settings, jobs.forces(Plan(self.config), case_id(self.name, humidity)))
+        return forces.compute(self.contact, settings)
 
-    def chaos(self, humidity: float) -> ChaosModel:
-        """Chaos model of the force laws at a relative humidity (App. B)."""
-        wanted = typed(Truncation, self.config["chaos"])
-        return fit(*self.forces(humidity), wanted.order, wanted.dimension_tolerance)
+    def chaos(self, humidity: float) -> xr.Dataset:
+        """Chaos model of the force laws at a relative humidity (App. B); dataset of stage chaos.
 
-    def beams(self, humidity: float, scatter: float = 0.0, threads: int = 1) -> dict[str, np.ndarray]:
-        """Beams released at a relative humidity (Sec. III-C); arrays as in `stiction.beam.montecarlo.columns`.
+        `stiction.stages.chaos.chaos_model` returns the model itself, which draws force laws.
+        """
+        settings = typed(chaos.Settings, jobs.chaos(Plan(self.config)))
+        return chaos.compute(self.forces(humidity), case_id(self.name, humidity), self.model, settings)
+
+    def beams(self, humidity: float, scatter: float = 0.0, threads: int = 1) -> xr.Dataset:
+        """Beams released at a relative humidity (Sec. III-C); dataset of stage beams.
 
         Parameters
         ----------
@@ -93,7 +97,7 @@ class PairStudy:
         """
         case = case_id(self.name, humidity)
         plain = jobs.beams(Plan(self.config), case, "NG") | {"scatter": scatter}
-        return releases.released(self.chaos(humidity), case, typed(releases.Settings, plain), threads)
+        return beams.compute(self.chaos(humidity), case, typed(beams.Settings, plain), threads)
 
     @property
     def beam(self) -> Beam:

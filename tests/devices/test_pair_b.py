@@ -13,7 +13,7 @@ from stiction.constants import WATER_SURFACE_ENERGY
 from stiction.designs import cracks
 from stiction.devices import risk
 from stiction.devices.stoppers import worst_humidity
-from stiction.stages import contact, curves
+from stiction.stages import contact, curves, forces
 from stiction.streams import stream
 
 #: Lengths [m] that one beam in a thousand and one in ten thousand fall short of, with the ends of their 95 % interval:
@@ -38,7 +38,7 @@ def test_real_patches_hold_most_well_below_saturation_although_their_energy_keep
 @pytest.mark.slow
 def test_a_few_thousand_beams_of_pair_b_find_the_lengths_of_110_000():
     study = stiction.PairStudy.of(stiction.load(), "b")
-    vectors, limit = study.forces(0.67)
+    vectors, limit = forces.vectors(study.forces(0.67))
     experiment = Experiment(study.beam, 1000, lambda n, rng: resample_laws(vectors, limit, n, rng))
     cracks = columns(list(simulate(experiment, range(2900), lambda k: stream(7, k), threads=2)))["crack_length"]
     for share, (length, low, high) in BRUTE_FORCE.items():

@@ -17,7 +17,7 @@ _KEPT = 100
 Settings = releases.Settings
 
 
-def compute(chaos: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
+def compute(chaos: xr.Dataset, case: str, settings: Settings, threads: int = 1) -> xr.Dataset:
     """Release all beams of a case; models NG and GEO have the same force laws.
 
     Parameters
@@ -27,8 +27,10 @@ def compute(chaos: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
     case : str
         Name of the case, part of the addresses of random numbers.
     settings : Settings
+    threads : int
+        Number of beams computed in parallel; it does not affect the results.
     """
-    columns = releases.released(chaos_model(chaos), case, settings, shapes=_KEPT)
+    columns = releases.released(chaos_model(chaos), case, settings, threads, shapes=_KEPT)
     elements = columns["deflection"].shape[1] - 1
     return layout(columns, replace(cantilever(settings, pair_of(case)), elements=elements).nodes)
 
