@@ -108,6 +108,7 @@ def uncertain():
     return stiction.load(CONFIG, few, narrow)
 
 
+@pytest.mark.slow
 def test_the_budget_is_that_of_its_stage_and_contacts(uncertain):
     found = stiction.Device.of(uncertain, "C1").budget(0.88)
     plan = Plan(uncertain)

@@ -60,6 +60,7 @@ def test_the_readme_table_shows_what_table_3_holds():
     assert line.split(" | ")[4] == cell
 
 
+@pytest.mark.slow
 def test_folders_without_a_finished_run_of_the_paper_change_nothing(tmp_path):
     results = tmp_path / "results"
     results.mkdir()
@@ -217,6 +218,7 @@ def test_yaml_examples_are_configurations_that_can_run(tmp_path):
         assert stiction.load(path)["run"]["pairs"] == ["mine"]
 
 
+@pytest.mark.slow
 def test_every_rule_on_the_page_of_results_can_be_computed_by_its_name(tmp_path):
     table = (DOCS / "results.md").read_text(encoding="utf-8").partition("| item | rule |")[2].partition("\n\n")[0]
     named = {name for row in table.splitlines()[2:] for name in re.findall(r"`(\w+)`", row.split("|")[2])}

@@ -401,6 +401,7 @@ def checked(config, kept):
     return done.stdout.split()
 
 
+@pytest.mark.slow
 def test_a_process_that_checks_known_files_reads_nothing_but_their_content(folder, tmp_path):
     config = configured(both(folder)[0])
     assert checked(config, tmp_path) == ["True", "True"]

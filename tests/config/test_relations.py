@@ -183,6 +183,7 @@ def within(entry):
 SCALARS = NUMBERS + [leaf for leaf in LEAVES if "enum" in leaf.entry]
 
 
+@pytest.mark.slow
 @FUZZ
 @given(
     st.lists(

@@ -14,7 +14,8 @@ from stiction.studies import plasticity as study_plasticity
 from stiction.studies import sample_sizes as study_sample_sizes
 from stiction.variants import beams as study_variant
 
-COUNTS = (1, 2, 3, 4, 5, 7, 9, 12)
+FAST = (1, 4, 12)
+COUNTS = [pytest.param(n, marks=[pytest.mark.slow] * (n not in FAST)) for n in (1, 2, 3, 4, 5, 7, 9, 12)]
 HUMIDITIES = (0.5, 0.7)
 RNG = stream(11)
 PUBLISHED = pd.DataFrame(

@@ -88,6 +88,7 @@ def test_no_text_of_a_sheet_covers_another_or_leaves_it(name, tmp_path):
         assert not any(box.shrunk(0.98, 0.9).overlaps(other) for other in boxes[:k])
 
 
+@pytest.mark.slow
 def test_equal_estimates_give_equal_sheets(tmp_path):
     for name in ("first.pdf", "second.pdf", "first.png", "second.png"):
         save(surface_sheet("Etched", estimated(), spectrum()), tmp_path / name)

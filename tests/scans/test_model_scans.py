@@ -102,6 +102,7 @@ def test_bias_of_scans_taken_together_is_smaller_but_that_of_levelling_is_not():
     np.testing.assert_allclose(tilted.bias(MODEL.moments, 4)[0], tilted.bias(MODEL.moments, 1)[0], rtol=0.3)
 
 
+@pytest.mark.slow
 def test_the_error_of_the_bias_is_its_scatter_between_sets_of_model_scans():
     sets = [draw_model_scans(MODEL, Levelling("plane", "tilt"), streams(12, f"set{k}")) for k in range(40)]
     scatter = np.std([one.bias(MODEL.moments, 2) for one in sets], axis=0, ddof=1)

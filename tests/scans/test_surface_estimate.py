@@ -89,6 +89,7 @@ def test_the_spectrum_and_the_model_end_where_that_of_the_surface_does():
     assert about(ESTIMATE.flags, "the spectrum ends near 12")
 
 
+@pytest.mark.slow
 def test_summits_are_those_of_the_model_on_a_surface_of_the_form_of_eq_7():
     error = np.hypot(ESTIMATE.summit_errors, ESTIMATE.model_summit_errors)
     assert np.all(np.abs(ESTIMATE.summits - ESTIMATE.model_summits) < 3 * error)
@@ -242,12 +243,14 @@ def test_differences_that_small_scans_have_by_chance_are_no_flags():
     assert about(fit_with(chi2=25.0, freedom=10), "not of the form")
 
 
+@pytest.mark.slow
 def test_equal_sectors_of_a_small_scan_are_not_flagged():
     found = estimates([Scan(z.heights[:64, :64], (1.28e-6, 1.28e-6)) for z in published("B1", 1.4e-6, 6)], count=8)
     assert max(one.sectors.max() / one.sectors.min() for one in found) > 1.5
     assert not any(about(one.flags, "the spectrum is") for one in found)
 
 
+@pytest.mark.slow
 def test_a_smooth_knee_is_told_from_eq_7_in_one_scan():
     b2 = SURFACES["B2"].spectrum
     zeta = np.linspace(0, np.pi / SPACING, 4000)
@@ -265,6 +268,7 @@ def test_moments_without_density_are_refused_with_what_to_do():
     without.density("measured")
 
 
+@pytest.mark.slow
 def test_what_levelling_removes_is_given_back():
     scans = published("B2", SIDE, 6, "levelling")
     tilted, plane = (estimates(scans, Settings(Levelling("plane", lines)), count=12) for lines in ("tilt", "none"))
@@ -314,6 +318,7 @@ def test_lines_that_jump_and_tilt_change_neither_moments_nor_spectrum():
     assert abs(change(lambda one: np.log(-one.inspection.fit.slope))) < 0.01
 
 
+@pytest.mark.slow
 def test_quantiles_have_no_bias_of_levelling():
     scans = published("B2", 4e-6, 4, "levelling")
     bowed, plane = (estimates(scans, Settings(Levelling("plane", lines)), count=12) for lines in ("bow", "none"))
@@ -350,6 +355,7 @@ def test_gaussian_scans_are_never_refused():
         np.testing.assert_allclose(density.quantile_of_normal(1.0), 1.0, atol=0.1)
 
 
+@pytest.mark.slow
 def test_moments_that_are_accepted_before_their_bias_is_known_are_not_refused_afterwards(monkeypatch):
     monkeypatch.setattr(ModelScans, "bias", lambda *_: np.array([0.0, 0.0, -2.0]))
     (found,) = estimates(gaussian(4e-6, 1), count=12)

@@ -70,6 +70,7 @@ def test_an_exact_spectrum_is_found_again(corner, slope, scale):
     assert found.chi2 < 1e-3
 
 
+@pytest.mark.slow
 def test_errors_are_those_of_the_scatter_and_chi_square_is_one_per_degree_of_freedom():
     found = [fit(measured(stream(1, "whittle", k)), REACH) for k in range(300)]
     values = np.array([parameters(one) for one in found])
@@ -139,6 +140,7 @@ def test_noise_hides_the_end_of_a_spectrum():
     assert fit_to_the_end(rings_of([Scan(scan.heights + noise, SIZE)]), REACH)[1] == REACH
 
 
+@pytest.mark.slow
 def test_chance_is_no_end_even_in_few_rings():
     power_law = dataclasses.replace(B2, cutoff=1e9, floor=B2.plateau * (1e9 / B2.corner) ** B2.slope)
     within = dataclasses.replace(REACH, nyquist=16.5 * 2e6 * np.pi / 10, high=11.5 * 2e6 * np.pi / 10)

@@ -91,6 +91,7 @@ def test_surfaces_of_a_pair_add_up_as_independent():
     assert scan_uncertainty.pair_errors(found)[0.67] == pytest.approx(float(found.pair_error[1]))
 
 
+@pytest.mark.slow
 def test_the_error_of_the_slopes_is_carried_on_to_the_error_by_the_scans():
     # Slopes drawn around the given ones, with a scatter of a tenth of them; 400 draws know a scatter to 3.5 %.
     draws = [SLOPES * (1 + 0.1 * stream(1, "slopes", k).standard_normal(SLOPES.shape)) for k in range(400)]

@@ -25,6 +25,7 @@ def imported(statement):
     return done.stdout.strip() or done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("modules")
 def test_a_package_of_the_same_name_on_the_path_of_the_user_is_not_used(tmp_path):
     folder = tmp_path / "run"

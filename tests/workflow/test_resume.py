@@ -86,6 +86,7 @@ def assert_resumed(folder, reference, targets, tiny):
     assert drafts(folder) == []
 
 
+@pytest.mark.slow
 def test_a_run_killed_in_its_longest_stage_resumes_without_unlocking(undisturbed, tiny, tmp_path):
     end_in_stage("contact", signal.SIGKILL, tmp_path, [BEAMS], tiny, after=0.1)
     assert_only_whole_files(tmp_path, undisturbed)
@@ -186,9 +187,8 @@ SPOILS = {
 }
 
 
-@pytest.mark.parametrize(
-    "spoil", [of_another_order, *(pytest.param(spoil, marks=pytest.mark.slow) for spoil in SPOILS)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("spoil", SPOILS)
 def test_a_dataset_that_is_damaged_or_of_other_settings_is_computed_again(undisturbed, tiny, tmp_path, spoil):
     folder = copied(undisturbed, tmp_path / "run")
     shutil.rmtree(folder / ".snakemake" / "metadata")  # as in results copied from another folder
@@ -243,6 +243,7 @@ def test_every_dataset_of_other_settings_is_recognised(smoke, tmp_path):
     assert {folder / of: 1 + int(more or 0) for of, more in named} == numbers
 
 
+@pytest.mark.slow
 def test_a_second_run_in_the_same_folder_is_rejected(undisturbed, tiny, tmp_path):
     folder = copied(undisturbed, tmp_path / "run", ["beams"])
     with (folder / ".snakemake" / "running").open("w") as held:

@@ -10,6 +10,7 @@ import xarray as xr
 from conftest import BEAMS, ROOT, command, datasets, snakemake
 
 
+@pytest.mark.slow
 def test_neither_cores_nor_chunks_change_a_byte(undisturbed, tiny, tmp_path, overlay):
     done = snakemake(tmp_path, BEAMS, configs=[tiny, overlay("contact: {chunks: 7}")], cores=4)
     assert "Each job starts an interpreter of its own" not in done.stdout
