@@ -1323,6 +1323,7 @@ MUTANTS = {
         ('but=["psd"])', 'but=["psd", "published_psd"])'),
         ('("sampling", "contact"))\n        identified', '("sampling",))\n        identified'),
         ("if self._summits(pair, name) == wanted)", "if self._summits(pair, name) != wanted)"),
+        ('["contact"]["samples"] >= self', '["contact"]["samples"] > self'),
     ],
     "config.jobs": [
         ("- 1) > _POLYSILICON:", "- 1) > 10 * _POLYSILICON:"),
@@ -1720,6 +1721,8 @@ MUTANTS = {
         ("refined=settings.refined", "refined=False"),
         ("sorted(cases.items(), key=lambda item: float(item[1].humidity[0]))", "cases.items()"),
         ("settings.chaos.order, settings", "1, settings"),
+        (".isel(sample=slice(settings.samples))", ""),
+        ("slice(settings.samples)", "slice(-settings.samples, None)"),
         ('releases.ended(chosen, "S-shape")', 'releases.ended(chosen, "arc")'),
     ],
     "variants.summits": [
@@ -1784,7 +1787,9 @@ MUTANTS = {
         ('or "(?!)"', 'or ".*"'),
         ('if source == "identified" else []', 'if source != "identified" else []'),
         ("if name in self.plan.sides(pair))", ")"),
-        ("{self.plan.contact_under(variant)}", "{variant}"),
+        ("shared = self.plan.contact_under(variant)", "shared = variant"),
+        ('if shared == "base" and self.plan.has_samples_of_variants:', 'if shared == "base":'),
+        ('if shared == "base" and self.plan.has_samples_of_variants:', "if self.plan.has_samples_of_variants:"),
         ("if self._designs.has_strips_of_pair(device):\n            return f", "if False:\n            return f"),
         ('if self._section(device)["kind"] == "bridge":', "if False:"),
         ('get("uncertainty", {}).get("young_modulus_GPa")', 'get("uncertainty", {})'),

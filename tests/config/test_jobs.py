@@ -96,7 +96,8 @@ def test_only_model_geo_has_scattered_dimensions():
 def test_a_variant_of_the_mesh_changes_only_the_number_of_elements():
     base, finer = (jobs.variant(PLAN, "b_rh067", name) for name in ("base", "strips_per_element_2"))
     assert finer == merged(base, {"beam": {"elements": 500}})
-    assert base["beam"]["samples"] == PLAN.config["studies"]["variants"]["beams"]
+    sizes = PLAN.config["studies"]["variants"]
+    assert (base["samples"], base["beam"]["samples"]) == (sizes["samples"], sizes["beams"])
 
 
 def test_elements_follow_the_force_laws_except_on_the_mesh_of_the_paper():

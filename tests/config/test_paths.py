@@ -84,10 +84,16 @@ def test_variants_share_summits_and_contact_where_these_are_equal():
     folder = "results/studies/variants"
     assert PAPER.summits_of_variant("b", "van_der_waals_dry") == f"{folder}/summits/b_base.nc"
     assert PAPER.summits_of_variant("b", "every_2") == f"{folder}/summits/b_every_2.nc"
-    assert PAPER.contact_of_variant("b_rh067", "strips_per_element_2") == f"{folder}/contact/b_base.nc"
     assert PAPER.contact_of_variant("b_rh067", "van_der_waals_dry") == f"{folder}/contact/b_van_der_waals_dry.nc"
     assert PAPER.summits_of_choice("b", "3000x2000", "every_2").endswith("/summits/b_3000x2000_every_2.nc")
     assert PAPER.summits_of_choice("b", "3000x2000", "van_der_waals_dry").endswith("/summits/b_3000x2000_base.nc")
+
+
+@pytest.mark.parametrize("variant", ["base", "strips_per_element_2"])
+def test_the_base_of_the_variants_has_the_contact_of_the_main_line_if_that_has_as_many_samples(variant):
+    fewer = Paths(Plan(merged(PAPER.plan.config, {"contact": {"samples": 599}})))
+    assert PAPER.contact_of_variant("b_rh067", variant) == PAPER.contact("b_rh067", "NG") == "results/contact/b_NG.nc"
+    assert fewer.contact_of_variant("b_rh067", variant) == "results/studies/variants/contact/b_base.nc"
 
 
 def test_a_device_on_the_strips_of_its_pair_shares_their_contact():

@@ -119,6 +119,11 @@ def test_a_surface_without_summits_keeps_its_published_spectrum_under_every_vari
     assert settings["identified"] == ["Sub1"]
 
 
+@pytest.mark.parametrize(("samples", "enough"), [(599, False), (600, True), (5000, True)])
+def test_the_main_line_has_the_samples_of_the_variants_if_it_has_as_many(samples, enough):
+    assert plan(contact={"samples": samples}, chaos={"order": 1}).has_samples_of_variants is enough
+
+
 @pytest.mark.parametrize(
     ("changes", "known"),
     [

@@ -456,6 +456,15 @@ def test_a_variant_is_the_chain_behind_its_contact(h):
     assert found.sizes["beam"] == 2
 
 
+def test_a_variant_has_the_first_samples_of_a_larger_contact():
+    settings = small.settings_of(variant_beams, jobs.variant(small.PLAN, small.CASE, "base"))
+    found = variant_beams.compute(small.contact_of_pair(), small.CASE, replace(settings, samples=18))
+    first = variant_beams.compute(small.contact_of_pair().isel(sample=range(18)), small.CASE, settings)
+    assert found.sizes["sample"] == 18
+    for name in ("adhesion_energy", "crack_length", "state"):
+        assert_array_equal(found[name], first[name])
+
+
 def test_elements_of_a_variant_and_of_resampled_beams_follow_the_laws_if_asked():
     settings = small.settings_of(variant_beams, jobs.variant(small.PLAN, "b_rh080", "base"))
     base, finer = (

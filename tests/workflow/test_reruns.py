@@ -52,7 +52,7 @@ READ_BY = {
     " device_contact tip_contact",
     "character": "table_1 checks",
     "contact_chunk": "contact",
-    "contact": "forces fit humidity cracks chart",
+    "contact": "forces fit humidity variant cracks chart",
     "forces": "fit chaos table_3 sample_sizes orders mesh resampling checks",
     "sensitivity_contact": "sensitivity",
     "variant_summits": "variant_contact",
@@ -111,7 +111,8 @@ MATRIX = [
     ("spacing of Table I", "character: {spacing_nm: 10}", "identification character", (), "results/contact|forces"),
     ("patches of identification", "identification: {patches: 4}", "identification", (), "spectrum|_base"),
     ("water", "water: {temperature_K: 310}", "forces humidity sensitivity variant cracks safe_lengths chart", (), "contact"),
-    ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (), "studies/(sens|plas|vari)|tips"),
+    ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (),
+     "studies/(sens|plas|variants/(contact|summits))|psd_identified|tips"),
     ("distance step", "contact: {distance_step_nm: 0.1}",
      "contact_chunk sensitivity_contact plasticity variant_summits device_contact tip_contact", (), "spectrum"),
     ("chaos order", "chaos: {order: 6}", "chaos variant cracks chart", (), "forces"),
@@ -257,6 +258,15 @@ def test_a_setting_reruns_the_rules_it_affects_and_their_readers_and_no_others(t
     rerun = tree.rerun(overlay=overlay)
     assert known(rerun) == behind(met.split()) - set(spared)
     assert not [name for name in rerun if stay and re.search(stay, name) and rerun[name] in RULES - {"table_3"}]
+
+
+def test_other_samples_of_the_main_line_or_of_the_variants_rerun_the_base_of_the_variants(tree):
+    more, fewer = (
+        {name.rpartition("/")[2] for name, rule in tree.rerun(overlay=overlay).items() if rule == "variant"}
+        for overlay in ("contact: {samples: 5500}", "studies: {variants: {samples: 500}}")
+    )
+    assert more == {name for name in fewer if re.search("_base|_element_2", name)} > {"a_rh060_base.nc"}
+    assert "a_rh060_psd_identified.nc" in fewer
 
 
 def test_adding_a_humidity_runs_no_contact_and_no_surface(tree):

@@ -218,11 +218,11 @@ def resampling(plan: Plan, case: str) -> dict:
 
 
 def variant(plan: Plan, case: str, name: str) -> dict:
-    """Stages after contact under a variant: water, force laws and beams without scatter."""
-    pair = pair_of(case)
+    """Stages after contact under a variant: samples of the contact, water, force laws and beams without scatter."""
+    pair, study = pair_of(case), plan.config["studies"]["variants"]
     found = chosen(plan.config, ("seed", "chaos")) | {"water": plan.water(pair)} | cantilevers(plan, pair)
-    found["beam"] |= {"samples": plan.config["studies"]["variants"]["beams"]} | plan.finer_beams.get(name, {})
-    return found | {"sampling": _strip(plan)} | _refined(plan, case)
+    found["beam"] |= {"samples": study["beams"]} | plan.finer_beams.get(name, {})
+    return found | chosen(study, ["samples"]) | {"sampling": _strip(plan)} | _refined(plan, case)
 
 
 # Devices

@@ -100,8 +100,14 @@ class Paths:
         return f"results/studies/variants/summits/{pair}_{self.plan.summits_under(pair, variant)}.nc"
 
     def contact_of_variant(self, case: str, variant: str) -> str:
-        """Contact of the pair of a case under a variant, which other variants may share."""
-        return f"results/studies/variants/contact/{pair_of(case)}_{self.plan.contact_under(variant)}.nc"
+        """Contact of the pair of a case under a variant, which other variants may share.
+
+        That of the base is the contact of the main line, unless the variants have more samples.
+        """
+        shared = self.plan.contact_under(variant)
+        if shared == "base" and self.plan.has_samples_of_variants:
+            return self.contact(case, "NG")
+        return f"results/studies/variants/contact/{pair_of(case)}_{shared}.nc"
 
     # Devices
 

@@ -319,6 +319,11 @@ class Plan:
         """Variant whose contact a variant has: that of the base if only the mesh of the beam is finer."""
         return "base" if variant in self.finer_beams else variant
 
+    @property
+    def has_samples_of_variants(self) -> bool:
+        """Whether the first samples of the main line are those of the base of the variants."""
+        return self.config["contact"]["samples"] >= self.config["studies"]["variants"]["samples"]
+
     def _summits(self, pair, variant):
         """Settings of the summits of a pair under a variant."""
         found = self.variant_summits(pair, variant)

@@ -15,9 +15,10 @@ from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of the stages after contact: water, force laws and beams without scatter."""
+    """Settings of the stages after contact: samples of it, water, force laws and beams without scatter."""
 
     seed: int
+    samples: int  #: number of pairs of surfaces, the first of the contact
     water: curves.Water
     chaos: Truncation
     solid: Stiffness
@@ -30,7 +31,7 @@ class Settings:
 def compute(contact: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
     """Run the stages after contact at the humidity of a case; model NG, nominal dimensions."""
     humidity = humidity_of(case)
-    vectors, limit = curves.vectors(contact, humidity, settings.water)
+    vectors, limit = curves.vectors(contact.isel(sample=slice(settings.samples)), humidity, settings.water)
     model = fit(vectors, limit, settings.chaos.order, settings.chaos.dimension_tolerance)
     beams = releases.Settings(
         settings.seed,
