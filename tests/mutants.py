@@ -1396,6 +1396,8 @@ MUTANTS = {
     ],
     "stages.storage": [
         ("if found != wanted", "if found[0] != wanted[0]"),
+        ('dataset.isel(parts, missing_dims="ignore").load()', "dataset.load()"),
+        (', missing_dims="ignore").load()', ").load()"),
         ("labels.made_from(inputs, stage", "labels.made_from((), stage"),
     ],
     "run.labels": [

@@ -239,10 +239,8 @@ def test_jobs_start_as_before_where_forks_are_not_safe(untouched, monkeypatch):
 class Stopped:
     """Server that has ended."""
 
-    environment = hooks.environment(1, hooks.tempfile.gettempdir())
-
-    def __init__(self, _environment):
-        pass
+    def __init__(self, environment):
+        self.environment = environment
 
     def run(self, _script):
         raise BrokenPipeError

@@ -21,6 +21,18 @@ def test_a_dataset_is_read_as_it_was_written_with_its_settings(tmp_path):
     assert loaded.attrs["settings"] == '{"seed": 1, "water": {"temperature_K": 300}}'
 
 
+def test_a_part_of_a_dataset_is_read_alone(tmp_path):
+    storage.save(dataset(), tmp_path / "x.nc", "forces", {})
+    part = storage.load(tmp_path / "x.nc", "forces", sample=slice(5))
+    np.testing.assert_array_equal(part.x, dataset().x[:5])
+
+
+def test_a_file_of_another_stage_without_the_dimension_is_rejected_by_name(tmp_path):
+    storage.save(dataset().rename(sample="node"), tmp_path / "x.nc", "beams", {})
+    with pytest.raises(storage.DataError, match=r"x\.nc holds beams of x, not forces of x"):
+        storage.load(tmp_path / "x.nc", "forces", sample=slice(5))
+
+
 def test_a_dataset_names_the_settings_of_its_inputs(tmp_path):
     storage.save(dataset(), tmp_path / "x.nc", "contact", {"samples": 9})
     storage.save(dataset(), tmp_path / "y.nc", "forces", {}, [tmp_path / "x.nc"])

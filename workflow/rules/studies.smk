@@ -176,8 +176,6 @@ rule variant:
     log:
         "results/logs/studies/variants/{case}_{variant}.log",
     localrule: True
-    resources:
-        mem_mb=SAMPLES,
     params:
         settings=lambda w: jobs.variant(plan, w.case, w.variant),
         code=code("variant.py"),

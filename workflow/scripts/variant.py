@@ -8,9 +8,9 @@ from stiction.variants import beams
 
 def main(job):
     """Run the stages after contact."""
-    dataset = beams.compute(
-        storage.load(job.input.contact, "contact"), job.wildcards.case, typed(beams.Settings, job.params.settings)
-    )
+    settings = typed(beams.Settings, job.params.settings)
+    contact = storage.load(job.input.contact, "contact", sample=slice(settings.samples))
+    dataset = beams.compute(contact, job.wildcards.case, settings)
     storage.save(dataset, job.output[0], "variant", job.params.settings, job.input)
 
 

@@ -40,8 +40,15 @@ def save(
         labelled.to_netcdf(draft, engine="netcdf4", encoding=encoding)
 
 
-def load(path: str | Path, stage: str) -> xr.Dataset:
-    """Read the dataset of a stage completely into memory.
+def load(path: str | Path, stage: str, **parts: slice) -> xr.Dataset:
+    """Read the dataset of a stage into memory.
+
+    Parameters
+    ----------
+    path : str or Path
+    stage : str
+    **parts : slice
+        Part of a dimension to read, for example ``sample=slice(100)``; all of the other dimensions is read.
 
     Raises
     ------
@@ -52,7 +59,7 @@ def load(path: str | Path, stage: str) -> xr.Dataset:
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             found = dataset.attrs.get("stage"), dataset.attrs.get("name")
-            loaded = dataset.load()
+            loaded = dataset.isel(parts, missing_dims="ignore").load()
     except (OSError, ValueError, RuntimeError) as error:
         raise labels.unreadable(path, error) from error
     if found != wanted:
