@@ -16,6 +16,8 @@ PROGRAM = """
 import importlib, json, pkgutil
 from numba.core.registry import CPUDispatcher
 import stiction
+from stiction.beam import tension
+from stiction.devices import bridges
 from stiction.run import warmup
 
 kernels = {}
@@ -43,6 +45,7 @@ for through in ("water", "none"):
     study = stiction.PairStudy.of(config, "b")
     study.energies(0.8)
 study.beams(0.8, scatter=0.02)
+tension.release_rate(1e-4, bridges.half_of_bridge(study.beam, 5e7))
 calls = {name: called(kernel) for name, kernel in kernels.items()}
 print(json.dumps([warm, signatures(), calls, warmed]))
 """
@@ -105,6 +108,6 @@ def test_an_error_of_a_part_is_an_error_of_the_warm_up(monkeypatch, parts):
         warmup.main()
 
 
-def test_a_study_compiles_nothing_more(compiled):
+def test_a_study_and_a_bridge_compile_nothing_more(compiled):
     warm, used, _, _ = compiled
     assert used == warm
