@@ -93,7 +93,7 @@ MATRIX = [
     ("gap of one pair", "pairs: {a: {gap_um: 19}}", "beams resampling variant checks", (), "/b_"),
     ("one humidity added", "pairs: {a: {humidities: [0.6, 0.7, 0.8]}}", "forces variant table_3 checks", OF_FIGURE,
      "/b_|/a_rh060|/a_rh080"),
-    ("one humidity removed", "pairs: {a: {humidities: [0.6]}}", "humidity table_3 checks", (), "/b_|/a_rh"),
+    ("one humidity removed", "pairs: {a: {humidities: [0.6]}}", "humidity table_3 checks model_limits", (), "/b_|/a_rh"),
     ("seed", "seed: 2",
      "identification iteration character contact_chunk chaos beams sensitivity_contact plasticity orders resampling "
      "variant_summits device_contact tip_contact cracks safe_lengths chart", (), ""),
