@@ -18,6 +18,7 @@ from stiction.contact.forcelaw import (
     parametrise,
     pressure,
 )
+from stiction.streams import stream
 
 NM = 1e-9
 F_LIMIT = 3e6
@@ -228,6 +229,15 @@ def test_curves_of_a_humidity_run_until_the_film_of_the_highest_point_breaks():
     np.testing.assert_allclose(np.diff(distance), STEP)
     assert force[-1] == 0
     assert distance[0] == 0
+
+
+def test_inputs_in_single_precision_give_the_bits_of_their_copies_in_double_precision():
+    stored = [stream(k).random((1, n), np.float32) for k, n in enumerate((81, 121))]
+    (_, single), (_, double) = (
+        humid_curves(*inputs, (0.0, -20 * STEP), STEP, (48.3 * STEP, 6e7))
+        for inputs in (stored, [values.astype(float) for values in stored])
+    )
+    np.testing.assert_array_equal(single(0), double(0))
 
 
 def test_energies_of_all_curves_are_the_first_column_of_their_vectors():

@@ -52,12 +52,13 @@ def apparent_force(
     r"""Force of solid contact and water film, :math:`f(d) = p_s(d) - \sigma A(d - h_C)`, written to ``out``.
 
     Curves are linear between nodes. Either input is zero beyond its last node; the bearing area is 1 before its first.
+    Inputs in single precision give the same bits as their copies in double precision.
 
     Parameters
     ----------
-    solid : (n_s,) float64
+    solid : (n_s,) float32 or float64
         Pressure of the solids p_s [Pa].
-    bearing : (n_b,) float64
+    bearing : (n_b,) float32 or float64
         Bearing area fraction A [-].
     starts : tuple of 3 floats
         Distance at the first node of ``solid``, ``bearing`` and ``out`` [m].
@@ -110,8 +111,7 @@ def humid_curves(
     out = np.empty(distance.size)
 
     def curve(k):
-        inputs = np.asarray(solid[k], np.float64), np.asarray(bearing[k], np.float64)
-        apparent_force(*inputs, (*starts, starts[0]), step, height, tension, out)
+        apparent_force(solid[k], bearing[k], (*starts, starts[0]), step, height, tension, out)
         return out
 
     return distance, curve

@@ -34,7 +34,8 @@ def contact_kernels() -> None:
         pair = SurfacePair(surface, surface, 1e-10, asperity=model)
         solid, bearing = pair.contact(pair.draw(rng, rng))
     starts = pair.distances.solid[0], pair.distances.bearing[0]
-    distance, curve = forcelaw.humid_curves(solid[None], bearing[None], starts, 1e-10, (1e-9, 1e6))
+    stored = [values[None].astype(np.float32) for values in (solid, bearing)]
+    distance, curve = forcelaw.humid_curves(*stored, starts, 1e-10, (1e-9, 1e6))
     forcelaw.parametrise(distance, curve, 1)
 
 
