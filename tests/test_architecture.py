@@ -110,6 +110,49 @@ def test_physics_prints_nothing_and_opens_nothing(path):
     assert module_name(path) not in PHYSICS or not names & {"open", "print"}
 
 
+#: Powers of ten of factors between units and SI, and between units such as MB and GB.
+POWERS = {3, 6, 9, 12, 21, 36}
+#: Modules with the units of the configuration, and with those of tables and figures.
+OF_UNITS = {"config.units", "report.format"}
+
+
+def is_factor(node):
+    """Whether an expression is a literal power of ten that occurs in units."""
+    if not isinstance(node, ast.Constant) or isinstance(node.value, bool) or not isinstance(node.value, int | float):
+        return False
+    return any(node.value in (float(f"1e{power}"), float(f"1e-{power}")) for power in POWERS)
+
+
+def factors_of_units(path):
+    """Products and quotients with literal powers of ten, and names for such powers."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        product = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div)
+        parts = (node.left, node.right) if product else (node.value,) if isinstance(node, ast.Assign) else ()
+        if any(map(is_factor, parts)):
+            yield ast.unparse(node)
+
+
+@each_module
+def test_units_are_converted_by_the_modules_of_units(path):
+    # The physics is in SI units and must not import them; its error messages state lengths in µm.
+    if module_name(path) in MODULES[MODULES.index("config.units") :] and module_name(path) not in OF_UNITS:
+        assert not list(factors_of_units(path))
+
+
+@pytest.mark.parametrize("line", ["x = 1e6 * y", "f(y / 1e-9)", "x = 2 * (y * 1e-3)", "x = f'{1e6 * y:g}'", "X = 1e-6"])
+def test_a_factor_between_units_is_found(tmp_path, line):
+    path = tmp_path / "table.py"
+    path.write_text(f"def f(y):\n    {line}\n")
+    assert len(list(factors_of_units(path))) == 1
+
+
+@pytest.mark.parametrize("line", ["x = 100 * y", "x = y > 1e-9", "x = np.linspace(0, 1e-6, 401)", "X = 10_000"])
+def test_other_numbers_are_no_factors_between_units(tmp_path, line):
+    path = tmp_path / "table.py"
+    path.write_text(f"def f(y):\n    {line}\n")
+    assert not list(factors_of_units(path))
+
+
 def public_functions(path):
     """Functions and methods that users call; kernels have the types of their arguments, relations those of keys."""
     for node in ast.parse(path.read_text(encoding="utf-8")).body:

@@ -20,6 +20,7 @@ from stiction.beam.montecarlo import Experiment, columns, simulate
 from stiction.beam.release import EndState
 from stiction.beam.resolution import resolved
 from stiction.chaos.model import ChaosModel, Truncation, draw_laws, fit
+from stiction.config.units import from_si
 from stiction.contact import forcelaw
 from stiction.devices.bridges import half_of_bridge
 from stiction.progress import progress
@@ -93,7 +94,8 @@ def long_beam(device: Device, laws: np.ndarray) -> tuple[Beam, int]:
     try:
         return resolved(beam, points, laws), points
     except ValueError as error:
-        error.add_note(f"The length of the strips of a device is its strip_um, here {1e6 * device.strip:g} µm.")
+        strip = from_si(device.strip, "um")
+        error.add_note(f"The length of the strips of a device is its strip_um, here {strip:g} µm.")
         raise
 
 
