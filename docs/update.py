@@ -202,8 +202,8 @@ def meshes(results):
 
 def timing(results):
     """Number, time and memory of the jobs of a run, and the machine: name to text."""
-    measured = list(jobs.measured(results))
-    _, number, longest, seconds, megabytes, *_ = zip(*measured, strict=True)
+    costs = list(jobs.costs(results))
+    _, number, longest, seconds, megabytes, *_ = zip(*costs, strict=True)
     machine = json.loads((results / "provenance.json").read_text(encoding="utf-8"))[-1]["machine"]
     return {
         "jobs": str(sum(number)),

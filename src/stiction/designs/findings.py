@@ -10,7 +10,7 @@ import xarray as xr
 
 from stiction.beam.cantilever import Beam
 from stiction.config.units import from_si, typed
-from stiction.designs.releases import Device
+from stiction.designs.releases import DesignedBeam
 from stiction.designs.sticking import EITHER, S_SHAPE
 from stiction.devices import limits
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever
@@ -38,7 +38,7 @@ class OfPairs:
 class OfDevice:
     """A device and its pair."""
 
-    device: Device
+    device: DesignedBeam
     tip: float  #: length of the strips of tips [m]
     materials: Materials = ()  #: of its pair
 

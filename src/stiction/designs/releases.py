@@ -38,7 +38,7 @@ LAWS = 10_000
 
 
 @dataclass(frozen=True)
-class Device:
+class DesignedBeam:
     """Dimensions of a beam that must come free, and its ground."""
 
     kind: str  #: ``cantilever`` or ``bridge``
@@ -66,7 +66,7 @@ class Seeded(Protocol):
     """Settings of any job that releases beams of a device."""
 
     seed: int
-    device: Device
+    device: DesignedBeam
 
 
 def fitted(vectors: np.ndarray, limit: float, chaos: Truncation) -> ChaosModel:
@@ -79,7 +79,7 @@ def addresses(settings: Seeded) -> Callable:
     return partial(stream, settings.seed, "devices", settings.device.pair)
 
 
-def long_beam(device: Device, laws: np.ndarray) -> tuple[Beam, int]:
+def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
     """Beam of a device that is longer than its cracks, with elements that resolve them, and its number of strips.
 
     Raises
