@@ -153,6 +153,39 @@ def test_other_numbers_are_no_factors_between_units(tmp_path, line):
     assert not list(factors_of_units(path))
 
 
+#: Modules of designs that are stages; the others contain what these share, and tables, figures and pages.
+STAGES_OF_DESIGNS = {"designs.cracks", "designs.safe_lengths", "designs.chart", "designs.stoppers", "designs.budget"}
+#: Names that build datasets and arrays with labels; ``netCDF4.Dataset`` opens a file.
+LABELLED = {f"{library}{kind}" for library in ("xr.", "xarray.", "") for kind in ("Dataset", "DataArray")}
+
+
+def is_stage(name):
+    """Whether a module may build the dataset of a stage."""
+    if name.startswith("measured."):
+        return not name.startswith(("measured.tables_", "measured.figures_"))
+    return name.startswith(("stages.", "studies.", "variants.")) or name in STAGES_OF_DESIGNS
+
+
+def datasets_built(path):
+    """Calls that build a dataset, or an array with labels, from plain arrays."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in LABELLED:
+            yield ast.unparse(node)
+
+
+@pytest.mark.parametrize("path", [*FILES, *SCRIPTS], ids=lambda path: path.stem)
+def test_datasets_are_built_by_the_modules_of_stages(path):
+    if not (path.is_relative_to(PACKAGE) and is_stage(module_name(path))):
+        assert not list(datasets_built(path))
+
+
+@pytest.mark.parametrize("call", ["xr.Dataset({})", "xarray.Dataset()", "xr.DataArray(y).mean()", "Dataset({'y': y})"])
+def test_a_dataset_that_is_built_is_found(tmp_path, call):
+    path = tmp_path / "table.py"
+    path.write_text(f"def f(y: xr.Dataset) -> xr.DataArray:\n    return {call}\n")
+    assert len(list(datasets_built(path))) == 1
+
+
 def public_functions(path):
     """Functions and methods that users call; kernels have the types of their arguments, relations those of keys."""
     for node in ast.parse(path.read_text(encoding="utf-8")).body:
