@@ -30,7 +30,7 @@ from stiction.config.files import paper
 from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.contact import forcelaw
-from stiction.report.format import with_error
+from stiction.report.format import TO_UM, with_error
 from stiction.stages.cantilevers import Cantilevers, StripLength, cantilever
 from stiction.stages.forces import vectors
 from stiction.stages.storage import load
@@ -180,7 +180,7 @@ def scalars(studies):
     excess = mesh.energy.values[of_paper][0] / forcelaw.energy(mesh.law.values) - 1
     found["mesh_excess"] = f"{100 * excess:.1f}"
     for name, length in zip(correlation.surface.values, correlation.correlation_length.values, strict=True):
-        found[f"correlation_{name}"] = f"{1e6 * float(length):.2f}"
+        found[f"correlation_{name}"] = f"{TO_UM * float(length):.2f}"
     return found
 
 
@@ -202,8 +202,8 @@ def meshes(results):
 
 def timing(results):
     """Number, time and memory of the jobs of a run, and the machine: name to text."""
-    measured = list(jobs.measured(results))
-    _, number, longest, seconds, megabytes, *_ = zip(*measured, strict=True)
+    costs = list(jobs.costs(results))
+    _, number, longest, seconds, megabytes, *_ = zip(*costs, strict=True)
     machine = json.loads((results / "provenance.json").read_text(encoding="utf-8"))[-1]["machine"]
     return {
         "jobs": str(sum(number)),

@@ -110,6 +110,82 @@ def test_physics_prints_nothing_and_opens_nothing(path):
     assert module_name(path) not in PHYSICS or not names & {"open", "print"}
 
 
+#: Powers of ten of factors between units and SI, and between units such as MB and GB.
+POWERS = {3, 6, 9, 12, 21, 36}
+#: Modules with the units of the configuration, and with those of tables and figures.
+OF_UNITS = {"config.units", "report.format"}
+
+
+def is_factor(node):
+    """Whether an expression is a literal power of ten that occurs in units."""
+    if not isinstance(node, ast.Constant) or isinstance(node.value, bool) or not isinstance(node.value, int | float):
+        return False
+    return any(node.value in (float(f"1e{power}"), float(f"1e-{power}")) for power in POWERS)
+
+
+def factors_of_units(path):
+    """Products and quotients with literal powers of ten, and names for such powers."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        product = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div)
+        parts = (node.left, node.right) if product else (node.value,) if isinstance(node, ast.Assign) else ()
+        if any(map(is_factor, parts)):
+            yield ast.unparse(node)
+
+
+@each_module
+def test_units_are_converted_by_the_modules_of_units(path):
+    # The physics is in SI units and must not import them; its error messages state lengths in µm.
+    if module_name(path) in MODULES[MODULES.index("config.units") :] and module_name(path) not in OF_UNITS:
+        assert not list(factors_of_units(path))
+
+
+@pytest.mark.parametrize("line", ["x = 1e6 * y", "f(y / 1e-9)", "x = 2 * (y * 1e-3)", "x = f'{1e6 * y:g}'", "X = 1e-6"])
+def test_a_factor_between_units_is_found(tmp_path, line):
+    path = tmp_path / "table.py"
+    path.write_text(f"def f(y):\n    {line}\n")
+    assert len(list(factors_of_units(path))) == 1
+
+
+@pytest.mark.parametrize("line", ["x = 100 * y", "x = y > 1e-9", "x = np.linspace(0, 1e-6, 401)", "X = 10_000"])
+def test_other_numbers_are_no_factors_between_units(tmp_path, line):
+    path = tmp_path / "table.py"
+    path.write_text(f"def f(y):\n    {line}\n")
+    assert not list(factors_of_units(path))
+
+
+#: Modules of designs that are stages; the others contain what these share, and tables, figures and pages.
+STAGES_OF_DESIGNS = {"designs.cracks", "designs.safe_lengths", "designs.chart", "designs.stoppers", "designs.budget"}
+#: Names that build datasets and arrays with labels; ``netCDF4.Dataset`` opens a file.
+LABELLED = {f"{library}{kind}" for library in ("xr.", "xarray.", "") for kind in ("Dataset", "DataArray")}
+
+
+def is_stage(name):
+    """Whether a module may build the dataset of a stage."""
+    if name.startswith("measured."):
+        return not name.startswith(("measured.tables_", "measured.figures_"))
+    return name.startswith(("stages.", "studies.", "variants.")) or name in STAGES_OF_DESIGNS
+
+
+def datasets_built(path):
+    """Calls that build a dataset, or an array with labels, from plain arrays."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in LABELLED:
+            yield ast.unparse(node)
+
+
+@pytest.mark.parametrize("path", [*FILES, *SCRIPTS], ids=lambda path: path.stem)
+def test_datasets_are_built_by_the_modules_of_stages(path):
+    if not (path.is_relative_to(PACKAGE) and is_stage(module_name(path))):
+        assert not list(datasets_built(path))
+
+
+@pytest.mark.parametrize("call", ["xr.Dataset({})", "xarray.Dataset()", "xr.DataArray(y).mean()", "Dataset({'y': y})"])
+def test_a_dataset_that_is_built_is_found(tmp_path, call):
+    path = tmp_path / "table.py"
+    path.write_text(f"def f(y: xr.Dataset) -> xr.DataArray:\n    return {call}\n")
+    assert len(list(datasets_built(path))) == 1
+
+
 def public_functions(path):
     """Functions and methods that users call; kernels have the types of their arguments, relations those of keys."""
     for node in ast.parse(path.read_text(encoding="utf-8")).body:

@@ -24,7 +24,7 @@ def rules():
                 yield name, re.compile(re.sub(r"{\w+}", "[^/]+", log[1])), *stated
 
 
-def measured(results):
+def costs(results):
     """For every rule that ran: name, number of jobs, most and all seconds, most memory [MB], stated MB and minutes."""
     logs = {
         str(path.relative_to(results / "logs"))[:-4]: path.read_text() for path in (results / "logs").rglob("*.log")
@@ -41,7 +41,7 @@ def table(results):
     """The table in Markdown."""
     lines = ["| rule | jobs | longest [s] | all [s] | most memory [MB] | stated [MB] | stated [min] |"]
     lines += ["|---|---|---|---|---|---|---|"]
-    for name, jobs, longest, seconds, megabytes, memory, minutes in measured(results):
+    for name, jobs, longest, seconds, megabytes, memory, minutes in costs(results):
         lines += [f"| {name} | {jobs} | {longest:.1f} | {seconds:.0f} | {megabytes:.0f} | {memory} | {minutes} |"]
     return "\n".join(lines) + "\n"
 

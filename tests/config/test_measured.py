@@ -26,7 +26,7 @@ from stiction.scans.levelling import LEVELS, LINES, Levelling
 from stiction.scans.quantiles import measured_density, quantiles
 from stiction.scans.reading import UNITS, ScanFile, Source
 from stiction.stages import parameters
-from stiction.stages.heights import measured as measured_moments
+from stiction.stages.heights import measured_moments
 
 B2 = SURFACES["B2"]
 
@@ -127,7 +127,7 @@ def test_a_configuration_with_good_scans_is_valid_and_its_surfaces_are_shifted_l
     plan = Plan(config)
     assert plan.estimated == ["Etched"]
     assert plan.described == ["Sub1"]
-    assert plan.measured == ["Sub1"]
+    assert plan.with_summits == ["Sub1"]
     assert plan.shifted_moments == ["rms", "skewness", "kurtosis"]
     assert Plan(files.load(etched(*both(folder), heights="measured"))).shifted_moments == ["rms"]
     assert plan.paper_pairs == []

@@ -17,7 +17,7 @@ def plan(**changes):
 
 def test_the_paper_has_three_pairs_four_surfaces_and_eighteen_cases():
     assert PAPER.pairs == ["a", "b", "c"]
-    assert PAPER.surfaces == ["B1", "B2", "Sub1", "Sub2"] == PAPER.measured
+    assert PAPER.surfaces == ["B1", "B2", "Sub1", "Sub2"] == PAPER.with_summits
     assert len(PAPER.cases) == 18
     assert PAPER.cases[:2] == ["a_rh045", "a_rh060"]
     assert len(PAPER.laws) == 36

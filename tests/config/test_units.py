@@ -1,8 +1,10 @@
+import math
 from dataclasses import FrozenInstanceError, dataclass
 
+import numpy as np
 import pytest
 
-from stiction.config.units import typed
+from stiction.config.units import from_si, to_si, typed
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,24 @@ class Outer:
 )
 def test_a_value_is_converted_by_the_unit_of_its_key(key, value, name, expected):
     assert getattr(typed(Anything, {key: value}), name) == pytest.approx(expected, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "expected"),
+    [(3e-9, "nm", 3), (164e9, "GPa", 164), (5.25e-34, "nm4", 525), (math.pi, "deg", 180), (300.0, "K", 300)],
+)
+def test_a_value_is_stated_in_a_unit_and_back_in_si(value, unit, expected):
+    assert from_si(value, unit) == pytest.approx(expected, rel=1e-15)
+    assert to_si(expected, unit) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("nm", 1e9), ("zJ", 1e21)])
+def test_factors_from_si_are_exact_where_one_over_a_factor_to_si_is_not(unit, factor):
+    assert from_si(1.0, unit) == factor != 1 / to_si(1.0, unit)
+
+
+def test_arrays_are_converted_element_by_element():
+    np.testing.assert_array_equal(from_si(to_si(np.array([1.0, 2.0]), "um"), "um"), [1.0, 2.0])
 
 
 def test_values_without_unit_stay_as_they_are_and_lists_become_tuples():

@@ -11,14 +11,14 @@ from stiction.beam.cantilever import Beam
 from stiction.chaos.model import Truncation
 from stiction.contact import forcelaw
 from stiction.designs import cracks, safe_lengths
-from stiction.designs.releases import Device
+from stiction.designs.releases import DesignedBeam
 from stiction.stages import curves
 from stiction.streams import stream
 
 UM = 1e-6
 WATER = curves.Water(300.0)
-C1 = Device("cantilever", "b", 2.6 * UM, 20 * UM, 30 * UM, 164e9, 1.5 * UM)
-R1 = Device("bridge", "b", 2 * UM, 2 * UM, 30 * UM, 164e9, 1.5 * UM, residual_stress=50e6)
+C1 = DesignedBeam("cantilever", "b", 2.6 * UM, 20 * UM, 30 * UM, 164e9, 1.5 * UM)
+R1 = DesignedBeam("bridge", "b", 2 * UM, 2 * UM, 30 * UM, 164e9, 1.5 * UM, residual_stress=50e6)
 #: Largest attraction of the strips of tips [Pa].
 PULL = 3e5
 #: Root mean square of the heights of both surfaces [m].

@@ -10,12 +10,12 @@ from numpy.testing import assert_allclose
 
 from stiction.designs import inputs
 from stiction.designs.inputs import Known, Settings, State, Uncertainty
-from stiction.designs.releases import Device
+from stiction.designs.releases import DesignedBeam
 from stiction.stages import curves
 
 WATER = curves.Water(300.0)
-C1 = Device("cantilever", "b", PAPER.thickness, PAPER.gap, PAPER.width, PAPER.young_modulus, 1.5e-6)
-R1 = Device("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 1.5e-6, residual_stress=50e6)
+C1 = DesignedBeam("cantilever", "b", PAPER.thickness, PAPER.gap, PAPER.width, PAPER.young_modulus, 1.5e-6)
+R1 = DesignedBeam("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 1.5e-6, residual_stress=50e6)
 BASE = State(1.0, 0.67, WATER, C1, 9e-12)
 SETTINGS = Settings(1, WATER, 0.67, Uncertainty(), ("B2", "Sub1"), 164e9, C1, beams=24)
 

@@ -10,7 +10,7 @@ from test_tables_budget import BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_
 
 from stiction.designs import findings, pages, safe_lengths, sticking
 from stiction.designs.pages import Page, Section
-from stiction.designs.releases import Device
+from stiction.designs.releases import DesignedBeam
 from stiction.devices.limits import NOT_MODELLED
 from stiction.stages.curves import Water
 
@@ -27,7 +27,7 @@ STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_forc
 
 def safe(kind="cantilever", longest=600e-6):
     """Safe lengths of 400 devices that stick between two thirds of a length and this length."""
-    device = Device(kind, "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
+    device = DesignedBeam(kind, "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
     settings = safe_lengths.Settings(1, Water(300.0), 0.67, device, (1e-2, 1e-3, 1e-4), 1.5e-7)
     shapes = {sticking.S_SHAPE: np.linspace(2 / 3, 1, 400) * longest}
     if kind == "cantilever":

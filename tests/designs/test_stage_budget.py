@@ -14,7 +14,7 @@ from stiction.contact import forcelaw
 from stiction.designs import budget
 from stiction.designs.budget import Responses
 from stiction.designs.inputs import ARC, FORCE, S_SHAPE, Input, Settings, State, Uncertainty
-from stiction.designs.releases import Device
+from stiction.designs.releases import DesignedBeam
 from stiction.devices.arcs import arc_length
 from stiction.devices.budget import log_slope
 from stiction.devices.tail import fit_tail
@@ -23,8 +23,8 @@ from stiction.streams import stream
 
 WATER = curves.Water(300.0)
 VECTORS = sampled_vectors(400, spread=0.2)
-C1 = Device("cantilever", "b", PAPER.thickness, PAPER.gap, PAPER.width, PAPER.young_modulus, 1.5e-6)
-R1 = Device("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 1.5e-6, residual_stress=50e6)
+C1 = DesignedBeam("cantilever", "b", PAPER.thickness, PAPER.gap, PAPER.width, PAPER.young_modulus, 1.5e-6)
+R1 = DesignedBeam("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 1.5e-6, residual_stress=50e6)
 #: Forces and energies are multiplied by what a test passes as contact.
 BASE = State(1.0, 0.67, WATER, C1, 9e-12)
 BEAMS = partial(budget.of_beams, mesh=PAPER, strips=1000, number=100, address=lambda k: stream(1, k))

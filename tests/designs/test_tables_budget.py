@@ -11,7 +11,7 @@ from stiction.designs import figures_budget, tables_budget
 from stiction.designs import stoppers as study_stoppers
 from stiction.designs.budget import Responses
 from stiction.designs.inputs import Input, Settings, State, Uncertainty
-from stiction.designs.releases import Device
+from stiction.designs.releases import DesignedBeam
 from stiction.report.style import save
 from stiction.stages.curves import Water
 
@@ -20,7 +20,7 @@ NAMES = {"rms of B2": "heights of B2", "skewness of B2": "heights of B2", "thick
 COVARIANCE = np.array([[4e-4, -1e-4, 0], [-1e-4, 4e-4, 0], [0, 0, 1e-4]])
 
 
-C1 = Device("cantilever", "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
+C1 = DesignedBeam("cantilever", "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
 #: Settings of the budgets of a beam, of its tips and of a stopper.
 BEAM = Settings(1, Water(300.0), 0.5, Uncertainty(), ("B2", "Sub1"), 164e9, C1)
 TIPS, PATCH = replace(BEAM, share=1e-3), replace(BEAM, device=None)

@@ -9,7 +9,7 @@ from stiction.config import jobs
 from stiction.config.files import load
 from stiction.config.plan import Plan
 from stiction.config.units import typed
-from stiction.designs.releases import Device
+from stiction.designs.releases import DesignedBeam
 from stiction.devices import arcs, risk
 from stiction.stages import contact, curves
 from stiction.streams import stream
@@ -60,7 +60,7 @@ def test_shorter_strips_hold_more_and_scatter_more():
 @pytest.mark.slow
 @pytest.mark.parametrize("humidity", BRUTE_FORCE)
 def test_a_few_thousand_tips_find_the_lengths_of_200_000(humidity):
-    beam = Device("cantilever", "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6).beam
+    beam = DesignedBeam("cantilever", "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6).beam
     lengths = arcs.arc_length(curves.tip_energies(strips(0.05, 2900), humidity, WATER), beam)
     for share, (length, low, high) in BRUTE_FORCE[humidity].items():
         found = risk.safe_length(lengths, share, stream(0))

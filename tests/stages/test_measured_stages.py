@@ -195,7 +195,7 @@ def test_heights_have_the_density_of_the_estimated_moments(through_a_file):
     assert stage_heights.density(found, "NG") == estimate.density(b2(), "moments")
     moments = stage_heights.moments(found)
     assert_allclose([np.log(moments.rms), moments.skewness, moments.kurtosis], b2().moments, rtol=1e-12)
-    assert stage_heights.measured(found) == (moments.skewness, moments.kurtosis, 0.0)
+    assert stage_heights.measured_moments(found) == (moments.skewness, moments.kurtosis, 0.0)
     assert stage_heights.substitution(found) == ""
 
 
@@ -209,7 +209,7 @@ def test_moments_near_a_density_are_replaced_and_both_are_stated():
     nearest = Feasible(None, -0.3, 3.2, 1.5)
     found = heights.compute(infeasible(nearest), heights.Settings("Etched", "moments"))
     assert stage_heights.moments(found).kurtosis == 3.2
-    assert stage_heights.measured(found) == (-0.1, 3.3, 1.5)
+    assert stage_heights.measured_moments(found) == (-0.1, 3.3, 1.5)
     assert "skewness -0.1 and kurtosis 3.3" in stage_heights.substitution(found)
 
 
@@ -218,7 +218,7 @@ def test_without_a_density_of_the_moments_the_error_names_surface_files_and_reme
     with pytest.raises(ValueError, match=message + ".*; heights: measured does not need one"):
         heights.compute(infeasible(None), heights.Settings("Etched", "moments"))
     found = heights.compute(infeasible(None), heights.Settings("Etched", "measured"))
-    assert stage_heights.measured(found).distance == 0
+    assert stage_heights.measured_moments(found).distance == 0
 
 
 def test_measured_heights_are_the_quantiles_of_the_scans(through_a_file):

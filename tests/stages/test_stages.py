@@ -64,7 +64,7 @@ def test_infeasible_moments_are_replaced_by_the_nearest_ones_and_both_are_stated
     ):
         found = through_a_file(heights.compute(measured))
     assert heights.moments(found) == heights.Settings(2e-9, nearest.skewness, nearest.kurtosis)
-    assert heights.measured(found) == (-0.1, 3.05, nearest.distance)
+    assert heights.measured_moments(found) == (-0.1, 3.05, nearest.distance)
     density = heights.density(found, "NG")
     assert_allclose([density.moment(3), density.moment(4)], nearest[:2], rtol=1e-9)
 
@@ -72,7 +72,7 @@ def test_infeasible_moments_are_replaced_by_the_nearest_ones_and_both_are_stated
 def test_feasible_moments_leave_no_trace_of_a_substitution():
     found = small.heights_of("B2")
     assert "distance" not in found
-    assert heights.measured(found) == (B2.skewness, B2.kurtosis, 0.0)
+    assert heights.measured_moments(found) == (B2.skewness, B2.kurtosis, 0.0)
     assert heights.substitution(found) == ""
 
 

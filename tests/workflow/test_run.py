@@ -72,9 +72,9 @@ def test_log_of_a_long_job_shows_its_progress(smoke):
 
 
 def test_no_job_exceeds_the_resources_of_its_rule(smoke):
-    measured = list(jobs.measured(smoke / "results"))
-    assert sum(number for _, number, *_ in measured) == len(list((smoke / "results" / "logs").rglob("*.log")))
-    for rule, _, seconds, _, megabytes, memory, minutes in measured:
+    costs = list(jobs.costs(smoke / "results"))
+    assert sum(number for _, number, *_ in costs) == len(list((smoke / "results" / "logs").rglob("*.log")))
+    for rule, _, seconds, _, megabytes, memory, minutes in costs:
         # On a cluster, a job runs two processes of Snakemake in addition to its script.
         assert megabytes + 2 * 170 < memory, rule
         assert seconds < 60 * minutes, rule
@@ -134,5 +134,5 @@ def test_the_table_of_jobs_counts_each_job_once_and_no_job_of_the_smoke_run_besi
             log = results / "logs" / "heights" / f"{surface}.log"
             log.parent.mkdir(parents=True, exist_ok=True)
             log.write_text(f"took 99.0 s, 1 MB\ntook {seconds} s, 300 MB\n")
-    ((name, number, longest, total, *_),) = jobs.measured(tmp_path)
+    ((name, number, longest, total, *_),) = jobs.costs(tmp_path)
     assert (name, number, longest, total) == ("heights", 2, 1.5, 3.0)

@@ -6,7 +6,7 @@ rule checks:
     input:
         heights=expand("results/heights/{surface}.nc", surface=plan.surfaces),
         spectrum=expand("results/spectrum/{surface}.nc", surface=plan.surfaces),
-        identification=expand("results/identification/{surface}.nc", surface=plan.measured),
+        identification=expand("results/identification/{surface}.nc", surface=plan.with_summits),
         character=expand("results/character/{surface}_{model}.nc", surface=plan.surfaces, model=SURFACE_MODELS[::-1]),
         forces=[f"results/forces/{case}_{model}.nc" for case, model in plan.laws],
         chaos=[f"results/chaos/{case}_{model}.nc" for case, model in plan.laws],

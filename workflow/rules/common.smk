@@ -8,7 +8,15 @@ from stiction.config import cases, files, jobs, measured, memory, messages
 from stiction.config.designs import Designs
 from stiction.config.paths import Paths, one_of, titled
 from stiction.config.plan import Plan
-from stiction.models import BEAM_MODELS, CHOICES, OF_MEASURED, OF_MOMENTS, OF_SPECTRUM, SURFACE_MODELS, surface_model
+from stiction.models import (
+    ALTERNATIVES_OF_SCANS,
+    BEAM_MODELS,
+    OF_MEASURED,
+    OF_MOMENTS,
+    OF_SPECTRUM,
+    SURFACE_MODELS,
+    surface_model,
+)
 from stiction.run import folder, hooks, kept, provenance
 from stiction.run.atomic import DataError
 from stiction.run.fingerprint import fingerprint
@@ -26,7 +34,7 @@ wildcard_constraints:
     moment="|".join(OF_MOMENTS),
     quantity="|".join({*OF_MOMENTS, *OF_MEASURED, *OF_SPECTRUM}),
     side="less|more",
-    choice="|".join(CHOICES),
+    choice="|".join(ALTERNATIVES_OF_SCANS),
     variant="base|[a-z_]+_[a-z0-9.-]+",
     length="[0-9]+",
     width="[0-9]+",

@@ -67,7 +67,7 @@ rule scan_uncertainty:
         ),
         estimates=lambda w: paths.estimates(w.pair),
         base="results/contact/{pair}_NG.nc",
-        choices=expand("results/studies/choices/{{pair}}_{choice}.nc", choice=CHOICES),
+        choices=expand("results/studies/choices/{{pair}}_{choice}.nc", choice=ALTERNATIVES_OF_SCANS),
     output:
         "results/studies/scan_uncertainty/{pair}.nc",
     log:

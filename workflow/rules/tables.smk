@@ -23,8 +23,8 @@ rule table_1:
 
 rule table_2:
     input:
-        identifications=expand("results/identification/{surface}.nc", surface=plan.measured),
-        spectra=expand("results/spectrum/{surface}.nc", surface=plan.measured),
+        identifications=expand("results/identification/{surface}.nc", surface=plan.with_summits),
+        spectra=expand("results/spectrum/{surface}.nc", surface=plan.with_summits),
         published=published("table_2"),
     output:
         **table_files("table_2", "spectra and their identification"),
@@ -172,7 +172,7 @@ rule table_resampling:
 rule tables:
     input:
         rules.table_1.output,
-        rules.table_2.output if plan.measured else [],
+        rules.table_2.output if plan.with_summits else [],
         rules.table_3.output,
         [rules.table_scans.output, rules.table_scan_uncertainty.output] if plan.scanned else [],
     localrule: True

@@ -451,7 +451,7 @@ def skewed(plan: Plan, pairs: Iterable[str]) -> list[str]:
 
 def table_2(plan: Plan) -> dict:
     """Spectrum in use of every surface with measured summits, and the surfaces whose published values are shown."""
-    sources = {name: plan.config["surfaces"][name]["psd"] for name in plan.measured}
+    sources = {name: plan.config["surfaces"][name]["psd"] for name in plan.with_summits}
     return {"sources": sources, "of_paper": plan.paper_surfaces}
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from stiction.config.messages import Problem
-from stiction.config.units import NM_PER_UM, typed
+from stiction.config.units import NM_PER_UM, from_si, typed
 from stiction.errors import ScanError
 from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
 from stiction.run.atomic import save_text
@@ -217,16 +217,16 @@ def _preliminary(files, reading, evaluating):
     form = measured_density(quantiles(found.levelled), found.areas)
     ln_rms, skewness, kurtosis = map(float, found.moments)
     return {
-        "rms_nm": 1e9 * math.exp(ln_rms),
+        "rms_nm": from_si(math.exp(ln_rms), "nm"),
         "measured": [skewness, kurtosis],
         "feasible": None if nearest is None else [nearest.skewness, nearest.kurtosis],
         "form": [form.scores.tolist(), form.heights.tolist()],
-        "plateau_nm4": 1e36 * found.fit.plateau,
-        "corner_rad_per_um": 1e-6 * found.fit.corner,
+        "plateau_nm4": from_si(found.fit.plateau, "nm4"),
+        "corner_rad_per_um": from_si(found.fit.corner, "rad_per_um"),
         "slope": found.fit.slope,
-        "end_rad_per_um": 1e-6 * float(found.reach.end),
+        "end_rad_per_um": from_si(float(found.reach.end), "rad_per_um"),
         "points": list(found.frame.shape),
-        "pixel_nm": [1e9 * pixel for pixel in found.frame.pixel],
+        "pixel_nm": [from_si(pixel, "nm") for pixel in found.frame.pixel],
     }
 
 

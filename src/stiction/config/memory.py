@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 
-from stiction.config.units import NM_PER_UM
+from stiction.config.units import NM_PER_UM, from_si
 from stiction.models import SIDES
 
 #: Side of the periodic fields on which spectra are estimated [µm]; `stiction.stages.surfaces.FIELD`.
@@ -23,8 +23,6 @@ _PER_TRANSFORMED_POINT, _PER_DRAWN_POINT, _PER_STORED_POINT = 75, 85, 12
 #: Period of the transforms in wavelengths of the corner, least and largest number of its points;
 #: `stiction.scans.model_scans`.
 _PERIOD, _TRANSFORMED = 16, (512, 4096)
-#: Megabytes in a byte.
-_MB = 1e-6
 
 
 def of_field(length_um: float, width_um: float, spacing_nm: float) -> float:
@@ -36,7 +34,7 @@ def of_field(length_um: float, width_um: float, spacing_nm: float) -> float:
     413
     """
     points = (NM_PER_UM * length_um / spacing_nm) * (NM_PER_UM * width_um / spacing_nm)
-    return _BASE + _MB * (_PER_POINT * points)
+    return _BASE + from_si(_PER_POINT * points, "MB")
 
 
 def of_samples(config: dict) -> int:
@@ -54,7 +52,8 @@ def of_samples(config: dict) -> int:
 def _stored(config, pairs):
     """Contact of one sample of the roughest of some pairs [MB]; 0 without pairs."""
     rms = [[config["surfaces"][config["pairs"][pair][side]]["rms_nm"] for side in SIDES] for pair in pairs]
-    return 4 * _MB * _DISTANCES * max(map(sum, rms), default=0) / config["contact"]["distance_step_nm"]
+    distances = _DISTANCES * max(map(sum, rms), default=0) / config["contact"]["distance_step_nm"]
+    return from_si(4 * distances, "MB")
 
 
 def patch_of(device: dict, sampling: dict) -> tuple[float, float]:
@@ -105,4 +104,4 @@ def of_estimate(found: Mapping, files: int) -> int:
     drawn = math.prod(n * p / min(pixel) for n, p in zip(points, pixel, strict=True))
     stored = math.prod(points) * files
     of_arrays = _PER_TRANSFORMED_POINT * transformed + _PER_DRAWN_POINT * drawn + _PER_STORED_POINT * stored
-    return max(USUAL, round(_BASE + _MB * of_arrays))
+    return max(USUAL, round(_BASE + from_si(of_arrays, "MB")))

@@ -122,7 +122,7 @@ class Plan:
         return tuple(dict.fromkeys((*quantities(self.config["surfaces"][surface]), *modes)))
 
     @cached_property
-    def measured(self) -> list[str]:
+    def with_summits(self) -> list[str]:
         """Surfaces with measured summits, whose spectrum can therefore be identified."""
         return [name for name in self.surfaces if all(key in self.config["surfaces"][name] for key in SUMMITS)]
 
@@ -283,7 +283,7 @@ class Plan:
     def _psd_under(self, variant, surface):
         """Source of the spectrum of a surface: that of the variant where available, otherwise unchanged."""
         entry = self.config["surfaces"][surface]
-        known = {"published": "published_psd" in entry, "identified": surface in self.measured}
+        known = {"published": "published_psd" in entry, "identified": surface in self.with_summits}
         wanted = self.variants[variant].get("psd", entry["psd"])
         return wanted if known[wanted] else entry["psd"]
 

@@ -18,7 +18,7 @@ from stiction.beam.foundation import STRIP, decay_length, ground_stiffness
 from stiction.config import measured, memory
 from stiction.config.cases import NAMEABLE, decimals
 from stiction.config.messages import ConfigError, Problem, did_you_mean, dotted, duplicates, schema_problems, shown
-from stiction.config.units import NM_PER_UM, typed
+from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, to_si, typed
 from stiction.contact.asperity import asperity
 from stiction.contact.bounds import least_law
 from stiction.contact.estimate import ProfileMoments, force_law, repulsion_and_attraction
@@ -360,14 +360,15 @@ def length_can_exceed_the_correlation(length, psd, *target):
 @functools.lru_cache(maxsize=1000)
 def _estimated_correlation_length(rms, radius, density, spacing):
     """Correlation length of the spectrum from which an identification starts [µm]."""
-    target = SummitTarget(np.float64(1e-9 * rms), 1e-6 * radius, 1e12 * density, 1e-9 * spacing)
-    return 1e6 * correlation_length(estimated_spectrum(target))
+    summits = to_si(radius, "um"), to_si(density, "per_um2"), to_si(spacing, "nm")
+    target = SummitTarget(np.float64(to_si(rms, "nm")), *summits)
+    return from_si(correlation_length(estimated_spectrum(target)), "um")
 
 
 @functools.cache
 def _correlation_length(**psd):
     """Correlation length of a published spectrum [µm]."""
-    return 1e6 * correlation_length(typed(CutoffSelfAffine, psd))
+    return from_si(correlation_length(typed(CutoffSelfAffine, psd)), "um")
 
 
 @relation("sampling.strip_length_um", "sampling.spacing_nm", "contact.every")
@@ -470,10 +471,14 @@ def not_apart(gap: float, humidities: float | list, temperature: float, sides: l
     if not angles:
         return None
     film = float(np.max(meniscus_height(humidities, temperature, angles)))
-    rms = math.hypot(*(1e-9 * side["rms_nm"] for side in sides))
-    least = 1e6 * limits.least_gap(film, rms)
-    found = f"{limits.FILMS} times the height of the water film, {1e9 * film:.5g} nm, plus the rms of the surfaces, "
-    return None if gap >= least else f"must be at least {least:.4g} µm, {found}{1e9 * rms:.3g} nm"
+    rms = math.hypot(*(to_si(side["rms_nm"], "nm") for side in sides))
+    least = from_si(limits.least_gap(film, rms), "um")
+    if gap >= least:
+        return None
+    return (
+        f"must be at least {least:.4g} µm, {limits.FILMS} times the height of the water film, "
+        f"{from_si(film, 'nm'):.5g} nm, plus the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
+    )
 
 
 @relation("sampling.strip_length_um", "beam.thickness_um", "solid.young_modulus_GPa", "pairs.*.humidities", *_MEETING)
@@ -503,12 +508,14 @@ def longest_strip(
     if not angles or not shapes:
         return math.inf
     (beam, substrate), highest = zip(*shapes, strict=True)
-    rms = np.array([1e-9 * side["rms_nm"] for side in sides])
+    rms = np.array([to_si(side["rms_nm"], "nm") for side in sides])
     heights, top = np.add.outer(rms[0] * np.array(beam), rms[1] * np.array(substrate)), float(rms @ highest)
-    bending = 1e9 * modulus * (1e-6 * thickness) ** 3 / 12
+    bending = to_si(modulus, "GPa") * to_si(thickness, "um") ** 3 / 12
     film = float(meniscus_height(humidity, temperature, angles)), -float(laplace_pressure(humidity, temperature))
     f_max, a_left = least_law(heights, top, film)
-    return 1e6 * STRIP * decay_length(bending, ground_stiffness(f_max, a_left)) if f_max else math.inf
+    if not f_max:
+        return math.inf
+    return from_si(STRIP * decay_length(bending, ground_stiffness(f_max, a_left)), "um")
 
 
 #: ASSUME: estimated foundation lengths are at most this much too long; more often they are too short.
@@ -530,15 +537,15 @@ def estimated_strip(
         stiffness = _estimated_stiffness(tuple(map(_summit_source, sides)), tuple(s for s, _ in shapes), elastic, film)
     except (ValueError, ArithmeticError):
         return math.inf  # other relations report what is out of range
-    bending = bodies[0].young_modulus * (1e-6 * thickness) ** 3 / 12
-    return 1e6 * _ESTIMATED * STRIP * decay_length(bending, stiffness)
+    bending = bodies[0].young_modulus * to_si(thickness, "um") ** 3 / 12
+    return from_si(_ESTIMATED * STRIP * decay_length(bending, stiffness), "um")
 
 
 @functools.lru_cache(maxsize=1000)
 def _estimated_stiffness(sources, shapes, elastic, film):
     """Estimated stiffness of the ground of a pair [Pa/m]."""
     modulus, medium, constant = elastic
-    rms = [1e-9 * source[0] for source in sources]
+    rms = [to_si(source[0], "nm") for source in sources]
     heights = np.sort(np.add.outer(rms[0] * np.array(shapes[0]), rms[1] * np.array(shapes[1])).ravel())
     with np.errstate(all="raise", under="ignore"):
         surface = ProfileMoments.of_sum(map(_moments, sources))
@@ -562,7 +569,7 @@ def wetting(sides: list[dict], materials: dict, more: float = 0) -> tuple[float,
     ``more`` degrees are added to both angles.
     """
     stated = (material.get("contact_angle_deg", 0) for material in of_material(sides, materials))
-    angles = [math.radians(angle + more) for angle in stated]
+    angles = [to_si(angle + more, "deg") for angle in stated]
     return tuple(angles) if sum(map(math.cos, angles)) > 1e-9 else ()
 
 
@@ -649,12 +656,12 @@ def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature
     if not stuck:
         return None
     humidity, repulsion, pull = stuck[0]
+    pull, repulsion = (f"{from_si(pressure, 'MPa'):.3g} MPa" for pressure in (pull, max(repulsion, 0)))
     return (
         f"must have surfaces rough enough and a solid stiff enough for its humidities: at {humidity}"
-        f"{' and others' if len(stuck) > 1 else ''}, water and van der Waals forces pull with an estimated "
-        f"{1e-6 * pull:.3g} MPa and the summits resist with {1e-6 * max(repulsion, 0):.3g} MPa where the mean planes "
-        f"meet, where {_SAFE} times the pull is needed; increase the roughness or young_modulus_GPa, or lower the "
-        "humidity"
+        f"{' and others' if len(stuck) > 1 else ''}, water and van der Waals forces pull with an estimated {pull} and "
+        f"the summits resist with {repulsion} where the mean planes meet, where {_SAFE} times the pull is needed; "
+        "increase the roughness or young_modulus_GPa, or lower the humidity"
     )
 
 
@@ -671,7 +678,8 @@ def summit_density(sides: list[dict]) -> float:
     """
     rougher = max(sides, key=lambda side: side["rms_nm"])
     with np.errstate(all="raise", under="ignore"):
-        return float(rougher.get("summit_density_per_um2") or 5e-13 * _moments(_summit_source(rougher)).summit_density)
+        stated = rougher.get("summit_density_per_um2")
+        return float(stated or 0.5 * from_si(_moments(_summit_source(rougher)).summit_density, "per_um2"))
 
 
 def _summit_source(surface):
@@ -695,10 +703,11 @@ def _estimated(sources, elastic, water, humidities):
 
 def _moments(source):
     """Moments of the profile of one surface."""
-    rms, given = source
+    rms, given = np.float64(to_si(source[0], "nm")), source[1]
     if isinstance(given[0], tuple):
-        return ProfileMoments.of_spectrum(np.float64(1e-9 * rms), typed(CutoffSelfAffine, dict(given)))
-    return ProfileMoments.of_summits(np.float64(1e-9 * rms), np.float64(1e-6 * given[0]), np.float64(1e12 * given[1]))
+        return ProfileMoments.of_spectrum(rms, typed(CutoffSelfAffine, dict(given)))
+    radius, density = np.float64(to_si(given[0], "um")), np.float64(to_si(given[1], "per_um2"))
+    return ProfileMoments.of_summits(rms, radius, density)
 
 
 @relation("sampling.spacing_nm", "sampling.strip_length_um", "sampling.margin_um", "beam.width_um")
@@ -726,6 +735,6 @@ def _too_large(length, width, spacing):
     if needed <= memory.LARGEST:
         return None
     return (
-        f"must leave fields within {1e-3 * memory.LARGEST:g} GB of memory: {length:g} x {width:g} µm every "
-        f"{spacing:g} nm take {1e-3 * needed:.3g} GB"
+        f"must leave fields within {memory.LARGEST / MB_PER_GB:g} GB of memory: {length:g} x {width:g} µm every "
+        f"{spacing:g} nm take {needed / MB_PER_GB:.3g} GB"
     )

@@ -20,7 +20,7 @@ from stiction.config.relations import (
     wetting,
 )
 from stiction.config.relations import validate as validate  # of all relations, those of this module among them
-from stiction.config.units import NM_PER_UM
+from stiction.config.units import MB_PER_GB, NM_PER_UM
 from stiction.models import SIDES
 
 #: Keys that every device may have.
@@ -185,7 +185,8 @@ def device_fits_into_memory(kind, name, devices, sampling):
     needed = memory.of_field(length + sampling["margin_um"], width + sampling["margin_um"], sampling["spacing_nm"])
     if needed <= memory.LARGEST:
         return None
-    return f"must have a patch of surface within {1e-3 * memory.LARGEST:g} GB of memory, not {1e-3 * needed:.3g} GB"
+    most, needed = memory.LARGEST / MB_PER_GB, needed / MB_PER_GB
+    return f"must have a patch of surface within {most:g} GB of memory, not {needed:.3g} GB"
 
 
 @relation("devices.*.uncertainty.thickness_um", "devices.*.thickness_um")

@@ -1,6 +1,7 @@
-"""Settings as typed, frozen objects in SI units; units are converted only here.
+"""Units of the configuration: settings as typed, frozen objects in SI units, and single values to SI and back.
 
-Keys of the configuration carry their units (``gap_um``); fields of the objects do not (``gap``).
+Keys of the configuration carry their units (``gap_um``); fields of the objects do not (``gap``). No other module before
+`stiction.report.format`, which has the units of tables and figures, contains a factor between units.
 """
 
 import math
@@ -8,24 +9,50 @@ import re
 from dataclasses import is_dataclass
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
-_FACTORS = {
-    "nm": 1e-9,
-    "um": 1e-6,
-    "nm4": 1e-36,
-    "rad_per_um": 1e6,
-    "per_um2": 1e12,
-    "GPa": 1e9,
-    "MPa": 1e6,
-    "uN": 1e-6,
-    "zJ": 1e-21,
-    "deg": math.pi / 180,
-    "K": 1.0,
+#: Powers of ten of the units, in SI; MB are bytes.
+_POWERS = {
+    "nm": -9,
+    "um": -6,
+    "nm4": -36,
+    "rad_per_um": 6,
+    "per_um2": 12,
+    "GPa": 9,
+    "MPa": 6,
+    "uN": -6,
+    "zJ": -21,
+    "K": 0,
+    "MB": 6,
 }
-#: Lengths of the configuration are in two units: nanometres in a micrometre.
-NM_PER_UM = 1e3
-_UNIT = re.compile("_(" + "|".join(sorted(_FACTORS, key=len, reverse=True)) + ")$")
+_TO_SI = {unit: float(f"1e{power}") for unit, power in _POWERS.items()} | {"deg": math.pi / 180}
+#: Not one over the factors to SI: 1 / 1e-9 is not 1e9.
+_FROM_SI = {unit: float(f"1e{-power}") for unit, power in _POWERS.items()} | {"deg": 180 / math.pi}
+#: Lengths of the configuration are in two units, memory is stated in two: nanometres in a micrometre, MB in a GB.
+NM_PER_UM, MB_PER_GB = 1e3, 1e3
+_UNIT = re.compile("_(" + "|".join(sorted(_TO_SI, key=len, reverse=True)) + ")$")
 
 T = TypeVar("T")
+
+
+def to_si(value: T, unit: str) -> T:
+    """Value, or array, in SI from that in a unit as in the keys of the configuration.
+
+    Examples
+    --------
+    >>> to_si(2.5, "nm"), to_si(32, "rad_per_um"), round(to_si(180, "deg"), 4)
+    (2.5e-09, 32000000.0, 3.1416)
+    """
+    return value * _TO_SI[unit]
+
+
+def from_si(value: T, unit: str) -> T:
+    """Value, or array, in a unit as in the keys of the configuration from that in SI.
+
+    Examples
+    --------
+    >>> from_si(2.5e-9, "nm"), from_si(20e-6, "um"), from_si(68e12, "per_um2")
+    (2.5, 20.0, 68.0)
+    """
+    return value * _FROM_SI[unit]
 
 
 def typed(kind: type[T], section: dict[str, Any]) -> T:
@@ -58,17 +85,17 @@ def typed(kind: type[T], section: dict[str, Any]) -> T:
     for key, value in section.items():
         unit = _UNIT.search(key)
         name = key[: unit.start()] if unit else key
-        values[name] = _converted(value, kinds.get(name), _FACTORS[unit[1]] if unit else None)
+        values[name] = _converted(value, kinds.get(name), unit[1] if unit else None)
     return kind(**values)
 
 
-def _converted(value, kind, factor):
+def _converted(value, kind, unit):
     """Value of one key in SI units, converted to the type of its field."""
     if isinstance(value, dict):
-        return _section(value, kind) if factor is None else {name: item * factor for name, item in value.items()}
+        return _section(value, kind) if unit is None else {name: to_si(item, unit) for name, item in value.items()}
     if isinstance(value, list | tuple):
-        return tuple(value) if factor is None else tuple(item * factor for item in value)
-    return value if factor is None else value * factor
+        return tuple(value) if unit is None else tuple(to_si(item, unit) for item in value)
+    return value if unit is None else to_si(value, unit)
 
 
 def _section(value, kind):

@@ -19,7 +19,7 @@ from stiction.beam.montecarlo import Experiment, columns, simulate
 from stiction.beam.release import EndState
 from stiction.contact import forcelaw
 from stiction.designs.inputs import FORCE, Input, Known, Settings, State, countable, uncertain
-from stiction.designs.releases import Device, addresses, long_beam
+from stiction.designs.releases import DesignedBeam, addresses, long_beam
 from stiction.devices import arcs, bridges
 from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.tail import fit_tail
@@ -147,7 +147,7 @@ def _picked(laws, number, rng):
     return laws[rng.integers(len(laws), size=number)]
 
 
-def of_devices(found: Responses, device: Device | None) -> Responses:
+def of_devices(found: Responses, device: DesignedBeam | None) -> Responses:
     """Lengths at which devices stick, or forces: the two cracks of a bridge add up.
 
     ASSUME: for a cantilever, the two foundation lengths that hold its crack are left out, 1 % of the length.

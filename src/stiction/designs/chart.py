@@ -16,7 +16,7 @@ from stiction.chaos.model import Truncation, draw_laws
 from stiction.contact.meniscus import meniscus_height
 from stiction.designs import releases, sticking
 from stiction.designs.patches import on_patch
-from stiction.designs.releases import Device
+from stiction.designs.releases import DesignedBeam
 from stiction.devices import arcs
 from stiction.devices.chart import checked_power_law, flooded_energy, flooded_length
 from stiction.stages import curves
@@ -30,7 +30,7 @@ class Settings:
     chaos: Truncation
     water: curves.Water
     humidity: float  #: [-]
-    device: Device
+    device: DesignedBeam
     beams: int
     shares: tuple[float, ...]  #: [-]
     tip: float  #: length of the strips of tips [m]
@@ -67,7 +67,7 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
 
 
 def _of_size(settings, thickness, gap):
-    """Device of a thickness and a gap [m]."""
+    """The designed beam with another thickness and gap [m]."""
     return replace(settings.device, thickness=float(thickness), gap=float(gap))
 
 

@@ -15,7 +15,7 @@ from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
 from stiction.contact import forcelaw
 from stiction.designs.patches import on_patch
-from stiction.designs.releases import LAWS, Device, addresses, crack_lengths, fitted, long_beam, surface_rms
+from stiction.designs.releases import LAWS, DesignedBeam, addresses, crack_lengths, fitted, long_beam, surface_rms
 from stiction.stages import curves
 
 #: Most groups of the samples of contact, and the least number of samples in each, but always two groups.
@@ -30,7 +30,7 @@ class Settings:
     chaos: Truncation
     water: curves.Water
     humidity: float  #: [-]
-    device: Device
+    device: DesignedBeam
     beams: int  #: number of beams
 
 

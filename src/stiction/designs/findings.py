@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
-from stiction.config.units import typed
-from stiction.designs.releases import Device
+from stiction.config.units import from_si, typed
+from stiction.designs.releases import DesignedBeam
 from stiction.designs.sticking import EITHER, S_SHAPE
 from stiction.devices import limits
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever
@@ -38,7 +38,7 @@ class OfPairs:
 class OfDevice:
     """A device and its pair."""
 
-    device: Device
+    device: DesignedBeam
     tip: float  #: length of the strips of tips [m]
     materials: Materials = ()  #: of its pair
 
@@ -232,7 +232,7 @@ def subjects(
     """Warnings of `of_devices`, `of_charts` and `of_stoppers` by their subjects in words."""
     found = {f"{name}, RH {rh:g}, held by the {HELD_BY[shape]}": each for (name, rh, shape), each in devices.items()}
     for (name, thickness, gap, shape), each in charts.items():
-        size = f"{1e6 * thickness:g} µm thick, gap {1e6 * gap:g} µm"
+        size = f"{from_si(thickness, 'um'):g} µm thick, gap {from_si(gap, 'um'):g} µm"
         found[f"{name}, chart, {size}, held by the {HELD_BY[shape]}"] = each
     return found | stoppers
 

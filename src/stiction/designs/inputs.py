@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 from scipy.linalg import block_diag
 
-from stiction.designs.releases import Device
+from stiction.designs.releases import DesignedBeam
 from stiction.devices.budget import STEP
 from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM, SIDES
 from stiction.scans import moments
@@ -56,7 +56,7 @@ class Settings:
     uncertainty: Uncertainty
     surfaces: tuple[str, ...]  #: names of those of the pair
     young_modulus: float  #: E of the body of the beam or stopper [Pa]
-    device: Device | None = None  #: a beam; none for a stopper
+    device: DesignedBeam | None = None  #: a beam; none for a stopper
     share: float = 0.0  #: p of the length that tips hold, if the budget is of that length [-]
     beams: int = 0  #: number of beams for every slope
     contact: tuple[float, float] = (0.0, 0.0)  #: sides of the patch of a stopper [m]
@@ -76,7 +76,7 @@ class State:
     contact: xr.Dataset
     humidity: float  #: [-]
     water: Water
-    device: Device | None = None  #: a beam; none for a stopper
+    device: DesignedBeam | None = None  #: a beam; none for a stopper
     area: float = 0.0  #: of a stopper [m²]
 
 

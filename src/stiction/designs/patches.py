@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from stiction.config.units import from_si
+
 
 @contextmanager
 def on_patch(length: float, width: float) -> Iterator[None]:
@@ -10,5 +12,5 @@ def on_patch(length: float, width: float) -> Iterator[None]:
     try:
         yield
     except ValueError as error:
-        error.add_note(f"The patch of surface is {1e6 * length:g} x {1e6 * width:g} µm.")
+        error.add_note(f"The patch of surface is {from_si(length, 'um'):g} x {from_si(width, 'um'):g} µm.")
         raise

@@ -20,6 +20,7 @@ from stiction.beam.montecarlo import Experiment, columns, simulate
 from stiction.beam.release import EndState
 from stiction.beam.resolution import resolved
 from stiction.chaos.model import ChaosModel, Truncation, draw_laws, fit
+from stiction.config.units import from_si
 from stiction.contact import forcelaw
 from stiction.devices.bridges import half_of_bridge
 from stiction.progress import progress
@@ -37,7 +38,7 @@ LAWS = 10_000
 
 
 @dataclass(frozen=True)
-class Device:
+class DesignedBeam:
     """Dimensions of a beam that must come free, and its ground."""
 
     kind: str  #: ``cantilever`` or ``bridge``
@@ -65,7 +66,7 @@ class Seeded(Protocol):
     """Settings of any job that releases beams of a device."""
 
     seed: int
-    device: Device
+    device: DesignedBeam
 
 
 def fitted(vectors: np.ndarray, limit: float, chaos: Truncation) -> ChaosModel:
@@ -78,7 +79,7 @@ def addresses(settings: Seeded) -> Callable:
     return partial(stream, settings.seed, "devices", settings.device.pair)
 
 
-def long_beam(device: Device, laws: np.ndarray) -> tuple[Beam, int]:
+def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
     """Beam of a device that is longer than its cracks, with elements that resolve them, and its number of strips.
 
     Raises
@@ -93,7 +94,8 @@ def long_beam(device: Device, laws: np.ndarray) -> tuple[Beam, int]:
     try:
         return resolved(beam, points, laws), points
     except ValueError as error:
-        error.add_note(f"The length of the strips of a device is its strip_um, here {1e6 * device.strip:g} µm.")
+        strip = from_si(device.strip, "um")
+        error.add_note(f"The length of the strips of a device is its strip_um, here {strip:g} µm.")
         raise
 
 

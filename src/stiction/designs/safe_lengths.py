@@ -9,7 +9,7 @@ import xarray as xr
 from stiction.contact.meniscus import meniscus_height
 from stiction.designs import cracks as stage_cracks
 from stiction.designs.patches import on_patch
-from stiction.designs.releases import Device
+from stiction.designs.releases import DesignedBeam
 from stiction.designs.sticking import mean_wedge, safe_lengths, sticking_lengths
 from stiction.devices import arcs, risk
 from stiction.devices.risk import SafeLength
@@ -26,7 +26,7 @@ class Settings:
     seed: int
     water: curves.Water
     humidity: float  #: [-]
-    device: Device
+    device: DesignedBeam
     shares: tuple[float, ...]  #: p [-]
     tip: float  #: length of the strips of tips [m]
 

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
-from stiction.designs.releases import Device
+from stiction.designs.releases import DesignedBeam
 from stiction.devices import arcs, bridges, risk
 from stiction.devices.risk import SafeLength
 from stiction.stages import curves
@@ -27,7 +27,7 @@ class Settings(Protocol):
     shares: tuple[float, ...]  #: p [-]
 
 
-def shapes(device: Device) -> list[str]:
+def shapes(device: DesignedBeam) -> list[str]:
     """Shapes in which a device may stick."""
     return [S_SHAPE] if device.kind == "bridge" else [S_SHAPE, EITHER]
 
@@ -39,7 +39,7 @@ def mean_wedge(tips: xr.Dataset, slope: float | np.ndarray, settings: Settings) 
 
 
 def sticking_lengths(
-    cracks: np.ndarray, foundation: float, device: Device, held: np.ndarray | None
+    cracks: np.ndarray, foundation: float, device: DesignedBeam, held: np.ndarray | None
 ) -> dict[str, np.ndarray]:
     """Sticking lengths of devices by shape, (n,) each [m].
 
@@ -49,7 +49,7 @@ def sticking_lengths(
         Crack lengths, infinite for beams that are not S-shaped [m].
     foundation : float
         Foundation length [m].
-    device : Device
+    device : DesignedBeam
     held : (n,) array or None
         Longest arcs that come free [m].
     """

@@ -9,7 +9,7 @@ import xarray as xr
 from stiction.measured import estimate as stage_estimate
 from stiction.measured import heights as measured_heights
 from stiction.measured import spectrum as measured_spectrum
-from stiction.models import CHOICES
+from stiction.models import ALTERNATIVES_OF_SCANS
 from stiction.stages import contact as stage_contact
 from stiction.stages import pairs
 from stiction.stages.spectrum import Use
@@ -51,7 +51,7 @@ def compute(
     pair : str
         Name of the pair, part of the addresses of random numbers.
     choice : str
-        Key of `stiction.models.CHOICES`.
+        Key of `stiction.models.ALTERNATIVES_OF_SCANS`.
     settings : Settings
     """
     both = [
@@ -81,5 +81,5 @@ def other(source: Source, choice: str) -> Source:
     >>> other(Source("moments", "fitted", "cut"), "beyond")
     Source(heights='moments', psd='fitted', beyond='continued')
     """
-    first, second = CHOICES[choice]
+    first, second = ALTERNATIVES_OF_SCANS[choice]
     return replace(source, **{choice: second if getattr(source, choice) == first else first})

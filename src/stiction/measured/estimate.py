@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis.shifts import ORDERS
+from stiction.config.units import from_si
 from stiction.measured import scan as stage_scan
 from stiction.models import OF_MEASURED
 from stiction.scans import estimate as evaluation
@@ -247,9 +248,9 @@ def statistics(estimate: xr.Dataset) -> dict[str, float]:
     skewness, kurtosis = shape(estimate)
     radius, number = estimate.summits.values
     return {
-        "rms_nm": 1e9 * rms(estimate),
+        "rms_nm": from_si(rms(estimate), "nm"),
         "skewness": skewness,
         "kurtosis": kurtosis,
-        "mean_summit_radius_um": 1e6 * float(radius),
-        "summit_density_per_um2": 1e-12 * float(number),
+        "mean_summit_radius_um": from_si(float(radius), "um"),
+        "summit_density_per_um2": from_si(float(number), "per_um2"),
     }

@@ -122,7 +122,7 @@ def _spectrum(panel, estimate):
     slow = estimate.isel(slow_ring=slice(1, None))
     panel.plot(slow.slow_wavenumber / TO_UM, TO_NM**4 * slow.slow_density, **_SLOW, label="near the slow axis")
     fit = stage_estimate.fit(estimate)
-    fitted = TO_NM**4 * fit.spectrum(2e6 * zeta[-1])(1e6 * zeta)
+    fitted = TO_NM**4 * fit.spectrum(2 * TO_UM * zeta[-1])(TO_UM * zeta)
     panel.plot(zeta, fitted, **_MODEL, label="Eq. (7)")
     low, high = reach.low / TO_UM, reach.high / TO_UM
     ends = low / 2, zeta[-1]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.config.units import from_si
 from stiction.errors import NotConverged
 from stiction.measured import estimate as stage_estimate
 from stiction.stages import parameters
@@ -65,8 +66,11 @@ def cutoff_and_clipping(end: float, settings: Settings) -> tuple[float, str]:
     grid = np.pi / settings.spacing
     if end <= grid:
         return (end if settings.beyond == "cut" else grid), ""
-    shown = f"{1e-6 * grid:.4g} rad/µm, before that of the scans, {1e-6 * end:.4g} rad/µm"
-    return grid, f"the spectrum ends at the Nyquist number of the grid, {shown}; a finer sampling.spacing_nm keeps more"
+    ends, measured = (f"{from_si(wavenumber, 'rad_per_um'):.4g} rad/µm" for wavenumber in (grid, end))
+    return grid, (
+        f"the spectrum ends at the Nyquist number of the grid, {ends}, before that of the scans, {measured}; a finer "
+        "sampling.spacing_nm keeps more"
+    )
 
 
 def flags(spectrum: xr.Dataset) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.measured import estimate as stage_estimate
 from stiction.measured import scan as stage_scan
 from stiction.measured import spectrum as stage_spectrum
-from stiction.models import CHOICES
+from stiction.models import ALTERNATIVES_OF_SCANS
 from stiction.report.format import NM, UM, number, with_error
 from stiction.report.tables import Table
 from stiction.studies.scan_uncertainty import GOAL
@@ -140,7 +140,7 @@ def _cells(row):
     cells |= {f"ē: {_PARTS['total']} [%]": with_error(row["total_percent"], row["total_se_percent"])}
     cells |= {"l_s [%]": number(row["crack_length_percent"], ".2g")}
     cells |= {title: number(row[name], ".0f") for name, title in (("scans", "scans"), ("scans_needed", "needed"))}
-    choices = [name for name in CHOICES if f"{name}_percent" in row]
+    choices = [name for name in ALTERNATIVES_OF_SCANS if f"{name}_percent" in row]
     return cells | {
         f"other {choice} [%]": with_error(row[f"{choice}_percent"], row[f"{choice}_se_percent"], "+")
         for choice in choices

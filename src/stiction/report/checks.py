@@ -27,7 +27,7 @@ from stiction.models import SURFACE_MODELS, surface_model
 from stiction.report.format import TO_MJ, TO_NM, TO_UM, number, with_error
 from stiction.report.tables_surfaces import surface_statistics
 from stiction.stages.forces import vectors
-from stiction.stages.heights import measured, substitution
+from stiction.stages.heights import measured_moments, substitution
 from stiction.stages.named import Case
 from stiction.stages.parameters import misfits
 from stiction.stages.releases import ended
@@ -105,7 +105,7 @@ def scatter_falls(case: str, weaker: xr.Dataset, stronger: xr.Dataset) -> Check:
 
 def heights_are_as_measured(case: str, heights: xr.Dataset) -> Check:
     """The height density has the measured moments, or the nearest feasible ones within the error of a measurement."""
-    distance = measured(heights).distance
+    distance = measured_moments(heights).distance
     message = substitution(heights) or f"skewness {float(heights.skewness):.4g}, kurtosis {float(heights.kurtosis):.4g}"
     return Check("heights have the measured moments", case, distance <= LARGEST_DISTANCE_OF_SCANS, message)
 

@@ -27,6 +27,8 @@ from stiction.report.style import (
 
 #: Bins along either axis of the joint density of summits.
 _BINS = 40
+#: Decades of the densities of the heights below their largest value.
+_DECADES = 6
 
 
 # Figure 7
@@ -46,7 +48,7 @@ def height_densities(heights: Mapping[str, xr.Dataset]) -> Figure:
         for panel in column:
             _density(panel, dataset)
         column[1].set_yscale("log")
-        column[1].set_ylim(1e-6 * float(dataset.density.max()) / (TO_NM * float(dataset.rms)), None)
+        column[1].set_ylim(10.0**-_DECADES * float(dataset.density.max()) / (TO_NM * float(dataset.rms)), None)
         column[1].set_xlabel("height $z$ [nm]")
     for panel in np.concatenate([line[:, 0] for line in lines]):
         panel.set_ylabel("density $p_Z$ [nm$^{-1}$]")

@@ -109,7 +109,7 @@ def moments(heights: xr.Dataset) -> Settings:
     return Settings(float(heights.rms), float(heights.skewness), float(heights.kurtosis))
 
 
-def measured(heights: xr.Dataset) -> Moments:
+def measured_moments(heights: xr.Dataset) -> Moments:
     """Measured skewness and kurtosis, and the distance of those of the density from them in standard errors."""
     if "distance" not in heights:
         return Moments(float(heights.skewness), float(heights.kurtosis), 0.0)
@@ -118,7 +118,7 @@ def measured(heights: xr.Dataset) -> Moments:
 
 def substitution(heights: xr.Dataset) -> str:
     """Sentence about moments that replace the measured ones; empty if the density has the measured moments."""
-    skewness, kurtosis, distance = measured(heights)
+    skewness, kurtosis, distance = measured_moments(heights)
     if not distance:
         return ""
     return (

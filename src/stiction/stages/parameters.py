@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import xarray as xr
 
+from stiction.config.units import from_si
 from stiction.surface.spectrum import CutoffSelfAffine, Spectrum, TabulatedSpectrum, correlation_length
 
 _UNITS = {"plateau": "m4", "floor": "m4", "corner": "rad m-1", "cutoff": "rad m-1"}
@@ -47,8 +48,8 @@ def refuse_long_correlation(
     for key, length in lengths.items():
         if length <= bound:
             raise ValueError(
-                f"{key} is {1e6 * length:.4g}, must be above the correlation length of surface {surface}, "
-                f"{1e6 * bound:.3g} µm for the spectrum {source}"
+                f"{key} is {from_si(length, 'um'):.4g}, must be above the correlation length of surface {surface}, "
+                f"{from_si(bound, 'um'):.3g} µm for the spectrum {source}"
             )
 
 

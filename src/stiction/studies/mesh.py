@@ -9,6 +9,7 @@ import xarray as xr
 
 from stiction.analysis.mesh import Arrest, arrest_on_uniform_ground, whole_meshes
 from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
+from stiction.config.units import from_si
 from stiction.contact import forcelaw
 from stiction.errors import NotConverged
 from stiction.progress import progress
@@ -57,9 +58,9 @@ def compute(forces: xr.Dataset, settings: Settings) -> xr.Dataset:
         try:
             arrests[element, point] = arrest_on_uniform_ground(*ground)
         except (ValueError, NotConverged) as reason:  # the elements are too long for the crack or for the law
-            warnings.warn(f"left out elements of {1e6 * element:.3g} µm: {reason}", stacklevel=2)
+            warnings.warn(f"left out elements of {from_si(element, 'um'):.3g} µm: {reason}", stacklevel=2)
     if not arrests:
-        length = 1e6 * foundation_length(beam, law[None])
+        length = from_si(foundation_length(beam, law[None]), "um")
         raise ValueError(
             f"no mesh of studies.mesh resolves the crack: take elements of at most {ELEMENT * length:.3g} µm and "
             f"strips of at most {STRIP * length:.3g} µm"

@@ -75,7 +75,7 @@ def compute(
     base : Dataset
         Contact of the pair, of as many samples at least as those of the choices.
     choices : dict
-        Choice, key of `stiction.models.CHOICES`, to the contact with its other value.
+        Key of `stiction.models.ALTERNATIVES_OF_SCANS` to the contact with its other value.
     settings : Settings
     """
 
