@@ -29,5 +29,5 @@ if "PYTEST_XDIST_WORKER" in os.environ:
 
 def pytest_collection_modifyitems(items):
     """Begin with the files that take longest, so that no process works alone at the end."""
-    first = ["test_reruns.py", "test_run.py"]
+    first = ["test_reruns.py", "test_run.py", "test_surface_estimate.py", "test_resume.py", "test_scan_uncertainty.py"]
     items.sort(key=lambda item: (item.path.name not in first, item.path.parent.name != "workflow"))

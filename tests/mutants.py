@@ -61,7 +61,7 @@ TESTS |= {"designs.figures_budget": "designs/test_tables_budget.py"}
 STAGES = "parameters heights spectrum surfaces identification character forces chaos releases beams cantilevers"
 MEASURED = "scan estimate heights spectrum"
 STUDIES = "sensitivity_contact sensitivity plasticity fit humidity iteration sample_sizes orders mesh correlation"
-STUDIES += " resampling slope_contact slopes"
+STUDIES += " resampling descriptions slope_contact slopes"
 TESTS |= {f"stages.{name}": "stages/test_stages.py" for name in STAGES.split()}
 TESTS |= {f"measured.{name}": "stages/test_measured_stages.py" for name in MEASURED.split()}
 TESTS |= {f"studies.{name}": "studies/test_studies.py" for name in STUDIES.split()}
@@ -1578,6 +1578,8 @@ MUTANTS = {
         ('measured_heights.Settings(surface, "measured")', 'measured_heights.Settings(surface, "moments")'),
         ("if estimate is not None:", "if False:"),
         ("difference=((), difference", "difference=((), difference / 2"),
+    ],
+    "studies.descriptions": [
         ("surface.skewness, surface.kurtosis)", "surface.skewness, 3.0)"),
         ("on_grid(surface.spectrum, heights, spacing)", "on_grid(surface.spectrum, heights, 2 * spacing)"),
         (

@@ -23,8 +23,8 @@ config: paths
 stages: storage named heights parameters identification spectrum surfaces character pairs contact curves forces chaos
 stages: cantilevers releases beams
 measured: scan estimate heights spectrum choices
-studies: iteration fit humidity slope_contact slopes sensitivity_contact sensitivity plasticity sample_sizes orders mesh
-studies: correlation resampling scan_uncertainty
+studies: iteration fit humidity descriptions slope_contact slopes sensitivity_contact sensitivity plasticity
+studies: sample_sizes orders mesh correlation resampling scan_uncertainty
 variants: summits contact beams
 designs: patches releases sticking cracks safe_lengths chart findings stoppers inputs budget
 study device

@@ -25,7 +25,7 @@ from stiction.scans.quantiles import quantiles
 from stiction.stages import contact as stage_contact
 from stiction.stages import heights as stage_heights
 from stiction.stages import parameters
-from stiction.studies import scan_uncertainty, slope_contact
+from stiction.studies import descriptions, scan_uncertainty, slope_contact
 from stiction.surface.empirical import MeasuredDensity
 
 
@@ -138,7 +138,7 @@ def test_modes_have_the_errors_of_all_scans_together(estimated):
 @pytest.mark.parametrize(("source", "names"), [("moments", OF_MOMENTS), ("measured", OF_MEASURED)])
 def test_quantities_of_the_plan_are_those_of_the_surface_and_have_errors(files, estimated, source, names):
     plan = plan_of(files, heights=source)
-    own = slope_contact.description(*surfaces(plan, estimated)[0]).quantities
+    own = descriptions.description(*surfaces(plan, estimated)[0]).quantities
     assert own == measured_quantities(plan.config["surfaces"]["Etched"]) == names + OF_SPECTRUM
     assert sorted(plan.quantities("Etched")) == sorted({*own, *OF_MEASURED[1:]})
     assert plan.quantities("Sub1") == OF_MOMENTS + OF_SPECTRUM

@@ -83,8 +83,9 @@ MATRIX = [
     # The surface, hence its pair, is no longer the paper's: published values leave the tables.
     ("radius of its summits", "surfaces: {B1: {mean_summit_radius_um: 0.42}}", "identification table_1 table_3 checks",
      (), "B2|/b_|a_rh0.0_base"),
+    # The elements of its beams follow the force laws, under every variant.
     ("its published spectrum", "surfaces: {B1: {published_psd: {floor_nm4: 0.9}}}", "spectrum variant_summits",
-     OF_FIGURE, "B2|Sub1|/b_|psd_identified"),
+     OF_FIGURE, "B2|Sub1|/b_|(summits|contact)/a_psd_identified"),
     ("source of its spectrum", "surfaces: {B1: {psd: identified}}", "spectrum variant_summits", OF_FIGURE,
      "B2|/b_|psd_identified"),
     ("surface in a pair", "pairs: {a: {beam: B2}}",

@@ -11,7 +11,7 @@ import xarray as xr
 from stiction.analysis.sensitivity import shifted
 from stiction.stages import contact as stage_contact
 from stiction.stages import pairs
-from stiction.studies.slope_contact import description, drawn_as
+from stiction.studies.descriptions import description, drawn_as
 
 
 @dataclass(frozen=True, kw_only=True)

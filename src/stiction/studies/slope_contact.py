@@ -8,14 +8,11 @@ from collections.abc import Sequence
 
 import xarray as xr
 
-from stiction.analysis.shifts import Description, bracketed
+from stiction.analysis.shifts import bracketed
 from stiction.measured import heights as measured_heights
 from stiction.stages import contact as stage_contact
-from stiction.stages import heights as stage_heights
-from stiction.stages import parameters
-from stiction.stages import spectrum as stage_spectrum
 from stiction.stages.pairs import Settings
-from stiction.surface.empirical import MeasuredDensity
+from stiction.studies.descriptions import description, drawn_as
 
 
 def compute(
@@ -54,21 +51,6 @@ def compute(
         )
     contacts = stage_contact.compute_each(alternatives, pair, "NG", settings)
     return [contact.assign(difference=((), difference, {"units": "1"})) for contact in contacts]
-
-
-def description(heights: xr.Dataset, spectrum: xr.Dataset) -> Description:
-    """Heights and spectrum of a surface from its datasets of stages heights and spectrum."""
-    moments, density = stage_heights.moments(heights), stage_heights.density(heights, "NG")
-    form = density if isinstance(density, MeasuredDensity) else None
-    return Description(moments.rms, moments.skewness, moments.kurtosis, parameters.spectrum_of(spectrum), form)
-
-
-def drawn_as(surface: Description, spacing: float) -> tuple[xr.Dataset, xr.Dataset]:
-    """Datasets of stages heights and spectrum of a surface on a grid of this spacing [m]."""
-    moments = stage_heights.Settings(surface.rms, surface.skewness, surface.kurtosis)
-    measured = surface.form is not None
-    heights = stage_heights.layout(surface.form, moments) if measured else stage_heights.compute(moments)
-    return heights, stage_spectrum.on_grid(surface.spectrum, heights, spacing)
 
 
 def difference(contact: xr.Dataset) -> float:
