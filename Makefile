@@ -75,7 +75,7 @@ run: $(VENV)/ready
 	$(SNAKEMAKE) $(ARGS) $(MINE)
 
 report: $(VENV)/ready
-	@test -e results/verdict.txt || { echo "there are no results for a report yet: run make paper first"; exit 2; }
+	@test -e results/verdict.txt || { echo "there are no results for a report yet: run make paper or make run CONFIG=... first (make devices is not enough)"; exit 2; }
 	$(CHECKED)
 	$(SNAKEMAKE) --report results/report.html --report-stylesheet $(CURDIR)/workflow/report/style.css $(ARGS) $(MINE)
 

@@ -44,7 +44,9 @@ class Device:
 
     @classmethod
     def of(cls, config: dict, name: str) -> "Device":
-        """Device of a configuration: draws the surfaces and computes their contact, 15 ms per sample.
+        """Device of a configuration: draws the surfaces and computes their contact.
+
+        This takes about 5 ms per sample of 1.5 µm x 30 µm, and more for larger ones.
 
         Parameters
         ----------

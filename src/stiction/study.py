@@ -39,10 +39,10 @@ class PairStudy:
 
     @classmethod
     def of(cls, config: dict, name: str, model: str = "NG") -> "PairStudy":
-        """Study of one pair of a configuration: draws the surfaces and computes their contact, 15 ms per sample.
+        """Study of one pair of a configuration: draws the surfaces and computes their contact, about 5 ms per sample.
 
-        Spectra with ``psd: identified`` are identified first, which takes about 15 s each; surfaces described by scans
-        are estimated first.
+        Spectra with ``psd: identified`` are identified first, which takes a few seconds each; surfaces described by
+        scans are estimated first.
 
         Parameters
         ----------

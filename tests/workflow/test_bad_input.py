@@ -129,7 +129,7 @@ def test_a_report_without_results_is_rejected_with_the_command_to_run_first(tmp_
     ready(tmp_path)
     done = made(tmp_path, "report")
     assert done.returncode == 2
-    assert "run make paper first" in done.stdout
+    assert "run make paper or make run CONFIG=... first (make devices is not enough)" in done.stdout
 
 
 @pytest.mark.parametrize("target", ["paper", "smoke", "test"])
