@@ -1639,6 +1639,7 @@ MUTANTS = {
         ('"vmin": -limit', '"vmin": 0'),
         ("rms * z, np.exp(-(z**2) / 2)", "rms * z, np.exp(-(z**2))"),
         ("if not np.isnan(stage_estimate.distance(estimate)):", "if True:"),
+        ("float(estimate.goodness_p):.2g}", "float(estimate.goodness_chi2):.2g}"),
         ("panel.axvspan(high, ends[1]", "panel.axvspan(low, ends[1]"),
         ("bars = {", "errors = 2 * errors\n        bars = {"),
         ("if np.isnan(estimate.summits).any():", "if False:"),
