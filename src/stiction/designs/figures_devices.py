@@ -131,7 +131,7 @@ def chart(
     found : dict
         Name and humidity to the dataset of stage chart.
     warnings : dict
-        Name, thickness [m], gap [m] and shape to sentences, which are written below the figure.
+        Name, thickness [m], gap [m] and shape to sentences, which are written below the figure; may be empty.
     """
     sentences, numbers = numbered(warnings)
     devices = {}
@@ -143,7 +143,7 @@ def chart(
     figure, columns, lines = columns_of_panels(len(subjects), 1, _width, 3.2)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
         whole = axes[name].sel(gap=gap, shape=shape)
-        marks = [_listed(numbers[name, thickness, gap, shape]) for thickness in whole.thickness.values]
+        marks = [_listed(numbers.get((name, thickness, gap, shape), ())) for thickness in whole.thickness.values]
         panel.legend(handles=_thicknesses(panel, whole, shape, marks), loc="upper right")
         low, high = panel.dataLim.intervaly
         panel.set(xlabel="relative humidity [–]", ylim=(0.95 * low, high + _ROOM * (high - low)))

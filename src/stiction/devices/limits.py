@@ -136,8 +136,8 @@ def short_wedge(strip: float, wedge: float) -> str | None:
         return None
     return (
         f"The adhesion of the tip comes from strips of {strip * 1e6:.3g} µm, longer than the wedge on which it acts, "
-        f"{wedge * 1e6:.3g} µm: tips hold shorter beams than computed, which is the unsafe side. The length in saturated "
-        "air, the shortest that water holds, is safe."
+        f"{wedge * 1e6:.3g} µm: tips hold shorter beams than computed, which is the unsafe side. The length in "
+        "saturated air, the shortest that water holds, is safe."
     )
 
 

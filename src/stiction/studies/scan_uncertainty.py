@@ -28,7 +28,7 @@ PARTS = ("rms", "shape", "spectrum", "total")
 #: Relative standard error of ē that a sufficient number of scans would not exceed [-].
 GOAL = 0.05
 #: A sum of relative variances that exceeds 1 by this rounding error does not need another scan.
-_ROUNDING = 1e-12
+_ROUNDING = 16 * np.finfo(float).eps
 
 
 @dataclass(frozen=True)
@@ -196,8 +196,8 @@ def scans_needed(errors: np.ndarray, scans: np.ndarray, goal: float) -> np.ndarr
 def _fewest(variances):
     """Whole numbers nᵢ of the least sum for which Σ varianceᵢ / nᵢ is at most 1; both (n_surfaces,).
 
-    Every nᵢ is at least its variance. Each further scan is one of the surface to which it brings most. For any number of
-    scans this gives the smallest variance in all, because further scans of a surface bring less and less.
+    Every nᵢ is at least its variance. Each further scan is one of the surface to which it brings most. For any number
+    of scans this gives the smallest variance in all, because further scans of a surface bring less and less.
     """
     variances = variances * (1 - _ROUNDING)
     numbers = np.ceil(variances).astype(int)
