@@ -10,10 +10,16 @@ import numpy as np
 import pandas as pd
 
 from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP
+from stiction.config import jobs
 from stiction.config.files import paper
+from stiction.config.plan import Plan
+from stiction.config.units import typed
+from stiction.devices.arcs import arc_length
+from stiction.devices.chart import flooded_energy
 from stiction.devices.limits import FILMS
 from stiction.report.checks import MESH_OFF_OF_PAPER, RESOLVED
-from stiction.report.format import MISSING, TO_MJ, number, with_error
+from stiction.report.format import MISSING, TO_MJ, TO_UM, number, with_error
+from stiction.stages.cantilevers import Cantilevers, cantilever
 from stiction.surface import feasible
 
 #: Measured skewness and kurtosis of nearly Gaussian surfaces, as examples.
@@ -31,6 +37,7 @@ def numbers(tables):
         | chaos(tables["resampling"])
     )
     found |= safe_lengths(tables["safe_lengths"]) | stoppers(tables["stoppers"]) | budget(tables["budget"])
+    found |= drawn_lengths(tables["safe_lengths"], tables["budget"])
     found |= studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
     return found | scans(tables["example_scans"]) | timings(tables["timings"]) | constants() | nearly_gaussian()
 
@@ -260,6 +267,24 @@ def budget(table):
             quantity = entry.name.replace("'", "").replace(" ", "_")
             found[f"slope_{name}_{quantity}"] = with_error(entry.slope, entry.slope_se)
     return found
+
+
+def drawn_lengths(safe, budget):
+    """Lengths of C1, a beam of pair b, with its tip [µm], for 1 in 1000 stuck beams.
+
+    ``saturated_C1``: in saturated air; ``drawn_C1`` and ``drawn_C1_092``: of saturated air and RH 0.92, less twice the
+    largest total of the budgets of the tip.
+    """
+    beam = cantilever(typed(Cantilevers, jobs.cantilevers(Plan(paper()), "b")), "b")
+    saturated = TO_UM * arc_length(flooded_energy(paper()["water"]["temperature_K"]), beam)
+    totals = budget[(budget.device == "C1") & (budget.held_by == "tip") & (budget["name"] == "total")].effect_percent
+    wet = safe[(safe.device == "C1") & (safe.held_by == "beam or tip") & (safe.relative_humidity == 0.92)]
+    safe_length = float(wet[wet.share == 1e-3].safe_length_um.iloc[0])
+    found = {"saturated_C1": saturated} | {
+        name: (1 - 2 * totals.max() / 100) * length
+        for name, length in (("drawn_C1", saturated), ("drawn_C1_092", safe_length))
+    }
+    return {name: f"{length:.0f}" for name, length in found.items()}
 
 
 def _duration(seconds):

@@ -108,6 +108,16 @@ def test_numbers_of_checks_scans_and_timings_are_those_of_their_tables():
     }
 
 
+def test_drawn_lengths_are_those_of_the_tables_less_twice_the_largest_uncertainty():
+    safe = pd.DataFrame({"device": "C1", "held_by": ["beam", "beam or tip"], "relative_humidity": 0.92, "share": 1e-3})
+    totals = pd.DataFrame({"device": "C1", "held_by": ["beam", "tip", "tip"], "name": "total"})
+    found = quoted.drawn_lengths(
+        safe.assign(safe_length_um=[400.0, 250.0]), totals.assign(effect_percent=[9.0, 2.0, 5.0])
+    )
+    # (3 E t³ h² / 8 · 2 γ)^(1/4) with the surface energy of water at 300 K, γ = 72 mJ/m².
+    assert found == {"saturated_C1": "234", "drawn_C1": "211", "drawn_C1_092": "225"}
+
+
 def test_nearest_feasible_moments_are_those_that_the_heights_get():
     found = quoted.nearly_gaussian()
     for k, measured in enumerate(quoted.NEARLY_GAUSSIAN, 1):

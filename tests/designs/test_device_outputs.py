@@ -97,6 +97,7 @@ def test_the_risk_shows_shares_bands_and_safe_lengths_of_every_device(found):
         for shape in dataset["shape"].values:
             for share in dataset.share.values:
                 assert (round(1e6 * float(dataset.safe_length.sel(shape=shape, share=share)), 6), share) in points
+    assert first.get_ylabel() == "P(stuck) [–]"
     assert len(first.collections) == 4
     assert len(second.collections) == 1
     assert [text.get_text() for text in first.get_legend().get_texts()] == ["RH 0.44 (1) (2)", "RH 0.67 (2)"]
@@ -141,12 +142,34 @@ def test_a_line_of_a_chart_has_all_shares_and_its_warnings():
     assert table.cells["from"].iloc[0] == "finite elements"
 
 
-def test_the_chart_shows_the_middle_share_of_every_thickness_and_gap():
+def charts():
+    """Figure of the charts and its panels by gap [µm] and shape."""
     figure = figures_devices.chart(CHARTS, STEEP)
-    assert [axes.get_title(loc="left") for axes in figure.axes] == ["(a) C1, gap 10 µm", "(b) C1, gap 20 µm"]
-    curve = next(line for line in figure.axes[1].lines if len(line.get_xdata()) == 3)
-    np.testing.assert_allclose(curve.get_xdata(), [0.4, 0.5, 0.6])
-    np.testing.assert_allclose(curve.get_ydata(), np.array([2, 1, 0.5]) * 105)  # p = 0.001, thin, wide gap, S-shape
+    return figure, dict(zip(product((10, 20), (S_SHAPE, EITHER)), figure.axes, strict=True))
+
+
+def test_the_chart_shows_the_middle_share_of_every_thickness_gap_and_shape():
+    figure, panels = charts()
+    assert [axes.get_title(loc="left") for axes in figure.axes] == [
+        "(a) C1, gap 10 µm, held by the beam",
+        "(b) C1, gap 10 µm, held by beam or tip",
+        "(c) C1, gap 20 µm, held by the beam",
+        "(d) C1, gap 20 µm, held by beam or tip",
+    ]
+    for shape, length in ((S_SHAPE, 105), (EITHER, 107)):  # p = 0.001, thin, wide gap
+        curve = next(line for line in panels[20, shape].lines if len(line.get_xdata()) == 3)
+        np.testing.assert_allclose(curve.get_xdata(), [0.4, 0.5, 0.6])
+        np.testing.assert_allclose(curve.get_ydata(), np.array([2, 1, 0.5]) * length)
+
+
+def test_the_axis_of_a_chart_is_that_of_its_own_lengths_with_room_for_the_legend():
+    found = {("C1", 0.5): charted(0.5).assign_coords(shape=[S_SHAPE, EITHER])}
+    found["C1", 0.5]["safe_length"] = found["C1", 0.5].safe_length * xr.DataArray([10, 1], dims="shape")
+    alone, tip, *_ = figures_devices.chart(found, STEEP).axes
+    for panel, low, high in ((alone, 50, 1090), (tip, 51, 111)):  # limits of saturated air and longest curves
+        bottom, top = panel.get_ylim()
+        assert 0.9 * low < bottom < low
+        assert high < top < 1.6 * high
 
 
 def named(panel):
@@ -154,25 +177,28 @@ def named(panel):
     return [text.get_text() for text in panel.get_legend().get_texts()]
 
 
-def test_the_chart_shows_the_limit_of_saturated_air_of_every_shape():
-    panel = figures_devices.chart(CHARTS, STEEP).axes[1]
-    limits = sorted({float(line.get_ydata()[0]) for line in panel.lines if list(line.get_xdata()) == [0, 1]})
-    np.testing.assert_allclose(limits, [52, 53, 56, 57])
+def test_the_chart_shows_the_limit_of_saturated_air_of_its_shape():
+    for shape, limits in ((S_SHAPE, [52, 56]), (EITHER, [53, 57])):
+        panel = charts()[1][20, shape]
+        shown = [float(line.get_ydata()[0]) for line in panel.lines if list(line.get_xdata()) == [0, 1]]
+        np.testing.assert_allclose(shown, limits)
 
 
 def test_the_chart_marks_what_a_power_law_gave_and_how_far_it_errs():
-    first, second = figures_devices.chart(CHARTS, STEEP).axes
-    marked = [line for line in second.lines if line.get_marker() == "o" and len(line.get_xdata())]
-    np.testing.assert_allclose([line.get_ydata() for line in marked], np.outer([105, 107], [2, 1, 0.5]))
-    assert not [line for line in first.lines if line.get_marker() == "o" and len(line.get_xdata())]
-    assert "by a power law, ± 0.4 %" in named(second)
-    assert not [label for label in named(first) if "power" in label]
+    for (gap, shape), panel in charts()[1].items():
+        marked = [line for line in panel.lines if line.get_marker() == "o" and len(line.get_xdata())]
+        assert len(marked) == (gap == 20)
+        assert ("by a power law, ± 0.4 %" in named(panel)) == (gap == 20)
+        if marked:
+            length = {S_SHAPE: 105, EITHER: 107}[shape]
+            np.testing.assert_allclose(marked[0].get_ydata(), np.array([2, 1, 0.5]) * length)
 
 
 def test_the_chart_has_its_warnings_below_and_their_numbers_beside_the_thickness():
-    figure = figures_devices.chart(CHARTS, STEEP)
-    assert named(figure.axes[1])[:2] == ["thickness 2 µm (1) (2)", "thickness 3 µm"]
-    assert named(figure.axes[0])[:2] == ["thickness 2 µm", "thickness 3 µm"]
+    figure, panels = charts()
+    assert named(panels[20, S_SHAPE])[:2] == ["thickness 2 µm (1)", "thickness 3 µm"]
+    assert named(panels[20, EITHER])[:2] == ["thickness 2 µm (1) (2)", "thickness 3 µm"]
+    assert named(panels[10, EITHER])[:2] == ["thickness 2 µm", "thickness 3 µm"]
     assert figure._supxlabel.get_text() == "(1) Too steep.\n(2) Too short."
 
 

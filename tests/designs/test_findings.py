@@ -143,7 +143,7 @@ def test_a_device_within_the_limits_has_no_warning():
         ({"device": replace(C1, gap=100 * UM)}, "reaches a slope of"),
         ({"device": replace(C1, thickness=50 * UM)}, "times as long as the beam is thick"),
         ({"device": replace(C1, width=700 * UM)}, "bends as a plate"),
-        ({"tip": 1.5 * UM}, "strips of 1.5 µm, more than twice"),
+        ({"tip": 1.5 * UM}, "strips of 1.5 µm, longer than the wedge"),
         ({"materials": (("Gold", ("hardness",)),)}, "4 properties of Gold are not stated"),
     ],
 )
@@ -212,13 +212,13 @@ def test_settings_of_jobs_are_those_of_the_warnings():
 # Charts
 
 
-def charted(longest, film=3e-9):
+def charted(longest, film=3e-9, wedge=0.15 * UM):
     """Dataset of stage chart of two thicknesses and two shapes, whose arcs are half as long as beams alone."""
     lengths = longest * np.array([[[[1.0, 0.9], [0.5, 0.45]]], [[[1.5, 1.4], [0.75, 0.7]]]])
     return xr.Dataset(
         {
             "safe_length": (("thickness", "gap", "shape", "share"), lengths),
-            "wedge": (("thickness", "gap"), [[0.1 * UM], [0.1 * UM]]),
+            "wedge": (("thickness", "gap"), [[wedge], [wedge]]),
             "film": film,
             "rms": 3e-9,
         },
@@ -242,6 +242,14 @@ def test_the_air_of_the_shortest_length_of_a_curve_counts():
     of = findings.OfDevice(C1, 0.15 * UM)
     assert "film height plus roughness" in findings.of_chart(along, of, 0.0)[3 * UM, 20 * UM, S_SHAPE][0]
     assert findings.of_chart(along[:1], of, 0.0)[3 * UM, 20 * UM, S_SHAPE] == []
+
+
+def test_the_shortest_wedge_of_a_curve_counts_whatever_the_air_of_its_shortest_length():
+    along = [charted(800 * UM, wedge=0.14 * UM), charted(700 * UM)]
+    found = findings.of_chart(along, findings.OfDevice(C1, 0.15 * UM), 0.0)
+    (sentence,) = found[2 * UM, 20 * UM, EITHER]
+    assert "longer than the wedge on which it acts, 0.14 µm" in sentence
+    assert found[2 * UM, 20 * UM, S_SHAPE] == []
 
 
 def test_the_thickness_of_a_curve_counts():

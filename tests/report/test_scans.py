@@ -148,6 +148,8 @@ def test_densities_integrate_to_one_and_the_band_is_one_error_wide():
         assert_allclose(np.trapezoid(p, z), 1, rtol=1e-3)
         rms = 1e9 * stage_estimate.rms(estimated())
         assert_allclose(p, density(z / rms) / rms, rtol=1e-6)
+    (shown,) = (text.get_text() for text in axes.texts)
+    assert shown == f"$T^2$ = {float(estimated().goodness_chi2):.3g}, p = {float(estimated().goodness_p):.2g}"
     assert "maximum entropy" not in {line.get_label() for line in panel(sheet("without density"), "density").lines}
 
 

@@ -111,17 +111,34 @@ def test_the_scans_needed_of_one_surface_reach_the_goal_and_one_scan_less_does_n
     assert list(study(replace(ERRORS, scans=scans)).scans.values) == [scans, scans]
 
 
-def test_the_scans_needed_of_two_surfaces_bring_the_pair_to_the_goal_with_the_fewest_scans():
-    scans, errors = np.array([[3], [2]]), np.array([[0.2], [0.1]])
-    needed = scans_needed(errors, scans, GOAL)[:, 0]
+@pytest.mark.parametrize(
+    ("errors", "scans"),
+    [
+        ((0.2, 0.1), (3, 2)),
+        ((0.0796, 0.0074), (3, 2)),  # the example of the documentation: rounding the continuous optimum up gives 9 + 1
+        ((0.3, 0.31), (1, 1)),
+        ((0.01, 0.02), (1, 1)),
+        ((0.12, 0.001), (1, 4)),
+        *((stream(1, "errors", k).uniform(0.02, 0.3, 2), (1 + k % 3, 1)) for k in range(20)),
+    ],
+)
+def test_the_scans_needed_of_two_surfaces_bring_the_pair_to_the_goal_with_the_fewest_scans(errors, scans):
+    needed = scans_needed(np.array(errors)[:, None], np.array(scans)[:, None], GOAL)[:, 0]
 
     def of_pair(*numbers):
-        return np.sqrt(np.sum(errors[:, 0] ** 2 * scans[:, 0] / numbers))
+        return np.sqrt(np.sum(np.square(errors) * scans / numbers))
 
-    assert of_pair(*needed) <= GOAL
-    enough = [m + n for m in range(1, 99) for n in range(1, 99) if of_pair(m, n) <= GOAL]
-    assert needed.sum() <= min(enough) + 1  # both numbers are rounded up
+    assert of_pair(*needed) <= GOAL * (1 + 1e-9)
+    fewest = min(m + n for m in range(1, 150) for n in range(1, 150) if of_pair(m, n) <= GOAL)
+    assert needed.sum() == fewest
+    assert of_pair(*needed) == pytest.approx(min(of_pair(m, fewest - m) for m in range(1, fewest)), rel=1e-12)
+
+
+def test_a_surface_without_an_error_needs_no_scan_and_an_error_at_the_goal_no_further_one():
     assert scans_needed(np.array([[0.05], [0.0]]), 1, GOAL).tolist() == [[1], [0]]
+    numbers = np.arange(1, 40)
+    assert np.any((GOAL * np.sqrt(numbers) / GOAL) ** 2 > numbers)  # rounding errors
+    assert scans_needed(np.array([0 * numbers, GOAL * np.sqrt(numbers)]), 1, GOAL).tolist() == [[0] * 39, [*numbers]]
 
 
 def test_choices_are_compared_on_the_same_samples():

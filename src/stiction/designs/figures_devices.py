@@ -2,6 +2,7 @@
 
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
 
 import numpy as np
 import xarray as xr
@@ -30,6 +31,8 @@ _SATURATED = {"S-shape": ":", "S-shape or arc": "-."}
 _BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x"}
 #: Characters in a line of warnings.
 _LINE = 130
+#: Height of the legend in a panel of a chart, in units of the range of its lengths.
+_ROOM = 0.5
 
 
 def _width(columns):
@@ -74,7 +77,7 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
         shares = np.concatenate([dataset.share.values for dataset in cases.values()])
         panel.set(yscale="log", ylim=(shares.min() / 2, 1.3), xlabel="length of the device [µm]")
     for line in lines:
-        line[0, 0].set_ylabel("share of stuck devices [–]")
+        line[0, 0].set_ylabel("P(stuck) [–]")
     letter_lines(lines, names)
     _explain(columns[0, 0], found)
     figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=5)
@@ -84,8 +87,12 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
 
 def _marks(numbers: Mapping[tuple, Iterable[int]], *subject) -> str:
     """Numbers of the warnings about all shapes of a subject."""
-    found = {k for (*about, _), marks in numbers.items() if tuple(about) == subject for k in marks}
-    return "".join(f" ({k})" for k in sorted(found))
+    return _listed({k for (*about, _), marks in numbers.items() if tuple(about) == subject for k in marks})
+
+
+def _listed(numbers):
+    """Numbers of warnings as marks in a label."""
+    return "".join(f" ({k})" for k in sorted(numbers))
 
 
 def _shares(panel: Axes, dataset, colour):
@@ -115,14 +122,16 @@ def _explain(panel, found):
 def chart(
     found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, float, str], list]
 ) -> Figure:
-    """Safe length over the relative humidity, one panel for each device and gap, for the middle one of the shares.
+    """Safe length over the relative humidity for the middle one of the shares.
+
+    Each device, gap and shape has a panel: a tip holds beams that are so much shorter that one axis would hide them.
 
     Parameters
     ----------
     found : dict
         Name and humidity to the dataset of stage chart.
     warnings : dict
-        Name, thickness [m], gap [m] and shape to sentences, which are written below the figure.
+        Name, thickness [m], gap [m] and shape to sentences, which are written below the figure; may be empty.
     """
     sentences, numbers = numbered(warnings)
     devices = {}
@@ -130,42 +139,46 @@ def chart(
         devices.setdefault(name, []).append(dataset.expand_dims(relative_humidity=[humidity]))
     joint = {"data_vars": "minimal", "coords": "minimal", "compat": "equals", "join": "exact"}
     axes = {name: xr.concat(parts, "relative_humidity", **joint) for name, parts in devices.items()}
-    subjects = [(name, gap) for name, whole in axes.items() for gap in whole.gap.values]
+    subjects = [(name, *one) for name, whole in axes.items() for one in product(whole.gap.values, _shapes_of(whole))]
     figure, columns, lines = columns_of_panels(len(subjects), 1, _width, 3.2)
-    for panel, (name, gap) in zip(columns[:, 0], subjects, strict=True):
-        whole = axes[name].sel(gap=gap)
-        marks = [_marks(numbers, name, thickness, gap) for thickness in whole.thickness.values]
-        panel.legend(handles=_thicknesses(panel, whole, marks), loc="upper right")
-        panel.set(xlabel="relative humidity [–]", ylim=(0, 1.4 * panel.dataLim.y1))  # room for the legend
+    for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
+        whole = axes[name].sel(gap=gap, shape=shape)
+        marks = [_listed(numbers.get((name, thickness, gap, shape), ())) for thickness in whole.thickness.values]
+        panel.legend(handles=_thicknesses(panel, whole, shape, marks), loc="upper right")
+        low, high = panel.dataLim.intervaly
+        panel.set(xlabel="relative humidity [–]", ylim=(0.95 * low, high + _ROOM * (high - low)))
         humidity_axis(panel)
     for line in lines:
         line[0, 0].set_ylabel("safe length [µm]")
-    letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm" for name, gap in subjects])
+    letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm, {_SHAPES[shape][1]}" for name, gap, shape in subjects])
     figure.legend(*handles(*columns[:, 0]), loc="outside upper center", ncols=2)
     below(figure, sentences)
     return figure
 
 
-def _thicknesses(panel, whole, marks):
-    """Curves of all thicknesses of one device and gap, their limits in saturated air, and what a power law gave.
+def _shapes_of(dataset):
+    """Names of the shapes of a dataset."""
+    return map(str, dataset["shape"].values)
+
+
+def _thicknesses(panel, whole, shape, marks):
+    """Curves of all thicknesses of one device, gap and shape, their limits in saturated air, and what a power law gave.
 
     Returns the entries of a legend of the thicknesses.
     """
     share, named = whole.share.values[len(whole.share) // 2], []
+    line, text = _SHAPES[shape]
     for thickness, shade, mark in zip(whole.thickness.values, _shades(len(marks)), marks, strict=True):
         one = whole.sel(thickness=thickness, share=share)
-        between = one.by_elements.values == 0
-        for shape in whole["shape"].values:
-            line, text = _SHAPES[shape]
-            lengths = TO_UM * one.safe_length.sel(shape=shape)
-            panel.plot(one.relative_humidity, lengths, line, color=shade)
-            panel.plot(one.relative_humidity[between], lengths[between], "o", color=shade, fillstyle="none")
-            panel.plot([], [], line, color="0.3", label=f"{text}, p = {share:g}")
-            limit = TO_UM * float(one.flooded_length.sel(shape=shape).isel(relative_humidity=0))
-            panel.axhline(limit, color=shade, linestyle=_SATURATED[shape], linewidth=0.8)
-            panel.plot([], [], color="0.3", linestyle=_SATURATED[shape], label=f"{text}, saturated air")
+        between, lengths = one.by_elements.values == 0, TO_UM * one.safe_length
+        panel.plot(one.relative_humidity, lengths, line, color=shade)
+        panel.plot(one.relative_humidity[between], lengths[between], "o", color=shade, fillstyle="none")
+        limit = TO_UM * float(one.flooded_length.isel(relative_humidity=0))
+        panel.axhline(limit, color=shade, linestyle=_SATURATED[shape], linewidth=0.8)
         label = f"thickness {TO_UM * thickness:g} µm{mark}"
         named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=label))
+    panel.plot([], [], line, color="0.3", label=f"{text}, p = {share:g}")
+    panel.plot([], [], color="0.3", linestyle=_SATURATED[shape], label=f"{text}, saturated air")
     if not whole.by_elements.all():
         label = f"by a power law, ± {100 * float(whole.power_law_error.max()):.2g} %"
         named.append(Line2D([], [], color="0.3", marker="o", fillstyle="none", linestyle="", label=label))

@@ -81,7 +81,9 @@ def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan) -> dict[
 def of_chart(
     found: Sequence[xr.Dataset], of: OfDevice, plastic: float = np.nan
 ) -> dict[tuple[float, float, str], list[str]]:
-    """Warnings about the chart of a device by thickness [m], gap [m] and shape, each at its shortest length.
+    """Warnings about the chart of a device by thickness [m], gap [m] and shape.
+
+    Each curve is checked at its shortest length, and with the shortest wedge at a tip in any air.
 
     Parameters
     ----------
@@ -94,6 +96,7 @@ def of_chart(
     for thickness, gap, shape in curves(found[0]):
         along = [one.sel(thickness=thickness, gap=gap, shape=shape) for one in found]
         shortest = min(along, key=lambda one: float(one.safe_length.min()))
+        shortest = shortest.assign(wedge=min(float(one.wedge) for one in along))
         of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
         length = float(shortest.safe_length.min())
         warnings[thickness, gap, shape] = _of_length(length, shape, shortest, of_size, plastic)

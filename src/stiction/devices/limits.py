@@ -131,12 +131,13 @@ def stretched_bridge(gap: float, thickness: float) -> str | None:
 
 
 def short_wedge(strip: float, wedge: float) -> str | None:
-    """Strips that are much longer than the wedge at the tip of an arc, so that the tip is averaged too far."""
-    if strip <= 2 * wedge:
+    """Strips that are longer than the wedge at the tip of an arc: shorter strips hold more, so that tips do as well."""
+    if strip <= wedge:
         return None
     return (
-        f"The adhesion of the tip comes from strips of {strip * 1e6:.3g} µm, more than twice as long as the wedge on "
-        f"which it acts, {wedge * 1e6:.3g} µm: arcs hold more, and scatter more, than computed."
+        f"The adhesion of the tip comes from strips of {strip * 1e6:.3g} µm, longer than the wedge on which it acts, "
+        f"{wedge * 1e6:.3g} µm: tips hold shorter beams than computed, which is the unsafe side. The length in "
+        "saturated air, the shortest that water holds, is safe."
     )
 
 

@@ -104,7 +104,7 @@ def _density(panel, estimate):
     if not np.isnan(stage_estimate.distance(estimate)):
         entropy = stage_estimate.density(estimate, "moments")(z) / rms
         panel.plot(rms * z, entropy, **_MODEL, label="maximum entropy")
-        text = rf"$\chi^2(5)$ = {float(estimate.goodness_chi2):.3g}, p = {float(estimate.goodness_p):.2g}"
+        text = rf"$T^2$ = {float(estimate.goodness_chi2):.3g}, p = {float(estimate.goodness_p):.2g}"
         panel.text(0.5, 0.04, text, transform=panel.transAxes, ha="center", **_CORNER)
     panel.set(yscale="log", ylim=(largest / 10**_DECADES, _HEADROOM * largest), xlim=(-6 * rms, 6 * rms))
     panel.set(xlabel="height $z$ [nm]", ylabel="density $p_Z$ [nm$^{-1}$]")

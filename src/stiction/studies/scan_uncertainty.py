@@ -27,6 +27,8 @@ from stiction.studies.slopes import Settings
 PARTS = ("rms", "shape", "spectrum", "total")
 #: Relative standard error of ē that a sufficient number of scans would not exceed [-].
 GOAL = 0.05
+#: A sum of relative variances that exceeds 1 by this rounding error does not need another scan.
+_ROUNDING = 16 * np.finfo(float).eps
 
 
 @dataclass(frozen=True)
@@ -170,9 +172,7 @@ def layout(
 def scans_needed(errors: np.ndarray, scans: np.ndarray, goal: float) -> np.ndarray:
     r"""Numbers of scans of the surfaces of a pair that reduce its error to the goal with the fewest scans in all.
 
-    With the error σᵢ of one scan of surface i, that of the pair is √(Σ σᵢ² / nᵢ). The sum of the numbers is least for
-
-    .. math:: n_i = \frac{\sigma_i \sum_j \sigma_j}{\text{goal}^2} .
+    With the error σᵢ of one scan of surface i, that of the pair is :math:`\sqrt{\sum_i \sigma_i^2 / n_i}`.
 
     Parameters
     ----------
@@ -190,8 +190,20 @@ def scans_needed(errors: np.ndarray, scans: np.ndarray, goal: float) -> np.ndarr
     >>> scans_needed(np.array([0.05, 0.05]), 1, 0.05).tolist()
     [2, 2]
     """
-    of_one = errors * np.sqrt(scans)
-    return np.ceil(of_one * of_one.sum(axis=0) / goal**2).astype(int)
+    return np.apply_along_axis(_fewest, 0, scans * (np.asarray(errors) / goal) ** 2)
+
+
+def _fewest(variances):
+    """Whole numbers nᵢ of the least sum for which Σ varianceᵢ / nᵢ is at most 1; both (n_surfaces,).
+
+    Every nᵢ is at least its variance. Each further scan is one of the surface to which it brings most. For any number
+    of scans this gives the smallest variance in all, because further scans of a surface bring less and less.
+    """
+    variances = variances * (1 - _ROUNDING)
+    numbers = np.ceil(variances).astype(int)
+    while np.sum(variances / np.maximum(numbers, 1)) > 1:
+        numbers[np.argmax(variances / np.maximum(numbers, 1) / (numbers + 1))] += 1
+    return numbers
 
 
 def pair_errors(dataset: xr.Dataset) -> dict[float, float]:
