@@ -181,7 +181,7 @@ def mesh(checks):
 
 
 def scans(table):
-    """Scans of the surface Etched of the example: Nyquist number, and errors over those of independent points."""
+    """Scans of the surface Etched of the example: Nyquist wave number, and errors over those of independent points."""
     row = next(table[table.surface == "Etched"].itertuples())
     independent = np.sqrt(6 / (row.points_fast * row.points_slow))
     nyquist = np.pi * row.points_fast / row.size_fast_um

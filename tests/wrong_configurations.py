@@ -132,7 +132,7 @@ WRONG_RELATIONS = [
      "below the cut-off (given surfaces.B1.published_psd.cutoff_rad_per_um = 138)"),
     ("surfaces: {B1: {published_psd: {floor_nm4: 525}}}", "surfaces.B1.published_psd.floor_nm4", "525", "plateau"),
     ("surfaces: {B1: {published_psd: {cutoff_rad_per_um: 315}}}", "surfaces.B1.published_psd.cutoff_rad_per_um", "315",
-     "at most the Nyquist number of the grid, 314.159 rad/µm (given sampling.spacing_nm = 10)"),
+     "at most the Nyquist wave number of the grid, 314.159 rad/µm (given sampling.spacing_nm = 10)"),
     ("sampling: {strip_length_um: 0.75}\nbeam: {elements: 400}\nstudies: {variants: {every: []}}",
      "sampling.strip_length_um", "0.75",
      "surfaces.Sub1.published_psd ="),
@@ -146,7 +146,7 @@ WRONG_RELATIONS = [
     ("contact: {every: 2}\nbeam: {width_um: 30.01}\nstudies: {variants: {every: []}}", "beam.width_um", "30.01",
      "contact points 20 nm apart"),
     ("studies: {variants: {spacing_nm: [5, 20]}}", "studies.variants.spacing_nm[1]", "20",
-     "at most 11.9 nm, for the Nyquist number of the grid (given surfaces.Sub1.published_psd.cutoff_rad_per_um ="),
+     "at most 11.9 nm, for the Nyquist wave number of the grid (given surfaces.Sub1.published_psd.cutoff_rad_per_um ="),
     ("surfaces: {Mine: {rms_nm: 2, skewness: -0.5, kurtosis: 3.5, psd: identified, mean_summit_radius_um: 0.5, "
      "summit_density_per_um2: 30}}\ncharacter: {spacing_nm: 10}\nstudies: {variants: {spacing_nm: [11.71875]}}",
      "studies.variants.spacing_nm[0]", "11.71875", "at most that of Table I (given character.spacing_nm = 10"),

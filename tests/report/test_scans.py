@@ -55,7 +55,7 @@ SHEETS = {
     "too few summits": {"summits": np.full(2, np.nan)},
 }
 #: Flag of stage spectrum.
-CLIPPED = "the spectrum ends at the Nyquist number of the grid"
+CLIPPED = "the spectrum ends at the Nyquist wave number of the grid"
 
 
 def spectrum(sentences=""):
@@ -187,7 +187,7 @@ def test_every_flag_is_shown_in_full():
         assert " ".join(flag.split()) in shown
     assert sheet("no flags")._supxlabel.get_text() == "No flags."
     clipped = surface_sheet("Etched", changed(flags=""), spectrum(CLIPPED))._supxlabel.get_text()
-    assert clipped.startswith("– the spectrum ends at the Nyquist number")
+    assert clipped.startswith("– the spectrum ends at the Nyquist wave number")
 
 
 # Tables

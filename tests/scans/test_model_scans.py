@@ -16,7 +16,7 @@ from stiction.surface.summits import find_summits
 
 B2 = SURFACES["B2"]
 FRAME = Frame((200, 200), (4e-6, 4e-6))
-#: Eq. (7) ends at the Nyquist number of 20 nm, 157 rad/µm.
+#: Eq. (7) ends at the Nyquist wave number of 20 nm, 157 rad/µm.
 MODEL = SurfaceModel(B2.density, B2.spectrum, 1e-6, B2.rms, FRAME)
 
 

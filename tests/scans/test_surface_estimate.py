@@ -82,7 +82,7 @@ def about(flags, words):
 
 
 def test_the_spectrum_and_the_model_end_where_that_of_the_surface_does():
-    cutoff = SURFACES["B2"].spectrum.cutoff  # 125 rad/µm, the Nyquist number is 157
+    cutoff = SURFACES["B2"].spectrum.cutoff  # 125 rad/µm, the Nyquist wave number is 157
     assert ESTIMATE.inspection.reach.end == pytest.approx(cutoff, rel=0.01)
     assert ESTIMATE.model.spectrum == ESTIMATE.inspection.spectrum
     assert ESTIMATE.inspection.spectrum.cutoff == ESTIMATE.inspection.reach.end

@@ -112,7 +112,7 @@ def test_errors_cover_the_truth_of_drawn_scans_and_chi_square_is_one_per_degree_
 
 
 def test_the_end_of_a_measured_spectrum_is_found():
-    ring = rings_of(published("B2", SIDE, 1))  # ends at 125 rad/µm, the Nyquist number is 157 rad/µm
+    ring = rings_of(published("B2", SIDE, 1))  # ends at 125 rad/µm, the Nyquist wave number is 157 rad/µm
     found, within = fit_to_the_end(ring, REACH)
     assert within.end == pytest.approx(B2.cutoff, rel=0.01)
     assert (within.high, found.slope) == (REACH.high, fit(ring, REACH).slope)
@@ -150,7 +150,7 @@ def test_chance_is_no_end_even_in_few_rings():
 
 
 def test_aliases_bias_a_fit_beyond_half_of_the_nyquist_number():
-    # Sub1 has roughness up to 264 rad/µm, the Nyquist number is 157 rad/µm.
+    # Sub1 has roughness up to 264 rad/µm, the Nyquist wave number is 157 rad/µm.
     ring = rings_of(published("Sub1", SIDE, 4))
     half, most = (fit(ring, reach(SIZE, PIXELS, shortest=pixels * 20e-9)) for pixels in (4, 8 / 3))
     true = SURFACES["Sub1"].spectrum.slope

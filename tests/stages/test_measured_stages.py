@@ -277,7 +277,7 @@ def test_the_field_behind_measured_heights_gives_the_spectrum_that_was_asked_for
 
 def test_a_grid_that_cuts_the_spectrum_off_is_a_warning():
     with pytest.warns(
-        UserWarning, match="surface Etched: the spectrum ends at the Nyquist number of the grid, 104.7 ra"
+        UserWarning, match="surface Etched: the spectrum ends at the Nyquist wave number of the grid, 104.7 ra"
     ):
         found = spectrum_with(spacing=30e-9)
     assert float(found.cutoff) == pytest.approx(np.pi / 30e-9)

@@ -306,21 +306,21 @@ def spectrum_falls(floor, plateau):
 
 @relation("surfaces.*.published_psd.cutoff_rad_per_um", "sampling.spacing_nm")
 def grid_carries_the_roughness(cutoff, spacing):
-    """The cut-off lies within the Nyquist number of the grid."""
+    """The cut-off lies within the Nyquist wave number of the grid."""
     nyquist = math.pi / spacing * NM_PER_UM
-    return None if cutoff <= nyquist else f"must be at most the Nyquist number of the grid, {nyquist:.6g} rad/µm"
+    return None if cutoff <= nyquist else f"must be at most the Nyquist wave number of the grid, {nyquist:.6g} rad/µm"
 
 
 @relation("studies.variants.spacing_nm.*", "surfaces.*.published_psd.cutoff_rad_per_um")
 def other_grid_carries_the_roughness(spacing, cutoff):
-    """The cut-off lies within the Nyquist number of the grid of a variant."""
+    """The cut-off lies within the Nyquist wave number of the grid of a variant."""
     largest = math.pi / cutoff * NM_PER_UM
-    return None if spacing <= largest else f"must be at most {largest:.6g} nm, for the Nyquist number of the grid"
+    return None if spacing <= largest else f"must be at most {largest:.6g} nm, for the Nyquist wave number of the grid"
 
 
 @relation("studies.variants.spacing_nm.*", "character.spacing_nm", "surfaces.*.psd")
 def other_grid_carries_an_identified_spectrum(spacing, coarse, psd):
-    """The cut-off of an identified spectrum is the Nyquist number of the grid of Table I."""
+    """The cut-off of an identified spectrum is the Nyquist wave number of the grid of Table I."""
     return None if spacing <= coarse or psd == "published" else "must be at most that of Table I"
 
 

@@ -19,7 +19,7 @@ class Settings:
     """Source of the spectrum, its cut-off, and what it is used for."""
 
     psd: str  #: ``fitted`` (Eq. (7)) or ``tabulated``
-    beyond: str  #: ``cut`` at the end of the measured spectrum, or ``continued`` to the Nyquist number of the grid
+    beyond: str  #: ``cut`` at the end of the measured spectrum, or ``continued`` to the Nyquist wave number of the grid
     spacing: float  #: of the grid on which the surface will be drawn [m]
     use: Use
 
@@ -60,7 +60,7 @@ def cutoff_and_clipping(end: float, settings: Settings) -> tuple[float, str]:
     Parameters
     ----------
     end : float
-        Of the measured spectrum, the Nyquist number of the scans at most [rad m⁻¹].
+        Of the measured spectrum, the Nyquist wave number of the scans at most [rad m⁻¹].
     settings : Settings
     """
     grid = np.pi / settings.spacing
@@ -68,8 +68,8 @@ def cutoff_and_clipping(end: float, settings: Settings) -> tuple[float, str]:
         return (end if settings.beyond == "cut" else grid), ""
     ends, measured = (f"{from_si(wavenumber, 'rad_per_um'):.4g} rad/µm" for wavenumber in (grid, end))
     return grid, (
-        f"the spectrum ends at the Nyquist number of the grid, {ends}, before that of the scans, {measured}; a finer "
-        "sampling.spacing_nm keeps more"
+        f"the spectrum ends at the Nyquist wave number of the grid, {ends}, before that of the scans, {measured}; "
+        "a finer sampling.spacing_nm keeps more"
     )
 
 

@@ -15,7 +15,7 @@ from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 
 #: Longest wave of the fit: levelling and taper reduce longer ones.
 _LONGEST_WAVE = 1 / 1.5
-#: Shortest wave of the fit in pixels, half of the Nyquist number: aliases and noise raise the spectrum beyond.
+#: Shortest wave of the fit in pixels, half of the Nyquist wave number: aliases and noise raise the spectrum beyond.
 _SHORTEST_WAVE = 4
 #: Peak curvatures above this share of that of the tip are not resolved (Sanner et al., 2022).
 _TIP_SAFETY = 0.5
@@ -38,7 +38,7 @@ class Reach:
     high: float  #: [rad m⁻¹]
     nyquist: float  #: of the wider distance of points [rad m⁻¹]
     tip: float  #: wave number beyond which the tip rounds the surface; infinite if it does not [rad m⁻¹]
-    end: float  #: wave number beyond which the scan shows no roughness, the Nyquist number at most [rad m⁻¹]
+    end: float  #: wave number beyond which the scan shows no roughness, the Nyquist wave number at most [rad m⁻¹]
 
 
 def reach(
@@ -51,7 +51,7 @@ def reach(
     size, pixel : (2,) tuples
         [m]
     shortest : float, optional
-        Shortest wavelength used; by default four pixels, half of the Nyquist number [m].
+        Shortest wavelength used; by default four pixels, half of the Nyquist wave number [m].
     tip : float
         Reach of the tip, `tip_reach` [rad m⁻¹].
     """
@@ -121,7 +121,7 @@ def fit_to_the_end(rings: Rings, within: Reach) -> tuple[WhittleFit, Reach]:
 
 
 def _end(rings, within, found):
-    """Wave number beyond which all rings are below half of the fit, the Nyquist number if there is none [rad m⁻¹]."""
+    """Wave number beyond which all rings are below half of the fit; the Nyquist one if there is none [rad m⁻¹]."""
     known = rings.between(within.low, within.nyquist)
     last = np.flatnonzero(known.density >= _ENDED * found.spectrum(within.nyquist)(known.wavenumber))[-1]
     if len(known.wavenumber) - 1 - last < _RINGS_BEYOND:

@@ -60,7 +60,8 @@ class RoughSurface:
         nyquist = np.pi / self.grid.spacing
         if not self.underlying.cutoff <= nyquist:
             raise ValueError(
-                f"cut-off {self.underlying.cutoff:.4g} rad/m is beyond the grid's Nyquist number {nyquist:.4g} rad/m"
+                f"cut-off {self.underlying.cutoff:.4g} rad/m is beyond the Nyquist wave number of the grid, "
+                f"{nyquist:.4g} rad/m"
             )
 
     @cached_property
@@ -105,7 +106,7 @@ class RoughSurface:
         return fft.irfft(self._waves_across(rng), n=self.grid.field_shape[1], axis=1, norm="forward")
 
     def _waves_across(self, rng):
-        """Draw the waves ζ₂ >= 0 across each line of the strip, up to the Nyquist number; complex64.
+        """Draw the waves ζ₂ >= 0 across each line of the strip, up to the Nyquist wave number; complex64.
 
         The inverse transform would copy an input that is not contiguous or shorter.
         """
@@ -175,7 +176,7 @@ def radial_periodogram(heights: np.ndarray, spacing: float) -> tuple[np.ndarray,
     Returns
     -------
     wavenumber, spectrum : (n // 2,) arrays
-        From the first ring around 0 to the Nyquist number [rad m⁻¹], [m⁴].
+        From the first ring around 0 to the Nyquist wave number [rad m⁻¹], [m⁴].
     """
     step = 2 * np.pi / (len(heights) * spacing)
     return radial_spectrum(np.abs(fft.fft2(heights) / heights.size) ** 2 / step**2, step)

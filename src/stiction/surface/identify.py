@@ -35,7 +35,7 @@ class SummitTarget:
     def cutoff(self) -> float:
         """Cut-off of the spectrum [rad m⁻¹].
 
-        ASSUME: three targets fix three of the four parameters of Eq. (7); the fourth is the Nyquist number of the
+        ASSUME: three targets fix three of the four parameters of Eq. (7); the fourth is the Nyquist wave number of the
         microscope, which does not resolve finer roughness.
         """
         return np.pi / self.spacing

@@ -200,7 +200,7 @@ def _rings(n):
 
 
 def radial_spectrum(values: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
-    """Wave number [rad m⁻¹] and `ring_means` from the first ring around 0 to the Nyquist number, (n // 2,) each.
+    """Wave number [rad m⁻¹] and `ring_means` from the first ring around 0 to the Nyquist wave number, (n // 2,) each.
 
     ``values`` (n, n) are at the wave numbers of an FFT, ``step`` [rad m⁻¹] apart.
     """

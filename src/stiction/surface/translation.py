@@ -136,7 +136,7 @@ def underlying_spectrum(
         Spectrum s_Z of the heights; its scale has no effect.
     translation : Translation
     spacing : float
-        Grid on which the field will be sampled [m]; the cut-off must be below its Nyquist number.
+        Grid on which the field will be sampled [m]; the cut-off must be below its Nyquist wave number.
     points : int
         Points along each side of the periodic square of the transforms.
 
@@ -173,7 +173,7 @@ def _square(spacing, points):
 
 
 def _radial(spectrum, zeta, cutoff):
-    """Average a spectrum over rings up to the Nyquist number, over the part of each ring within the cut-off."""
+    """Average a spectrum over rings up to the Nyquist wave number, over the part of each ring within the cut-off."""
     mean = ring_means(spectrum, zeta <= cutoff)
     rings = min(len(mean), len(zeta) // 2)
     wavenumber = zeta[0, 1] * np.arange(rings)
