@@ -217,6 +217,12 @@ def test_server_and_scripts_end_with_the_process_that_started_them(tmp_path):
     assert all(map(gone, processes))
 
 
+def test_a_server_that_is_closed_ends_without_an_error(bare, capfd):
+    bare.close()
+    assert bare.process.returncode == 0
+    assert capfd.readouterr().err == ""
+
+
 def test_an_interrupt_from_the_terminal_ends_scripts_but_not_the_server(bare, tmp_path):
     path = script(tmp_path, SLEEPING)
     with ThreadPoolExecutor() as pool:
