@@ -107,7 +107,7 @@ WRONG_RELATIONS = [
      "above skewness² + 1 = 1.25 (given"),
     ("surfaces: {B1: {kurtosis: 1.6}}", "surfaces.B1.kurtosis", "1.6", "skewness² + 1 = 1.6084 (given surfaces.B1."),
     ("surfaces: {B1: {skewness: 0}}", "surfaces.B1.kurtosis", "4.6", "maximum-entropy"),
-    ("surfaces: {B2: {scans: {files: [a.spm]}}}", "surfaces.B2.scans", "{'files': ['",
+    ("surfaces: {B2: {scans: {files: [/a.spm]}}}", "surfaces.B2.scans", "{'files': ['/a.spm']}",
      "must not be given beside rms_nm, skewness, kurtosis, mean_summit_radius_um, summit_density_per_um2, published_psd"
      ),
     ("surfaces: {B2: {heights: measured}}", "surfaces.B2.heights", "'measured'", "must not be given for a surface"),

@@ -129,7 +129,8 @@ def test_negative_skewness_is_checked_only_for_pairs_without_positive_skewness()
 @pytest.mark.parametrize("folder", [studies, variants], ids=lambda folder: folder.__name__)
 def test_every_study_and_variant_is_tested_here(folder):
     names = {module.__name__ for module in JOBS if module.__name__.startswith(f"{folder.__name__}.")}
-    assert names == {f"{folder.__name__}.{path.stem}" for path in Path(folder.__file__).parent.glob("[!_]*.py")}
+    modules = [path for path in Path(folder.__file__).parent.glob("[!_]*.py") if "def compute(" in path.read_text()]
+    assert names == {f"{folder.__name__}.{path.stem}" for path in modules}
 
 
 def test_the_axis_of_humidities_runs_from_the_driest_to_the_most_humid():
