@@ -9,8 +9,10 @@ from stiction.config import jobs
 from stiction.config.files import load
 from stiction.config.plan import Plan
 from stiction.config.units import typed
+from stiction.contact.meniscus import meniscus_height
 from stiction.designs.releases import DesignedBeam
 from stiction.devices import arcs, risk
+from stiction.devices.chart import flooded_energy
 from stiction.stages import contact, curves
 from stiction.streams import stream
 from stiction.study import surface_datasets
@@ -55,6 +57,23 @@ def test_shorter_strips_hold_more_and_scatter_more():
             means.append((energies.mean(), error))
     values, errors = np.reshape(means, (3, 2, 2)).transpose(2, 1, 0)
     assert np.all(np.diff(values) > 3 * errors[:, :-1])  # control
+
+
+def test_tips_hold_less_than_saturated_air_and_lose_what_the_solids_keep_from_the_water():
+    # The solids keep the mean planes at a distance d0, so that e = 2γ (1 - d0 / h_C) for a film much higher than d0.
+    tips, limit = strips(0.05, 200), flooded_energy(WATER.temperature)
+    for humidity in (0.44, 0.67, 0.92):
+        assert curves.tip_energies(tips, humidity, WATER).max() < limit
+
+    def kept_apart(humidity, factor=1):
+        energy = factor * curves.tip_energies(tips, humidity, WATER).mean()
+        return (1 - energy / limit) * meniscus_height(humidity, WATER.temperature)
+
+    high = tips.height.values[np.argmin(tips.bearing_area.values.mean(axis=0) > 0)]  # of the highest summits
+    assert 0 < kept_apart(0.99) < high
+    assert kept_apart(0.99) == pytest.approx(kept_apart(0.97), rel=0.1)
+    for factor in (0.5, 2):  # control
+        assert kept_apart(0.99, factor) != pytest.approx(kept_apart(0.97, factor), rel=0.5)
 
 
 @pytest.mark.slow
