@@ -17,9 +17,13 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from queue import Queue
 
+import pytest
+
 ROOT = Path(__file__).parents[1]
 #: A mutant counts as detected if its tests take this many times as long as without it, and at least that long [s].
 PATIENCE = 4, 120
+#: Marks of the tests that run first, and of those that run for mutants that these miss.
+KINDS = "not slow and not cluster and not browser", "slow and not cluster and not browser"
 
 #: Tests of modules that have no test file of their name: names of test files are unique.
 TESTS = {
@@ -1929,10 +1933,10 @@ class Copy:
         for name in ("pyproject.toml", "config.yaml"):
             shutil.copy(ROOT / name, self.folder)
 
-    def tests(self, module, cache, limit=None):
-        """Run the tests of a module, at most for a time [s]; the name of the first that fails, empty if all pass."""
-        files = [tests_of(module), source_of(module)]
-        command = [sys.executable, "-B", "-m", "pytest", "-x", "--tb=no", "-p", "no:cacheprovider", *files]
+    def tests(self, module, cache, kind, limit=None):
+        """Run tests of a module, at most for a time [s]; the name of the first that fails, empty if all pass."""
+        command = [sys.executable, "-B", "-m", "pytest", "-x", "--tb=no", "-p", "no:cacheprovider", "-m", kind]
+        command += [tests_of(module), source_of(module)]
         environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), "OMP_NUM_THREADS": "1"}
         environment["PYTHONPATH"] = str(self.folder / "src")
         try:
@@ -1941,13 +1945,13 @@ class Copy:
             )
         except subprocess.TimeoutExpired:
             return "its tests do not end"
-        if done.returncode == 0:
+        if done.returncode in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):
             return ""
         lines = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
         return lines[0] if lines else f"pytest ended with {done.returncode}"
 
-    def notice(self, module, old, new, limit):
-        """Name of the test that detects a mutant; empty if none does."""
+    def notice(self, module, old, new, kind, limit):
+        """Name of the test of a kind that detects a mutant, within a time [s]; empty if none does."""
         path = self.folder / source_of(module)
         text = path.read_text(encoding="utf-8")
         shutil.rmtree(self.cache, ignore_errors=True)
@@ -1955,7 +1959,7 @@ class Copy:
         kept = path.stat()
         try:
             path.write_text(text.replace(old, new), encoding="utf-8")
-            return self.tests(module, self.cache, limit)
+            return self.tests(module, self.cache, kind, limit)
         finally:
             path.write_text(text, encoding="utf-8")
             os.utime(path, ns=(kept.st_atime_ns, kept.st_mtime_ns))
@@ -1974,16 +1978,22 @@ def chosen(modules):
 def detected(module, mutants, copies):
     """Mutants of a module and the names of the tests that detect them; the tests must pass without a mutant.
 
-    Copies of the project are taken from a queue and put back, so that each is used by one thread at a time.
+    Slow tests run for mutants that the others miss. Copies of the project are taken from a queue and put back, so that
+    each is used by one thread at a time.
     """
-    copy = copies.get()
+    copy, found, missed = copies.get(), {}, mutants
     try:
-        start = time.monotonic()
-        if failed := copy.tests(module, copy.warm):
-            return [((module, "", ""), f"FAILED without a mutant: {failed}")]
-        copy.warm.mkdir(exist_ok=True)
-        limit = max(PATIENCE[0] * (time.monotonic() - start), PATIENCE[1])
-        return [((module, old, new), copy.notice(module, old, new, limit)) for _, old, new in mutants]
+        for kind in KINDS:
+            start = time.monotonic()
+            if failed := copy.tests(module, copy.warm, kind):
+                return [((module, "", ""), f"FAILED without a mutant: {failed}")]
+            copy.warm.mkdir(exist_ok=True)
+            limit = max(PATIENCE[0] * (time.monotonic() - start), PATIENCE[1])
+            found |= {mutant: copy.notice(*mutant, kind, limit) for mutant in missed}
+            missed = [mutant for mutant in missed if not found[mutant]]
+            if not missed:
+                break
+        return list(found.items())
     finally:
         copies.put(copy)
 
