@@ -11,6 +11,8 @@ import pytest
 
 import stiction
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[1]
 #: Prepares a Python with the wheel and the libraries, but without Snakemake and any other stiction.
 PREPARE = """
@@ -94,7 +96,6 @@ def test_public_names_configuration_and_provenance_need_neither_checkout_nor_sna
     assert run["config"]["contact"]["samples"] == 40
 
 
-@pytest.mark.slow
 def test_beams_are_computed_without_checkout_and_snakemake(alone):
     cracks = alone(BEAMS)
     assert len(cracks) == 2

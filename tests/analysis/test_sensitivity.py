@@ -86,6 +86,7 @@ def energies(moments, seeds):
     return parametrise(*humid_curves(*curves, starts, pair.step, film), len(seeds))[0][:, 0]
 
 
+@pytest.mark.slow
 def test_rougher_and_more_peaked_surfaces_adhere_less_and_common_random_numbers_resolve_it():
     here, seeds = (B2.rms, B2.skewness, B2.kurtosis), range(24)
     for k in range(3):

@@ -34,7 +34,10 @@ print(peak_memory())
 """
 
 
-@pytest.mark.parametrize("size_um", [(10.24, 10.24, 10), (10.24, 10.24, 5), (2.5, 31, 4)])
+@pytest.mark.parametrize(
+    "size_um",
+    [(10.24, 10.24, 10), *(pytest.param(size, marks=pytest.mark.slow) for size in ((10.24, 10.24, 5), (2.5, 31, 4)))],
+)
 def test_drawing_takes_at_most_the_estimated_memory_and_at_least_a_quarter(size_um):
     length, width, spacing = size_um
     words = [sys.executable, "-c", DRAWING, *(str(1e-6 * side) for side in (length, width)), str(1e-9 * spacing)]

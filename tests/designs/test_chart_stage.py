@@ -133,6 +133,7 @@ def alone(device, number, tips=None):
     return sticking.sticking_lengths(lengths, foundation_length(beam, laws), device, held)
 
 
+@pytest.mark.slow
 def test_a_chart_has_the_safe_lengths_of_its_device_and_longer_ones_for_thicker_beams():
     found, wanted = computed(R1, (1.6 * UM, 2 * UM), (2 * UM,))
     (expected,) = sticking.safe_lengths(alone(R1, 400)[sticking.S_SHAPE], wanted)

@@ -50,7 +50,7 @@ def test_each_group_of_the_samples_is_fitted_alone_and_the_random_numbers_are_th
     assert_array_equal(dataset.crack_length_of_group, np.tile(dataset.crack_length, (4, 1)))  # models are equal here
 
 
-@pytest.mark.parametrize(("samples", "groups"), [(60, 2), (160, 3), (2000, 10)])
+@pytest.mark.parametrize(("samples", "groups"), [(60, 2), (160, 3), pytest.param(2000, 10, marks=pytest.mark.slow)])
 def test_a_group_has_fifty_samples_unless_there_are_few(monkeypatch, samples, groups):
     monkeypatch.setattr(cracks, "crack_lengths", lambda *_: np.ones(2))
     found = computed(settings(beams=2), sampled_vectors(samples, 0.24), groups=10)

@@ -190,6 +190,7 @@ def test_figure_is_written_without_a_warning(drawn, name, tmp_path):
     assert (tmp_path / "figure.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_figures_of_equal_data_are_equal_byte_for_byte(forces, fit, characters, tmp_path):
     laws = forcelaw.coefficients(stage_forces.vectors(forces)[0], LIMIT)
     draw = {

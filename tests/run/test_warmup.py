@@ -68,12 +68,14 @@ def with_those_they_call(kernels, called):
     return ready
 
 
+@pytest.mark.slow
 def test_the_warm_up_compiles_every_kernel(compiled):
     warm, _, called, parts = compiled
     assert len(warm) > 30
     assert set(warm) - with_those_they_call(sum(parts, []), called) == set()
 
 
+@pytest.mark.slow
 def test_no_kernel_is_compiled_by_two_parts_of_the_warm_up_which_run_at_the_same_time(compiled):
     _, _, called, parts = compiled
     compiled_by = [with_those_they_call(part, called) for part in parts]
@@ -108,6 +110,7 @@ def test_an_error_of_a_part_is_an_error_of_the_warm_up(monkeypatch, parts):
         warmup.main()
 
 
+@pytest.mark.slow
 def test_a_study_and_a_bridge_compile_nothing_more(compiled):
     warm, used, _, _ = compiled
     assert used == warm

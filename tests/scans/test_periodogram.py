@@ -58,6 +58,7 @@ def test_a_wave_along_the_fast_axis_is_at_its_wave_number():
 
 
 @pytest.mark.parametrize("tapered", [0.0, 0.5])
+@pytest.mark.slow
 def test_rings_of_independent_heights_are_flat_with_the_stated_numbers_of_independent_values(monkeypatch, tapered):
     monkeypatch.setattr(spectra, "_TAPERED", tapered)
     size, count = (2.0, 3.0), 2000

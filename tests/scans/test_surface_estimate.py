@@ -292,6 +292,7 @@ def disturbed(scan, rng):
 TILT = Settings(Levelling("plane", "tilt"))
 
 
+@pytest.mark.slow
 def test_lines_that_jump_and_tilt_are_told_from_others_and_levelled():
     jumping = [disturbed(scan, stream(1, "lines", k)) for k, scan in enumerate(B2)]
     as_they_are, levelled, clean = (
@@ -364,6 +365,7 @@ def test_moments_that_are_accepted_before_their_bias_is_known_are_not_refused_af
     assert is_feasible(found.feasible.skewness, found.feasible.kurtosis)
 
 
+@pytest.mark.slow
 def test_a_density_that_four_moments_do_not_describe_is_told_from_one_that_they_do():
     (found,) = estimates(fleishman(10e-6, 1))
     assert found.goodness[1] < 0.01

@@ -158,6 +158,7 @@ def test_limits_of_an_estimate_are_warnings():
     assert f"surface Etched: {sentence}" in {str(one.message) for one in caught}
 
 
+@pytest.mark.slow
 def test_random_numbers_depend_on_seed_and_surface_and_not_on_the_names_of_files():
     moments = b2().moments.values
     assert_array_equal(estimated(dataclasses.replace(SETTINGS, files=("x.spm",))).moments, moments)

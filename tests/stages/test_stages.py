@@ -131,6 +131,7 @@ def identified(radius=1.0, density=1.0, corner=32e6):
 USE = spectrum.Use("Mine", 1.5e-6, 1e-6)
 
 
+@pytest.mark.slow
 def test_an_identified_spectrum_is_used_for_strips_longer_than_its_correlation():
     for corner in np.geomspace(3e6, 60e6, 9):
         bound = correlation_length(CutoffSelfAffine(525e-36, 0.8e-36, corner, 138e6))

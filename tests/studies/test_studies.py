@@ -84,7 +84,13 @@ def asked(monkeypatch):
     return found
 
 
-@pytest.mark.parametrize(("moment", "place", "factor"), [("rms", 0, 0.95), ("rms", 1, 1.05), ("kurtosis", 3, 1.05)])
+@pytest.mark.parametrize(
+    ("moment", "place", "factor"),
+    [
+        ("rms", 0, 0.95),
+        *(pytest.param(*row, marks=pytest.mark.slow) for row in (("rms", 1, 1.05), ("kurtosis", 3, 1.05))),
+    ],
+)
 def test_a_shifted_moment_changes_that_of_the_beams_surface_alone(asked, shifted, moment, place, factor):
     settings = replace(shifted[1], moments=("rms", "kurtosis"))
     found = sensitivity_contact.compute(small.surfaces(), "b", settings)[place]
@@ -523,7 +529,10 @@ def test_the_contact_of_the_base_variant_is_that_of_the_pair():
         assert found[name].dtype == pair[name].dtype
 
 
-@pytest.mark.parametrize("variant", ["van_der_waals_none", "poisson_ratio_0.28", "every_2"])
+@pytest.mark.parametrize(
+    "variant",
+    ["van_der_waals_none", *(pytest.param(name, marks=pytest.mark.slow) for name in ("poisson_ratio_0.28", "every_2"))],
+)
 def test_the_contact_of_a_variant_is_that_of_pairs_of_its_settings(variant):
     plain = merged(jobs.contact(small.PLAN, "b"), small.PLAN.variants[variant])
     settings = small.settings_of(stage_contact, merged(plain, {"contact": {"samples": 3}}))

@@ -22,7 +22,9 @@ def streams(seed=1, patches=2):
 CONTROL = partial(streams, seed=3, patches=6)
 
 
-@pytest.mark.parametrize("name", ["B1", "B2", "Sub1"])
+@pytest.mark.parametrize(
+    "name", [pytest.param("B1", marks=pytest.mark.slow), "B2", pytest.param("Sub1", marks=pytest.mark.slow)]
+)
 def test_summits_of_the_identified_spectrum_match_the_measured_ones_on_surfaces_not_used(name):
     target, translation = afm(name)
     again = identify(target, translation, GRID, partial(streams, patches=4), partial(streams, patches=4))
@@ -39,6 +41,7 @@ def test_summits_of_the_identified_spectrum_match_the_measured_ones_on_surfaces_
         assert 0 < error < 0.05 * value
 
 
+@pytest.mark.slow
 def test_identification_with_other_surfaces_gives_nearly_the_same_spectrum():
     target, translation = afm("B1")
     one = identify(target, translation, GRID, streams, CONTROL)

@@ -44,6 +44,7 @@ def test_a_wrong_configuration_stops_before_the_first_job(planner, tmp_path, ove
     assert not (folder / "results").exists()
 
 
+@pytest.mark.slow
 def test_a_results_folder_that_cannot_be_written_is_reported(planner, tmp_path):
     # A file in place of the folder also stops root, which ignores permissions.
     (tmp_path / "results").write_text("mine")
@@ -53,6 +54,7 @@ def test_a_results_folder_that_cannot_be_written_is_reported(planner, tmp_path):
     assert "Traceback" not in printed
 
 
+@pytest.mark.slow
 def test_an_unreadable_record_of_runs_is_reported_with_the_advice_to_delete_it(planner, tmp_path):
     (tmp_path / "results").mkdir()
     (tmp_path / "results" / "provenance.json").write_text("[1, 2")

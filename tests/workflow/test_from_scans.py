@@ -93,7 +93,7 @@ def bad(tmp_path_factory):
     return folder, bad_files(folder, good)
 
 
-FAST = {"missing.spm", "half.gwy"}
+FAST = {"half.gwy"}
 ROWS = [pytest.param(name, marks=[pytest.mark.slow] * (name not in FAST)) for name in BAD]
 
 

@@ -148,8 +148,7 @@ MATRIX = [
     ("order of humidities", "pairs: {a: {humidities: [0.8, 0.6]}}", "", (), ""),
 ]  # fmt: skip
 #: One change of each part of the workflow; the other rows are slow tests.
-FAST = {"kurtosis of one surface", "one humidity added", "van der Waals model", "water"}
-FAST |= {"number of samples", "number of beams", "study: variants", "a device added"}
+FAST = {"kurtosis of one surface", "water", "number of beams", "a device added"}
 ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name not in FAST)) for name, *row in MATRIX]
 
 

@@ -230,6 +230,7 @@ def test_a_table_or_figure_that_was_cut_off_is_made_again_and_nothing_else(smoke
     assert "5 of 5 steps (100%) done" in done.stdout
 
 
+@pytest.mark.slow
 def test_every_dataset_of_other_settings_is_recognised(smoke, tmp_path):
     folder = copied(smoke, tmp_path / "run")
     numbers = {}
