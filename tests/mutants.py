@@ -706,10 +706,6 @@ MUTANTS = {
         ("fit_power_law(thickness[~test]", "fit_power_law(2 * thickness[~test]"),
         ("if error > ALLOWED", "if error > 10 * ALLOWED"),
         (
-            "tension * meniscus_height(humidity, temperature, contact_angles)",
-            "tension * meniscus_height(humidity, temperature)",
-        ),
-        (
             "arrest_length(flooded_energy(temperature, contact_angles), beam)",
             "arrest_length(flooded_energy(temperature), beam)",
         ),
@@ -899,6 +895,10 @@ MUTANTS = {
         ("tabulated_density(_REFERENCE) / tabulated_density(temperature)", "1.0"),
         ("_REFERENCE = 300.0", "_REFERENCE = 298.15"),
         ("16.945176", "16.95176"),
+        (
+            "tension * meniscus_height(humidity, temperature, contact_angles)",
+            "tension * meniscus_height(humidity, temperature)",
+        ),
     ],
     "contact.vanderwaals": [
         ("(2 / 15) ** (1 / 6)", "(2 / 15) ** (1 / 3)"),

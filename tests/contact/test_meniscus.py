@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 
 from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
 from stiction.contact.meniscus import (
+    flooded_energy,
     kelvin_radius,
     laplace_pressure,
     meniscus_height,
@@ -140,3 +141,8 @@ def test_warm_water_pulls_less_and_takes_more_room_beyond_its_greatest_density()
     assert temperature[volume.argmin()] == pytest.approx(densest, abs=0.5)
     assert np.all(np.diff(volume[temperature > densest]) > 0)
     assert np.all(np.diff(volume[temperature < densest]) < 0)
+
+
+@pytest.mark.parametrize("wet", [(0.0, 0.0), (0.3, 0.9)])
+def test_flats_in_saturated_air_have_the_surface_energy_times_the_cosines(wet):
+    assert flooded_energy(300.0, wet) == pytest.approx(WATER_SURFACE_ENERGY * np.sum(np.cos(wet)), rel=1e-12)

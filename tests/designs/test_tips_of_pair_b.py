@@ -9,10 +9,9 @@ from stiction.config import jobs
 from stiction.config.files import load
 from stiction.config.plan import Plan
 from stiction.config.units import typed
-from stiction.contact.meniscus import meniscus_height
+from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.designs.releases import DesignedBeam
 from stiction.devices import arcs, risk
-from stiction.devices.chart import flooded_energy
 from stiction.stages import contact, curves
 from stiction.streams import stream
 from stiction.study import surface_datasets

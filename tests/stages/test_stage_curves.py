@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from stiction.contact.meniscus import flooded_energy
 from stiction.contact.pair import DistanceGrid
-from stiction.devices.chart import flooded_energy
 from stiction.stages import contact
 from stiction.stages.curves import Water, energies, force_curves, tip_energies
 

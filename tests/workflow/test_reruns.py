@@ -347,6 +347,16 @@ SPOTS = [
         "heights spectrum identification character",
     ),
     ("contact/forcelaw", "forces fit humidity sensitivity variant", "contact_chunk contact sensitivity_contact"),
+    (
+        "devices/chart",
+        "safe_lengths chart",
+        "heights spectrum contact_chunk contact variant_contact forces chaos beams fit humidity table_3",
+    ),
+    (
+        "beam/energy",
+        "beams table_3 checks",
+        "heights spectrum contact_chunk contact variant_contact forces chaos fit humidity",
+    ),
     ("surface/identify", "identification variant_summits", "heights spectrum character contact_chunk forces beams"),
     ("report/tables_surfaces", "table_1 table_2", "heights spectrum character forces beams table_3 variant"),
     ("report/tables_beams", "table_3", "heights spectrum character forces beams table_1 table_2 variant"),

@@ -119,3 +119,13 @@ def meniscus_height(
         degrees = " and ".join(f"{np.degrees(angle):.3g}" for angle in contact_angles)
         raise ValueError(f"no water condenses between flats with contact angles of {degrees} degrees")
     return -wetting * kelvin_radius(humidity, temperature)
+
+
+def flooded_energy(temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:
+    """Adhesion energy of flats in saturated air, γ (cos θ₁ + cos θ₂) [J m⁻²]; temperature [K], angles [rad].
+
+    It is tension times height of the water, which does not depend on the humidity, and the limit of wet rough surfaces.
+    """
+    humidity = 0.5  # any
+    tension = -laplace_pressure(humidity, temperature)
+    return float(tension * meniscus_height(humidity, temperature, contact_angles))

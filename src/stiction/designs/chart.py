@@ -13,12 +13,12 @@ import xarray as xr
 
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
-from stiction.contact.meniscus import meniscus_height
+from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.designs import releases, sticking
 from stiction.designs.patches import on_patch
 from stiction.designs.releases import DesignedBeam
 from stiction.devices import arcs
-from stiction.devices.chart import checked_power_law, flooded_energy, flooded_length
+from stiction.devices.chart import checked_power_law, flooded_length
 from stiction.stages import curves
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
-from stiction.contact.meniscus import laplace_pressure, meniscus_height
+from stiction.contact.meniscus import flooded_energy
 
 #: Largest relative error of a power law that is used.
 ALLOWED = 0.01
@@ -88,16 +88,6 @@ def checked_power_law(
     if error > ALLOWED:
         raise ValueError(f"a power law errs by {error:.1%} between the computed beams, more than {ALLOWED:.0%}")
     return law, error
-
-
-def flooded_energy(temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:
-    """Adhesion energy of flats in saturated air, γ (cos θ₁ + cos θ₂) [J m⁻²]; temperature [K], angles [rad].
-
-    It is tension times height of the water, which does not depend on the humidity, and the limit of wet rough surfaces.
-    """
-    humidity = 0.5  # any
-    tension = -laplace_pressure(humidity, temperature)
-    return float(tension * meniscus_height(humidity, temperature, contact_angles))
 
 
 def flooded_length(beam: Beam, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:

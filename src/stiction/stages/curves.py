@@ -7,8 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.contact import forcelaw
-from stiction.contact.meniscus import laplace_pressure, meniscus_height
-from stiction.devices.chart import flooded_energy
+from stiction.contact.meniscus import flooded_energy, laplace_pressure, meniscus_height
 from stiction.stages.contact import tables
 
 

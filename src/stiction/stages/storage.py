@@ -9,6 +9,9 @@ import xarray as xr
 from stiction.run import labels
 from stiction.run.atomic import DataError, replacing
 
+#: Size of the parts in which a file is written [bytes].
+_PART = 2**20
+
 
 def save(
     dataset: xr.Dataset, path: str | Path, stage: str, settings: dict[str, Any], inputs: Iterable[str | Path] = ()
@@ -36,8 +39,15 @@ def save(
     labelled = dataset.assign_attrs(Conventions="CF-1.10", **label.attributes)
     encoding = {name: {"zlib": True, "complevel": 1} for name, values in labelled.items() if values.size > 10_000}
     with replacing(path) as draft:
-        draft.write_bytes(bytes(labelled.nbytes + 2**16))  # detects a full disk; HDF5 would not name the cause
+        _fill(draft, labelled.nbytes + 2**16)  # detects a full disk; HDF5 would not name the cause
         labelled.to_netcdf(draft, engine="netcdf4", encoding=encoding)
+
+
+def _fill(path, size):
+    """Write a file of ``size`` zeros in parts, so that large files take no memory."""
+    with path.open("wb") as file:
+        for start in range(0, size, _PART):
+            file.write(bytes(min(_PART, size - start)))
 
 
 def load(path: str | Path, stage: str, **parts: slice) -> xr.Dataset:
