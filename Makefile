@@ -27,10 +27,11 @@ CHECKED = $(if $(CONFIG)$(findstring -C,$(ARGS))$(findstring --config,$(ARGS)),@
 WORKERS := --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 EMPTY :=
 SPACE := $(EMPTY) $(EMPTY)
+SPECIAL := ' " & ; | < > ` * ? [ ] ( ) \ !
 
 # Snakemake starts its jobs without quotes around the path of the interpreter.
-ifneq (,$(findstring $(SPACE),$(CURDIR)))
-$(error the path of this folder contains a space ($(CURDIR)), which Snakemake does not support: move or rename it)
+ifneq (,$(findstring $(SPACE),$(CURDIR))$(strip $(foreach sign,$(SPECIAL),$(findstring $(sign),$(CURDIR)))))
+$(error the path of this folder ($(CURDIR)) contains a space or one of $(SPECIAL), which Snakemake does not support: move or rename it)
 endif
 ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)

@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+from itertools import product
 
 import pytest
 from conftest import ROOT
@@ -134,15 +135,30 @@ def test_a_report_without_results_is_rejected_with_the_command_to_run_first(tmp_
     assert "run make paper or make run CONFIG=... first (make devices is not enough)" in done.stdout
 
 
-@pytest.mark.parametrize("target", ["paper", "smoke", "test"])
-def test_a_space_in_the_path_is_rejected_before_anything_is_installed(tmp_path, target):
-    folder = tmp_path / "my folder"
+@pytest.mark.parametrize(
+    ("target", "name"),
+    [
+        *product(["paper", "smoke", "test"], ["my folder"]),
+        *product(["paper"], ["beams(1)", "Anna's", "a&b", "a;b", "a|b", "a*", "[a]", "a`b", 'a"b', "a\\b", "a<b"]),
+    ],
+)
+def test_signs_that_the_shell_interprets_are_rejected_in_the_path_before_anything_is_installed(tmp_path, target, name):
+    folder = tmp_path / name
     folder.mkdir()
     shutil.copy2(ROOT / "Makefile", folder)
     done = made(folder, target)
     assert done.returncode == 2
-    assert "contains a space" in done.stdout
+    assert "contains a space or one of" in done.stdout
     assert [path.name for path in folder.iterdir()] == ["Makefile"]
+
+
+@pytest.mark.parametrize("name", ["Übung", "a-b_c.d", "x+y", "a,b", "50%", "~a", "a=b", "a@b"])
+def test_a_path_without_such_signs_is_accepted(tmp_path, name):
+    folder = tmp_path / name
+    folder.mkdir()
+    ready(folder)
+    done = made(folder, "--dry-run", "smoke")
+    assert done.returncode == 0, done.stdout
 
 
 def test_a_space_in_the_name_of_the_configuration_is_rejected(tmp_path):
