@@ -39,7 +39,13 @@ def numbers(tables):
     found |= safe_lengths(tables["safe_lengths"]) | stoppers(tables["stoppers"]) | budget(tables["budget"])
     found |= drawn_lengths(tables["safe_lengths"], tables["budget"])
     found |= studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
-    return found | scans(tables["example_scans"]) | timings(tables["timings"]) | constants() | nearly_gaussian()
+    return (
+        found
+        | scans(tables["example_scans"])
+        | timings(tables["timings"], tables["earlier_timings"])
+        | constants()
+        | nearly_gaussian()
+    )
 
 
 def crack_lengths(table_3):
@@ -188,11 +194,11 @@ def scans(table):
     return {"scan_nyquist": f"{nyquist:.0f}", "scan_errors": f"{row.skewness_se / independent:.0f}"}
 
 
-def timings(table):
-    """``time_paper``: minutes and seconds, or seconds, of every row; and the ratio of both runs of the paper."""
-    seconds = dict(zip(table["name"], table.seconds, strict=True))
+def timings(now, earlier):
+    """``time_paper``: minutes and seconds, or seconds, of every row; and the ratio of two runs of the paper."""
+    seconds = dict(zip([*now["name"], *earlier["name"]], [*now.seconds, *earlier.seconds], strict=True))
     found = {f"time_{name}": _duration(value) for name, value in seconds.items()}
-    return found | {"time_ratio": f"{seconds['paper'] / seconds['paper_before']:.2f}"}
+    return found | {"time_ratio": f"{seconds['paper_after'] / seconds['paper_before']:.2f}"}
 
 
 def constants():

@@ -3,7 +3,7 @@
 1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
    and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``
    and ``make devices`` in its subfolders ``example`` and ``devices``.
-2. ``docs/results.json`` receives the numbers quoted by the pages and a checksum of each source table.
+2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
 3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted, and the block between
    the markers in ``README.md`` is rewritten.
 
@@ -204,7 +204,8 @@ def timing(results):
     """Number, time and memory of the jobs of a run, and the machine: name to text."""
     costs = list(jobs.costs(results))
     _, number, longest, seconds, megabytes, *_ = zip(*costs, strict=True)
-    machine = json.loads((results / "provenance.json").read_text(encoding="utf-8"))[-1]["machine"]
+    run = json.loads((results / "provenance.json").read_text(encoding="utf-8"))[-1]
+    machine, git = run["machine"], run["git"]
     return {
         "jobs": str(sum(number)),
         "job_minutes": f"{sum(seconds) / 60:.1f}",
@@ -212,6 +213,7 @@ def timing(results):
         "job_memory": f"{max(megabytes):.0f}",
         "cpu": " ".join(machine["cpu"].split()),
         "cores": str(machine["cores"]),
+        "commit": git["commit"][:7] + " with changes" * git["changed"],
     }
 
 
@@ -248,18 +250,18 @@ def quoted_numbers():
     """Every number that may be quoted, by name."""
     frames = {
         name: quoted.frame(DOCS / "tables" / f"{name}.csv")
-        for name in (*TABLES, *DEVICE_TABLES, "example_scans", "studies", "checks", "timings")
+        for name in (*TABLES, *DEVICE_TABLES, "example_scans", "studies", "checks", "timings", "earlier_timings")
     }
     return quoted.numbers(frames)
 
 
 def record(numbers):
-    """Numbers quoted by the pages, and checksums of their source tables."""
+    """Numbers quoted by the pages, and checksums of the tables and pictures that the pages are made of."""
     quoted_names = {name for text in templates() for name in re.findall(r"{{ (\w+) }}", text)}
-    files = sorted((DOCS / "tables").glob("*.csv"))
+    files = sorted(path for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir())
     return {
         "numbers": {name: numbers[name] for name in sorted(quoted_names)},
-        "tables": {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
+        "files": {f"{path.parent.name}/{path.name}": hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
     }
 
 
