@@ -205,6 +205,14 @@ def test_roughness_is_homogeneous_with_a_control_that_fails():
     assert errors_off(quarters * [1, 1, 1.1, 1.1], 1) > ALLOWED
 
 
+def test_both_parts_of_every_wave_are_independent_with_a_control_that_fails():
+    waves = fft.rfft2(draws(SURFACES["B1"].gaussian_twin(FIELD), 20))[:, 1:40, 1:40]
+    waves /= np.abs(waves).mean(axis=0)  # all waves count alike
+    products = np.stack([waves.real * waves.imag, waves.real * (waves.real + waves.imag)], axis=-1)
+    independent, control = (errors_off(part.mean(axis=(1, 2)), 0) for part in np.moveaxis(products, -1, 0))
+    assert independent < ALLOWED < control
+
+
 @published
 def test_opposite_edges_of_a_strip_are_uncorrelated(surface):
     margin = correlation_length(surface.spectrum)
