@@ -71,8 +71,16 @@ def _read(path, _modified, remember):
 def _parsed(text):
     """Hash of a module, and the full names of everything of the package that it imports."""
     tree = ast.parse(text)
-    names = [name for node in ast.walk(tree) for name in imported(node)]
+    names = [name for node in _statements(tree) for name in imported(node)]
     return [hashlib.sha256(canonical(tree).encode()).hexdigest()[:8], names]
+
+
+def _statements(node):
+    """All statements of a syntax tree and its other parts that may contain some, without expressions."""
+    for child in ast.iter_child_nodes(node):
+        if not isinstance(child, ast.expr):
+            yield child
+            yield from _statements(child)
 
 
 def imported(node: ast.AST) -> list[str]:
