@@ -14,7 +14,8 @@ from collections.abc import Hashable
 from functools import cache
 from typing import Any
 
-from snakemake import common, dag, persistence, rules
+import snakemake.api  # first, because its imports are circular
+from snakemake import common, persistence, rules
 from snakemake.logging import logger
 from snakemake.script import PythonScript
 
@@ -121,7 +122,7 @@ def check_scripts_once() -> None:
 
     A script is looked for once per job if its name depends on the job.
     """
-    processor = getattr(dag, "ScriptProcessor", None)
+    processor = getattr(snakemake.dag, "ScriptProcessor", None)
     check = getattr(processor, "process_job", None)
     if check is None or list(inspect.signature(check).parameters) != ["self", "job"]:
         return
