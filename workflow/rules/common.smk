@@ -41,6 +41,8 @@ wildcard_constraints:
 
 
 hooks.compare_without_pandas()
+hooks.remember_signatures()
+hooks.check_scripts_once()
 remember = Remembered(".snakemake/planning.json")
 
 

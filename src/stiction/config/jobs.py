@@ -16,7 +16,6 @@ from stiction.config.files import paper
 from stiction.config.merging import merged
 from stiction.config.plan import ELASTIC, MOMENTS, SUMMITS, Plan, chosen
 from stiction.config.units import NM_PER_UM
-from stiction.devices.budget import STEP
 
 
 def _strip(plan):
@@ -366,6 +365,8 @@ def tip_choice_contact(plan: Plan, pair: str, length: int, width: int, variant: 
 
 def _with_modulus(found, side):
     """Settings of a contact with less or more of Young's modulus of the beam's material."""
+    from stiction.devices.budget import STEP  # its import takes a tenth of a plan, which few configurations need
+
     factor = 1 - STEP if side == "less" else 1 + STEP
 
     def changed(material):

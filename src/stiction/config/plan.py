@@ -168,14 +168,20 @@ class Plan:
         ASSUME: the mesh of the paper belongs to its beam, strips and pairs, up to the highest humidity of each pair. It
         is kept under other model choices, so that variants differ by their choice alone.
         """
-        pair, known = pair_of(case), paper()
-        of_paper = known["pairs"].get(pair)
-        return (
-            all(_same(self.config[section], known[section], only=keys) for section, keys in _OF_MESH.items())
-            and _same(self.config["pairs"][pair], of_paper, but=["humidities"])
+        return humidity_of(case) <= self._highest_on_mesh.get(pair_of(case), 0)
+
+    @cached_property
+    def _highest_on_mesh(self):
+        """Highest humidity of the paper of each pair whose beams may have the elements of the paper."""
+        known = paper()
+        if not all(_same(self.config[section], known[section], only=keys) for section, keys in _OF_MESH.items()):
+            return {}
+        return {
+            pair: max(of_paper["humidities"])
+            for pair, of_paper in known["pairs"].items()
+            if _same(of_paper, self.config["pairs"].get(pair), but=["humidities"])
             and all(self._has_heights_of_paper(name) for name in self.sides(pair))
-            and humidity_of(case) <= max(of_paper["humidities"])
-        )
+        }
 
     def _has_heights_of_paper(self, surface):
         """Whether a surface has the moments of the paper, and the published spectrum or the summits that give it."""
