@@ -114,6 +114,11 @@ def test_wrong_sizes_and_materials_are_refused_by_name(overlay, key, message):
     assert message in line
 
 
+@pytest.mark.parametrize("side", ["0.055", "0.02"])
+def test_the_size_of_tips_does_not_matter_without_devices(side):
+    assert problems(changed(f"design: {{tip_um: {side}}}")) == ()
+
+
 def test_a_device_whose_solids_do_not_resist_is_refused_although_its_pair_does_not_run():
     soft = {"materials": {"Gel": {"young_modulus_GPa": 1.0e-4}}, "surfaces": {"Sub2": {"material": "Gel"}}}
     config = merged(with_device(pair="c"), soft | {"run": {"pairs": ["b"]}})
