@@ -1029,7 +1029,7 @@ MUTANTS = {
     "chaos.coordinates": [
         ("d_max - np.exp(log_gap)", "d_max + np.exp(log_gap)"),
         ("@ self.axes / np.sqrt(self.variances)", "@ self.axes / self.variances"),
-        ("constrained(q * self.scale)", "constrained(q)"),
+        ("(q * self.scale[:, None])", "q"),
         ("np.cumsum(variances[:0:-1])[::-1]", "np.cumsum(variances[1:])"),
         (
             "return PrincipalCoordinates(scale, q.mean(axis=0), variances.copy(), axes * signs)",
