@@ -99,6 +99,10 @@ WRONG_VALUES = [
     ("surfaces: {B1: {scans: }}", "surfaces.B1.scans", "None", GONE),
 ]  # fmt: skip
 
+UNCERTAIN = (
+    "devices: {C1: {kind: cantilever, pair: b, thickness_um: 2.6, gap_um: 20, width_um: 30, humidities: [0.67], "
+)
+UNCERTAIN += "uncertainty: {"
 #: Smooth surfaces under a beam whose strips are short enough.
 SMOOTH = "pairs: {b: {beam: Sub1}}\nbeam: {thickness_um: 8}"
 # As above, for relations between keys
@@ -190,6 +194,9 @@ WRONG_RELATIONS = [
     ("identification: {patch_um: 200}", "identification.patch_um", "200", "200 x 200 µm every 10 nm take 24.4 GB"),
     ("studies: {variants: {spacing_nm: [0.5]}}", "studies.variants.spacing_nm[0]", "0.5", "2.5 x 31 µm every 0.5 nm"),
     ("beam: {thickness_um: 1000, length_um: 900}", "beam.thickness_um", "1000", "below the length of the beam"),
+    (UNCERTAIN + "poisson_ratio: 0.3}}}", "devices.C1.uncertainty.poisson_ratio", "0.3", "its budget needs 0.23 ± 0.3"),
+    (UNCERTAIN + "hamaker_constant_zJ: 98}}}", "devices.C1.uncertainty.hamaker_constant_zJ", "98",
+     "below the Hamaker constant itself, 97.5 zJ (given van_der_waals = 'water')"),
 ]  # fmt: skip
 
 WRONG = [*WRONG_VALUES, *WRONG_RELATIONS]

@@ -1,5 +1,6 @@
 """Devices and materials in a configuration: their keys, the relations between them, and what is computed for them."""
 
+import functools
 import json
 from dataclasses import MISSING, fields
 
@@ -24,7 +25,7 @@ CHART = {"thicknesses_um": [2.0, 2.6], "gaps_um": [10, 20], "humidities": [0.4, 
 GOLD = {"young_modulus_GPa": 79, "poisson_ratio": 0.42, "hardness_GPa": 1.2, "contact_angle_deg": 60}
 GOLD |= {"hamaker_constant_zJ": {"water": 250, "dry": 400}}
 UNCERTAIN = {"thickness_um": 0.05, "gap_um": 0.2, "young_modulus_GPa": 4, "humidity": 0.01, "scan_um": 10}
-UNCERTAIN |= {"temperature_K": 1, "contact_angle_deg": 5}
+UNCERTAIN |= {"temperature_K": 1, "contact_angle_deg": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20}
 DEVICES = {
     "C1": C1 | {"chart": CHART, "strip_um": 1.2, "uncertainty": UNCERTAIN},
     "R1": R1 | {"humidities": [0.67], "uncertainty": {"residual_stress_MPa": 5}},
@@ -166,6 +167,31 @@ def test_uncertain_contact_angles_leave_water(angles, deviation, refused):
     found = [line for line in problems(config) if "uncertainty" in line]
     assert len(found) == refused
     assert all(line.startswith("devices.C1.uncertainty.contact_angle_deg is ") for line in found)
+
+
+@pytest.mark.parametrize(
+    ("key", "deviation", "changes", "value"),
+    [
+        ("young_modulus_GPa", 79, {}, "79 GPa"),
+        ("young_modulus_GPa", 78, {}, None),
+        ("young_modulus_GPa", 79, {"surfaces": {"B2": {"material": "Other"}}}, None),
+        ("poisson_ratio", 0.01, {}, None),
+        ("poisson_ratio", 0.09, {}, "0.42 ± 0.09"),
+        ("poisson_ratio", 0.01, {"materials": {"Gold": {"poisson_ratio": 0.46}}}, "0.46 ± 0.05"),
+        ("poisson_ratio", 0.01, {"materials": {"Gold": {"poisson_ratio": -0.96}}}, "-0.96 ± 0.05"),
+        ("poisson_ratio", 0, {"materials": {"Gold": {"poisson_ratio": 0.46}}}, None),
+        ("hamaker_constant_zJ", 250, {}, "250 zJ"),
+        ("hamaker_constant_zJ", 250, {"van_der_waals": "dry"}, None),
+        ("hamaker_constant_zJ", 250, {"van_der_waals": "none"}, None),
+        ("hamaker_constant_zJ", 100, {"surfaces": {"B2": {"material": "Other"}}}, "97.5 zJ"),
+    ],
+)
+def test_an_uncertain_property_of_the_material_of_the_beam_stays_possible(key, deviation, changes, value):
+    named = {"materials": {"Gold": GOLD, "Other": {"hardness_GPa": 9}}, "surfaces": {"B2": {"material": "Gold"}}}
+    config = functools.reduce(merged, (named, changes), with_device(uncertainty={key: deviation}))
+    found = [line for line in problems(config) if "uncertainty" in line]
+    assert len(found) == (value is not None)
+    assert all(line.startswith(f"devices.C1.uncertainty.{key} is ") and value in line for line in found)
 
 
 def test_the_patch_of_a_stopper_is_whole_on_the_grid():

@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import Any
 
 from stiction.config.cases import case_id, humidity_of, pair_of
+from stiction.config.designs import hamaker_constant
 from stiction.config.files import paper
 from stiction.config.measured import evaluated, is_measured, quantities
 from stiction.config.merging import merged
@@ -80,6 +81,10 @@ class Plan:
     def beam_modulus(self, pair: str) -> dict:
         """Young's modulus of the beam of a pair if its material states one, otherwise empty."""
         return chosen(self._stated(pair)[0], ["young_modulus_GPa"])
+
+    def beam_hamaker_constant(self, pair: str) -> float:
+        """Hamaker constant of two bodies like the beam of a pair, through the medium between the solids [zJ]."""
+        return hamaker_constant(self._stated(pair)[0], self.config["van_der_waals"])
 
     @cached_property
     def surfaces(self) -> list[str]:
