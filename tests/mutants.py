@@ -1891,7 +1891,7 @@ MUTANTS = {
         ("excess = 100 * (mesh", "excess = -100 * (mesh"),
         ("100 * (table.experiment / table.ng - 1)", "100 * (table.ng / table.experiment - 1)"),
         ("if dataset is not base:", "if True:"),
-        ("100 * (ratio - 1), 100 * error", "100 * ratio, 100 * error"),
+        ("ratio - 1, error", "ratio, error"),
         ("own = convergence.sampling_distance(total)", "own = convergence.sampling_distance(2 * total)"),
         ("min(low, tolerance / 2)", "low"),
     ],
