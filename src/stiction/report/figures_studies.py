@@ -413,8 +413,8 @@ def _styles(names):
     """Colour, line and marker of every variant; base black and above the others."""
     styles = {"base": {"color": "black", "marker": "o", "linestyle": "-", "label": "base", "zorder": 3}}
     for k, name in enumerate(name for name in names if name != "base"):
-        # The eight other markers and the seven other line styles; with the colours all of them differ.
-        style = {"color": _COLOURS[k % len(_COLOURS)], "marker": marker(1 + k % 8), "linestyle": dashes(1 + k % 7)}
+        # No more names than colours; the eight other markers and the seven other line styles.
+        style = {"color": _COLOURS[k], "marker": marker(1 + k), "linestyle": dashes(1 + k % 7)}
         styles[name] = style | {"label": variant_label(name)}
     return styles
 
