@@ -35,7 +35,7 @@ TESTS = {
     "beam.equilibrium": "beam",
     "beam.energy": "beam",
     "beam.release": "beam",
-    "report.figures_beams": "report/test_style.py",
+    "report.figures_beams": "report",
     "run.atomic": "stages/test_storage.py",
     "run.labels": "run/test_kept.py",
     "stages.curves": "stages/test_stage_curves.py",
@@ -56,7 +56,8 @@ TESTS = {
     "designs.figures_devices": "designs/test_device_outputs.py",
     "stages.contact": "stages/test_stage_contact.py",
     "report.figures_forces": "report/test_style.py",
-    "report.figures_overview": "report/test_overview.py",
+    "report.figures_overview": "report",
+    "report.figures_studies": "report",
     "report.figures_surfaces": "report/test_style.py",
 }
 TESTS |= {"designs.stoppers": "designs/test_stage_stoppers.py", "designs.budget": "designs/test_stage_budget.py"}
@@ -1184,6 +1185,9 @@ MUTANTS = {
     "report.figures_beams": [
         ("2 * weakest, *map(_reach, released.values()))", "2 * weakest)"),
         ("1.1 * (energies.mean() + energies.std())", "energies.mean()"),
+        ("labelled).min() < _CLOSE * length", "labelled).min() < 0"),
+        ("if below is None:", "if True:"),
+        ("if share < 0.995 else", "if share < 1 else"),
     ],
     "report.checks": [
         ("abs(found.error) <= accuracy", "found.error <= accuracy"),
@@ -1901,6 +1905,7 @@ MUTANTS = {
         ("found.std(ddof=1)) for", "found.std(ddof=0)) for"),
         ("published.geo, published.geo_std", "published.geo, published.experiment_std"),
         ('model = "GEO" if any', 'model = "G" if any'),
+        ("high + 0.3 * (high - low)", "high"),
         ('[ended(released[key], "S-shape")]', ""),
         ("lines[:_HIGHLIGHTED]", "lines"),
         ('ended(beams, "S-shape")[: len(deflection)]', 'ended(beams, "free")[: len(deflection)]'),
@@ -1914,9 +1919,12 @@ MUTANTS = {
         ("excess = 100 * (mesh", "excess = -100 * (mesh"),
         ("100 * (table.experiment / table.ng - 1)", "100 * (table.ng / table.experiment - 1)"),
         ("if dataset is not base:", "if True:"),
-        ("100 * (ratio - 1), 100 * error", "100 * ratio, 100 * error"),
+        ("ratio - 1, error", "ratio, error"),
         ("own = convergence.sampling_distance(total)", "own = convergence.sampling_distance(2 * total)"),
         ("min(low, tolerance / 2)", "low"),
+        ("range(0, len(of_key), most)", "range(0, most, most)"),
+        ("groups[-1]) + len(part) > most", "groups[-1]) + len(part) > 99"),
+        ("if place[0] > np.mean(panel.get_xlim())", "if False"),
     ],
     "report.figures_surfaces": [
         ("np.sqrt(2 * np.pi) / rms", "np.sqrt(2 * np.pi)"),

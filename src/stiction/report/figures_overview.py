@@ -26,6 +26,8 @@ _HIGHLIGHTED = 8
 _FOLLOWED, _REPULSION = 0.02, 0.6
 #: Shift of published and computed markers from their humidity [-].
 _APART = 0.012
+#: Largest number of crack lengths between which there is room for a legend.
+_FEW = 8
 
 
 @styled
@@ -128,5 +130,8 @@ def _lengths(panel, released, published):
     panel.errorbar(humidity - _APART, mean, deviation, fmt="o-", color=_COLOUR, markersize=3, label="computed here")
     panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$ [µm]")
     panel.margins(y=0.12)
+    if len(humidity) > _FEW:
+        low, high = panel.get_ylim()
+        panel.set_ylim(low, high + 0.3 * (high - low))  # room for the legend
     humidity_axis(panel)
     panel.legend()

@@ -15,9 +15,9 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 from matplotlib.patheffects import withStroke
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from stiction.run.atomic import save_bytes
 
@@ -94,19 +94,44 @@ def columns_of_panels(
     lines : list of (rows, n) arrays of Axes
         The panels as they are arranged, line by line.
     """
+    figure, ((_, columns, lines),) = blocks_of_columns(1, count, rows, width, height, **shared)
+    return figure, columns, lines
+
+
+def blocks_of_columns(
+    blocks: int, count: int, rows: int, width: Callable[[int], float], height: float, **shared
+) -> tuple[Figure, list[tuple[FigureBase, np.ndarray, list[np.ndarray]]]]:
+    """Several times the panels of `columns_of_panels`, below each other in one new figure.
+
+    Returns
+    -------
+    figure : Figure
+    blocks : list of tuples
+        Part of the figure, which can have a legend of its own, and its ``columns`` and ``lines``.
+    """
+    many, across = _arrangement(count)
+    figure = Figure(figsize=(width(across), height * many * blocks), layout="constrained")
+    parts = [figure] if blocks == 1 else figure.subfigures(blocks, 1)
+    return figure, [(part, *_columns(part, count, rows, shared)) for part in parts]
+
+
+def _arrangement(count):
+    """Number of lines of columns of panels, and of columns side by side."""
     many = -(-count // _ABREAST)
-    across = -(-count // many)
-    size = width(across), height * many
+    return many, -(-count // many)
+
+
+def _columns(part, count, rows, shared):
+    """Columns of panels in a figure or a part of it, and the same panels line by line."""
+    many, across = _arrangement(count)
     if many == 1 or rows == 1:
-        figure, axes = panels(rows * many, across, size, **shared)
-        lines = np.split(axes, many)
+        lines = np.split(part.subplots(rows * many, across, squeeze=False, **shared), many)
     else:
-        figure = Figure(figsize=size, layout="constrained")
-        lines = [part.subplots(rows, across, squeeze=False, **shared) for part in figure.subfigures(many, 1)]
+        lines = [line.subplots(rows, across, squeeze=False, **shared) for line in part.subfigures(many, 1)]
     lines[-1], unused = np.split(lines[-1], [count - across * (many - 1)], axis=1)
     for panel in unused.flat:
         panel.remove()
-    return figure, np.concatenate([line.T for line in lines]), lines
+    return np.concatenate([line.T for line in lines]), lines
 
 
 def legends(figure: Figure, options: Mapping[Axes, dict], most: int = 6) -> None:
@@ -133,6 +158,9 @@ def humidity_axis(panel: Axes) -> None:
     short = max(0, _SHORTEST - (right - left)) / 2
     if short or left < 0 or right > 1:
         panel.set_xlim(max(left - short, 0), min(right + short, 1))
+    if short:
+        # Labels at the ends would stick out of the panel.
+        panel.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10], prune="both"))
 
 
 def letter(axes: Iterable[Axes], names: Sequence[str] | None = None) -> None:
