@@ -518,6 +518,8 @@ MUTANTS = {
         ("energies.mean(), pulls.mean(), slope", "energies.max(), pulls.mean(), slope"),
         ("energies.mean(), pulls.mean(), slope", "energies.mean(), pulls.max(), slope"),
         ('return [S_SHAPE] if device.kind == "bridge" else', "return"),
+        ("alone = device.cracks * flooded_length", "alone = flooded_length"),
+        ("arcs.arc_length(flooded_energy(*wet), device.beam)]", "alone]"),
         ("for share in settings.shares]", "for share in settings.shares[:1]]"),
     ],
     "designs.cracks": [
@@ -537,6 +539,7 @@ MUTANTS = {
         ("stuck[:, 1:], {", "stuck[:, :2], {"),
         ("settings.water.temperature, settings.water.contact_angles))", "settings.water.temperature))"),
         ("foundation, device, held) for one in of_group", "0.0, device, held) for one in of_group"),
+        ('settings.tip, "rms"', 'wedge, "rms"'),
     ],
     "designs.chart": [
         ("corner[np.ix_([0, -1], [0, -1])]", "corner[0, [0, -1]]"),
@@ -550,11 +553,9 @@ MUTANTS = {
         ("np.array([law(*sizes.T) for law, _ in laws]).T", "np.array([law(*sizes.T) for law, _ in laws]).T * 1.01"),
         ("    except ValueError:\n        return []", "    except ArithmeticError:\n        return []"),
         ("settings.beams * device.cracks", "settings.beams"),
-        ("alone = device.cracks * flooded_length", "alone = flooded_length"),
         ("thickness=float(thickness), gap=float(gap)", "thickness=float(gap), gap=float(gap)"),
         ("found.lengths[:, -1].min(axis=-1)", "found.lengths[:, 0].min(axis=-1)"),
         ("arcs.arc_length(energies, device.beam)", "arcs.arc_length(energies, settings.device.beam) / 2"),
-        ("arcs.arc_length(flooded_energy(*water), device.beam)]", "alone]"),
         ("float(film), metres", "2 * float(film), metres"),
     ],
     "designs.findings": [
@@ -569,6 +570,7 @@ MUTANTS = {
         ("float(shortest.sel(shape=shape))", "float(shortest.min())"),
         ("float(found.film), float(found.rms)", "0.0, float(found.rms)"),
         ('if device.kind == "bridge" else None', "if True else None"),
+        ("shape, found.sel(shape=shape), of", "shape, found.isel(shape=0), of"),
         ("if shape == EITHER else None", "if True else None"),
         ("[limits.plastic_contact(plastic), *", "[*"),
         ("for name, stated in materials)", "for name, stated in ())"),
@@ -616,7 +618,7 @@ MUTANTS = {
         ("in sorted(humidity for", "in list(humidity for"),
         ("computed = bool(one.by_elements)", "computed = True"),
         ("np.nan if computed else 100 *", "100 *"),
-        ("float(one.flooded_length) / UM", "float(one.safe_length[0]) / UM"),
+        ("float(one.flooded_length) / UM", "float(one.safe_length.min()) / UM"),
     ],
     "designs.figures_devices": [
         ("known = one.stuck.values > 0", "known = one.stuck.values >= 0"),
@@ -854,7 +856,10 @@ MUTANTS = {
     ],
     "designs.pages": [
         ('found.sizes["share"] // 2', "0"),
-        ("min(lengths.values())", "max(lengths.values())"),
+        ("float(lengths.min()), float", "float(lengths.max()), float"),
+        ("float(found.tip_strip) > float(found.wedge) and", "False and"),
+        ("> float(found.wedge) and surest < shortest:", "> float(found.wedge):"),
+        ("float(found.flooded_length.min())", "float(found.flooded_length.max())"),
         ("if longest == shortest:", "if True:"),
         ("if np.isfinite(force)", "if True"),
         ("if is_at_an_end(found):", "if False:"),

@@ -59,6 +59,8 @@ def test_the_table_has_a_row_per_shape_and_share_with_the_numbers_of_the_dataset
     stated = row.safe_length_um, row.estimate_um, row.estimate_se_beams_um, row.estimate_se_surfaces_um
     held = one.safe_length, one.estimate, one.beams_error, one.surfaces_error
     assert stated == pytest.approx([1e6 * float(value) for value in held], rel=1e-12, nan_ok=True)
+    assert row.saturated_air_um == pytest.approx(1e6 * float(one.flooded_length), rel=1e-12)
+    assert table.cells["saturated air [µm]"].iloc[7] == f"{row.saturated_air_um:.1f}"
 
 
 def test_arcs_have_no_error_of_surfaces_of_their_own(found):

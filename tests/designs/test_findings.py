@@ -153,6 +153,13 @@ def test_each_limit_of_a_device_is_said_once(changes, words):
     assert words in sentence
 
 
+def test_a_warning_about_tips_names_the_length_in_saturated_air():
+    found, of = device()
+    tip = 1e6 * float(found.flooded_length.sel(shape=EITHER))
+    (sentence,) = only(found, replace(of, tip=1.5 * UM))
+    assert f"saturated air, {tip:.0f} µm, the shortest that water holds, is safe." in sentence
+
+
 def test_a_shape_has_the_warnings_of_its_own_length():
     found, of = device(energy=20e-3)
     alone, tip = (1e6 * float(found.estimate.sel(shape=shape).min()) for shape in (S_SHAPE, EITHER))
@@ -219,6 +226,7 @@ def charted(longest, film=3e-9, wedge=0.15 * UM):
         {
             "safe_length": (("thickness", "gap", "shape", "share"), lengths),
             "wedge": (("thickness", "gap"), [[wedge], [wedge]]),
+            "flooded_length": (("thickness", "gap", "shape"), UM * np.array([[[300, 200]], [[400, 210]]])),
             "film": film,
             "rms": 3e-9,
         },
@@ -249,6 +257,7 @@ def test_the_shortest_wedge_of_a_curve_counts_whatever_the_air_of_its_shortest_l
     found = findings.of_chart(along, findings.OfDevice(C1, 0.15 * UM), 0.0)
     (sentence,) = found[2 * UM, 20 * UM, EITHER]
     assert "longer than the wedge on which it acts, 0.14 µm" in sentence
+    assert "saturated air, 200 µm," in sentence
     assert found[2 * UM, 20 * UM, S_SHAPE] == []
 
 

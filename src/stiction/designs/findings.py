@@ -73,7 +73,7 @@ def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan) -> dict[
     """
     shortest = found.estimate.min("share")
     return {
-        shape: _of_length(float(shortest.sel(shape=shape)), shape, found, of, plastic)
+        shape: _of_length(float(shortest.sel(shape=shape)), shape, found.sel(shape=shape), of, plastic)
         for shape in map(str, found["shape"].values)
     }
 
@@ -109,12 +109,12 @@ def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
 
 
 def _of_length(length, shape, found, of, plastic):
-    """Warnings about a device of a length [m] in a shape; film, rms and wedge from a dataset."""
+    """Warnings about a device of a length [m] in a shape; film, rms, wedge and its limit from a dataset."""
     device = of.device
     sizes = device.gap, device.width, device.thickness, length / device.cracks
     return limits.of_cantilever(*sizes, float(found.film), float(found.rms)) + limits.given(
         limits.stretched_bridge(device.gap, device.thickness) if device.kind == "bridge" else None,
-        limits.short_wedge(of.tip, float(found.wedge)) if shape == EITHER else None,
+        limits.short_wedge(of.tip, float(found.wedge), float(found.flooded_length)) if shape == EITHER else None,
         *_of_contact(plastic, of.materials),
     )
 

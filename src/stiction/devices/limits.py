@@ -130,14 +130,17 @@ def stretched_bridge(gap: float, thickness: float) -> str | None:
     )
 
 
-def short_wedge(strip: float, wedge: float) -> str | None:
-    """Strips that are longer than the wedge at the tip of an arc: shorter strips hold more, so that tips do as well."""
+def short_wedge(strip: float, wedge: float, flooded: float) -> str | None:
+    """Strips that are longer than the wedge at the tip of an arc: shorter strips hold more, so that tips do as well.
+
+    ``flooded`` is the length that the tip holds in saturated air.
+    """
     if strip <= wedge:
         return None
     return (
         f"The adhesion of the tip comes from strips of {strip * 1e6:.3g} µm, longer than the wedge on which it acts, "
         f"{wedge * 1e6:.3g} µm: tips hold shorter beams than computed, which is the unsafe side. The length in "
-        "saturated air, the shortest that water holds, is safe."
+        f"saturated air, {flooded * 1e6:.0f} µm, the shortest that water holds, is safe."
     )
 
 
