@@ -175,6 +175,7 @@ def test_plastic_contact_of_a_device_is_said_and_so_is_that_it_was_not_studied()
     found, of = device()
     (sentence,) = only(found, of, plastic=0.58)
     assert "58%" in sentence
+    assert "beams stick at shorter lengths than the elastic model predicts" in sentence
     assert ["was not checked" in sentence for sentence in findings.of_device(found, of)[S_SHAPE]] == [True]
 
 
@@ -275,6 +276,7 @@ def test_a_stopper_has_the_warnings_of_its_contact():
     plain = {"S1": {"pair": "c", "materials": [["Gold", ["hardness"]]]}, "S2": {"pair": "d", "materials": []}}
     found = findings.of_stoppers(PLASTIC, plain)
     assert [sentence.split()[0] for sentence in found["S1"]] == ["58%", "4"]
+    assert "stoppers hold more than the elastic model predicts, which is the unsafe side." in found["S1"][0]
     assert "was not checked" in found["S2"][0]
 
 

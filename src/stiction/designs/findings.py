@@ -119,9 +119,10 @@ def _of_length(length, shape, found, of, plastic):
     )
 
 
-def _of_contact(plastic, materials):
+def _of_contact(plastic, materials, effect=limits.SHORTER):
     """Warnings, or None, about the contact of a pair."""
-    return [limits.plastic_contact(plastic), *(limits.default_material(name, stated) for name, stated in materials)]
+    defaults = (limits.default_material(name, stated) for name, stated in materials)
+    return [limits.plastic_contact(plastic, effect), *defaults]
 
 
 def _plastic_share(plasticity, pair):
@@ -210,8 +211,9 @@ def of_stoppers(plasticity: Mapping[str, xr.Dataset], plain: Mapping[str, dict[s
         Settings of a job: name to its ``pair`` and the ``materials`` as in `OfDevice`.
     """
     return {
-        name: limits.given(*_of_contact(_plastic_share(plasticity, section["pair"]), section["materials"]))
+        name: limits.given(*_of_contact(share, section["materials"], limits.STRONGER))
         for name, section in plain.items()
+        for share in [_plastic_share(plasticity, section["pair"])]
     }
 
 

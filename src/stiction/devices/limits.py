@@ -19,6 +19,8 @@ SLENDER = 20.0
 PLATE = 10.0
 #: Largest gap of a bridge, in thicknesses, for which its stretching changes the crack by at most 3 %.
 STRETCH = 1.0
+#: What plastic contact does to beams and to stoppers.
+SHORTER, STRONGER = "beams stick at shorter lengths", "stoppers hold more"
 #: Relevant to stiction, but not in the model at any setting.
 NOT_MODELLED = (
     "Not in the model: drying after release, the time that water needs to condense, electric charge and voltage, wear, "
@@ -48,15 +50,18 @@ def cut_off_mean(share: float, mean: float, length: float) -> str | None:
     )
 
 
-def plastic_contact(share: float) -> str | None:
-    """Plastic contact, which makes surfaces stick more than the elastic model predicts; NaN if it was not studied."""
+def plastic_contact(share: float, effect: str = SHORTER) -> str | None:
+    """Plastic contact, which makes surfaces stick more than the elastic model predicts; NaN if it was not studied.
+
+    ``effect`` says what this does to the device, `SHORTER` or `STRONGER`.
+    """
     if math.isnan(share):
         return "Whether the contact is plastic was not checked: give its distance in studies.plasticity.distance_nm."
     if share <= PLASTIC:
         return None
     return (
-        f"{share:.0%} of the contact area is plastic, more than {PLASTIC:.0%}: beams stick at shorter lengths than the "
-        "elastic model predicts, which is the unsafe side."
+        f"{share:.0%} of the contact area is plastic, more than {PLASTIC:.0%}: {effect} than the elastic model "
+        "predicts, which is the unsafe side."
     )
 
 
