@@ -182,7 +182,7 @@ def test_plastic_contact_of_a_device_is_said_and_so_is_that_it_was_not_studied()
 def test_a_gap_that_the_film_fills_is_said():
     found, of = device()
     (sentence,) = only(found.assign(film=2e-6), of)
-    assert "less than 20 times film height plus roughness" in sentence
+    assert "less than 20 times the sum of film height and roughness" in sentence
 
 
 def test_a_bridge_that_stretches_is_said_and_has_half_its_length_as_crack():
@@ -249,7 +249,7 @@ def test_a_curve_of_a_chart_has_the_warnings_of_its_shortest_length():
 def test_the_air_of_the_shortest_length_of_a_curve_counts():
     along = [charted(700 * UM), charted(600 * UM, film=2 * UM)]
     of = findings.OfDevice(C1, 0.15 * UM)
-    assert "film height plus roughness" in findings.of_chart(along, of, 0.0)[3 * UM, 20 * UM, S_SHAPE][0]
+    assert "sum of film height and roughness" in findings.of_chart(along, of, 0.0)[3 * UM, 20 * UM, S_SHAPE][0]
     assert findings.of_chart(along[:1], of, 0.0)[3 * UM, 20 * UM, S_SHAPE] == []
 
 

@@ -86,7 +86,7 @@ def filled_gap(gap: float, film: float, rms: float) -> str | None:
     if gap >= least_gap(film, rms):
         return None
     return (
-        f"The gap of {gap * 1e6:.3g} µm is less than {FILMS} times film height plus roughness, "
+        f"The gap of {gap * 1e6:.3g} µm is less than {FILMS} times the sum of film height and roughness, "
         f"{(film + rms) * 1e9:.3g} nm: the water acts on the beam ahead of its contact, too."
     )
 
