@@ -80,7 +80,7 @@ WRONG = [
     ({"width_um": 9000}, "devices.C1.kind", "within 8 GB of memory"),
     ({"chart": CHART | {"humidities": [0.9, 0.4]}}, "devices.C1.chart.humidities", "in increasing order"),
     ({"chart": CHART | {"thicknesses_um": [2, 2]}}, "devices.C1.chart.thicknesses_um", "each value once"),
-    ({"chart": CHART | {"gaps_um": [0.1, 20]}}, "devices.C1.chart.gaps_um", "20 times the height"),
+    ({"chart": CHART | {"gaps_um": [0.1, 20]}}, "devices.C1.chart.gaps_um", "20 times the sum of the height"),
     ({"chart": CHART | {"thicknesses_um": [0.1, 2]}}, "devices.C1.chart.thicknesses_um", "so large that strips"),
     ({"width_um": 4}, "design.tip_um", "0.05 x 4 µm of pair b hold about 4.2 (given devices.C1.width_um = 4)"),
     ({"uncertainty": {"gap_um": -1}}, "devices.C1.uncertainty.gap_um", "at least 0"),
