@@ -632,6 +632,8 @@ MUTANTS = {
         ("TO_UM * float(one.flooded_length", "float(one.flooded_length"),
         ("_listed(numbers.get((name, thickness, gap, shape), ()))", "_marks(numbers, name, thickness, gap)"),
         ("high + _ROOM * (high - low)", "high + 10 * _ROOM * (high - low)"),
+        ("legend_below(panel, named)", "panel.legend(handles=named)"),
+        ("legend_below(panel, _thicknesses(", "panel.legend(handles=_thicknesses("),
         ("one.by_elements.values == 0", "one.by_elements.values >= 0"),
         ("if not whole.by_elements.all():", "if True:"),
         ("100 * float(whole.power_law_error.max())", "float(whole.power_law_error.max())"),
@@ -1173,6 +1175,8 @@ MUTANTS = {
     ],
     "report.style": [
         ("return _MARKERS[k % len(_MARKERS)]", "return _MARKERS[k]"),
+        ("_LABELLED = 72, 24", "_LABELLED = 72, 4"),
+        ("ncols=max(1, columns)", "ncols=5"),
         ("max(left - short, 0), min(right + short, 1)", "left - short, right + short"),
         ("panel.set_xlim(max(left - short, 0)", "panel.set_xlim(max(left, 0)"),
     ],

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from legends import covering
 from numpy.testing import assert_allclose
 
 from stiction.designs import budget as study_budget
@@ -186,6 +187,17 @@ def test_six_humidities_fit_a_screen_with_bars_that_darken_and_do_not_meet():
     assert np.all(np.diff(light) < 0)
     (legend,) = figure.legends
     assert [patch.get_facecolor() for patch in legend.get_patches()] == [bar.get_facecolor() for bar in bars[:6]]
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_no_legend_of_stoppers_covers_a_panel_or_a_text(count, tmp_path):
+    datasets = {f"S{k}": stopper_dataset() for k in range(count)}
+    assert covering(figures_budget.stoppers(datasets, {"S0": ["Beware."]}), tmp_path) == []
+
+
+def test_a_shorter_label_leaves_room_for_more_columns():
+    shares, forces = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {}).axes
+    assert shares.get_legend()._ncols > forces.get_legend()._ncols > 1
 
 
 def test_a_stopper_shows_the_share_of_patches_over_the_restoring_force():

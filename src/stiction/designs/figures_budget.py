@@ -18,7 +18,9 @@ from stiction.report.style import (
     SINGLE,
     columns_of_panels,
     dashes,
+    handles,
     humidity_axis,
+    legend_below,
     letter,
     panels,
     shades,
@@ -45,7 +47,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
     warnings : dict
         Device to sentences, which are written below the figure.
     """
-    figure, columns, lines = columns_of_panels(len(datasets), 2, lambda n: min(DOUBLE, SINGLE * n), 4.4)
+    figure, columns, lines = columns_of_panels(len(datasets), 2, lambda n: min(DOUBLE, SINGLE * n), 5.0)
     for column, dataset in zip(columns, datasets.values(), strict=True):
         _stuck_over_force(column[0], dataset)
         _force_over_humidity(column[1], dataset)
@@ -77,7 +79,7 @@ def _stuck_over_force(panel, dataset):
         path_effects=OUTLINED,
     )
     panel.set(xlabel="restoring force [µN]", yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
-    panel.legend(loc="upper right")
+    legend_below(panel, handles(panel)[0])
 
 
 def _force_over_humidity(panel, dataset):
@@ -91,7 +93,7 @@ def _force_over_humidity(panel, dataset):
     panel.plot([worst], [top], "v", color="black", label=f"worst humidity {worst:.2f}")
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
     humidity_axis(panel)
-    panel.legend(loc="upper left")
+    legend_below(panel, handles(panel)[0])
 
 
 # Budget
