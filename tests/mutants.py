@@ -830,6 +830,7 @@ MUTANTS = {
         ('"slope_error": ("input", slopes[:, 1])', '"slope_error": ("input", slopes[:, 0])'),
     ],
     "designs.tables_budget": [
+        ("_CHOICES[name] if name in _CHOICES else", ""),
         ("100 * found.remaining(inputs)", "100 * found.effect(inputs)"),
         ("(INDEPENDENT, found.uncorrelated)", "(INDEPENDENT, found)"),
         ("np.sqrt(np.diag(found.covariance))", "np.diag(found.covariance)"),

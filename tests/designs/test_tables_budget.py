@@ -7,6 +7,8 @@ import pytest
 from legends import covering
 from numpy.testing import assert_allclose
 
+from stiction.config.files import load
+from stiction.config.plan import Plan
 from stiction.designs import budget as study_budget
 from stiction.designs import figures_budget, tables_budget
 from stiction.designs import stoppers as study_stoppers
@@ -87,12 +89,21 @@ def test_the_text_names_what_to_measure_better():
     table = tables_budget.budget(BUDGETS)
     assert "C1, RH 0.67: Measure heights of B2 better" in table.caption
     assert "uncertainty of the mean pull-off force would fall from 2.6 to 0.8 %" in table.caption
-    assert "uncertainty of the mean sticking length (S-shape) would fall from 2.6 to 0.8 %" in table.caption
+    assert "uncertainty of the mean length at which beams stick (S-shape) would fall from 2.6 to 0.8 %" in table.caption
     assert "uncertainty of the length that 1 in 1000 tips hold (arc) would fall from 1.3 to 0.4 %" in table.caption
     assert "rms of B2" not in set(table.cells.what)
-    assert "choice: vdW: dry" in set(table.cells.what)
-    row = table.cells[(table.cells.what == "choice: vdW: dry") & (table.cells.device == "C1")].iloc[0]
+    assert "choice: van der Waals in dry gaps" in set(table.cells.what)
+    row = table.cells[(table.cells.what == "choice: van der Waals in dry gaps") & (table.cells.device == "C1")].iloc[0]
     assert row["effect [%]"] == "-4.20 ± 0.30"
+
+
+@pytest.mark.parametrize("medium", ["water", "dry"])
+def test_every_choice_of_the_model_has_a_label_in_words(medium):
+    config = {"van_der_waals": medium, "studies": {"variants": {"van_der_waals": ["water", "dry", "none"]}}}
+    choices = Plan(load(config)).choices("b")
+    labels = [tables_budget.choice_label(name) for name in choices]
+    assert len(set(labels)) == len(choices) > 5
+    assert {"spectrum from summits", "1 in 2 grid points", "grid of 5 nm", "Poisson's ratio 0.18"} < set(labels)
 
 
 def test_the_text_lists_once_for_each_device_what_counts_as_exact():
@@ -159,16 +170,19 @@ def test_bars_of_a_tornado_are_the_effects_the_largest_first():
     assert_allclose([bar.get_x() for bar in bars], [-bar.get_width() / 2 for bar in bars])
     assert_allclose(bars[4].get_width(), 2 * 2 * 100 * np.sqrt(6e-4 + 0.64e-4), rtol=1e-9)
     names, bars = drawn(chosen)
-    assert names == ["vdW: dry"]
+    assert names == ["van der Waals in dry gaps"]
     assert_allclose([bars[0].get_x(), bars[0].get_x() + bars[0].get_width()], [-4.2, 0], atol=1e-12)
-    assert "mean sticking length" in measured.get_title(loc="left")
+    assert "mean length at which beams stick" in measured.get_title(loc="left")
     assert measured.get_xlabel().endswith("scatter between devices: 1.4, 1.4 %")
 
 
 def test_beam_and_tip_have_panels_of_their_own():
     figure = figures_budget.budget(BEAMS | {("C1", rh, "tip"): budget_dataset(0.5, TIPS) for rh in (0.44, 0.67)})
     titles = [panel.get_title(loc="left") for panel in figure.axes]
-    assert titles[::2] == ["(a) mean sticking length (S-shape)", "(c) length that 1 in 1000 tips hold (arc)"]
+    assert titles[::2] == [
+        "(a) mean length at which beams stick (S-shape)",
+        "(c) length that 1 in 1000 tips hold (arc)",
+    ]
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == ["RH 0.44", "RH 0.67"]
 

@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 
 from stiction.designs.budget import budget_of, groups_of
 from stiction.designs.figures_devices import below
-from stiction.designs.tables_budget import SCATTER, TOTAL, response_text
+from stiction.designs.tables_budget import SCATTER, TOTAL, choice_label, response_text
 from stiction.devices.risk import stuck_share
 from stiction.report.format import TO_UN
 from stiction.report.style import (
@@ -26,7 +26,6 @@ from stiction.report.style import (
     shades,
     styled,
 )
-from stiction.report.tables_studies import variant_label
 
 _COLOUR = "#0072B2"
 #: Heights of a row of a budget, of everything else in its panel, and of the legend [in]; share of a row with bars.
@@ -156,7 +155,7 @@ def _choices(cases):
     rows = {}
     for choice in next(iter(cases.values())).choice.values:
         chosen = [dataset.sel(choice=choice) for dataset in cases.values()]
-        rows[variant_label(str(choice))] = [
+        rows[choice_label(str(choice))] = [
             (*sorted((0.0, 100 * float(one.effect))), 100 * float(one.effect_error)) for one in chosen
         ]
     return rows

@@ -144,6 +144,9 @@ _OF_BUDGETS = {
     "Remaining": "Standard uncertainty of the result if this measurement were exact.",
     "Scatter between devices": "How much equal devices differ. A better measurement does not reduce it.",
     "Choice of the model": "What another assumption of the theory would change. It has no distribution.",
+    "Van der Waals in dry gaps, or none": "The force between the solids as through air instead of water, or left out.",
+    "Spectrum from summits": "Spectrum chosen for the measured summits, instead of the published one.",
+    "Grid": "Distance of the points at which the surfaces are drawn; summits are found on these points.",
 }
 
 
