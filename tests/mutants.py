@@ -867,6 +867,7 @@ MUTANTS = {
         ("if longest == shortest:", "if True:"),
         ("if np.isfinite(force)", "if True"),
         ("if is_at_an_end(found):", "if False:"),
+        ('"" if f"{share:.3g}" == "100" else stuck', "stuck"),
         ("    if not budgets:\n        return []", "    if False:\n        return []"),
         ('f"<p>{escape(sentence)}</p>"', 'f"<p>{sentence}</p>"'),
         ("[*self.warnings, NOT_MODELLED]", "[NOT_MODELLED]"),
@@ -887,6 +888,7 @@ MUTANTS = {
         ("SLENDER = 20.0", "SLENDER = 10.0"),
         ("6 * gap * width**2", "6 * gap * width"),
         ("if ratio < STRETCH", "if ratio < 2 * STRETCH"),
+        ('if f"{ratio:.3g}" == "1" else', "if True else"),
         ("if strip <= wedge", "if strip <= 2 * wedge"),
         ("if share == 0:", "if share == 1:"),
         (

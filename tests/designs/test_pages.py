@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import pytest
+import xarray as xr
 from test_device_outputs import charted
 from test_tables_budget import BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_dataset
 
@@ -69,6 +70,11 @@ def test_a_worst_humidity_at_the_end_is_stated_as_one():
         "Between relative humidities of 0.4 and 0.9, the stopper holds most at 0.9. "
         "In no air of this range do more than 0 % (0 to 0.918 %) stick."
     )
+
+
+def test_a_bound_of_all_stoppers_is_no_statement():
+    all_stuck = stopper_dataset().assign(stuck_along=xr.ones_like(STOPPERS["S1"].stuck_along))
+    assert pages.worst_sentence(all_stuck).endswith("from 0.4 to 0.9, are less critical.")
 
 
 def test_advice_warnings_and_what_is_not_modelled_are_shown(stopper):

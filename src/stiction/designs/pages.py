@@ -278,12 +278,13 @@ def worst_sentence(found: xr.Dataset) -> str:
     """The worst humidity of a stopper in words."""
     worst, (low, high) = float(found.worst_humidity), _ends(found)
     share, least, most = (100 * share for share in in_any_air(found)[0])
-    stuck = f"In no air of this range do more than {share:.3g} % ({least:.3g} to {most:.3g} %) stick."
+    stuck = f" In no air of this range do more than {share:.3g} % ({least:.3g} to {most:.3g} %) stick."
+    stuck = "" if f"{share:.3g}" == "100" else stuck
     if is_at_an_end(found):
-        return f"Between relative humidities of {low} and {high}, the stopper holds most at {worst:g}. {stuck}"
+        return f"Between relative humidities of {low} and {high}, the stopper holds most at {worst:g}.{stuck}"
     return (
         f"The stopper holds most at a relative humidity of {worst:.2f}; drier and wetter air, from {low} to {high}, "
-        f"are less critical. {stuck}"
+        f"are less critical.{stuck}"
     )
 
 

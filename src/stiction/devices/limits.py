@@ -35,8 +35,9 @@ def arcs_of_elements(share: float, strip: float) -> str | None:
     if share == 0:
         return None
     return (
-        f"{share:.1%} of the beams end as arcs, held by the tip only. This share depends on the strip length, here "
-        f"{strip * 1e6:.3g} µm: use the risk with arcs, which is computed on strips as short as the wedge at the tip."
+        f"{100 * share:.4g} % of the beams end as arcs, held by the tip only. This share depends on the strip length, "
+        f"here {strip * 1e6:.3g} µm: P(stuck) of a cantilever in section devices has arcs on shorter strips, close to "
+        "the length of the wedge at the tip."
     )
 
 
@@ -45,8 +46,8 @@ def cut_off_mean(share: float, mean: float, length: float) -> str | None:
     if share == 1:
         return None
     return (
-        f"Only {share:.1%} of the beams end S-shaped. Their mean crack length, {mean * 1e6:.0f} µm, lacks the longer "
-        f"cracks that beams of {length * 1e6:.0f} µm cut off: it is not the mean of longer beams."
+        f"Only {100 * share:.4g} % of the beams end S-shaped. Their mean crack length, {mean * 1e6:.0f} µm, lacks the "
+        f"longer cracks that beams of {length * 1e6:.0f} µm cut off: it is not the mean of longer beams."
     )
 
 
@@ -60,8 +61,8 @@ def plastic_contact(share: float, effect: str = SHORTER) -> str | None:
     if share <= PLASTIC:
         return None
     return (
-        f"{share:.0%} of the contact area is plastic, more than {PLASTIC:.0%}: {effect} than the elastic model "
-        "predicts, which is the unsafe side."
+        f"{100 * share:.2g} % of the contact area is plastic, more than {100 * PLASTIC:.2g} %: {effect} than the elastic "
+        "model predicts, which is the unsafe side."
     )
 
 
@@ -129,8 +130,9 @@ def stretched_bridge(gap: float, thickness: float) -> str | None:
     ratio = gap / thickness
     if ratio < STRETCH:
         return None
+    size = "equal to the thickness" if f"{ratio:.3g}" == "1" else f"{ratio:.3g} times the thickness"
     return (
-        f"The gap is {ratio:.3g} times the thickness of the bridge: its stretching, which is left out, would open the "
+        f"The gap is {size} of the bridge: its stretching, which is left out, would open the "
         "cracks further, by 3 % where both are equal and by more beyond. The prediction is on the safe side."
     )
 
