@@ -215,7 +215,7 @@ FLAGS = {
     "standard errors away, is used":
         lambda: changed(moments=np.array([-20.0, 0.1, 3.1]),
                         feasible=Feasible(ESTIMATE.feasible.density, 0.15, 3.06, 1.5)),
-    "four moments do not describe the heights (chi² 35, p 0.003); heights: measured does":
+    "four moments do not describe the heights (T² 35, p 0.003); heights: measured does":
         lambda: changed(goodness=(35.0, 0.003)),
     "the tip rounds waves shorter than 50 nm":
         lambda: with_inspection(reach=dataclasses.replace(ESTIMATE.inspection.reach, tip=np.pi / 25e-9)),

@@ -61,8 +61,8 @@ def plastic_contact(share: float, effect: str = SHORTER) -> str | None:
     if share <= PLASTIC:
         return None
     return (
-        f"{100 * share:.2g} % of the contact area is plastic, more than {100 * PLASTIC:.2g} %: {effect} than the elastic "
-        "model predicts, which is the unsafe side."
+        f"{100 * share:.2g} % of the contact area is plastic, more than {100 * PLASTIC:.2g} %: {effect} than the "
+        "elastic model predicts, which is the unsafe side."
     )
 
 
