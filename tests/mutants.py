@@ -615,7 +615,7 @@ MUTANTS = {
         ('" ".join(warnings[device, *curve])', '""'),
         ("numbers[device, *curve]))}", "()))}"),
         ("numbers[device, humidity, shape]))", "()))"),
-        ("listed and f", "f"),
+        ('["Warnings:"] if listed else []', '["Warnings:"]'),
         ("in sorted(humidity for", "in list(humidity for"),
         ("computed = bool(one.by_elements)", "computed = True"),
         ("np.nan if computed else 100 *", "100 *"),

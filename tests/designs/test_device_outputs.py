@@ -72,7 +72,7 @@ def test_arcs_have_no_error_of_surfaces_of_their_own(found):
 
 def test_warnings_are_numbered_in_the_cells_and_written_out_in_caption_and_csv(found):
     table = tables_devices.safe_lengths(found, WARNINGS)
-    assert "(1) Too wet. (2) Too thin." in table.caption
+    assert table.caption.endswith("Warnings:\n\n- (1) Too wet.\n- (2) Too thin.")
     assert list(table.cells.warnings) == ["1"] * 2 + ["1, 2"] * 2 + [""] * 2 + ["2"] * 2 + [""] * 2
     assert "Too wet. Too thin." in table.csv
     assert "curl" in table.caption
@@ -140,7 +140,7 @@ def test_a_line_of_a_chart_has_all_shares_and_its_warnings():
         "saturated air [µm]": "53.0",
         "warnings": "1, 2",
     }
-    assert "Warnings: (1) Too steep. (2) Too short." in table.caption
+    assert table.caption.endswith("Warnings:\n\n- (1) Too steep.\n- (2) Too short.")
     assert "Too steep. Too short." in table.csv
     assert table.cells["from"].iloc[0] == "finite elements"
 

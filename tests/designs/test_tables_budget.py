@@ -87,7 +87,7 @@ def test_what_remains_is_the_rest_of_the_total():
 
 def test_the_text_names_what_to_measure_better():
     table = tables_budget.budget(BUDGETS)
-    assert "C1, RH 0.67: Measure heights of B2 better" in table.caption
+    assert "\n- C1, RH 0.67: Measure heights of B2 better" in table.caption
     assert "uncertainty of the mean pull-off force would fall from 2.6 to 0.8 %" in table.caption
     assert "uncertainty of the mean length at which beams stick (S-shape) would fall from 2.6 to 0.8 %" in table.caption
     assert "uncertainty of the length that 1 in 1000 tips hold (arc) would fall from 1.3 to 0.4 %" in table.caption

@@ -13,7 +13,7 @@ from stiction.devices.budget import advice
 from stiction.devices.limits import NOT_MODELLED
 from stiction.estimates import mean_with_error
 from stiction.report.format import MISSING, UN, number, with_error
-from stiction.report.tables import Table
+from stiction.report.tables import Table, with_list
 
 #: Rows of a budget below those of its measurements.
 TOTAL, INDEPENDENT, SCATTER = "total", "total, if all errors were independent", "scatter between devices"
@@ -68,7 +68,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
         "humidity of the largest mean pull-off force along this axis."
     )
     listed = [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found]
-    caption = " ".join([caption, *(["Warnings:", *listed] if listed else []), NOT_MODELLED])
+    caption = with_list(" ".join([caption, NOT_MODELLED, *(["Warnings:"] if listed else [])]), listed)
     return Table(frame, caption, pd.DataFrame([_stopper_as_text(row) for _, row in frame.iterrows()]))
 
 
@@ -149,13 +149,14 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Table:
     frame = pd.DataFrame([row for (device, rh, *_), one in datasets.items() for row in _of_budget(device, rh, one)])
     sentences = [f"{device}, RH {humidity:g}: {advised(one)}" for (device, humidity, *_), one in datasets.items()]
     omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in datasets.items()}
-    caption = (
+    caption = with_list(
         "Relative standard uncertainty of the mean length at which beams stick as S-shapes, of the length at which "
         "few are held by their tip, and of the mean pull-off force of stoppers, due to every measurement, the others "
         "being exact, ± standard error of the simulation. Remaining: what would be left if the measurement were exact. "
         "Scatter between devices and other choices of the model, with the sign of their effect, are no part of the "
-        "total. "
-    ) + " ".join([*sentences, *omitted])
+        "total.",
+        [*sentences, *omitted],
+    )
     shown = frame[frame.part != "input"]
     return Table(frame, caption, pd.DataFrame([_budget_as_text(row) for _, row in shown.iterrows()]))
 

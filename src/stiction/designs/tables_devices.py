@@ -9,7 +9,7 @@ import xarray as xr
 from stiction.designs.findings import HELD_BY, curves, numbered
 from stiction.devices.limits import NOT_MODELLED
 from stiction.report.format import UM, error_alone, number
-from stiction.report.tables import Table
+from stiction.report.tables import Table, with_list
 
 _SAFE_LENGTHS = (
     "Safe length: the largest length of which, with a confidence of 95 % given the drawn surfaces, at most a share p "
@@ -53,9 +53,9 @@ def safe_lengths(
 
 
 def _caption(text, warnings):
-    """Caption with numbered warnings and what is not modelled."""
-    listed = " ".join(f"({k}) {sentence}" for k, sentence in enumerate(numbered(warnings)[0], 1))
-    return " ".join(filter(None, [text, listed and f"Warnings: {listed}", NOT_MODELLED]))
+    """Caption with what is not modelled and, below each other, numbered warnings."""
+    listed = [f"({k}) {sentence}" for k, sentence in enumerate(numbered(warnings)[0], 1)]
+    return with_list(" ".join([text, NOT_MODELLED, *(["Warnings:"] if listed else [])]), listed)
 
 
 def _safe_length(one):
