@@ -123,10 +123,11 @@ WRONG_RELATIONS = [
      "standard errors (0.055 and 0.11) of skewness -0.1 and kurtosis 3.5; at this skewness the largest kurtosis is "
      "3.026"),
     ("pairs: {b: {gap_um: 0.317}}", "pairs.b.gap_um", "0.317",
-     "at least 0.3173 µm, 20 times the height of the water film, 12.463 nm, plus the rms of the surfaces, 3.4 nm (given"
-     " pairs.b.humidities = [0.44, 0.55, 0.67, 0.8, 0.88, 0.92], run.pairs = ['a', 'b', 'c'], water.temperature_K = "
-     "300, pairs.b.beam = 'B2', pairs.b.substrate = 'Sub1')"),
-    ("pairs: {c: {gap_um: 0.2}}", "pairs.c.gap_um", "0.2", "at least 0.3124 µm, 20 times the height of the water film"),
+     "at least 0.3173 µm, 20 times the sum of the height of the water film, 12.463 nm, and the rms of the surfaces, "
+     "3.4 nm (given pairs.b.humidities = [0.44, 0.55, 0.67, 0.8, 0.88, 0.92], run.pairs = ['a', 'b', 'c'], "
+     "water.temperature_K = 300, pairs.b.beam = 'B2', pairs.b.substrate = 'Sub1')"),
+    ("pairs: {c: {gap_um: 0.2}}", "pairs.c.gap_um", "0.2",
+     "at least 0.3124 µm, 20 times the sum of the height of the water film"),
     ("pairs: {a: {humidities: [0.9999]}}", "pairs.a.gap_um", "20", "at least 207.9 µm"),
     ("figures: {humidity: 0.9902}", "pairs.c.gap_um", "2", "figures.humidity = 0.9902"),
     ("surfaces: {B2: {kurtosis: 1.5777}}", "sampling.strip_length_um", "1.5",

@@ -144,7 +144,7 @@ def strips_resolve_the_cracks_of_a_device(
         return None
     return (
         f"must be so large that strips of {strip:g} µm resolve its cracks: at RH {shortest:g} they must be below "
-        f"about {needed[shortest]:.2g} µm; decrease strip_um, within the correlation length of the surfaces"
+        f"about {needed[shortest]:.2g} µm; decrease strip_um, which must stay above the correlation length"
     )
 
 

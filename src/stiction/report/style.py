@@ -10,7 +10,8 @@ from pathlib import Path
 from string import ascii_lowercase
 
 import numpy as np
-from matplotlib import colormaps, style
+from matplotlib import colormaps, rcParams, style
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -18,6 +19,7 @@ from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.figure import Figure, FigureBase
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+from matplotlib.transforms import ScaledTranslation
 
 from stiction.run.atomic import save_bytes
 
@@ -28,6 +30,10 @@ SINGLE, DOUBLE = 3.5, 7.16
 _SHORTEST = 0.1
 #: Largest number of columns of panels side by side.
 _ABREAST = 4
+#: Points of an inch; height of the labels below a panel, in points.
+_POINTS, _LABELLED = 72, 24
+#: Mean width of a character and of a handle with its space, in units of the size of the text of a legend.
+_CHARACTER, _HANDLE = 0.45, 5.0
 
 #: Style of the models in every figure.
 MODELS = {
@@ -150,6 +156,19 @@ def legends(figure: Figure, options: Mapping[Axes, dict], most: int = 6) -> None
             panel.legend(**chosen)
     if crowded:
         figure.legend(*handles(*crowded), loc="outside lower center", ncols=6)
+
+
+def legend_below(panel: Axes, entries: Sequence[Artist]) -> None:
+    """Legend below the label of the horizontal axis of a panel, where it covers no curve.
+
+    It has as many columns as fit below the panel.
+    """
+    grid, figure, em = panel.get_gridspec(), panel.figure, rcParams["legend.fontsize"] / _POINTS
+    longest = max(len(entry.get_label()) for entry in entries)
+    columns = int(figure.bbox.width / figure.dpi / grid.ncols / (em * (_CHARACTER * longest + _HANDLE)))
+    below = panel.transAxes + ScaledTranslation(0, -_LABELLED / _POINTS, figure.dpi_scale_trans)
+    place = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": below}
+    panel.legend(handles=entries, ncols=max(1, columns), **place)
 
 
 def humidity_axis(panel: Axes) -> None:
