@@ -12,7 +12,6 @@ from functools import partial
 from typing import Protocol
 
 import numpy as np
-import xarray as xr
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
@@ -107,10 +106,3 @@ def crack_lengths(
     outcomes = simulate(experiment, range(number), address, threads)
     found = columns(list(progress(outcomes, "beams", total=number)))
     return np.where(found["state"] == EndState.S_SHAPE, found["crack_length"], np.inf)
-
-
-def surface_rms(contact: xr.Dataset) -> float:
-    r"""Root mean square of z₁ + z₂ from the mean bearing area, :math:`m_2 = 2 \int z (A(z) - [z < 0]) dz` [m]."""
-    height = contact.height.values
-    area = contact.bearing_area.values.mean(axis=0, dtype=float)
-    return float(np.sqrt(2 * float(contact.step) * np.sum(height * (area - (height < 0)))))

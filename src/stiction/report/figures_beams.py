@@ -24,7 +24,7 @@ from stiction.report.style import (
     panels,
     styled,
 )
-from stiction.stages.releases import ended
+from stiction.stages.releases import ended, stuck_energies, stuck_lengths
 
 # Figure 14
 
@@ -40,7 +40,7 @@ def beam_shapes(beams: xr.Dataset) -> Figure:
         shapes.plot(x, deflection[k], color="black", linewidth=1.4)
     shapes.set(xlabel="position [µm]", ylabel="deflection [µm]", xlim=x[[0, -1]])
     shapes.invert_yaxis()
-    crack = TO_UM * beams.crack_length.values[stuck]
+    crack = TO_UM * stuck_lengths(beams)
     histogram.hist(crack, bins="auto", color="0.75", edgecolor="black")
     histogram.set(xlabel="crack length $l_s$ [µm]", ylabel="number of beams")
     histogram.margins(y=0.15)
@@ -171,7 +171,7 @@ def _band(panel, axis, model):
 
 def _reach(beams):
     """Energy that an axis must reach to show the mean and standard deviation of some beams [J m⁻²]."""
-    energies = beams.adhesion_energy.values[ended(beams, "S-shape")]
+    energies = stuck_energies(beams)
     return 1.1 * (energies.mean() + energies.std()) if len(energies) else 0.0
 
 
@@ -179,7 +179,7 @@ def _released(panel, released, model, weakest):
     """Mean and standard deviation over the S-shaped beams of every humidity, and their share if below 100 %."""
     marker, colour = _MARKERS[model]
     points = [(humidity, beams) for (humidity, which), beams in released.items() if which == model]
-    stuck = [TO_MJ * beams.adhesion_energy.values[ended(beams, "S-shape")] for _, beams in points]
+    stuck = [TO_MJ * stuck_energies(beams) for _, beams in points]
     bars = [(humidity, e.mean(), e.std(ddof=1)) for (humidity, _), e in zip(points, stuck, strict=True) if len(e) > 1]
     humidities, means, deviations = np.reshape(bars, (-1, 3)).T
     style = {"fmt": marker, "color": colour, "markeredgecolor": "black", "markeredgewidth": 0.4}

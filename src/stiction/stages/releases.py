@@ -75,3 +75,13 @@ def _resolved(beam, strips, laws, case):
 def ended(beams: xr.Dataset, state: str) -> np.ndarray:
     """Whether each beam of a dataset ended in the given state, ``S-shape``, ``arc`` or ``free``; (n,) bool."""
     return beams.state.values == STATES.index(state)
+
+
+def stuck_lengths(beams: xr.Dataset) -> np.ndarray:
+    """Crack lengths of the beams of a dataset that ended S-shaped (m,) [m]; those of others have no meaning."""
+    return beams.crack_length.values[ended(beams, "S-shape")]
+
+
+def stuck_energies(beams: xr.Dataset) -> np.ndarray:
+    """Apparent adhesion energies Γ, Eq. (13), of the beams of stage beams that ended S-shaped (m,) [J m⁻²]."""
+    return beams.adhesion_energy.values[ended(beams, "S-shape")]
