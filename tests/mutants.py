@@ -1113,6 +1113,7 @@ MUTANTS = {
         ("excess[r] / (before - excess[r])", "excess[r] / (before + excess[r])"),
         ("(r + 0.5 + behind)", "(r + 1 + behind)"),
         ("> 0.75 * beam.gap / crack", "> 1.75 * beam.gap / crack"),
+        ('("S-shape", "arc", "free")', '("S-shape", "free", "arc")'),
         ("crack_length(beam, laws, end.deflection) > 1.5", "crack_length(beam, laws, end.deflection) > 0.5"),
         ("START * min(arrest_length(energy, beam), beam.length)", "arrest_length(energy, beam)"),
     ],
@@ -1131,6 +1132,8 @@ MUTANTS = {
         ("end.equilibrium.deflection[:, 0]", "end.equilibrium.deflection[:, 1]"),
         ("stream(k)), samples)", "stream(0)), samples)"),
         ("outcomes[:shapes]", "outcomes[shapes:]"),
+        ("range(number), stream, threads)", "range(1, number + 1), stream, threads)"),
+        ("total=number)), shapes)", "total=number)))"),
     ],
     "report.format": [
         (
@@ -1525,7 +1528,7 @@ MUTANTS = {
     ],
     "stages.parameters": [
         ("if length <= bound", "if length <= 0.9 * bound"),
-        ('identification[f"{name}_error"])', "identification[name])"),
+        ("100 * error / target", "100 * value / target"),
         ("spectrum.density, {", "2 * spectrum.density, {"),
         ("µm for the spectrum {source}", "µm"),
     ],
@@ -1559,8 +1562,8 @@ MUTANTS = {
         ('error.add_note(f"in case {case}")', "pass"),
         ('"beams", case)', '"beam", case)'),
         ("draw, settings.scatter)", "draw)"),
-        ("range(number), address, threads)", "range(1, number + 1), address, threads)"),
-        ("total=number)), shapes)", "total=number)))"),
+        ("settings.samples, address, threads", "settings.samples + 1, address, threads"),
+        ("samples, address, threads, shapes)", "samples, address, threads)"),
         ("beams.state.values == STATES", "beams.state.values >= STATES"),
         ('beams.crack_length.values[ended(beams, "S-shape")]', "beams.crack_length.values"),
         ('beams.adhesion_energy.values[ended(beams, "S-shape")]', "beams.adhesion_energy.values"),

@@ -16,6 +16,7 @@ from stiction.config import jobs
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.contact.forcelaw import parametrise
+from stiction.models import FIELD
 from stiction.stages import (
     beams,
     chaos,
@@ -30,7 +31,7 @@ from stiction.stages import (
     storage,
 )
 from stiction.stages.cantilevers import cantilever, strips_along
-from stiction.stages.surfaces import FIELD, Sampling, rough_surface
+from stiction.stages.surfaces import Sampling, rough_surface
 from stiction.streams import stream
 from stiction.surface.feasible import nearest_feasible
 from stiction.surface.field import StripGrid, radial_periodogram
@@ -178,8 +179,8 @@ def test_a_tabulated_spectrum_comes_back_from_its_dataset(through_a_file):
 
 def test_misfits_are_the_deviations_from_the_measured_summits():
     found = parameters.misfits(identified(radius=1.2, density=0.7))
-    assert found["radius"] == pytest.approx((0.2, 1e-9 / 4e-7))
-    assert found["density"] == pytest.approx((-0.3, 1e12 / 7e13))
+    assert found["radius"] == pytest.approx((20, 1e-7 / 4e-7))
+    assert found["density"] == pytest.approx((-30, 1e14 / 7e13))
 
 
 def test_the_spectrum_of_a_job_is_checked_where_it_is_identified():

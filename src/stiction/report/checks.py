@@ -43,8 +43,8 @@ DRY = 0.4
 MEAN_OFF, SPREAD_OFF, CORRELATION_OFF = 0.02, 0.15, 0.05
 #: Tolerance of the chaos model: mean crack length, relative.
 LENGTH_OFF = 0.01
-#: Largest misfit of an identified spectrum, relative: a little above that which the paper accepts, 23 % for Sub2.
-MISFIT = 0.3
+#: Largest misfit of an identified spectrum [%]: a little above that which the paper accepts, 23 % for Sub2.
+MISFIT = 30
 #: Name of the check of the mesh.
 RESOLVED = "elements and strips resolve the crack"
 #: Tolerance of a crack length on the mesh of the paper, relative: for pair a, its elements have up to 3.7 and its
@@ -139,7 +139,7 @@ def identification_meets_targets(case: str, identification: xr.Dataset) -> Itera
     """Radius and density of the summits of the identified spectrum are the measured ones; datasets of that stage."""
     for word, (off, error) in misfits(identification).items():
         allowed = MISFIT + ALLOWED * error
-        message = f"{word} off by {with_error(100 * off, 100 * error, '+')} %, allowed ± {100 * allowed:.2g} %"
+        message = f"{word} off by {with_error(off, error, '+')} %, allowed ± {allowed:.2g} %"
         yield Check("identified spectra have the measured summits", case, bool(abs(off) <= allowed), message)
 
 

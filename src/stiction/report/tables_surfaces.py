@@ -11,7 +11,7 @@ from stiction.report.format import NM, PER_UM2, UM, number, percent, with_error
 from stiction.report.published import rows, value
 from stiction.report.tables import Table
 from stiction.stages.character import statistics
-from stiction.stages.parameters import spectrum_of
+from stiction.stages.parameters import misfits, spectrum_of
 from stiction.surface.spectrum import CutoffSelfAffine
 
 #: Statistics of Table I and their titles for reading.
@@ -152,10 +152,8 @@ def _shape(parameters, found, defect):
 def _residuals(found):
     """Deviations of radius and density from the measured ones after identification, with standard errors [%]."""
     row = {}
-    for column, name in (("radius", "mean_radius"), ("density", "summit_density")):
-        target = float(found[f"target_{name}"])
-        row[f"{column}_residual_percent"] = percent(float(found[name]), target)
-        row[f"{column}_residual_se_percent"] = 100 * float(found[f"{name}_error"]) / target
+    for column, (off, error) in misfits(found).items():
+        row |= {f"{column}_residual_percent": off, f"{column}_residual_se_percent": error}
     return row
 
 

@@ -7,8 +7,9 @@ import numpy as np
 import xarray as xr
 
 from stiction.estimates import jackknife
+from stiction.models import FIELD
 from stiction.progress import progress
-from stiction.stages.surfaces import FIELD, Sampling, Width, rough_surface
+from stiction.stages.surfaces import Sampling, Width, rough_surface
 from stiction.streams import stream
 from stiction.surface.field import RoughSurface, StripGrid, radial_periodogram
 from stiction.surface.summits import find_summits
