@@ -1407,6 +1407,8 @@ MUTANTS = {
     ],
     "stages.storage": [
         ("if found != wanted", "if found[0] != wanted[0]"),
+        ("for path in both}) > 1", "for path in both}) > 2"),
+        ('.stem.endswith(f"_{end}")', ".stem"),
         ('dataset.isel(parts, missing_dims="ignore").load()', "dataset.load()"),
         (', missing_dims="ignore").load()', ").load()"),
         ("labels.made_from(inputs, stage", "labels.made_from((), stage"),

@@ -9,6 +9,8 @@ SIDES = ("beam", "substrate")
 #: Quantities of maximum-entropy heights, of measured heights and of spectra, see `stiction.analysis.shifts`.
 OF_MOMENTS, OF_SPECTRUM = ("rms", "skewness", "kurtosis"), ("corner", "slope")
 OF_MEASURED = ("rms", *(f"mode{k}" for k in range(2, 9)))
+#: Sides of a shift, as in names of files: a quantity decreased, and increased.
+SHIFTED = ("less", "more")
 #: Keys of a surface described by scans that choose how these are evaluated, and the two values of each.
 ALTERNATIVES_OF_SCANS = {"beyond": ("cut", "continued"), "heights": ("moments", "measured")}
 #: Side of the periodic fields on which spectra are estimated [m].
