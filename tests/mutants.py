@@ -1141,6 +1141,7 @@ MUTANTS = {
             "return 100 * (value - reference) if reference else np.nan",
         ),
         ("return text if float(text) else format(0.0, form)", "return text"),
+        ("MISSING if np.isnan(value) else f", "f"),
         ("max(0, 1 - int(exponent))", "max(0, -int(exponent))"),
         ("max(0, 1 - int(exponent))", "1 - int(exponent)"),
         ('f"{error:.1e}".partition', 'f"{error:e}".partition'),
@@ -1880,7 +1881,7 @@ MUTANTS = {
         ("*populations, (distance, generated)", "*populations[::-1], (distance, generated)"),
     ],
     "report.figures_overview": [
-        ("points = min(int(_PIECE / spacing)", "points = max(int(_PIECE / spacing)"),
+        ("points = min(int(_SHOWN / spacing)", "points = max(int(_SHOWN / spacing)"),
         ("[:points, :points].T", "[:points, :points]"),
         ("[len(force) // 2])", "[len(force) // 4])"),
         ("humidity - _APART, mean", "humidity - 10 * _APART, mean"),

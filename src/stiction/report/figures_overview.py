@@ -17,8 +17,8 @@ from stiction.stages.releases import ended, stuck_lengths
 
 _SIZE = 7.2, 2.2
 _COLOUR = MODELS["NG"]["color"]
-#: Largest side of the piece of surface [m].
-_PIECE = 5e-6
+#: Largest side of the shown part of the surface [m].
+_SHOWN = 5e-6
 #: Number of highlighted force curves.
 _HIGHLIGHTED = 8
 #: A force curve is drawn until its attraction has decayed to the first share of the largest attraction, and up to the
@@ -63,9 +63,9 @@ def overview(
 
 
 def _surface(figure, panel, character):
-    """A square piece of the surface, seen from above."""
+    """A square part of the surface, seen from above."""
     spacing = float(character.x[1] - character.x[0])
-    points = min(int(_PIECE / spacing), *character.elevation.shape)
+    points = min(int(_SHOWN / spacing), *character.elevation.shape)
     side = TO_UM * points * spacing
     elevation = TO_NM * character.elevation.values[:points, :points].T
     low, high = np.quantile(elevation, (0.002, 0.998))
@@ -75,7 +75,7 @@ def _surface(figure, panel, character):
 
 
 def _forces(panel, forces):
-    """Force curves of some pieces of the two surfaces, some highlighted, and the law of one of them by Eq. (12)."""
+    """Force curves of some samples, some highlighted, and the law of one of them by Eq. (12)."""
     distance, force = stage_forces.curves(forces)
     deepest = -force.min(axis=1)
     lines = [np.column_stack([TO_NM * distance, TO_MPA * f])[f < _REPULSION * deepest.max()] for f in force]
@@ -114,7 +114,7 @@ def _lengths(panel, released, published):
     """Crack length over the humidity: measured, published and computed here, mean ± standard deviation."""
     if len(published):
         measured = published.experiment, published.experiment_std
-        style = {"fmt": "D", "color": "black", "markersize": 3, "zorder": 4, "label": "experiment"}
+        style = {"fmt": "D", "color": "black", "markersize": 3, "zorder": 4, "label": "measured"}
         panel.errorbar(published.relative_humidity, *measured, **style)
         style = {"color": PUBLISHED, "markerfacecolor": "white", "fmt": "^:", "zorder": 3, "label": "published"}
         panel.errorbar(published.relative_humidity + _APART, published.geo, published.geo_std, **style)

@@ -10,7 +10,7 @@ from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.contact.forcelaw import admissible
 from stiction.estimates import mean_on_shared_samples, mean_with_error
 from stiction.models import surface_model
-from stiction.report.format import TO_MJ, UM, error_alone, number, percent, with_error
+from stiction.report.format import TO_MJ, UM, as_published, error_alone, number, percent, with_error
 from stiction.report.published import value
 from stiction.report.tables import Table
 from stiction.stages import forces as stage_forces
@@ -124,10 +124,10 @@ def _cells_3(row):
         "l_s [µm]": with_error(row.crack_length_um, row.crack_length_std_um),
         "se": error_alone(row.crack_length_se_um),
         "se, scans": error_alone(by_scans[0]),
-        "published": with_error(row.published_um, row.published_std_um),
+        "published": as_published(row.published_um, row.published_std_um),
         "dev. published [%]": number(row.deviation_percent, "+.1f"),
-        "experiment": with_error(row.experiment_um, row.experiment_std_um),
-        "dev. exp. [%]": number(row.experiment_deviation_percent, "+.0f"),
+        "measured": as_published(row.experiment_um, row.experiment_std_um),
+        "dev. measured [%]": number(row.experiment_deviation_percent, "+.0f"),
         "published bias [%]": number(row.published_bias_error_percent, "g"),
         "Γ [mJ/m²]": number(TO_MJ * row.adhesion_energy_J_per_m2, ".3g"),
         "ē [mJ/m²]": number(TO_MJ * row.meso_energy_J_per_m2, ".3g"),
