@@ -1,4 +1,4 @@
-"""Stage iteration (Sec. II-B2, Figs. 4 and 10): the iterative algorithm, for comparison with the closed form."""
+"""Study iteration (Sec. II-B2, Figs. 4 and 10): the iterative algorithm, for comparison with the closed form."""
 
 from dataclasses import dataclass
 from itertools import islice
