@@ -1574,7 +1574,7 @@ MUTANTS = {
     "stages.beams": [
         ('columns["deflection"].shape[1] - 1', "settings.beam.elements"),
         ("case, settings, threads, shapes=_KEPT)", "case, settings, shapes=1)"),
-        ('columns["energy"], {"units"', 'columns["crack_length"], {"units"'),
+        ('columns["energy"], energy)', 'columns["crack_length"], energy)'),
         ("elements=elements).nodes", "elements=elements).nodes[::-1]"),
         ('" ".join(releases.STATES)', '" ".join(releases.STATES[::-1])'),
     ],

@@ -386,6 +386,9 @@ def test_beams_are_selected_by_the_name_of_their_state():
     found = beams.layout(columns | {"sample": range(4), "state": [0, 1, 2, 0], "deflection": np.zeros((1, 3))}, nodes)
     assert releases.stuck_lengths(found).tolist() == [1, 4]
     assert releases.stuck_energies(found).tolist() == [5, 8]
+    of_samples = forces.layout(np.zeros((1, 4)), 0.0, np.arange(2.0), np.zeros((1, 2))).adhesion_energy.attrs
+    assert of_samples["long_name"] == "adhesion energy of a sample, Eq. (11)"
+    assert found.adhesion_energy.attrs["long_name"].startswith("apparent adhesion energy of a beam, Eq. (13)")
     assert_array_equal(releases.ended(found, "S-shape"), [True, False, False, True])
     assert_array_equal(releases.ended(found, "arc"), [False, True, False, False])
     assert_array_equal(releases.ended(found, "free"), [False, False, True, False])
