@@ -69,10 +69,10 @@ def test_warnings_are_those_of_all_shapes_and_that_plasticity_is_not_checked(dev
     found = device.safe_lengths(0.88)
     assert device.warnings(found) == [limits.plastic_contact(np.nan)]
     length = float(found.estimate.sel(shape="S-shape").min())
-    said = device.warnings(found.assign(estimate=found.estimate * 100e-6 / length))
-    assert said[0] == limits.large_rotation(10e-6, 100e-6)
-    assert sum("slope" in sentence for sentence in said) == 2  # of beam and tip
-    assert len(said) == len(set(said))
+    warnings = device.warnings(found.assign(estimate=found.estimate * 100e-6 / length))
+    assert warnings[0] == limits.large_rotation(10e-6, 100e-6)
+    assert sum("slope" in sentence for sentence in warnings) == 2  # of beam and tip
+    assert len(warnings) == len(set(warnings))
 
 
 def test_the_chart_at_the_size_of_the_device_has_its_safe_lengths(device):

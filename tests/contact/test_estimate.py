@@ -87,7 +87,7 @@ def test_half_of_the_moments_of_a_half_normal_distribution():
 def drawn(rms, medium):
     """Pair of Gaussian surfaces, its asperity, and the contact of four samples."""
     grid = StripGrid(1.5e-6, 30e-6, SPACING, margin=1e-6)
-    beam, substrate = (SURFACES[name].gaussian_twin(grid) for name in ("B2", "Sub1"))
+    beam, substrate = (SURFACES[name].with_gaussian_heights(grid) for name in ("B2", "Sub1"))
     solid = HertzAsperity(POLYSILICON) if medium == "none" else MaugisTable(POLYSILICON, attraction(medium))
     pair = SurfacePair(dataclasses.replace(beam, rms=rms), substrate, 0.05e-9, asperity=solid)
     streams = [(stream(1, "beam", k), stream(1, "substrate", k)) for k in range(4)]

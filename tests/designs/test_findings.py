@@ -117,7 +117,7 @@ def test_beams_of_pairs_a_and_b_at_the_humidities_of_the_paper_have_the_warnings
         ended = xr.Dataset({"state": ("sample", np.repeat([0, 1, 2], np.round(np.multiply(shares, 1000)).astype(int)))})
         ended["crack_length"] = "sample", np.where(ended.state == 0, mean, 1500 * UM)
         found = findings.of_beams(ended, PAPER, 1.5 * UM)
-        # Gaussian twins and beams in the driest air adhere so little that some end as arcs: two sentences, else none.
+        # Gaussian surfaces and all in the driest air adhere so little that some end as arcs: two sentences, else none.
         assert len(found) == (shares[1] > 0) + (0 < shares[0] < 1)
         assert all("end as arcs" in sentence or "end S-shaped" in sentence for sentence in found)
         arcs += [row["model"]] * (shares[1] > 0)
@@ -240,9 +240,9 @@ def test_a_curve_of_a_chart_has_the_warnings_of_its_shortest_length():
     warnings = findings.of_charts(
         found, PLASTIC, dict.fromkeys(("C1", "C2"), BEYOND | {"device": BEYOND["device"] | {"pair": "b"}})
     )
-    said = {curve: sentences for curve, sentences in warnings.items() if sentences}
-    assert list(said) == [("C1", 2 * UM, 20 * UM, EITHER)]
-    assert said["C1", 2 * UM, 20 * UM, EITHER][0].startswith("At a length of 225 µm the beam reaches a slope of 0.13")
+    given = {curve: sentences for curve, sentences in warnings.items() if sentences}
+    assert list(given) == [("C1", 2 * UM, 20 * UM, EITHER)]
+    assert given["C1", 2 * UM, 20 * UM, EITHER][0].startswith("At a length of 225 µm the beam reaches a slope of 0.13")
     assert len(warnings) == 8
 
 

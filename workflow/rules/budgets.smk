@@ -68,7 +68,7 @@ use rule device_contact as tip_choice_contact with:
         settings=lambda w: jobs.tip_choice_contact(plan, w.pair, w.length, w.width, w.variant),
         code=code("device_contact.py"),
     message:
-        "Contact of pair {wildcards.pair} at the tips of beams, under {wildcards.variant}."
+        "Contact of pair {wildcards.pair} at the tips of beams, under variant {wildcards.variant}."
 
 
 use rule variant_summits as device_choice_summits with:
@@ -80,7 +80,7 @@ use rule variant_summits as device_choice_summits with:
         settings=lambda w: jobs.device_choice_summits(plan, w.pair, w.length, w.width, w.variant),
         code=code("variant_summits.py"),
     message:
-        "Summits of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, under {wildcards.variant}."
+        "Summits of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, under variant {wildcards.variant}."
 
 
 use rule variant_contact as device_choice_contact with:
@@ -91,7 +91,7 @@ use rule variant_contact as device_choice_contact with:
     log:
         "results/logs/devices/contact/choices/{pair}_{length}x{width}_{variant}.log",
     message:
-        "Contact of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, under {wildcards.variant}."
+        "Contact of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, under variant {wildcards.variant}."
 
 
 rule stoppers:

@@ -360,7 +360,7 @@ def tip_solid_contact(plan: Plan, pair: str, length: int, width: int, solid_prop
 
 
 def tip_choice_contact(plan: Plan, pair: str, length: int, width: int, variant: str) -> dict:
-    """As `tip_contact`, with the solids of a choice of the model."""
+    """As `tip_contact`, with the solids of a variant of the model."""
     return tip_contact(plan, pair, length, width) | plan.variant_contact(pair, variant)
 
 
@@ -393,7 +393,7 @@ def device_choice_summits(plan: Plan, pair: str, length: int, width: int, varian
 
 
 def budget(plan: Plan, case: str) -> dict:
-    """Everything about a budget: its settings, the quantities of its surfaces and its choices of the model."""
+    """Everything about a budget: its settings, the quantities of its surfaces and its variants of the model."""
     name, designs = pair_of(case), Designs(plan.config)
     section = plan.config["devices"][name]
     pair = section["pair"]

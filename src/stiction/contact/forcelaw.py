@@ -1,4 +1,4 @@
-r"""Apparent adhesive contact force of one piece of surface and its parameters (Sec. III-B1).
+r"""Apparent adhesive contact force of one sample and its parameters (Sec. III-B1).
 
 Convention: a force per unit area ``f(d)`` [Pa] at the distance ``d`` [m] between mean planes is positive in repulsion
 and negative in attraction. The package uses two row formats:

@@ -25,6 +25,7 @@ from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.tail import fit_tail
 from stiction.progress import progress
 from stiction.stages import curves
+from stiction.stages.contact import first
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ def compute(
     found = slopes(inputs, respond)
     changes = {}
     for name, changed in choices.items():
-        base = replace(state, contact=contact.isel(sample=slice(changed.sizes["sample"])))
+        base = replace(state, contact=first(contact, changed.sizes["sample"]))
         changes[name] = effect(base, replace(state, contact=changed), respond)
     return layout(inputs, found, covariance, of_devices(respond([state]), settings.device), changes, settings)
 

@@ -20,6 +20,7 @@ from stiction.designs.releases import DesignedBeam
 from stiction.devices import arcs
 from stiction.devices.chart import checked_power_law
 from stiction.stages import curves
+from stiction.stages.contact import surface_rms
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
     shortest, gaps = found.lengths[:, -1].min(axis=-1), np.tile(settings.gaps, len(settings.thicknesses))
     slopes = arcs.tip_slope(shortest, gaps)
     wedges = np.full(len(gaps), np.nan) if tips is None else sticking.mean_wedge(tips, slopes, settings)
-    return layout(found, wedges, releases.surface_rms(contact), settings)
+    return layout(found, wedges, surface_rms(contact), settings)
 
 
 def _of_size(settings, thickness, gap):

@@ -14,7 +14,7 @@ from stiction.designs.releases import DesignedBeam
 from stiction.designs.sticking import EITHER, S_SHAPE
 from stiction.devices import limits
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever
-from stiction.stages.releases import ended
+from stiction.stages.releases import ended, stuck_lengths
 
 #: Warnings by their subject, such as ``pair b, RH 0.67, G``.
 Warnings = dict[str, list[str]]
@@ -48,7 +48,7 @@ def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
     s_shaped = ended(beams, "S-shape")
     warnings = [limits.arcs_of_elements(float(ended(beams, "arc").mean()), strip)]
     if s_shaped.any():
-        mean = float(beams.crack_length.values[s_shaped].mean())
+        mean = float(stuck_lengths(beams).mean())
         warnings += [
             limits.cut_off_mean(float(s_shaped.mean()), mean, nominal.length),
             limits.large_rotation(nominal.gap, mean),

@@ -298,10 +298,12 @@ def _sure(name, budgets):
     if not budgets:
         return []
     cases = {(name, *key): dataset for key, dataset in budgets.items()}
-    said = [f"Relative humidity {humidity:g}: {tables_budget.advised(one)}" for (humidity, *_), one in budgets.items()]
-    said += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
+    sentences = [
+        f"Relative humidity {humidity:g}: {tables_budget.advised(one)}" for (humidity, *_), one in budgets.items()
+    ]
+    sentences += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
     cells, drawn = _side_by_side(tables_budget.budget(cases).cells), figures_budget.budget(cases)
-    return [Section("Uncertainty, and what should be measured better", said, cells, drawn)]
+    return [Section("Uncertainty, and what should be measured better", sentences, cells, drawn)]
 
 
 def _side_by_side(cells):

@@ -11,7 +11,7 @@ from matplotlib.transforms import ScaledTranslation
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.models import SURFACE_MODELS
-from stiction.report.format import TO_MJ, TO_UM
+from stiction.report.format import TO_MJ, TO_UM, with_error
 from stiction.report.published import rows
 from stiction.report.style import (
     DOUBLE,
@@ -24,7 +24,7 @@ from stiction.report.style import (
     panels,
     styled,
 )
-from stiction.stages.releases import ended
+from stiction.stages.releases import ended, stuck_energies, stuck_lengths
 
 # Figure 14
 
@@ -40,7 +40,7 @@ def beam_shapes(beams: xr.Dataset) -> Figure:
         shapes.plot(x, deflection[k], color="black", linewidth=1.4)
     shapes.set(xlabel="position [µm]", ylabel="deflection [µm]", xlim=x[[0, -1]])
     shapes.invert_yaxis()
-    crack = TO_UM * beams.crack_length.values[stuck]
+    crack = TO_UM * stuck_lengths(beams)
     histogram.hist(crack, bins="auto", color="0.75", edgecolor="black")
     histogram.set(xlabel="crack length $l_s$ [µm]", ylabel="number of beams")
     histogram.margins(y=0.15)
@@ -52,7 +52,7 @@ def beam_shapes(beams: xr.Dataset) -> Figure:
 def _summary(crack, total):
     """Number, mean and standard deviation of crack lengths [µm] as text."""
     number = f"{len(crack)} of {total} beams S-shaped"
-    return f"{number}\n{crack.mean():.0f} ± {crack.std(ddof=1):.0f} µm" if len(crack) > 1 else number
+    return f"{number}\n{with_error(crack.mean(), crack.std(ddof=1))} µm" if len(crack) > 1 else number
 
 
 # Figure 15
@@ -191,13 +191,13 @@ def _bounds(panel, flat, weakest):
 
 
 def _known(panel, published, beam, models):
-    """Experiment and published results of Table III, if any."""
+    """Measured and published results of Table III, if any."""
     if published.empty:
         return
     humidity = published.relative_humidity.to_numpy()
     energy, bars = converted(published.experiment.to_numpy() / TO_UM, published.experiment_std.to_numpy() / TO_UM, beam)
     style = {"fmt": "D", "color": "black", "markersize": 3, "zorder": 5}
-    panel.errorbar(humidity, TO_MJ * energy, TO_MJ * bars, label="experiment", **style)
+    panel.errorbar(humidity, TO_MJ * energy, TO_MJ * bars, label="measured", **style)
     for model in {"NG", "GEO"}.intersection(models):
         energy = apparent_adhesion_energy(published[model.lower()].to_numpy() / TO_UM, beam)
         style = {"fmt": _MARKERS[model][0], "fillstyle": "none", "color": PUBLISHED, "zorder": 4}
@@ -205,7 +205,7 @@ def _known(panel, published, beam, models):
 
 
 def _band(panel, axis, model):
-    """Median and 5-95 % of the energy of the pieces of surface, along the humidity."""
+    """Median and 5-95 % of the energy of the samples, along the humidity."""
     low, median, high = TO_MJ * axis.energy_quantile.transpose("probability", "humidity").values
     style = {"color": MODELS[model]["color"], "label": rf"{model}: median and 5–95 % of $\bar e$"}
     if np.ptp(axis.humidity.values) == 0:
@@ -225,7 +225,7 @@ def _band(panel, axis, model):
 
 def _reach(beams):
     """Energy that an axis must reach to show the mean and standard deviation of some beams [J m⁻²]."""
-    energies = beams.adhesion_energy.values[ended(beams, "S-shape")]
+    energies = stuck_energies(beams)
     return 1.1 * (energies.mean() + energies.std()) if len(energies) else 0.0
 
 
@@ -242,7 +242,7 @@ def _released(panel, released, model):
 
 def _energies(beams):
     """Energies of the S-shaped beams [mJ m⁻²]."""
-    return TO_MJ * beams.adhesion_energy.values[ended(beams, "S-shape")]
+    return TO_MJ * stuck_energies(beams)
 
 
 def _labels(panel, released, model, weakest):

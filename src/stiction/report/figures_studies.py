@@ -341,7 +341,7 @@ def _small_differences(panel, excess, lengths):
 
 @styled
 def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataFrame) -> Figure:
-    """Crack lengths under several variants of the model, compared with the base, the paper and the experiment.
+    """Crack lengths under several variants of the model, compared with the base, the paper and what was measured.
 
     More choices than there are colours continue in further panels below, each group of choices with its legend.
 
@@ -405,7 +405,7 @@ def _wider(columns):
 def _experiment(panel, table):
     """Deviation of the measured crack length from the published one."""
     measured = 100 * (table.experiment / table.ng - 1), 100 * table.experiment_std / table.ng
-    style = {"color": "black", "markerfacecolor": "white", "markersize": 6, "label": "experiment", "zorder": 4}
+    style = {"color": "black", "markerfacecolor": "white", "markersize": 6, "label": "measured", "zorder": 4}
     panel.errorbar(table.relative_humidity, *measured, fmt="*", **style)
 
 
