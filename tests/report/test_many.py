@@ -334,7 +334,7 @@ def test_every_choice_has_one_curve_of_all_humidities_and_a_legend_below_its_pan
     assert [shown(figure, label) for label in labels] == choices * [[25, len(published(25))]]
     legends = [legend for part in (figure, *figure.subfigs) for legend in part.legends]
     named = [text.get_text() for legend in legends for text in legend.get_texts()]
-    assert sorted(named) == sorted([*labels, *["base", "experiment"] * len(legends)])
+    assert sorted(named) == sorted([*labels, *["base", "measured"] * len(legends)])
     assert len(legends) == (1 if choices <= 8 else 2)
 
 

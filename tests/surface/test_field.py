@@ -206,7 +206,7 @@ def test_roughness_is_homogeneous_with_a_control_that_fails():
 
 
 def test_both_parts_of_every_wave_are_independent_with_a_control_that_fails():
-    waves = fft.rfft2(draws(SURFACES["B1"].gaussian_twin(FIELD), 20))[:, 1:40, 1:40]
+    waves = fft.rfft2(draws(SURFACES["B1"].with_gaussian_heights(FIELD), 20))[:, 1:40, 1:40]
     waves /= np.abs(waves).mean(axis=0)  # all waves count alike
     products = np.stack([waves.real * waves.imag, waves.real * (waves.real + waves.imag)], axis=-1)
     independent, control = (errors_off(part.mean(axis=(1, 2)), 0) for part in np.moveaxis(products, -1, 0))
