@@ -1,5 +1,6 @@
 """Figures of many pairs, surfaces, samples, humidities or choices show all data, and none of their texts overlap."""
 
+from collections import defaultdict
 from functools import cache
 
 import numpy as np
@@ -32,6 +33,8 @@ from stiction.variants import beams as study_variant
 
 RNG = stream(11)
 START = RNG.bit_generator.state
+#: Pair to the energy of its flats in saturated air [J m⁻²].
+EVERY = defaultdict(lambda: 0.144)
 BEAM = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200)
 LIMIT = 3e6
 #: Markers of points; others are the caps of error bars.
@@ -139,7 +142,7 @@ def figure_13(moments, count):
 
 def figure_15(pairs, count):
     shown = {pair: (BEAM, beams(count, ("G", "NG", "GEO")), bands()) for pair in names(pairs)}
-    return adhesion_energies(shown, published(count), 0.144)
+    return adhesion_energies(shown, published(count), EVERY)
 
 
 def figure_16(pairs, _count):
@@ -315,7 +318,7 @@ def test_figure_15_shows_the_share_of_every_model_at_every_humidity(case):
 @pytest.mark.parametrize(("dry", "apart"), [((0.5, 0.6), True), ((0.5, 0.54), False)])
 def test_shares_are_labels_where_these_are_apart_and_panels_elsewhere(dry, apart):
     found = {(h, "G"): released(h, 0.5 if h < 0.9 else 1) for h in (*dry, 0.9)}
-    figure = adhesion_energies({"p1": (BEAM, found, bands())}, published(2), 0.144)
+    figure = adhesion_energies({"p1": (BEAM, found, bands())}, published(2), EVERY)
     assert [text.get_text() for text in figure.axes[0].texts] == (["50 %", "50 %"] if apart else [])
     assert len(figure.axes) == (2 if apart else 4)
 
@@ -323,7 +326,7 @@ def test_shares_are_labels_where_these_are_apart_and_panels_elsewhere(dry, apart
 def test_the_share_of_nearly_all_beams_is_not_stated_as_all():
     nearly = released(0.5, 1).isel(sample=np.arange(1000) % 20)
     nearly.state[0] = 2
-    figure = adhesion_energies({"p1": (BEAM, {(0.5, "G"): nearly}, bands())}, published(1), 0.144)
+    figure = adhesion_energies({"p1": (BEAM, {(0.5, "G"): nearly}, bands())}, published(1), EVERY)
     assert [text.get_text() for text in figure.axes[0].texts] == ["> 99 %"]
 
 

@@ -497,9 +497,9 @@ def figure_13(plan: Plan) -> dict:
 
 
 def figure_15(plan: Plan) -> dict:
-    """Cases of Fig. 15, water, the nominal beams, and the pairs whose published values are drawn."""
-    shown = {"outcomes": plan.outcomes, "of_paper": plan.paper_pairs} | chosen(plan.config, ["water"])
-    return shown | cantilevers(plan, *plan.pairs)
+    """Cases of Fig. 15, water of each pair, the nominal beams, and the pairs whose published values are drawn."""
+    shown = {"outcomes": plan.outcomes, "of_paper": plan.paper_pairs}
+    return shown | {"water": {pair: plan.water(pair) for pair in plan.pairs}} | cantilevers(plan, *plan.pairs)
 
 
 def figure_17(plan: Plan) -> dict:

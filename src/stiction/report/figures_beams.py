@@ -92,7 +92,7 @@ _CLOSE = 0.12
 
 
 @styled
-def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat: float) -> Figure:
+def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat: Mapping[str, float]) -> Figure:
     """Figure 15: apparent adhesion energy over the humidity; models G and NG on the left, GEO on the right.
 
     The share of S-shapes is stated at each mean if it is below 100 %; if such labels of a pair would cover each other,
@@ -105,18 +105,18 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
         to the dataset of stage humidity.
     published : pandas.DataFrame
         The published Table III, rows of the paper's own pairs.
-    flat : float
-        Work of adhesion of two flats with water between them, 2γ [J m⁻²].
+    flat : dict
+        Pair to the adhesion energy of its flats in saturated air [J m⁻²].
     """
     figure, axes, rows_of_pairs = _rows_of_panels(pairs, published)
     for (row, below), (pair, (beam, released, bands)) in zip(rows_of_pairs, pairs.items(), strict=True):
         weakest = apparent_adhesion_energy(beam.length, beam)
         lowest = min(weakest, *(float(axis.energy_quantile.sel(probability=0.5).min()) for axis in bands.values()))
-        highest = max(2 * flat, 2 * weakest, *map(_reach, released.values()))
+        highest = max(2 * flat[pair], 2 * weakest, *map(_reach, released.values()))
         row[0].set(yscale="log", ylim=(TO_MJ * lowest / 2, TO_MJ * highest))
         row[0].set_ylabel(r"adhesion energy $\Gamma$ [mJ/m²]")
         for panel, models in zip(row, _COLUMNS, strict=True):
-            _bounds(panel, flat, weakest)
+            _bounds(panel, flat[pair], weakest)
             for surface in SURFACE_MODELS if "G" in models else ("NG",):
                 _band(panel, bands[surface], surface)
             _known(panel, rows(published, pair=pair), beam, models)
@@ -184,9 +184,9 @@ def _aside(panel, points):
 
 
 def _bounds(panel, flat, weakest):
-    """Energy of flat surfaces and of the longest crack that fits into the beam [J m⁻²]."""
+    """Energy of flat surfaces in saturated air and of the longest crack that fits into the beam [J m⁻²]."""
     style = {"color": "black", "linewidth": 0.8}
-    panel.axhline(TO_MJ * flat, linestyle="-.", label=r"flat surfaces, $2\gamma_{LG}$", **style)
+    panel.axhline(TO_MJ * flat, linestyle="-.", label="flat surfaces in saturated air", **style)
     panel.axhline(TO_MJ * weakest, linestyle=":", label="crack as long as the beam", **style)
 
 
