@@ -3,7 +3,7 @@
     python tests/mutants.py [module ...]
 
 Each mutant is one replacement in one module of a copy of the project, on which the tests of that module run until the
-first fails. Each mutant has a separate cache of compiled code, so that no faulty kernel is reused.
+first fails: the fast ones, the slow ones, and those of its neighbours. Each mutant has a separate cache of compiled code, so that no faulty kernel is reused.
 """
 
 import argparse
@@ -22,8 +22,8 @@ import pytest
 ROOT = Path(__file__).parents[1]
 #: A mutant counts as detected if its tests take this many times as long as without it, and at least that long [s].
 PATIENCE = 4, 120
-#: Marks of the tests that run first, and of those that run for mutants that these miss.
-KINDS = "not slow and not cluster and not browser", "slow and not cluster and not browser"
+#: Marks of tests.
+FAST, SLOW = "not slow and not cluster and not browser", "slow and not cluster and not browser"
 
 #: Tests of modules that have no test file of their name: names of test files are unique.
 TESTS = {
@@ -1976,6 +1976,13 @@ def tests_of(module):
     return f"tests/{TESTS.get(module, '/'.join([*folder, f'test_{name}.py']))}"
 
 
+def rounds(module):
+    """Tests and their marks, one after the other: each for the mutants that those before have missed."""
+    own, folder = tests_of(module), "/".join(["tests", *module.split(".")[:-1]])
+    neighbours = [(folder, FAST)] if folder not in ("tests", own) and (ROOT / folder).is_dir() else []
+    return [(own, FAST), (own, SLOW), *neighbours]
+
+
 class Copy:
     """Copy of the project with one mutant at a time."""
 
@@ -1987,10 +1994,11 @@ class Copy:
         for name in ("pyproject.toml", "config.yaml"):
             shutil.copy(ROOT / name, self.folder)
 
-    def tests(self, module, cache, kind, limit=None):
+    def tests(self, module, cache, which, limit=None):
         """Run tests of a module, at most for a time [s]; the name of the first that fails, empty if all pass."""
-        command = [sys.executable, "-B", "-m", "pytest", "-x", "--tb=no", "-p", "no:cacheprovider", "-m", kind]
-        command += [tests_of(module), source_of(module)]
+        path, marks = which
+        command = [sys.executable, "-B", "-m", "pytest", "-x", "--tb=no", "-p", "no:cacheprovider", "-m", marks]
+        command += [path, source_of(module)]
         environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), "OMP_NUM_THREADS": "1"}
         environment["PYTHONPATH"] = str(self.folder / "src")
         try:
@@ -2004,8 +2012,8 @@ class Copy:
         lines = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
         return lines[0] if lines else f"pytest ended with {done.returncode}"
 
-    def notice(self, module, old, new, kind, limit):
-        """Name of the test of a kind that detects a mutant, within a time [s]; empty if none does."""
+    def notice(self, module, old, new, which, limit):
+        """Name of the test that detects a mutant, within a time [s]; empty if none does."""
         path = self.folder / source_of(module)
         text = path.read_text(encoding="utf-8")
         shutil.rmtree(self.cache, ignore_errors=True)
@@ -2013,7 +2021,7 @@ class Copy:
         kept = path.stat()
         try:
             path.write_text(text.replace(old, new), encoding="utf-8")
-            return self.tests(module, self.cache, kind, limit)
+            return self.tests(module, self.cache, which, limit)
         finally:
             path.write_text(text, encoding="utf-8")
             os.utime(path, ns=(kept.st_atime_ns, kept.st_mtime_ns))
@@ -2032,18 +2040,17 @@ def chosen(modules):
 def detected(module, mutants, copies):
     """Mutants of a module and the names of the tests that detect them; the tests must pass without a mutant.
 
-    Slow tests run for mutants that the others miss. Copies of the project are taken from a queue and put back, so that
-    each is used by one thread at a time.
+    Copies of the project are taken from a queue and put back, so that each is used by one thread at a time.
     """
     copy, found, missed = copies.get(), {}, mutants
     try:
-        for kind in KINDS:
+        for which in rounds(module):
             start = time.monotonic()
-            if failed := copy.tests(module, copy.warm, kind):
+            if failed := copy.tests(module, copy.warm, which):
                 return [((module, "", ""), f"FAILED without a mutant: {failed}")]
             copy.warm.mkdir(exist_ok=True)
             limit = max(PATIENCE[0] * (time.monotonic() - start), PATIENCE[1])
-            found |= {mutant: copy.notice(*mutant, kind, limit) for mutant in missed}
+            found |= {mutant: copy.notice(*mutant, which, limit) for mutant in missed}
             missed = [mutant for mutant in missed if not found[mutant]]
             if not missed:
                 break
