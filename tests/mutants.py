@@ -3,8 +3,8 @@
     python tests/mutants.py [module ...]
 
 Each mutant is one replacement in one module of a copy of the project, on which the tests of that module run until the
-first fails: the fast ones, the slow ones, and those of its neighbours. Each mutant has a separate cache of compiled code,
-so that no faulty kernel is reused.
+first fails: the fast ones, the slow ones, and those of its neighbours. Each mutant has a separate cache of compiled
+code, so that no faulty kernel is reused.
 """
 
 import argparse
