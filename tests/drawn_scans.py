@@ -75,4 +75,4 @@ def fleishman(side, count):
 
 def gaussian(side, count):
     """Scans with the spectrum of B2 and Gaussian heights."""
-    return scans(SURFACES["B2"].gaussian_twin(grid(side)), side, count, "gaussian")
+    return scans(SURFACES["B2"].with_gaussian_heights(grid(side)), side, count, "gaussian")

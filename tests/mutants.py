@@ -3,7 +3,8 @@
     python tests/mutants.py [module ...]
 
 Each mutant is one replacement in one module of a copy of the project, on which the tests of that module run until the
-first fails. Each mutant has a separate cache of compiled code, so that no faulty kernel is reused.
+first fails: the fast ones, the slow ones, and those of its neighbours. Each mutant has a separate cache of compiled
+code, so that no faulty kernel is reused.
 """
 
 import argparse
@@ -22,8 +23,8 @@ import pytest
 ROOT = Path(__file__).parents[1]
 #: A mutant counts as detected if its tests take this many times as long as without it, and at least that long [s].
 PATIENCE = 4, 120
-#: Marks of the tests that run first, and of those that run for mutants that these miss.
-KINDS = "not slow and not cluster and not browser", "slow and not cluster and not browser"
+#: Marks of tests.
+FAST, SLOW = "not slow and not cluster and not browser", "slow and not cluster and not browser"
 
 #: Tests of modules that have no test file of their name: names of test files are unique.
 TESTS = {
@@ -35,7 +36,7 @@ TESTS = {
     "beam.equilibrium": "beam",
     "beam.energy": "beam",
     "beam.release": "beam",
-    "report.figures_beams": "report/test_style.py",
+    "report.figures_beams": "report",
     "run.atomic": "stages/test_storage.py",
     "run.labels": "run/test_kept.py",
     "stages.curves": "stages/test_stage_curves.py",
@@ -56,7 +57,8 @@ TESTS = {
     "designs.figures_devices": "designs/test_device_outputs.py",
     "stages.contact": "stages/test_stage_contact.py",
     "report.figures_forces": "report/test_style.py",
-    "report.figures_overview": "report/test_overview.py",
+    "report.figures_overview": "report",
+    "report.figures_studies": "report",
     "report.figures_surfaces": "report/test_style.py",
 }
 TESTS |= {"designs.stoppers": "designs/test_stage_stoppers.py", "designs.budget": "designs/test_stage_budget.py"}
@@ -468,6 +470,7 @@ MUTANTS = {
         ('.get("strip_um", self', '.get("gap_um", self'),
         ('patch(self.devices[device]["pair"], *main)', "self.strips(device)"),
         ('self.config["design"]["tip_um"], section', "self.strip(device), section"),
+        ("constants.get(medium, constants", 'constants.get("water", constants'),
     ],
     "config.relations_devices": [
         ("KEYS[kind] - set(keys), set(keys)", "set(), set(keys)"),
@@ -488,6 +491,12 @@ MUTANTS = {
         ("summit_density(sides) * length * width", "summit_density(sides) * length"),
         ('_too_few_summits(devices[name].get("strip_um", length), width', "_too_few_summits(length, width"),
         ("or wetting(sides, materials, deviation)", "or wetting(sides, materials)"),
+        ('max(deviation, OF_SOLIDS["poisson_ratio"].size)', "deviation"),
+        ("if not deviation or (value", "if (value"),
+        ("value - change > -1 and value + change < 0.5", "value + change < 0.5"),
+        ("value - change > -1 and value + change < 0.5", "value - change > -1"),
+        ("hamaker_constant(_material(*known[:-1]), known[-1])", 'hamaker_constant(_material(*known[:-1]), "water")'),
+        ('solid | materials.get(surface.get("material"), {})', "solid"),
         (
             "surfaces, solid, medium, temperature, humidities[0], materials",
             "surfaces, solid, medium, temperature, 0.01, {}",
@@ -508,8 +517,6 @@ MUTANTS = {
         ("elements=points // PER_ELEMENT", "elements=points // 20"),
         ("error.add_note(", "str("),
         ('found["state"] == EndState.S_SHAPE', 'found["state"] == EndState.ARC'),
-        ("np.sqrt(2 * float(contact.step)", "np.sqrt(float(contact.step)"),
-        ("(area - (height < 0))", "area"),
     ],
     "designs.sticking": [
         ("np.isfinite(cracks), foundation)", "np.isfinite(cracks), 0.0)"),
@@ -518,6 +525,8 @@ MUTANTS = {
         ("energies.mean(), pulls.mean(), slope", "energies.max(), pulls.mean(), slope"),
         ("energies.mean(), pulls.mean(), slope", "energies.mean(), pulls.max(), slope"),
         ('return [S_SHAPE] if device.kind == "bridge" else', "return"),
+        ("alone = device.cracks * flooded_length", "alone = flooded_length"),
+        ("arcs.arc_length(flooded_energy(*wet), device.beam)]", "alone]"),
         ("for share in settings.shares]", "for share in settings.shares[:1]]"),
     ],
     "designs.cracks": [
@@ -537,6 +546,7 @@ MUTANTS = {
         ("stuck[:, 1:], {", "stuck[:, :2], {"),
         ("settings.water.temperature, settings.water.contact_angles))", "settings.water.temperature))"),
         ("foundation, device, held) for one in of_group", "0.0, device, held) for one in of_group"),
+        ('settings.tip, "rms"', 'wedge, "rms"'),
     ],
     "designs.chart": [
         ("corner[np.ix_([0, -1], [0, -1])]", "corner[0, [0, -1]]"),
@@ -550,11 +560,9 @@ MUTANTS = {
         ("np.array([law(*sizes.T) for law, _ in laws]).T", "np.array([law(*sizes.T) for law, _ in laws]).T * 1.01"),
         ("    except ValueError:\n        return []", "    except ArithmeticError:\n        return []"),
         ("settings.beams * device.cracks", "settings.beams"),
-        ("alone = device.cracks * flooded_length", "alone = flooded_length"),
         ("thickness=float(thickness), gap=float(gap)", "thickness=float(gap), gap=float(gap)"),
         ("found.lengths[:, -1].min(axis=-1)", "found.lengths[:, 0].min(axis=-1)"),
         ("arcs.arc_length(energies, device.beam)", "arcs.arc_length(energies, settings.device.beam) / 2"),
-        ("arcs.arc_length(flooded_energy(*water), device.beam)]", "alone]"),
         ("float(film), metres", "2 * float(film), metres"),
     ],
     "designs.findings": [
@@ -569,8 +577,10 @@ MUTANTS = {
         ("float(shortest.sel(shape=shape))", "float(shortest.min())"),
         ("float(found.film), float(found.rms)", "0.0, float(found.rms)"),
         ('if device.kind == "bridge" else None', "if True else None"),
+        ("shape, found.sel(shape=shape), of", "shape, found.isel(shape=0), of"),
         ("if shape == EITHER else None", "if True else None"),
-        ("[limits.plastic_contact(plastic), *", "[*"),
+        ("[limits.plastic_contact(plastic, effect), *", "[*"),
+        (", limits.STRONGER))", "))"),
         ("for name, stated in materials)", "for name, stated in ())"),
         ("if pair in plasticity else np.nan", "if pair in plasticity else 0.0"),
         ("shortest = min(along, key", "shortest = max(along, key"),
@@ -579,7 +589,7 @@ MUTANTS = {
         ("of.device, thickness=thickness, gap=gap)", "of.device, gap=gap)"),
         ("if device == name]", "]"),
         ("materials[pair])", "())"),
-        ('section["materials"]))', "()))"),
+        ('section["materials"], limits', "(), limits"),
         ("sentences.index(one) + 1", "sentences.index(one)"),
         ("*(lines or none)", "*lines"),
         ("dict.fromkeys(sentence for", "list(sentence for"),
@@ -593,8 +603,8 @@ MUTANTS = {
             "jobs.slope_contact(plan, pair) if shared else jobs.device_slope",
             "jobs.slope_contact(plan, pair) if not shared else jobs.device_slope",
         ),
-        ('if self._section.get("uncertainty", {}).get("young_modulus_GPa"):', "if True:"),
-        ('.get("young_modulus_GPa"):', '.get("young_modulus_GPa", True):'),
+        ("for name in designs.uncertain_solids(self.name)", 'for name in ("modulus",)'),
+        ("ground, shifts, jobs.solid_contact", "ground, shifts, jobs.tip_solid_contact"),
         ('merged(plain["base"], plain["changes"]))', 'plain["base"])'),
         ('for name, _ in plain["quantities"]}', "for name in described}"),
         ("found, settings = self.cracks(humidity), self", "found, settings = self.cracks(0.7), self"),
@@ -612,11 +622,11 @@ MUTANTS = {
         ('" ".join(warnings[device, *curve])', '""'),
         ("numbers[device, *curve]))}", "()))}"),
         ("numbers[device, humidity, shape]))", "()))"),
-        ("listed and f", "f"),
+        ('["Warnings:"] if listed else []', '["Warnings:"]'),
         ("in sorted(humidity for", "in list(humidity for"),
         ("computed = bool(one.by_elements)", "computed = True"),
         ("np.nan if computed else 100 *", "100 *"),
-        ("float(one.flooded_length) / UM", "float(one.safe_length[0]) / UM"),
+        ("float(one.flooded_length) / UM", "float(one.safe_length.min()) / UM"),
     ],
     "designs.figures_devices": [
         ("known = one.stuck.values > 0", "known = one.stuck.values >= 0"),
@@ -629,6 +639,8 @@ MUTANTS = {
         ("TO_UM * float(one.flooded_length", "float(one.flooded_length"),
         ("_listed(numbers.get((name, thickness, gap, shape), ()))", "_marks(numbers, name, thickness, gap)"),
         ("high + _ROOM * (high - low)", "high + 10 * _ROOM * (high - low)"),
+        ("legend_below(panel, named)", "panel.legend(handles=named)"),
+        ("legend_below(panel, _thicknesses(", "panel.legend(handles=_thicknesses("),
         ("one.by_elements.values == 0", "one.by_elements.values >= 0"),
         ("if not whole.by_elements.all():", "if True:"),
         ("100 * float(whole.power_law_error.max())", "float(whole.power_law_error.max())"),
@@ -727,6 +739,9 @@ MUTANTS = {
         ("more[used]) / length(less[used])", "more[used]) / length(less)"),
         ("(groups - 1) / groups * np.sum", "np.sum"),
         ("np.log(changed / base)", "np.log(base / changed)"),
+        ("(1 + self.size) * value", "value + self.size"),
+        ("return value - self.size, value", "return value, value"),
+        ("else 2 * self.size", "else self.size"),
         ("key=lambda row: row[2])", "key=lambda row: row[0])"),
         ("gradient * np.asarray(slope_errors)[of]", "gradient"),
         (
@@ -769,16 +784,17 @@ MUTANTS = {
         ("ends = around(angles[side], deviation, least=0.0)", "ends = around(angles[0], deviation, least=0.0)"),
         ('"spectrum" if quantity in OF_SPECTRUM else "heights"', '"heights"'),
         ("both, difference(contacts[0])))", "both, 2 * difference(contacts[0])))"),
-        ("both, _STEP, deviation / value)", "both, _STEP, deviation)"),
+        ("OF_DIMENSIONS.difference, deviation / value)", "OF_DIMENSIONS.difference, deviation)"),
         ("both, difference(contacts[0]))", "both, 2 * difference(contacts[0]))"),
-        ('f"the {name}", both, _STEP, deviation / value)', 'f"the {name}", both, _STEP, deviation)'),
+        ('f"the {name}", both, OF_DIMENSIONS.difference', 'f"the {name}", both, 0.1'),
         ("**{name: size})", "gap=size)"),
         ("device, residual_stress=at)) for at in ends)", "device, residual_stress=ends[0])) for at in ends)"),
-        ("young_modulus=factor * settings.young_modulus)", "young_modulus=settings.young_modulus)"),
-        (
-            "deviation = settings.uncertainty.young_modulus / settings.young_modulus",
-            "deviation = settings.uncertainty.young_modulus",
-        ),
+        ("replace(state.device, young_modulus=modulus)", "replace(state.device, young_modulus=moduli[0])"),
+        ("deviation / getattr(settings, field) if step.relative else deviation", "deviation"),
+        ('if name == "modulus" and state.device:', "if state.device:"),
+        ('if name == "modulus" and state.device:', "if False:"),
+        ("replace(state, contact=contact) for contact in solids[name]", "state for contact in solids[name]"),
+        ("both, step.difference, relative)", "both, 0.1, relative)"),
         ("replace(state, humidity=at) for at in ends", "replace(state, humidity=ends[0]) for at in ends"),
         ("replace(water, temperature=at)", "replace(water, temperature=300.0)"),
         ("np.full((len(SIDES), len(SIDES)), deviation**2)", "np.eye(len(SIDES)) * deviation**2"),
@@ -813,7 +829,7 @@ MUTANTS = {
         ("np.hypot(own, CRACK_LENGTH_POWER * common)", "np.hypot(own, common)"),
         ("np.mean if np.isfinite(values).all() else np.median", "np.mean"),
         ("choice_effect(*map(found.centre, found.values))", "choice_effect(*map(found.centre, found.values[::-1]))"),
-        ('contact.isel(sample=slice(changed.sizes["sample"]))', "contact"),
+        ('first(contact, changed.sizes["sample"])', "contact"),
         ("known.std(ddof=1) / known.mean()", "known.std(ddof=1)"),
         ('"N" if settings.response == FORCE else "m"', '"m"'),
         ("if name not in groups]", "]"),
@@ -821,6 +837,7 @@ MUTANTS = {
         ('"slope_error": ("input", slopes[:, 1])', '"slope_error": ("input", slopes[:, 0])'),
     ],
     "designs.tables_budget": [
+        ("_CHOICES[name] if name in _CHOICES else", ""),
         ("100 * found.remaining(inputs)", "100 * found.effect(inputs)"),
         ("(INDEPENDENT, found.uncorrelated)", "(INDEPENDENT, found)"),
         ("np.sqrt(np.diag(found.covariance))", "np.diag(found.covariance)"),
@@ -850,10 +867,14 @@ MUTANTS = {
     ],
     "designs.pages": [
         ('found.sizes["share"] // 2', "0"),
-        ("min(lengths.values())", "max(lengths.values())"),
+        ("float(lengths.min()), float", "float(lengths.max()), float"),
+        ("float(found.tip_strip) > float(found.wedge) and", "False and"),
+        ("> float(found.wedge) and surest < shortest:", "> float(found.wedge):"),
+        ("float(found.flooded_length.min())", "float(found.flooded_length.max())"),
         ("if longest == shortest:", "if True:"),
         ("if np.isfinite(force)", "if True"),
         ("if is_at_an_end(found):", "if False:"),
+        ('"" if f"{share:.3g}" == "100" else stuck', "stuck"),
         ("    if not budgets:\n        return []", "    if False:\n        return []"),
         ('f"<p>{escape(sentence)}</p>"', 'f"<p>{sentence}</p>"'),
         ("[*self.warnings, NOT_MODELLED]", "[NOT_MODELLED]"),
@@ -874,6 +895,7 @@ MUTANTS = {
         ("SLENDER = 20.0", "SLENDER = 10.0"),
         ("6 * gap * width**2", "6 * gap * width"),
         ("if ratio < STRETCH", "if ratio < 2 * STRETCH"),
+        ('if f"{ratio:.3g}" == "1" else', "if True else"),
         ("if strip <= wedge", "if strip <= 2 * wedge"),
         ("if share == 0:", "if share == 1:"),
         (
@@ -1029,7 +1051,7 @@ MUTANTS = {
     "chaos.coordinates": [
         ("d_max - np.exp(log_gap)", "d_max + np.exp(log_gap)"),
         ("@ self.axes / np.sqrt(self.variances)", "@ self.axes / self.variances"),
-        ("constrained(q * self.scale)", "constrained(q)"),
+        ("(q * self.scale[:, None])", "q"),
         ("np.cumsum(variances[:0:-1])[::-1]", "np.cumsum(variances[1:])"),
         (
             "return PrincipalCoordinates(scale, q.mean(axis=0), variances.copy(), axes * signs)",
@@ -1115,6 +1137,7 @@ MUTANTS = {
         ("excess[r] / (before - excess[r])", "excess[r] / (before + excess[r])"),
         ("(r + 0.5 + behind)", "(r + 1 + behind)"),
         ("> 0.75 * beam.gap / crack", "> 1.75 * beam.gap / crack"),
+        ('("S-shape", "arc", "free")', '("S-shape", "free", "arc")'),
         ("crack_length(beam, laws, end.deflection) > 1.5", "crack_length(beam, laws, end.deflection) > 0.5"),
         ("START * min(arrest_length(energy, beam), beam.length)", "arrest_length(energy, beam)"),
     ],
@@ -1133,6 +1156,8 @@ MUTANTS = {
         ("end.equilibrium.deflection[:, 0]", "end.equilibrium.deflection[:, 1]"),
         ("stream(k)), samples)", "stream(0)), samples)"),
         ("outcomes[:shapes]", "outcomes[shapes:]"),
+        ("range(number), stream, threads)", "range(1, number + 1), stream, threads)"),
+        ("total=number)), shapes)", "total=number)))"),
     ],
     "report.format": [
         (
@@ -1140,6 +1165,7 @@ MUTANTS = {
             "return 100 * (value - reference) if reference else np.nan",
         ),
         ("return text if float(text) else format(0.0, form)", "return text"),
+        ("MISSING if np.isnan(value) else f", "f"),
         ("max(0, 1 - int(exponent))", "max(0, -int(exponent))"),
         ("max(0, 1 - int(exponent))", "1 - int(exponent)"),
         ('f"{error:.1e}".partition', 'f"{error:e}".partition'),
@@ -1153,8 +1179,7 @@ MUTANTS = {
         ("disable_numparse=True, ", ""),
     ],
     "report.tables_surfaces": [
-        ("third / rms**3", "third / rms**2"),
-        ("1 / curvature / UM", "curvature * UM"),
+        ("(NM, 1, 1, UM, PER_UM2)", "(UM, 1, 1, UM, PER_UM2)"),
         ("100 * float(spectra[surface].defect)", "-100 * float(spectra[surface].defect)"),
         ("{source: 100 * float(spectra[surface].defect)}", '{"published": 100 * float(spectra[surface].defect)}'),
     ],
@@ -1167,12 +1192,17 @@ MUTANTS = {
     ],
     "report.style": [
         ("return _MARKERS[k % len(_MARKERS)]", "return _MARKERS[k]"),
+        ("_LABELLED = 72, 24", "_LABELLED = 72, 4"),
+        ("ncols=max(1, columns)", "ncols=5"),
         ("max(left - short, 0), min(right + short, 1)", "left - short, right + short"),
         ("panel.set_xlim(max(left - short, 0)", "panel.set_xlim(max(left, 0)"),
     ],
     "report.figures_beams": [
         ("2 * weakest, *map(_reach, released.values()))", "2 * weakest)"),
         ("1.1 * (energies.mean() + energies.std())", "energies.mean()"),
+        ("labelled).min() < _CLOSE * length", "labelled).min() < 0"),
+        ("if below is None:", "if True:"),
+        ("if share < 0.995 else", "if share < 1 else"),
     ],
     "report.checks": [
         ("abs(found.error) <= accuracy", "found.error <= accuracy"),
@@ -1181,7 +1211,7 @@ MUTANTS = {
         ("bool(low <= gamma <= high)", "bool(gamma <= high)"),
         ('elements=released.sizes["node"] - 1', "elements=beams[pair].elements"),
         ("if case_id(pair, humidity) in on_mesh_of_paper else ACCURACY", "if True else ACCURACY"),
-        ("if stuck.sum() < 2", "if stuck.sum() < 0"),
+        ("if len(stuck) < 2", "if len(stuck) < 0"),
         ("distance <= LARGEST_DISTANCE_OF_SCANS, message", "True, message"),
         ('used = heights[surface] if model == "NG"', 'used = targets[surface] if model == "NG"'),
         ('+ (defect * target if name == "rms_nm" else 0)', '- (defect * target if name == "rms_nm" else 0)'),
@@ -1292,9 +1322,10 @@ MUTANTS = {
         ("if name not in SILENT", "if True"),
         ("unread += imports", "pass"),
         ('fields["body"] = node.body[1:]', "pass"),
-        ("for node in ast.walk(tree)", "for node in tree.body"),
+        ("for node in _statements(tree)", "for node in tree.body"),
+        ("if not isinstance(child, ast.expr):", "if isinstance(child, ast.stmt):"),
         ("for end in (None, -1)]", "for end in (None,)]"),
-        ("for name, value in sorted(fields.items())", "for name, value in fields.items()"),
+        ("sorted({*kind._fields} - _WITHOUT_MEANING)", "[*kind._fields]"),
         ("if value not in (None, [])", "if True"),
         ("elif not text or value.value:", "else:"),
         ("ast.Constant(joined[-1].value + value.value)", "ast.Constant(value.value)"),
@@ -1316,7 +1347,7 @@ MUTANTS = {
         ("        if not any(stated):", "        if False:"),
         ("if any(angles) else {}", "if False else {}"),
         ('chosen(self._stated(pair)[0], ["young', 'chosen(self._stated(pair)[1], ["young'),
-        ("and humidity_of(case) <= max", "and humidity_of(case) >= 0 * max"),
+        ("return humidity_of(case) <= self", "return humidity_of(case) >= 0 * self"),
         ("and all(self._has_heights_of_paper(name) for name in self.sides(pair))", ""),
         ("else SUMMITS\n", "else ()\n"),
         ("exists = all(is_feasible", "exists = any(is_feasible"),
@@ -1353,6 +1384,10 @@ MUTANTS = {
         ("| plan.finer_beams.get(name, {})", ""),
         ('("distance_step_nm", "every")) | more', '("distance_step_nm", "every", "chunks")) | more'),
         ('samples=study["samples"])} | shifts', 'samples=plan.config["contact"]["samples"])} | shifts'),
+        ('of_beam if one == bodies["beam"] else one', "of_beam"),
+        ('of_beam if one == bodies["beam"] else one', 'of_beam if at == "beam" else one'),
+        ('("less", "more").index(side)', '("more", "less").index(side)'),
+        ("tip_contact(plan, pair, length, width), solid_property", 'tip_contact(plan, pair, length, width), "modulus"'),
     ],
     "measured.scan": [
         ("- np.nanmean(scan.heights)", ""),
@@ -1407,6 +1442,8 @@ MUTANTS = {
     ],
     "stages.storage": [
         ("if found != wanted", "if found[0] != wanted[0]"),
+        ("for path in both}) > 1", "for path in both}) > 2"),
+        ('.stem.endswith(f"_{end}")', ".stem"),
         ('dataset.isel(parts, missing_dims="ignore").load()', "dataset.load()"),
         (', missing_dims="ignore").load()', ").load()"),
         ("labels.made_from(inputs, stage", "labels.made_from((), stage"),
@@ -1475,6 +1512,12 @@ MUTANTS = {
         ("            start(script, fname, edit)\n", "            pass\n"),
         ("    except BrokenPipeError:\n        return", "    except BrokenPipeError:\n        assert"),
         ('if "pandas" in sys.modules else', "if False else"),
+        ("is not read:\n        return", "is not read:\n        pass"),
+        ("if isinstance(func, Hashable) else read(func)", ""),
+        ("known = cache(read)", "known = read"),
+        (' and "{" not in script', ""),
+        ("            found.add(job.rule)\n", ""),
+        ("if not (of_rule and job.rule in found):", "if job.rule not in found:"),
     ],
     "run.atomic": [
         ("        draft.unlink(missing_ok=True)\n\n\ndef save_text", "        pass\n\n\ndef save_text"),
@@ -1528,7 +1571,7 @@ MUTANTS = {
     ],
     "stages.parameters": [
         ("if length <= bound", "if length <= 0.9 * bound"),
-        ('identification[f"{name}_error"])', "identification[name])"),
+        ("100 * error / target", "100 * value / target"),
         ("spectrum.density, {", "2 * spectrum.density, {"),
         ("µm for the spectrum {source}", "µm"),
     ],
@@ -1539,6 +1582,9 @@ MUTANTS = {
         ('"character", surface, "field", k)', '"character", surface, "field", 0)'),
         ("np.hstack(summits)[:, :_KEPT]", "np.hstack(summits)[:, 1:_KEPT]"),
         ("find_summits(z, spacing)", "find_summits(z, surface.grid.spacing)"),
+        ("third / rms**3", "third / rms**2"),
+        ("1 / curvature, density", "curvature, density"),
+        ("density]) / units", "density])"),
     ],
     "stages.forces": [
         ("settings.humidity, settings.water)", "0.9 * settings.humidity, settings.water)"),
@@ -1559,14 +1605,16 @@ MUTANTS = {
         ('error.add_note(f"in case {case}")', "pass"),
         ('"beams", case)', '"beam", case)'),
         ("draw, settings.scatter)", "draw)"),
-        ("range(number), address, threads)", "range(1, number + 1), address, threads)"),
-        ("total=number)), shapes)", "total=number)))"),
+        ("settings.samples, address, threads", "settings.samples + 1, address, threads"),
+        ("samples, address, threads, shapes)", "samples, address, threads)"),
         ("beams.state.values == STATES", "beams.state.values >= STATES"),
+        ('beams.crack_length.values[ended(beams, "S-shape")]', "beams.crack_length.values"),
+        ('beams.adhesion_energy.values[ended(beams, "S-shape")]', "beams.adhesion_energy.values"),
     ],
     "stages.beams": [
         ('columns["deflection"].shape[1] - 1', "settings.beam.elements"),
         ("case, settings, threads, shapes=_KEPT)", "case, settings, shapes=1)"),
-        ('columns["energy"], {"units"', 'columns["crack_length"], {"units"'),
+        ('columns["energy"], energy)', 'columns["crack_length"], energy)'),
         ("elements=elements).nodes", "elements=elements).nodes[::-1]"),
         ('" ".join(releases.STATES)', '" ".join(releases.STATES[::-1])'),
     ],
@@ -1613,7 +1661,7 @@ MUTANTS = {
         ("if set(OF_MOMENTS) <= set(quantities)", "if True"),
         ("modes[1:, 1:], estimate", "modes[:-1, :-1], estimate"),
         ("for of in (contact, same)", "for of in (same, contact)"),
-        ('slice(contact.sizes["sample"])', "slice(None)"),
+        ('first(base, contact.sizes["sample"])', "base"),
         ("changes[..., 0], {", "changes[..., 1], {"),
     ],
     "measured.choices": [
@@ -1739,8 +1787,7 @@ MUTANTS = {
         ("refined=settings.refined", "refined=False"),
         ("sorted(cases.items(), key=lambda item: float(item[1].humidity[0]))", "cases.items()"),
         ("settings.chaos.order, settings", "1, settings"),
-        (".isel(sample=slice(settings.samples))", ""),
-        ("slice(settings.samples)", "slice(-settings.samples, None)"),
+        ("first(contact, settings.samples)", "contact"),
         ('releases.ended(chosen, "S-shape")', 'releases.ended(chosen, "arc")'),
     ],
     "variants.summits": [
@@ -1775,6 +1822,9 @@ MUTANTS = {
         ('contact.sizes["height"] - above, above', 'contact.sizes["height"], above'),
         ("float(contact.distance[0]), float(contact.height[0])", "float(contact.height[0]), float(contact.height[0])"),
         ("streams = streams_of_sides(settings.seed, pair)", "streams = streams_of_sides(0, pair)"),
+        ("np.sqrt(2 * float(contact.step)", "np.sqrt(float(contact.step)"),
+        ("(area - (height < 0))", "area"),
+        ("sample=slice(samples)", "sample=slice(-samples, None)"),
     ],
     "streams": [
         ("operator.index(k)", "int(k)"),
@@ -1810,7 +1860,8 @@ MUTANTS = {
         ('if shared == "base" and self.plan.has_samples_of_variants:', "if self.plan.has_samples_of_variants:"),
         ("if self._designs.has_strips_of_pair(device):\n            return f", "if False:\n            return f"),
         ('if self._section(device)["kind"] == "bridge":', "if False:"),
-        ('get("uncertainty", {}).get("young_modulus_GPa")', 'get("uncertainty", {})'),
+        ("for side in LESS_AND_MORE if name in uncertain]", "for side in LESS_AND_MORE]"),
+        ("{folder}/{name}/{patch}_{side}.nc", "{_CONTACT}/{name}/{patch}_{side}.nc"),
         ("if device in designs.budgeted else []", ""),
         ("os.path.relpath(self", "str(self"),
     ],
@@ -1871,14 +1922,15 @@ MUTANTS = {
         ("*populations, (distance, generated)", "*populations[::-1], (distance, generated)"),
     ],
     "report.figures_overview": [
-        ("points = min(int(_PIECE / spacing)", "points = max(int(_PIECE / spacing)"),
+        ("points = min(int(_SHOWN / spacing)", "points = max(int(_SHOWN / spacing)"),
         ("[:points, :points].T", "[:points, :points]"),
         ("[len(force) // 2])", "[len(force) // 4])"),
         ("humidity - _APART, mean", "humidity - 10 * _APART, mean"),
         ("found.std(ddof=1)) for", "found.std(ddof=0)) for"),
         ("published.geo, published.geo_std", "published.geo, published.experiment_std"),
         ('model = "GEO" if any', 'model = "G" if any'),
-        ('[ended(released[key], "S-shape")]', ""),
+        ("high + 0.3 * (high - low)", "high"),
+        ("stuck_lengths(released[key])", "released[key].crack_length.values"),
         ("lines[:_HIGHLIGHTED]", "lines"),
         ('ended(beams, "S-shape")[: len(deflection)]', 'ended(beams, "free")[: len(deflection)]'),
     ],
@@ -1891,9 +1943,12 @@ MUTANTS = {
         ("excess = 100 * (mesh", "excess = -100 * (mesh"),
         ("100 * (table.experiment / table.ng - 1)", "100 * (table.ng / table.experiment - 1)"),
         ("if dataset is not base:", "if True:"),
-        ("100 * (ratio - 1), 100 * error", "100 * ratio, 100 * error"),
+        ("ratio - 1, error", "ratio, error"),
         ("own = convergence.sampling_distance(total)", "own = convergence.sampling_distance(2 * total)"),
         ("min(low, tolerance / 2)", "low"),
+        ("range(0, len(of_key), most)", "range(0, most, most)"),
+        ("groups[-1]) + len(part) > most", "groups[-1]) + len(part) > 99"),
+        ("if place[0] > np.mean(panel.get_xlim())", "if False"),
     ],
     "report.figures_surfaces": [
         ("np.sqrt(2 * np.pi) / rms", "np.sqrt(2 * np.pi)"),
@@ -1922,6 +1977,13 @@ def tests_of(module):
     return f"tests/{TESTS.get(module, '/'.join([*folder, f'test_{name}.py']))}"
 
 
+def rounds(module):
+    """Tests and their marks, one after the other: each for the mutants that those before have missed."""
+    own, folder = tests_of(module), "/".join(["tests", *module.split(".")[:-1]])
+    neighbours = [(folder, FAST)] if folder not in ("tests", own) and (ROOT / folder).is_dir() else []
+    return [(own, FAST), (own, SLOW), *neighbours]
+
+
 class Copy:
     """Copy of the project with one mutant at a time."""
 
@@ -1933,10 +1995,11 @@ class Copy:
         for name in ("pyproject.toml", "config.yaml"):
             shutil.copy(ROOT / name, self.folder)
 
-    def tests(self, module, cache, kind, limit=None):
+    def tests(self, module, cache, which, limit=None):
         """Run tests of a module, at most for a time [s]; the name of the first that fails, empty if all pass."""
-        command = [sys.executable, "-B", "-m", "pytest", "-x", "--tb=no", "-p", "no:cacheprovider", "-m", kind]
-        command += [tests_of(module), source_of(module)]
+        path, marks = which
+        command = [sys.executable, "-B", "-m", "pytest", "-x", "--tb=no", "-p", "no:cacheprovider", "-m", marks]
+        command += [path, source_of(module)]
         environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), "OMP_NUM_THREADS": "1"}
         environment["PYTHONPATH"] = str(self.folder / "src")
         try:
@@ -1950,8 +2013,8 @@ class Copy:
         lines = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
         return lines[0] if lines else f"pytest ended with {done.returncode}"
 
-    def notice(self, module, old, new, kind, limit):
-        """Name of the test of a kind that detects a mutant, within a time [s]; empty if none does."""
+    def notice(self, module, old, new, which, limit):
+        """Name of the test that detects a mutant, within a time [s]; empty if none does."""
         path = self.folder / source_of(module)
         text = path.read_text(encoding="utf-8")
         shutil.rmtree(self.cache, ignore_errors=True)
@@ -1959,7 +2022,7 @@ class Copy:
         kept = path.stat()
         try:
             path.write_text(text.replace(old, new), encoding="utf-8")
-            return self.tests(module, self.cache, kind, limit)
+            return self.tests(module, self.cache, which, limit)
         finally:
             path.write_text(text, encoding="utf-8")
             os.utime(path, ns=(kept.st_atime_ns, kept.st_mtime_ns))
@@ -1978,18 +2041,17 @@ def chosen(modules):
 def detected(module, mutants, copies):
     """Mutants of a module and the names of the tests that detect them; the tests must pass without a mutant.
 
-    Slow tests run for mutants that the others miss. Copies of the project are taken from a queue and put back, so that
-    each is used by one thread at a time.
+    Copies of the project are taken from a queue and put back, so that each is used by one thread at a time.
     """
     copy, found, missed = copies.get(), {}, mutants
     try:
-        for kind in KINDS:
+        for which in rounds(module):
             start = time.monotonic()
-            if failed := copy.tests(module, copy.warm, kind):
+            if failed := copy.tests(module, copy.warm, which):
                 return [((module, "", ""), f"FAILED without a mutant: {failed}")]
             copy.warm.mkdir(exist_ok=True)
             limit = max(PATIENCE[0] * (time.monotonic() - start), PATIENCE[1])
-            found |= {mutant: copy.notice(*mutant, kind, limit) for mutant in missed}
+            found |= {mutant: copy.notice(*mutant, which, limit) for mutant in missed}
             missed = [mutant for mutant in missed if not found[mutant]]
             if not missed:
                 break

@@ -55,7 +55,7 @@ class PublishedSurface:
         """Return the non-Gaussian surface (NG)."""
         return RoughSurface(self.underlying, self.translation, self.rms, grid)
 
-    def gaussian_twin(self, grid):
+    def with_gaussian_heights(self, grid):
         """Return the surface with the same spectrum and rms but Gaussian heights (G)."""
         return RoughSurface(self.spectrum, IDENTITY, self.rms, grid)
 

@@ -10,6 +10,7 @@ from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.designs import budget, chart, cracks, inputs, safe_lengths, stoppers
 from stiction.devices import limits
+from stiction.devices.budget import OF_SOLIDS
 from stiction.models import OF_MOMENTS
 from stiction.stages import contact
 from stiction.studies import slope_contact
@@ -68,10 +69,10 @@ def test_warnings_are_those_of_all_shapes_and_that_plasticity_is_not_checked(dev
     found = device.safe_lengths(0.88)
     assert device.warnings(found) == [limits.plastic_contact(np.nan)]
     length = float(found.estimate.sel(shape="S-shape").min())
-    said = device.warnings(found.assign(estimate=found.estimate * 100e-6 / length))
-    assert said[0] == limits.large_rotation(10e-6, 100e-6)
-    assert sum("slope" in sentence for sentence in said) == 2  # of beam and tip
-    assert len(said) == len(set(said))
+    warnings = device.warnings(found.assign(estimate=found.estimate * 100e-6 / length))
+    assert warnings[0] == limits.large_rotation(10e-6, 100e-6)
+    assert sum("slope" in sentence for sentence in warnings) == 2  # of beam and tip
+    assert len(warnings) == len(set(warnings))
 
 
 def test_the_chart_at_the_size_of_the_device_has_its_safe_lengths(device):
@@ -99,8 +100,8 @@ def test_a_stopper_has_its_whole_area_and_the_forces_of_its_stage():
 
 @pytest.fixture(scope="module")
 def uncertain():
-    """Device on strips of its pair, of which the gap, Young's modulus and the heights of one surface are uncertain."""
-    stated = {"gap_um": 0.1, "young_modulus_GPa": 5, "scan_um": 10}
+    """Device on strips of its pair, of which the gap, all solids and the heights of one surface are uncertain."""
+    stated = {"gap_um": 0.1, "young_modulus_GPa": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20, "scan_um": 10}
     variants = {"van_der_waals": ["none"], "psd": [], "every": [], "spacing_nm": [], "poisson_ratio": []}
     studies = {"slopes": {"samples": 20}, "variants": variants}
     few = {"design": {"budget_beams": 20, "tip_um": 0.15}, "studies": studies, "pairs": {"b": {"substrate": "B2"}}}
@@ -129,13 +130,17 @@ def test_the_budget_is_that_of_its_stage_and_contacts(uncertain):
     expected = budget.compute(
         of(base),
         {("B2", quantity): with_(quantity) for quantity in OF_MOMENTS},
-        tuple(of(jobs.modulus_contact(plan, "b", 1500, 6000, side)) for side in ("less", "more")),
+        {
+            name: tuple(of(jobs.solid_contact(plan, "b", 1500, 6000, name, side)) for side in ("less", "more"))
+            for name in OF_SOLIDS
+        },
         {"van_der_waals_none": of(base | {"contact": none["contact"], "van_der_waals": "none"})},
         inputs.covariances({"B2": described}, {}, wanted),
         wanted,
     )
     xr.testing.assert_identical(found, expected)
-    assert list(found.input.values) == [*(f"{name} of B2" for name in OF_MOMENTS), "gap", "Young's modulus"]
+    solids = ["Young's modulus", "Poisson's ratio", "Hamaker constant"]
+    assert list(found.input.values) == [*(f"{name} of B2" for name in OF_MOMENTS), "gap", *solids]
 
 
 @pytest.mark.slow
@@ -155,7 +160,10 @@ def test_the_budget_of_the_tips_is_that_of_their_contacts(uncertain):
             ("B2", quantity): tuple(slope_contact.compute([described] * 2, "b", "B2", quantity, shifts))
             for quantity in OF_MOMENTS
         },
-        tuple(of(jobs.tip_modulus_contact(plan, *patch, side)) for side in ("less", "more")),
+        {
+            name: tuple(of(jobs.tip_solid_contact(plan, *patch, name, side)) for side in ("less", "more"))
+            for name in OF_SOLIDS
+        },
         {"van_der_waals_none": of(tips | {"van_der_waals": "none"})},
         inputs.covariances({"B2": described}, {}, wanted),
         wanted,

@@ -7,9 +7,13 @@ import sys
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
+from numpy.testing import assert_allclose
+from vectors import sampled_vectors
 
 import stiction
+from stiction.stages import forces
 
 ROOT = Path(__file__).parents[1]
 PLACES = {name: place.rpartition(".")[::2] for name, place in stiction._PLACES.items()}
@@ -28,6 +32,17 @@ def test_every_public_name_is_what_its_module_defines(name):
 def test_an_unknown_name_raises_the_usual_attribute_error():
     with pytest.raises(AttributeError, match="module 'stiction' has no attribute 'relase'"):
         stiction.relase  # noqa: B018
+
+
+def test_force_laws_of_a_dataset_are_evaluated_and_drawn_by_public_names():
+    samples = sampled_vectors(400, 0.24)
+    dataset = forces.layout(samples, 1.2 * samples[:, 1].max(), np.arange(3.0), np.zeros((1, 3)))
+    vectors, limit = stiction.force_vectors(dataset)
+    laws = stiction.force_laws(vectors, limit)
+    assert_allclose(stiction.law_energy(laws), vectors[:, 0])
+    assert_allclose(stiction.law_pressure(laws, vectors[:, 2]), -vectors[:, 1])
+    drawn = stiction.draw_laws(stiction.fit_chaos(vectors, limit, 3, 0.001), 2000, stiction.stream(1, "notebook"))
+    assert_allclose(stiction.law_energy(drawn).mean(), vectors[:, 0].mean(), rtol=0.05)
 
 
 def test_editors_see_the_names_and_places_of_the_table():

@@ -65,7 +65,7 @@ def site(tmp_path_factory):
 
 
 def test_the_wheel_holds_all_files_that_the_package_reads(site):
-    names = ("config/schema.yaml", "config/paper.yaml", "report/stiction.mplstyle")
+    names = ("config/schema.yaml", "config/paper.yaml", "report/stiction.mplstyle", "py.typed")
     for name in names:
         assert (site / "stiction" / name).read_bytes() == (ROOT / "src" / "stiction" / name).read_bytes()
         assert not (site / "stiction" / name).is_symlink()

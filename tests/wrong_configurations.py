@@ -99,6 +99,10 @@ WRONG_VALUES = [
     ("surfaces: {B1: {scans: }}", "surfaces.B1.scans", "None", GONE),
 ]  # fmt: skip
 
+UNCERTAIN = (
+    "devices: {C1: {kind: cantilever, pair: b, thickness_um: 2.6, gap_um: 20, width_um: 30, humidities: [0.67], "
+)
+UNCERTAIN += "uncertainty: {"
 #: Smooth surfaces under a beam whose strips are short enough.
 SMOOTH = "pairs: {b: {beam: Sub1}}\nbeam: {thickness_um: 8}"
 # As above, for relations between keys
@@ -119,10 +123,11 @@ WRONG_RELATIONS = [
      "standard errors (0.055 and 0.11) of skewness -0.1 and kurtosis 3.5; at this skewness the largest kurtosis is "
      "3.026"),
     ("pairs: {b: {gap_um: 0.317}}", "pairs.b.gap_um", "0.317",
-     "at least 0.3173 µm, 20 times the height of the water film, 12.463 nm, plus the rms of the surfaces, 3.4 nm (given"
-     " pairs.b.humidities = [0.44, 0.55, 0.67, 0.8, 0.88, 0.92], run.pairs = ['a', 'b', 'c'], water.temperature_K = "
-     "300, pairs.b.beam = 'B2', pairs.b.substrate = 'Sub1')"),
-    ("pairs: {c: {gap_um: 0.2}}", "pairs.c.gap_um", "0.2", "at least 0.3124 µm, 20 times the height of the water film"),
+     "at least 0.3173 µm, 20 times the sum of the height of the water film, 12.463 nm, and the rms of the surfaces, "
+     "3.4 nm (given pairs.b.humidities = [0.44, 0.55, 0.67, 0.8, 0.88, 0.92], run.pairs = ['a', 'b', 'c'], "
+     "water.temperature_K = 300, pairs.b.beam = 'B2', pairs.b.substrate = 'Sub1')"),
+    ("pairs: {c: {gap_um: 0.2}}", "pairs.c.gap_um", "0.2",
+     "at least 0.3124 µm, 20 times the sum of the height of the water film"),
     ("pairs: {a: {humidities: [0.9999]}}", "pairs.a.gap_um", "20", "at least 207.9 µm"),
     ("figures: {humidity: 0.9902}", "pairs.c.gap_um", "2", "figures.humidity = 0.9902"),
     ("surfaces: {B2: {kurtosis: 1.5777}}", "sampling.strip_length_um", "1.5",
@@ -190,6 +195,9 @@ WRONG_RELATIONS = [
     ("identification: {patch_um: 200}", "identification.patch_um", "200", "200 x 200 µm every 10 nm take 24.4 GB"),
     ("studies: {variants: {spacing_nm: [0.5]}}", "studies.variants.spacing_nm[0]", "0.5", "2.5 x 31 µm every 0.5 nm"),
     ("beam: {thickness_um: 1000, length_um: 900}", "beam.thickness_um", "1000", "below the length of the beam"),
+    (UNCERTAIN + "poisson_ratio: 0.3}}}", "devices.C1.uncertainty.poisson_ratio", "0.3", "its budget needs 0.23 ± 0.3"),
+    (UNCERTAIN + "hamaker_constant_zJ: 98}}}", "devices.C1.uncertainty.hamaker_constant_zJ", "98",
+     "below the Hamaker constant itself, 97.5 zJ (given van_der_waals = 'water')"),
 ]  # fmt: skip
 
 WRONG = [*WRONG_VALUES, *WRONG_RELATIONS]

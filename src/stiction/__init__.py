@@ -16,12 +16,15 @@ TYPE_CHECKING = False  # type checkers assume that it is true; importing it from
 if TYPE_CHECKING:
     from stiction.beam.cantilever import Beam
     from stiction.beam.release import EndState, release
-    from stiction.chaos.model import ChaosModel
+    from stiction.chaos.model import ChaosModel, draw_laws
     from stiction.chaos.model import fit as fit_chaos
     from stiction.config.cases import case_id
     from stiction.config.files import load
     from stiction.config.messages import ConfigError
     from stiction.contact.asperity import HertzAsperity, MaugisTable, asperity, reduced_modulus
+    from stiction.contact.forcelaw import coefficients as force_laws
+    from stiction.contact.forcelaw import energy as law_energy
+    from stiction.contact.forcelaw import pressure as law_pressure
     from stiction.contact.pair import SurfacePair
     from stiction.contact.vanderwaals import DugdaleAttraction, attraction
     from stiction.device import Device
@@ -30,6 +33,8 @@ if TYPE_CHECKING:
     from stiction.scans.estimate import estimate as estimate_surface
     from stiction.scans.reading import read as read_scan
     from stiction.scans.scan import Scan
+    from stiction.stages.chaos import chaos_model
+    from stiction.stages.forces import vectors as force_vectors
     from stiction.streams import stream
     from stiction.study import PairStudy
     from stiction.surface.field import RoughSurface, StripGrid
@@ -69,8 +74,14 @@ _PLACES = {
     "MaugisTable": "contact.asperity.MaugisTable",
     "HertzAsperity": "contact.asperity.HertzAsperity",
     "SurfacePair": "contact.pair.SurfacePair",
+    "force_vectors": "stages.forces.vectors",
+    "force_laws": "contact.forcelaw.coefficients",
+    "law_pressure": "contact.forcelaw.pressure",
+    "law_energy": "contact.forcelaw.energy",
     "ChaosModel": "chaos.model.ChaosModel",
     "fit_chaos": "chaos.model.fit",
+    "chaos_model": "stages.chaos.chaos_model",
+    "draw_laws": "chaos.model.draw_laws",
     # beams
     "Beam": "beam.cantilever.Beam",
     "EndState": "beam.release.EndState",

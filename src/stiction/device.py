@@ -130,7 +130,7 @@ class Device:
         shared = designs.has_strips_of_pair(self.name)
         shifts = jobs.slope_contact(plan, pair) if shared else jobs.device_slope_contact(plan, *ground)
         choices = {name: self._choice(plan, *ground, name) for name in plan.choices(pair)}
-        return *self._changes(ground, shifts, jobs.modulus_contact), choices
+        return *self._changes(ground, shifts, jobs.solid_contact), choices
 
     @cached_property
     def _changed_tips(self):
@@ -138,20 +138,20 @@ class Device:
         plan, tips = Plan(self.config), Designs(self.config).tips(self.name)
         chosen = plan.choices_of_solids(tips.pair)
         choices = {name: self._met(tips.pair, jobs.tip_choice_contact(plan, *tips, name)) for name in chosen}
-        return *self._changes(tips, jobs.tip_contact(plan, *tips), jobs.tip_modulus_contact), choices
+        return *self._changes(tips, jobs.tip_contact(plan, *tips), jobs.tip_solid_contact), choices
 
-    def _changes(self, patch, shifts, modulus_job):
+    def _changes(self, patch, shifts, solid_job):
         """Contacts of a patch with less and with more of every input."""
-        shifting = typed(slope_contact.Settings, shifts)
+        plan, designs, shifting = Plan(self.config), Designs(self.config), typed(slope_contact.Settings, shifts)
         shifted = {
             key: tuple(slope_contact.compute(self.surfaces, patch.pair, *key, shifting))
-            for key in Designs(self.config).quantities(self.name)
+            for key in designs.quantities(self.name)
         }
-        modulus = None
-        if self._section.get("uncertainty", {}).get("young_modulus_GPa"):
-            plains = (modulus_job(Plan(self.config), *patch, side) for side in ("less", "more"))
-            modulus = tuple(self._met(patch.pair, plain) for plain in plains)
-        return shifted, modulus
+        solids = {
+            name: tuple(self._met(patch.pair, solid_job(plan, *patch, name, side)) for side in ("less", "more"))
+            for name in designs.uncertain_solids(self.name)
+        }
+        return shifted, solids
 
     def _met(self, pair, plain):
         """Contact of the surfaces under the settings of a job."""

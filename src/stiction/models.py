@@ -1,4 +1,4 @@
-"""Names that the whole package shares: models, the two surfaces of a pair, quantities and scans of a surface."""
+"""What the whole package shares: models, the two surfaces of a pair, quantities and scans of a surface, fields."""
 
 #: Models of the heights: Gaussian and non-Gaussian.
 SURFACE_MODELS = ("G", "NG")
@@ -9,8 +9,12 @@ SIDES = ("beam", "substrate")
 #: Quantities of maximum-entropy heights, of measured heights and of spectra, see `stiction.analysis.shifts`.
 OF_MOMENTS, OF_SPECTRUM = ("rms", "skewness", "kurtosis"), ("corner", "slope")
 OF_MEASURED = ("rms", *(f"mode{k}" for k in range(2, 9)))
+#: Sides of a shift, as in names of files: a quantity decreased, and increased.
+SHIFTED = ("less", "more")
 #: Keys of a surface described by scans that choose how these are evaluated, and the two values of each.
 ALTERNATIVES_OF_SCANS = {"beyond": ("cut", "continued"), "heights": ("moments", "measured")}
+#: Side of the periodic fields on which spectra are estimated [m].
+FIELD = 10.24e-6
 
 
 def surface_model(model: str) -> str:

@@ -6,7 +6,7 @@ from beams import PAPER, scattered_laws, uniform_laws
 from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.beam.energy import apparent_adhesion_energy
-from stiction.beam.montecarlo import Experiment, columns, release_beam, scattered_beam, simulate
+from stiction.beam.montecarlo import Experiment, columns, release_beam, released_beams, scattered_beam, simulate
 from stiction.beam.release import EndState
 from stiction.errors import NotConverged
 from stiction.streams import stream
@@ -120,6 +120,11 @@ def test_columns_keep_the_given_number_of_shapes():
     assert_array_equal(ends["sample"], [10, 11, 12])
     assert ends["deflection"].shape == (2, 201)
     assert_allclose(ends["deflection"][:, -1], PAPER.gap, atol=10e-9)  # flat on the ground at its end
+
+
+def test_released_beams_are_the_first_of_their_streams():
+    found, expected = released_beams(NG, 3, beam_stream, threads=2, shapes=2), outcomes(NG, range(3))
+    assert_same(found, expected | {"deflection": expected["deflection"][:2]})
 
 
 def test_errors_state_the_number_of_the_beam():

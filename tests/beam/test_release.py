@@ -164,6 +164,11 @@ def test_weak_adhesion_leaves_the_beam_free_and_straight():
     assert_allclose(end.deflection[:, 0], 0, atol=1e-6 * PAPER.gap)
 
 
+def test_end_states_have_names():
+    labels = {EndState.S_SHAPE: "S-shape", EndState.ARC: "arc", EndState.FREE: "free"}
+    assert {state: state.label for state in EndState} == labels
+
+
 def test_a_crack_shorter_than_the_elements_is_an_error():
     laws = uniform_laws(50, 1e6 * E_BAR, 1e6 * 2e6)
     with pytest.raises(ValueError, match="do not resolve a crack"):

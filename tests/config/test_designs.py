@@ -13,7 +13,7 @@ from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.designs import inputs, stoppers
-from stiction.devices.budget import STEP
+from stiction.devices.budget import OF_SOLIDS
 from stiction.models import OF_MOMENTS, OF_SPECTRUM
 from stiction.stages import contact
 from stiction.studies import slope_contact
@@ -43,8 +43,8 @@ JOBS = [
     (inputs, jobs.budget(PLAN, "C1_rh067")["budget"]),
     (inputs, jobs.budget(PLAN, "S1_rh090")["budget"]),
     (inputs, jobs.tip_budget(PLAN, "C1_rh067")["budget"]),
-    (contact, jobs.modulus_contact(PLAN, *PATCH, "more")),
-    (contact, jobs.tip_modulus_contact(PLAN, *TIP, "more")),
+    *((contact, jobs.solid_contact(PLAN, *PATCH, name, "more")) for name in OF_SOLIDS),
+    *((contact, jobs.tip_solid_contact(PLAN, *TIP, name, "more")) for name in OF_SOLIDS),
     (contact, jobs.tip_choice_contact(PLAN, *TIP, "van_der_waals_dry")),
     (slope_contact, jobs.device_slope_contact(PLAN, *PATCH)),
     (summits, jobs.device_choice_summits(PLAN, *PATCH, "every_2")["base"]),
@@ -120,14 +120,16 @@ def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_tips_as_beams():
     assert found["budget"] == {key: value for key, value in of_beam["budget"].items() if key != "beams"}
     assert (found["quantities"], found["choices"]) == (of_beam["quantities"], PLAN.choices_of_solids("b"))
     number = PLAN.config["design"]["beams"]
-    assert jobs.tip_modulus_contact(PLAN, *TIP, "less")["contact"]["samples"] == number
-    assert jobs.tip_modulus_contact(PLAN, *TIP, "less")["solid"] == jobs.modulus_contact(PLAN, *TIP, "less")["solid"]
+    for name in OF_SOLIDS:
+        tips, strips = (of(PLAN, *TIP, name, "less") for of in (jobs.tip_solid_contact, jobs.solid_contact))
+        assert tips["contact"]["samples"] == number
+        assert tips == strips | {"contact": tips["contact"]}
 
 
 def test_contacts_of_a_budget_are_on_the_patch_of_the_device_with_the_samples_of_slopes():
     samples = PLAN.config["studies"]["slopes"]["samples"]
     for settings in (
-        jobs.modulus_contact(PLAN, *PATCH, "less"),
+        jobs.solid_contact(PLAN, *PATCH, "modulus", "less"),
         jobs.device_choice_summits(PLAN, *PATCH, "every_2")["base"],
     ):
         assert settings["contact"]["samples"] == samples
@@ -137,19 +139,32 @@ def test_contacts_of_a_budget_are_on_the_patch_of_the_device_with_the_samples_of
 
 
 def test_youngs_modulus_changes_in_every_body_of_the_material_of_the_beam():
-    less, more = (jobs.modulus_contact(PLAN, *PATCH, side)["solid"]["young_modulus_GPa"] for side in ("less", "more"))
-    assert (less, more) == pytest.approx((164 * (1 - STEP), 164 * (1 + STEP)))
+    def changed(plan, side):
+        return jobs.solid_contact(plan, *PATCH, "modulus", side)
+
+    less, more = (changed(PLAN, side)["solid"]["young_modulus_GPa"] for side in ("less", "more"))
+    assert (less, more) == pytest.approx((0.95 * 164, 1.05 * 164))
     of_glass = {"materials": {"Glass": GLASS}, "surfaces": {"B2": {"material": "Glass"}}}
-    glass = jobs.modulus_contact(plan(**of_glass), *PATCH, "more")["materials"]
-    assert glass["beam"]["young_modulus_GPa"] == pytest.approx(70 * (1 + STEP))
+    glass = changed(plan(**of_glass), "more")["materials"]
+    assert glass["beam"]["young_modulus_GPa"] == pytest.approx(1.05 * 70)
     assert glass["substrate"]["young_modulus_GPa"] == 164
     both = merged(of_glass, {"surfaces": {"Sub1": {"material": "Glass"}}})
-    assert (
-        len({m["young_modulus_GPa"] for m in jobs.modulus_contact(plan(**both), *PATCH, "more")["materials"].values()})
-        == 1
-    )
+    assert len({one["young_modulus_GPa"] for one in changed(plan(**both), "more")["materials"].values()}) == 1
     assert jobs.budget(plan(**of_glass), "C1_rh067")["budget"]["young_modulus_GPa"] == 70
     assert jobs.budget(plan(**of_glass), "S1_rh090")["budget"]["water"]["contact_angles_deg"] == [20, 0]
+
+
+@pytest.mark.parametrize(("medium", "expected"), [("water", 97.5), ("dry", 186.5), ("none", 186.5)])
+def test_a_budget_has_the_hamaker_constant_through_the_medium_if_it_is_uncertain(medium, expected):
+    stated = {"devices": {"S1": {"uncertainty": {"hamaker_constant_zJ": 3}}}, "van_der_waals": medium}
+    found = jobs.budget(plan(**stated), "S1_rh090")["budget"]
+    assert found["hamaker_constant_zJ"] == pytest.approx(expected)
+    assert typed(inputs.Settings, found).uncertainty.hamaker_constant == pytest.approx(3e-21)
+    assert "hamaker_constant_zJ" not in jobs.budget(PLAN, "S1_rh090")["budget"]
+    constants = {"hamaker_constant_zJ": {"water": 5, "dry": 65}}
+    of_glass = {"materials": {"Glass": GLASS | constants}, "surfaces": {"B2": {"material": "Glass"}}}
+    glass = jobs.budget(plan(**stated, **of_glass), "S1_rh090")["budget"]["hamaker_constant_zJ"]
+    assert glass == {"water": 5, "dry": 65, "none": 65}[medium]
 
 
 def test_the_page_of_a_device_has_its_section_and_its_warnings_alone():
@@ -168,6 +183,21 @@ def test_the_page_of_a_device_has_its_section_and_its_warnings_alone():
         ({"C1": {"uncertainty": {"gap_um": 21}}}, "devices.C1.uncertainty.gap_um", "below the dimension"),
         ({"C1": {"uncertainty": {"residual_stress_MPa": 1}}}, "devices.C1.uncertainty", "without residual_stress_MPa"),
         ({"S1": {"uncertainty": {"gap_um": 1}}}, "devices.S1.uncertainty", "without gap_um"),
+        (
+            {"C1": {"uncertainty": {"young_modulus_GPa": 164}}},
+            "devices.C1.uncertainty.young_modulus_GPa",
+            "below Young's modulus itself, 164 GPa",
+        ),
+        (
+            {"C1": {"uncertainty": {"poisson_ratio": 0.27}}},
+            "devices.C1.uncertainty.poisson_ratio",
+            "above -1 and below 0.5: its budget needs 0.23 ± 0.27",
+        ),
+        (
+            {"C1": {"uncertainty": {"hamaker_constant_zJ": 97.5}}},
+            "devices.C1.uncertainty.hamaker_constant_zJ",
+            "below the Hamaker constant itself, 97.5 zJ",
+        ),
         ({"S1": {"uncertainty": {"humidity": 0.1}}}, "devices.S1.uncertainty.humidity", "above 0 and below 1"),
     ],
 )

@@ -149,3 +149,34 @@ def test_studies_with_shifted_surfaces_have_their_own_number_of_samples(settings
 def test_a_solid_counts_as_polysilicon_if_its_modulus_is_near_that_of_the_paper(modulus, known):
     found = jobs.model_limits(Plan(load({"solid": {"young_modulus_GPa": modulus}})))["materials"]
     assert found == dict.fromkeys("abc", [] if known else [["the solid", ["Poisson's ratio", "Young's modulus"]]])
+
+
+# Uncertain properties of the solids
+
+GLASS = {"poisson_ratio": 0.2, "hamaker_constant_zJ": {"water": 5, "dry": 65}}
+OF_GLASS = {"materials": {"Glass": GLASS}, "surfaces": {"B2": {"material": "Glass"}}}
+
+
+@pytest.mark.parametrize("ratio", [0.23, 0, -0.3])
+def test_poissons_ratio_changes_by_the_same_amount_whatever_its_value(ratio):
+    plan = Plan(load({"solid": {"poisson_ratio": ratio}}))
+    for contact_of in (jobs.solid_contact, jobs.tip_solid_contact):
+        less, more = (contact_of(plan, "b", 3000, 2000, "poisson_ratio", side)["solid"] for side in ("less", "more"))
+        assert (less["poisson_ratio"], more["poisson_ratio"]) == pytest.approx((ratio - 0.05, ratio + 0.05))
+        assert less["young_modulus_GPa"] == more["young_modulus_GPa"] == 164
+
+
+@pytest.mark.parametrize("contact_of", [jobs.solid_contact, jobs.tip_solid_contact])
+def test_the_hamaker_constant_of_polysilicon_changes_in_both_bodies_and_that_of_glass_in_the_beam_alone(contact_of):
+    def changed(plan, side):
+        return contact_of(plan, "b", 3000, 2000, "hamaker_constant", side)["materials"]
+
+    less, more, solid = changed(PLAN, "less"), changed(PLAN, "more"), PLAN.config["solid"]
+    for body in ("beam", "substrate"):
+        assert less[body] == solid | {"hamaker_constant_zJ": pytest.approx({"water": 78, "dry": 149.2})}
+        assert more[body] == solid | {"hamaker_constant_zJ": pytest.approx({"water": 117, "dry": 223.8})}
+    glass = changed(Plan(load(OF_GLASS)), "more")
+    assert glass["beam"]["hamaker_constant_zJ"] == pytest.approx({"water": 6, "dry": 78})
+    assert glass["substrate"] == solid
+    both = merged(OF_GLASS, {"surfaces": {"Sub1": {"material": "Glass"}}})
+    assert changed(Plan(load(both)), "more")["substrate"] == glass["beam"]

@@ -13,7 +13,6 @@ from stiction.config import memory
 from stiction.scans.estimate import _CORRELATED
 from stiction.scans.model_scans import _PERIOD, _POINTS
 from stiction.stages import contact, storage
-from stiction.stages.surfaces import FIELD
 
 DRAWING = """
 import sys
@@ -71,10 +70,6 @@ def test_the_paper_needs_no_more_than_the_usual_memory_of_the_profiles():
 )
 def test_the_largest_field_of_a_configuration_counts(overlay, size):
     assert memory.of_job(changed(overlay)) == max(memory.USUAL, round(memory.of_field(*size))) > memory.USUAL
-
-
-def test_the_fields_of_spectra_have_the_size_of_the_stages():
-    assert pytest.approx(FIELD) == 1e-6 * memory.FIELD_UM
 
 
 JOINING = """

@@ -131,6 +131,19 @@ def test_only_an_uncertain_modulus_is_shifted():
     assert Paths(Plan(exact)).contacts_of_budget("S1")["modulus"] == []
 
 
+def test_other_properties_of_the_solids_are_changed_only_where_they_are_uncertain():
+    stated = {"poisson_ratio": 0.02, "hamaker_constant_zJ": 20}
+    found = Paths(Plan(merged(PAPER.plan.config, {"devices": {"C1": {"uncertainty": stated}}})))
+    for key in ("poisson_ratio", "hamaker_constant"):
+        folder, sides = "results/devices/contact", ("less", "more")
+        strips, tips = (of("C1")[key] for of in (found.contacts_of_budget, found.contacts_of_tip_budget))
+        assert strips == [f"{folder}/{key}/b_1500x30000_{side}.nc" for side in sides]
+        assert tips == [f"{folder}/tips/{key}/b_50x30000_{side}.nc" for side in sides]
+        assert found.contacts_of_budget("S1")[key] == []
+    shared = {"less", "more", "modulus", "choices", "contact"}
+    assert all(found.contacts_of_budget("C1")[key] == PAPER.contacts_of_budget("C1")[key] for key in shared)
+
+
 def test_choices_are_the_variants_that_change_the_contact():
     found = PAPER.contacts_of_budget("S1")["choices"]
     assert len(found) == len(PAPER.plan.choices("b")) == 7
@@ -144,6 +157,8 @@ def test_a_budget_of_tips_needs_contacts_of_the_tips_alone():
         "less": [f"{folder}/slopes/b_50x30000_{name}_less.nc" for name in SHIFTED],
         "more": [f"{folder}/slopes/b_50x30000_{name}_more.nc" for name in SHIFTED],
         "modulus": [f"{folder}/modulus/b_50x30000_less.nc", f"{folder}/modulus/b_50x30000_more.nc"],
+        "poisson_ratio": [],
+        "hamaker_constant": [],
         "choices": [
             f"{folder}/choices/b_50x30000_{name}.nc"
             for name in ("van_der_waals_dry", "van_der_waals_none", "poisson_ratio_0.18", "poisson_ratio_0.28")

@@ -1,5 +1,6 @@
 """Devices and materials in a configuration: their keys, the relations between them, and what is computed for them."""
 
+import functools
 import json
 from dataclasses import MISSING, fields
 
@@ -24,7 +25,7 @@ CHART = {"thicknesses_um": [2.0, 2.6], "gaps_um": [10, 20], "humidities": [0.4, 
 GOLD = {"young_modulus_GPa": 79, "poisson_ratio": 0.42, "hardness_GPa": 1.2, "contact_angle_deg": 60}
 GOLD |= {"hamaker_constant_zJ": {"water": 250, "dry": 400}}
 UNCERTAIN = {"thickness_um": 0.05, "gap_um": 0.2, "young_modulus_GPa": 4, "humidity": 0.01, "scan_um": 10}
-UNCERTAIN |= {"temperature_K": 1, "contact_angle_deg": 5}
+UNCERTAIN |= {"temperature_K": 1, "contact_angle_deg": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20}
 DEVICES = {
     "C1": C1 | {"chart": CHART, "strip_um": 1.2, "uncertainty": UNCERTAIN},
     "R1": R1 | {"humidities": [0.67], "uncertainty": {"residual_stress_MPa": 5}},
@@ -68,9 +69,10 @@ WRONG = [
     ({"pair": "d"}, "devices.C1.pair", "must be one of a, b, c"),
     ({"humidities": [0.6, 0.6]}, "devices.C1.humidities", "listed twice"),
     ({"humidities": [0.65001]}, "devices.C1.humidities", "at most 4 decimals"),
-    ({"gap_um": 0.1}, "devices.C1.gap_um", "20 times the height of the water film"),
+    ({"gap_um": 0.1}, "devices.C1.gap_um", "20 times the sum of the height of the water film"),
     ({"humidities": [0.9999]}, "devices.C1.gap_um", "must be at least 207.9"),
     ({"thickness_um": 0.1}, "devices.C1.thickness_um", "must be so large that strips of 1.5 µm resolve its cracks"),
+    ({"thickness_um": 0.1}, "devices.C1.thickness_um", "strip_um, which must stay above the correlation length"),
     ({"thickness_um": 0.5}, "devices.C1.thickness_um", "at RH 0.67 they must be below about"),
     ({"thickness_um": 1}, "devices.C1.thickness_um", "at RH 0.67 they must be below about"),
     ({"strip_um": 0.75}, "devices.C1.strip_um", "above the correlation length of the surface"),
@@ -79,7 +81,7 @@ WRONG = [
     ({"width_um": 9000}, "devices.C1.kind", "within 8 GB of memory"),
     ({"chart": CHART | {"humidities": [0.9, 0.4]}}, "devices.C1.chart.humidities", "in increasing order"),
     ({"chart": CHART | {"thicknesses_um": [2, 2]}}, "devices.C1.chart.thicknesses_um", "each value once"),
-    ({"chart": CHART | {"gaps_um": [0.1, 20]}}, "devices.C1.chart.gaps_um", "20 times the height"),
+    ({"chart": CHART | {"gaps_um": [0.1, 20]}}, "devices.C1.chart.gaps_um", "20 times the sum of the height"),
     ({"chart": CHART | {"thicknesses_um": [0.1, 2]}}, "devices.C1.chart.thicknesses_um", "so large that strips"),
     ({"width_um": 4}, "design.tip_um", "0.05 x 4 µm of pair b hold about 4.2 (given devices.C1.width_um = 4)"),
     ({"uncertainty": {"gap_um": -1}}, "devices.C1.uncertainty.gap_um", "at least 0"),
@@ -112,6 +114,11 @@ def test_wrong_sizes_and_materials_are_refused_by_name(overlay, key, message):
     line = problems(changed(overlay))[0]
     assert line.startswith(f"{key} is ")
     assert message in line
+
+
+@pytest.mark.parametrize("side", ["0.055", "0.02"])
+def test_the_size_of_tips_does_not_matter_without_devices(side):
+    assert problems(changed(f"design: {{tip_um: {side}}}")) == ()
 
 
 def test_a_device_whose_solids_do_not_resist_is_refused_although_its_pair_does_not_run():
@@ -161,6 +168,31 @@ def test_uncertain_contact_angles_leave_water(angles, deviation, refused):
     found = [line for line in problems(config) if "uncertainty" in line]
     assert len(found) == refused
     assert all(line.startswith("devices.C1.uncertainty.contact_angle_deg is ") for line in found)
+
+
+@pytest.mark.parametrize(
+    ("key", "deviation", "changes", "value"),
+    [
+        ("young_modulus_GPa", 79, {}, "79 GPa"),
+        ("young_modulus_GPa", 78, {}, None),
+        ("young_modulus_GPa", 79, {"surfaces": {"B2": {"material": "Other"}}}, None),
+        ("poisson_ratio", 0.01, {}, None),
+        ("poisson_ratio", 0.09, {}, "0.42 ± 0.09"),
+        ("poisson_ratio", 0.01, {"materials": {"Gold": {"poisson_ratio": 0.46}}}, "0.46 ± 0.05"),
+        ("poisson_ratio", 0.01, {"materials": {"Gold": {"poisson_ratio": -0.96}}}, "-0.96 ± 0.05"),
+        ("poisson_ratio", 0, {"materials": {"Gold": {"poisson_ratio": 0.46}}}, None),
+        ("hamaker_constant_zJ", 250, {}, "250 zJ"),
+        ("hamaker_constant_zJ", 250, {"van_der_waals": "dry"}, None),
+        ("hamaker_constant_zJ", 250, {"van_der_waals": "none"}, None),
+        ("hamaker_constant_zJ", 100, {"surfaces": {"B2": {"material": "Other"}}}, "97.5 zJ"),
+    ],
+)
+def test_an_uncertain_property_of_the_material_of_the_beam_stays_possible(key, deviation, changes, value):
+    named = {"materials": {"Gold": GOLD, "Other": {"hardness_GPa": 9}}, "surfaces": {"B2": {"material": "Gold"}}}
+    config = functools.reduce(merged, (named, changes), with_device(uncertainty={key: deviation}))
+    found = [line for line in problems(config) if "uncertainty" in line]
+    assert len(found) == (value is not None)
+    assert all(line.startswith(f"devices.C1.uncertainty.{key} is ") and value in line for line in found)
 
 
 def test_the_patch_of_a_stopper_is_whole_on_the_grid():

@@ -8,7 +8,7 @@ import small
 from hypothesis import given
 from hypothesis import strategies as st
 from published import SPACING, SURFACES
-from scipy.special import gamma, ndtri
+from scipy.special import gamma, ndtr, ndtri
 
 from stiction.beam.foundation import decay_length, ground_stiffness
 from stiction.contact import forcelaw
@@ -87,7 +87,7 @@ def test_half_of_the_moments_of_a_half_normal_distribution():
 def drawn(rms, medium):
     """Pair of Gaussian surfaces, its asperity, and the contact of four samples."""
     grid = StripGrid(1.5e-6, 30e-6, SPACING, margin=1e-6)
-    beam, substrate = (SURFACES[name].gaussian_twin(grid) for name in ("B2", "Sub1"))
+    beam, substrate = (SURFACES[name].with_gaussian_heights(grid) for name in ("B2", "Sub1"))
     solid = HertzAsperity(POLYSILICON) if medium == "none" else MaugisTable(POLYSILICON, attraction(medium))
     pair = SurfacePair(dataclasses.replace(beam, rms=rms), substrate, 0.05e-9, asperity=solid)
     streams = [(stream(1, "beam", k), stream(1, "substrate", k)) for k in range(4)]
@@ -170,6 +170,25 @@ def test_forces_of_heights_and_radii_that_grow_together_keep_their_ratio():
     other = force_law(wide, solid, 2 * heights, (2 * height, tension))
     assert other[0] == pytest.approx(one[0], rel=1e-6)
     assert other[1] == pytest.approx(one[1] / 2, rel=1e-6)
+
+
+def test_heights_of_half_the_size_have_the_law_of_a_surface_of_half_the_roughness():
+    surface, solid, factor = moments("B2"), HertzAsperity(POLYSILICON), 0.5
+    smooth = ProfileMoments(*(factor**2 * moment for moment in dataclasses.astuple(surface)))
+    heights = factor * SURFACES["B2"].rms * quantiles("B2")[0]
+    halved, own = (force_law(each, solid, heights, film(0.95), points=400) for each in (surface, smooth))
+    assert halved == pytest.approx(own, rel=0.01)  # the highest summits, beyond the last of the heights, differ
+
+
+def test_the_law_of_gaussian_heights_reaches_f_limit_where_their_mean_curve_does():
+    surface, solid, (height, tension) = moments("B2"), HertzAsperity(POLYSILICON), film(0.88)
+    distance = np.linspace(0, 6e-9 + height, 20_000)
+    curve = solid_pressure(surface, solid, distance) - tension * ndtr((height - distance) / np.sqrt(surface.m0))
+    heights = SURFACES["B2"].rms * quantiles("B2")[0]
+    f_max, a_left = force_law(surface, solid, heights, (height, tension))
+    before = np.interp(-1.5 * f_max, -curve[: curve.argmin()], distance[: curve.argmin()]) - distance[curve.argmin()]
+    law = np.array([f_max, 0.0, a_left, 1.0])
+    assert forcelaw.pressure(law, before) == pytest.approx(1.5 * f_max, rel=0.15)
 
 
 def test_a_solid_that_does_not_resist_has_no_force_law():

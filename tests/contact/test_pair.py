@@ -346,13 +346,13 @@ def test_a_common_surface_is_drawn_once_for_each_side_and_sample():
 
 @pytest.mark.parametrize("change", [{"length": 0.5e-6}, {"length": 0.48e-6, "width": 0.64e-6, "spacing": 8e-9}])
 def test_surfaces_on_different_points_are_refused(change):
-    other = SURFACES["Sub1"].gaussian_twin(dataclasses.replace(STRIP, **change))
+    other = SURFACES["Sub1"].with_gaussian_heights(dataclasses.replace(STRIP, **change))
     with pytest.raises(ValueError, match="must have the same points"):
         dataclasses.replace(PAIR, substrate=other)
 
 
 def test_surfaces_with_different_margins_are_accepted():
     wider = dataclasses.replace(STRIP, margin=0.4e-6)
-    pair = dataclasses.replace(PAIR, substrate=SURFACES["Sub1"].gaussian_twin(wider))
+    pair = dataclasses.replace(PAIR, substrate=SURFACES["Sub1"].with_gaussian_heights(wider))
     assert rough(pair=pair).shape == STRIP.shape
     assert pair.substrate.translation is IDENTITY

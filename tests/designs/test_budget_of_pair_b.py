@@ -7,10 +7,11 @@ import pytest
 
 from stiction.config import jobs
 from stiction.config.files import load
+from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.designs import budget, inputs
-from stiction.devices.budget import Budget
+from stiction.devices.budget import OF_SOLIDS, Budget
 from stiction.models import OF_MOMENTS
 from stiction.stages import contact, curves
 from stiction.studies import slope_contact
@@ -18,6 +19,7 @@ from stiction.study import surface_datasets
 
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.44, 0.67]}
 C1 |= {"uncertainty": {"thickness_um": 0.05, "gap_um": 0.3, "young_modulus_GPa": 5, "scan_um": 10}}
+SOLIDS = {"young_modulus_GPa": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20}
 PLAN = Plan(load({"devices": {"C1": C1}, "contact": {"samples": 300}, "chaos": {"order": 4}}))
 #: Slopes d ln l_s / dx by humidity, by central differences on 5000 samples of contact and 1000 beams; those of rms,
 #: dimensions and Young's modulus are logarithmic.
@@ -29,6 +31,7 @@ KNOWN = {
 }
 #: Their standard error [-].
 ERROR = 0.02
+WATER, RATIO = curves.Water(300.0), PLAN.config["solid"]["poisson_ratio"]
 
 
 @pytest.fixture(scope="module")
@@ -43,20 +46,28 @@ def base(surfaces):
 
 @pytest.fixture(scope="module")
 def changed(surfaces):
-    """Contacts with less and with more of every quantity of B2, and of Young's modulus."""
+    """Contacts with less and with more of every quantity of B2."""
     settings = typed(slope_contact.Settings, jobs.slope_contact(PLAN, "b"))
-    shifted = {("B2", name): tuple(slope_contact.compute(surfaces, "b", "B2", name, settings)) for name in OF_MOMENTS}
-    plains = (jobs.modulus_contact(PLAN, "b", 1500, 30000, side) for side in ("less", "more"))
-    modulus = (contact.compute(surfaces, "b", "NG", typed(contact.Settings, plain)) for plain in plains)
-    return shifted, tuple(modulus)
+    return {("B2", name): tuple(slope_contact.compute(surfaces, "b", "B2", name, settings)) for name in OF_MOMENTS}
+
+
+@pytest.fixture(scope="module")
+def solids(surfaces):
+    """Contacts with less and with more of every property of the solids."""
+
+    def changed(name, side):
+        plain = jobs.solid_contact(PLAN, "b", 1500, 30000, name, side)
+        return contact.compute(surfaces, "b", "NG", typed(contact.Settings, plain))
+
+    return {name: tuple(changed(name, side) for side in ("less", "more")) for name in OF_SOLIDS}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("humidity", KNOWN)
-def test_slopes_of_pair_b_are_those_of_an_independent_study(humidity, surfaces, base, changed):
+def test_slopes_of_pair_b_are_those_of_an_independent_study(humidity, surfaces, base, changed, solids):
     known = {"B2": inputs.of_one_scan(*surfaces[0], 10e-6)}
     settings = typed(inputs.Settings, jobs.budget(PLAN, f"C1_rh{round(100 * humidity):03}")["budget"])
-    found = budget.compute(base, *changed, {}, known, settings)
+    found = budget.compute(base, changed, {"modulus": solids["modulus"]}, {}, known, settings)
     slopes = dict(zip(found.input.values, zip(found.slope.values, found.slope_error.values, strict=True), strict=True))
     assert set(slopes) == set(KNOWN[humidity])
     for name, (slope, error) in slopes.items():
@@ -72,10 +83,30 @@ def test_slopes_of_pair_b_are_those_of_an_independent_study(humidity, surfaces, 
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("humidity", KNOWN)
+def test_slopes_of_the_solids_follow_the_energy_of_the_contact(humidity, base, solids):
+    plan = Plan(merged(PLAN.config, {"devices": {"C1": {"uncertainty": SOLIDS}}}))
+    settings = typed(inputs.Settings, jobs.budget(plan, f"C1_rh{round(100 * humidity):03}")["budget"])
+    found = budget.compute(base, {}, solids, {}, {}, settings)
+    slopes = dict(zip(found.input.values, zip(found.slope.values, found.slope_error.values, strict=True), strict=True))
+    # Eq. (13): the length has the power -1/4 of the energy of the contact.
+    for name, key in (("Poisson's ratio", "poisson_ratio"), ("Hamaker constant", "hamaker_constant")):
+        energy = np.log([curves.energies(one, humidity, WATER).mean() for one in solids[key]])
+        expected = -0.25 * np.diff(energy)[0] / OF_SOLIDS[key].difference
+        slope, error = slopes[name]
+        assert abs(slope - expected) < 4 * error, name
+        assert abs(slope) > 4 * error, name  # control: another sign, or no effect, would be seen
+    # Young's modulus of the contact enters with E / (1 - ν²), that of the beam alone with the power 1/4.
+    (modulus, own), (ratio, error) = slopes["Young's modulus"], slopes["Poisson's ratio"]
+    power = 2 * RATIO / (1 - RATIO**2)
+    assert abs(ratio - power * (modulus - 0.25)) < 4 * np.hypot(error, power * own)
+    assert slopes["Hamaker constant"][0] < 0 < ratio < power * modulus
+
+
+@pytest.mark.slow
 def test_a_contact_angle_of_20_degrees_costs_a_quarter_of_the_energy_and_one_of_40_two_thirds(base):
-    water = curves.Water(300.0)
     energies = [
-        curves.energies(base, 0.67, replace(water, contact_angles=(np.radians(angle),) * 2)) for angle in (0, 20, 40)
+        curves.energies(base, 0.67, replace(WATER, contact_angles=(np.radians(angle),) * 2)) for angle in (0, 20, 40)
     ]
     perfect = energies[0].mean()
     for wetted, loss in zip(energies[1:], (-0.23, -0.70), strict=True):

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from legends import covering
 
 from stiction.designs import figures_devices, tables_devices
 from stiction.report.style import save
@@ -59,6 +60,8 @@ def test_the_table_has_a_row_per_shape_and_share_with_the_numbers_of_the_dataset
     stated = row.safe_length_um, row.estimate_um, row.estimate_se_beams_um, row.estimate_se_surfaces_um
     held = one.safe_length, one.estimate, one.beams_error, one.surfaces_error
     assert stated == pytest.approx([1e6 * float(value) for value in held], rel=1e-12, nan_ok=True)
+    assert row.saturated_air_um == pytest.approx(1e6 * float(one.flooded_length), rel=1e-12)
+    assert table.cells["saturated air [µm]"].iloc[7] == f"{row.saturated_air_um:.1f}"
 
 
 def test_arcs_have_no_error_of_surfaces_of_their_own(found):
@@ -69,7 +72,7 @@ def test_arcs_have_no_error_of_surfaces_of_their_own(found):
 
 def test_warnings_are_numbered_in_the_cells_and_written_out_in_caption_and_csv(found):
     table = tables_devices.safe_lengths(found, WARNINGS)
-    assert "(1) Too wet. (2) Too thin." in table.caption
+    assert table.caption.endswith("Warnings:\n\n- (1) Too wet.\n- (2) Too thin.")
     assert list(table.cells.warnings) == ["1"] * 2 + ["1, 2"] * 2 + [""] * 2 + ["2"] * 2 + [""] * 2
     assert "Too wet. Too thin." in table.csv
     assert "curl" in table.caption
@@ -137,7 +140,7 @@ def test_a_line_of_a_chart_has_all_shares_and_its_warnings():
         "saturated air [µm]": "53.0",
         "warnings": "1, 2",
     }
-    assert "Warnings: (1) Too steep. (2) Too short." in table.caption
+    assert table.caption.endswith("Warnings:\n\n- (1) Too steep.\n- (2) Too short.")
     assert "Too steep. Too short." in table.csv
     assert table.cells["from"].iloc[0] == "finite elements"
 
@@ -162,14 +165,30 @@ def test_the_chart_shows_the_middle_share_of_every_thickness_gap_and_shape():
         np.testing.assert_allclose(curve.get_ydata(), np.array([2, 1, 0.5]) * length)
 
 
-def test_the_axis_of_a_chart_is_that_of_its_own_lengths_with_room_for_the_legend():
+def test_the_axis_of_a_chart_is_that_of_its_own_lengths():
     found = {("C1", 0.5): charted(0.5).assign_coords(shape=[S_SHAPE, EITHER])}
     found["C1", 0.5]["safe_length"] = found["C1", 0.5].safe_length * xr.DataArray([10, 1], dims="shape")
     alone, tip, *_ = figures_devices.chart(found, STEEP).axes
     for panel, low, high in ((alone, 50, 1090), (tip, 51, 111)):  # limits of saturated air and longest curves
         bottom, top = panel.get_ylim()
         assert 0.9 * low < bottom < low
-        assert high < top < 1.6 * high
+        assert high < top < 1.1 * high
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_no_legend_covers_a_panel_a_text_or_another_legend(found, count, tmp_path):
+    cases = {(f"C{k}", rh): found["C1", 0.44 if rh == 0.44 else 0.67] for k in range(count) for rh in (0.44, 0.67, 0.9)}
+    warned = dict.fromkeys(product(*map(dict.fromkeys, zip(*cases, strict=True)), (S_SHAPE, EITHER)), ["Too wet."])
+    assert covering(figures_devices.risk(cases, warned), tmp_path) == []
+    axes = {(f"C{k}", rh): charted(rh) for k in range(count) for rh in (0.4, 0.5)}
+    assert covering(figures_devices.chart(axes, {}), tmp_path) == []
+
+
+def test_a_legend_within_a_panel_is_found(found, tmp_path):
+    figure = figures_devices.risk(found, WARNINGS)
+    panel = figure.axes[0]
+    panel.legend(handles=panel.get_legend().legend_handles, labels=["first", "second"], loc="lower right")
+    assert covering(figure, tmp_path) == ["first"]
 
 
 def named(panel):

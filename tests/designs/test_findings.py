@@ -38,7 +38,7 @@ def test_s_shaped_beams_of_the_paper_have_no_warning():
 
 def test_arcs_and_what_their_mean_lacks_are_each_said_once():
     arcs, mean = findings.of_beams(beams(58, 42, 1400 * UM), PAPER, 1.5 * UM)
-    assert "42.0% of the beams end as arcs" in arcs
+    assert "42 % of the beams end as arcs" in arcs
     assert "1.5 µm" in arcs
     assert "1400 µm" in mean
     assert "1500 µm" in mean
@@ -46,7 +46,7 @@ def test_arcs_and_what_their_mean_lacks_are_each_said_once():
 
 def test_beams_that_all_end_as_arcs_have_no_mean_to_warn_about():
     (sentence,) = findings.of_beams(beams(0, 10), PAPER, 1.5 * UM)
-    assert "100.0%" in sentence
+    assert "100 % of the beams end as arcs" in sentence
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,7 @@ def test_only_pairs_with_plastic_contact_are_said_to_be_plastic():
     cases = {("b", 0.67, "NG"): beams(20, 0), ("b", 0.67, "G"): beams(10, 10)}
     found = about_pairs(cases, PLASTIC)
     assert {subject for subject, sentences in found.items() if sentences} == {"pair c", "pair b, RH 0.67, G"}
-    assert found["pair c"][0].startswith("58% of the contact area is plastic")
+    assert found["pair c"][0].startswith("58 % of the contact area is plastic")
 
 
 def test_pairs_whose_plasticity_was_not_studied_are_said_to_be_unchecked():
@@ -117,7 +117,7 @@ def test_beams_of_pairs_a_and_b_at_the_humidities_of_the_paper_have_the_warnings
         ended = xr.Dataset({"state": ("sample", np.repeat([0, 1, 2], np.round(np.multiply(shares, 1000)).astype(int)))})
         ended["crack_length"] = "sample", np.where(ended.state == 0, mean, 1500 * UM)
         found = findings.of_beams(ended, PAPER, 1.5 * UM)
-        # Gaussian twins and beams in the driest air adhere so little that some end as arcs: two sentences, else none.
+        # Gaussian surfaces and all in the driest air adhere so little that some end as arcs: two sentences, else none.
         assert len(found) == (shares[1] > 0) + (0 < shares[0] < 1)
         assert all("end as arcs" in sentence or "end S-shaped" in sentence for sentence in found)
         arcs += [row["model"]] * (shares[1] > 0)
@@ -153,6 +153,13 @@ def test_each_limit_of_a_device_is_said_once(changes, words):
     assert words in sentence
 
 
+def test_a_warning_about_tips_names_the_length_in_saturated_air():
+    found, of = device()
+    tip = 1e6 * float(found.flooded_length.sel(shape=EITHER))
+    (sentence,) = only(found, replace(of, tip=1.5 * UM))
+    assert f"saturated air, {tip:.0f} µm, the shortest that water holds, is safe." in sentence
+
+
 def test_a_shape_has_the_warnings_of_its_own_length():
     found, of = device(energy=20e-3)
     alone, tip = (1e6 * float(found.estimate.sel(shape=shape).min()) for shape in (S_SHAPE, EITHER))
@@ -167,14 +174,15 @@ def test_a_shape_has_the_warnings_of_its_own_length():
 def test_plastic_contact_of_a_device_is_said_and_so_is_that_it_was_not_studied():
     found, of = device()
     (sentence,) = only(found, of, plastic=0.58)
-    assert "58%" in sentence
+    assert "58 %" in sentence
+    assert "beams stick at shorter lengths than the elastic model predicts" in sentence
     assert ["was not checked" in sentence for sentence in findings.of_device(found, of)[S_SHAPE]] == [True]
 
 
 def test_a_gap_that_the_film_fills_is_said():
     found, of = device()
     (sentence,) = only(found.assign(film=2e-6), of)
-    assert "less than 20 times film height plus roughness" in sentence
+    assert "less than 20 times the sum of film height and roughness" in sentence
 
 
 def test_a_bridge_that_stretches_is_said_and_has_half_its_length_as_crack():
@@ -182,7 +190,7 @@ def test_a_bridge_that_stretches_is_said_and_has_half_its_length_as_crack():
     crack = float(wide.estimate.min()) / 2
     assert only(wide, findings.OfDevice(replace(R1, thickness=3 * UM), 0.15 * UM), S_SHAPE) == []
     (sentence,) = only(wide, findings.OfDevice(R1, 0.15 * UM), S_SHAPE)
-    assert "1 times the thickness of the bridge" in sentence
+    assert "equal to the thickness of the bridge" in sentence
     steep = findings.OfDevice(replace(R1, gap=0.11 / 1.5 * crack, thickness=80 * UM), 0.0)
     assert any("slope of 0.11" in sentence for sentence in only(wide, steep, S_SHAPE))
 
@@ -219,6 +227,7 @@ def charted(longest, film=3e-9, wedge=0.15 * UM):
         {
             "safe_length": (("thickness", "gap", "shape", "share"), lengths),
             "wedge": (("thickness", "gap"), [[wedge], [wedge]]),
+            "flooded_length": (("thickness", "gap", "shape"), UM * np.array([[[300, 200]], [[400, 210]]])),
             "film": film,
             "rms": 3e-9,
         },
@@ -231,16 +240,16 @@ def test_a_curve_of_a_chart_has_the_warnings_of_its_shortest_length():
     warnings = findings.of_charts(
         found, PLASTIC, dict.fromkeys(("C1", "C2"), BEYOND | {"device": BEYOND["device"] | {"pair": "b"}})
     )
-    said = {curve: sentences for curve, sentences in warnings.items() if sentences}
-    assert list(said) == [("C1", 2 * UM, 20 * UM, EITHER)]
-    assert said["C1", 2 * UM, 20 * UM, EITHER][0].startswith("At a length of 225 µm the beam reaches a slope of 0.13")
+    given = {curve: sentences for curve, sentences in warnings.items() if sentences}
+    assert list(given) == [("C1", 2 * UM, 20 * UM, EITHER)]
+    assert given["C1", 2 * UM, 20 * UM, EITHER][0].startswith("At a length of 225 µm the beam reaches a slope of 0.13")
     assert len(warnings) == 8
 
 
 def test_the_air_of_the_shortest_length_of_a_curve_counts():
     along = [charted(700 * UM), charted(600 * UM, film=2 * UM)]
     of = findings.OfDevice(C1, 0.15 * UM)
-    assert "film height plus roughness" in findings.of_chart(along, of, 0.0)[3 * UM, 20 * UM, S_SHAPE][0]
+    assert "sum of film height and roughness" in findings.of_chart(along, of, 0.0)[3 * UM, 20 * UM, S_SHAPE][0]
     assert findings.of_chart(along[:1], of, 0.0)[3 * UM, 20 * UM, S_SHAPE] == []
 
 
@@ -249,6 +258,7 @@ def test_the_shortest_wedge_of_a_curve_counts_whatever_the_air_of_its_shortest_l
     found = findings.of_chart(along, findings.OfDevice(C1, 0.15 * UM), 0.0)
     (sentence,) = found[2 * UM, 20 * UM, EITHER]
     assert "longer than the wedge on which it acts, 0.14 µm" in sentence
+    assert "saturated air, 200 µm," in sentence
     assert found[2 * UM, 20 * UM, S_SHAPE] == []
 
 
@@ -265,7 +275,8 @@ def test_the_thickness_of_a_curve_counts():
 def test_a_stopper_has_the_warnings_of_its_contact():
     plain = {"S1": {"pair": "c", "materials": [["Gold", ["hardness"]]]}, "S2": {"pair": "d", "materials": []}}
     found = findings.of_stoppers(PLASTIC, plain)
-    assert [sentence.split()[0] for sentence in found["S1"]] == ["58%", "4"]
+    assert [sentence.split()[0] for sentence in found["S1"]] == ["58", "4"]
+    assert "stoppers hold more than the elastic model predicts, which is the unsafe side." in found["S1"][0]
     assert "was not checked" in found["S2"][0]
 
 

@@ -1,6 +1,7 @@
 """Uncertain inputs of devices: the states around their values, and the covariance of their errors."""
 
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -20,11 +21,11 @@ BASE = State(1.0, 0.67, WATER, C1, 9e-12)
 SETTINGS = Settings(1, WATER, 0.67, Uncertainty(), ("B2", "Sub1"), 164e9, C1, beams=24)
 
 
-def uncertain(stated, water=WATER, of=C1, modulus=None):
+def uncertain(stated, water=WATER, of=C1, solids=MappingProxyType({}), **more):
     """Uncertain inputs of a device without those of surfaces: name to its states, step and standard uncertainty."""
-    settings = replace(SETTINGS, uncertainty=stated, device=of, water=water)
+    settings = replace(SETTINGS, uncertainty=stated, device=of, water=water, **more)
     state = replace(BASE, water=water, device=of)
-    found, covariance = inputs.uncertain(state, {}, modulus, {}, settings)
+    found, covariance = inputs.uncertain(state, {}, solids, {}, settings)
     return {entry.name: (entry, u) for entry, u in zip(found, np.sqrt(np.diag(covariance)), strict=True)}
 
 
@@ -54,7 +55,7 @@ def test_contact_angles_err_together_each_over_a_step_of_its_own():
     zero, small_angle, least, middle, most = np.radians([0, 10, 60, 70, 80])
     settings = replace(SETTINGS, uncertainty=Uncertainty(contact_angle=small_angle))
     wet = replace(BASE, water=replace(WATER, contact_angles=(zero, middle)))
-    found, covariance = inputs.uncertain(wet, {}, None, {}, settings)
+    found, covariance = inputs.uncertain(wet, {}, {}, {}, settings)
     assert {entry.group for entry in found} == {"the contact angles"}
     met = np.array([[state.water.contact_angles for state in entry.states] for entry in found])
     assert_allclose(met, [[(zero, middle), (small_angle, middle)], [(zero, least), (zero, most)]])
@@ -73,12 +74,32 @@ def test_air_is_changed_in_both_directions():
 
 
 def test_youngs_modulus_changes_contact_and_beam_together():
-    entry, deviation = uncertain(Uncertainty(young_modulus=8.2e9), modulus=(0.9, 1.1))["Young's modulus"]
+    changed = {"modulus": (0.9, 1.1)}
+    entry, deviation = uncertain(Uncertainty(young_modulus=8.2e9), solids=changed)["Young's modulus"]
     assert [state.contact for state in entry.states] == [0.9, 1.1]
     assert_allclose([state.device.young_modulus for state in entry.states], [0.95 * 164e9, 1.05 * 164e9])
     assert_allclose([entry.step, deviation], [np.log(1.05 / 0.95), 0.05])
-    stopper, _ = uncertain(Uncertainty(young_modulus=8.2e9), of=None, modulus=(0.9, 1.1))["Young's modulus"]
+    stopper, _ = uncertain(Uncertainty(young_modulus=8.2e9), of=None, solids=changed)["Young's modulus"]
     assert [state.device for state in stopper.states] == [None, None]
+
+
+def test_poissons_ratio_and_the_hamaker_constant_change_the_contact_and_leave_the_beam():
+    stated = Uncertainty(young_modulus=8.2e9, poisson_ratio=0.02, hamaker_constant=3e-20)
+    changed = {"hamaker_constant": (0.7, 1.3), "poisson_ratio": (0.8, 1.2), "modulus": (0.9, 1.1)}
+    found = uncertain(stated, solids=changed, hamaker_constant=1e-19)
+    assert list(found) == ["Young's modulus", "Poisson's ratio", "Hamaker constant"]
+    for name, contacts in (("Poisson's ratio", (0.8, 1.2)), ("Hamaker constant", (0.7, 1.3))):
+        assert [(state.contact, state.device) for state in found[name][0].states] == [(one, C1) for one in contacts]
+    ratio, constant = found["Poisson's ratio"], found["Hamaker constant"]
+    assert_allclose([ratio[0].step, ratio[1]], [0.1, 0.02])
+    assert_allclose([constant[0].step, constant[1]], [np.log(1.2 / 0.8), 0.3])
+
+
+def test_what_counts_as_exact_if_it_is_not_stated_has_the_name_of_its_group():
+    stated = Uncertainty(young_modulus=8.2e9, poisson_ratio=0.02, hamaker_constant=3e-20)
+    changed = dict.fromkeys(("modulus", "poisson_ratio", "hamaker_constant"), (0.9, 1.1))
+    found = uncertain(stated, solids=changed, hamaker_constant=1e-19)
+    assert {entry.group for entry, _ in found.values()} < set(inputs.countable(SETTINGS))
 
 
 def test_a_stopper_has_no_dimensions_of_a_beam():
@@ -92,7 +113,7 @@ def test_quantities_of_a_surface_keep_their_covariance_and_their_group():
     pair = tuple(small.contact_of_pair().assign(difference=((), 0.1)) for _ in range(2))
     shifted = {("B2", name): pair for name in known.quantities}
     settings = replace(SETTINGS, uncertainty=Uncertainty(humidity=0.1))
-    found, matrix = inputs.uncertain(BASE, shifted, None, {"B2": known}, settings)
+    found, matrix = inputs.uncertain(BASE, shifted, {}, {"B2": known}, settings)
     assert [entry.name for entry in found] == ["mode2 of B2", "corner of B2", "humidity"]
     assert [entry.group for entry in found] == ["the heights of B2", "the spectrum of B2", "the humidity"]
     assert [entry.step for entry in found[:2]] == [0.1, 0.1]

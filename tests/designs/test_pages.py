@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import pytest
+import xarray as xr
 from test_device_outputs import charted
 from test_tables_budget import BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_dataset
 
@@ -25,7 +26,7 @@ CANTILEVER = {
 STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.44, 0.67]}
 
 
-def safe(kind="cantilever", longest=600e-6):
+def safe(kind="cantilever", longest=600e-6, wedge=2e-7):
     """Safe lengths of 400 devices that stick between two thirds of a length and this length."""
     device = DesignedBeam(kind, "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
     settings = safe_lengths.Settings(1, Water(300.0), 0.67, device, (1e-2, 1e-3, 1e-4), 1.5e-7)
@@ -34,7 +35,7 @@ def safe(kind="cantilever", longest=600e-6):
         shapes[sticking.EITHER] = 0.7 * shapes[sticking.S_SHAPE]
     bounds = {shape: sticking.safe_lengths(values, settings) for shape, values in shapes.items()}
     errors = {shape: np.full(3, 1e-6) for shape in shapes}
-    return safe_lengths.layout(shapes, bounds, errors, 1e-7, 3e-9, settings)
+    return safe_lengths.layout(shapes, bounds, errors, wedge, 3e-9, settings)
 
 
 @pytest.fixture(scope="module")
@@ -71,6 +72,11 @@ def test_a_worst_humidity_at_the_end_is_stated_as_one():
     )
 
 
+def test_a_bound_of_all_stoppers_is_no_statement():
+    all_stuck = stopper_dataset().assign(stuck_along=xr.ones_like(STOPPERS["S1"].stuck_along))
+    assert pages.worst_sentence(all_stuck).endswith("from 0.4 to 0.9, are less critical.")
+
+
 def test_advice_warnings_and_what_is_not_modelled_are_shown(stopper):
     assert "Relative humidity 0.67: Measure heights of B2 better" in stopper
     assert "<p>Too hot.</p>" in stopper
@@ -84,7 +90,31 @@ def test_the_page_of_a_beam_says_which_lengths_come_free():
     assert f"up to {lengths[1]:.0f} µm come free" in sentence
     assert "at most 1 in 1000 (95 % confidence, given the drawn surfaces)" in sentence
     assert sentence.endswith(f"this is true of up to {lengths[0]:.0f} µm.")
-    assert "tip" not in pages.safe_sentence(0.67, safe("bridge"))
+    assert "tip" not in pages.safe_sentence(0.67, safe("bridge", wedge=np.nan))
+
+
+def test_where_tips_hold_more_than_computed_the_length_in_saturated_air_is_the_answer():
+    found = safe(wedge=1e-7)
+    alone, tip = (1e6 * float(found.safe_length.sel(shape=shape, share=1e-3)) for shape in found["shape"].values)
+    surest = 1e6 * float(found.flooded_length.sel(shape=sticking.EITHER))
+    sentence = pages.safe_sentence(0.44, found)
+    assert sentence.startswith(f"At a relative humidity of 0.44, devices of up to {surest:.0f} µm come free")
+    assert f"The computed {tip:.0f} µm, of which at most 1 in 1000 stick" in sentence
+    assert "are an upper limit, because the strips of the tips are longer than the wedge" in sentence
+    assert sentence.endswith(f"devices of up to {alone:.0f} µm come free, except for at most 1 in 1000.")
+    assert surest < tip < alone
+
+
+def test_a_computed_length_below_that_in_saturated_air_remains_the_answer():
+    found = safe(wedge=1e-7, longest=300e-6)
+    tip = 1e6 * float(found.safe_length.sel(shape=sticking.EITHER, share=1e-3))
+    assert tip < 1e6 * float(found.flooded_length.min())
+    assert f"devices of up to {tip:.0f} µm come free" in pages.safe_sentence(0.44, found)
+
+
+def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():
+    silent = {("C1", 0.67, shape): [] for shape in SHAPES}
+    assert "<dt>Saturated air</dt>" in pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).html
 
 
 SHAPES = sticking.S_SHAPE, sticking.EITHER

@@ -5,6 +5,7 @@ import pytest
 from ground import C1, PULL, R1, lognormal_cracks, safe_with_tips, safe_without_tips, wanted
 from numpy.testing import assert_allclose, assert_array_equal
 
+from stiction.beam.energy import apparent_adhesion_energy
 from stiction.designs import cracks, safe_lengths, sticking
 from stiction.devices import arcs, risk
 from stiction.stages import curves
@@ -88,6 +89,15 @@ def test_limits_of_the_model_are_stated(cantilever):
     # e / f_max over the slope 3 h / 2 L of the median arc
     length = np.median(arcs.arc_length(energies(2e-3), C1.beam))
     assert_allclose(float(cantilever.wedge), energies(2e-3).mean() / PULL / (1.5 * 20e-6 / length), rtol=1e-9)
+
+
+def test_lengths_in_saturated_air_are_those_of_flooded_flats(cantilever):
+    alone, tip = cantilever.flooded_length.values
+    energy = 2 * 0.072  # tension times two perfectly wetting sides [J/m²]
+    assert_allclose(apparent_adhesion_energy(alone, C1.beam), energy, rtol=1e-9)
+    assert_allclose(tip, arcs.arc_length(energy, C1.beam), rtol=1e-9)
+    assert float(cantilever.tip_strip) == wanted().tip
+    assert safe_without_tips().flooded_length.shape == (1,)
 
 
 def test_contact_angles_reduce_the_film():

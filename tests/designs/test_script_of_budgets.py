@@ -21,8 +21,9 @@ PLAIN = {
         "water": {"temperature_K": 300},
         "humidity": 0.67,
         "surfaces": list(SURFACES),
-        "uncertainty": {"young_modulus_GPa": 5, "scan_um": 10},
+        "uncertainty": {"young_modulus_GPa": 5, "hamaker_constant_zJ": 20, "scan_um": 10},
         "young_modulus_GPa": 164,
+        "hamaker_constant_zJ": 97.5,
         "contact_um": [1.5, 6],
     },
     "quantities": [[name, quantity] for name in SURFACES for quantity in OF_MOMENTS],
@@ -56,7 +57,8 @@ CONTACTS = {
     (name, quantity): (changed(1 - 0.01 * k), changed(1 + 0.02 * k))
     for k, (name, quantity) in enumerate(map(tuple, PLAIN["quantities"]), 1)
 }
-MODULUS, CHOICES = (changed(0.9), changed(1.2)), {"van_der_waals_dry": changed(1.3), "every_2": changed(0.8)}
+SOLIDS = {"modulus": (changed(0.9), changed(1.2)), "hamaker_constant": (changed(1.1), changed(0.95))}
+CHOICES = {"van_der_waals_dry": changed(1.3), "every_2": changed(0.8)}
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +68,7 @@ def files(tmp_path_factory):
 
     def saved(dataset, stage, name):
         path = folder / stage / f"{name}.nc"
-        path.parent.mkdir(exist_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
         storage.save(dataset, path, stage, {})
         return path
 
@@ -78,12 +80,17 @@ def files(tmp_path_factory):
             (1, "more", sorted(CONTACTS.items(), key=lambda entry: entry[0][::-1])),
         )
     }
+    solids = {
+        name: [saved(both[k], "contact", f"{name}/{patch}_{side}") for k, side in ((1, "more"), (0, "less"))]
+        for name, both in SOLIDS.items()
+    }
     described = dict(zip(SURFACES, small.surfaces(), strict=True))
     return Files(
         sides
+        | solids
         | {
             "contact": saved(small.contact_of_pair(), "contact", patch),
-            "modulus": [saved(MODULUS[k], "contact", f"{patch}_{side}") for k, side in ((1, "more"), (0, "less"))],
+            "poisson_ratio": [],
             "choices": [saved(one, "contact", f"{patch}_{name}") for name, one in reversed(CHOICES.items())],
             "heights": [saved(described[name][0], "heights", name) for name in SURFACES],
             "spectrum": [saved(described[name][1], "spectrum", name) for name in reversed(SURFACES)],
@@ -97,6 +104,6 @@ def test_files_in_any_order_give_the_budget_of_what_they_are(main, files, tmp_pa
     main(SimpleNamespace(params=SimpleNamespace(settings=PLAIN), input=files, output=[output]))
     settings = typed(inputs.Settings, PLAIN["budget"])
     known = inputs.covariances(dict(zip(SURFACES, small.surfaces(), strict=True)), {}, settings)
-    expected = budget.compute(small.contact_of_pair(), CONTACTS, MODULUS, CHOICES, known, settings)
+    expected = budget.compute(small.contact_of_pair(), CONTACTS, SOLIDS, CHOICES, known, settings)
     xr.testing.assert_equal(storage.load(output, "budget"), expected)
-    assert len(set(expected.slope.values)) == len(CONTACTS) + 1  # control: every file has a slope of its own
+    assert len(set(expected.slope.values)) == len(CONTACTS) + len(SOLIDS)  # control: every file has a slope of its own

@@ -168,7 +168,7 @@ def test_wetter_air_shortens_the_cracks_of_a_small_study(study):
 def test_a_budget_of_a_small_study_has_the_devices_of_all_its_samples(study):
     settings = replace(SETTINGS, seed=small.SEED, uncertainty=Uncertainty(gap=0.5e-6), device=R1, beams=4)
     changed = study.isel(sample=slice(10))
-    found = budget.compute(study, {}, None, {"half": changed}, {}, settings)
+    found = budget.compute(study, {}, {}, {"half": changed}, {}, settings)
     assert list(found.input.values) == ["gap"]
     state = budget.nominal(study, settings)
     cracks = budget.responder(state, settings)([state]).values[0]
@@ -181,7 +181,7 @@ def test_a_budget_of_a_small_study_has_the_devices_of_all_its_samples(study):
 def test_the_budget_of_a_stopper_is_one_of_its_forces(study):
     patch = {"device": None, "beams": 0, "contact": (1.5e-6, 6e-6)}
     settings = replace(SETTINGS, uncertainty=Uncertainty(humidity=0.01), **patch)
-    found = budget.compute(study, {}, None, {}, {}, settings)
+    found = budget.compute(study, {}, {}, {}, {}, settings)
     assert (found.centre.attrs["units"], budget.response_of(found)) == ("N", (FORCE, 0))
     assert_allclose(found.centre, curves.pull_offs(study, 0.67, WATER).mean() * 9e-12, rtol=1e-12)
     ends = [curves.pull_offs(study, h, WATER).mean() for h in (0.66, 0.68)]
@@ -191,7 +191,7 @@ def test_the_budget_of_a_stopper_is_one_of_its_forces(study):
 def test_the_budget_of_tips_is_one_of_their_arcs(study):
     many = study.isel(sample=np.arange(200) % study.sizes["sample"])
     settings = replace(SETTINGS, uncertainty=Uncertainty(gap=0.5e-6, humidity=0.01), share=0.01)
-    found = budget.compute(many, {}, None, {}, {}, settings)
+    found = budget.compute(many, {}, {}, {}, {}, settings)
     assert (found.centre.attrs["units"], budget.response_of(found)) == ("m", (ARC, 0.01))
     arcs = [arc_length(curves.energies(many, h, WATER), C1.beam) for h in (0.66, 0.67, 0.68)]
     low, middle, high = (fit_tail(lengths).length(0.01) for lengths in arcs)
@@ -200,7 +200,7 @@ def test_the_budget_of_tips_is_one_of_their_arcs(study):
 
 
 def test_what_is_not_uncertain_is_listed(study):
-    found = budget.compute(study, {}, None, {}, {}, replace(SETTINGS, uncertainty=Uncertainty(gap=1e-7), device=R1))
+    found = budget.compute(study, {}, {}, {}, {}, replace(SETTINGS, uncertainty=Uncertainty(gap=1e-7), device=R1))
     names = list(found.exact.values)
     assert {"the heights of B2", "the spectrum of Sub1", "the thickness", "Poisson's ratio", "the humidity"} < set(
         names

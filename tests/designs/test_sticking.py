@@ -1,11 +1,13 @@
 from dataclasses import replace
 
 import numpy as np
-from ground import C1, R1, wanted
+from ground import C1, R1, WATER, wanted
 from numpy.testing import assert_allclose, assert_array_equal
 
+from stiction.beam.energy import apparent_adhesion_energy
 from stiction.designs import sticking
 from stiction.devices import risk
+from stiction.devices.arcs import arc_length
 from stiction.stages import curves
 from stiction.streams import stream
 
@@ -23,6 +25,15 @@ def test_a_bridge_sticks_at_the_sum_of_its_cracks_and_has_no_tip():
     assert list(found) == sticking.shapes(R1) == [S_SHAPE]
     assert_array_equal(found[S_SHAPE], [13e-4, 10e-4])
     assert sticking.shapes(C1) == [S_SHAPE, EITHER]
+
+
+def test_lengths_in_saturated_air_are_those_of_flooded_flats_by_shape():
+    energy = 0.072 * (1 + np.cos(1.0))
+    alone, tip = sticking.flooded_lengths(C1, curves.Water(300.0, (1.0, 0.0)))
+    assert_allclose(apparent_adhesion_energy(alone, C1.beam), energy, rtol=1e-9)
+    assert_allclose(tip, arc_length(energy, C1.beam), rtol=1e-9)
+    (both,) = sticking.flooded_lengths(R1, WATER)
+    assert_allclose(apparent_adhesion_energy(both / 2, R1.beam), 2 * 0.072, rtol=1e-9)
 
 
 def test_there_is_one_safe_length_for_every_share():

@@ -4,8 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from legends import covering
 from numpy.testing import assert_allclose
 
+from stiction.config.files import load
+from stiction.config.plan import Plan
 from stiction.designs import budget as study_budget
 from stiction.designs import figures_budget, tables_budget
 from stiction.designs import stoppers as study_stoppers
@@ -84,14 +87,23 @@ def test_what_remains_is_the_rest_of_the_total():
 
 def test_the_text_names_what_to_measure_better():
     table = tables_budget.budget(BUDGETS)
-    assert "C1, RH 0.67: Measure heights of B2 better" in table.caption
+    assert "\n- C1, RH 0.67: Measure heights of B2 better" in table.caption
     assert "uncertainty of the mean pull-off force would fall from 2.6 to 0.8 %" in table.caption
-    assert "uncertainty of the mean sticking length (S-shape) would fall from 2.6 to 0.8 %" in table.caption
+    assert "uncertainty of the mean length at which beams stick (S-shape) would fall from 2.6 to 0.8 %" in table.caption
     assert "uncertainty of the length that 1 in 1000 tips hold (arc) would fall from 1.3 to 0.4 %" in table.caption
     assert "rms of B2" not in set(table.cells.what)
-    assert "choice: vdW: dry" in set(table.cells.what)
-    row = table.cells[(table.cells.what == "choice: vdW: dry") & (table.cells.device == "C1")].iloc[0]
+    assert "choice: van der Waals in dry gaps" in set(table.cells.what)
+    row = table.cells[(table.cells.what == "choice: van der Waals in dry gaps") & (table.cells.device == "C1")].iloc[0]
     assert row["effect [%]"] == "-4.20 ± 0.30"
+
+
+@pytest.mark.parametrize("medium", ["water", "dry"])
+def test_every_choice_of_the_model_has_a_label_in_words(medium):
+    config = {"van_der_waals": medium, "studies": {"variants": {"van_der_waals": ["water", "dry", "none"]}}}
+    choices = Plan(load(config)).choices("b")
+    labels = [tables_budget.choice_label(name) for name in choices]
+    assert len(set(labels)) == len(choices) > 5
+    assert {"spectrum from summits", "1 in 2 grid points", "grid of 5 nm", "Poisson's ratio 0.18"} < set(labels)
 
 
 def test_the_text_lists_once_for_each_device_what_counts_as_exact():
@@ -158,16 +170,19 @@ def test_bars_of_a_tornado_are_the_effects_the_largest_first():
     assert_allclose([bar.get_x() for bar in bars], [-bar.get_width() / 2 for bar in bars])
     assert_allclose(bars[4].get_width(), 2 * 2 * 100 * np.sqrt(6e-4 + 0.64e-4), rtol=1e-9)
     names, bars = drawn(chosen)
-    assert names == ["vdW: dry"]
+    assert names == ["van der Waals in dry gaps"]
     assert_allclose([bars[0].get_x(), bars[0].get_x() + bars[0].get_width()], [-4.2, 0], atol=1e-12)
-    assert "mean sticking length" in measured.get_title(loc="left")
+    assert "mean length at which beams stick" in measured.get_title(loc="left")
     assert measured.get_xlabel().endswith("scatter between devices: 1.4, 1.4 %")
 
 
 def test_beam_and_tip_have_panels_of_their_own():
     figure = figures_budget.budget(BEAMS | {("C1", rh, "tip"): budget_dataset(0.5, TIPS) for rh in (0.44, 0.67)})
     titles = [panel.get_title(loc="left") for panel in figure.axes]
-    assert titles[::2] == ["(a) mean sticking length (S-shape)", "(c) length that 1 in 1000 tips hold (arc)"]
+    assert titles[::2] == [
+        "(a) mean length at which beams stick (S-shape)",
+        "(c) length that 1 in 1000 tips hold (arc)",
+    ]
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == ["RH 0.44", "RH 0.67"]
 
@@ -186,6 +201,17 @@ def test_six_humidities_fit_a_screen_with_bars_that_darken_and_do_not_meet():
     assert np.all(np.diff(light) < 0)
     (legend,) = figure.legends
     assert [patch.get_facecolor() for patch in legend.get_patches()] == [bar.get_facecolor() for bar in bars[:6]]
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_no_legend_of_stoppers_covers_a_panel_or_a_text(count, tmp_path):
+    datasets = {f"S{k}": stopper_dataset() for k in range(count)}
+    assert covering(figures_budget.stoppers(datasets, {"S0": ["Beware."]}), tmp_path) == []
+
+
+def test_a_shorter_label_leaves_room_for_more_columns():
+    shares, forces = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {}).axes
+    assert shares.get_legend()._ncols > forces.get_legend()._ncols > 1
 
 
 def test_a_stopper_shows_the_share_of_patches_over_the_restoring_force():

@@ -10,9 +10,9 @@ UM, NM = 1e-6, 1e-9
 
 #: Arguments that trigger a warning, a number that its sentence must contain, and arguments that do not trigger it.
 CASES = [
-    (limits.arcs_of_elements, (0.42, 1.5 * UM), "42.0%.*1.5 µm", (0.0, 1.5 * UM)),
-    (limits.cut_off_mean, (0.58, 1400 * UM, 1500 * UM), "58.0%.*1400 µm.*1500 µm", (1.0, 700 * UM, 1500 * UM)),
-    (limits.plastic_contact, (0.58,), "58%.*2%", (0.02,)),
+    (limits.arcs_of_elements, (0.42, 1.5 * UM), "42 %.*1.5 µm.*section devices", (0.0, 1.5 * UM)),
+    (limits.cut_off_mean, (0.58, 1400 * UM, 1500 * UM), "58 %.*1400 µm.*1500 µm", (1.0, 700 * UM, 1500 * UM)),
+    (limits.plastic_contact, (0.58,), "58 %.*2 %", (0.02,)),
     (limits.plastic_contact, (np.nan,), "was not checked.*distance_nm", (0.0,)),
     (limits.default_material, ("gold", ("hardness",)), "4 properties of gold.*Hamaker constant", ("polysilicon", ())),
     (limits.default_material, ("gold", ()), "5 properties of gold", ("gold", limits.OF_THE_MATERIAL)),
@@ -20,8 +20,9 @@ CASES = [
     (limits.large_rotation, (40 * UM, 500 * UM), "500 µm.*0.12", (20 * UM, 700 * UM)),
     (limits.stubby_beam, (50 * UM, 2.6 * UM), "50 µm.*19.2 times", (52.1 * UM, 2.6 * UM)),
     (limits.wide_beam, (20 * UM, 500 * UM, 2.6 * UM, 700 * UM), "700 µm.*23.5", (20 * UM, 30 * UM, 2.6 * UM, 700 * UM)),
-    (limits.stretched_bridge, (2 * UM, 2 * UM), "1 times", (1.9 * UM, 2 * UM)),
-    (limits.short_wedge, (1.5 * UM, 0.1 * UM), "1.5 µm.*0.1 µm", (0.1 * UM, 0.1 * UM)),
+    (limits.stretched_bridge, (2 * UM, 2 * UM), "gap is equal to the thickness of", (1.9 * UM, 2 * UM)),
+    (limits.stretched_bridge, (3 * UM, 2 * UM), "gap is 1.5 times the thickness of", (1.9 * UM, 2 * UM)),
+    (limits.short_wedge, (1.5 * UM, 0.1 * UM, 234 * UM), "1.5 µm.*0.1 µm.*234 µm", (0.1 * UM, 0.1 * UM, 1.0)),
 ]
 EACH = pytest.mark.parametrize(("limit", "beyond", "number", "within"), CASES)
 
@@ -53,7 +54,7 @@ def test_every_limit_is_tested():
         (lambda x: limits.stubby_beam(1 / x, 1.0), 1 / 20),
         (lambda x: limits.filled_gap(1 / x, 0.3, 0.7), 1 / 20),
         (lambda x: limits.plastic_contact(x), 0.02),
-        (lambda x: limits.short_wedge(x, 1.0), 1.0),
+        (lambda x: limits.short_wedge(x, 1.0, 1.0), 1.0),
         (lambda x: limits.stretched_bridge(x, 1.0), 1.0),
     ],
 )
@@ -73,7 +74,7 @@ def test_a_beam_beyond_all_limits_has_all_warnings():
 
 def test_the_tips_of_c1_have_a_warning_in_dry_air_and_none_in_wet_air():
     wedges = {0.44: 0.0292 * UM, 0.67: 0.0297 * UM, 0.92: 0.0628 * UM}  # of the example, on strips of 0.05 µm
-    assert [rh for rh, wedge in wedges.items() if limits.short_wedge(0.05 * UM, wedge)] == [0.44, 0.67]
+    assert [rh for rh, wedge in wedges.items() if limits.short_wedge(0.05 * UM, wedge, 234 * UM)] == [0.44, 0.67]
 
 
 def test_what_is_not_in_the_model_is_said():

@@ -184,10 +184,10 @@ def test_figure_19_shows_gamma_the_energy_of_the_law_and_their_signed_difference
 def test_base_and_experiment_lie_above_the_other_variants():
     panel = figures_studies.variants(VARIANTS, PUBLISHED).axes[2]
     above = {c.get_label(): c[0].get_zorder() for c in panel.containers}
-    assert sorted(above, key=above.get) == ["vdW: none", "base", "experiment"]
+    assert sorted(above, key=above.get) == ["vdW: none", "base", "measured"]
 
 
-def test_variants_are_compared_with_base_published_values_and_experiment():
+def test_variants_are_compared_with_base_published_and_measured_values():
     table = tables_studies.variants(VARIANTS, PUBLISHED).frame
     row = table[(table.pair == "a") & (table.variant == "van_der_waals_none")].iloc[0]
     assert_allclose(row.shift_percent, 10, rtol=1e-9)

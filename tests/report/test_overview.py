@@ -115,7 +115,7 @@ def test_bars_are_the_standard_deviations_over_the_beams_and_those_published():
     }
     np.testing.assert_allclose(halves["computed here"], [50, 50])  # of 600, 650 and 700 µm
     np.testing.assert_allclose(halves["published"], PUBLISHED.geo_std)
-    np.testing.assert_allclose(halves["experiment"], PUBLISHED.experiment_std)
+    np.testing.assert_allclose(halves["measured"], PUBLISHED.experiment_std)
 
 
 def test_law_of_the_typical_curve_lies_on_it():
@@ -131,10 +131,10 @@ def test_law_of_the_typical_curve_lies_on_it():
 @pytest.mark.parametrize("models", [("NG", "GEO"), ("NG",)])
 def test_crack_lengths_are_those_of_s_shaped_beams_at_every_humidity(models):
     found = curves(draw(models).axes[3])
-    assert set(found) == {"experiment", "published", "computed here"}
+    assert set(found) == {"measured", "published", "computed here"}
     np.testing.assert_allclose(found["computed here"][0], HUMIDITIES, atol=0.02)
     np.testing.assert_allclose(found["computed here"][1], [650, 650])
-    np.testing.assert_allclose(found["experiment"], [HUMIDITIES, [700, 600]])
+    np.testing.assert_allclose(found["measured"], [HUMIDITIES, [700, 600]])
     np.testing.assert_allclose(found["published"][1], [720, 610])
 
 

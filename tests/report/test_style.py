@@ -1,6 +1,7 @@
 """Figures show the numbers of their datasets, in the units of their axes, and are equal byte for byte."""
 
 import re
+from collections import defaultdict
 from dataclasses import replace
 
 import matplotlib as mpl
@@ -31,8 +32,9 @@ BEAM = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200)
 HUMIDITIES = (0.5, 0.7)
 LIMIT = 3e6
 
-#: 2γ of water at 300 K [J m⁻²].
+#: 2γ of water at 300 K, of flats in saturated air [J m⁻²].
 FLAT = 0.144
+EVERY = defaultdict(lambda: FLAT)  #: pair to it
 
 
 @pytest.fixture(scope="module")
@@ -147,7 +149,7 @@ def drawn(heights, spectrum, characters, iteration, forces, fit, pairs, publishe
         "11": summits({"B2": both}),
         "12": force_curves({"a": (forces, population(30, 5), laws), "b": (forces, forces, laws)}),
         "14": beam_shapes(released(np.linspace(600e-6, 700e-6, 40))),
-        "15": adhesion_energies(pairs, published, FLAT),
+        "15": adhesion_energies(pairs, published, EVERY),
     }
 
 
@@ -399,7 +401,7 @@ def bars(axes, label):
 
 
 def test_experiment_is_converted_by_eq_13_with_unequal_bars(drawn):
-    centres, ends = bars(drawn["15"].axes[1], "experiment")
+    centres, ends = bars(drawn["15"].axes[1], "measured")
     lengths = np.array([700, 600])
     scale = 1.5 * 164e9 * 20e-6**2 * 2.6e-6**3 * 1e3  # mJ/m² · m⁴
     np.testing.assert_allclose(centres, [HUMIDITIES, scale / (lengths * 1e-6) ** 4])
@@ -441,19 +443,22 @@ def test_humidity_axis_takes_mean_and_quantiles_over_the_samples_of_each_humidit
     np.testing.assert_allclose(axis.energy_mean_error, energies.std(axis=1, ddof=1) / np.sqrt(101))
 
 
-def test_energy_of_flat_surfaces_is_twice_that_of_water(drawn):
-    for axes in drawn["15"].axes:
-        np.testing.assert_allclose(curve(axes, r"flat surfaces, $2\gamma_{LG}$")[1], 144)  # mJ/m²
+def test_every_pair_has_the_energy_of_its_own_flat_surfaces(pairs, published):
+    flat = {pair: FLAT / k for k, pair in enumerate(pairs, 1)}
+    figure = adhesion_energies(pairs, published, flat)
+    shown = [curve(axes, "flat surfaces in saturated air")[1] for axes in figure.axes]
+    np.testing.assert_allclose(np.mean(shown, axis=1), np.repeat([1e3 * flat[pair] for pair in pairs], 2))  # mJ/m²
+    assert len(set(flat.values())) > 1
 
 
-def test_markers_of_models_do_not_cover_the_experiment(drawn):
+def test_markers_of_models_do_not_cover_the_measured_values(drawn):
     for axes in drawn["15"].axes[:2]:
         containers = [c for c in axes.containers if isinstance(c, ErrorbarContainer)]
         offsets = {c.get_label(): c[0].get_transform().transform((0.6, 10))[0] for c in containers}
-        offsets = {label: place - offsets["experiment"] for label, place in offsets.items()}
+        offsets = {label: place - offsets["measured"] for label, place in offsets.items()}
         assert {label for label, offset in offsets.items() if offset < 0} == {c for c in offsets if "beams" in c}
         assert {label for label, offset in offsets.items() if offset > 0} == {c for c in offsets if "published" in c}
-        assert max(containers, key=lambda c: c[0].get_zorder()).get_label() == "experiment"
+        assert max(containers, key=lambda c: c[0].get_zorder()).get_label() == "measured"
 
 
 def test_published_results_of_two_models_have_two_names_and_two_markers(drawn):
@@ -470,26 +475,26 @@ def test_published_results_of_two_models_have_two_names_and_two_markers(drawn):
 def test_medians_of_weak_adhesion_stay_within_the_axes(pairs, published):
     beam, beams, axes = pairs["b"]
     weak = axes | {"G": axes["G"].assign(energy_quantile=1e-6 * axes["G"].energy_quantile)}
-    for panel in adhesion_energies({"b": (beam, beams, weak)}, published, FLAT).axes:
+    for panel in adhesion_energies({"b": (beam, beams, weak)}, published, EVERY).axes:
         assert panel.get_ylim()[0] < 1e3 * float(weak["G"].energy_quantile.sel(probability=0.5).min())
 
 
-def test_pair_of_the_user_has_no_experiment(drawn, pairs, published):
+def test_pair_of_the_user_has_no_measured_values(drawn, pairs, published):
     known, own = (drawn["15"].axes[k].get_legend_handles_labels()[1] for k in (0, 2))
-    assert set(known) - set(own) == {"experiment", "NG: published"}
-    assert len(axes_of(adhesion_energies({"mine": pairs["mine"]}, published, FLAT))) == 2
+    assert set(known) - set(own) == {"measured", "NG: published"}
+    assert len(axes_of(adhesion_energies({"mine": pairs["mine"]}, published, EVERY))) == 2
 
 
 def test_the_legend_lists_the_curves_of_all_pairs(pairs, published):
-    figure = adhesion_energies({name: pairs[name] for name in ("mine", "b")}, published, FLAT)
+    figure = adhesion_energies({name: pairs[name] for name in ("mine", "b")}, published, EVERY)
     named = {text.get_text() for text in figure.legends[0].get_texts()}
-    assert {"experiment", "NG: published", "GEO: published", "GEO: beams, mean ± std"} <= named
+    assert {"measured", "NG: published", "GEO: published", "GEO: beams, mean ± std"} <= named
 
 
 def test_a_single_humidity_shows_its_median_and_quantiles(pairs, published):
     beam, beams, axes = pairs["b"]
     single = {model: axis.isel(humidity=[2]) for model, axis in axes.items()}
-    panel = adhesion_energies({"b": (beam, beams, single)}, published, FLAT).axes[0]
+    panel = adhesion_energies({"b": (beam, beams, single)}, published, EVERY).axes[0]
     centres, ends = bars(panel, r"NG: median and 5–95 % of $\bar e$")
     low, median, high = 1e3 * single["NG"].energy_quantile.values.ravel()
     np.testing.assert_allclose([*map(float, centres.ravel())], [0.6, median])
@@ -500,7 +505,7 @@ def test_a_pair_of_one_humidity_shows_its_median_and_stays_within_all_humidities
     beam, beams, axes = pairs["b"]
     humid = {(0.99, model): found for (humidity, model), found in beams.items() if humidity == 0.5}
     repeated = {model: axis.assign_coords(humidity=np.full(5, 0.99)) for model, axis in axes.items()}
-    panel = adhesion_energies({"mine": (beam, humid, repeated)}, published, FLAT).axes[0]
+    panel = adhesion_energies({"mine": (beam, humid, repeated)}, published, EVERY).axes[0]
     centres, _ = bars(panel, r"NG: median and 5–95 % of $\bar e$")
     np.testing.assert_allclose([*map(float, centres.ravel())][0], 0.99)
     assert panel.get_xlim()[0] < 0.99 < panel.get_xlim()[1] <= 1
@@ -509,7 +514,7 @@ def test_a_pair_of_one_humidity_shows_its_median_and_stays_within_all_humidities
 def test_energies_above_that_of_flat_surfaces_are_shown_with_their_deviation(pairs, published):
     beam, beams, axes = pairs["b"]
     strong = {key: found.assign(adhesion_energy=100 * found.adhesion_energy) for key, found in beams.items()}
-    panel = adhesion_energies({"b": (beam, strong, axes)}, published, FLAT).axes[0]
+    panel = adhesion_energies({"b": (beam, strong, axes)}, published, EVERY).axes[0]
     energies = 1e3 * strong[0.5, "GEO"].adhesion_energy.values
     assert panel.get_ylim()[1] > energies.mean() + energies.std(ddof=1) > 288
 
@@ -529,6 +534,6 @@ def test_the_axis_of_a_single_humidity_is_a_tenth_long_and_ends_at_one():
 def test_the_energy_of_the_longest_crack_is_always_shown(pairs, published):
     _, beams, axes = pairs["b"]
     stiff = replace(BEAM, thickness=10 * BEAM.thickness)
-    for panel in adhesion_energies({"b": (stiff, beams, axes)}, published, FLAT).axes:
+    for panel in adhesion_energies({"b": (stiff, beams, axes)}, published, EVERY).axes:
         weakest = curve(panel, "crack as long as the beam")[1][0]
         assert 144 < weakest < panel.get_ylim()[1]

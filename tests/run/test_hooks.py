@@ -1,4 +1,4 @@
-"""Snakemake with the changes of a run: the same jobs, the same messages, one timer."""
+"""Snakemake with the changes of a plan and a run: the same jobs, the same messages, one look, one timer."""
 
 import json
 import os
@@ -11,7 +11,8 @@ from types import SimpleNamespace
 
 import pandas
 import pytest
-from snakemake import persistence
+import snakemake.api
+from snakemake import common, persistence, rules
 from snakemake.persistence.file import FilePersistence
 from snakemake.scheduling.job_scheduler import JobScheduler
 from snakemake.script import PythonScript
@@ -203,6 +204,103 @@ def test_unknown_records_of_parameters_remain_as_they_are(monkeypatch):
     monkeypatch.delattr(persistence, "PersistenceBase")
     hooks.compare_without_pandas()
     assert not hasattr(persistence, "PersistenceBase")
+
+
+class Called:
+    """Input function without a hash."""
+
+    __hash__ = None
+
+    def __call__(self, wildcards, input):
+        """Nothing."""
+
+
+@pytest.fixture
+def signatures(monkeypatch):
+    """Functions whose signatures Snakemake has read since the change."""
+    read, known = [], common.get_function_params
+
+    def get_function_params(func):
+        read.append(func)
+        return known(func)
+
+    for module in (common, rules):
+        monkeypatch.setattr(module, "get_function_params", get_function_params)
+    hooks.remember_signatures()
+    return read
+
+
+def test_a_signature_is_read_once(signatures):
+    def found(wildcards, attempt):
+        """Nothing."""
+
+    called, candidates = Called(), {"input": 1, "attempt": 2, "threads": 3}
+    for _ in range(3):
+        assert list(rules.get_function_params(found)) == ["wildcards", "attempt"]
+        assert common.get_input_function_aux_params(found, candidates) == {"attempt": 2}
+        assert common.get_input_function_aux_params(called, candidates) == {"input": 1}
+    assert signatures == [found, called, called, called]
+
+
+def test_an_unknown_way_to_read_signatures_remains_as_it_is(monkeypatch):
+    def another(func, wildcards):
+        """A way that is not known."""
+
+    monkeypatch.setattr(rules, "get_function_params", another)
+    known = common.get_function_params
+    hooks.remember_signatures()
+    assert (common.get_function_params, rules.get_function_params) == (known, another)
+    monkeypatch.setattr(common, "get_function_params", another)
+    hooks.remember_signatures()
+    assert common.get_function_params is rules.get_function_params is another
+
+
+@pytest.mark.parametrize(("script", "number"), [("a.py", 1), ("{wildcards.name}.py", 3), (ROOT / "a.py", 3), (None, 3)])
+def test_a_script_is_looked_for_once_unless_its_name_depends_on_the_job(monkeypatch, script, number):
+    looked = []
+
+    def process_job(self, job):
+        looked.append((self.script_type, job))
+
+    monkeypatch.setattr(snakemake.dag.ScriptProcessor, "process_job", process_job)
+    hooks.check_scripts_once()
+    for _ in range(2):  # what one plan has found, another looks for again
+        looked.clear()
+        processor = snakemake.dag.ScriptProcessor(None)
+        jobs = [SimpleNamespace(rule=rule) for rule in 3 * [Rule(script)] + [Rule("other.py")]]
+        for job in jobs:
+            processor.process_job(job)
+        assert [job for _, job in looked] == [*jobs[:number], jobs[-1]]
+
+
+class Rule:
+    """Rule with a script."""
+
+    def __init__(self, script):
+        self.script = script
+
+
+def test_an_unknown_search_for_scripts_remains_as_it_is(monkeypatch):
+    def another(self, jobs):
+        """A search that is not known."""
+
+    monkeypatch.setattr(snakemake.dag.ScriptProcessor, "process_job", another)
+    hooks.check_scripts_once()
+    assert snakemake.dag.ScriptProcessor.process_job is another
+    monkeypatch.delattr(snakemake.dag, "ScriptProcessor")
+    hooks.check_scripts_once()
+    assert not hasattr(snakemake.dag, "ScriptProcessor")
+
+
+def test_this_version_of_snakemake_plans_with_the_changes(monkeypatch):
+    before = common.get_function_params, snakemake.dag.ScriptProcessor.process_job
+    for module in (common, rules):
+        monkeypatch.setattr(module, "get_function_params", before[0])
+    monkeypatch.setattr(snakemake.dag.ScriptProcessor, "process_job", before[1])
+    hooks.remember_signatures()
+    hooks.check_scripts_once()
+    assert common.get_function_params is rules.get_function_params is not before[0]
+    assert snakemake.dag.ScriptProcessor.process_job is not before[1]
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from published import IDENTITY, SPACING, SURFACES
 from scipy import stats
 
 from stiction.errors import ScanError
-from stiction.scans.estimate import Settings, _residual, estimate, inspect
+from stiction.scans.estimate import Settings, _residual, estimate, inspect, nearest_density
 from stiction.scans.levelling import Levelling
 from stiction.scans.model_scans import ModelScans
 from stiction.scans.moments import homogeneity, moments, powers
@@ -215,7 +215,7 @@ FLAGS = {
     "standard errors away, is used":
         lambda: changed(moments=np.array([-20.0, 0.1, 3.1]),
                         feasible=Feasible(ESTIMATE.feasible.density, 0.15, 3.06, 1.5)),
-    "four moments do not describe the heights (chi² 35, p 0.003); heights: measured does":
+    "four moments do not describe the heights (T² 35, p 0.003); heights: measured does":
         lambda: changed(goodness=(35.0, 0.003)),
     "the tip rounds waves shorter than 50 nm":
         lambda: with_inspection(reach=dataclasses.replace(ESTIMATE.inspection.reach, tip=np.pi / 25e-9)),
@@ -354,6 +354,15 @@ def test_gaussian_scans_are_never_refused():
         assert found.feasible is not None
         density = found.density("moments")
         np.testing.assert_allclose(density.quantile_of_normal(1.0), 1.0, atol=0.1)
+
+
+@pytest.mark.slow
+def test_none_of_forty_gaussian_scans_is_refused_and_all_have_a_density_near_their_moments():
+    settings = Settings()
+    nearest = [nearest_density(inspect([scan], settings)) for scan in gaussian(SIDE, 40)]
+    assert None not in nearest
+    assert all(found.distance < LARGEST_DISTANCE_OF_SCANS for found in nearest)
+    assert np.abs(np.mean([found.kurtosis for found in nearest]) - 3) < 0.15
 
 
 @pytest.mark.slow

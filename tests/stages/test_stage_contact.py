@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import small
 import xarray as xr
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
+from scipy.stats import norm
 
 from stiction.config import jobs
 from stiction.contact.pair import DistanceGrid
@@ -44,6 +45,17 @@ def test_chunks_that_are_missing_repeated_or_of_other_distances_are_refused():
     shifted = second.isel(height=slice(1, None))
     with pytest.raises(ValueError, match="the chunk after 2 of 4 samples does not continue the contact"):
         contact.joined([first, shifted], 4)
+
+
+def test_the_first_samples_are_those_computed_alone():
+    xr.testing.assert_identical(contact.first(small.contact_of_pair(), 2), part(range(2)))
+
+
+def test_the_rms_of_the_surfaces_is_in_their_bearing_area():
+    grid, rms = DistanceGrid(0.05e-9, 500, 501), 3.4e-9
+    area = np.tile(norm.sf(grid.bearing, scale=rms), (3, 1))
+    found = contact.layout(np.zeros((3, len(grid.solid))), area, grid, range(3))
+    assert_allclose(contact.surface_rms(found), rms, rtol=1e-3)
 
 
 def test_a_dataset_gives_back_its_tables_in_single_precision():

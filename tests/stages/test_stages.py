@@ -16,6 +16,7 @@ from stiction.config import jobs
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.contact.forcelaw import parametrise
+from stiction.models import FIELD
 from stiction.stages import (
     beams,
     chaos,
@@ -30,7 +31,7 @@ from stiction.stages import (
     storage,
 )
 from stiction.stages.cantilevers import cantilever, strips_along
-from stiction.stages.surfaces import FIELD, Sampling, rough_surface
+from stiction.stages.surfaces import Sampling, rough_surface
 from stiction.streams import stream
 from stiction.surface.feasible import nearest_feasible
 from stiction.surface.field import StripGrid, radial_periodogram
@@ -178,8 +179,8 @@ def test_a_tabulated_spectrum_comes_back_from_its_dataset(through_a_file):
 
 def test_misfits_are_the_deviations_from_the_measured_summits():
     found = parameters.misfits(identified(radius=1.2, density=0.7))
-    assert found["radius"] == pytest.approx((0.2, 1e-9 / 4e-7))
-    assert found["density"] == pytest.approx((-0.3, 1e12 / 7e13))
+    assert found["radius"] == pytest.approx((20, 1e-7 / 4e-7))
+    assert found["density"] == pytest.approx((-30, 1e14 / 7e13))
 
 
 def test_the_spectrum_of_a_job_is_checked_where_it_is_identified():
@@ -379,14 +380,31 @@ def test_no_scatter_is_model_ng_and_scatter_is_not():
     assert np.all(geo.crack_length != ng.crack_length)
 
 
-def test_ended_selects_beams_by_the_name_of_their_state():
-    nodes, zeros = np.linspace(0, 1, 3), np.zeros(4)
-    columns = dict.fromkeys(("crack_length", "energy", "imbalance", "iterations"), zeros)
+def test_beams_are_selected_by_the_name_of_their_state():
+    nodes, numbers = np.linspace(0, 1, 3), np.arange(4.0)
+    columns = dict.fromkeys(("imbalance", "iterations"), numbers) | {"crack_length": 1 + numbers, "energy": 5 + numbers}
     found = beams.layout(columns | {"sample": range(4), "state": [0, 1, 2, 0], "deflection": np.zeros((1, 3))}, nodes)
+    assert releases.stuck_lengths(found).tolist() == [1, 4]
+    assert releases.stuck_energies(found).tolist() == [5, 8]
+    of_samples = forces.layout(np.zeros((1, 4)), 0.0, np.arange(2.0), np.zeros((1, 2))).adhesion_energy.attrs
+    assert of_samples["long_name"] == "adhesion energy of a sample, Eq. (11)"
+    assert found.adhesion_energy.attrs["long_name"].startswith("apparent adhesion energy of a beam, Eq. (13)")
     assert_array_equal(releases.ended(found, "S-shape"), [True, False, False, True])
     assert_array_equal(releases.ended(found, "arc"), [False, True, False, False])
     assert_array_equal(releases.ended(found, "free"), [False, False, True, False])
     assert found.state.attrs["flag_meanings"] == "S-shape arc free"
+
+
+def test_statistics_of_exponential_heights_are_those_of_their_distribution():
+    z = 2e-9 * np.random.default_rng(5).standard_exponential((100, 4000))
+    strips = {"power": np.stack([np.mean(z**order, axis=1) for order in (1, 2, 3, 4)], axis=1)}
+    strips |= {"summit_density": np.linspace(60e12, 70e12, 100), "mean_curvature": np.linspace(2.4e6, 2.6e6, 100)}
+    nothing = np.zeros(1), np.zeros((1, 1))
+    found = character.layout(strips, nothing, np.zeros((2, 1)), (1e-9, np.zeros((1, 1))))
+    values, errors = character.statistics(found, (1e-9, 1, 1, 1e-6, 1e12))
+    assert np.all(np.abs(values - [2, 2, 9, 0.4, 65]) < 4 * errors)
+    assert np.all(errors < 0.05 * values)
+    assert_allclose(character.statistics(found)[0], values * [1e-9, 1, 1, 1e-6, 1e12])
 
 
 def test_strips_have_the_margin_spacing_and_length_of_the_configuration():

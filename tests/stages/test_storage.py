@@ -135,6 +135,17 @@ def test_surfaces_are_loaded_in_the_order_of_their_files_each_with_its_spectrum(
     ]
     with pytest.raises(ValueError, match="shorter"):
         storage.load_surfaces(heights, spectra[:1])
+    with pytest.raises(ValueError, match="heights/B2.nc and .*spectrum/Sub1.nc are of different surfaces"):
+        storage.load_surfaces(heights, spectra[::-1])
+
+
+def test_files_are_refused_unless_their_names_end_in_the_expected_order():
+    paths = ["results/b_rms_less.nc", "results/b_rms_more.nc"]
+    assert storage.in_order(paths, ("less", "more")) == paths
+    with pytest.raises(ValueError, match="b_rms_more.nc is not the file of less"):
+        storage.in_order(paths[::-1], ("less", "more"))
+    with pytest.raises(ValueError, match="longer"):
+        storage.in_order(paths[:1], ("less", "more"))
 
 
 def test_a_file_is_replaced_and_never_overwritten_while_it_is_read(tmp_path):

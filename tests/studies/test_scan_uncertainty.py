@@ -70,6 +70,9 @@ def test_errors_are_those_of_the_heights_that_have_slopes(quantities, names):
     assert_allclose(found.heights, ERRORS.heights if names == OF_MOMENTS else modes)
     assert_allclose(np.diag(found.modes), np.arange(2, 9))
     assert_allclose(np.diag(found.spectrum), [8, 9])
+    of_slopes = slopes.layout(quantities, HUMIDITIES, *np.zeros((2, len(quantities), len(HUMIDITIES))))
+    by_surface = scan_uncertainty.errors_by_surface({"B2": of_slopes}, {"B2": estimate.assign(files="a\nb")})
+    assert [found.names for found in by_surface.values()] == [names]
 
 
 def test_parts_add_up_with_their_correlations():

@@ -96,6 +96,7 @@ def test_a_shifted_moment_changes_that_of_the_beams_surface_alone(asked, shifted
     found = sensitivity_contact.compute(small.surfaces(), "b", settings)[place]
     ((alternatives, pair, model, _),) = asked
     (changed, shape), substrate = alternatives[place]
+    assert sensitivity_contact.names(settings)[place] == f"{moment}_{'less' if factor < 1 else 'more'}"
     before = heights.moments(small.heights_of("B2"))
     assert heights.moments(changed) == replace(before, **{moment: getattr(before, moment) * factor})
     assert sensitivity_contact.moment(found) == pytest.approx(getattr(before, moment) * factor, rel=1e-14)

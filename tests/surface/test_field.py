@@ -39,7 +39,7 @@ def test_heights_have_the_moments_of_table_1(surface):
 
 def test_moments_of_gaussian_heights_differ_significantly_from_those_of_table_1():
     surface = SURFACES["Sub2"]
-    found = moments(draws(surface.gaussian_twin(FIELD), 200))
+    found = moments(draws(surface.with_gaussian_heights(FIELD), 200))
     assert errors_off(found, [0, 1, 0, 3]) < ALLOWED
     for moment, wrong in ((0, 0.02), (1, 1.05), (2, surface.skewness), (3, surface.kurtosis)):
         assert errors_off(found[:, moment], wrong) > ALLOWED
@@ -55,7 +55,7 @@ def test_share_of_high_points_is_that_of_the_height_density(surface):
 
 def test_negative_skewness_removes_the_highest_points():
     surface = SURFACES["Sub2"]
-    skewed, gaussian = (draws(kind(FIELD), 100) for kind in (surface.on, surface.gaussian_twin))
+    skewed, gaussian = (draws(kind(FIELD), 100) for kind in (surface.on, surface.with_gaussian_heights))
     assert errors_off(np.mean(gaussian > 2, axis=(1, 2)), norm.sf(2)) < ALLOWED
     assert errors_off(np.mean(skewed > 2, axis=(1, 2)), norm.sf(2)) > ALLOWED
     assert skewed.max() < gaussian.max()
@@ -122,7 +122,7 @@ def test_periodogram_of_a_plane_wave_is_its_variance_on_the_ring_of_its_wave_num
 
 @published
 def test_spectrum_of_gaussian_surfaces_is_the_target_with_a_control_that_fails(surface):
-    found = periodograms(surface.gaussian_twin(FIELD), 200)
+    found = periodograms(surface.with_gaussian_heights(FIELD), 200)
     expected = on_rings(surface.spectrum, FIELD)
     inside = expected > 0
     assert errors_off(found[:, inside], expected[inside]) < ALLOWED
@@ -176,7 +176,7 @@ def covariance_along(heights, shift):
 
 def test_surface_is_isotropic_with_a_control_that_fails():
     surface = SURFACES["B1"]
-    heights = draws(surface.gaussian_twin(OBLONG), 300)
+    heights = draws(surface.with_gaussian_heights(OBLONG), 300)
     shifts = [(7, 0), (0, 7), (5, 5), (5, -5)]
     along = np.stack([covariance_along(heights, shift) for shift in shifts], axis=1)
     distance = SPACING * np.array([np.hypot(*shift) for shift in shifts])
@@ -203,6 +203,14 @@ def test_roughness_is_homogeneous_with_a_control_that_fails():
     edges = np.stack([np.mean(heights[:, i] ** 2, axis=1) for i in (0, -1)], axis=1)
     assert errors_off(edges, 1) < ALLOWED
     assert errors_off(quarters * [1, 1, 1.1, 1.1], 1) > ALLOWED
+
+
+def test_both_parts_of_every_wave_are_independent_with_a_control_that_fails():
+    waves = fft.rfft2(draws(SURFACES["B1"].with_gaussian_heights(FIELD), 20))[:, 1:40, 1:40]
+    waves /= np.abs(waves).mean(axis=0)  # all waves count alike
+    products = np.stack([waves.real * waves.imag, waves.real * (waves.real + waves.imag)], axis=-1)
+    independent, control = (errors_off(part.mean(axis=(1, 2)), 0) for part in np.moveaxis(products, -1, 0))
+    assert independent < ALLOWED < control
 
 
 @published
@@ -241,10 +249,10 @@ def test_strip_is_a_part_of_its_field():
 
 
 def test_field_is_periodic_and_the_strip_is_not():
-    heights = SURFACES["B1"].gaussian_twin(FIELD).draw(stream(1)).astype(float)
+    heights = SURFACES["B1"].with_gaussian_heights(FIELD).draw(stream(1)).astype(float)
     step = np.abs(np.diff(heights, axis=0)).mean()
     assert np.abs(heights[0] - heights[-1]).mean() < 1.5 * step
-    strip = SURFACES["B1"].gaussian_twin(PAPER).draw(stream(1)).astype(float)
+    strip = SURFACES["B1"].with_gaussian_heights(PAPER).draw(stream(1)).astype(float)
     assert np.abs(strip[0] - strip[-1]).mean() > 3 * step
 
 

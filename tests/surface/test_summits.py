@@ -126,7 +126,7 @@ def nine_point_summits(surface, spacing, count=1_000_000):
 @pytest.mark.parametrize("name", SURFACES)
 def test_gaussian_summits_follow_from_the_joint_distribution_of_nine_heights(name):
     surface = SURFACES[name]
-    drawn, error = mean_with_error(seen_by_the_microscope(surface.gaussian_twin(STRIP), 30))
+    drawn, error = mean_with_error(seen_by_the_microscope(surface.with_gaussian_heights(STRIP), 30))
     expected, expected_error = nine_point_summits(surface, MICROSCOPE)
     allowed = ALLOWED * np.hypot(error, expected_error)
     assert np.all(np.abs(drawn - expected) < allowed)
@@ -137,7 +137,7 @@ def test_gaussian_summits_follow_from_the_joint_distribution_of_nine_heights(nam
 @pytest.mark.parametrize("name", SURFACES)
 def test_gaussian_summits_are_those_of_table_1(name):
     (published_radius, published_density), (radius, density) = GAUSSIAN_SUMMITS[name]
-    found, error = mean_with_error(seen_by_the_microscope(SURFACES[name].gaussian_twin(STRIP), 30))
+    found, error = mean_with_error(seen_by_the_microscope(SURFACES[name].with_gaussian_heights(STRIP), 30))
     assert abs(found[0] * 1e-12 - density) < 0.05 + ALLOWED * error[0] * 1e-12
     np.testing.assert_allclose(
         1e6 / found[1], radius, rtol=0.01
@@ -159,7 +159,7 @@ def test_finely_sampled_gaussian_summits_are_those_of_nayak():
     surface, spacing, count = SURFACES["B1"], 2.5e-9, 100
     nayak = NayakSummits(surface.spectrum)
     curvature = nayak.mean_curvature * surface.rms / np.sqrt(surface.spectrum.variance)
-    fine = surface.gaussian_twin(StripGrid(2e-6, 5e-6, spacing, margin=0))
+    fine = surface.with_gaussian_heights(StripGrid(2e-6, 5e-6, spacing, margin=0))
     found = np.array(
         [(d, c.mean()) for _, c, d in (find_summits(fine.draw(stream(2021, "fine", k)), spacing) for k in range(count))]
     )
@@ -173,7 +173,7 @@ def test_finely_sampled_gaussian_summits_are_those_of_nayak():
 
 
 def test_density_of_summits_does_not_depend_on_the_roughness():
-    surface = SURFACES["B1"].gaussian_twin(STRIP)
+    surface = SURFACES["B1"].with_gaussian_heights(STRIP)
     doubled = dataclasses.replace(surface, rms=2 * surface.rms)
     one, other = (seen_by_the_microscope(s, 2) for s in (surface, doubled))
     np.testing.assert_allclose(other, one * [1, 2], rtol=1e-6)

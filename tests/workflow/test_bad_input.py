@@ -177,7 +177,7 @@ def test_a_smoke_run_takes_the_configuration_of_the_user(tmp_path):
 
 
 def installed(folder):
-    """Makefile in a folder whose virtual environment runs the Python of the tests, and whose Snakemake only speaks."""
+    """Makefile in a folder whose virtual environment has the Python of the tests and a Snakemake that prints a line."""
     ready(folder)
     (folder / ".venv" / "bin").mkdir()
     for name, line in {"python": f'exec {sys.executable} "$@"', "snakemake": "echo Snakemake starts"}.items():

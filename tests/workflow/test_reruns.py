@@ -389,7 +389,7 @@ LAYOUTS = {
     | {"sensitivity_contact", "variant_summits"},
     "stages/identification": {"identification"},
     "stages/spectrum": {"spectrum", "sensitivity_contact", "variant_summits"},
-    "stages/character": {"character"},
+    "stages/character": {"character", "table_2"},  # in one module with Table I, which reads it
     "stages/contact": {"contact_chunk", "sensitivity_contact", "variant_contact", "device_contact", "tip_contact"}
     | OF_DEVICES,
     "stages/forces": {"forces"},

@@ -17,17 +17,17 @@ studies: {variants: {van_der_waals: [none], psd: [identified], every: [], spacin
 design: {chart_points: 2}
 devices:
   C1: {kind: cantilever, pair: b, thickness_um: 2.6, gap_um: 20, width_um: 30, humidities: [0.7],
-       chart: {thicknesses_um: [2.6, 3], humidities: [0.6, 0.8]}, uncertainty: {gap_um: 0.2, scan_um: 10}}
+       chart: {thicknesses_um: [2.6, 3], humidities: [0.6, 0.8]}, uncertainty: {gap_um: 0.2, hamaker_constant_zJ: 10, scan_um: 10}}
   R1: {kind: bridge, pair: b, thickness_um: 2, gap_um: 2, width_um: 20, residual_stress_MPa: 50, humidities: [0.7]}
   S1: {kind: stopper, pair: b, contact_um: [3, 3], restoring_force_uN: 20, humidities: [0.7],
        uncertainty: {humidity: 0.01, young_modulus_GPa: 5}}
 """
 #: Rules of this test, and the rules that read their outputs, listed by hand.
 READ_BY = {
-    "heights": "identification spectrum contact_chunk device_contact tip_contact slope_contact modulus_contact plasticity"
-    " budget tip_slope_contact tip_choice_contact tip_budget",
-    "spectrum": "contact_chunk device_contact tip_contact slope_contact modulus_contact plasticity budget tip_slope_contact"
-    " tip_choice_contact tip_budget",
+    "heights": "identification spectrum contact_chunk device_contact tip_contact slope_contact solid_contact plasticity"
+    " tip_solid_contact budget tip_slope_contact tip_choice_contact tip_budget",
+    "spectrum": "contact_chunk device_contact tip_contact slope_contact solid_contact plasticity budget tip_slope_contact"
+    " tip_solid_contact tip_choice_contact tip_budget",
     "identification": "device_choice_summits",
     "contact_chunk": "contact",
     "contact": "cracks chart budget",
@@ -35,7 +35,8 @@ READ_BY = {
     "tip_contact": "safe_lengths chart tip_budget",
     "slope_contact": "budget",
     "device_slope_contact": "budget",
-    "modulus_contact": "budget",
+    "solid_contact": "budget",
+    "tip_solid_contact": "tip_budget",
     "device_choice_summits": "device_choice_contact",
     "device_choice_contact": "budget",
     "plasticity": "table_safe_lengths figure_risk table_chart figure_chart table_stoppers figure_stoppers device_limits"
@@ -65,14 +66,22 @@ MATRIX = [
     ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget tip_budget", (), "R1|S1|contact|chart"),
     ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget", (),
      "C1|R1|slopes/contact|stoppers"),
+    ("another property of the solids becomes uncertain", "devices: {S1: {uncertainty: {poisson_ratio: 0.02}}}",
+     "solid_contact budget", (), "C1|R1|modulus|hamaker|slopes|choices|heights|spectrum|contact/b|stoppers"),
+    ("another property of the solids of a cantilever becomes uncertain",
+     "devices: {C1: {uncertainty: {poisson_ratio: 0.02}}}",
+     "solid_contact tip_solid_contact budget tip_budget", (),
+     "S1|R1|modulus|hamaker|slopes|choices|heights|spectrum|contact/b|3000x3000|cracks|safe|chart"),
+    ("uncertainty of a property of the solids", "devices: {C1: {uncertainty: {hamaker_constant_zJ: 15}}}",
+     "budget tip_budget", (), "R1|S1|contact|chart"),
     ("one humidity of a stopper", "devices: {S1: {humidities: [0.7, 0.9]}}", "stoppers budget", (),
      "C1|R1|contact|S1_rh070"),
-    ("area of a stopper", "devices: {S1: {contact_um: [3, 2]}}", "device_contact modulus_contact device_choice_summits",
+    ("area of a stopper", "devices: {S1: {contact_um: [3, 2]}}", "device_contact solid_contact device_choice_summits",
      OF_BEAMS, "C1|R1|1500x"),
-    ("samples of slopes", "studies: {slopes: {samples: 200}}", "slope_contact modulus_contact device_choice_summits", (),
+    ("samples of slopes", "studies: {slopes: {samples: 200}}", "slope_contact solid_contact device_choice_summits", (),
      "stoppers|chart|cracks|tip"),
     ("beams of slopes", "design: {budget_beams: 100}", "budget", (), "S1|contact|chart|cracks|tip"),
-    ("beams, each with a tip", "design: {beams: 900}", "cracks tip_contact tip_slope_contact tip_choice_contact chart", (),
+    ("beams, each with a tip", "design: {beams: 900}", "cracks tip_contact tip_slope_contact tip_solid_contact tip_choice_contact chart", (),
      "S1|budget/C1_rh070.nc"),
     ("range of the worst humidity", "design: {worst_humidities: [0.5, 0.9]}", "stoppers", (), "C1|R1|budget|contact"),
     ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
@@ -82,7 +91,7 @@ MATRIX = [
     ("skewness of another surface", "surfaces: {B1: {skewness: -0.7}}", "", (), ""),
     ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (), "slopes|modulus|choices|tip"),
     ("chunks", "contact: {chunks: 2}", "", (), ""),
-    ("strips of tips", "design: {tip_um: 0.06}", "tip_contact tip_slope_contact tip_choice_contact safe_lengths", (),
+    ("strips of tips", "design: {tip_um: 0.06}", "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact safe_lengths", (),
      "cracks|S1|contact/b|budget/C1_rh070.nc"),
     ("shares", "design: {shares: [0.02]}", "safe_lengths chart tip_budget", (), "cracks|S1|contact|budget/C1_rh070.nc"),
     ("points of charts", "design: {chart_points: 3}", "chart", (), "rh060|rh080|cracks|safe|S1|R1|contact"),
@@ -90,14 +99,15 @@ MATRIX = [
      "rh060|cracks|safe|S1|R1|contact"),
     ("gap of a beam", "devices: {C1: {gap_um: 19}}", "cracks safe_lengths chart budget tip_budget", (), "contact|S1|R1"),
     ("width of a beam", "devices: {C1: {width_um: 24}}",
-     "device_contact tip_contact device_slope_contact device_choice_summits tip_slope_contact tip_choice_contact",
+     "device_contact tip_contact device_slope_contact solid_contact device_choice_summits tip_slope_contact"
+     " tip_solid_contact tip_choice_contact",
      OF_STOPPERS, "S1|R1|b_NG"),
     ("strips of a beam", "devices: {C1: {strip_um: 1.2}}",
-     "device_contact device_slope_contact device_choice_summits chart tip_budget", OF_STOPPERS, "S1|R1|b_NG|tips"),
+     "device_contact device_slope_contact solid_contact device_choice_summits chart tip_budget", OF_STOPPERS, "S1|R1|b_NG|tips"),
     ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "cracks safe_lengths", (), "contact|C1|S1|chart"),
     ("Hamaker constant of a body", BODY + "{hamaker_constant_zJ: {water: 20, dry: 200}}}",
-     "contact_chunk device_contact tip_contact slope_contact modulus_contact device_choice_contact plasticity"
-     " tip_slope_contact tip_choice_contact", (), "heights|spectrum|summits"),
+     "contact_chunk device_contact tip_contact slope_contact solid_contact device_choice_contact plasticity"
+     " tip_slope_contact tip_solid_contact tip_choice_contact", (), "heights|spectrum|summits"),
     ("hardness of a body", BODY + "{hardness_GPa: 9}}", "plasticity", (), "contact|cracks|stoppers/|budget"),
 ]  # fmt: skip
 # One row of each kind is fast; these are slow tests.
@@ -110,7 +120,8 @@ FURTHER = {
     "gap of a beam",
 }
 FURTHER |= {"humidities of a chart", "width of a beam", "strips of a beam", "stress in a bridge", "hardness of a body"}
-FURTHER |= {"Hamaker constant of a body"}
+FURTHER |= {"Hamaker constant of a body", "uncertainty of a property of the solids"}
+FURTHER |= {"another property of the solids of a cantilever becomes uncertain"}
 ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)) for name, *row in MATRIX]
 #: Modules, and the rules whose datasets a new variable changes.
 LAYOUTS = {"designs/stoppers": {"stoppers"}, "designs/budget": {"budget", "tip_budget"}, "designs/chart": {"chart"}}

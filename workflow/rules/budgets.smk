@@ -17,17 +17,17 @@ use rule slope_contact as device_slope_contact with:
         "{wildcards.quantity} of {wildcards.surface}."
 
 
-use rule device_contact as modulus_contact with:
+use rule device_contact as solid_contact with:
     output:
-        "results/devices/contact/modulus/{pair}_{length}x{width}_{side}.nc",
+        "results/devices/contact/{solid_property}/{pair}_{length}x{width}_{side}.nc",
     log:
-        "results/logs/devices/contact/modulus/{pair}_{length}x{width}_{side}.log",
+        "results/logs/devices/contact/{solid_property}/{pair}_{length}x{width}_{side}.log",
     params:
-        settings=lambda w: jobs.modulus_contact(plan, w.pair, w.length, w.width, w.side),
+        settings=lambda w: jobs.solid_contact(plan, w.pair, w.length, w.width, w.solid_property, w.side),
         code=code("device_contact.py"),
     message:
-        "Contact of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, with {wildcards.side} of Young's "
-        "modulus."
+        "Contact of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, with {wildcards.side} "
+        "{wildcards.solid_property} of the solids."
 
 
 use rule device_slope_contact as tip_slope_contact with:
@@ -46,16 +46,17 @@ use rule device_slope_contact as tip_slope_contact with:
         "{wildcards.surface}."
 
 
-use rule modulus_contact as tip_modulus_contact with:
+use rule solid_contact as tip_solid_contact with:
     output:
-        "results/devices/contact/tips/modulus/{pair}_{length}x{width}_{side}.nc",
+        "results/devices/contact/tips/{solid_property}/{pair}_{length}x{width}_{side}.nc",
     log:
-        "results/logs/devices/contact/tips/modulus/{pair}_{length}x{width}_{side}.log",
+        "results/logs/devices/contact/tips/{solid_property}/{pair}_{length}x{width}_{side}.log",
     params:
-        settings=lambda w: jobs.tip_modulus_contact(plan, w.pair, w.length, w.width, w.side),
+        settings=lambda w: jobs.tip_solid_contact(plan, w.pair, w.length, w.width, w.solid_property, w.side),
         code=code("device_contact.py"),
     message:
-        "Contact of pair {wildcards.pair} at the tips of beams, with {wildcards.side} of Young's modulus."
+        "Contact of pair {wildcards.pair} at the tips of beams, with {wildcards.side} {wildcards.solid_property} of "
+        "the solids."
 
 
 use rule device_contact as tip_choice_contact with:
@@ -67,7 +68,7 @@ use rule device_contact as tip_choice_contact with:
         settings=lambda w: jobs.tip_choice_contact(plan, w.pair, w.length, w.width, w.variant),
         code=code("device_contact.py"),
     message:
-        "Contact of pair {wildcards.pair} at the tips of beams, under {wildcards.variant}."
+        "Contact of pair {wildcards.pair} at the tips of beams, under variant {wildcards.variant}."
 
 
 use rule variant_summits as device_choice_summits with:
@@ -79,7 +80,7 @@ use rule variant_summits as device_choice_summits with:
         settings=lambda w: jobs.device_choice_summits(plan, w.pair, w.length, w.width, w.variant),
         code=code("variant_summits.py"),
     message:
-        "Summits of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, under {wildcards.variant}."
+        "Summits of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, under variant {wildcards.variant}."
 
 
 use rule variant_contact as device_choice_contact with:
@@ -90,7 +91,7 @@ use rule variant_contact as device_choice_contact with:
     log:
         "results/logs/devices/contact/choices/{pair}_{length}x{width}_{variant}.log",
     message:
-        "Contact of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, under {wildcards.variant}."
+        "Contact of pair {wildcards.pair}, {wildcards.length} x {wildcards.width} nm, under variant {wildcards.variant}."
 
 
 rule stoppers:

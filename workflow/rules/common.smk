@@ -5,7 +5,7 @@ from functools import cache
 from snakemake.logging import logger
 
 from stiction.config import cases, files, jobs, measured, memory, messages
-from stiction.config.designs import Designs
+from stiction.config.designs import KEYS_OF_SOLIDS, Designs
 from stiction.config.paths import Paths, one_of, titled
 from stiction.config.plan import Plan
 from stiction.models import (
@@ -34,6 +34,7 @@ wildcard_constraints:
     moment="|".join(OF_MOMENTS),
     quantity="|".join({*OF_MOMENTS, *OF_MEASURED, *OF_SPECTRUM}),
     side="less|more",
+    solid_property="|".join(KEYS_OF_SOLIDS),
     choice="|".join(ALTERNATIVES_OF_SCANS),
     variant="base|[a-z_]+_[a-z0-9.-]+",
     length="[0-9]+",
@@ -41,6 +42,8 @@ wildcard_constraints:
 
 
 hooks.compare_without_pandas()
+hooks.remember_signatures()
+hooks.check_scripts_once()
 remember = Remembered(".snakemake/planning.json")
 
 

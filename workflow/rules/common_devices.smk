@@ -18,7 +18,7 @@ contacts_of_budget, contacts_of_tip_budget = of_device(paths.contacts_of_budget)
 
 
 def summits_of_choice(wildcards):
-    """Summits of the patch of a device under a choice of the model."""
+    """Summits of the patch of a device under a variant of the model."""
     return paths.summits_of_choice(wildcards.pair, f"{wildcards.length}x{wildcards.width}", wildcards.variant)
 
 

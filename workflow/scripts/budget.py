@@ -2,6 +2,7 @@
 
 from stiction.config.units import typed
 from stiction.designs import budget, inputs
+from stiction.devices.budget import OF_SOLIDS
 from stiction.run.logs import logged
 from stiction.stages import storage
 from stiction.stages.named import load_named
@@ -12,7 +13,7 @@ def main(job):
     plain = job.params.settings
     settings = typed(inputs.Settings, plain["budget"])
     less, more = (load_named(paths, "contact", _quantity) for paths in (job.input.less, job.input.more))
-    modulus = load_named(job.input.modulus, "contact", lambda name: name.rpartition("_")[2])
+    solids = {name: load_named(getattr(job.input, name), "contact", _side) for name in OF_SOLIDS}
     heights, spectra, estimates = (
         load_named(paths, stage)
         for paths, stage in (
@@ -26,7 +27,7 @@ def main(job):
     dataset = budget.compute(
         storage.load(job.input.contact, "contact"),
         {key: (less[key], more[key]) for key in less},
-        (modulus["less"], modulus["more"]) if modulus else None,
+        {name: (both["less"], both["more"]) for name, both in solids.items() if both},
         {name: choices[name] for name in plain["choices"]},
         inputs.covariances(described, estimates, settings),
         settings,
@@ -37,6 +38,11 @@ def main(job):
 def _quantity(name):
     """Surface and quantity in a name such as ``b_1500x30000_B2_rms_less``."""
     return tuple(name.split("_")[-3:-1])
+
+
+def _side(name):
+    """Side in a name such as ``b_1500x30000_less``."""
+    return name.rpartition("_")[2]
 
 
 def _choice(name):

@@ -1,7 +1,7 @@
 """Figure 15: adhesion energies over the relative humidity."""
 
 from stiction.config.units import typed
-from stiction.contact.meniscus import surface_energy
+from stiction.contact.meniscus import flooded_energy
 from stiction.report import published
 from stiction.report.figures_beams import adhesion_energies
 from stiction.report.style import save
@@ -19,7 +19,8 @@ def main(job):
     sections = typed(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
     pairs = {pair: (cantilever(sections, pair), *_of(pair, beams, bands)) for pair in settings["pairs"]}
     known = published.of_paper(published.read(job.input.published), settings["of_paper"])
-    flat = 2 * surface_energy(typed(Water, settings["water"]).temperature)
+    waters = {pair: typed(Water, settings["water"][pair]) for pair in pairs}
+    flat = {pair: flooded_energy(water.temperature, water.contact_angles) for pair, water in waters.items()}
     save(adhesion_energies(pairs, known, flat), *job.output)
 
 

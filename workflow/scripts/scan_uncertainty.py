@@ -13,8 +13,7 @@ def main(job):
     estimates = load_named(job.input.estimates, "estimate")
     choices = load_named(job.input.choices, "contact", lambda name: name.partition("_")[2])
     base = storage.load(job.input.base, "contact")
-    quantities = {name: tuple(dataset["quantity"].values.tolist()) for name, dataset in slopes.items()}
-    errors = {name: scan_uncertainty.errors_of(dataset, quantities[name]) for name, dataset in estimates.items()}
+    errors = scan_uncertainty.errors_by_surface(slopes, estimates)
     dataset = scan_uncertainty.compute(
         slopes, errors, base, choices, typed(scan_uncertainty.Settings, job.params.settings)
     )

@@ -10,8 +10,9 @@ def main(job):
     """Draw samples with the same random numbers for all values of the moments."""
     surfaces = storage.load_surfaces(job.input.heights, job.input.spectrum)
     wanted = typed(sensitivity_contact.Settings, job.params.settings)
+    paths = storage.in_order(job.output, sensitivity_contact.names(wanted))
     contacts = sensitivity_contact.compute(surfaces, job.wildcards.pair, wanted)
-    for dataset, path in zip(contacts, job.output, strict=True):
+    for dataset, path in zip(contacts, paths, strict=True):
         storage.save(dataset, path, "contact", job.params.settings, job.input)
 
 

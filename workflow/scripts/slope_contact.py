@@ -1,6 +1,7 @@
 """Contact of a pair with one quantity of one surface slightly decreased or increased."""
 
 from stiction.config.units import typed
+from stiction.models import SHIFTED
 from stiction.run.logs import logged
 from stiction.stages import storage
 from stiction.studies import slope_contact
@@ -12,8 +13,9 @@ def main(job):
     wanted = typed(slope_contact.Settings, job.params.settings)
     at = job.wildcards
     of_modes = storage.load_all(job.input.estimates, "estimate")
+    paths = storage.in_order(job.output, SHIFTED)
     contacts = slope_contact.compute(surfaces, at.pair, at.surface, at.quantity, wanted, *of_modes)
-    for dataset, path in zip(contacts, job.output, strict=True):
+    for dataset, path in zip(contacts, paths, strict=True):
         storage.save(dataset, path, "contact", job.params.settings, job.input)
 
 

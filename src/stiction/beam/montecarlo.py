@@ -13,6 +13,7 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.beam.release import EndState, released_beam
 from stiction.contact import forcelaw
+from stiction.progress import progress
 
 #: Dimensions that scatter in the model GEO, in the order in which they are drawn.
 SCATTERED = ("thickness", "length", "width", "gap")
@@ -138,3 +139,11 @@ def columns(outcomes: Sequence[Outcome], shapes: int = 0) -> dict[str, np.ndarra
     names = ("sample", "state", "crack_length", "energy", "imbalance", "iterations")
     arrays = {name: np.array([getattr(outcome, name) for outcome in outcomes]) for name in names}
     return arrays | {"deflection": np.array([outcome.deflection for outcome in outcomes[:shapes]])}
+
+
+def released_beams(
+    experiment: Experiment, number: int, stream: Callable, threads: int = 1, shapes: int = 0
+) -> dict[str, np.ndarray]:
+    """`columns` of the first beams of an experiment, with a bar of the progress; arguments as in `simulate`."""
+    outcomes = simulate(experiment, range(number), stream, threads)
+    return columns(list(progress(outcomes, "beams", total=number)), shapes)

@@ -22,6 +22,11 @@ class EndState(IntEnum):
     ARC = 1
     FREE = 2  #: no contact
 
+    @property
+    def label(self) -> str:
+        """Name in datasets, tables and figures."""
+        return ("S-shape", "arc", "free")[self]
+
 
 @dataclass(frozen=True)
 class ReleasedBeam:

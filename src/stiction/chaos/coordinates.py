@@ -14,7 +14,7 @@ def unconstrained(vectors: np.ndarray) -> np.ndarray:
 def constrained(free: np.ndarray) -> np.ndarray:
     """Inverse of `unconstrained`: vectors v (m, 4) that satisfy e > 0, f_max > 0 and d_max > d_limit."""
     log_e, log_f_max, d_max, log_gap = free.T
-    return np.column_stack([np.exp(log_e), np.exp(log_f_max), d_max, d_max - np.exp(log_gap)])
+    return np.array([np.exp(log_e), np.exp(log_f_max), d_max, d_max - np.exp(log_gap)]).T
 
 
 def dimension_error(variances: np.ndarray) -> np.ndarray:
@@ -38,9 +38,10 @@ class PrincipalCoordinates:
     def restore(self, eta: np.ndarray) -> np.ndarray:
         """Vectors v (m, 4) from the first coordinates η (m, N_g), with the others at their mean, Eq. (17)."""
         steps = self.axes[:, : eta.shape[1]] * np.sqrt(self.variances[: eta.shape[1]])
-        # A sum over columns: the rounding of a matrix product would depend on the number of rows.
-        q = self.mean + sum(np.outer(column, step) for column, step in zip(eta.T, steps.T, strict=True))
-        return constrained(q * self.scale)
+        # A sum over coordinates: the rounding of a matrix product would depend on the number of vectors. Rows of q are
+        # components, because loops over a long last axis are several times faster.
+        q = self.mean[:, None] + sum(np.outer(step, along) for along, step in zip(eta.T, steps.T, strict=True))
+        return constrained((q * self.scale[:, None]).T)
 
 
 def principal_coordinates(vectors: np.ndarray) -> PrincipalCoordinates:

@@ -110,12 +110,12 @@ def _accept(candidates: Callable[[int], np.ndarray], n: int, f_limit: float) -> 
     while missing > 0:
         vectors = candidates(missing)
         good = forcelaw.admissible(vectors, f_limit)
-        kept.append(vectors[good])
+        kept.append(vectors if good.all() else vectors[good])
         missing -= int(good.sum())
         rejected += int((~good).sum())
         if rejected > 10 * n + 1000:
             raise ValueError(f"{rejected} of {n - missing + rejected} vectors have no force law: the model is unusable")
-    return np.concatenate([np.empty((0, 4)), *kept]), rejected
+    return kept[0] if len(kept) == 1 else np.concatenate([np.empty((0, 4)), *kept]), rejected
 
 
 def draw(model: ChaosModel, n: int, rng: np.random.Generator) -> tuple[np.ndarray, int]:

@@ -92,12 +92,12 @@ def expand(xi: np.ndarray, indices: np.ndarray, coefficients: np.ndarray) -> np.
     ----------
     xi : (n, N_g) float64
     indices : (N, N_g) int64
-        Multi-indices α as from `multi_indices`.
+        Multi-indices α as from `multi_indices`; the first of the last one is the total order.
     coefficients : (N_g, N) float64
         Zero where α involves a later coordinate than that of the row.
     """
     eta = np.empty(xi.shape[::-1])
-    _expand(np.ascontiguousarray(xi.T), indices, coefficients, int(indices.sum(axis=1).max()), eta)
+    _expand(np.ascontiguousarray(xi.T), indices, coefficients, int(indices[-1, 0]), eta)
     return eta.T
 
 

@@ -7,7 +7,8 @@ import numpy as np
 
 from stiction.config.cases import case_id
 from stiction.config.measured import is_measured, quantities
-from stiction.config.units import NM_PER_UM
+from stiction.config.units import NM_PER_UM, from_si
+from stiction.constants import HAMAKER_CONSTANT
 from stiction.models import OF_MOMENTS, SIDES
 
 #: Kinds of devices that crack open; a stopper is pulled off at once.
@@ -20,6 +21,31 @@ KEYS = {
 }
 #: Keys that a device need not have, by kind.
 OPTIONAL = {"cantilever": {"strip_um", "chart"}, "bridge": {"strip_um", "chart"}, "stopper": set()}
+
+#: Keys of the properties of solids that may be uncertain, those of `stiction.devices.budget.OF_SOLIDS`.
+KEYS_OF_SOLIDS = {
+    "modulus": "young_modulus_GPa",
+    "poisson_ratio": "poisson_ratio",
+    "hamaker_constant": "hamaker_constant_zJ",
+}
+
+
+def hamaker_constants(material: dict) -> dict[str, float]:
+    """Hamaker constant of two bodies of a material by medium [zJ]: as stated, or that of polysilicon."""
+    polysilicon = {medium: from_si(constant, "zJ") for medium, constant in HAMAKER_CONSTANT.items()}
+    return material.get("hamaker_constant_zJ", polysilicon)
+
+
+def hamaker_constant(material: dict, medium: str) -> float:
+    """That through a medium [zJ]; without van der Waals forces, where none acts, that through dry air.
+
+    Examples
+    --------
+    >>> hamaker_constant({}, "water"), hamaker_constant({"hamaker_constant_zJ": {"water": 5, "dry": 65}}, "none")
+    (97.5, 65)
+    """
+    constants = hamaker_constants(material)
+    return constants.get(medium, constants["dry"])
 
 
 class Patch(NamedTuple):
@@ -134,6 +160,11 @@ class Designs:
         """Devices with an uncertain input: with a stated uncertainty, or on a surface described by scans."""
         stated = {name: any(device.get("uncertainty", {}).values()) for name, device in self.devices.items()}
         return [name for name in self.devices if stated[name] or self.quantities(name)]
+
+    def uncertain_solids(self, device: str) -> list[str]:
+        """Properties of the solids of a device that are uncertain, keys of `KEYS_OF_SOLIDS`."""
+        stated = self.devices[device].get("uncertainty", {})
+        return [name for name, key in KEYS_OF_SOLIDS.items() if stated.get(key)]
 
     def budgets(self, *devices: str) -> list[str]:
         """Budgets of devices, of all with an uncertain input by default: at each humidity, and those of tips."""

@@ -11,12 +11,12 @@ from pathlib import Path
 
 from stiction.config import measured
 from stiction.config.cases import humidity_of, pair_of
-from stiction.config.designs import Designs
+from stiction.config.designs import KEYS_OF_SOLIDS, Designs, hamaker_constants
 from stiction.config.files import paper
 from stiction.config.merging import merged
 from stiction.config.plan import ELASTIC, MOMENTS, SUMMITS, Plan, chosen
 from stiction.config.units import NM_PER_UM
-from stiction.devices.budget import STEP
+from stiction.models import SIDES
 
 
 def _strip(plan):
@@ -349,34 +349,40 @@ def device_slope_contact(plan: Plan, pair: str, length: int, width: int) -> dict
     return _on_patch(plan, pair, length, width, plan.config["studies"]["slopes"]["samples"])
 
 
-def modulus_contact(plan: Plan, pair: str, length: int, width: int, side: str) -> dict:
-    """As `device_slope_contact`, with less or more of Young's modulus of the beam's material, in both bodies of it."""
-    return _with_modulus(_on_patch(plan, pair, length, width, _samples_of_slopes(plan)), side)
+def solid_contact(plan: Plan, pair: str, length: int, width: int, solid_property: str, side: str) -> dict:
+    """As `device_slope_contact`, with less or more of a property of the beam's material, in both bodies of it."""
+    return _with_property(_on_patch(plan, pair, length, width, _samples_of_slopes(plan)), solid_property, side)
 
 
-def tip_modulus_contact(plan: Plan, pair: str, length: int, width: int, side: str) -> dict:
-    """As `tip_contact`, with less or more of Young's modulus of the beam's material, in both bodies of it."""
-    return _with_modulus(tip_contact(plan, pair, length, width), side)
+def tip_solid_contact(plan: Plan, pair: str, length: int, width: int, solid_property: str, side: str) -> dict:
+    """As `tip_contact`, with less or more of a property of the beam's material, in both bodies of it."""
+    return _with_property(tip_contact(plan, pair, length, width), solid_property, side)
 
 
 def tip_choice_contact(plan: Plan, pair: str, length: int, width: int, variant: str) -> dict:
-    """As `tip_contact`, with the solids of a choice of the model."""
+    """As `tip_contact`, with the solids of a variant of the model."""
     return tip_contact(plan, pair, length, width) | plan.variant_contact(pair, variant)
 
 
-def _with_modulus(found, side):
-    """Settings of a contact with less or more of Young's modulus of the beam's material."""
-    factor = 1 - STEP if side == "less" else 1 + STEP
+def _with_property(found, name, side):
+    """Settings of a contact with less or more of a property of the beam's material."""
+    key, solid = KEYS_OF_SOLIDS[name], found["solid"]
+    if "materials" not in found and key in solid:
+        return found | {"solid": _changed(solid, name, side)}
+    bodies = found.get("materials", dict.fromkeys(SIDES, solid))
+    of_beam = _changed(bodies["beam"], name, side)
+    return found | {"materials": {at: of_beam if one == bodies["beam"] else one for at, one in bodies.items()}}
 
-    def changed(material):
-        return material | {"young_modulus_GPa": factor * material["young_modulus_GPa"]}
 
-    stated = found.get("materials", {})
-    of_beam = stated.get("beam", found["solid"])
-    if not stated:
-        return found | {"solid": changed(found["solid"])}
-    materials = {name: changed(one) if one == of_beam else one for name, one in stated.items()}
-    return found | {"materials": materials}
+def _changed(material, name, side):
+    """Material with less or more of a property; of its Hamaker constants through all media by the same factor."""
+    from stiction.devices.budget import OF_SOLIDS  # its import takes a tenth of a plan, which few configurations need
+
+    key, end = KEYS_OF_SOLIDS[name], ("less", "more").index(side)
+    if name == "hamaker_constant":
+        constants = hamaker_constants(material).items()
+        return material | {key: {medium: OF_SOLIDS[name].ends(constant)[end] for medium, constant in constants}}
+    return material | {key: OF_SOLIDS[name].ends(material[key])[end]}
 
 
 def device_choice_summits(plan: Plan, pair: str, length: int, width: int, variant: str) -> dict:
@@ -387,13 +393,15 @@ def device_choice_summits(plan: Plan, pair: str, length: int, width: int, varian
 
 
 def budget(plan: Plan, case: str) -> dict:
-    """Everything about a budget: its settings, the quantities of its surfaces and its choices of the model."""
+    """Everything about a budget: its settings, the quantities of its surfaces and its variants of the model."""
     name, designs = pair_of(case), Designs(plan.config)
     section = plan.config["devices"][name]
     pair = section["pair"]
     found = chosen(plan.config, ["seed"]) | {"uncertainty": section.get("uncertainty", {})}
     found |= {"water": plan.water(pair), "humidity": humidity_of(case), "surfaces": plan.sides(pair)}
     found |= chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(pair)
+    if "hamaker_constant" in designs.uncertain_solids(name):
+        found |= {"hamaker_constant_zJ": plan.beam_hamaker_constant(pair)}
     if section["kind"] == "stopper":
         found |= chosen(section, ["contact_um"])
     else:
@@ -489,9 +497,9 @@ def figure_13(plan: Plan) -> dict:
 
 
 def figure_15(plan: Plan) -> dict:
-    """Cases of Fig. 15, water, the nominal beams, and the pairs whose published values are drawn."""
-    shown = {"outcomes": plan.outcomes, "of_paper": plan.paper_pairs} | chosen(plan.config, ["water"])
-    return shown | cantilevers(plan, *plan.pairs)
+    """Cases of Fig. 15, water of each pair, the nominal beams, and the pairs whose published values are drawn."""
+    shown = {"outcomes": plan.outcomes, "of_paper": plan.paper_pairs}
+    return shown | {"water": {pair: plan.water(pair) for pair in plan.pairs}} | cantilevers(plan, *plan.pairs)
 
 
 def figure_17(plan: Plan) -> dict:

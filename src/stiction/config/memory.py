@@ -4,10 +4,10 @@ import math
 from collections.abc import Mapping
 
 from stiction.config.units import NM_PER_UM, from_si
-from stiction.models import SIDES
+from stiction.models import FIELD, SIDES
 
-#: Side of the periodic fields on which spectra are estimated [µm]; `stiction.stages.surfaces.FIELD`.
-FIELD_UM = 10.24
+#: Side of the periodic fields on which spectra are estimated [µm].
+FIELD_UM = from_si(FIELD, "um")
 #: Memory of a job: libraries and small arrays [MB]; fields, their waves and their spectra [bytes per point]. Measured:
 #: 54 bytes per point of a field whose spectrum is estimated, up to 24 of one from which a strip is cut.
 _BASE, _PER_POINT = 350, 60

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from stiction.config.cases import case_id, pair_of
-from stiction.config.designs import Designs
+from stiction.config.designs import KEYS_OF_SOLIDS, Designs
 from stiction.config.plan import Plan
 
 #: The two values of a shifted quantity, in the order in which rules name their files.
@@ -148,12 +148,12 @@ class Paths:
         """
         quantities = [f"{slopes}_{surface}_{quantity}" for surface, quantity in self._designs.quantities(device)]
         shifted = {side: [f"{begin}_{side}.nc" for begin in quantities] for side in LESS_AND_MORE}
-        stated = self._section(device).get("uncertainty", {}).get("young_modulus_GPa")
-        modulus = [f"{folder}/modulus/{patch}_{side}.nc" for side in LESS_AND_MORE] if stated else []
-        return shifted | {
-            "modulus": modulus,
-            "choices": [f"{folder}/choices/{patch}_{variant}.nc" for variant in choices],
+        uncertain = self._designs.uncertain_solids(device)
+        solids = {
+            name: [f"{folder}/{name}/{patch}_{side}.nc" for side in LESS_AND_MORE if name in uncertain]
+            for name in KEYS_OF_SOLIDS
         }
+        return shifted | solids | {"choices": [f"{folder}/choices/{patch}_{variant}.nc" for variant in choices]}
 
     def summits_of_choice(self, pair: str, size: str, variant: str) -> str:
         """Summits of a patch of a pair, of a size such as ``1500x30000`` [nm], under a choice of the model."""

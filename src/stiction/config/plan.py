@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import Any
 
 from stiction.config.cases import case_id, humidity_of, pair_of
+from stiction.config.designs import hamaker_constant
 from stiction.config.files import paper
 from stiction.config.measured import evaluated, is_measured, quantities
 from stiction.config.merging import merged
@@ -80,6 +81,10 @@ class Plan:
     def beam_modulus(self, pair: str) -> dict:
         """Young's modulus of the beam of a pair if its material states one, otherwise empty."""
         return chosen(self._stated(pair)[0], ["young_modulus_GPa"])
+
+    def beam_hamaker_constant(self, pair: str) -> float:
+        """Hamaker constant of two bodies like the beam of a pair, through the medium between the solids [zJ]."""
+        return hamaker_constant(self._stated(pair)[0], self.config["van_der_waals"])
 
     @cached_property
     def surfaces(self) -> list[str]:
@@ -168,14 +173,20 @@ class Plan:
         ASSUME: the mesh of the paper belongs to its beam, strips and pairs, up to the highest humidity of each pair. It
         is kept under other model choices, so that variants differ by their choice alone.
         """
-        pair, known = pair_of(case), paper()
-        of_paper = known["pairs"].get(pair)
-        return (
-            all(_same(self.config[section], known[section], only=keys) for section, keys in _OF_MESH.items())
-            and _same(self.config["pairs"][pair], of_paper, but=["humidities"])
+        return humidity_of(case) <= self._highest_on_mesh.get(pair_of(case), 0)
+
+    @cached_property
+    def _highest_on_mesh(self):
+        """Highest humidity of the paper of each pair whose beams may have the elements of the paper."""
+        known = paper()
+        if not all(_same(self.config[section], known[section], only=keys) for section, keys in _OF_MESH.items()):
+            return {}
+        return {
+            pair: max(of_paper["humidities"])
+            for pair, of_paper in known["pairs"].items()
+            if _same(of_paper, self.config["pairs"].get(pair), but=["humidities"])
             and all(self._has_heights_of_paper(name) for name in self.sides(pair))
-            and humidity_of(case) <= max(of_paper["humidities"])
-        )
+        }
 
     def _has_heights_of_paper(self, surface):
         """Whether a surface has the moments of the paper, and the published spectrum or the summits that give it."""

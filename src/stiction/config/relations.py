@@ -476,8 +476,8 @@ def not_apart(gap: float, humidities: float | list, temperature: float, sides: l
     if gap >= least:
         return None
     return (
-        f"must be at least {least:.4g} µm, {limits.FILMS} times the height of the water film, "
-        f"{from_si(film, 'nm'):.5g} nm, plus the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
+        f"must be at least {least:.4g} µm, {limits.FILMS} times the sum of the height of the water film, "
+        f"{from_si(film, 'nm'):.5g} nm, and the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
     )
 
 

@@ -4,7 +4,7 @@ Lengths are in µm, as in the configuration. A relation gets the name of a devic
 """
 
 from stiction.config import memory
-from stiction.config.designs import KEYS, OPTIONAL
+from stiction.config.designs import KEYS, OPTIONAL, hamaker_constant
 from stiction.config.relations import (
     cases_have_unique_names,
     estimated_strip,
@@ -21,6 +21,7 @@ from stiction.config.relations import (
 )
 from stiction.config.relations import validate as validate  # of all relations, those of this module among them
 from stiction.config.units import MB_PER_GB, NM_PER_UM
+from stiction.devices.budget import OF_SOLIDS
 from stiction.models import SIDES
 
 #: Keys that every device may have.
@@ -143,7 +144,7 @@ def strips_resolve_the_cracks_of_a_device(
         return None
     return (
         f"must be so large that strips of {strip:g} µm resolve its cracks: at RH {shortest:g} they must be below "
-        f"about {needed[shortest]:.2g} µm; decrease strip_um, within the correlation length of the surfaces"
+        f"about {needed[shortest]:.2g} µm; decrease strip_um, which must stay above the correlation length"
     )
 
 
@@ -196,6 +197,33 @@ def dimension_stays_positive(deviation, value):
     return None if deviation < value else "must be below the dimension itself"
 
 
+#: What the relations about uncertain properties of the material of a beam need.
+_MATERIAL = (*_GROUND, "materials", "solid")
+
+
+@relation("devices.*.uncertainty.young_modulus_GPa", *_MATERIAL)
+def uncertain_modulus_stays_positive(deviation, *known):
+    """Young's modulus is positive one standard uncertainty below its value, too."""
+    value = _material(*known)["young_modulus_GPa"]
+    return None if deviation < value else f"must be below Young's modulus itself, {value:g} GPa"
+
+
+@relation("devices.*.uncertainty.poisson_ratio", *_MATERIAL)
+def uncertain_poisson_ratio_stays_within_its_limits(deviation, *known):
+    """Poisson's ratio is possible one standard uncertainty, and one step of its slope, around its value, too."""
+    value, change = _material(*known)["poisson_ratio"], max(deviation, OF_SOLIDS["poisson_ratio"].size)
+    if not deviation or (value - change > -1 and value + change < 0.5):
+        return None
+    return f"must leave Poisson's ratio above -1 and below 0.5: its budget needs {value:g} ± {change:g}"
+
+
+@relation("devices.*.uncertainty.hamaker_constant_zJ", *_MATERIAL, "van_der_waals")
+def uncertain_hamaker_constant_stays_positive(deviation, *known):
+    """The Hamaker constant is positive one standard uncertainty below its value, too."""
+    value = hamaker_constant(_material(*known[:-1]), known[-1])
+    return None if deviation < value else f"must be below the Hamaker constant itself, {value:g} zJ"
+
+
 @relation("devices.*.uncertainty.humidity", "devices.*.humidities")
 def uncertain_humidity_stays_within_its_limits(deviation, humidities):
     """Humidities are above 0 and below 1 one standard uncertainty around their values, too."""
@@ -217,6 +245,12 @@ def uncertainty_is_that_of_the_kind(uncertainty, kind):
     """Only dimensions that a device has are uncertain."""
     strange = {"thickness_um", "gap_um", "residual_stress_MPa"} & set(uncertainty) - KEYS[kind]
     return f"must come without {', '.join(sorted(strange))}" if strange else None
+
+
+def _material(name, devices, pairs, surfaces, materials, solid):
+    """Properties of the material of the beam or stopper of a device."""
+    surface = surfaces.get(pairs.get(devices[name]["pair"], {}).get("beam"), {})
+    return solid | materials.get(surface.get("material"), {})
 
 
 def _sides(device, pairs, surfaces):

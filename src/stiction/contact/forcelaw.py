@@ -1,4 +1,4 @@
-r"""Apparent adhesive contact force of one piece of surface and its parameters (Sec. III-B1).
+r"""Apparent adhesive contact force of one sample and its parameters (Sec. III-B1).
 
 Convention: a force per unit area ``f(d)`` [Pa] at the distance ``d`` [m] between mean planes is positive in repulsion
 and negative in attraction. The package uses two row formats:
@@ -275,10 +275,10 @@ def _left_steepness(vectors, f_limit):
     return np.log(1 + np.sqrt(1 + f_limit / f_max)) / (d_max - d_limit)
 
 
-def _right_range(vectors, f_limit):
+def _right_range(vectors, a_left):
     """Contribution of the branch d > d_max to e / f_max, equal to 1.5 / a_right (n,) [m]."""
     e, f_max, _, _ = vectors.T
-    return e / f_max - 0.5 / _left_steepness(vectors, f_limit)
+    return e / f_max - 0.5 / a_left
 
 
 def admissible(vectors: np.ndarray, f_limit: float) -> np.ndarray:
@@ -286,7 +286,7 @@ def admissible(vectors: np.ndarray, f_limit: float) -> np.ndarray:
 
     The branch d < d_max alone has the energy 0.5 f_max / a_left; a vector with smaller e has no force law.
     """
-    return _right_range(vectors, f_limit) > 0
+    return _right_range(vectors, _left_steepness(vectors, f_limit)) > 0
 
 
 def coefficients(vectors: np.ndarray, f_limit: float) -> np.ndarray:
@@ -319,13 +319,14 @@ def coefficients(vectors: np.ndarray, f_limit: float) -> np.ndarray:
     >>> [round(float(a) * 1e-9, 3) for a in law[0, 2:]]  # nm⁻¹
     [0.632, 0.554]
     """
-    reach = _right_range(vectors, f_limit)
+    a_left = _left_steepness(vectors, f_limit)
+    reach = _right_range(vectors, a_left)
     if not np.all(reach > 0):
         worst = int(np.argmin(reach))
         raise ValueError(
             f"vector {worst} has no law: e = {vectors[worst, 0]:.3g} J/m² is less than the energy of its left branch"
         )
-    return np.column_stack([vectors[:, 1], vectors[:, 2], _left_steepness(vectors, f_limit), 1.5 / reach])
+    return np.column_stack([vectors[:, 1], vectors[:, 2], a_left, 1.5 / reach])
 
 
 def pressure(law: np.ndarray, distance: float | np.ndarray) -> float | np.ndarray:

@@ -25,6 +25,7 @@ from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.tail import fit_tail
 from stiction.progress import progress
 from stiction.stages import curves
+from stiction.stages.contact import first
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ Respond = Callable[[Sequence[State]], Responses]
 def compute(
     contact: xr.Dataset,
     shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
-    modulus: tuple[xr.Dataset, xr.Dataset] | None,
+    solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
     choices: Mapping[str, xr.Dataset],
     known: Mapping[str, Known],
     settings: Settings,
@@ -56,8 +57,9 @@ def compute(
         Contact of the device, or of its tips.
     shifted : dict
         (surface, quantity) to the contact with less and with more of it.
-    modulus : tuple or None
-        Contact with less and with more of Young's modulus, by `stiction.devices.budget.STEP`, if it is uncertain.
+    solids : dict
+        Uncertain property of the solids to the contact with less and with more of it, by the step of
+        `stiction.devices.budget.OF_SOLIDS`.
     choices : dict
         Name of the choice to the contact under it; with fewer samples than ``contact``, that of the first ones.
     known : dict
@@ -66,11 +68,11 @@ def compute(
     """
     state = nominal(contact, settings)
     respond = responder(state, settings)
-    inputs, covariance = uncertain(state, shifted, modulus, known, settings)
+    inputs, covariance = uncertain(state, shifted, solids, known, settings)
     found = slopes(inputs, respond)
     changes = {}
     for name, changed in choices.items():
-        base = replace(state, contact=contact.isel(sample=slice(changed.sizes["sample"])))
+        base = replace(state, contact=first(contact, changed.sizes["sample"]))
         changes[name] = effect(base, replace(state, contact=changed), respond)
     return layout(inputs, found, covariance, of_devices(respond([state]), settings.device), changes, settings)
 

@@ -13,13 +13,14 @@ import xarray as xr
 
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
-from stiction.contact.meniscus import flooded_energy, meniscus_height
+from stiction.contact.meniscus import meniscus_height
 from stiction.designs import releases, sticking
 from stiction.designs.patches import on_patch
 from stiction.designs.releases import DesignedBeam
 from stiction.devices import arcs
-from stiction.devices.chart import checked_power_law, flooded_length
+from stiction.devices.chart import checked_power_law
 from stiction.stages import curves
+from stiction.stages.contact import surface_rms
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
     shortest, gaps = found.lengths[:, -1].min(axis=-1), np.tile(settings.gaps, len(settings.thicknesses))
     slopes = arcs.tip_slope(shortest, gaps)
     wedges = np.full(len(gaps), np.nan) if tips is None else sticking.mean_wedge(tips, slopes, settings)
-    return layout(found, wedges, releases.surface_rms(contact), settings)
+    return layout(found, wedges, surface_rms(contact), settings)
 
 
 def _of_size(settings, thickness, gap):
@@ -145,7 +146,8 @@ def layout(found: Filled, wedges: np.ndarray, rms: float, settings: Settings) ->
     grid, size = (len(settings.thicknesses), len(settings.gaps)), ("thickness", "gap")
     shapes = sticking.shapes(settings.device)
     film = meniscus_height(settings.humidity, settings.water.temperature, settings.water.contact_angles)
-    limits = [_limits(settings, *one) for one in product(settings.thicknesses, settings.gaps)]
+    designed = (_of_size(settings, *one) for one in product(settings.thicknesses, settings.gaps))
+    limits = [sticking.flooded_lengths(device, settings.water) for device in designed]
     metres, none = {"units": "m"}, {"units": "1"}
     return xr.Dataset(
         {
@@ -165,10 +167,3 @@ def layout(found: Filled, wedges: np.ndarray, rms: float, settings: Settings) ->
             "share": list(settings.shares),
         },
     )
-
-
-def _limits(settings, thickness, gap):
-    """Lengths that stick in saturated air by shape: at the adhesion energy of flooded flats [m]."""
-    device, water = _of_size(settings, thickness, gap), (settings.water.temperature, settings.water.contact_angles)
-    alone = device.cracks * flooded_length(device.beam, *water)
-    return [alone] if device.kind == "bridge" else [alone, arcs.arc_length(flooded_energy(*water), device.beam)]

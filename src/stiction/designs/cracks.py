@@ -15,8 +15,9 @@ from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
 from stiction.contact import forcelaw
 from stiction.designs.patches import on_patch
-from stiction.designs.releases import LAWS, DesignedBeam, addresses, crack_lengths, fitted, long_beam, surface_rms
+from stiction.designs.releases import LAWS, DesignedBeam, addresses, crack_lengths, fitted, long_beam
 from stiction.stages import curves
+from stiction.stages.contact import surface_rms
 
 #: Most groups of the samples of contact, and the least number of samples in each, but always two groups.
 GROUPS, PER_GROUP = 10, 50

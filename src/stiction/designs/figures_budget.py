@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 
 from stiction.designs.budget import budget_of, groups_of
 from stiction.designs.figures_devices import below
-from stiction.designs.tables_budget import SCATTER, TOTAL, response_text
+from stiction.designs.tables_budget import SCATTER, TOTAL, choice_label, response_text
 from stiction.devices.risk import stuck_share
 from stiction.report.format import TO_UN
 from stiction.report.style import (
@@ -18,13 +18,14 @@ from stiction.report.style import (
     SINGLE,
     columns_of_panels,
     dashes,
+    handles,
     humidity_axis,
+    legend_below,
     letter,
     panels,
     shades,
     styled,
 )
-from stiction.report.tables_studies import variant_label
 
 _COLOUR = "#0072B2"
 #: Heights of a row of a budget, of everything else in its panel, and of the legend [in]; share of a row with bars.
@@ -45,7 +46,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
     warnings : dict
         Device to sentences, which are written below the figure.
     """
-    figure, columns, lines = columns_of_panels(len(datasets), 2, lambda n: min(DOUBLE, SINGLE * n), 4.4)
+    figure, columns, lines = columns_of_panels(len(datasets), 2, lambda n: min(DOUBLE, SINGLE * n), 5.0)
     for column, dataset in zip(columns, datasets.values(), strict=True):
         _stuck_over_force(column[0], dataset)
         _force_over_humidity(column[1], dataset)
@@ -77,7 +78,7 @@ def _stuck_over_force(panel, dataset):
         path_effects=OUTLINED,
     )
     panel.set(xlabel="restoring force [µN]", yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
-    panel.legend(loc="upper right")
+    legend_below(panel, handles(panel)[0])
 
 
 def _force_over_humidity(panel, dataset):
@@ -91,7 +92,7 @@ def _force_over_humidity(panel, dataset):
     panel.plot([worst], [top], "v", color="black", label=f"worst humidity {worst:.2f}")
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
     humidity_axis(panel)
-    panel.legend(loc="upper left")
+    legend_below(panel, handles(panel)[0])
 
 
 # Budget
@@ -154,7 +155,7 @@ def _choices(cases):
     rows = {}
     for choice in next(iter(cases.values())).choice.values:
         chosen = [dataset.sel(choice=choice) for dataset in cases.values()]
-        rows[variant_label(str(choice))] = [
+        rows[choice_label(str(choice))] = [
             (*sorted((0.0, 100 * float(one.effect))), 100 * float(one.effect_error)) for one in chosen
         ]
     return rows

@@ -19,6 +19,7 @@ from stiction.report.style import (
     columns_of_panels,
     handles,
     humidity_axis,
+    legend_below,
     letter_lines,
     styled,
 )
@@ -31,8 +32,10 @@ _SATURATED = {"S-shape": ":", "S-shape or arc": "-."}
 _BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x"}
 #: Characters in a line of warnings.
 _LINE = 130
-#: Height of the legend in a panel of a chart, in units of the range of its lengths.
-_ROOM = 0.5
+#: Height of a line of panels, and of an entry of the legends below them [in].
+_PANEL, _ENTRY = 3.3, 0.12
+#: Space above the longest curve of a chart, in units of the range of its lengths.
+_ROOM = 0.05
 
 
 def _width(columns):
@@ -65,7 +68,8 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
     """
     names = list(dict.fromkeys(name for name, _ in found))
     sentences, numbers = numbered(warnings)
-    figure, columns, lines = columns_of_panels(len(names), 1, _width, 3.2)
+    most = max(sum(device == name for device, _ in found) for name in names)
+    figure, columns, lines = columns_of_panels(len(names), 1, _width, _PANEL + _ENTRY * most)
     for panel, name in zip(columns[:, 0], names, strict=True):
         cases = {humidity: dataset for (device, humidity), dataset in found.items() if device == name}
         named = []
@@ -73,7 +77,7 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
             _shares(panel, dataset, shade)
             label = f"RH {humidity:g}{_marks(numbers, name, humidity)}"
             named.append(Line2D([], [], color=shade, linewidth=3, label=label))
-        panel.legend(handles=named, loc="lower right")
+        legend_below(panel, named)
         shares = np.concatenate([dataset.share.values for dataset in cases.values()])
         panel.set(yscale="log", ylim=(shares.min() / 2, 1.3), xlabel="length of the device [µm]")
     for line in lines:
@@ -140,11 +144,12 @@ def chart(
     joint = {"data_vars": "minimal", "coords": "minimal", "compat": "equals", "join": "exact"}
     axes = {name: xr.concat(parts, "relative_humidity", **joint) for name, parts in devices.items()}
     subjects = [(name, *one) for name, whole in axes.items() for one in product(whole.gap.values, _shapes_of(whole))]
-    figure, columns, lines = columns_of_panels(len(subjects), 1, _width, 3.2)
+    most = max(whole.sizes["thickness"] for whole in axes.values()) + 1
+    figure, columns, lines = columns_of_panels(len(subjects), 1, _width, _PANEL + _ENTRY * most)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
         whole = axes[name].sel(gap=gap, shape=shape)
         marks = [_listed(numbers.get((name, thickness, gap, shape), ())) for thickness in whole.thickness.values]
-        panel.legend(handles=_thicknesses(panel, whole, shape, marks), loc="upper right")
+        legend_below(panel, _thicknesses(panel, whole, shape, marks))
         low, high = panel.dataLim.intervaly
         panel.set(xlabel="relative humidity [–]", ylim=(0.95 * low, high + _ROOM * (high - low)))
         humidity_axis(panel)

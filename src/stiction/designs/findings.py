@@ -14,7 +14,7 @@ from stiction.designs.releases import DesignedBeam
 from stiction.designs.sticking import EITHER, S_SHAPE
 from stiction.devices import limits
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever
-from stiction.stages.releases import ended
+from stiction.stages.releases import ended, stuck_lengths
 
 #: Warnings by their subject, such as ``pair b, RH 0.67, G``.
 Warnings = dict[str, list[str]]
@@ -48,7 +48,7 @@ def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
     s_shaped = ended(beams, "S-shape")
     warnings = [limits.arcs_of_elements(float(ended(beams, "arc").mean()), strip)]
     if s_shaped.any():
-        mean = float(beams.crack_length.values[s_shaped].mean())
+        mean = float(stuck_lengths(beams).mean())
         warnings += [
             limits.cut_off_mean(float(s_shaped.mean()), mean, nominal.length),
             limits.large_rotation(nominal.gap, mean),
@@ -73,7 +73,7 @@ def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan) -> dict[
     """
     shortest = found.estimate.min("share")
     return {
-        shape: _of_length(float(shortest.sel(shape=shape)), shape, found, of, plastic)
+        shape: _of_length(float(shortest.sel(shape=shape)), shape, found.sel(shape=shape), of, plastic)
         for shape in map(str, found["shape"].values)
     }
 
@@ -109,19 +109,20 @@ def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
 
 
 def _of_length(length, shape, found, of, plastic):
-    """Warnings about a device of a length [m] in a shape; film, rms and wedge from a dataset."""
+    """Warnings about a device of a length [m] in a shape; film, rms, wedge and its limit from a dataset."""
     device = of.device
     sizes = device.gap, device.width, device.thickness, length / device.cracks
     return limits.of_cantilever(*sizes, float(found.film), float(found.rms)) + limits.given(
         limits.stretched_bridge(device.gap, device.thickness) if device.kind == "bridge" else None,
-        limits.short_wedge(of.tip, float(found.wedge)) if shape == EITHER else None,
+        limits.short_wedge(of.tip, float(found.wedge), float(found.flooded_length)) if shape == EITHER else None,
         *_of_contact(plastic, of.materials),
     )
 
 
-def _of_contact(plastic, materials):
+def _of_contact(plastic, materials, effect=limits.SHORTER):
     """Warnings, or None, about the contact of a pair."""
-    return [limits.plastic_contact(plastic), *(limits.default_material(name, stated) for name, stated in materials)]
+    defaults = (limits.default_material(name, stated) for name, stated in materials)
+    return [limits.plastic_contact(plastic, effect), *defaults]
 
 
 def _plastic_share(plasticity, pair):
@@ -210,8 +211,9 @@ def of_stoppers(plasticity: Mapping[str, xr.Dataset], plain: Mapping[str, dict[s
         Settings of a job: name to its ``pair`` and the ``materials`` as in `OfDevice`.
     """
     return {
-        name: limits.given(*_of_contact(_plastic_share(plasticity, section["pair"]), section["materials"]))
+        name: limits.given(*_of_contact(share, section["materials"], limits.STRONGER))
         for name, section in plain.items()
+        for share in [_plastic_share(plasticity, section["pair"])]
     }
 
 

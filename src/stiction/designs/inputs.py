@@ -1,8 +1,8 @@
 """Uncertain inputs of devices: states with less and with more of each, and the covariance of their errors.
 
-Dimensions and Young's modulus are changed by 5 %: a crack jumps from strip to strip, so that larger steps have smaller
-errors. Stress, air and contact angles are changed by their standard uncertainty, those that cannot be below zero in one
-direction only.
+Dimensions and properties of the solids are changed by the steps of `stiction.devices.budget`: a crack jumps from strip
+to strip, so that larger steps have smaller errors. Stress, air and contact angles are changed by their standard
+uncertainty, those that cannot be below zero in one direction only.
 """
 
 from collections.abc import Iterator, Mapping
@@ -14,7 +14,7 @@ import xarray as xr
 from scipy.linalg import block_diag
 
 from stiction.designs.releases import DesignedBeam
-from stiction.devices.budget import STEP
+from stiction.devices.budget import OF_DIMENSIONS, OF_SOLIDS
 from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM, SIDES
 from stiction.scans import moments
 from stiction.stages import heights, spectrum
@@ -26,10 +26,12 @@ from stiction.surface.translation import Translation
 
 #: What the inputs of a budget move: the mean sticking length of S-shapes, a length that tips hold, a mean force.
 S_SHAPE, ARC, FORCE = "S-shape", "arc", "force"
-_MODULUS = "Young's modulus"
-#: Factors of dimensions and of Young's modulus on either side, and the difference of their logarithms.
-_FACTORS = 1 - STEP, 1 + STEP
-_STEP = float(np.log(_FACTORS[1] / _FACTORS[0]))
+#: Properties of solids, keys of `stiction.devices.budget.OF_SOLIDS`: field of their uncertainty, and for reading.
+_SOLIDS = {
+    "modulus": ("young_modulus", "Young's modulus"),
+    "poisson_ratio": ("poisson_ratio", "Poisson's ratio"),
+    "hamaker_constant": ("hamaker_constant", "the Hamaker constant"),
+}
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,8 @@ class Uncertainty:
     gap: float = 0.0  #: [m]
     residual_stress: float = 0.0  #: [Pa]
     young_modulus: float = 0.0  #: [Pa]
+    poisson_ratio: float = 0.0  #: [-]
+    hamaker_constant: float = 0.0  #: [J]
     humidity: float = 0.0  #: [-]
     temperature: float = 0.0  #: [K]
     contact_angle: float = 0.0  #: of both surfaces, in the same direction [rad]
@@ -57,6 +61,7 @@ class Settings:
     surfaces: tuple[str, ...]  #: names of those of the pair
     young_modulus: float  #: E of the body of the beam or stopper [Pa]
     device: DesignedBeam | None = None  #: a beam; none for a stopper
+    hamaker_constant: float | None = None  #: of two bodies like the beam or stopper [J], if it is uncertain
     share: float = 0.0  #: p of the length that tips hold, if the budget is of that length [-]
     beams: int = 0  #: number of beams for every slope
     contact: tuple[float, float] = (0.0, 0.0)  #: sides of the patch of a stopper [m]
@@ -108,7 +113,7 @@ class Block(NamedTuple):
 def uncertain(
     state: State,
     shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
-    modulus: tuple[xr.Dataset, xr.Dataset] | None,
+    solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
     known: Mapping[str, Known],
     settings: Settings,
 ) -> tuple[list[Input], np.ndarray]:
@@ -120,15 +125,16 @@ def uncertain(
         At the stated values of all inputs.
     shifted : dict
         (surface, quantity) to the contact with less and with more of it.
-    modulus : tuple or None
-        Contact with less and with more of Young's modulus, by `stiction.devices.budget.STEP`, if it is uncertain.
+    solids : dict
+        Uncertain property of the solids to the contact with less and with more of it, by the step of
+        `stiction.devices.budget.OF_SOLIDS`.
     known : dict
         Surface to what is known of its quantities, those of ``shifted``.
     settings : Settings
     """
     stated = settings.uncertainty
     blocks = [of_surface(state, name, shifted, measured) for name, measured in known.items()]
-    blocks += [*of_dimensions(state, stated), *of_material(state, modulus, settings), *of_air(state, stated)]
+    blocks += [*of_dimensions(state, stated), *of_solids(state, solids, settings), *of_air(state, stated)]
     inputs = [entry for block in blocks for entry in block.inputs]
     return inputs, block_diag(np.empty((0, 0)), *(block.covariance for block in blocks))
 
@@ -139,7 +145,7 @@ def countable(settings: Settings) -> list[str]:
     if device := settings.device:
         sizes = ["the thickness", "the gap", "the width", *(["the residual stress"] if device.cracks == 2 else [])]
     surfaces = [f"the {part} of {name}" for name in settings.surfaces for part in ("heights", "spectrum")]
-    solids = [_MODULUS, "Poisson's ratio", "the Hamaker constant"]
+    solids = [words for _, words in _SOLIDS.values()]
     return [*surfaces, *sizes, *solids, "the humidity", "the temperature", "the contact angles"]
 
 
@@ -168,25 +174,31 @@ def of_dimensions(state: State, stated: Uncertainty) -> Iterator[Block]:
     for name in ("thickness", "gap"):
         if deviation := getattr(stated, name):
             value = getattr(state.device, name)
-            sizes = [factor * value for factor in _FACTORS]
+            sizes = OF_DIMENSIONS.ends(value)
             both = (replace(state, device=replace(state.device, **{name: size})) for size in sizes)
-            yield _alone(name, f"the {name}", both, _STEP, deviation / value)
+            yield _alone(name, f"the {name}", both, OF_DIMENSIONS.difference, deviation / value)
     if deviation := stated.residual_stress:
         ends = around(state.device.residual_stress, deviation, least=0.0)
         both = (replace(state, device=replace(state.device, residual_stress=at)) for at in ends)
         yield _alone("residual stress", "the residual stress", both, ends[1] - ends[0], deviation)
 
 
-def of_material(state: State, modulus: tuple[xr.Dataset, xr.Dataset] | None, settings: Settings) -> Iterator[Block]:
-    """Uncertain Young's modulus of the contact and of the beam; its slope is in its logarithm."""
-    if modulus is None:
-        return
-    both = []
-    for contact, factor in zip(modulus, _FACTORS, strict=True):
-        beam = state.device and replace(state.device, young_modulus=factor * settings.young_modulus)
-        both.append(replace(state, contact=contact, device=beam))
-    deviation = settings.uncertainty.young_modulus / settings.young_modulus
-    yield _alone(_MODULUS, _MODULUS, both, _STEP, deviation)
+def of_solids(state: State, solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings) -> Iterator[Block]:
+    """Uncertain properties of the solids; the slopes of those with a relative step are in their logarithms.
+
+    ASSUME: a beam bends with Young's modulus alone, without the 1 - ν² of a plate; only the contact has the other two.
+    """
+    for name, (field, words) in _SOLIDS.items():
+        if name not in solids:
+            continue
+        both, step = [replace(state, contact=contact) for contact in solids[name]], OF_SOLIDS[name]
+        if name == "modulus" and state.device:
+            moduli = step.ends(settings.young_modulus)
+            beams = [replace(state.device, young_modulus=modulus) for modulus in moduli]
+            both = [replace(of, device=beam) for of, beam in zip(both, beams, strict=True)]
+        deviation = getattr(settings.uncertainty, field)
+        relative = deviation / getattr(settings, field) if step.relative else deviation
+        yield _alone(words.removeprefix("the "), words, both, step.difference, relative)
 
 
 def of_air(state: State, stated: Uncertainty) -> Iterator[Block]:

@@ -11,6 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.designs import figures_budget, figures_devices, findings, tables_budget, tables_devices
+from stiction.designs.sticking import S_SHAPE
 from stiction.designs.stoppers import in_any_air, is_at_an_end, shares_stuck
 from stiction.devices.limits import NOT_MODELLED
 from stiction.report.format import UM, UN
@@ -124,13 +125,13 @@ _OF_BEAMS = {
         "What a length rests on: simulated beams alone; a line through the shortest 5 % of them, within what many more "
         "beams, tips and bridges on the surfaces of the paper's pair b confirmed; or that line beyond it."
     ),
+    "Saturated air": "Length that sticks where water fills all gaps: wetter air cannot hold shorter beams.",
 }
 _OF_CHARTS = {
     "Finite elements, power law": (
         "Lengths of simulated beams, or a power of thickness and gap between them, with its largest error at simulated "
         "beams that it had to predict."
     ),
-    "Saturated air": "Length that sticks where water fills all gaps: wetter air cannot hold shorter beams.",
 }
 _OF_STOPPERS = {
     "Pull-off force": "Largest force with which the two surfaces hold each other while they are separated.",
@@ -143,6 +144,9 @@ _OF_BUDGETS = {
     "Remaining": "Standard uncertainty of the result if this measurement were exact.",
     "Scatter between devices": "How much equal devices differ. A better measurement does not reduce it.",
     "Choice of the model": "What another assumption of the theory would change. It has no distribution.",
+    "Van der Waals in dry gaps, or none": "The force between the solids as through air instead of water, or left out.",
+    "Spectrum from summits": "Spectrum chosen for the measured summits, instead of the published one.",
+    "Grid": "Distance of the points at which the surfaces are drawn; summits are found on these points.",
 }
 
 
@@ -214,17 +218,27 @@ def _facts_of(section):
 
 
 def safe_sentence(humidity: float, found: xr.Dataset) -> str:
-    """The safe lengths of a device at one humidity in words, for the middle one of the shares."""
+    """The safe lengths of a device at one humidity in words, for the middle one of the shares.
+
+    Where the strips of the tips are longer than the wedge, tips hold shorter beams than computed: the length in
+    saturated air is then the one that is safe, unless the computed one is still shorter.
+    """
     share = float(found.share[found.sizes["share"] // 2])
-    lengths = {
-        str(shape): float(found.safe_length.sel(shape=shape, share=share)) / UM for shape in found["shape"].values
-    }
-    shortest = min(lengths.values())
+    lengths, surest = found.safe_length.sel(share=share) / UM, float(found.flooded_length.min()) / UM
+    shortest, longest = float(lengths.min()), float(lengths.max())
+    air, but = f"At a relative humidity of {humidity:g}", f"at most 1 in {1 / share:g}"
+    if float(found.tip_strip) > float(found.wedge) and surest < shortest:
+        return (
+            f"{air}, devices of up to {surest:.0f} µm come free after they were pressed down: this is the length in "
+            f"saturated air, the shortest that water holds. The computed {shortest:.0f} µm, of which {but} stick (95 % "
+            "confidence, given the drawn surfaces), are an upper limit, because the strips of the tips are longer than "
+            "the wedge on which they act. If the tip cannot hold them, devices of up to "
+            f"{float(lengths.sel(shape=S_SHAPE)):.0f} µm come free, except for {but}."
+        )
     sentence = (
-        f"At a relative humidity of {humidity:g}, devices of up to {shortest:.0f} µm come free after they were pressed "
-        f"down, except for at most 1 in {1 / share:g} (95 % confidence, given the drawn surfaces)."
+        f"{air}, devices of up to {shortest:.0f} µm come free after they were pressed down, except for {but} (95 % "
+        "confidence, given the drawn surfaces)."
     )
-    longest = max(lengths.values())
     if longest == shortest:
         return sentence
     return f"{sentence} If the tip cannot hold them, this is true of up to {longest:.0f} µm."
@@ -264,12 +278,13 @@ def worst_sentence(found: xr.Dataset) -> str:
     """The worst humidity of a stopper in words."""
     worst, (low, high) = float(found.worst_humidity), _ends(found)
     share, least, most = (100 * share for share in in_any_air(found)[0])
-    stuck = f"In no air of this range do more than {share:.3g} % ({least:.3g} to {most:.3g} %) stick."
+    stuck = f" In no air of this range do more than {share:.3g} % ({least:.3g} to {most:.3g} %) stick."
+    stuck = "" if f"{share:.3g}" == "100" else stuck
     if is_at_an_end(found):
-        return f"Between relative humidities of {low} and {high}, the stopper holds most at {worst:g}. {stuck}"
+        return f"Between relative humidities of {low} and {high}, the stopper holds most at {worst:g}.{stuck}"
     return (
         f"The stopper holds most at a relative humidity of {worst:.2f}; drier and wetter air, from {low} to {high}, "
-        f"are less critical. {stuck}"
+        f"are less critical.{stuck}"
     )
 
 
@@ -283,10 +298,12 @@ def _sure(name, budgets):
     if not budgets:
         return []
     cases = {(name, *key): dataset for key, dataset in budgets.items()}
-    said = [f"Relative humidity {humidity:g}: {tables_budget.advised(one)}" for (humidity, *_), one in budgets.items()]
-    said += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
+    sentences = [
+        f"Relative humidity {humidity:g}: {tables_budget.advised(one)}" for (humidity, *_), one in budgets.items()
+    ]
+    sentences += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
     cells, drawn = _side_by_side(tables_budget.budget(cases).cells), figures_budget.budget(cases)
-    return [Section("Uncertainty, and what should be measured better", said, cells, drawn)]
+    return [Section("Uncertainty, and what should be measured better", sentences, cells, drawn)]
 
 
 def _side_by_side(cells):

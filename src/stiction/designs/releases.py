@@ -12,18 +12,16 @@ from functools import partial
 from typing import Protocol
 
 import numpy as np
-import xarray as xr
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
-from stiction.beam.montecarlo import Experiment, columns, simulate
+from stiction.beam.montecarlo import Experiment, released_beams
 from stiction.beam.release import EndState
 from stiction.beam.resolution import resolved
 from stiction.chaos.model import ChaosModel, Truncation, draw_laws, fit
 from stiction.config.units import from_si
 from stiction.contact import forcelaw
 from stiction.devices.bridges import half_of_bridge
-from stiction.progress import progress
 from stiction.streams import stream
 
 #: Length of the long beams, in crack lengths that Eq. (13) predicts from the mean adhesion energy. Cracks stop where
@@ -103,14 +101,5 @@ def crack_lengths(
     model: ChaosModel, beam: Beam, points: int, number: int, address: Callable, threads: int = 1
 ) -> np.ndarray:
     """Crack lengths of beams on force laws drawn from a chaos model, infinite for beams that are not S-shaped (n,)."""
-    experiment = Experiment(beam, points, partial(draw_laws, model))
-    outcomes = simulate(experiment, range(number), address, threads)
-    found = columns(list(progress(outcomes, "beams", total=number)))
+    found = released_beams(Experiment(beam, points, partial(draw_laws, model)), number, address, threads)
     return np.where(found["state"] == EndState.S_SHAPE, found["crack_length"], np.inf)
-
-
-def surface_rms(contact: xr.Dataset) -> float:
-    r"""Root mean square of z₁ + z₂ from the mean bearing area, :math:`m_2 = 2 \int z (A(z) - [z < 0]) dz` [m]."""
-    height = contact.height.values
-    area = contact.bearing_area.values.mean(axis=0, dtype=float)
-    return float(np.sqrt(2 * float(contact.step) * np.sum(height * (area - (height < 0)))))

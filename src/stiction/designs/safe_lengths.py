@@ -10,7 +10,7 @@ from stiction.contact.meniscus import meniscus_height
 from stiction.designs import cracks as stage_cracks
 from stiction.designs.patches import on_patch
 from stiction.designs.releases import DesignedBeam
-from stiction.designs.sticking import mean_wedge, safe_lengths, sticking_lengths
+from stiction.designs.sticking import flooded_lengths, mean_wedge, safe_lengths, sticking_lengths
 from stiction.devices import arcs, risk
 from stiction.devices.risk import SafeLength
 from stiction.stages import curves
@@ -93,11 +93,13 @@ def layout(
         "surfaces_error": (list(surfaces.values()), "standard error, number of sampled surfaces"),
     }
     film = float(meniscus_height(settings.humidity, settings.water.temperature, settings.water.contact_angles))
-    scalars = {"film": film, "wedge": wedge, "rms": rms}
+    scalars = {"film": film, "wedge": wedge, "tip_strip": settings.tip, "rms": rms}
+    flooded = flooded_lengths(settings.device, settings.water)
     return xr.Dataset(
         {
             "stuck": (("shape", "length"), stuck[:, 0], {"units": "1"}),
             "stuck_band": (("shape", "bound", "length"), stuck[:, 1:], {"units": "1"}),
+            "flooded_length": ("shape", flooded, metres | {"long_name": "length that sticks in saturated air"}),
             "basis": (shaped, [[str(one.basis) for one in rows] for rows in safe.values()]),
         }
         | {name: (shaped, values, metres | {"long_name": text}) for name, (values, text) in columns.items()}

@@ -8,8 +8,10 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
+from stiction.contact.meniscus import flooded_energy
 from stiction.designs.releases import DesignedBeam
 from stiction.devices import arcs, bridges, risk
+from stiction.devices.chart import flooded_length
 from stiction.devices.risk import SafeLength
 from stiction.stages import curves
 from stiction.streams import stream
@@ -30,6 +32,13 @@ class Settings(Protocol):
 def shapes(device: DesignedBeam) -> list[str]:
     """Shapes in which a device may stick."""
     return [S_SHAPE] if device.kind == "bridge" else [S_SHAPE, EITHER]
+
+
+def flooded_lengths(device: DesignedBeam, water: curves.Water) -> list[float]:
+    """Lengths that stick in saturated air, one for each of the `shapes`: at the energy of flooded flats [m]."""
+    wet = water.temperature, water.contact_angles
+    alone = device.cracks * flooded_length(device.beam, *wet)
+    return [alone] if device.kind == "bridge" else [alone, arcs.arc_length(flooded_energy(*wet), device.beam)]
 
 
 def mean_wedge(tips: xr.Dataset, slope: float | np.ndarray, settings: Settings) -> float | np.ndarray:

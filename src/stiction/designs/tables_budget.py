@@ -13,14 +13,36 @@ from stiction.devices.budget import advice
 from stiction.devices.limits import NOT_MODELLED
 from stiction.estimates import mean_with_error
 from stiction.report.format import MISSING, UN, number, with_error
-from stiction.report.tables import Table
-from stiction.report.tables_studies import variant_label
+from stiction.report.tables import Table, with_list
 
 #: Rows of a budget below those of its measurements.
 TOTAL, INDEPENDENT, SCATTER = "total", "total, if all errors were independent", "scatter between devices"
 #: What the inputs of a budget move, and what holds the device.
-_RESPONSES = {S_SHAPE: "mean sticking length (S-shape)", FORCE: "mean pull-off force"}
+_RESPONSES = {S_SHAPE: "mean length at which beams stick (S-shape)", FORCE: "mean pull-off force"}
 _HELD_BY = {S_SHAPE: "beam", ARC: "tip", FORCE: "whole area"}
+#: Other choices of the model in words for those who design.
+_CHOICES = {
+    "van_der_waals_dry": "van der Waals in dry gaps",
+    "van_der_waals_water": "van der Waals in water",
+    "van_der_waals_none": "no van der Waals",
+    "psd_identified": "spectrum from summits",
+    "psd_published": "published spectrum",
+    "every": "1 in {} grid points",
+    "spacing_nm": "grid of {} nm",
+    "poisson_ratio": "Poisson's ratio {}",
+}
+
+
+def choice_label(name: str) -> str:
+    """Another choice of the model in words.
+
+    Examples
+    --------
+    >>> choice_label("van_der_waals_none"), choice_label("poisson_ratio_0.18")
+    ('no van der Waals', "Poisson's ratio 0.18")
+    """
+    key, _, chosen = name.rpartition("_")
+    return _CHOICES[name] if name in _CHOICES else _CHOICES[key].format(chosen)
 
 
 # Stoppers
@@ -46,7 +68,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
         "humidity of the largest mean pull-off force along this axis."
     )
     listed = [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found]
-    caption = " ".join([caption, *(["Warnings:", *listed] if listed else []), NOT_MODELLED])
+    caption = with_list(" ".join([caption, NOT_MODELLED, *(["Warnings:"] if listed else [])]), listed)
     return Table(frame, caption, pd.DataFrame([_stopper_as_text(row) for _, row in frame.iterrows()]))
 
 
@@ -127,13 +149,14 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Table:
     frame = pd.DataFrame([row for (device, rh, *_), one in datasets.items() for row in _of_budget(device, rh, one)])
     sentences = [f"{device}, RH {humidity:g}: {advised(one)}" for (device, humidity, *_), one in datasets.items()]
     omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in datasets.items()}
-    caption = (
+    caption = with_list(
         "Relative standard uncertainty of the mean length at which beams stick as S-shapes, of the length at which "
         "few are held by their tip, and of the mean pull-off force of stoppers, due to every measurement, the others "
         "being exact, ± standard error of the simulation. Remaining: what would be left if the measurement were exact. "
         "Scatter between devices and other choices of the model, with the sign of their effect, are no part of the "
-        "total. "
-    ) + " ".join([*sentences, *omitted])
+        "total.",
+        [*sentences, *omitted],
+    )
     shown = frame[frame.part != "input"]
     return Table(frame, caption, pd.DataFrame([_budget_as_text(row) for _, row in shown.iterrows()]))
 
@@ -191,7 +214,7 @@ def _budget_as_text(row):
         "device": row.device,
         "RH": f"{row.relative_humidity:g}",
         "held by": row.held_by,
-        "what": f"choice: {variant_label(row['name'])}" if row.part == "choice" else row["name"],
+        "what": f"choice: {choice_label(row['name'])}" if row.part == "choice" else row["name"],
         "effect [%]": effect,
         "remaining [%]": MISSING if np.isnan(row.remaining_percent) else number(row.remaining_percent, ".2g"),
     }

@@ -9,14 +9,15 @@ import xarray as xr
 from stiction.designs.findings import HELD_BY, curves, numbered
 from stiction.devices.limits import NOT_MODELLED
 from stiction.report.format import UM, error_alone, number
-from stiction.report.tables import Table
+from stiction.report.tables import Table, with_list
 
 _SAFE_LENGTHS = (
     "Safe length: the largest length of which, with a confidence of 95 % given the drawn surfaces, at most a share p "
     "of the devices sticks. A device is held by its beam (S-shape) or by its tip alone (arc). Estimate: length at "
     "which a share p sticks, with its standard errors due to the number of beams and to that of sampled surfaces. "
     "Every beam has its own tip, whose scatter is part of the first. Basis: sampled, by order statistics; fitted, by "
-    "a line through the shortest 5 %; extrapolated, beyond what was verified."
+    "a line through the shortest 5 %; extrapolated, beyond what was verified. Saturated air: length that sticks where "
+    "water fills all gaps, the shortest that water holds."
 )
 _CHART = (
     "Safe length of beams of the thicknesses and gaps of a chart over the relative humidity: the largest length of "
@@ -52,9 +53,9 @@ def safe_lengths(
 
 
 def _caption(text, warnings):
-    """Caption with numbered warnings and what is not modelled."""
-    listed = " ".join(f"({k}) {sentence}" for k, sentence in enumerate(numbered(warnings)[0], 1))
-    return " ".join(filter(None, [text, listed and f"Warnings: {listed}", NOT_MODELLED]))
+    """Caption with what is not modelled and, below each other, numbered warnings."""
+    listed = [f"({k}) {sentence}" for k, sentence in enumerate(numbered(warnings)[0], 1)]
+    return with_list(" ".join([text, NOT_MODELLED, *(["Warnings:"] if listed else [])]), listed)
 
 
 def _safe_length(one):
@@ -66,7 +67,13 @@ def _safe_length(one):
         "estimate_se_beams_um": float(one.beams_error) / UM,
         "estimate_se_surfaces_um": float(one.surfaces_error) / UM,
         "basis": str(one.basis.values),
+        "saturated_air_um": _saturated(one),
     }
+
+
+def _saturated(one):
+    """Length that sticks in saturated air [µm]."""
+    return float(one.flooded_length) / UM
 
 
 def _safe_length_as_text(row, marks):
@@ -81,6 +88,7 @@ def _safe_length_as_text(row, marks):
         "se, beams": error_alone(row["estimate_se_beams_um"]),
         "se, surfaces": error_alone(row["estimate_se_surfaces_um"]),
         "basis": row["basis"],
+        "saturated air [µm]": number(row["saturated_air_um"], ".1f"),
         "warnings": marks,
     }
 
@@ -123,7 +131,7 @@ def _beam(one):
         "held_by": HELD_BY[str(one["shape"].values)],
         "from": "finite elements" if computed else "power law",
         "power_law_error_percent": np.nan if computed else 100 * float(one.power_law_error),
-        "saturated_air_um": float(one.flooded_length) / UM,
+        "saturated_air_um": _saturated(one),
     }
 
 

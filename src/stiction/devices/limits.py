@@ -19,6 +19,8 @@ SLENDER = 20.0
 PLATE = 10.0
 #: Largest gap of a bridge, in thicknesses, for which its stretching changes the crack by at most 3 %.
 STRETCH = 1.0
+#: What plastic contact does to beams and to stoppers.
+SHORTER, STRONGER = "beams stick at shorter lengths", "stoppers hold more"
 #: Relevant to stiction, but not in the model at any setting.
 NOT_MODELLED = (
     "Not in the model: drying after release, the time that water needs to condense, electric charge and voltage, wear, "
@@ -33,8 +35,9 @@ def arcs_of_elements(share: float, strip: float) -> str | None:
     if share == 0:
         return None
     return (
-        f"{share:.1%} of the beams end as arcs, held by the tip only. This share depends on the strip length, here "
-        f"{strip * 1e6:.3g} µm: use the risk with arcs, which is computed on strips as short as the wedge at the tip."
+        f"{100 * share:.4g} % of the beams end as arcs, held by the tip only. This share depends on the strip length, "
+        f"here {strip * 1e6:.3g} µm: P(stuck) of a cantilever in section devices has arcs on shorter strips, close to "
+        "the length of the wedge at the tip."
     )
 
 
@@ -43,19 +46,22 @@ def cut_off_mean(share: float, mean: float, length: float) -> str | None:
     if share == 1:
         return None
     return (
-        f"Only {share:.1%} of the beams end S-shaped. Their mean crack length, {mean * 1e6:.0f} µm, lacks the longer "
-        f"cracks that beams of {length * 1e6:.0f} µm cut off: it is not the mean of longer beams."
+        f"Only {100 * share:.4g} % of the beams end S-shaped. Their mean crack length, {mean * 1e6:.0f} µm, lacks the "
+        f"longer cracks that beams of {length * 1e6:.0f} µm cut off: it is not the mean of longer beams."
     )
 
 
-def plastic_contact(share: float) -> str | None:
-    """Plastic contact, which makes surfaces stick more than the elastic model predicts; NaN if it was not studied."""
+def plastic_contact(share: float, effect: str = SHORTER) -> str | None:
+    """Plastic contact, which makes surfaces stick more than the elastic model predicts; NaN if it was not studied.
+
+    ``effect`` says what this does to the device, `SHORTER` or `STRONGER`.
+    """
     if math.isnan(share):
         return "Whether the contact is plastic was not checked: give its distance in studies.plasticity.distance_nm."
     if share <= PLASTIC:
         return None
     return (
-        f"{share:.0%} of the contact area is plastic, more than {PLASTIC:.0%}: beams stick at shorter lengths than the "
+        f"{100 * share:.2g} % of the contact area is plastic, more than {100 * PLASTIC:.2g} %: {effect} than the "
         "elastic model predicts, which is the unsafe side."
     )
 
@@ -81,7 +87,7 @@ def filled_gap(gap: float, film: float, rms: float) -> str | None:
     if gap >= least_gap(film, rms):
         return None
     return (
-        f"The gap of {gap * 1e6:.3g} µm is less than {FILMS} times film height plus roughness, "
+        f"The gap of {gap * 1e6:.3g} µm is less than {FILMS} times the sum of film height and roughness, "
         f"{(film + rms) * 1e9:.3g} nm: the water acts on the beam ahead of its contact, too."
     )
 
@@ -124,20 +130,24 @@ def stretched_bridge(gap: float, thickness: float) -> str | None:
     ratio = gap / thickness
     if ratio < STRETCH:
         return None
+    size = "equal to the thickness" if f"{ratio:.3g}" == "1" else f"{ratio:.3g} times the thickness"
     return (
-        f"The gap is {ratio:.3g} times the thickness of the bridge: its stretching, which is left out, would open the "
+        f"The gap is {size} of the bridge: its stretching, which is left out, would open the "
         "cracks further, by 3 % where both are equal and by more beyond. The prediction is on the safe side."
     )
 
 
-def short_wedge(strip: float, wedge: float) -> str | None:
-    """Strips that are longer than the wedge at the tip of an arc: shorter strips hold more, so that tips do as well."""
+def short_wedge(strip: float, wedge: float, flooded: float) -> str | None:
+    """Strips that are longer than the wedge at the tip of an arc: shorter strips hold more, so that tips do as well.
+
+    ``flooded`` is the length that the tip holds in saturated air.
+    """
     if strip <= wedge:
         return None
     return (
         f"The adhesion of the tip comes from strips of {strip * 1e6:.3g} µm, longer than the wedge on which it acts, "
         f"{wedge * 1e6:.3g} µm: tips hold shorter beams than computed, which is the unsafe side. The length in "
-        "saturated air, the shortest that water holds, is safe."
+        f"saturated air, {flooded * 1e6:.0f} µm, the shortest that water holds, is safe."
     )
 
 

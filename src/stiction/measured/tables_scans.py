@@ -12,7 +12,7 @@ from stiction.measured import scan as stage_scan
 from stiction.measured import spectrum as stage_spectrum
 from stiction.models import ALTERNATIVES_OF_SCANS
 from stiction.report.format import NM, UM, number, with_error
-from stiction.report.tables import Table
+from stiction.report.tables import Table, with_list
 from stiction.studies.scan_uncertainty import GOAL
 
 #: Parts of an estimate as columns.
@@ -48,10 +48,10 @@ def scans(
         "Scans of the measured surfaces: moments of the levelled heights of each file, ± standard error of one scan of "
         "its size. The moments of a surface are in Table I, without the bias of levelling."
     )
-    flags = [f"- {name}: {flag}" for name, found in limits.items() for flag in found]
+    flags = [f"{name}: {flag}" for name, found in limits.items() for flag in found]
     return Table(
         frame,
-        "\n".join([caption, *([""] if flags else []), *flags]),
+        with_list(caption, flags),
         pd.DataFrame(map(_cells_scan, frame.to_dict("records"))),
     )
 

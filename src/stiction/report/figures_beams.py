@@ -11,7 +11,7 @@ from matplotlib.transforms import ScaledTranslation
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.models import SURFACE_MODELS
-from stiction.report.format import TO_MJ, TO_UM
+from stiction.report.format import TO_MJ, TO_UM, with_error
 from stiction.report.published import rows
 from stiction.report.style import (
     DOUBLE,
@@ -24,7 +24,7 @@ from stiction.report.style import (
     panels,
     styled,
 )
-from stiction.stages.releases import ended
+from stiction.stages.releases import ended, stuck_energies, stuck_lengths
 
 # Figure 14
 
@@ -40,7 +40,7 @@ def beam_shapes(beams: xr.Dataset) -> Figure:
         shapes.plot(x, deflection[k], color="black", linewidth=1.4)
     shapes.set(xlabel="position [µm]", ylabel="deflection [µm]", xlim=x[[0, -1]])
     shapes.invert_yaxis()
-    crack = TO_UM * beams.crack_length.values[stuck]
+    crack = TO_UM * stuck_lengths(beams)
     histogram.hist(crack, bins="auto", color="0.75", edgecolor="black")
     histogram.set(xlabel="crack length $l_s$ [µm]", ylabel="number of beams")
     histogram.margins(y=0.15)
@@ -52,7 +52,7 @@ def beam_shapes(beams: xr.Dataset) -> Figure:
 def _summary(crack, total):
     """Number, mean and standard deviation of crack lengths [µm] as text."""
     number = f"{len(crack)} of {total} beams S-shaped"
-    return f"{number}\n{crack.mean():.0f} ± {crack.std(ddof=1):.0f} µm" if len(crack) > 1 else number
+    return f"{number}\n{with_error(crack.mean(), crack.std(ddof=1))} µm" if len(crack) > 1 else number
 
 
 # Figure 15
@@ -85,11 +85,18 @@ _COLUMNS = SURFACE_MODELS, ("GEO",)
 _MARKERS = {"G": ("s", MODELS["G"]["color"]), "NG": ("o", MODELS["NG"]["color"]), "GEO": ("^", "#009E73")}
 #: Simulated markers are shifted this far to the left of their humidity, published ones to the right [pt].
 _ASIDE = 3
+#: Heights of the panels of energies and of shares [in].
+_HEIGHTS = 2.2, 0.9
+#: Labels of shares are closer to each other than their width if closer than this part of the axis.
+_CLOSE = 0.12
 
 
 @styled
-def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat: float) -> Figure:
+def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat: Mapping[str, float]) -> Figure:
     """Figure 15: apparent adhesion energy over the humidity; models G and NG on the left, GEO on the right.
+
+    The share of S-shapes is stated at each mean if it is below 100 %; if such labels of a pair would cover each other,
+    the shares have panels of their own below those of the energies.
 
     Parameters
     ----------
@@ -98,30 +105,77 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
         to the dataset of stage humidity.
     published : pandas.DataFrame
         The published Table III, rows of the paper's own pairs.
-    flat : float
-        Work of adhesion of two flats with water between them, 2γ [J m⁻²].
+    flat : dict
+        Pair to the adhesion energy of its flats in saturated air [J m⁻²].
     """
-    figure, axes = panels(len(pairs), 2, (DOUBLE, 2.2 * len(pairs) + 0.6), sharex="row", sharey="row")
-    for row, (pair, (beam, released, bands)) in zip(axes, pairs.items(), strict=True):
+    figure, axes, rows_of_pairs = _rows_of_panels(pairs, published)
+    for (row, below), (pair, (beam, released, bands)) in zip(rows_of_pairs, pairs.items(), strict=True):
         weakest = apparent_adhesion_energy(beam.length, beam)
         lowest = min(weakest, *(float(axis.energy_quantile.sel(probability=0.5).min()) for axis in bands.values()))
-        highest = max(2 * flat, 2 * weakest, *map(_reach, released.values()))
+        highest = max(2 * flat[pair], 2 * weakest, *map(_reach, released.values()))
         row[0].set(yscale="log", ylim=(TO_MJ * lowest / 2, TO_MJ * highest))
         row[0].set_ylabel(r"adhesion energy $\Gamma$ [mJ/m²]")
         for panel, models in zip(row, _COLUMNS, strict=True):
-            _bounds(panel, flat, weakest)
+            _bounds(panel, flat[pair], weakest)
             for surface in SURFACE_MODELS if "G" in models else ("NG",):
                 _band(panel, bands[surface], surface)
             _known(panel, rows(published, pair=pair), beam, models)
             for model in models:
-                _released(panel, released, model, weakest)
+                _released(panel, released, model)
+                if below is None:
+                    _labels(panel, released, model, weakest)
         row[0].margins(x=0.06)
         humidity_axis(row[0])
+        if below is not None:
+            _panels_of_shares(below, released, row[0].get_xlim())
     for panel in axes[-1]:
         panel.set_xlabel("relative humidity RH [–]")
-    letter(axes, [f"pair {pair}, {' and '.join(models)}" for pair in pairs for models in _COLUMNS])
+    kinds = [(pair, kind) for pair, (_, below) in zip(pairs, rows_of_pairs, strict=True) for kind in _kinds(below)]
+    letter(axes, [f"pair {pair}, {' and '.join(models)}{kind}" for pair, kind in kinds for models in _COLUMNS])
     figure.legend(*handles(*axes.flat), loc="outside upper center", ncols=5, columnspacing=1.2)
     return figure
+
+
+def _rows_of_panels(pairs, published):
+    """New figure, its axes, and for each pair its row of energies and its row of shares, None without such a row."""
+    apart = [_labels_meet(released, rows(published, pair=pair)) for pair, (_, released, _) in pairs.items()]
+    heights = [height for own in apart for height in _HEIGHTS[: 1 + own]]
+    size = DOUBLE, sum(heights) + 0.6
+    figure, axes = panels(len(heights), 2, size, sharex="row", sharey="row", height_ratios=heights)
+    rest = iter(axes)
+    return figure, axes, [(next(rest), next(rest) if own else None) for own in apart]
+
+
+def _kinds(below):
+    """What the rows of a pair show, as the end of their titles."""
+    return ("",) if below is None else ("", ": share of S-shapes")
+
+
+def _labels_meet(released, published):
+    """Whether labels of the shares of a pair would cover each other in a panel."""
+    humidities = np.array([*(humidity for humidity, _ in released), *published.relative_humidity])
+    length = max(np.ptp(humidities), 0.1)
+    for models in _COLUMNS:
+        labelled = sorted(h for model in models for h, share in _shares(released, model) if share < 1)
+        if len(labelled) > 1 and np.diff(labelled).min() < _CLOSE * length:
+            return True
+    return False
+
+
+def _shares(released, model):
+    """Share of S-shaped beams at every humidity [-]."""
+    found = sorted((humidity, beams) for (humidity, which), beams in released.items() if which == model)
+    return [(humidity, float(ended(beams, "S-shape").mean())) for humidity, beams in found]
+
+
+def _panels_of_shares(row, released, limits):
+    """Shares of S-shaped beams over the humidity."""
+    for panel, models in zip(row, _COLUMNS, strict=True):
+        for model in models:
+            marker, colour = _MARKERS[model]
+            humidity, share = np.reshape(_shares(released, model), (-1, 2)).T
+            panel.plot(humidity, 100 * share, marker, color=colour, markeredgecolor="black", markeredgewidth=0.4)
+    row[0].set(xlim=limits, ylim=(-12, 112), yticks=(0, 50, 100), ylabel="share [%]")
 
 
 def _aside(panel, points):
@@ -130,20 +184,20 @@ def _aside(panel, points):
 
 
 def _bounds(panel, flat, weakest):
-    """Energy of flat surfaces and of the longest crack that fits into the beam [J m⁻²]."""
+    """Energy of flat surfaces in saturated air and of the longest crack that fits into the beam [J m⁻²]."""
     style = {"color": "black", "linewidth": 0.8}
-    panel.axhline(TO_MJ * flat, linestyle="-.", label=r"flat surfaces, $2\gamma_{LG}$", **style)
+    panel.axhline(TO_MJ * flat, linestyle="-.", label="flat surfaces in saturated air", **style)
     panel.axhline(TO_MJ * weakest, linestyle=":", label="crack as long as the beam", **style)
 
 
 def _known(panel, published, beam, models):
-    """Experiment and published results of Table III, if any."""
+    """Measured and published results of Table III, if any."""
     if published.empty:
         return
     humidity = published.relative_humidity.to_numpy()
     energy, bars = converted(published.experiment.to_numpy() / TO_UM, published.experiment_std.to_numpy() / TO_UM, beam)
     style = {"fmt": "D", "color": "black", "markersize": 3, "zorder": 5}
-    panel.errorbar(humidity, TO_MJ * energy, TO_MJ * bars, label="experiment", **style)
+    panel.errorbar(humidity, TO_MJ * energy, TO_MJ * bars, label="measured", **style)
     for model in {"NG", "GEO"}.intersection(models):
         energy = apparent_adhesion_energy(published[model.lower()].to_numpy() / TO_UM, beam)
         style = {"fmt": _MARKERS[model][0], "fillstyle": "none", "color": PUBLISHED, "zorder": 4}
@@ -151,7 +205,7 @@ def _known(panel, published, beam, models):
 
 
 def _band(panel, axis, model):
-    """Median and 5-95 % of the energy of the pieces of surface, along the humidity."""
+    """Median and 5-95 % of the energy of the samples, along the humidity."""
     low, median, high = TO_MJ * axis.energy_quantile.transpose("probability", "humidity").values
     style = {"color": MODELS[model]["color"], "label": rf"{model}: median and 5–95 % of $\bar e$"}
     if np.ptp(axis.humidity.values) == 0:
@@ -171,27 +225,36 @@ def _band(panel, axis, model):
 
 def _reach(beams):
     """Energy that an axis must reach to show the mean and standard deviation of some beams [J m⁻²]."""
-    energies = beams.adhesion_energy.values[ended(beams, "S-shape")]
+    energies = stuck_energies(beams)
     return 1.1 * (energies.mean() + energies.std()) if len(energies) else 0.0
 
 
-def _released(panel, released, model, weakest):
-    """Mean and standard deviation over the S-shaped beams of every humidity, and their share if below 100 %."""
+def _released(panel, released, model):
+    """Mean and standard deviation over the S-shaped beams of every humidity."""
     marker, colour = _MARKERS[model]
-    points = [(humidity, beams) for (humidity, which), beams in released.items() if which == model]
-    stuck = [TO_MJ * beams.adhesion_energy.values[ended(beams, "S-shape")] for _, beams in points]
-    bars = [(humidity, e.mean(), e.std(ddof=1)) for (humidity, _), e in zip(points, stuck, strict=True) if len(e) > 1]
+    points = [(humidity, _energies(beams)) for (humidity, which), beams in released.items() if which == model]
+    bars = [(humidity, e.mean(), e.std(ddof=1)) for humidity, e in points if len(e) > 1]
     humidities, means, deviations = np.reshape(bars, (-1, 3)).T
     style = {"fmt": marker, "color": colour, "markeredgecolor": "black", "markeredgewidth": 0.4}
     style |= {"transform": _aside(panel, -_ASIDE), "zorder": 3, "label": f"{model}: beams, mean ± std"}
     panel.errorbar(humidities, means, deviations, **style)
-    for (humidity, beams), energies in zip(points, stuck, strict=True):
-        height = energies.mean() if len(energies) else TO_MJ * weakest
-        _share(panel, (humidity, height), len(energies) / beams.sizes["sample"])
 
 
-def _share(panel, place, share):
-    """Annotate the share of S-shaped beams if below 100 %; of a share of 0 %, at the energy of the longest crack."""
-    if share < 1:
-        style = {"fontsize": 6, "ha": "center", "path_effects": OUTLINED, "zorder": 6}
-        panel.annotate(f"{100 * share:.2g} %", place, (-_ASIDE, 4), textcoords="offset points", **style)
+def _energies(beams):
+    """Energies of the S-shaped beams [mJ m⁻²]."""
+    return TO_MJ * stuck_energies(beams)
+
+
+def _labels(panel, released, model, weakest):
+    """Annotate shares of S-shaped beams below 100 %; a share of 0 %, at the energy of the longest crack."""
+    style = {"fontsize": 6, "ha": "center", "path_effects": OUTLINED, "zorder": 6}
+    for humidity, share in _shares(released, model):
+        if share < 1:
+            energies = _energies(released[humidity, model])
+            height = energies.mean() if len(energies) else TO_MJ * weakest
+            panel.annotate(_percent(share), (humidity, height), (-_ASIDE, 4), textcoords="offset points", **style)
+
+
+def _percent(share):
+    """A share below one as text, of two digits."""
+    return f"{100 * share:.2g} %" if share < 0.995 else "> 99 %"

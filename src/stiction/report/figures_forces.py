@@ -11,7 +11,7 @@ from stiction.contact import forcelaw
 from stiction.models import SURFACE_MODELS
 from stiction.report.format import TO_MJ, TO_MPA, TO_NM
 from stiction.report.style import DOUBLE, MODELS, SINGLE, letter, panels, styled
-from stiction.stages.forces import vectors
+from stiction.stages import forces as stage_forces
 
 #: Number of highlighted curves in Figure 12.
 _HIGHLIGHTED = 20
@@ -44,7 +44,7 @@ def fitted_curve(forces: xr.Dataset, fit: xr.Dataset) -> Figure:
         Stages forces and fit of one case.
     """
     k = typical(fit, forces.sizes["curve"])
-    samples, limit = vectors(forces)
+    samples, limit = stage_forces.vectors(forces)
     vector = samples[k]
     law = forcelaw.coefficients(vector[None], limit)[0]
     far = law[1] + np.log(2 / _FOLLOWED) / law[3]
@@ -100,7 +100,7 @@ def force_curves(pairs: Mapping[str, tuple[xr.Dataset, xr.Dataset, np.ndarray]])
         distance = np.linspace(*window, 400)
         generated = forcelaw.pressure(laws[:, None], distance)
         depth = max(depth, -generated.min())
-        populations = [(forces.distance.values, forces.force.values) for forces in (gaussian, other)]
+        populations = [stage_forces.curves(forces) for forces in (gaussian, other)]
         for panel, population in zip(row, [*populations, (distance, generated)], strict=True):
             _curves(panel, *population, 2 * depth)
         row[0].set(xlim=TO_NM * np.array(window), ylim=TO_MPA * depth * _RANGE)
@@ -119,7 +119,7 @@ def _enlarged(panel, forces, depth):
     if deepest < _SHALLOW * depth:
         below = (-deepest / depth - _RANGE[0]) / np.ptp(_RANGE)
         inset = panel.inset_axes([0.28, 0.13, 0.66, below - 0.16])
-        _curves(inset, forces.distance.values, forces.force.values, deepest)
+        _curves(inset, *stage_forces.curves(forces), deepest)
         inset.set(xlim=TO_NM * np.array(_window(forces)[0]), ylim=TO_MPA * deepest * _RANGE)
         inset.locator_params(nbins=4)
         inset.tick_params(labelsize=6, pad=2)

@@ -12,13 +12,13 @@ from stiction.contact import forcelaw
 from stiction.report.format import TO_MPA, TO_NM, TO_UM
 from stiction.report.published import rows
 from stiction.report.style import MODELS, PUBLISHED, humidity_axis, letter, panels, styled
-from stiction.stages.forces import vectors
-from stiction.stages.releases import ended
+from stiction.stages import forces as stage_forces
+from stiction.stages.releases import ended, stuck_lengths
 
 _SIZE = 7.2, 2.2
 _COLOUR = MODELS["NG"]["color"]
-#: Largest side of the piece of surface [m].
-_PIECE = 5e-6
+#: Largest side of the shown part of the surface [m].
+_SHOWN = 5e-6
 #: Number of highlighted force curves.
 _HIGHLIGHTED = 8
 #: A force curve is drawn until its attraction has decayed to the first share of the largest attraction, and up to the
@@ -26,6 +26,8 @@ _HIGHLIGHTED = 8
 _FOLLOWED, _REPULSION = 0.02, 0.6
 #: Shift of published and computed markers from their humidity [-].
 _APART = 0.012
+#: Largest number of crack lengths between which there is room for a legend.
+_FEW = 8
 
 
 @styled
@@ -63,9 +65,9 @@ def overview(
 
 
 def _surface(figure, panel, character):
-    """A square piece of the surface, seen from above."""
+    """A square part of the surface, seen from above."""
     spacing = float(character.x[1] - character.x[0])
-    points = min(int(_PIECE / spacing), *character.elevation.shape)
+    points = min(int(_SHOWN / spacing), *character.elevation.shape)
     side = TO_UM * points * spacing
     elevation = TO_NM * character.elevation.values[:points, :points].T
     low, high = np.quantile(elevation, (0.002, 0.998))
@@ -75,14 +77,14 @@ def _surface(figure, panel, character):
 
 
 def _forces(panel, forces):
-    """Force curves of some pieces of the two surfaces, some highlighted, and the law of one of them by Eq. (12)."""
-    distance, force = forces.distance.values, forces.force.values
+    """Force curves of some samples, some highlighted, and the law of one of them by Eq. (12)."""
+    distance, force = stage_forces.curves(forces)
     deepest = -force.min(axis=1)
     lines = [np.column_stack([TO_NM * distance, TO_MPA * f])[f < _REPULSION * deepest.max()] for f in force]
     panel.axhline(0, color="black", linewidth=0.5)
     panel.add_collection(LineCollection(lines, color="0.8", linewidth=0.3, rasterized=True))
     panel.add_collection(LineCollection(lines[:_HIGHLIGHTED], color=_COLOUR, linewidth=0.6))
-    vector, limit = vectors(forces)
+    vector, limit = stage_forces.vectors(forces)
     # ASSUME: the curve of median energy is the typical one.
     k = int(np.argsort(vector[: len(force), 0])[len(force) // 2])
     law = forcelaw.coefficients(vector[k][None], limit)[0]
@@ -114,19 +116,22 @@ def _lengths(panel, released, published):
     """Crack length over the humidity: measured, published and computed here, mean ± standard deviation."""
     if len(published):
         measured = published.experiment, published.experiment_std
-        style = {"fmt": "D", "color": "black", "markersize": 3, "zorder": 4, "label": "experiment"}
+        style = {"fmt": "D", "color": "black", "markersize": 3, "zorder": 4, "label": "measured"}
         panel.errorbar(published.relative_humidity, *measured, **style)
         style = {"color": PUBLISHED, "markerfacecolor": "white", "fmt": "^:", "zorder": 3, "label": "published"}
         panel.errorbar(published.relative_humidity + _APART, published.geo, published.geo_std, **style)
     # Model GEO, scattered dimensions, where it was computed.
     model = "GEO" if any(which == "GEO" for _, which in released) else "NG"
     points = sorted(key for key in released if key[1] == model)
-    stuck = [TO_UM * released[key].crack_length.values[ended(released[key], "S-shape")] for key in points]
+    stuck = [TO_UM * stuck_lengths(released[key]) for key in points]
     cases = zip((humidity for humidity, _ in points), stuck, strict=True)
     bars = [(humidity, found.mean(), found.std(ddof=1)) for humidity, found in cases if len(found) > 1]
     humidity, mean, deviation = np.reshape(bars, (-1, 3)).T
     panel.errorbar(humidity - _APART, mean, deviation, fmt="o-", color=_COLOUR, markersize=3, label="computed here")
     panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$ [µm]")
     panel.margins(y=0.12)
+    if len(humidity) > _FEW:
+        low, high = panel.get_ylim()
+        panel.set_ylim(low, high + 0.3 * (high - low))  # room for the legend
     humidity_axis(panel)
     panel.legend()

@@ -1,6 +1,7 @@
 """Figures of the studies that go with the main result: 13, 16 to 19 and the model comparison."""
 
 from collections.abc import Mapping
+from itertools import groupby
 
 import numpy as np
 import pandas as pd
@@ -18,6 +19,7 @@ from stiction.report.style import (
     DOUBLE,
     OUTLINED,
     SINGLE,
+    blocks_of_columns,
     columns_of_panels,
     dashes,
     handles,
@@ -42,6 +44,10 @@ _PAPER_LENGTH, _PAPER_ERROR = 7.5, 2.5
 _FAINTEST = 0.3
 _TARGET = {"color": "black", "linestyle": "--", "linewidth": 0.8}
 _BOUND = {"color": "0.4", "linestyle": ":"}
+#: Largest number of markers of a curve of the variants.
+_MARKED = 9
+#: What the panels of the variants show.
+_DEVIATIONS = "change of $l_s$ against base", "deviation of $l_s$ from published"
 
 
 # Figure 13
@@ -70,11 +76,19 @@ def sensitivities(datasets: Mapping[str, xr.Dataset], published: Mapping[tuple[s
     for (moment, humidity), slope in published.items():
         k = list(datasets).index(moment)
         axes[0].plot(humidity, slope, marker(k), color=f"C{k}", markerfacecolor="none")
-        axes[0].annotate(f"paper, {moment}", (humidity, slope), (5, 0), textcoords="offset points", va="center")
     humidity_axis(axes[0])
+    for (moment, humidity), slope in published.items():
+        _beside(axes[0], f"paper, {moment}", (humidity, slope))
     letter(axes, [rf"{statistic} of $\bar e$" for statistic in statistics])
     axes[1].legend(loc="lower right")
     return figure
+
+
+def _beside(panel, text, place):
+    """Note to the right of a point, or to the left of a point in the right half of a panel."""
+    side = -1 if place[0] > np.mean(panel.get_xlim()) else 1
+    style = {"textcoords": "offset points", "ha": "left" if side > 0 else "right", "va": "center"}
+    panel.annotate(text, place, (5 * side, 0), **style)
 
 
 # Figure 16
@@ -327,7 +341,9 @@ def _small_differences(panel, excess, lengths):
 
 @styled
 def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataFrame) -> Figure:
-    """Crack lengths under several variants of the model, compared with the base, the paper and the experiment.
+    """Crack lengths under several variants of the model, compared with the base, the paper and what was measured.
+
+    More choices than there are colours continue in further panels below, each group of choices with its legend.
 
     Parameters
     ----------
@@ -338,27 +354,47 @@ def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataF
     """
     pairs, names = (list(dict.fromkeys(parts)) for parts in zip(*datasets, strict=True))
     count = 2 if published.pair.isin(pairs).any() else 1
-    figure, columns, lines = columns_of_panels(len(pairs), count, _wider, 1 + 1.8 * count, sharex="col")
-    for column, pair in zip(columns, pairs, strict=True):
-        table = rows(published, pair=pair)
-        for name, style in _styles(names).items():
-            _shift(column[0], datasets[pair, name], datasets[pair, "base"], style)
-            if len(table):
-                _deviation(column[1], datasets[pair, name], table, style)
-        if len(table):
-            _experiment(column[1], table)
-        elif count > 1:
-            column[1].text(0.5, 0.6, "not published", transform=column[1].transAxes, ha="center", color="0.5")
-        column[-1].set_xlabel("relative humidity [–]")
-        for panel in column:
-            panel.axhline(0, **_ZERO)
-        humidity_axis(column[0])
-    deviations = "change of $l_s$ against base", "deviation of $l_s$ from published"
-    for panel, deviation in ((line[k, 0], deviations[k]) for line in lines for k in range(count)):
-        panel.set_ylabel(f"{deviation} [%]")
-    letter_lines(lines, [f"pair {pair}" for pair in pairs])
-    figure.legend(*handles(*columns.flat), loc="outside lower center", ncols=5)
+    groups = _groups([name for name in names if name != "base"])
+    figure, blocks = blocks_of_columns(len(groups), len(pairs), count, _wider, 1 + 1.8 * count, sharex="col")
+    for group, (part, columns, lines) in zip(groups, blocks, strict=True):
+        for column, pair in zip(columns, pairs, strict=True):
+            chosen = {name: datasets[pair, name] for name in ("base", *group)}
+            _column_of_variants(column, chosen, rows(published, pair=pair))
+        for panel, deviation in ((line[k, 0], _DEVIATIONS[k]) for line in lines for k in range(count)):
+            panel.set_ylabel(f"{deviation} [%]")
+        part.legend(*handles(*columns.flat), loc="outside lower center", ncols=5 if len(pairs) > 1 else 3)
+    lines = [line for _, _, lines in blocks for line in lines]
+    letter_lines(lines, [f"pair {pair}" for pair in pairs] * len(groups))
     return figure
+
+
+def _groups(names):
+    """Choices in groups of at most as many as there are colours; those of one key are together if they are no more."""
+    groups, most = [[]], len(_COLOURS)
+    for _, names_of_key in groupby(names, lambda name: name.rpartition("_")[0]):
+        of_key = list(names_of_key)
+        for part in (of_key[k : k + most] for k in range(0, len(of_key), most)):
+            if len(groups[-1]) + len(part) > most:
+                groups.append([])
+            groups[-1] += part
+    return groups
+
+
+def _column_of_variants(column, datasets, table):
+    """Panels of one pair: change against the base and, if the panel is there, deviation from the published length."""
+    for name, style in _styles(datasets).items():
+        _shift(column[0], datasets[name], datasets["base"], style)
+        if len(table):
+            _deviation(column[1], datasets[name], table, style)
+    if len(table):
+        _experiment(column[1], table)
+    elif len(column) > 1:
+        column[1].text(0.5, 0.6, "not published", transform=column[1].transAxes, ha="center", color="0.5")
+        column[1].set_yticks([])
+    column[-1].set_xlabel("relative humidity [–]")
+    for panel in column:
+        panel.axhline(0, **_ZERO)
+    humidity_axis(column[0])
 
 
 def _wider(columns):
@@ -369,7 +405,7 @@ def _wider(columns):
 def _experiment(panel, table):
     """Deviation of the measured crack length from the published one."""
     measured = 100 * (table.experiment / table.ng - 1), 100 * table.experiment_std / table.ng
-    style = {"color": "black", "markerfacecolor": "white", "markersize": 6, "label": "experiment", "zorder": 4}
+    style = {"color": "black", "markerfacecolor": "white", "markersize": 6, "label": "measured", "zorder": 4}
     panel.errorbar(table.relative_humidity, *measured, fmt="*", **style)
 
 
@@ -377,8 +413,8 @@ def _styles(names):
     """Colour, line and marker of every variant; base black and above the others."""
     styles = {"base": {"color": "black", "marker": "o", "linestyle": "-", "label": "base", "zorder": 3}}
     for k, name in enumerate(name for name in names if name != "base"):
-        # The eight other markers and the seven other line styles; with the colours all of them differ.
-        style = {"color": _COLOURS[k % len(_COLOURS)], "marker": marker(1 + k % 8), "linestyle": dashes(1 + k % 7)}
+        # No more names than colours; the eight other markers and the seven other line styles.
+        style = {"color": _COLOURS[k], "marker": marker(1 + k), "linestyle": dashes(1 + k % 7)}
         styles[name] = style | {"label": variant_label(name)}
     return styles
 
@@ -391,7 +427,7 @@ def _shift(panel, dataset, base, style):
     ]
     humidity, shift, error = np.transpose(shifts)
     if dataset is not base:
-        panel.errorbar(humidity, 100 * shift, 100 * error, **style)
+        _curve(panel, humidity, shift, error, style)
 
 
 def _deviation(panel, dataset, table, style):
@@ -401,4 +437,11 @@ def _deviation(panel, dataset, table, style):
     if known:
         lengths = [np.divide(comparison.mean_crack_length(cases[h]), length) for h, length in known.items()]
         ratio, error = np.transpose(lengths)
-        panel.errorbar([*known], 100 * (ratio - 1), 100 * error, **style)
+        _curve(panel, [*known], ratio - 1, error, style)
+
+
+def _curve(panel, humidity, change, error, style):
+    """Relative changes as a curve; markers and error bars of at most `_MARKED` points, which can be told apart."""
+    known = np.flatnonzero(np.isfinite(change))
+    marked = known[:: max(1, -(-len(known) // _MARKED))].tolist()
+    panel.errorbar(humidity, 100 * change, 100 * error, markevery=marked, errorevery=marked, **style)

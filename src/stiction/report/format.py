@@ -52,6 +52,17 @@ def with_error(value: float, error: float, sign: str = "") -> str:
     return f"{number(value, f'{sign}.{digits}f')} ± {error:.{digits}f}"
 
 
+def as_published(value: float, deviation: float) -> str:
+    """Published value ± standard deviation as text, with the digits of the publication; – for NaN.
+
+    Examples
+    --------
+    >>> as_published(716.0, 9.0), as_published(float("nan"), float("nan"))
+    ('716 ± 9', '–')
+    """
+    return MISSING if np.isnan(value) else f"{number(value, 'g')} ± {number(deviation, 'g')}"
+
+
 def error_alone(error: float) -> str:
     """A standard error as text, with the same digits as after ± in `with_error`.
 

@@ -10,14 +10,16 @@ from pathlib import Path
 from string import ascii_lowercase
 
 import numpy as np
-from matplotlib import colormaps, style
+from matplotlib import colormaps, rcParams, style
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 from matplotlib.patheffects import withStroke
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+from matplotlib.transforms import ScaledTranslation
 
 from stiction.run.atomic import save_bytes
 
@@ -28,6 +30,10 @@ SINGLE, DOUBLE = 3.5, 7.16
 _SHORTEST = 0.1
 #: Largest number of columns of panels side by side.
 _ABREAST = 4
+#: Points of an inch; height of the labels below a panel, in points.
+_POINTS, _LABELLED = 72, 24
+#: Mean width of a character and of a handle with its space, in units of the size of the text of a legend.
+_CHARACTER, _HANDLE = 0.45, 5.0
 
 #: Style of the models in every figure.
 MODELS = {
@@ -94,19 +100,44 @@ def columns_of_panels(
     lines : list of (rows, n) arrays of Axes
         The panels as they are arranged, line by line.
     """
+    figure, ((_, columns, lines),) = blocks_of_columns(1, count, rows, width, height, **shared)
+    return figure, columns, lines
+
+
+def blocks_of_columns(
+    blocks: int, count: int, rows: int, width: Callable[[int], float], height: float, **shared
+) -> tuple[Figure, list[tuple[FigureBase, np.ndarray, list[np.ndarray]]]]:
+    """Several times the panels of `columns_of_panels`, below each other in one new figure.
+
+    Returns
+    -------
+    figure : Figure
+    blocks : list of tuples
+        Part of the figure, which can have a legend of its own, and its ``columns`` and ``lines``.
+    """
+    many, across = _arrangement(count)
+    figure = Figure(figsize=(width(across), height * many * blocks), layout="constrained")
+    parts = [figure] if blocks == 1 else figure.subfigures(blocks, 1)
+    return figure, [(part, *_columns(part, count, rows, shared)) for part in parts]
+
+
+def _arrangement(count):
+    """Number of lines of columns of panels, and of columns side by side."""
     many = -(-count // _ABREAST)
-    across = -(-count // many)
-    size = width(across), height * many
+    return many, -(-count // many)
+
+
+def _columns(part, count, rows, shared):
+    """Columns of panels in a figure or a part of it, and the same panels line by line."""
+    many, across = _arrangement(count)
     if many == 1 or rows == 1:
-        figure, axes = panels(rows * many, across, size, **shared)
-        lines = np.split(axes, many)
+        lines = np.split(part.subplots(rows * many, across, squeeze=False, **shared), many)
     else:
-        figure = Figure(figsize=size, layout="constrained")
-        lines = [part.subplots(rows, across, squeeze=False, **shared) for part in figure.subfigures(many, 1)]
+        lines = [line.subplots(rows, across, squeeze=False, **shared) for line in part.subfigures(many, 1)]
     lines[-1], unused = np.split(lines[-1], [count - across * (many - 1)], axis=1)
     for panel in unused.flat:
         panel.remove()
-    return figure, np.concatenate([line.T for line in lines]), lines
+    return np.concatenate([line.T for line in lines]), lines
 
 
 def legends(figure: Figure, options: Mapping[Axes, dict], most: int = 6) -> None:
@@ -127,12 +158,28 @@ def legends(figure: Figure, options: Mapping[Axes, dict], most: int = 6) -> None
         figure.legend(*handles(*crowded), loc="outside lower center", ncols=6)
 
 
+def legend_below(panel: Axes, entries: Sequence[Artist]) -> None:
+    """Legend below the label of the horizontal axis of a panel, where it covers no curve.
+
+    It has as many columns as fit below the panel.
+    """
+    grid, figure, em = panel.get_gridspec(), panel.figure, rcParams["legend.fontsize"] / _POINTS
+    longest = max(len(entry.get_label()) for entry in entries)
+    columns = int(figure.bbox.width / figure.dpi / grid.ncols / (em * (_CHARACTER * longest + _HANDLE)))
+    below = panel.transAxes + ScaledTranslation(0, -_LABELLED / _POINTS, figure.dpi_scale_trans)
+    place = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": below}
+    panel.legend(handles=entries, ncols=max(1, columns), **place)
+
+
 def humidity_axis(panel: Axes) -> None:
     """Keep the axis of the relative humidity within 0 and 1, and so long that its ticks do not meet."""
     left, right = panel.get_xlim()
     short = max(0, _SHORTEST - (right - left)) / 2
     if short or left < 0 or right > 1:
         panel.set_xlim(max(left - short, 0), min(right + short, 1))
+    if short:
+        # Labels at the ends would stick out of the panel.
+        panel.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10], prune="both"))
 
 
 def letter(axes: Iterable[Axes], names: Sequence[str] | None = None) -> None:

@@ -1,5 +1,6 @@
 """Common to all tables: numbers for machines, text for reading, and the files of both."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 
@@ -9,7 +10,9 @@ from stiction.run.atomic import save_text
 
 _PAGE = """<!DOCTYPE html>
 <meta charset="utf-8">
-<style>body {{ font: 13px sans-serif }} td, th {{ padding: 1px 10px; text-align: right }}</style>
+<style>
+body {{ font: 13px sans-serif }} p {{ white-space: pre-line }} td, th {{ padding: 1px 10px; text-align: right }}
+</style>
 <p>{caption}</p>
 {cells}
 """
@@ -38,6 +41,20 @@ class Table:
     def html(self) -> str:
         """Page of caption and cells."""
         return _PAGE.format(caption=self.caption, cells=self.cells.to_html(index=False, border=0))
+
+
+def with_list(caption: str, sentences: Sequence[str]) -> str:
+    """Caption with sentences below each other.
+
+    Examples
+    --------
+    >>> print(with_list("Lengths. Warnings:", ["Too steep.", "Too thin."]))
+    Lengths. Warnings:
+    <BLANKLINE>
+    - Too steep.
+    - Too thin.
+    """
+    return "\n".join([caption, *([""] if sentences else []), *(f"- {sentence}" for sentence in sentences)])
 
 
 def save(table: Table, paths: SimpleNamespace) -> None:

@@ -10,12 +10,12 @@ from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.contact.forcelaw import admissible
 from stiction.estimates import mean_on_shared_samples, mean_with_error
 from stiction.models import surface_model
-from stiction.report.format import TO_MJ, UM, error_alone, number, percent, with_error
+from stiction.report.format import TO_MJ, UM, as_published, error_alone, number, percent, with_error
 from stiction.report.published import value
 from stiction.report.tables import Table
-from stiction.stages.forces import vectors
+from stiction.stages import forces as stage_forces
 from stiction.stages.named import Case
-from stiction.stages.releases import STATES, ended
+from stiction.stages.releases import STATES, ended, stuck_energies, stuck_lengths
 
 #: Columns of the published Table III: mean and standard deviation of each model.
 _PUBLISHED = {"NG": ("ng", "ng_std"), "GEO": ("geo", "geo_std")}
@@ -76,10 +76,10 @@ def _row_3(key, beams, forces, published):
 
 def _simulated(beams, forces):
     """Crack length and energies of one case; errors are over beams and over the sampled pairs that all beams share."""
-    stuck, meso = ended(beams, "S-shape"), forces.adhesion_energy.values
+    meso = stage_forces.energies(forces)
     quantities = {
-        "crack_length": ("um", beams.crack_length.values[stuck] / UM, CRACK_LENGTH_POWER),
-        "adhesion_energy": ("J_per_m2", beams.adhesion_energy.values[stuck], 1),
+        "crack_length": ("um", stuck_lengths(beams) / UM, CRACK_LENGTH_POWER),
+        "adhesion_energy": ("J_per_m2", stuck_energies(beams), 1),
     }
     row = {}
     for name, (unit, values, power) in quantities.items():
@@ -91,7 +91,7 @@ def _simulated(beams, forces):
     mean, error = mean_with_error(meso)
     row |= {"meso_energy_J_per_m2": mean, "meso_energy_se_J_per_m2": error, "meso_energy_cv": meso.std(ddof=1) / mean}
     # Beams are released only on samples that have a force law of Eq. (12).
-    lawful = admissible(*vectors(forces))
+    lawful = admissible(*stage_forces.vectors(forces))
     row |= {"share_without_law": float(np.mean(~lawful)), "meso_energy_lawful_J_per_m2": meso[lawful].mean()}
     return row | {_share(state): float(ended(beams, state).mean()) for state in STATES}
 
@@ -124,10 +124,10 @@ def _cells_3(row):
         "l_s [µm]": with_error(row.crack_length_um, row.crack_length_std_um),
         "se": error_alone(row.crack_length_se_um),
         "se, scans": error_alone(by_scans[0]),
-        "published": with_error(row.published_um, row.published_std_um),
+        "published": as_published(row.published_um, row.published_std_um),
         "dev. published [%]": number(row.deviation_percent, "+.1f"),
-        "experiment": with_error(row.experiment_um, row.experiment_std_um),
-        "dev. exp. [%]": number(row.experiment_deviation_percent, "+.0f"),
+        "measured": as_published(row.experiment_um, row.experiment_std_um),
+        "dev. measured [%]": number(row.experiment_deviation_percent, "+.0f"),
         "published bias [%]": number(row.published_bias_error_percent, "g"),
         "Γ [mJ/m²]": number(TO_MJ * row.adhesion_energy_J_per_m2, ".3g"),
         "ē [mJ/m²]": number(TO_MJ * row.meso_energy_J_per_m2, ".3g"),
@@ -227,7 +227,7 @@ def _row_resampling(key, beams, resampled):
 
 def _crack_length(beams):
     """Mean crack length of the S-shaped beams and its standard error over beams; NaN for fewer than two [µm]."""
-    stuck = beams.crack_length.values[ended(beams, "S-shape")] / UM
+    stuck = stuck_lengths(beams) / UM
     return mean_with_error(stuck) if len(stuck) >= 2 else (np.nan, np.nan)
 
 

@@ -157,7 +157,7 @@ def _summary(key, group):
         for title, column in (("Δl_s", "shift"), ("Δē", "meso_energy_shift")):
             change = with_error(end[f"{column}_percent"], end[f"{column}_se_percent"], "+")
             row[f"{title} [%], {which}"] = MISSING if base else change
-    for title, column in (("published", "published_um"), ("experiment", "experiment_um")):
+    for title, column in (("published", "published_um"), ("measured", "experiment_um")):
         rms = _rms_deviation(group, column)
         row[f"rms dev. from {title} [%]"] = with_error(*(100 * x for x in rms)) if rms else MISSING
     removed = with_error(first.removed_percent, first.removed_se_percent, "+")

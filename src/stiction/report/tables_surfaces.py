@@ -7,11 +7,11 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.estimates import jackknife
 from stiction.report.format import NM, PER_UM2, UM, number, percent, with_error
 from stiction.report.published import rows, value
 from stiction.report.tables import Table
-from stiction.stages.parameters import spectrum_of
+from stiction.stages.character import statistics
+from stiction.stages.parameters import misfits, spectrum_of
 from stiction.surface.spectrum import CutoffSelfAffine
 
 #: Statistics of Table I and their titles for reading.
@@ -22,6 +22,8 @@ _STATISTICS = {
     "mean_summit_radius_um": "summit radius [µm]",
     "summit_density_per_um2": "summits [µm⁻²]",
 }
+#: Their units in SI.
+_UNITS = (NM, 1, 1, UM, PER_UM2)
 #: Parameters of Eq. (7) in the order of its class, with the unit of each column in SI.
 _PARAMETERS = {
     "plateau_nm4": NM**4,
@@ -36,22 +38,7 @@ _PARAMETERS = {
 
 def surface_statistics(character: xr.Dataset) -> tuple[dict[str, float], dict[str, float]]:
     """Statistics of Table I of simulated strips and their standard errors, in the units of the table."""
-
-    def estimate(mean):
-        m1, m2, m3, m4, density, curvature = mean
-        variance = m2 - m1**2
-        third = m3 - 3 * m1 * m2 + 2 * m1**3
-        fourth = m4 - 4 * m1 * m3 + 6 * m1**2 * m2 - 3 * m1**4
-        rms = np.sqrt(variance)
-        return np.array([rms / NM, third / rms**3, fourth / rms**4, 1 / curvature / UM, density / PER_UM2])
-
-    columns = [
-        character.power.values,
-        character.summit_density.values[:, None],
-        character.mean_curvature.values[:, None],
-    ]
-    values, errors = jackknife(estimate, np.hstack(columns))
-    return dict(zip(_STATISTICS, values, strict=True)), dict(zip(_STATISTICS, errors, strict=True))
+    return tuple(dict(zip(_STATISTICS, found, strict=True)) for found in statistics(character, _UNITS))
 
 
 def table_1(
@@ -165,10 +152,8 @@ def _shape(parameters, found, defect):
 def _residuals(found):
     """Deviations of radius and density from the measured ones after identification, with standard errors [%]."""
     row = {}
-    for column, name in (("radius", "mean_radius"), ("density", "summit_density")):
-        target = float(found[f"target_{name}"])
-        row[f"{column}_residual_percent"] = percent(float(found[name]), target)
-        row[f"{column}_residual_se_percent"] = 100 * float(found[f"{name}_error"]) / target
+    for column, (off, error) in misfits(found).items():
+        row |= {f"{column}_residual_percent": off, f"{column}_residual_se_percent": error}
     return row
 
 

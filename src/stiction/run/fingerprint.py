@@ -71,8 +71,16 @@ def _read(path, _modified, remember):
 def _parsed(text):
     """Hash of a module, and the full names of everything of the package that it imports."""
     tree = ast.parse(text)
-    names = [name for node in ast.walk(tree) for name in imported(node)]
+    names = [name for node in _statements(tree) for name in imported(node)]
     return [hashlib.sha256(canonical(tree).encode()).hexdigest()[:8], names]
+
+
+def _statements(node):
+    """All statements of a syntax tree and its other parts that may contain some, without expressions."""
+    for child in ast.iter_child_nodes(node):
+        if not isinstance(child, ast.expr):
+            yield child
+            yield from _statements(child)
 
 
 def imported(node: ast.AST) -> list[str]:
@@ -101,13 +109,19 @@ def canonical(node: object) -> str:
         return f"[{','.join(map(canonical, node))}]"
     if not isinstance(node, ast.AST):
         return repr(node)
-    fields = {name: value for name, value in ast.iter_fields(node) if name not in _WITHOUT_MEANING}
+    fields = {name: getattr(node, name, None) for name in _meaningful(type(node))}
     if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and _has_docstring(node):
         fields["body"] = node.body[1:]
     if isinstance(node, ast.JoinedStr):
         fields["values"] = _joined(node.values)
-    parts = (f"{name}={canonical(value)}" for name, value in sorted(fields.items()) if value not in (None, []))
+    parts = (f"{name}={canonical(value)}" for name, value in fields.items() if value not in (None, []))
     return f"{type(node).__name__}({','.join(parts)})"
+
+
+@cache
+def _meaningful(kind):
+    """Sorted names of the fields of a kind of node that affect what the code does."""
+    return sorted({*kind._fields} - _WITHOUT_MEANING)
 
 
 def _has_docstring(node):

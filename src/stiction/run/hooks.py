@@ -1,4 +1,4 @@
-"""Changes of Snakemake during a run, to save time: starts of jobs, timers of the scheduler, an import.
+"""Changes of Snakemake during a plan and a run, to save time: look-ups, starts of jobs, timers, an import.
 
 Each change replaces a method that is not part of Snakemake's public interface. A version of Snakemake that has another
 method in its place remains as it is.
@@ -10,9 +10,12 @@ import subprocess
 import sys
 import tempfile
 import threading
+from collections.abc import Hashable
+from functools import cache
 from typing import Any
 
-from snakemake import persistence
+import snakemake.api  # first, because its imports are circular
+from snakemake import common, persistence, rules
 from snakemake.logging import logger
 from snakemake.script import PythonScript
 
@@ -94,6 +97,45 @@ def compare_without_pandas() -> None:
         return compared(record, value) if "pandas" in sys.modules else record._serialize_param_builtin(value)
 
     records._serialize_param_pandas = serialize
+
+
+def remember_signatures() -> None:
+    """Let Snakemake read the signature of an input function once.
+
+    It reads about nine signatures for each planned job, most of them of the same functions.
+    """
+    read = getattr(common, "get_function_params", None)
+    if read is None or getattr(rules, "get_function_params", None) is not read:
+        return
+    if list(inspect.signature(read).parameters) != ["func"]:
+        return
+    known = cache(read)
+
+    def get_function_params(func):
+        return known(func) if isinstance(func, Hashable) else read(func)
+
+    common.get_function_params = rules.get_function_params = get_function_params
+
+
+def check_scripts_once() -> None:
+    """Let Snakemake look for the script of a rule once, not for each planned job.
+
+    A script is looked for once per job if its name depends on the job.
+    """
+    processor = getattr(snakemake.dag, "ScriptProcessor", None)
+    check = getattr(processor, "process_job", None)
+    if check is None or list(inspect.signature(check).parameters) != ["self", "job"]:
+        return
+
+    def process_job(self, job):
+        script = job.rule.script
+        of_rule = isinstance(script, str) and "{" not in script
+        found = vars(self).setdefault("_found", set())
+        if not (of_rule and job.rule in found):
+            check(self, job)
+            found.add(job.rule)
+
+    processor.process_job = process_job
 
 
 def limit_timers(scheduler: Any) -> None:

@@ -397,9 +397,9 @@ def _moments_have_no_density(found):
 
 
 def _moments_do_not_describe(found):
-    chi2, likely = found.goodness
+    distance, likely = found.goodness
     if likely < _UNLIKELY:
-        return f"four moments do not describe the heights (chi² {chi2:.3g}, p {likely:.1g}); heights: measured does"
+        return f"four moments do not describe the heights (T² {distance:.3g}, p {likely:.1g}); heights: measured does"
     return ""
 
 

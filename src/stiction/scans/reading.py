@@ -171,8 +171,8 @@ def _error_of_its_format(library, path):
 
 def _unreadable(library, path, error):
     """One sentence, with the first line of an error of the library itself if that is short."""
-    said = str(error) if isinstance(error, library.error) else ""
-    line = next(iter(said.strip().splitlines()), "").rstrip(". ")
+    message = str(error) if isinstance(error, library.error) else ""
+    line = next(iter(message.strip().splitlines()), "").rstrip(". ")
     quoted = f" ({line})" if 0 < len(line) <= _LONGEST_REASON else ""
     return ScanError(path.name, "files", f"cannot be read as any known format, or is damaged{quoted}")
 

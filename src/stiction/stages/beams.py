@@ -46,11 +46,12 @@ def layout(columns: dict[str, np.ndarray], nodes: np.ndarray) -> xr.Dataset:
         Nominal positions of the nodes [m].
     """
     flags = {"flag_values": np.arange(3, dtype=np.int8), "flag_meanings": " ".join(releases.STATES)}
+    energy = {"units": "J m-2", "long_name": "apparent adhesion energy of a beam, Eq. (13), S-shape only"}
     return xr.Dataset(
         {
             "state": ("sample", np.asarray(columns["state"], np.int8), flags),
             "crack_length": ("sample", columns["crack_length"], {"units": "m"}),
-            "adhesion_energy": ("sample", columns["energy"], {"units": "J m-2", "long_name": "Eq. (13), S-shape only"}),
+            "adhesion_energy": ("sample", columns["energy"], energy),
             "imbalance": ("sample", columns["imbalance"], {"units": "N"}),
             "iterations": ("sample", columns["iterations"]),
             "deflection": (("beam", "node"), np.asarray(columns["deflection"], np.float32), {"units": "m"}),

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.estimates import jackknife
+from stiction.models import FIELD
 from stiction.progress import progress
-from stiction.stages.surfaces import FIELD, Sampling, Width, rough_surface
+from stiction.stages.surfaces import Sampling, Width, rough_surface
 from stiction.streams import stream
 from stiction.surface.field import RoughSurface, StripGrid, radial_periodogram
 from stiction.surface.summits import find_summits
@@ -95,6 +97,37 @@ def layout(
             "y": ("y", y[1], {"units": y[0]}),
         },
     )
+
+
+def statistics(character: xr.Dataset, units: Sequence[float] = (1, 1, 1, 1, 1)) -> tuple[np.ndarray, np.ndarray]:
+    """Statistics of Table I of the simulated strips and their standard errors by the jackknife over these.
+
+    Parameters
+    ----------
+    character : Dataset
+    units : sequence of 5 numbers
+        Units of the statistics [SI].
+
+    Returns
+    -------
+    values, errors : (5,) arrays
+        Rms [m], skewness [-], kurtosis [-], mean radius [m] and density [m⁻²] of the summits, over the units.
+    """
+
+    def estimate(mean):
+        m1, m2, m3, m4, density, curvature = mean
+        variance = m2 - m1**2
+        third = m3 - 3 * m1 * m2 + 2 * m1**3
+        fourth = m4 - 4 * m1 * m3 + 6 * m1**2 * m2 - 3 * m1**4
+        rms = np.sqrt(variance)
+        return np.array([rms, third / rms**3, fourth / rms**4, 1 / curvature, density]) / units
+
+    columns = [
+        character.power.values,
+        character.summit_density.values[:, None],
+        character.mean_curvature.values[:, None],
+    ]
+    return jackknife(estimate, np.hstack(columns))
 
 
 def _strips(surface: RoughSurface, name: str, settings: Settings):

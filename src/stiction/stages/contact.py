@@ -112,6 +112,18 @@ def _grid(contact):
     return DistanceGrid(float(contact.step), contact.sizes["height"] - above, above)
 
 
+def first(contact: xr.Dataset, samples: int) -> xr.Dataset:
+    """Contact of the first samples alone."""
+    return contact.isel(sample=slice(samples))
+
+
+def surface_rms(contact: xr.Dataset) -> float:
+    r"""Root mean square of z₁ + z₂ from the mean bearing area, :math:`m_2 = 2 \int z (A(z) - [z < 0]) dz` [m]."""
+    height = contact.height.values
+    area = contact.bearing_area.values.mean(axis=0, dtype=float)
+    return float(np.sqrt(2 * float(contact.step) * np.sum(height * (area - (height < 0)))))
+
+
 def tables(contact: xr.Dataset) -> tuple[np.ndarray, np.ndarray, tuple[float, float], float]:
     """Solid pressures (m, n_s) [Pa], bearing areas (m, n_b) [-], first distance of each and common step [m]."""
     starts = float(contact.distance[0]), float(contact.height[0])

@@ -53,7 +53,7 @@ def layout(vectors: np.ndarray, limit: float, distance: np.ndarray, curves: Sequ
         Forces of the first k samples [Pa].
     """
     named = {
-        name: ("sample", vectors[:, i], {"units": unit})
+        name: ("sample", vectors[:, i], {"units": unit, "long_name": f"{name.replace('_', ' ')} of a sample, Eq. (11)"})
         for i, (name, unit) in enumerate(zip(COMPONENTS, _UNITS, strict=True))
     }
     return xr.Dataset(

@@ -59,13 +59,10 @@ def misfits(identification: xr.Dataset) -> dict[str, tuple[float, float]]:
     Returns
     -------
     dict
-        ``radius`` and ``density``: the relative deviation and its standard error [-].
+        ``radius`` and ``density``: the relative deviation and its standard error [%].
     """
-    names = {"radius": "mean_radius", "density": "summit_density"}
-    return {
-        word: tuple(
-            float(part / identification[f"target_{name}"])
-            for part in (identification[name] - identification[f"target_{name}"], identification[f"{name}_error"])
-        )
-        for word, name in names.items()
-    }
+    found = {}
+    for word, name in (("radius", "mean_radius"), ("density", "summit_density")):
+        value, error, target = (float(identification[key]) for key in (name, f"{name}_error", f"target_{name}"))
+        found[word] = 100 * (value / target - 1), 100 * error / target
+    return found

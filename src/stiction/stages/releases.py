@@ -10,18 +10,18 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from stiction.beam.montecarlo import Experiment, columns, simulate
+from stiction.beam.montecarlo import Experiment, released_beams
+from stiction.beam.release import EndState
 from stiction.beam.resolution import resolved
 from stiction.chaos.model import ChaosModel, draw_laws
 from stiction.config.cases import pair_of
-from stiction.progress import progress
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever, strips_along
 from stiction.streams import stream
 
 #: Number of force laws from which the elements of the beams of a case are chosen.
 _LAWS = 10_000
-#: End states of a beam, in the order of `stiction.beam.release.EndState`.
-STATES = ("S-shape", "arc", "free")
+#: End states of a beam, in the order of their numbers in datasets.
+STATES = tuple(state.label for state in EndState)
 
 
 @dataclass(frozen=True)
@@ -54,13 +54,11 @@ def released_on(
     ValueError
         If the strips are too long for the force laws.
     """
-    number = settings.samples
     beam, strips = cantilever(settings, pair_of(case)), strips_along(settings.beam, settings.sampling)
     if settings.refined:
         beam = _resolved(beam, strips, draw(_LAWS, address("mesh")), case)
     experiment = Experiment(beam, strips, draw, settings.scatter)
-    outcomes = simulate(experiment, range(number), address, threads)
-    return columns(list(progress(outcomes, "beams", total=number)), shapes)
+    return released_beams(experiment, settings.samples, address, threads, shapes)
 
 
 def _resolved(beam, strips, laws, case):
@@ -75,3 +73,13 @@ def _resolved(beam, strips, laws, case):
 def ended(beams: xr.Dataset, state: str) -> np.ndarray:
     """Whether each beam of a dataset ended in the given state, ``S-shape``, ``arc`` or ``free``; (n,) bool."""
     return beams.state.values == STATES.index(state)
+
+
+def stuck_lengths(beams: xr.Dataset) -> np.ndarray:
+    """Crack lengths of the beams of a dataset that ended S-shaped (m,) [m]; those of others have no meaning."""
+    return beams.crack_length.values[ended(beams, "S-shape")]
+
+
+def stuck_energies(beams: xr.Dataset) -> np.ndarray:
+    """Apparent adhesion energies Γ, Eq. (13), of the beams of stage beams that ended S-shaped (m,) [J m⁻²]."""
+    return beams.adhesion_energy.values[ended(beams, "S-shape")]

@@ -77,7 +77,7 @@ def refuse_misuse(identification: xr.Dataset, use: Use) -> None:
     found = parameters.spectrum_of(identification)
     lengths = {"sampling.strip_length_um": use.strip_length, "sampling.margin_um": use.margin}
     parameters.refuse_long_correlation(use.surface, found, lengths)
-    ratios = {word: 1 + off for word, (off, _) in parameters.misfits(identification).items()}
+    ratios = {word: 1 + off / 100 for word, (off, _) in parameters.misfits(identification).items()}
     if not all(1 / RESEMBLES <= ratio <= RESEMBLES for ratio in ratios.values()):
         raise ValueError(
             f"no spectrum of the form of Eq. (7) has the summits of surface {use.surface}: at best "

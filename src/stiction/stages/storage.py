@@ -84,5 +84,35 @@ def load_all(paths: Iterable[str | Path], stage: str) -> list[xr.Dataset]:
 
 
 def load_surfaces(heights: Iterable[str | Path], spectra: Iterable[str | Path]) -> list[tuple[xr.Dataset, xr.Dataset]]:
-    """Datasets (heights, spectrum) of surfaces in the order of their files; raises the errors of `load`."""
+    """Datasets (heights, spectrum) of surfaces in the order of their files; raises the errors of `load`.
+
+    Raises
+    ------
+    ValueError
+        If the files of heights and spectra have other names.
+    """
+    heights, spectra = list(heights), list(spectra)
+    for both in zip(heights, spectra, strict=True):
+        if len({Path(path).stem for path in both}) > 1:
+            raise ValueError("{} and {} are of different surfaces".format(*both))
     return list(zip(load_all(heights, "heights"), load_all(spectra, "spectrum"), strict=True))
+
+
+def in_order(paths: Iterable[str | Path], ends: Iterable[str]) -> list[str | Path]:
+    """Files whose names end with these words in this order, such as ``b_rms_less.nc`` and ``b_rms_more.nc``.
+
+    Raises
+    ------
+    ValueError
+        If a name ends with another word, or if files are missing.
+
+    Examples
+    --------
+    >>> in_order(["b_rms_less.nc", "b_rms_more.nc"], ["less", "more"])
+    ['b_rms_less.nc', 'b_rms_more.nc']
+    """
+    pairs = list(zip(paths, ends, strict=True))
+    for path, end in pairs:
+        if not Path(path).stem.endswith(f"_{end}"):
+            raise ValueError(f"{path} is not the file of {end}")
+    return [path for path, _ in pairs]

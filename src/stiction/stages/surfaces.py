@@ -9,9 +9,6 @@ from stiction.stages.spectrum import underlying
 from stiction.surface.field import RoughSurface, StripGrid
 from stiction.surface.translation import Translation
 
-#: Side of the periodic fields on which spectra are estimated [m].
-FIELD = 10.24e-6
-
 
 @dataclass(frozen=True)
 class Sampling:

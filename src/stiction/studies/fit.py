@@ -1,4 +1,4 @@
-"""Stage fit (Sec. III-B1, Fig. 5): relative errors of Eq. (12) with respect to the computed force curves."""
+"""Study fit (Sec. III-B1, Fig. 5): relative errors of Eq. (12) with respect to the computed force curves."""
 
 import numpy as np
 import xarray as xr

@@ -1,4 +1,4 @@
-"""Stage humidity (Fig. 15): distribution of the adhesion energy of a strip along a fine axis of humidities."""
+"""Study humidity (Fig. 15): distribution of the adhesion energy of a strip along a fine axis of humidities."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Stage iteration (Sec. II-B2, Figs. 4 and 10): the iterative algorithm, for comparison with the closed form."""
+"""Study iteration (Sec. II-B2, Figs. 4 and 10): the iterative algorithm, for comparison with the closed form."""
 
 from dataclasses import dataclass
 from itertools import islice
@@ -6,11 +6,11 @@ from itertools import islice
 import numpy as np
 import xarray as xr
 
+from stiction.models import FIELD
 from stiction.progress import progress
 from stiction.stages import parameters
 from stiction.stages.heights import density
 from stiction.stages.spectrum import achieved
-from stiction.stages.surfaces import FIELD
 from stiction.streams import stream
 from stiction.surface.field import StripGrid
 from stiction.surface.iteration import iterate, misfit, sampling_misfit, target_rings

@@ -19,6 +19,7 @@ from stiction.analysis.variants import relative_shift
 from stiction.devices.budget import Budget, joined
 from stiction.measured import estimate as stage_estimate
 from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
+from stiction.stages.contact import first
 from stiction.stages.curves import energies
 from stiction.studies import slopes as study_slopes
 from stiction.studies.slopes import Settings
@@ -57,6 +58,11 @@ def errors_of(estimate: xr.Dataset, quantities: Sequence[str]) -> Errors:
     heights = estimate.covariance.values if names == OF_MOMENTS else modes
     scans = len(stage_estimate.files(estimate))
     return Errors(names, heights, modes[1:, 1:], estimate.fit_covariance.values[1:, 1:], scans)
+
+
+def errors_by_surface(slopes: Mapping[str, xr.Dataset], estimates: Mapping[str, xr.Dataset]) -> dict[str, Errors]:
+    """Surface to the errors of its estimate in the quantities of its slopes; datasets of these names by surface."""
+    return {name: errors_of(estimate, study_slopes.quantities(slopes[name])) for name, estimate in estimates.items()}
 
 
 def compute(
@@ -118,7 +124,7 @@ def _form(slopes, errors):
 
 def _changes(contact, base, settings):
     """Relative change of ē by a choice and its standard error, (n_rh, 2) [-]."""
-    same = base.isel(sample=slice(contact.sizes["sample"]))
+    same = first(base, contact.sizes["sample"])
     pairs = ([energies(of, h, settings.water) for of in (contact, same)] for h in settings.humidities)
     return [relative_shift(*pair) for pair in pairs]
 

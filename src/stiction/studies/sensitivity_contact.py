@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import xarray as xr
 
 from stiction.analysis.sensitivity import shifted
+from stiction.models import SHIFTED
 from stiction.stages import contact as stage_contact
 from stiction.stages import pairs
 from stiction.studies.descriptions import description, drawn_as
@@ -40,6 +41,11 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
     changed = [drawn_as(replace(surface, **{moment: value}), settings.sampling.spacing) for moment, value in at]
     contacts = stage_contact.compute_each([(other, substrate) for other in changed], pair, "NG", settings)
     return [contact.assign(moment=value) for contact, (_, value) in zip(contacts, at, strict=True)]
+
+
+def names(settings: Settings) -> list[str]:
+    """Names of the contacts in the order of `compute`, such as ``rms_less``."""
+    return [f"{moment}_{side}" for moment in settings.moments for side in SHIFTED]
 
 
 def moment(dataset: xr.Dataset) -> float:

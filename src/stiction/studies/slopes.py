@@ -51,6 +51,11 @@ def layout(
     )
 
 
+def quantities(dataset: xr.Dataset) -> tuple[str, ...]:
+    """Quantities whose slopes the dataset has, keys of `stiction.analysis.shifts.STEPS`."""
+    return tuple(dataset["quantity"].values.tolist())
+
+
 def of(dataset: xr.Dataset, quantities: Sequence[str]) -> np.ndarray:
     """Slopes of ln ē with respect to some quantities at every humidity, (n_rh, n_quantities) [-]."""
     return dataset.slope.sel(quantity=list(quantities)).values.T

@@ -11,6 +11,7 @@ from stiction.chaos.model import Truncation, fit
 from stiction.config.cases import humidity_of
 from stiction.stages import curves, releases
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength
+from stiction.stages.contact import first
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Settings:
 def compute(contact: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
     """Run the stages after contact at the humidity of a case; model NG, nominal dimensions."""
     humidity = humidity_of(case)
-    vectors, limit = curves.vectors(contact.isel(sample=slice(settings.samples)), humidity, settings.water)
+    vectors, limit = curves.vectors(first(contact, settings.samples), humidity, settings.water)
     model = fit(vectors, limit, settings.chaos.order, settings.chaos.dimension_tolerance)
     beams = releases.Settings(
         settings.seed,
