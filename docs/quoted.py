@@ -195,10 +195,12 @@ def scans(table):
 
 
 def timings(now, earlier):
-    """``time_paper``: minutes and seconds, or seconds, of every row; and the ratio of two runs of the paper."""
+    """``time_paper``: minutes and seconds, or seconds, of every row; ``ratio_paper``: that after over that before."""
     seconds = dict(zip([*now["name"], *earlier["name"]], [*now.seconds, *earlier.seconds], strict=True))
     found = {f"time_{name}": _duration(value) for name, value in seconds.items()}
-    return found | {"time_ratio": f"{seconds['paper_after'] / seconds['paper_before']:.2f}"}
+    repeated = [name.removesuffix("_before") for name in seconds if name.endswith("_before")]
+    ratios = {name: seconds[f"{name}_after"] / seconds[f"{name}_before"] for name in repeated}
+    return found | {f"ratio_{name}": f"{ratio:.2f}" for name, ratio in ratios.items()}
 
 
 def constants():
