@@ -9,9 +9,10 @@
 #
 #   make test       format, lint and tests                   make test-all   the slow tests as well
 #   make format     format the code                          make mutants    break the code, count undetected errors
-#   make bench      time the stages                          make jobs       time and memory of the jobs of the last run
-#   make cluster    test with SLURM on this machine          make docs       the documentation
-#   make lock       update requirements.lock                 make clean      delete .venv, keep results
+#   make bench      time the stages                          make times      time the commands (half an hour)
+#   make docs       the documentation                        make jobs       time and memory of the jobs of the last run
+#   make cluster    test with SLURM on this machine          make lock       update requirements.lock
+#   make clean      delete .venv, keep results
 #
 #   ARGS=...        further arguments for the tool that a target runs: ARGS=-n shows what Snakemake would do
 
@@ -40,7 +41,7 @@ ifneq ($(CONFIG),$(wildcard $(CONFIG)))
 $(error cannot read $(CONFIG))
 endif
 
-.PHONY: help paper smoke example devices figures run report test test-all lint format cluster mutants bench jobs docs lock clean
+.PHONY: help paper smoke example devices figures run report test test-all lint format cluster mutants bench times jobs docs lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -113,6 +114,12 @@ bench: $(VENV)/ready
 	$(BIN)/python -m stiction.run.warmup
 	{ $(BIN)/python tests/benchmarks/stages.py; $(BIN)/python tests/benchmarks/scaling.py docs/pictures/scaling.png; } \
 	  | tee docs/tables/bench.md
+
+# Runs every command of the README in folders of its own: half an hour, on a machine without other work.
+times: $(VENV)/ready
+	mkdir -p results
+	$(BIN)/python tests/benchmarks/commands.py > results/timings.csv
+	mv results/timings.csv docs/tables/timings.csv
 
 # Reads the logs of the last run.
 jobs: $(VENV)/ready

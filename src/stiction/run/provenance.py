@@ -68,7 +68,7 @@ def _run(checkout, config):
         "started": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "versions": {"python": platform.python_version()} | {name: version_of(name) for name in LIBRARIES},
         "git": git_state(checkout),
-        "machine": {"host": platform.node(), "system": platform.platform(), "cpu": _cpu(), "cores": os.cpu_count()},
+        "machine": {"host": platform.node(), "system": platform.platform(), "cpu": cpu_name(), "cores": os.cpu_count()},
         "config": config,
     }
 
@@ -101,7 +101,7 @@ def git_state(checkout: str | Path) -> dict | None:
     return {"commit": commit.strip(), "changed": bool(changes.strip())}
 
 
-def _cpu():
+def cpu_name():
     """Name of the processor, if the system reports it."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
