@@ -98,6 +98,11 @@ def test_moments_without_density_take_the_nearest_in_the_metric_of_their_errors(
     assert feasible(0.0, 3.1, lambda: 4 * COVARIANCE).distance == pytest.approx(found.distance / 2, rel=0.05)
 
 
+def test_the_largest_distance_decides_which_moments_are_near():
+    assert feasible(0.0, 3.1, lambda: COVARIANCE, 1.0) is None
+    assert feasible(0.0, 3.3, lambda: COVARIANCE, np.inf).distance > 3.7
+
+
 def test_moments_far_from_the_domain_have_no_density():
     assert feasible(0.0, 3.3, lambda: COVARIANCE) is None
     assert feasible(2.0, 4.5, lambda: COVARIANCE) is None  # below the lower bound

@@ -77,6 +77,9 @@ def test_errors_are_those_of_the_scatter_and_chi_square_is_one_per_degree_of_fre
     covariance = found[0].covariance / max(found[0].chi2 / found[0].freedom, 1)
     errors = np.sqrt(np.diag(covariance)) / 1.15  # of Gaussian heights
     np.testing.assert_allclose(values.std(axis=0, ddof=1) / errors, 1, rtol=0, atol=4 / np.sqrt(600))
+    correlation = covariance / np.outer(*[np.sqrt(np.diag(covariance))] * 2)
+    np.testing.assert_allclose(np.corrcoef(values.T), correlation, atol=4 / np.sqrt(300))
+    assert np.abs(correlation[np.triu_indices(3, 1)]).max() > 8 / np.sqrt(300)  # control: another sign shows
     assert np.all(np.abs(values.mean(axis=0) - TRUTH) < 4 * errors / np.sqrt(300))
     correlation = np.corrcoef(values.T)[0, 1] - covariance[0, 1] / 1.15**2 / np.prod(errors[:2])
     assert abs(correlation) < 0.2

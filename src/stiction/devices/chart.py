@@ -91,5 +91,5 @@ def checked_power_law(
 
 
 def flooded_length(beam: Beam, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:
-    """Crack length at the `flooded_energy`, the shortest that water alone can cause [m]."""
+    """Crack length at the `stiction.contact.meniscus.flooded_energy`, the shortest that water alone can cause [m]."""
     return float(arrest_length(flooded_energy(temperature, contact_angles), beam))
