@@ -83,15 +83,9 @@ def rows(scratch):
     taken = workflow(paper, "--configfile", CONFIG, added)
     yield "humidity", taken, "make run with one humidity of pair b added, with its studies, tables and all figures"
     yield "smoke", workflow(smoke, "--configfile", CONFIG, ROOT / "workflow" / "smoke.yaml"), "make smoke"
-<<<<<<< HEAD
-    yield "example", run("make", "example"), "make example"
-    shutil.rmtree(ROOT / "results" / "devices", ignore_errors=True)
-    yield "devices", run("make", "devices"), "make devices"
-=======
     for name in ("example", "devices"):
         shutil.rmtree(ROOT / "results" / name, ignore_errors=True)
         yield name, run("make", name), f"make {name}"
->>>>>>> readings
     yield tests()
     empty.mkdir()
     yield "start", start_of_a_job(empty), "start and end of a job that does nothing, on one core, mean of 100"
