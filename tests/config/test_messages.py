@@ -59,11 +59,11 @@ def test_a_missing_section_is_named(section):
 
 
 @pytest.mark.parametrize("leaf", NUMBERS, ids=str)
-@pytest.mark.parametrize("junk", [None, True, False, "1.0", "", [1], {}, math.nan, math.inf, -math.inf, 10**400])
-def test_no_number_is_replaced_by_something_else(leaf, junk):
-    (line,) = problems(replaced(leaf.path, junk))
-    assert line.startswith(f"{leaf} is ")
-    assert leaf.entry["description"] in line
+def test_no_number_is_replaced_by_something_else(leaf):
+    for junk in (None, True, False, "1.0", "", [1], {}, math.nan, math.inf, -math.inf, 10**400):
+        (line,) = problems(replaced(leaf.path, junk))
+        assert line.startswith(f"{leaf} is "), junk
+        assert leaf.entry["description"] in line, junk
 
 
 @pytest.mark.parametrize("leaf", NUMBERS, ids=str)

@@ -230,7 +230,7 @@ def test_panels_beyond_the_alphabet_have_marks():
     assert [axes[0, k].get_title(loc="left") for k in (0, 25, 26, 27)] == ["(a)", "(z)", "(aa)", "(ab)"]
 
 
-@pytest.mark.parametrize("count", [1, 5, pytest.param(12, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [1, *(pytest.param(n, marks=pytest.mark.slow) for n in (5, 12))])
 def test_more_surfaces_than_fit_side_by_side_continue_below(heights, spectrum, characters, iteration, count, tmp_path):
     names = [f"S{k}" for k in range(count)]
     densities = height_densities({name: heights["B2"] for name in names})

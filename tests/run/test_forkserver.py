@@ -169,6 +169,7 @@ COMPUTED = """
 """
 
 
+@pytest.mark.slow
 def test_files_arrays_and_figures_of_forks_at_the_same_time_are_those_of_a_new_interpreter(server, tmp_path):
     paths = [script(tmp_path, COMPUTED, f"{number}.py") for number in range(5)]
     assert subprocess.run([sys.executable, paths[0]], env=server.environment).returncode == 0, printed(paths[0])

@@ -260,6 +260,7 @@ def test_a_setting_reruns_the_rules_it_affects_and_their_readers_and_no_others(t
     assert not [name for name in rerun if stay and re.search(stay, name) and rerun[name] in RULES - {"table_3"}]
 
 
+@pytest.mark.slow
 def test_other_samples_of_the_main_line_or_of_the_variants_rerun_the_base_of_the_variants(tree):
     more, fewer = (
         {name.rpartition("/")[2] for name, rule in tree.rerun(overlay=overlay).items() if rule == "variant"}
@@ -305,7 +306,10 @@ def test_comments_docstrings_and_touched_files_rerun_nothing(tree):
     assert tree.rerun() == {}
 
 
-@pytest.mark.parametrize(("changed", "rerun"), [(0, set()), (1, behind(READ_BY["contact"].split()) - OF_FIGURE)])
+@pytest.mark.parametrize(
+    ("changed", "rerun"),
+    [pytest.param(0, set(), marks=pytest.mark.slow), (1, behind(READ_BY["contact"].split()) - OF_FIGURE)],
+)
 def test_a_large_file_counts_as_changed_by_its_content_and_not_by_its_time(tree, changed, rerun):
     path = tree.folder / LARGE
     before, content = path.stat(), path.read_bytes()
