@@ -49,7 +49,7 @@ def run(*words, cwd=ROOT):
 
 def workflow(folder, *words):
     """Seconds of a run of the project's workflow in a folder."""
-    return run(BIN / "snakemake", "--directory", folder, "--quiet", "all", *words)
+    return run(BIN / "snakemake", *words, "--directory", folder, "--quiet")
 
 
 def start_of_a_job(folder, jobs=100):
