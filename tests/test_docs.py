@@ -116,12 +116,13 @@ def test_numbers_of_checks_scans_and_timings_are_those_of_their_tables():
     assert quoted.mesh(checks)["mesh_off"] == "1.4"
     row = {"surface": "Etched", "points_fast": 100, "points_slow": 600, "size_fast_um": 2.0, "skewness_se": 0.05}
     assert quoted.scans(pd.DataFrame([row])) == {"scan_nyquist": "157", "scan_errors": "5"}
-    timings = quoted.timings(pd.DataFrame({"name": ["paper", "paper_before", "fork"], "seconds": [245, 490, 0.02]}))
-    assert timings == {
-        "time_paper": "4:05 min",
+    earlier = pd.DataFrame({"name": ["paper_before", "paper_after", "fork"], "seconds": [490, 245, 0.02]})
+    assert quoted.timings(pd.DataFrame({"name": ["paper"], "seconds": [250]}), earlier) == {
+        "time_paper": "4:10 min",
         "time_paper_before": "8:10 min",
+        "time_paper_after": "4:05 min",
         "time_fork": "0.02 s",
-        "time_ratio": "0.50",
+        "ratio_paper": "0.50",
     }
 
 

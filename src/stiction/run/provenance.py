@@ -101,7 +101,7 @@ def git_state(checkout: str | Path) -> dict | None:
     return {"commit": commit.strip(), "changed": bool(changes.strip())}
 
 
-def cpu_name():
+def cpu_name() -> str:
     """Name of the processor, if the system reports it."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
