@@ -1,6 +1,7 @@
 """Physical constants in SI units, each with unit and source; none is a tuning parameter."""
 
-from scipy.constants import R as GAS_CONSTANT  # noqa: F401  [J mol⁻¹ K⁻¹], CODATA
+#: Molar gas constant [J mol⁻¹ K⁻¹], exact; SI of 2019.
+GAS_CONSTANT = 8.31446261815324
 
 #: Molar volume of liquid water, 300 K [m³ mol⁻¹]; paper, below Eq. (8).
 WATER_MOLAR_VOLUME = 1.8e-5

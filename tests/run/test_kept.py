@@ -1,7 +1,9 @@
 """Files of earlier runs: those of other settings and damaged ones are recognised, all others are not."""
 
 import json
+import os
 import re
+from pathlib import Path
 from types import SimpleNamespace
 
 import netCDF4
@@ -10,6 +12,7 @@ import xarray as xr
 
 from stiction.run import kept, labels
 from stiction.run.logs import logged, recorded
+from stiction.run.remembered import Remembered
 from stiction.stages import storage
 
 HEIGHTS, SPECTRUM = {"rms_nm": 3.4, "kurtosis": 3.9}, {"spacing_nm": 7.5, "psd": {"floor_nm4": 0.8}}
@@ -26,8 +29,11 @@ def files(tmp_path, monkeypatch):
 
 
 def reasons(wanted, **changed):
-    """Files that a run with these settings cannot use."""
-    return dict(kept.foreign(["heights/B2.nc", "spectrum/B2.nc"], (wanted | changed).get))
+    """Files that a run with these settings cannot use; a plan knows the labels that those before it have read."""
+    remember = Remembered("labels.json")
+    found = dict(kept.foreign(["heights/B2.nc", "spectrum/B2.nc"], (wanted | changed).get, remember))
+    remember.save()
+    return found
 
 
 def rule(pattern, settings):
@@ -48,6 +54,28 @@ def test_settings_of_a_file_are_those_of_the_rule_that_writes_it():
     assert kept.settings("orders.nc", rules) == {"draws": 5}
     assert kept.settings("heights/Unknown.nc", rules) is None, "no surface of this configuration"
     assert kept.settings("beams/b.nc", rules) is None, "no rule writes it"
+
+
+def test_the_label_of_an_unchanged_file_is_read_once(files, monkeypatch):
+    assert reasons(files) == {}
+    read, seen = labels.read, []
+    monkeypatch.setattr(labels, "read", lambda path: seen.append(path) or read(path))
+    assert reasons(files) == {}
+    assert not seen
+    storage.save(xr.Dataset(), "heights/B2.nc", "heights", HEIGHTS)
+    assert reasons(files) == {}
+    assert [path.as_posix() for path in seen] == ["heights/B2.nc"], "its time is another"
+
+
+def test_a_changed_file_of_the_same_size_and_time_is_read_again(files):
+    assert reasons(files) == {}
+    path, times = Path("heights/B2.nc"), os.stat("heights/B2.nc")
+    other = path.read_bytes().replace(b"3.4", b"3.5")
+    assert len(other) == times.st_size
+    path.write_bytes(other)
+    os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+    assert path.stat().st_mtime_ns == times.st_mtime_ns
+    assert reasons(files) == {"heights/B2.nc": "cannot be read"}, "its format has a checksum"
 
 
 def test_a_dataset_names_the_settings_of_all_stages_before(files):
@@ -115,7 +143,7 @@ def test_files_of_another_name_without_a_label_or_cut_off_are_not_used(files, tm
     (tmp_path / "heights" / "B2.nc").rename(other)
     assert reasons({}, **{"heights/B2.nc": HEIGHTS}) == {"heights/B2.nc": "cannot be read"}
     wanted = {"heights/Sub1.nc": HEIGHTS}
-    assert dict(kept.foreign([other.relative_to(tmp_path)], wanted.get)) == {"heights/Sub1.nc": "holds heights of B2"}
+    assert dict(kept.foreign([other.relative_to(tmp_path)], wanted.get, Remembered("none.json"))) == {"heights/Sub1.nc": "holds heights of B2"}
     xr.Dataset().to_netcdf("heights/B2.nc")
     assert reasons(files)["heights/B2.nc"] == "holds no result of this study"
     whole = (tmp_path / "spectrum" / "B2.nc").read_bytes()

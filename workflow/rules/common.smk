@@ -104,7 +104,9 @@ def settings_of(path):
 @cache
 def unusable():
     """Files in results/ that other settings gave, or that are damaged: to this run they are missing."""
-    found = {**dict(kept.foreign(Path("results").rglob("*.nc"), settings_of)), **dict(kept.damaged("results/logs"))}
+    labels = Remembered(".snakemake/labels.json")
+    found = dict(kept.foreign(Path("results").rglob("*.nc"), settings_of, labels)) | dict(kept.damaged("results/logs"))
+    labels.save()
     for line in kept.summary(found):
         logger.warning(line)
     return found

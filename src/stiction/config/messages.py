@@ -8,8 +8,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
-
-from jsonschema import Draft202012Validator, validators
+from functools import cache
 
 
 class ConfigError(ValueError):
@@ -38,7 +37,7 @@ class Problem:
 def schema_problems(config: object, schema: dict) -> list[Problem]:
     """Problems of single keys, found with the schema."""
     try:
-        return [problem for error in _Strict(schema).iter_errors(config) for problem in _explained(error, schema)]
+        return [problem for error in _strict()(schema).iter_errors(config) for problem in _explained(error, schema)]
     except (ValueError, RecursionError) as reason:
         # Each error of jsonschema prints the value, and Python cannot print very long integers or very deep nesting.
         return [Problem((), f"cannot be printed ({reason}): must contain short numbers and few levels of nesting")]
@@ -54,10 +53,13 @@ def _is_integer(_, value):
     return _is_number(_, value) and isinstance(value, int)
 
 
-_Strict = validators.extend(
-    Draft202012Validator,
-    type_checker=Draft202012Validator.TYPE_CHECKER.redefine_many({"number": _is_number, "integer": _is_integer}),
-)
+@cache
+def _strict():
+    """Class of the validator; its library is imported here because a plan of a known configuration does not need it."""
+    from jsonschema import Draft202012Validator, validators
+
+    types = Draft202012Validator.TYPE_CHECKER.redefine_many({"number": _is_number, "integer": _is_integer})
+    return validators.extend(Draft202012Validator, type_checker=types)
 
 
 def _explained(error, schema):

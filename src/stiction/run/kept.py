@@ -37,7 +37,11 @@ def settings(path: str, rules: Iterable[Any]) -> dict[str, Any] | None:
     return None
 
 
-def foreign(paths: Iterable[str | Path], expected: Callable[[str], dict[str, Any] | None]) -> Iterator[tuple[str, str]]:
+def foreign(
+    paths: Iterable[str | Path],
+    expected: Callable[[str], dict[str, Any] | None],
+    remember: Callable[[object, Callable[[], Any]], Any],
+) -> Iterator[tuple[str, str]]:
     """Datasets that other settings or another study gave, or that cannot be read, each with the reason.
 
     Parameters
@@ -46,6 +50,8 @@ def foreign(paths: Iterable[str | Path], expected: Callable[[str], dict[str, Any
         Files of datasets.
     expected : callable
         Settings of the job of a file in this run; ``None`` if no job of this run writes the file.
+    remember : callable
+        Keeps the labels of files that have not changed, see `stiction.run.remembered.Remembered`.
 
     Yields
     ------
@@ -55,16 +61,16 @@ def foreign(paths: Iterable[str | Path], expected: Callable[[str], dict[str, Any
     """
     for path in map(Path, paths):
         if (settings := expected(path.as_posix())) is not None:
-            reason = _difference(path, settings, expected)
+            reason = _difference(path, settings, expected, remember)
             if reason:
                 yield path.as_posix(), reason
 
 
-def _difference(path, settings, expected):
+def _difference(path, settings, expected, remember):
     """What distinguishes a dataset from the one that this run would compute; empty if nothing does."""
     try:
-        found = labels.read(path)
-    except DataError:
+        found = _label(path, remember)
+    except (DataError, OSError):
         return "cannot be read"
     if found.name != path.stem:
         return f"holds {found.stage} of {found.name}" if found.stage else "holds no result of this study"
@@ -74,6 +80,13 @@ def _difference(path, settings, expected):
         if differing := _first(stored, expected(file) or {}):
             return f"depends on {file} with {differing}"
     return ""
+
+
+def _label(path, remember):
+    """Label of a dataset, which is read again if the file may have changed."""
+    state = path.stat()
+    unchanged = [str(path), state.st_ino, state.st_size, state.st_mtime_ns, state.st_ctime_ns]
+    return labels.Label(*remember([unchanged, labels.Label._fields], lambda: labels.read(path)))
 
 
 def _first(found, wanted, path=()):

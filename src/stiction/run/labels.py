@@ -5,8 +5,6 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import netCDF4
-
 from stiction.run.atomic import DataError
 
 
@@ -51,6 +49,8 @@ def read(path: str | Path) -> Label:
     DataError
         If the file is truncated or no netCDF file.
     """
+    import netCDF4  # not needed where the label is known
+
     try:
         with netCDF4.Dataset(path) as file:
             found = {key: file.getncattr(key) for key in file.ncattrs()}
