@@ -1,10 +1,14 @@
 """Settings of all tests."""
 
 import fcntl
+import gc
 import os
 from pathlib import Path
 
 from hypothesis import settings
+
+# Nearly everything that a collection of thousands of tests creates remains; looking for garbage takes a quarter of it.
+gc.disable()
 
 # No deadline, because machines are shared and timings vary; the same examples in every run.
 settings.register_profile("steady", deadline=None, derandomize=True)
@@ -27,7 +31,14 @@ if "PYTEST_XDIST_WORKER" in os.environ:
     IndexDataCacheFile.save = save_alone
 
 
+def pytest_collection_finish():
+    """Look for garbage again, but not among what was created so far."""
+    gc.freeze()
+    gc.enable()
+
+
 def pytest_collection_modifyitems(items):
     """Begin with the files that take longest, so that no process works alone at the end."""
     first = ["test_reruns.py", "test_run.py", "test_surface_estimate.py", "test_resume.py", "test_scan_uncertainty.py"]
+    first += ["test_feasible.py", "test_messages.py", "test_study.py", "test_device.py"]
     items.sort(key=lambda item: (item.path.name not in first, item.path.parent.name != "workflow"))

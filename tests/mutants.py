@@ -153,6 +153,9 @@ MUTANTS = {
         ("np.exp(-(_SCORES**2) / 2)", "np.exp(-(_SCORES**2))"),
         ("rho -= error /", "rho += error /"),
         ("lowest = self.autocorrelation(-1.0)", "lowest = self.autocorrelation(1.0)"),
+        ("coefficients[k] + value[j] * part[j]", "coefficients[k] * part[j] + value[j]"),
+        ("range(0, len(x), 256)", "range(0, len(x), 257)"),
+        ("np.minimum(places, len(zeta) - places)", "np.minimum(places, len(zeta) - 1 - places)"),
     ],
     "surface.empirical": [
         ("slice(None, None, -1)) * above", "slice(None)) * above"),
@@ -1471,6 +1474,9 @@ MUTANTS = {
         ("{*found, *wanted}", "{*found}"),
         (".hexdigest() != checksum", ".hexdigest() is None"),
         ("(path.parent, path.name)", "path.as_posix()"),
+        ("state.st_mtime_ns, state.st_ctime_ns]", "state.st_mtime_ns]"),
+        ("[str(path), state.st_ino,", "[state.st_ino,"),
+        ("except (DataError, OSError):", "except OSError:"),
     ],
     "run.forkserver": [
         ("gc.freeze()  #", "pass  #"),

@@ -53,16 +53,29 @@ def changed(factor):
     return contact.assign(solid_pressure=factor * contact.solid_pressure, difference=((), 0.1))
 
 
-CONTACTS = {
-    (name, quantity): (changed(1 - 0.01 * k), changed(1 + 0.02 * k))
-    for k, (name, quantity) in enumerate(map(tuple, PLAIN["quantities"]), 1)
-}
-SOLIDS = {"modulus": (changed(0.9), changed(1.2)), "hamaker_constant": (changed(1.1), changed(0.95))}
-CHOICES = {"van_der_waals_dry": changed(1.3), "every_2": changed(0.8)}
+@pytest.fixture(scope="module")
+def contacts():
+    """Contact at both sides of every quantity of a surface."""
+    return {
+        (name, quantity): (changed(1 - 0.01 * k), changed(1 + 0.02 * k))
+        for k, (name, quantity) in enumerate(map(tuple, PLAIN["quantities"]), 1)
+    }
 
 
 @pytest.fixture(scope="module")
-def files(tmp_path_factory):
+def solids():
+    """Contact at both sides of every property of the solids."""
+    return {"modulus": (changed(0.9), changed(1.2)), "hamaker_constant": (changed(1.1), changed(0.95))}
+
+
+@pytest.fixture(scope="module")
+def choices():
+    """Contact under every other choice of the model."""
+    return {"van_der_waals_dry": changed(1.3), "every_2": changed(0.8)}
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory, contacts, solids, choices):
     """All input files, in an order of their own for every kind."""
     folder = tmp_path_factory.mktemp("inputs")
 
@@ -76,22 +89,22 @@ def files(tmp_path_factory):
     sides = {
         side: [saved(both[k], "contact", f"{patch}_{name}_{quantity}_{side}") for (name, quantity), both in entries]
         for k, side, entries in (
-            (0, "less", reversed(CONTACTS.items())),
-            (1, "more", sorted(CONTACTS.items(), key=lambda entry: entry[0][::-1])),
+            (0, "less", reversed(contacts.items())),
+            (1, "more", sorted(contacts.items(), key=lambda entry: entry[0][::-1])),
         )
     }
-    solids = {
+    of_solids = {
         name: [saved(both[k], "contact", f"{name}/{patch}_{side}") for k, side in ((1, "more"), (0, "less"))]
-        for name, both in SOLIDS.items()
+        for name, both in solids.items()
     }
     described = dict(zip(SURFACES, small.surfaces(), strict=True))
     return Files(
         sides
-        | solids
+        | of_solids
         | {
             "contact": saved(small.contact_of_pair(), "contact", patch),
             "poisson_ratio": [],
-            "choices": [saved(one, "contact", f"{patch}_{name}") for name, one in reversed(CHOICES.items())],
+            "choices": [saved(one, "contact", f"{patch}_{name}") for name, one in reversed(choices.items())],
             "heights": [saved(described[name][0], "heights", name) for name in SURFACES],
             "spectrum": [saved(described[name][1], "spectrum", name) for name in reversed(SURFACES)],
             "estimates": [],
@@ -99,11 +112,11 @@ def files(tmp_path_factory):
     )
 
 
-def test_files_in_any_order_give_the_budget_of_what_they_are(main, files, tmp_path):
+def test_files_in_any_order_give_the_budget_of_what_they_are(main, files, contacts, solids, choices, tmp_path):
     output = tmp_path / "S1_rh067.nc"
     main(SimpleNamespace(params=SimpleNamespace(settings=PLAIN), input=files, output=[output]))
     settings = typed(inputs.Settings, PLAIN["budget"])
     known = inputs.covariances(dict(zip(SURFACES, small.surfaces(), strict=True)), {}, settings)
-    expected = budget.compute(small.contact_of_pair(), CONTACTS, SOLIDS, CHOICES, known, settings)
+    expected = budget.compute(small.contact_of_pair(), contacts, solids, choices, known, settings)
     xr.testing.assert_equal(storage.load(output, "budget"), expected)
-    assert len(set(expected.slope.values)) == len(CONTACTS) + len(SOLIDS)  # control: every file has a slope of its own
+    assert len(set(expected.slope.values)) == len(contacts) + len(solids)  # control: every file has a slope of its own

@@ -133,25 +133,26 @@ def test_a_script_finds_the_surroundings_of_a_new_interpreter(server, tmp_path):
 
 
 PRELOADED = """
-    import json
+    import gc, json
     wanted = ("scipy.fft", "matplotlib.figure", "netCDF4", "stiction.stages.beams")
     libraries = [name for name in wanted if name in sys.modules]
     from numba.core.dispatcher import Dispatcher
     beam = [vars(module).values() for name, module in sys.modules.items() if name.startswith("stiction.beam.")]
     kernels = [value for values in beam for value in values if isinstance(value, Dispatcher) and value.signatures]
     threads = os.listdir(f"/proc/{os.getppid()}/task")
-    print(json.dumps([os.getppid(), len(libraries), len(kernels), len(threads)]))
+    print(json.dumps([os.getppid(), len(libraries), len(kernels), len(threads), gc.get_freeze_count()]))
 """
 
 
 def test_libraries_and_kernels_are_loaded_before_a_script_begins(server, tmp_path):
     path = script(tmp_path, PRELOADED)
     assert server.run(path) == 0, printed(path)
-    parent, libraries, kernels, threads = json.loads(printed(path))
+    parent, libraries, kernels, threads, frozen = json.loads(printed(path))
     assert parent == server.process.pid
     assert libraries == 4
     assert kernels > 0
     assert threads == 1, "a fork of a process with several threads is not safe"
+    assert frozen > 100_000, "the collector would copy the memory that forks share"
     subprocess.run([sys.executable, path], check=True)
     assert json.loads(printed(path))[1:3] == [0, 0]
 

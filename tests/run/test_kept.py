@@ -69,7 +69,8 @@ def test_the_label_of_an_unchanged_file_is_read_once(files, monkeypatch):
 
 def test_a_changed_file_of_the_same_size_and_time_is_read_again(files):
     assert reasons(files) == {}
-    path, times = Path("heights/B2.nc"), os.stat("heights/B2.nc")
+    path = Path("heights/B2.nc")
+    times = path.stat()
     other = path.read_bytes().replace(b"3.4", b"3.5")
     assert len(other) == times.st_size
     path.write_bytes(other)
@@ -143,7 +144,9 @@ def test_files_of_another_name_without_a_label_or_cut_off_are_not_used(files, tm
     (tmp_path / "heights" / "B2.nc").rename(other)
     assert reasons({}, **{"heights/B2.nc": HEIGHTS}) == {"heights/B2.nc": "cannot be read"}
     wanted = {"heights/Sub1.nc": HEIGHTS}
-    assert dict(kept.foreign([other.relative_to(tmp_path)], wanted.get, Remembered("none.json"))) == {"heights/Sub1.nc": "holds heights of B2"}
+    assert dict(kept.foreign([other.relative_to(tmp_path)], wanted.get, Remembered("none.json"))) == {
+        "heights/Sub1.nc": "holds heights of B2"
+    }
     xr.Dataset().to_netcdf("heights/B2.nc")
     assert reasons(files)["heights/B2.nc"] == "holds no result of this study"
     whole = (tmp_path / "spectrum" / "B2.nc").read_bytes()

@@ -359,6 +359,18 @@ def test_elements_follow_the_force_laws_of_the_case(through_a_file):
     assert kept.sizes["node"] == 501
 
 
+def test_elements_are_chosen_with_laws_that_no_beam_uses():
+    settings, model = replace(of_beams(), refined=True), chaos.chaos_model(small.chaos_of_case())
+    asked = []
+
+    def address(k):
+        asked.append(k)
+        return stream(small.SEED, k)
+
+    releases.released_on(lambda n, rng: draw_laws(model, n, rng), small.CASE, settings, address)
+    assert asked == ["mesh", *range(settings.samples)]
+
+
 def test_a_refusal_of_the_strips_names_the_case():
     settings = replace(of_beams(), refined=True, sampling=replace(of_beams().sampling, strip_length=7.5e-6))
     with pytest.raises(ValueError, match="strips of 7.5 µm do not resolve a crack") as refusal:

@@ -42,7 +42,8 @@ _SCORES, _HIGHEST = ndtri((np.arange(200) + 0.5) / 200), 5.0
 @functools.cache
 def schema() -> dict:
     """JSON schema of the configuration: ``schema.yaml`` next to this module."""
-    return yaml.safe_load(Path(__file__).with_name("schema.yaml").read_text(encoding="utf-8"))
+    text = Path(__file__).with_name("schema.yaml").read_text(encoding="utf-8")
+    return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # in C where PyYAML was built with it
 
 
 def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:

@@ -28,7 +28,9 @@ def contact_kernels() -> None:
     """Run the kernels of surfaces and contact on a small problem."""
     rng = stream(0)
     grid = StripGrid(1e-6, 1e-6, 1e-8, 0.0)
-    surface = RoughSurface(CutoffSelfAffine(1, 0.1, 1e7, 1e8), Translation(maxent.GAUSSIAN), 1e-9, grid)
+    translation = Translation(maxent.GAUSSIAN)
+    translation.autocorrelation(0.5)
+    surface = RoughSurface(CutoffSelfAffine(1, 0.1, 1e7, 1e8), translation, 1e-9, grid)
     for through in ("water", "none"):
         model = asperity(reduced_modulus(164e9, 0.23), attraction(through))
         pair = SurfacePair(surface, surface, 1e-10, asperity=model)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
+import numba
 import numpy as np
 from scipy import fft
 
@@ -70,7 +71,7 @@ class Translation:
 
     def autocorrelation(self, underlying: float | np.ndarray) -> float | np.ndarray:
         """Autocorrelation Σ c_k² ρ^k of the heights from that of the Gaussian field, any shape [-]."""
-        return np.polynomial.polynomial.polyval(underlying, self._series)
+        return _polynomial(underlying, self._series)
 
     def underlying_autocorrelation(
         self, autocorrelation: float | np.ndarray, tolerance: float = 1e-12, max_iterations: int = 50
@@ -95,13 +96,30 @@ class Translation:
             error = self.autocorrelation(rho) - autocorrelation
             if np.abs(error).max() < tolerance:
                 return rho
-            rho -= error / np.polynomial.polynomial.polyval(rho, slope)
+            rho -= error / _polynomial(rho, slope)
         raise NotConverged("underlying autocorrelation", np.abs(error).max(), tolerance, max_iterations)
 
     @cached_property
     def _series(self):
         power = self.hermite_coefficients**2
         return np.r_[0.0, power / power.sum()]
+
+
+def _polynomial(x, coefficients):
+    """Polynomial with these coefficients, of x⁰ first, any shape."""
+    return _horner(np.ravel(np.asarray(x, float)), coefficients).reshape(np.shape(x))[()]
+
+
+@numba.njit(cache=True, nogil=True)
+def _horner(x, coefficients):
+    """Horner's rule for many x, (n,), in parts that remain in the cache of the processor."""
+    result = np.full(len(x), coefficients[-1])
+    for start in range(0, len(x), 256):
+        part, value = x[start : start + 256], result[start : start + 256]
+        for k in range(len(coefficients) - 2, -1, -1):
+            for j in range(len(part)):
+                value[j] = coefficients[k] + value[j] * part[j]
+    return result
 
 
 def hermite_coefficients(values: np.ndarray) -> np.ndarray:
@@ -148,7 +166,7 @@ def underlying_spectrum(
         Share of the variance that no Gaussian field can represent: negative s_ZG, and s_ZG beyond the cut-off [-].
     """
     zeta, cell = _square(spacing, points)
-    correlation = fft.fft2(target(zeta)).real
+    correlation = fft.fft2(_on_square(target, zeta)).real
     rho = translation.underlying_autocorrelation(correlation / correlation[0, 0])
     wanted = fft.ifft2(rho).real / cell
     possible = np.where(zeta <= target.cutoff, np.maximum(wanted, 0), 0)
@@ -161,7 +179,7 @@ def spectrum_of_heights(
 ) -> TabulatedSpectrum:
     """Spectrum of the translated field, of unit variance: the inverse of `underlying_spectrum`."""
     zeta, cell = _square(spacing, points)
-    correlation = fft.fft2(underlying(zeta)).real
+    correlation = fft.fft2(_on_square(underlying, zeta)).real
     heights = fft.ifft2(translation.autocorrelation(correlation / correlation[0, 0])).real / cell
     return _radial(heights, zeta, np.inf)
 
@@ -170,6 +188,14 @@ def _square(spacing, points):
     """Wave numbers |ζ| (n, n) of a periodic square and Δζ²."""
     axis = 2 * np.pi * fft.fftfreq(points, spacing)
     return np.hypot(axis[:, None], axis), axis[1] ** 2
+
+
+def _on_square(spectrum, zeta):
+    """A spectrum at all wave numbers of `_square`: computed in a quarter of it, which the others mirror."""
+    places = np.arange(len(zeta))
+    mirrored = np.minimum(places, len(zeta) - places)
+    quarter = spectrum(zeta[: mirrored.max() + 1, : mirrored.max() + 1])
+    return quarter[mirrored[:, None], mirrored]
 
 
 def _radial(spectrum, zeta, cutoff):
