@@ -1,6 +1,7 @@
 """The order of the modules: each imports only from those before it, and the physics is independent of files."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -53,12 +54,17 @@ def module_name(path):
 
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if path.name != "__init__.py")
 SCRIPTS = sorted((PACKAGE.parents[1] / "workflow" / "scripts").glob("*.py"))
-each_module = pytest.mark.parametrize("path", FILES, ids=module_name)
+
+
+@cache
+def nodes(path):
+    """Nodes of the syntax tree of a file, that of the module first."""
+    return list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
 
 
 def imports(path):
     """Full names of everything that a module imports, at its head or inside a function."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         if isinstance(node, ast.ImportFrom):
@@ -72,42 +78,41 @@ def modules_used(path):
     return {name if name in MODULES else name.rpartition(".")[0] or name for name in names}
 
 
-@each_module
-def test_a_module_imports_only_from_those_before_it(path):
-    name = module_name(path)
-    assert name in MODULES, f"{name} has no place in the order"
-    for used in modules_used(path):
-        assert used in MODULES[: MODULES.index(name)], f"{name} must not import {used}"
+def test_a_module_imports_only_from_those_before_it():
+    for path in FILES:
+        name = module_name(path)
+        assert name in MODULES, f"{name} has no place in the order"
+        for used in modules_used(path):
+            assert used in MODULES[: MODULES.index(name)], f"{name} must not import {used}"
 
 
-@each_module
-def test_physics_does_not_import_libraries_for_files_labels_workflows_or_figures(path):
-    if module_name(path) in PHYSICS:
-        assert not {name.split(".")[0] for name in imports(path)} & BORDER
+def test_physics_does_not_import_libraries_for_files_labels_workflows_or_figures():
+    for path in FILES:
+        if module_name(path) in PHYSICS:
+            assert not {name.split(".")[0] for name in imports(path)} & BORDER, path
 
 
-@each_module
-def test_files_of_microscopes_are_read_in_one_module_which_imports_its_library_when_it_reads(path):
-    used = {name.split(".")[0] for name in imports(path)}
-    assert (MICROSCOPES in used) == (module_name(path) == "scans.reading")
-    head = (node for node in ast.parse(path.read_text(encoding="utf-8")).body if isinstance(node, ast.ImportFrom))
-    assert not any(node.module.startswith(MICROSCOPES) for node in head)
+def test_files_of_microscopes_are_read_in_one_module_which_imports_its_library_when_it_reads():
+    for path in FILES:
+        used = {name.split(".")[0] for name in imports(path)}
+        assert (MICROSCOPES in used) == (module_name(path) == "scans.reading"), path
+        head = (node for node in nodes(path)[0].body if isinstance(node, ast.ImportFrom))
+        assert not any(node.module.startswith(MICROSCOPES) for node in head), path
 
 
-@each_module
-def test_random_numbers_come_from_a_stream_that_is_passed_in(path):
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    used = {ast.unparse(node) for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
-    random = {name for name in used if name.startswith("np.random.")} | {"random"} & set(imports(path))
-    random -= {"np.random.Generator"}  # used only in annotations; creating a generator requires a bit generator
-    assert not random or module_name(path) == "streams", f"{path} makes random numbers of its own: {random}"
+def test_random_numbers_come_from_a_stream_that_is_passed_in():
+    for path in FILES:
+        used = {ast.unparse(node) for node in nodes(path) if isinstance(node, ast.Attribute)}
+        random = {name for name in used if name.startswith("np.random.")} | {"random"} & set(imports(path))
+        random -= {"np.random.Generator"}  # used only in annotations; creating a generator requires a bit generator
+        assert not random or module_name(path) == "streams", f"{path} makes random numbers of its own: {random}"
 
 
-@each_module
-def test_physics_prints_nothing_and_opens_nothing(path):
-    calls = (node.func for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.Call))
-    names = {call.id for call in calls if isinstance(call, ast.Name)}
-    assert module_name(path) not in PHYSICS or not names & {"open", "print"}
+def test_physics_prints_nothing_and_opens_nothing():
+    for path in FILES:
+        calls = (node.func for node in nodes(path) if isinstance(node, ast.Call))
+        names = {call.id for call in calls if isinstance(call, ast.Name)}
+        assert module_name(path) not in PHYSICS or not names & {"open", "print"}, path
 
 
 #: Powers of ten of factors between units and SI, and between units such as MB and GB.
@@ -125,18 +130,18 @@ def is_factor(node):
 
 def factors_of_units(path):
     """Products and quotients with literal powers of ten, and names for such powers."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         product = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div)
         parts = (node.left, node.right) if product else (node.value,) if isinstance(node, ast.Assign) else ()
         if any(map(is_factor, parts)):
             yield ast.unparse(node)
 
 
-@each_module
-def test_units_are_converted_by_the_modules_of_units(path):
-    # The physics is in SI units and must not import them; its error messages state lengths in µm.
-    if module_name(path) in MODULES[MODULES.index("config.units") :] and module_name(path) not in OF_UNITS:
-        assert not list(factors_of_units(path))
+def test_units_are_converted_by_the_modules_of_units():
+    for path in FILES:
+        # The physics is in SI units and must not import them; its error messages state lengths in µm.
+        if module_name(path) in MODULES[MODULES.index("config.units") :] and module_name(path) not in OF_UNITS:
+            assert not list(factors_of_units(path)), path
 
 
 @pytest.mark.parametrize("line", ["x = 1e6 * y", "f(y / 1e-9)", "x = 2 * (y * 1e-3)", "x = f'{1e6 * y:g}'", "X = 1e-6"])
@@ -168,15 +173,15 @@ def is_stage(name):
 
 def datasets_built(path):
     """Calls that build a dataset, or an array with labels, from plain arrays."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.Call) and ast.unparse(node.func) in LABELLED:
             yield ast.unparse(node)
 
 
-@pytest.mark.parametrize("path", [*FILES, *SCRIPTS], ids=lambda path: path.stem)
-def test_datasets_are_built_by_the_modules_of_stages(path):
-    if not (path.is_relative_to(PACKAGE) and is_stage(module_name(path))):
-        assert not list(datasets_built(path))
+def test_datasets_are_built_by_the_modules_of_stages():
+    for path in (*FILES, *SCRIPTS):
+        if not (path.is_relative_to(PACKAGE) and is_stage(module_name(path))):
+            assert not list(datasets_built(path)), path
 
 
 @pytest.mark.parametrize("call", ["xr.Dataset({})", "xarray.Dataset()", "xr.DataArray(y).mean()", "Dataset({'y': y})"])
@@ -188,7 +193,7 @@ def test_a_dataset_that_is_built_is_found(tmp_path, call):
 
 def public_functions(path):
     """Functions and methods that users call; kernels have the types of their arguments, relations those of keys."""
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+    for node in nodes(path)[0].body:
         inside = node.body if isinstance(node, ast.ClassDef) and not node.name.startswith("_") else [node]
         for function in inside:
             if isinstance(function, ast.FunctionDef) and not function.name.startswith("_"):
@@ -197,14 +202,14 @@ def public_functions(path):
                     yield function
 
 
-@each_module
-def test_public_functions_have_annotations_and_a_docstring(path):
-    for function in public_functions(path):
-        arguments = [*function.args.posonlyargs, *function.args.args, *function.args.kwonlyargs]
-        bare = [a.arg for a in arguments if a.annotation is None and a.arg not in ("self", "cls")]
-        assert not bare, f"{function.name}: {bare}"
-        assert function.returns is not None, f"{function.name} states no type of its result"
-        assert ast.get_docstring(function), f"{function.name} has no docstring"
+def test_public_functions_have_annotations_and_a_docstring():
+    for path in FILES:
+        for function in public_functions(path):
+            arguments = [*function.args.posonlyargs, *function.args.args, *function.args.kwonlyargs]
+            bare = [a.arg for a in arguments if a.annotation is None and a.arg not in ("self", "cls")]
+            assert not bare, f"{path}: {function.name}: {bare}"
+            assert function.returns is not None, f"{path}: {function.name} states no type of its result"
+            assert ast.get_docstring(function), f"{path}: {function.name} has no docstring"
 
 
 def test_importing_a_folder_runs_no_code():
@@ -214,10 +219,10 @@ def test_importing_a_folder_runs_no_code():
         assert all(isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) for node in tree.body), path
 
 
-@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.name)
-def test_a_script_imports_from_modules_and_never_from_the_bare_package(path):
-    # The fingerprint of a script follows imports of modules and would miss imports through the public names.
-    assert modules_used(path) <= set(MODULES)
+def test_a_script_imports_from_modules_and_never_from_the_bare_package():
+    for path in SCRIPTS:
+        # The fingerprint of a script follows imports of modules and would miss imports through the public names.
+        assert modules_used(path) <= set(MODULES), path
 
 
 @pytest.mark.parametrize("statement", ["import stiction", "from stiction import PairStudy", "import stiction as s"])
@@ -227,12 +232,12 @@ def test_an_import_of_the_bare_package_is_found(tmp_path, statement):
     assert not modules_used(path) <= set(MODULES)
 
 
-@pytest.mark.parametrize("path", [*FILES, *SCRIPTS], ids=lambda path: path.stem)
-def test_no_number_depends_on_a_module_that_the_fingerprint_leaves_out(path):
-    # Such modules may report progress and errors, or reject a configuration, but must not affect results.
-    refusing = {"config.messages", "config.relations", "config.relations_devices"}
-    if not path.is_relative_to(PACKAGE / "config"):
-        assert not modules_used(path) & refusing, f"{path} must use config.files"
+def test_no_number_depends_on_a_module_that_the_fingerprint_leaves_out():
+    for path in (*FILES, *SCRIPTS):
+        # Such modules may report progress and errors, or reject a configuration, but must not affect results.
+        refusing = {"config.messages", "config.relations", "config.relations_devices"}
+        if not path.is_relative_to(PACKAGE / "config"):
+            assert not modules_used(path) & refusing, f"{path} must use config.files"
 
 
 def test_an_import_that_is_out_of_order_is_found(tmp_path):

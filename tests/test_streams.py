@@ -1,4 +1,5 @@
 import ast
+from functools import cache
 from itertools import combinations
 from pathlib import Path
 
@@ -70,6 +71,7 @@ def test_a_float_is_not_a_valid_address():
 PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 
 
+@cache
 def spelled(path):
     """Addresses of the streams that a module makes, without the seed, and the number of its uses of `stream`.
 
@@ -110,10 +112,10 @@ def test_no_two_places_of_the_package_make_streams_of_the_same_address():
         assert not may_be_equal(one, other), f"{one} of {module} may be {other} of {other_module}"
 
 
-@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: path.stem)
-def test_every_use_of_a_stream_spells_its_address(path):
-    found, uses = spelled(path)
-    assert len(found) == uses
+def test_every_use_of_a_stream_spells_its_address():
+    for path in sorted(PACKAGE.rglob("*.py")):
+        found, uses = spelled(path)
+        assert len(found) == uses, path
 
 
 @pytest.mark.parametrize(
