@@ -137,6 +137,7 @@ def test_densities_integrate_to_one_and_the_band_is_one_error_wide():
     assert_allclose(np.sum(measured.values * np.diff(measured.edges)), 1, rtol=1e-6)
     band = next(data for label, data in stairs.items() if not label.startswith("measured"))
     inside = band.baseline > 0
+    assert inside.mean() > 0.5
     error = estimated().histogram_error.values / (1e9 * stage_estimate.rms(estimated()))
     assert_allclose((band.values - band.baseline)[inside], 2 * error[inside], rtol=1e-9)
     curves = {line.get_label(): line.get_xydata() for line in axes.lines}

@@ -62,12 +62,18 @@ def _name(path):
 def _read(path, _modified, remember):
     """Hash of one file, and names and files of the modules of the package that it imports."""
     text = path.read_bytes()
-    code = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
-    hashed, names = remember([code, hashlib.sha256(text).hexdigest()], lambda: _parsed(text))
+    hashed, names = remember([_this_module(), hashlib.sha256(text).hexdigest()], lambda: _parsed(text))
     modules = {_name(module): module for name in names for module in files_of(name)}
     return hashed, [(name, module) for name, module in modules.items() if name not in SILENT]
 
 
+@cache
+def _this_module():
+    """Hash of the text of this module, on which all others depend."""
+    return hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
+
+
+@cache
 def _parsed(text):
     """Hash of a module, and the full names of everything of the package that it imports."""
     tree = ast.parse(text)
