@@ -75,6 +75,15 @@ TESTS |= {f"variants.{name}": "studies/test_studies.py" for name in ("summits", 
 
 #: Modules and their replacements (text that occurs exactly once, its replacement).
 MUTANTS = {
+    "constants": [
+        ("= 8.31446261815324", "= 16.62892523630648"),
+        ("= 1.8e-5", "= 3.6e-5"),
+        ("= 0.072", "= 0.144"),
+        ('"water": 9.75e-20', '"water": 19.5e-20'),
+        ('"dry": 18.65e-20', '"dry": 37.3e-20'),
+        ("= 2.09e-10", "= 4.18e-10"),
+        ("= 12.8e9", "= 6.4e9"),
+    ],
     "surface.maxent": [
         ("return np.exp(-exponent)", "return np.exp(exponent)"),
         ("_HEIGHTS**order * self", "_HEIGHTS**(order + 1) * self"),
