@@ -135,6 +135,14 @@ def test_values_that_python_cannot_print_are_rejected(path, junk):
     assert "cannot be printed" in line
 
 
+def test_a_long_value_is_cut_off_in_a_message():
+    (line,) = problems(replaced(("van_der_waals",), "w" * 5000))
+    assert "www …" in line
+    assert len(line) < 400
+    (line,) = problems(replaced(("van_der_waals",), "w" * 90))
+    assert "w" * 90 in line
+
+
 FUZZ = settings(max_examples=250, suppress_health_check=[HealthCheck.too_slow])
 JUNK = st.recursive(
     st.one_of(
