@@ -279,6 +279,13 @@ def test_spectra_are_scaled_to_the_rms_of_the_heights(drawn, characters, iterati
     np.testing.assert_allclose(last, 3.4**2 * 1e18 * iteration.periodogram[-1].mean("field"))
 
 
+def test_the_drawn_spectrum_is_compared_with_the_target_of_the_same_rms(drawn, characters, spectrum):
+    zeta, relation = curve(drawn["10"].axes[4], "surfaces drawn from the closed form")
+    measured = characters["B2"].periodogram.mean("field").interp(wavenumber=1e6 * zeta)
+    target = SURFACES["B2"].rms ** 2 * np.interp(1e6 * zeta, spectrum.wavenumber, spectrum.target)
+    np.testing.assert_allclose(relation, measured / target)
+
+
 def test_relation_is_one_where_the_spectrum_is_the_target(drawn, iteration):
     middle, bottom = drawn["10"].axes[4], drawn["10"].axes[8]
     _, relation = curve(middle, "surfaces of the last iteration")
