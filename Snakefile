@@ -68,6 +68,10 @@ onstart:
         shell("{sys.executable:q} -m stiction.run.warmup")
 
 
+onsuccess:
+    foreign()
+
+
 rule all:
     default_target: True
     input:

@@ -1,6 +1,7 @@
 """The main line from end to end, with small samples."""
 
 import csv
+import json
 
 import pytest
 from benchmarks import jobs
@@ -64,6 +65,13 @@ def test_the_study_of_a_pair_in_python_gives_the_numbers_of_the_workflow(smoke):
 
 def test_a_second_run_has_nothing_to_do(smoke):
     assert "Nothing to be done" in snakemake(smoke, "-n").stdout
+
+
+def test_the_next_plan_knows_the_labels_of_all_datasets(smoke):
+    known = json.loads((smoke / ".snakemake" / "labels.json").read_text())
+    stages = {stage for stage, *_ in known.values()}
+    assert len(known) == len(list((smoke / "results").rglob("*.nc"))) > 50
+    assert {"heights", "contact", "beams"} <= stages
 
 
 def test_log_of_a_long_job_shows_its_progress(smoke):

@@ -101,12 +101,18 @@ def settings_of(path):
     return kept.settings(path, workflow.rules)
 
 
+def foreign():
+    """Datasets in results/ that other settings gave. Labels that are read here are known to the next plan."""
+    labels = Remembered(".snakemake/labels.json")
+    found = dict(kept.foreign(Path("results").rglob("*.nc"), settings_of, labels))
+    labels.save()
+    return found
+
+
 @cache
 def unusable():
     """Files in results/ that other settings gave, or that are damaged: to this run they are missing."""
-    labels = Remembered(".snakemake/labels.json")
-    found = dict(kept.foreign(Path("results").rglob("*.nc"), settings_of, labels)) | dict(kept.damaged("results/logs"))
-    labels.save()
+    found = foreign() | dict(kept.damaged("results/logs"))
     for line in kept.summary(found):
         logger.warning(line)
     return found
