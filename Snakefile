@@ -82,4 +82,4 @@ rule all:
         rules.verdict.output,
     localrule: True
     message:
-        "The paper's tables and figures."
+        "Tables, figures, checks, and what the configuration asks of devices."

@@ -130,16 +130,30 @@ def test_the_pairs_of_devices_and_their_tips_count_for_the_memory_of_the_samples
     assert tips - 350 == pytest.approx(2 * (of_c - 350), rel=0.02)
 
 
+def test_the_patch_of_a_device_with_an_uncertainty_is_also_drawn_with_the_points_of_the_variants():
+    plain = STICKING.replace("PAIR", "b").replace("100000", "100").replace("[1.5, 30]", "[40, 40]")
+    stated = plain.replace("humidities: [0.5]", "humidities: [0.5], uncertainty: {gap_um: 1}")
+    finer = "\nstudies: {variants: {spacing_nm: [5]}}"
+    assert memory.of_job(changed(plain)) == pytest.approx(memory.of_field(41, 41, 10), abs=1)
+    assert memory.of_job(changed(plain + finer)) == memory.of_job(changed(plain))
+    assert memory.of_job(changed(stated + finer)) == pytest.approx(memory.of_field(41, 41, 5), abs=1)
+
+
+def test_a_budget_holds_all_contacts_that_it_compares():
+    config = changed(STICKING.replace("PAIR", "c") + "design: {beams: 100000}")
+    one = memory.of_samples(config) - memory.of_samples(changed(STICKING.replace("PAIR", "c") + "design: {beams: 200}"))
+    assert memory.of_budget(config, 7) - memory.of_samples(config) == pytest.approx(7 * one, rel=0.01)
+    assert memory.of_budget(changed("{}"), 7) == memory.of_samples(changed("{}"))
+    twice = memory.of_contact(config, contacts=2) - memory.of_contact(config)
+    assert twice == pytest.approx(memory.of_contact(config) - memory.of_field(2.5, 31, 5), rel=0.02)
+
+
 def test_a_job_that_draws_all_samples_holds_field_and_curves():
     plain = changed(STICKING.replace("PAIR", "c"))
     few = changed(STICKING.replace("PAIR", "c").replace("100000", "100"))
     stored = memory.of_contact(plain) - memory.of_field(2.5, 31, 5)
     assert memory.of_contact(few) == memory.of_job(few) == memory.USUAL
     assert stored == pytest.approx(2 * (memory.of_samples(plain) - 350), rel=0.02)
-
-
-#: Points along a side, number of scans and peak memory [MB] of estimates measured one by one.
-MEASURED = [(512, 1, 399), (1024, 1, 640), (1024, 3, 677), (2048, 1, 726)]
 
 
 def of_estimate(points, pixel, files, corner=12):
@@ -183,7 +197,8 @@ def test_the_transforms_are_those_of_the_evaluation():
 
 
 #: Rules of jobs of devices that run on a cluster, and the name of the memory that they reserve.
-RESERVED = {"device_contact": "CONTACT", "cracks": "SAMPLES", "chart": "SAMPLES", "budget": "SAMPLES"}
+RESERVED = {"device_contact": "CONTACT", "cracks": "SAMPLES", "chart": "SAMPLES"}
+RESERVED |= {"budget": "lambda w, input: memory.of_budget(VIEW, len(input))"}
 
 
 @pytest.mark.parametrize(("rule", "reserved"), RESERVED.items())

@@ -222,3 +222,12 @@ def test_a_budget_comes_back_from_its_file(tmp_path):
     assert_allclose([found.centre, found.scatter], [2, 0.5], rtol=1e-12)
     assert_allclose([found.effect.sel(choice="dry"), found.effect_error.sel(choice="dry")], [0.04, 0.01])
     assert budget.response_of(found) == (S_SHAPE, 0)
+
+
+def test_an_error_of_a_changed_contact_names_the_input():
+    def respond(_):
+        raise ValueError("a sample has no force law")
+
+    with pytest.raises(ValueError, match="no force law") as refused:
+        budget.slopes([Input("Young's modulus", "solids", (BASE, BASE), 0.1)], respond)
+    assert refused.value.__notes__ == ["This is the contact with less or more of the input Young's modulus."]

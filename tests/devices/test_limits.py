@@ -42,7 +42,7 @@ def test_every_limit_is_tested():
     functions = {
         value for name, value in vars(limits).items() if callable(value) and value.__module__ == limits.__name__
     }
-    assert functions == {case[0] for case in CASES} | {limits.given, limits.of_cantilever, limits.least_gap}
+    assert functions == {case[0] for case in CASES} | {limits.given, limits.of_beam, limits.least_gap}
 
 
 #: Ratio, as a function of the limit, of a quantity that scales with one argument; its warning appears just beyond it.
@@ -65,11 +65,11 @@ def test_a_warning_appears_at_its_limit(limit, at):
 
 def test_the_paper_s_beam_and_its_humidities_are_within_the_limits():
     for crack, film in ((952 * UM, 1.3 * NM), (387 * UM, 12.5 * NM)):
-        assert limits.of_cantilever(PAPER.gap, PAPER.width, PAPER.thickness, crack, film, 3.4 * NM) == []
+        assert limits.of_beam(PAPER.gap, PAPER.width, PAPER.thickness, crack, film, 3.4 * NM) == []
 
 
 def test_a_beam_beyond_all_limits_has_all_warnings():
-    assert len(limits.of_cantilever(20 * UM, 100 * UM, 10 * UM, 100 * UM, 2e-6, 3.4 * NM)) == 4
+    assert len(limits.of_beam(20 * UM, 100 * UM, 10 * UM, 100 * UM, 2e-6, 3.4 * NM)) == 4
 
 
 def test_the_tips_of_c1_have_a_warning_in_dry_air_and_none_in_wet_air():

@@ -112,6 +112,12 @@ def test_the_contact_of_a_choice_has_the_samples_of_the_slopes(plan):
     assert settings_of(plan).sources["Etched"] == choices.Source("moments", "fitted", "cut")
 
 
+def test_the_contact_of_a_choice_has_no_more_samples_than_that_of_the_pair_with_which_it_is_compared(files):
+    few = Plan(load(small.PLAN.config, {"contact": {"samples": 15}}, etched(*files)))
+    assert few.config["studies"]["slopes"]["samples"] > 15
+    assert settings_of(few).contact.samples == 15
+
+
 # What the estimate keeps for the sheet and for the errors
 
 

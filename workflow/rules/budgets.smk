@@ -38,6 +38,8 @@ use rule device_slope_contact as tip_slope_contact with:
         ),
     log:
         "results/logs/devices/contact/tips/slopes/{pair}_{length}x{width}_{surface}_{quantity}.log",
+    resources:
+        mem_mb=memory.of_contact(VIEW, contacts=2),
     params:
         settings=lambda w: jobs.tip_contact(plan, w.pair, w.length, w.width),
         code=code("slope_contact.py"),
@@ -123,7 +125,7 @@ rule budget:
         "results/logs/devices/budget/{case}.log",
     resources:
         runtime=120,
-        mem_mb=SAMPLES,
+        mem_mb=lambda w, input: memory.of_budget(VIEW, len(input)),
     params:
         settings=lambda w: jobs.budget(plan, w.case),
         code=code("budget.py"),

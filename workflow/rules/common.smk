@@ -87,7 +87,8 @@ if not scanned:  # finding out takes the solver of densities
 designs = Designs(config)
 paths = Paths(plan)
 MEMORY = memory.of_job(config)  # of the jobs that draw surfaces [MB]
-SAMPLES = memory.of_samples(measured.view(config, preliminary))  # of the jobs that hold the contact of all samples [MB]
+VIEW = measured.view(config, preliminary)  # configuration with preliminary numbers of measured surfaces
+SAMPLES = memory.of_samples(VIEW)  # of the jobs that hold the contact of all samples [MB]
 STYLE = str(BASE / "src" / "stiction" / "report" / "stiction.mplstyle")
 # Categories of the report.
 ON_SURFACES, ON_FORCES, ON_BEAMS = "Surfaces (Sec. II)", "Contact forces (Sec. III)", "Beams (Secs. IV and V)"

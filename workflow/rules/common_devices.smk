@@ -1,6 +1,6 @@
 """Input functions of the rules for devices."""
 
-CONTACT = memory.of_contact(measured.view(config, preliminary))  # of the jobs that hold all samples they draw [MB]
+CONTACT = memory.of_contact(VIEW)  # of the jobs that hold all samples they draw [MB]
 CHARTS = [f"results/devices/chart/{case}.nc" for name in designs.charted for case in designs.chart_cases(name)]
 
 

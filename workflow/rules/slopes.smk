@@ -1,4 +1,4 @@
-"""Effect of the measured quantities of a surface on a pair, with common random numbers; only on demand."""
+"""Effect of the measured quantities of a surface on a pair, with common random numbers; for scans and budgets."""
 
 
 rule slope_contact:

@@ -1,4 +1,4 @@
-"""Uncertainty of all devices."""
+"""Uncertainty of a device."""
 
 from stiction.designs.figures_budget import budget
 from stiction.report.style import save

@@ -173,11 +173,16 @@ def slope_contact(plan: Plan, pair: str) -> dict:
     return _surface_pair(plan, pair) | {"contact": _search(plan, samples=plan.config["studies"]["slopes"]["samples"])}
 
 
+def _samples_of_slopes(plan):
+    """Number of samples of a contact that is compared with the first samples of the contact itself."""
+    return min(plan.config["studies"]["slopes"]["samples"], plan.config["contact"]["samples"])
+
+
 def choice_contact(plan: Plan, pair: str) -> dict:
-    """As `slope_contact`, with the sources of the measured surfaces."""
+    """As `contact`, with the number of samples of the slopes, at most its own, and the sources of measured surfaces."""
     entries = {name: plan.config["surfaces"][name] for name in plan.scanned_sides(pair)}
     sources = {name: chosen(entry, ("heights", "psd", "beyond")) for name, entry in entries.items()}
-    return slope_contact(plan, pair) | {"sources": sources}
+    return _surface_pair(plan, pair) | {"contact": _search(plan, samples=_samples_of_slopes(plan)), "sources": sources}
 
 
 def sensitivity(plan: Plan, pair: str) -> dict:
@@ -339,18 +344,13 @@ def stoppers(plan: Plan, name: str) -> dict:
     return found | {"water": plan.water(section["pair"])} | chosen(plan.config["design"], ["worst_humidities"])
 
 
-def _samples_of_slopes(plan):
-    """Number of samples of contacts with a changed input, at most those of the contact itself."""
-    return min(plan.config["studies"]["slopes"]["samples"], plan.config["contact"]["samples"])
-
-
 def device_slope_contact(plan: Plan, pair: str, length: int, width: int) -> dict:
     """As `slope_contact`, on a patch of another size [nm]."""
     return _on_patch(plan, pair, length, width, plan.config["studies"]["slopes"]["samples"])
 
 
 def solid_contact(plan: Plan, pair: str, length: int, width: int, solid_property: str, side: str) -> dict:
-    """As `device_slope_contact`, with less or more of a property of the beam's material, in both bodies of it."""
+    """As `contact` on a patch [nm], with less or more of a property of the beam's material, in both bodies of it."""
     return _with_property(_on_patch(plan, pair, length, width, _samples_of_slopes(plan)), solid_property, side)
 
 

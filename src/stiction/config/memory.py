@@ -1,7 +1,7 @@
 """Memory of jobs: that draw surfaces, by their largest field; that hold the contact of all samples, by their number."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from stiction.config.units import NM_PER_UM, from_si
 from stiction.models import FIELD, SIDES
@@ -63,29 +63,41 @@ def patch_of(device: dict, sampling: dict) -> tuple[float, float]:
     return device.get("strip_um", sampling["strip_length_um"]), device["width_um"]
 
 
+def spacings_of(device: dict, spacing_nm: float, others_nm: Sequence[float]) -> tuple[float, ...]:
+    """Distances of points at which the patch of a device is drawn [nm]; with an uncertainty, also those of variants."""
+    return (spacing_nm, *others_nm) if "uncertainty" in device else (spacing_nm,)
+
+
 def of_job(config: dict) -> int:
     """Memory to reserve for any job that draws surfaces of a configuration [MB]."""
     return max(USUAL, round(_of_largest_field(config)))
 
 
-def of_contact(config: dict) -> int:
-    """Memory to reserve for any job that draws all samples of a device and holds their contact [MB]."""
+def of_contact(config: dict, contacts: int = 1) -> int:
+    """Memory to reserve for any job that draws all samples of a device and holds one or more contacts of them [MB]."""
     pairs = [device["pair"] for device in config.get("devices", {}).values()]
     samples = max(config["contact"]["samples"], config["design"]["beams"])
     # The curves of the samples are collected before they become one array.
-    return max(USUAL, round(_of_largest_field(config) + 2 * samples * _stored(config, pairs)))
+    return max(USUAL, round(_of_largest_field(config) + 2 * contacts * samples * _stored(config, pairs)))
+
+
+def of_budget(config: dict, contacts: int) -> int:
+    """Memory to reserve for the budget of a device, which compares this number of contacts [MB]."""
+    pairs = [device["pair"] for device in config.get("devices", {}).values()]
+    return of_samples(config) + round(contacts * config["design"]["beams"] * _stored(config, pairs))
 
 
 def _of_largest_field(config):
     """Memory of a job that draws the largest of all fields [MB]."""
     sampling, patch = config["sampling"], config["identification"]["patch_um"]
-    strip = sampling["strip_length_um"] + sampling["margin_um"], config["beam"]["width_um"] + sampling["margin_um"]
-    spacings = sampling["spacing_nm"], *config["studies"]["variants"]["spacing_nm"]
-    sides = (FIELD_UM, FIELD_UM), (patch, patch)
-    needed = [of_field(*side, spacings[0]) for side in sides] + [of_field(*strip, spacing) for spacing in spacings]
-    patches = (patch_of(device, sampling) for device in config.get("devices", {}).values())
-    margin = sampling["margin_um"]
-    return max(needed + [of_field(length + margin, width + margin, spacings[0]) for length, width in patches])
+    spacing, others, margin = sampling["spacing_nm"], config["studies"]["variants"]["spacing_nm"], sampling["margin_um"]
+    drawn = [((FIELD_UM, FIELD_UM), spacing), ((patch, patch), spacing)]
+    strip = sampling["strip_length_um"] + margin, config["beam"]["width_um"] + margin
+    drawn += [(strip, at) for at in (spacing, *others)]
+    for device in config.get("devices", {}).values():
+        length, width = patch_of(device, sampling)
+        drawn += [((length + margin, width + margin), at) for at in spacings_of(device, spacing, others)]
+    return max(of_field(*side, at) for side, at in drawn)
 
 
 def of_estimate(found: Mapping, files: int) -> int:

@@ -715,23 +715,23 @@ def _moments(source):
 @relation("studies.variants.spacing_nm.*", "sampling.strip_length_um", "sampling.margin_um", "beam.width_um")
 def strips_fit_into_memory(spacing, length, margin, width):
     """The field from which a strip is cut fits into the memory of a job."""
-    return _too_large(length + margin, width + margin, spacing)
+    return field_too_large(length + margin, width + margin, spacing)
 
 
 @relation("sampling.spacing_nm")
 def fields_fit_into_memory(spacing):
     """The fields on which spectra are estimated fit into the memory of a job."""
-    return _too_large(memory.FIELD_UM, memory.FIELD_UM, spacing)
+    return field_too_large(memory.FIELD_UM, memory.FIELD_UM, spacing)
 
 
 @relation("identification.patch_um", "sampling.spacing_nm")
 def patches_fit_into_memory(side, spacing):
     """A patch fits into the memory of a job."""
-    return _too_large(side, side, spacing)
+    return field_too_large(side, side, spacing)
 
 
-def _too_large(length, width, spacing):
-    """Refusal of a field whose memory exceeds that of the largest job."""
+def field_too_large(length: float, width: float, spacing: float) -> str | None:
+    """Refusal of a field [µm, nm] whose memory exceeds that of the largest job; ``None`` if it does not."""
     needed = memory.of_field(length, width, spacing)
     if needed <= memory.LARGEST:
         return None

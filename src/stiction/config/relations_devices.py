@@ -8,6 +8,7 @@ from stiction.config.designs import KEYS, OPTIONAL, hamaker_constant
 from stiction.config.relations import (
     cases_have_unique_names,
     estimated_strip,
+    field_too_large,
     length_can_exceed_the_correlation,
     length_exceeds_the_correlation,
     name_is_defined,
@@ -20,7 +21,7 @@ from stiction.config.relations import (
     wetting,
 )
 from stiction.config.relations import validate as validate  # of all relations, those of this module among them
-from stiction.config.units import MB_PER_GB, NM_PER_UM
+from stiction.config.units import NM_PER_UM
 from stiction.devices.budget import OF_SOLIDS
 from stiction.models import SIDES
 
@@ -177,17 +178,16 @@ def solids_resist_the_adhesion_of_a_device(pair, name, devices, pairs, surfaces,
     return solids_resist_the_adhesion(pair, met, surfaces, solid, medium, temperature, humidities[0], materials)
 
 
-@relation("devices.*.kind", "devices.*.@", "devices", "sampling")
-def device_fits_into_memory(kind, name, devices, sampling):
-    """The field from which a patch of surface is cut fits into the memory of a job."""
-    if not KEYS[kind] <= set(devices[name]):
+@relation("devices.*.width_um", "devices.*.@", "devices", "sampling", "studies.variants.spacing_nm")
+@relation("devices.*.contact_um", "devices.*.@", "devices", "sampling", "studies.variants.spacing_nm")
+def device_fits_into_memory(_, name, devices, sampling, of_variants):
+    """The fields from which a patch of surface is cut fit into the memory of a job."""
+    device, margin = devices[name], sampling["margin_um"]
+    if not KEYS[device["kind"]] <= set(device):
         return None
-    length, width = memory.patch_of(devices[name], sampling)
-    needed = memory.of_field(length + sampling["margin_um"], width + sampling["margin_um"], sampling["spacing_nm"])
-    if needed <= memory.LARGEST:
-        return None
-    most, needed = memory.LARGEST / MB_PER_GB, needed / MB_PER_GB
-    return f"must have a patch of surface within {most:g} GB of memory, not {needed:.3g} GB"
+    length, width = memory.patch_of(device, sampling)
+    spacings = memory.spacings_of(device, sampling["spacing_nm"], of_variants)
+    return next(filter(None, (field_too_large(length + margin, width + margin, at) for at in spacings)), None)
 
 
 @relation("devices.*.uncertainty.thickness_um", "devices.*.thickness_um")

@@ -1,7 +1,8 @@
 """Units of the configuration: settings as typed, frozen objects in SI units, and single values to SI and back.
 
-Keys of the configuration carry their units (``gap_um``); fields of the objects do not (``gap``). No other module before
-`stiction.report.format`, which has the units of tables and figures, contains a factor between units.
+Keys of the configuration carry their units (``gap_um``); fields of the objects do not (``gap``). No later module but
+`stiction.report.format`, which has the units of tables and figures, contains a factor between units; the physics, in SI
+units, states lengths in µm in its messages.
 """
 
 import math

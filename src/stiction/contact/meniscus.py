@@ -1,4 +1,4 @@
-r"""Water condensed between perfectly wetting surfaces (Sec. III-A1, capillary forces).
+r"""Water condensed between two surfaces (Sec. III-A1, capillary forces); those of the paper wet perfectly.
 
 ASSUME: the surface energy and the molar volume of water vary with temperature as measured, and are those of the paper
 at its 300 K: a published correlation gives only their ratio to 300 K. The paper rounds both (72 mN/m, 18 cm³/mol; the

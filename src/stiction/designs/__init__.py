@@ -1,1 +1,1 @@
-"""Stages of devices: cracks of long beams, safe lengths and charts; they follow the stages of the main line."""
+"""Stages of devices: cracks of long beams, safe lengths, charts, stoppers and budgets; tables, figures and pages."""

@@ -19,9 +19,11 @@ from stiction.beam.montecarlo import Experiment, columns, simulate
 from stiction.beam.release import EndState
 from stiction.contact import forcelaw
 from stiction.designs.inputs import FORCE, Input, Known, Settings, State, countable, uncertain
+from stiction.designs.patches import noted
 from stiction.designs.releases import DesignedBeam, addresses, long_beam
 from stiction.devices import arcs, bridges
 from stiction.devices.budget import Budget, choice_effect, log_slope
+from stiction.devices.stoppers import pull_off_force
 from stiction.devices.tail import fit_tail
 from stiction.progress import progress
 from stiction.stages import curves
@@ -73,7 +75,8 @@ def compute(
     changes = {}
     for name, changed in choices.items():
         base = replace(state, contact=first(contact, changed.sizes["sample"]))
-        changes[name] = effect(base, replace(state, contact=changed), respond)
+        with noted(f"This is the contact under the choice {name}."):
+            changes[name] = effect(base, replace(state, contact=changed), respond)
     return layout(inputs, found, covariance, of_devices(respond([state]), settings.device), changes, settings)
 
 
@@ -97,7 +100,9 @@ def responder(state: State, settings: Settings) -> Respond:
 
 def of_stoppers(states: Sequence[State]) -> Responses:
     """Pull-off forces of all sampled patches at several states."""
-    forces = [curves.pull_offs(state.contact, state.humidity, state.water) * state.area for state in states]
+    forces = [
+        pull_off_force(curves.pull_offs(state.contact, state.humidity, state.water), state.area) for state in states
+    ]
     return Responses(np.array(forces), np.mean)
 
 
@@ -164,7 +169,10 @@ def of_devices(found: Responses, device: DesignedBeam | None) -> Responses:
 
 def slopes(inputs: Sequence[Input], respond: Respond) -> np.ndarray:
     """Slopes of the logarithm of the response and their standard errors, (inputs, 2)."""
-    found = [_slope(respond(entry.states), entry.step) for entry in progress(inputs, "inputs")]
+    found = []
+    for entry in progress(inputs, "inputs"):
+        with noted(f"This is the contact with less or more of the input {entry.name}."):
+            found.append(_slope(respond(entry.states), entry.step))
     return np.array(found).reshape(len(inputs), 2)
 
 

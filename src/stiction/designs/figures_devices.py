@@ -6,7 +6,6 @@ from itertools import product
 
 import numpy as np
 import xarray as xr
-from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -21,6 +20,7 @@ from stiction.report.style import (
     humidity_axis,
     legend_below,
     letter_lines,
+    shades,
     styled,
 )
 
@@ -34,6 +34,8 @@ _BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x"}
 _LINE = 130
 #: Height of a line of panels, and of an entry of the legends below them [in].
 _PANEL, _ENTRY = 3.3, 0.12
+#: Lightest colour of a curve.
+_LIGHTEST = 0.25
 #: Space above the longest curve of a chart, in units of the range of its lengths.
 _ROOM = 0.05
 
@@ -41,11 +43,6 @@ _ROOM = 0.05
 def _width(columns):
     """Width of a figure with this number of columns [in]."""
     return min(DOUBLE, 1.5 * SINGLE * columns)
-
-
-def _shades(count):
-    """Colours that darken from the first to the last, also when printed in grey."""
-    return colormaps["viridis_r"](np.linspace(0.25, 1, count))
 
 
 def below(figure: Figure, sentences: Sequence[str]) -> None:
@@ -73,7 +70,7 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
     for panel, name in zip(columns[:, 0], names, strict=True):
         cases = {humidity: dataset for (device, humidity), dataset in found.items() if device == name}
         named = []
-        for (humidity, dataset), shade in zip(cases.items(), _shades(len(cases)), strict=True):
+        for (humidity, dataset), shade in zip(cases.items(), shades(len(cases), _LIGHTEST), strict=True):
             _shares(panel, dataset, shade)
             label = f"RH {humidity:g}{_marks(numbers, name, humidity)}"
             named.append(Line2D([], [], color=shade, linewidth=3, label=label))
@@ -173,7 +170,7 @@ def _thicknesses(panel, whole, shape, marks):
     """
     share, named = whole.share.values[len(whole.share) // 2], []
     line, text = _SHAPES[shape]
-    for thickness, shade, mark in zip(whole.thickness.values, _shades(len(marks)), marks, strict=True):
+    for thickness, shade, mark in zip(whole.thickness.values, shades(len(marks), _LIGHTEST), marks, strict=True):
         one = whole.sel(thickness=thickness, share=share)
         between, lengths = one.by_elements.values == 0, TO_UM * one.safe_length
         panel.plot(one.relative_humidity, lengths, line, color=shade)

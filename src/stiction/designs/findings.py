@@ -112,7 +112,7 @@ def _of_length(length, shape, found, of, plastic):
     """Warnings about a device of a length [m] in a shape; film, rms, wedge and its limit from a dataset."""
     device = of.device
     sizes = device.gap, device.width, device.thickness, length / device.cracks
-    return limits.of_cantilever(*sizes, float(found.film), float(found.rms)) + limits.given(
+    return limits.of_beam(*sizes, float(found.film), float(found.rms)) + limits.given(
         limits.stretched_bridge(device.gap, device.thickness) if device.kind == "bridge" else None,
         limits.short_wedge(of.tip, float(found.wedge), float(found.flooded_length)) if shape == EITHER else None,
         *_of_contact(plastic, of.materials),

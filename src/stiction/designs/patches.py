@@ -1,16 +1,21 @@
-"""The patch of surface that an error is about."""
+"""What an error of the force curves of samples is about."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 
 from stiction.config.units import from_si
 
 
 @contextmanager
-def on_patch(length: float, width: float) -> Iterator[None]:
-    """Add the sides of the patch [m] to an error of the force curves of its samples."""
+def noted(text: str) -> Iterator[None]:
+    """Add a sentence to an error."""
     try:
         yield
     except ValueError as error:
-        error.add_note(f"The patch of surface is {from_si(length, 'um'):g} x {from_si(width, 'um'):g} µm.")
+        error.add_note(text)
         raise
+
+
+def on_patch(length: float, width: float) -> AbstractContextManager[None]:
+    """Add the sides of the patch [m] to an error of the force curves of its samples."""
+    return noted(f"The patch of surface is {from_si(length, 'um'):g} x {from_si(width, 'um'):g} µm.")

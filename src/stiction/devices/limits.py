@@ -156,10 +156,8 @@ def given(*warnings: str | None) -> list[str]:
     return [warning for warning in warnings if warning is not None]
 
 
-def of_cantilever(
-    gap: float, width: float, thickness: float, crack_length: float, film: float, rms: float
-) -> list[str]:
-    """All warnings about the dimensions of a cantilever with this crack length, film height and rms roughness [m]."""
+def of_beam(gap: float, width: float, thickness: float, crack_length: float, film: float, rms: float) -> list[str]:
+    """All warnings about the dimensions of a beam with this crack length, film height and rms roughness [m]."""
     return given(
         filled_gap(gap, film, rms),
         large_rotation(gap, crack_length),

@@ -67,7 +67,7 @@ def dashes(k: int) -> str | tuple:
 def shades(count: int, lightest: float = 0.15) -> np.ndarray:
     """Colours that darken from the first to the last, also when printed in grey; (count, 4).
 
-    ``lightest`` is the darkness of the first one, between 0 and 1.
+    The first one is at the part ``lightest`` of the way from the lightest to the darkest.
     """
     return colormaps["viridis_r"](np.linspace(lightest, 1, count))
 

@@ -10,7 +10,7 @@ import numpy as np
 from scipy import fft
 
 from stiction.surface.field import RoughSurface, StripGrid, radial_periodogram
-from stiction.surface.spectrum import CutoffSelfAffine, Spectrum, TabulatedSpectrum, radial_spectrum
+from stiction.surface.spectrum import Spectrum, TabulatedSpectrum, radial_spectrum
 from stiction.surface.translation import TranslationMap
 
 
@@ -31,7 +31,7 @@ def target_rings(target: Spectrum, grid: StripGrid) -> tuple[np.ndarray, np.ndar
 
 
 def iterate(
-    target: CutoffSelfAffine, translation: TranslationMap, grid: StripGrid, fields: int, rng: np.random.Generator
+    target: Spectrum, translation: TranslationMap, grid: StripGrid, fields: int, rng: np.random.Generator
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     r"""Iterations of Fig. 4, as an infinite generator.
 
@@ -39,7 +39,7 @@ def iterate(
 
     Parameters
     ----------
-    target : CutoffSelfAffine
+    target : Spectrum
         Spectrum s_Z of the heights; its scale has no effect.
     translation : TranslationMap
         Eq. (5).
