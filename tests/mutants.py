@@ -822,7 +822,7 @@ MUTANTS = {
         ("underlying, (side, side), reach)", "underlying, (side, side / 2), reach)"),
     ],
     "designs.budget": [
-        ("state.humidity, state.water) * state.area", "state.humidity, state.water)"),
+        ("state.humidity, state.water), state.area", "state.humidity, state.water), 1.0"),
         ('ended["state"] == EndState.S_SHAPE', 'ended["state"] == EndState.ARC'),
         ("np.logical_and.reduce(", "np.logical_or.reduce("),
         ("laws[rng.integers(len(laws), size=number)]", "laws[:number]"),
