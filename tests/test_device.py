@@ -15,6 +15,8 @@ from stiction.models import OF_MOMENTS
 from stiction.stages import contact
 from stiction.studies import slope_contact
 from stiction.study import surface_datasets
+from stiction.variants import contact as variant_contact
+from stiction.variants import summits
 
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 10, "width_um": 20, "humidities": [0.88]}
 C1 |= {"chart": {"thicknesses_um": [2.6], "humidities": [0.8, 0.9]}}
@@ -171,6 +173,24 @@ def test_the_budget_of_the_tips_is_that_of_their_contacts(uncertain):
     xr.testing.assert_identical(found, expected)
     assert found.slope.sel(input="gap") == pytest.approx(0.5, rel=1e-9)
     assert found.centre.attrs["response"] == "arc"
+
+
+@pytest.mark.parametrize(("strip", "length"), [({}, 1.5e-6), ({"strip_um": 3}, 3e-6)])
+def test_contacts_of_a_budget_are_on_the_strips_of_the_device_and_choices_change_them(
+    monkeypatch, uncertain, strip, length
+):
+    every = {"van_der_waals": [], "psd": [], "every": [2], "spacing_nm": [], "poisson_ratio": []}
+    config = stiction.load(uncertain, {"devices": {"C1": strip}, "studies": {"variants": every}})
+    asked = {"slopes": [], "choices": []}
+    monkeypatch.setattr(contact, "compute", lambda *_: None)
+    monkeypatch.setattr(variant_contact, "compute", lambda found, _: found)
+    monkeypatch.setattr(slope_contact, "compute", lambda *given: asked["slopes"].append(given[-1]) or (None, None))
+    monkeypatch.setattr(summits, "compute", lambda *given: asked["choices"].append(given[2:4]))
+    stiction.Device.of(config, "C1")._changed  # noqa: B018
+    assert [settings.sampling.strip_length for settings in asked["slopes"]] == pytest.approx([length] * 3)
+    ((base, changed),) = asked["choices"]
+    assert base.sampling.strip_length == changed.sampling.strip_length == pytest.approx(length)
+    assert (base.contact.every, changed.contact.every) == (1, 2)
 
 
 def test_a_device_that_does_not_exist_is_refused_with_those_that_do():

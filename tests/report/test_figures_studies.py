@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
 
-from stiction.analysis.convergence import sampling_distance
+from stiction.analysis.convergence import KOLMOGOROV_MEAN, sampling_distance
 from stiction.analysis.mesh import Arrest
 from stiction.report import figures_studies, tables_studies
 from stiction.report.style import save
@@ -136,6 +136,32 @@ def test_figure_13_shows_slopes_and_published_values():
     assert [list(np.atleast_1d(y)) for y in heights(panel)] == [[-6.0, -6.0], [-6.5]]
 
 
+def bars(panel):
+    """Half lengths of the error bars of a panel."""
+    (container,) = panel.containers[:1]
+    return [np.ptp(segment[:, 1]) / 2 for segment in container[2][0].get_segments()]
+
+
+def test_error_bars_of_figure_13_are_standard_errors():
+    assert_allclose(bars(figures_studies.sensitivities({"rms": sensitivity(-6.0)}, {}).axes[0]), 0.1)
+
+
+def test_figure_16_shows_the_onset_of_the_hardest_pair():
+    hard = plasticity(0.0).assign(hardness=40e9)
+    panel, *_ = figures_studies.summit_stresses({"a": plasticity(0.0), "b": hard}).axes
+    assert panel.get_ylim()[1] == pytest.approx(1.15 * 0.6 * 40)
+
+
+def test_figure_17_shows_the_law_of_a_part_of_all_samples_and_the_tolerance():
+    tolerance = 1e-6
+    figure = figures_studies.sample_convergence(sizes(), {("a", 0.5): [0.1, 0.01, 1e-3, 1e-4]}, tolerance)
+    _, errors, distances = figure.axes
+    assert errors.get_ylim()[0] <= tolerance / 2
+    law, own = (line.get_xydata().T for line in distances.get_lines() if line.get_linestyle() in ("--", ":"))
+    assert_allclose(law[1], KOLMOGOROV_MEAN * np.sqrt(1 / law[0] - 1 / 20))
+    assert_allclose(own[1], sampling_distance(20))
+
+
 def test_figure_16_shows_the_onset_of_yield_and_the_share_beyond():
     for found, label in ((plasticity(0.0), "$A_P$ = 0"), (plasticity(0.5), "$A_P/A$ = 50.0 ± 5.0 %")):
         panel = figures_studies.summit_stresses({"c": found}).axes[0]
@@ -185,6 +211,12 @@ def test_base_and_experiment_lie_above_the_other_variants():
     panel = figures_studies.variants(VARIANTS, PUBLISHED).axes[2]
     above = {c.get_label(): c[0].get_zorder() for c in panel.containers}
     assert sorted(above, key=above.get) == ["vdW: none", "base", "measured"]
+
+
+def test_measured_crack_lengths_are_relative_to_the_published_ones():
+    panel = figures_studies.variants(VARIANTS, PUBLISHED).axes[2]
+    (measured,) = (container for container in panel.containers if container.get_label() == "measured")
+    assert_allclose(list(measured[0].get_ydata()), 100 * (np.array([820, 590, 410]) / np.array([800, 600, 400]) - 1))
 
 
 def test_variants_are_compared_with_base_published_and_measured_values():

@@ -1,16 +1,19 @@
 """The histogram of heights is their density, and its errors are the scatter between scans of one surface."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from published import SURFACES
+from scipy.special import ndtr
 from test_model_scans import MODEL, streams
 
 from stiction.scans.histogram import EDGES, histogram, histogram_errors
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.quantiles import SCORES, quantiles
 from stiction.scans.scan import Frame
+from stiction.surface.translation import LARGEST_SCORE
 
 CENTRES = (EDGES[1:] + EDGES[:-1]) / 2
 
@@ -59,6 +62,16 @@ def test_errors_are_the_scatter_between_scans_with_the_true_rms(scans):
     assert np.all((ratio > 0.6) & (ratio < 1.4))
     independent = np.sqrt(np.mean(counts, axis=0)[often] / np.diff(EDGES)[often] / scans[0].size)
     assert np.median(error[often] / independent) > 2, "neighbouring pixels are not independent"
+
+
+def test_a_scan_of_a_single_height_has_the_errors_of_one_draw():
+    # Its indicators are the same everywhere: the error of a share p is √(p (1 - p)).
+    one = SimpleNamespace(translation=MODEL.translation, overlaps=np.ones_like(MODEL.overlaps))
+    score = np.interp(EDGES, MODEL.translation.table, np.linspace(-LARGEST_SCORE, LARGEST_SCORE, 4097))
+    share = np.diff(ndtr(score))
+    inside = share > 1e-3
+    errors = histogram_errors(one) * np.diff(EDGES)
+    np.testing.assert_allclose(errors[inside], np.sqrt(share * (1 - share))[inside], rtol=0.02)
 
 
 def test_errors_fall_with_the_side_of_a_scan():
