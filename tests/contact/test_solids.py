@@ -10,7 +10,6 @@ from stiction.contact.asperity import reduced_modulus
 from stiction.contact.solids import (
     Solid,
     composite_modulus,
-    contact_angles,
     hamaker_constant,
     hamaker_through,
     softer_hardness,
@@ -45,7 +44,6 @@ def test_on_a_rigid_body_the_other_deforms_twice_as_much():
 def test_polysilicon_on_polysilicon_has_the_constants_of_the_paper(medium):
     assert hamaker_constant(POLYSILICON, POLYSILICON, medium) == HAMAKER_CONSTANT[medium]
     assert softer_hardness(POLYSILICON, POLYSILICON) == HARDNESS
-    assert contact_angles(POLYSILICON, POLYSILICON) == (0, 0)
 
 
 @given(st.floats(4e-20, 5e-19), st.floats(4e-20, 5e-19))
@@ -62,7 +60,6 @@ def test_the_mixture_is_between_its_parts_and_the_softer_body_yields():
     mixed = hamaker_constant(POLYSILICON, GOLD, "water")
     assert HAMAKER_CONSTANT["water"] < mixed < 25e-20
     assert softer_hardness(POLYSILICON, GOLD) == softer_hardness(GOLD, POLYSILICON) == 1e9
-    assert contact_angles(POLYSILICON, GOLD) == (0, GOLD.contact_angle)
 
 
 def test_a_constant_that_is_not_stated_is_reported():

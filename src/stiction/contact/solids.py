@@ -87,8 +87,3 @@ def hamaker_constant(first: Solid, second: Solid, medium: str) -> float:
             stated = ", ".join(solid.hamaker_constant)
             raise ValueError(f"the Hamaker constant of a solid through {medium} is not stated, only through {stated}")
     return float(np.sqrt(first.hamaker_constant[medium] * second.hamaker_constant[medium]))
-
-
-def contact_angles(first: Solid, second: Solid) -> tuple[float, float]:
-    """Contact angles of water on both bodies, for `stiction.contact.meniscus.meniscus_height` [rad]."""
-    return first.contact_angle, second.contact_angle

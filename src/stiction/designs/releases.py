@@ -97,9 +97,7 @@ def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
         raise
 
 
-def crack_lengths(
-    model: ChaosModel, beam: Beam, points: int, number: int, address: Callable, threads: int = 1
-) -> np.ndarray:
+def crack_lengths(model: ChaosModel, beam: Beam, points: int, number: int, address: Callable) -> np.ndarray:
     """Crack lengths of beams on force laws drawn from a chaos model, infinite for beams that are not S-shaped (n,)."""
-    found = released_beams(Experiment(beam, points, partial(draw_laws, model)), number, address, threads)
+    found = released_beams(Experiment(beam, points, partial(draw_laws, model)), number, address)
     return np.where(found["state"] == EndState.S_SHAPE, found["crack_length"], np.inf)
