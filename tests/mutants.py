@@ -1028,7 +1028,6 @@ MUTANTS = {
         ("* second.hamaker_constant[medium])", "* first.hamaker_constant[medium])"),
         ("-1 < self.poisson_ratio <= 0.5", "-1 <= self.poisson_ratio <= 0.6"),
         ("0 <= self.contact_angle <= np.pi", "0 <= self.contact_angle"),
-        ("return first.contact_angle, second", "return first.contact_angle, first"),
         ('"hardness": self.hardness} | constants', '"hardness": self.hardness}'),
     ],
     "contact.pair": [
