@@ -9,7 +9,7 @@ TOOK = re.compile(r"^took ([\d.]+) s, (\d+) MB$", re.MULTILINE)
 
 
 def rules():
-    """For every rule with a script: name, pattern of its logs, and the stated memory [MB] and minutes."""
+    """For every rule with a script: name, pattern of its logs, and the requested memory [MB] and minutes."""
     default = (ROOT / "profiles" / "default" / "config.yaml").read_text()
     files = (ROOT / "workflow" / "rules").glob("*.smk")
     for file in sorted(files, key=lambda file: (file.stem == "scans", file.name)):  # the paper's surfaces come first
@@ -17,15 +17,15 @@ def rules():
             r"^(?:use )?rule (?:\w+ as )?(\w+)(?: with)?:\n((?:[ \n].*\n|\n)+)", file.read_text(), re.MULTILINE
         ):
             if log := re.search(r'"results/logs/(.+)\.log"', body):
-                stated = [
+                requested = [
                     int((re.search(key, body) or re.search(key, default))[1])
                     for key in (r"mem_mb=(\d+)", r"runtime=(\d+)")
                 ]
-                yield name, re.compile(re.sub(r"{\w+}", "[^/]+", log[1])), *stated
+                yield name, re.compile(re.sub(r"{\w+}", "[^/]+", log[1])), *requested
 
 
 def costs(results):
-    """For every rule that ran: name, number of jobs, most and all seconds, most memory [MB], stated MB and minutes."""
+    """For every rule that ran: name, jobs, most and all seconds, most memory [MB], requested MB and minutes."""
     logs = {
         str(path.relative_to(results / "logs"))[:-4]: path.read_text() for path in (results / "logs").rglob("*.log")
     }
@@ -39,7 +39,7 @@ def costs(results):
 
 def table(results):
     """The table in Markdown."""
-    lines = ["| rule | jobs | longest [s] | all [s] | most memory [MB] | stated [MB] | stated [min] |"]
+    lines = ["| rule | jobs | longest [s] | all [s] | most memory [MB] | requested [MB] | requested [min] |"]
     lines += ["|---|---|---|---|---|---|---|"]
     for name, jobs, longest, seconds, megabytes, memory, minutes in costs(results):
         lines += [f"| {name} | {jobs} | {longest:.1f} | {seconds:.0f} | {megabytes:.0f} | {memory} | {minutes} |"]

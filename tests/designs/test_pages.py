@@ -99,7 +99,7 @@ def test_where_tips_hold_more_than_computed_the_length_in_saturated_air_is_the_a
     surest = 1e6 * float(found.flooded_length.sel(shape=sticking.EITHER))
     sentence = pages.safe_sentence(0.44, found)
     assert sentence.startswith(f"At a relative humidity of 0.44, devices of up to {surest:.0f} µm come free")
-    assert f"The computed {tip:.0f} µm, of which at most 1 in 1000 stick" in sentence
+    assert f"The computed {tip:.0f} µm, at which at most 1 in 1000 stick" in sentence
     assert "are an upper limit, because the strips of the tips are longer than the wedge" in sentence
     assert sentence.endswith(f"devices of up to {alone:.0f} µm come free, except for at most 1 in 1000.")
     assert surest < tip < alone

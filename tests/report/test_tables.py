@@ -163,7 +163,7 @@ def test_statistics_are_compared_with_the_published_ones_and_listed_with_the_mea
     measured = {"B1": {"rms_nm": 1.7}, "mine": {}}
     notes = {"B1": "", "mine": "the heights have other moments"}
     table = tables_surfaces.table_1({("B1", "NG"): character(), ("mine", "NG"): character()}, measured, known, notes)
-    assert table.markdown.splitlines()[0].endswith("(published value). mine: the heights have other moments.")
+    assert table.markdown.splitlines()[0].endswith("of the CSV file. mine: the heights have other moments.")
     first, other = (row for _, row in table.frame.iterrows())
     assert_allclose((first.summit_density_per_um2, first.mean_summit_radius_um), (65, 0.4), rtol=1e-3)
     assert_allclose(first.rms_nm, 1.7, rtol=0.01)

@@ -114,7 +114,7 @@ _FACTS = {
 }
 _OF_BEAMS = {
     "Safe length": (
-        "Largest length of which at most the stated share sticks, with a confidence of 95 %. The confidence is that of "
+        "Largest length at which at most the stated share sticks, with a confidence of 95 %. The confidence is that of "
         "the simulated beams, given the drawn surfaces. The error due to the number of drawn surfaces is next to the "
         "estimate (se, surfaces), the uncertainty due to the measurements further below."
     ),
@@ -230,7 +230,7 @@ def safe_sentence(humidity: float, found: xr.Dataset) -> str:
     if float(found.tip_strip) > float(found.wedge) and surest < shortest:
         return (
             f"{air}, devices of up to {surest:.0f} µm come free after they were pressed down: this is the length in "
-            f"saturated air, the shortest that water holds. The computed {shortest:.0f} µm, of which {but} stick (95 % "
+            f"saturated air, the shortest that water holds. The computed {shortest:.0f} µm, at which {but} stick (95 % "
             "confidence, given the drawn surfaces), are an upper limit, because the strips of the tips are longer than "
             "the wedge on which they act. If the tip cannot hold them, devices of up to "
             f"{float(lengths.sel(shape=S_SHAPE)):.0f} µm come free, except for {but}."

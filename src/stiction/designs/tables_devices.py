@@ -12,7 +12,7 @@ from stiction.report.format import UM, error_alone, number
 from stiction.report.tables import Table, with_list
 
 _SAFE_LENGTHS = (
-    "Safe length: the largest length of which, with a confidence of 95 % given the drawn surfaces, at most a share p "
+    "Safe length: the largest length at which, with a confidence of 95 % given the drawn surfaces, at most a share p "
     "of the devices sticks. A device is held by its beam (S-shape) or by its tip alone (arc). Estimate: length at "
     "which a share p sticks, with its standard errors due to the number of beams and to that of sampled surfaces. "
     "Every beam has its own tip, whose scatter is part of the first. Basis: sampled, by order statistics; fitted, by "
@@ -20,7 +20,7 @@ _SAFE_LENGTHS = (
     "water fills all gaps, the shortest that water holds."
 )
 _CHART = (
-    "Safe length of beams of the thicknesses and gaps of a chart over the relative humidity: the largest length of "
+    "Safe length of beams of the thicknesses and gaps of a chart over the relative humidity: the largest length at "
     "which, with a confidence of 95 % given the drawn surfaces, at most a share p sticks. From: finite elements, or a "
     "power law between them, with its largest error at beams to which it was not fitted. Saturated air: length that "
     "sticks where water fills all gaps. The warnings are about the shortest length of each thickness and gap."

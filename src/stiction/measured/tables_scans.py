@@ -46,7 +46,7 @@ def scans(
     )
     caption = (
         "Scans of the measured surfaces: moments of the levelled heights of each file, ± standard error of one scan of "
-        "its size. The moments of a surface are in Table I, without the bias of levelling."
+        "its size. The moments of the surface, without the bias of levelling, are in the title of its sheet."
     )
     flags = [f"{name}: {flag}" for name, found in limits.items() for flag in found]
     return Table(

@@ -48,8 +48,10 @@ def table_3(
     caption = (
         "Table III: crack length of the S-shaped beams, mean ± standard deviation over the beams; se: standard error of"
         " the mean, over beams and sampled pairs of surfaces; deviations from the published and from the measured "
-        "length. S/arc/free: end states of the beams; an arc is held by its tip alone, and how many beams end so "
-        "depends on the length of the strips, so that it is no prediction."
+        "length. Published bias: absolute deviation of the paper's model NG from the measured length, as the paper "
+        "states it. Γ: mean apparent adhesion energy of the S-shaped beams, Eq. (13); ē: mean energy of the samples; "
+        "cv(ē): their standard deviation over their mean. S/arc/free: shares of the end states of the beams; an arc is "
+        "held by its tip alone. The share of arcs depends on the length of the strips and is no prediction."
     )
     if by_scans:
         caption += " Scans: standard error of the mean due to the finite scans of measured surfaces."

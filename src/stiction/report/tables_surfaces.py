@@ -64,7 +64,10 @@ def table_1(
     titles = {"surface": "surface", "column": "model"} | _STATISTICS
     cells = [[row.surface, row.column, *(_cell_1(row, name) for name in _STATISTICS)] for _, row in frame.iterrows()]
     notes = (f" {surface}: {sentence}." for surface, sentence in substitutions.items() if sentence)
-    caption = "Table I: simulated value ± standard error (published value)." + "".join(notes)
+    caption = (
+        "Table I: simulated value ± standard error (value simulated in the paper). The measured values (AFM) are in "
+        "the columns _afm of the CSV file."
+    ) + "".join(notes)
     return Table(frame, caption, pd.DataFrame(cells, columns=list(titles.values())))
 
 
