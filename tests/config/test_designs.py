@@ -126,6 +126,13 @@ def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_tips_as_beams():
         assert tips == strips | {"contact": tips["contact"]}
 
 
+def test_the_contact_of_a_device_has_the_samples_of_a_pair_and_that_of_its_tips_one_for_each_beam():
+    samples, beams = PLAN.config["contact"]["samples"], PLAN.config["design"]["beams"]
+    assert samples != beams
+    assert jobs.device_contact(PLAN, *PATCH)["contact"]["samples"] == samples
+    assert jobs.tip_contact(PLAN, *TIP)["contact"]["samples"] == beams
+
+
 def test_contacts_of_a_budget_are_on_the_patch_of_the_device_with_the_samples_of_slopes():
     samples = PLAN.config["studies"]["slopes"]["samples"]
     for settings in (
