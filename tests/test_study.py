@@ -98,6 +98,7 @@ def test_beams_do_not_depend_on_threads_and_scatter_with_their_dimensions(study)
     assert np.all(study.beams(HUMIDITY, scatter=0.05)["crack_length"] != lengths)
 
 
+@pytest.mark.slow
 def test_a_spectrum_that_is_to_be_identified_is_identified_first():
     changes = {"surfaces": {"B2": {"psd": "identified"}}, "identification": {"patches": 2, "patch_um": 2}}
     plan = Plan(merged(CONFIG, changes | {"contact": {"samples": 5}}))

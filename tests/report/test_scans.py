@@ -73,7 +73,12 @@ def panel(figure, title):
     return found
 
 
-@pytest.mark.parametrize("name", SHEETS)
+#: Sheets with most text; the others are slow tests.
+FULL = {"long flags", "not square"}
+ROWS = [pytest.param(name, marks=[pytest.mark.slow] * (name not in FULL)) for name in SHEETS]
+
+
+@pytest.mark.parametrize("name", ROWS)
 def test_no_text_of_a_sheet_covers_another_or_leaves_it(name, tmp_path):
     figure = surface_sheet("Etched", changed(**SHEETS[name]), spectrum(CLIPPED))
     save(figure, tmp_path / "sheet.png")

@@ -93,11 +93,8 @@ def bad(tmp_path_factory):
     return folder, bad_files(folder, good)
 
 
-FAST = {"half.gwy"}
-ROWS = [pytest.param(name, marks=[pytest.mark.slow] * (name not in FAST)) for name in BAD]
-
-
-@pytest.mark.parametrize("name", ROWS)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", BAD)
 def test_an_unusable_file_stops_before_the_first_job_in_one_sentence(planner, bad, tmp_path, name):
     folder, known = bad
     keys, key, sentence = known[name]
