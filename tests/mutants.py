@@ -1486,7 +1486,6 @@ MUTANTS = {
         (".hexdigest() != checksum", ".hexdigest() is None"),
         ("(path.parent, path.name)", "path.as_posix()"),
         ("state.st_mtime_ns, state.st_ctime_ns]", "state.st_mtime_ns]"),
-        ("[str(path), state.st_ino,", "[state.st_ino,"),
         ("except (DataError, OSError):", "except OSError:"),
     ],
     "run.forkserver": [

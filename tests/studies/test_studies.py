@@ -362,6 +362,16 @@ def test_marginals_of_every_order_are_drawn_from_the_model_cut_there():
         assert found.converged_order[k] == expected
 
 
+@pytest.mark.parametrize(("distance", "converged"), [(0.0, 1), (1.0, 0)])
+def test_an_order_has_converged_if_its_marginals_are_near_the_kernels(monkeypatch, distance, converged):
+    monkeypatch.setattr(orders.convergence, "distance_to", lambda *_: distance)
+    vectors = sampled_vectors(300)
+    model = fit(vectors, 1.1 * vectors[:, 1].max(), 2, 0.2)
+    dataset = chaos.layout(model, (np.zeros((3, 4, 4)), np.zeros((3, 4, 4))), 0.0)
+    found = orders.compute(of_vectors(vectors), dataset, small.settings_of(orders, jobs.orders(small.PLAN)))
+    assert_array_equal(found.converged_order, converged)
+
+
 # Mesh (App. C)
 
 
