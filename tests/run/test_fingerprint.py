@@ -66,6 +66,19 @@ def test_every_form_of_an_import_counts(package, statement):
     assert list(of_script(package)) == ["script.py", "stiction.folder.far"]
 
 
+@pytest.mark.parametrize(
+    "around",
+    [
+        "try:\n    pass\nexcept OSError:\n    {}\n",
+        "match 1:\n    case 1:\n        {}\n",
+        "with open('x'):\n    if True:\n        {}\n",
+    ],
+)
+def test_an_import_in_any_block_counts(package, around):
+    (package / "scripts" / "script.py").write_text(around.format("import stiction.folder.far"))
+    assert list(of_script(package)) == ["script.py", "stiction.folder.far"]
+
+
 def test_a_script_and_a_module_of_one_file_name_both_count(package):
     script = package / "scripts" / "near.py"
     script.write_text("from stiction import near\n")

@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 
 from stiction.run import kept, labels
+from stiction.run.atomic import DataError
 from stiction.run.logs import logged, recorded
 from stiction.run.remembered import Remembered
 from stiction.stages import storage
@@ -82,6 +83,13 @@ def test_a_changed_file_of_the_same_size_and_time_is_read_again(files):
 def test_a_dataset_names_the_settings_of_all_stages_before(files):
     storage.save(xr.Dataset(), "contact/b_NG.nc", "contact", {"samples": 9}, ["spectrum/B2.nc"])
     assert labels.read("contact/b_NG.nc").before == files
+
+
+def test_a_file_that_is_no_dataset_is_reported_with_the_remedy(tmp_path):
+    path = tmp_path / "heights.nc"
+    path.write_bytes(b"no dataset")
+    with pytest.raises(DataError, match="heights.nc cannot be read .*; delete it and start again"):
+        labels.read(path)
 
 
 def test_the_order_of_keys_does_not_change_a_label():
