@@ -2006,7 +2006,7 @@ class Copy:
     def __init__(self, folder):
         self.folder, self.warm, self.cache = folder / "project", folder / "warm", folder / "cache"
         ignored = shutil.ignore_patterns("__pycache__", "benchmarks")
-        for name in ("src", "tests", "workflow", "profiles"):
+        for name in ("src", "tests", "workflow", "profiles", "docs/tables"):
             shutil.copytree(ROOT / name, self.folder / name, ignore=ignored)
         for name in ("pyproject.toml", "config.yaml"):
             shutil.copy(ROOT / name, self.folder)
