@@ -350,7 +350,10 @@ def device_slope_contact(plan: Plan, pair: str, length: int, width: int) -> dict
 
 
 def solid_contact(plan: Plan, pair: str, length: int, width: int, solid_property: str, side: str) -> dict:
-    """As `contact` on a patch [nm], with less or more of a property of the beam's material, in both bodies of it."""
+    """As `device_slope_contact`, with less or more of a property of the beam's material, in both bodies of it.
+
+    It has no more samples than the contact of the device.
+    """
     return _with_property(_on_patch(plan, pair, length, width, _samples_of_slopes(plan)), solid_property, side)
 
 
