@@ -1919,10 +1919,12 @@ MUTANTS = {
     ],
     "run.warmup": [
         ('for through in ("water", "none"):', 'for through in ("water",):'),
-        ("    first()  # from", "    pass  # from"),
+        ("        load()  # a part", "        pass  # a part"),
+        ("process.join()", "pass"),
+        ("        raise _NotCachedError\n", "        pass\n"),
         ("    forcelaw.parametrise(distance, curve, 1)\n", ""),
-        ("PARTS = (chaos_kernels, contact_kernels, beam_kernels)", "PARTS = (chaos_kernels, contact_kernels)"),
-        ("    for part in others:\n        part()", "    pass"),
+        ("PARTS = (beam_kernels, contact_kernels, chaos_kernels)", "PARTS = (contact_kernels, chaos_kernels)"),
+        ("    for part in PARTS:\n        part()", "    pass"),
         ("    end_stiffness(1.0)\n", ""),
     ],
     "report.figures_forces": [

@@ -1,13 +1,15 @@
 """Compile and cache all kernels before jobs run in parallel: ``python -m stiction.run.warmup``.
 
-Two processes share the work. A kernel that both compiled, with different types, could corrupt the index of its cache:
-the parts have none in common.
+Kernels that are not in the cache are compiled by processes of their own, whose memory is free again when they end. A
+kernel that two of them compiled, with different types, could corrupt the index of its cache: the parts have none in
+common.
 """
 
 import sys
 from multiprocessing import get_context
 
 import numpy as np
+from numba.core.event import Listener, install_listener
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.release import release
@@ -53,19 +55,43 @@ def beam_kernels() -> None:
     end_stiffness(1.0)
 
 
-#: Parts that may be compiled at the same time.
-PARTS = (chaos_kernels, contact_kernels, beam_kernels)
+#: Parts that may be compiled at the same time, the longest first.
+PARTS = (beam_kernels, contact_kernels, chaos_kernels)
+
+
+class _NotCachedError(Exception):
+    """A kernel would have to be compiled."""
+
+
+class _OnlyCached(Listener):
+    """Refuses to compile."""
+
+    def on_start(self, _event):
+        raise _NotCachedError
+
+    def on_end(self, _event):
+        pass
 
 
 def main() -> None:
-    """Compile the first part in another process and the others, which take as long, in this one; load all here."""
-    first, *others = PARTS
-    compiling = get_context("fork" if sys.platform == "linux" else "spawn").Process(target=first)
-    compiling.start()
-    for part in others:
+    """Load all kernels; if one is not in the cache, compile each part in another process first."""
+    try:
+        with install_listener("numba:compile", _OnlyCached()):
+            load()
+    except _NotCachedError:
+        context = get_context("fork" if sys.platform == "linux" else "spawn")
+        compiling = [context.Process(target=part) for part in PARTS]
+        for process in compiling:
+            process.start()
+        for process in compiling:
+            process.join()
+        load()  # a part whose process failed fails here as well, with its error
+
+
+def load() -> None:
+    """Run all parts in this process."""
+    for part in PARTS:
         part()
-    compiling.join()
-    first()  # from the cache; if its process failed, it fails here as well, with its error
 
 
 if __name__ == "__main__":
