@@ -437,9 +437,8 @@ MUTANTS = {
         ("yields(stress, hardness)", "yields(stress)"),
     ],
     "stages.pairs": [
-        ("solids.composite_modulus(*both), attraction", "2 * solids.composite_modulus(*both), attraction"),
+        ("settings.van_der_waals)", '"water")'),
         ("settings.materials.get(side, both)", "both"),
-        ("attraction(medium, constant)", "attraction(medium)"),
         ("step, every = settings.contact.distance_step", "step, every = 2 * settings.contact.distance_step"),
         ('"contact", pair, side, sample', '"contact", pair, "beam", sample'),
     ],
@@ -920,7 +919,7 @@ MUTANTS = {
     "contact.meniscus": [
         ("np.log(humidity) / molar_volume", "np.log10(humidity) / molar_volume"),
         ("GAS_CONSTANT * temperature *", "GAS_CONSTANT *"),
-        ("return -wetting * kelvin_radius", "return -2 * kelvin_radius"),
+        ("return -_wetting(contact_angles) * kelvin_radius", "return -2 * kelvin_radius"),
         ("np.cos(contact_angles[0]) + np.cos(contact_angles[1])", "2 * np.cos(contact_angles[0])"),
         ("if not wetting > 0", "if not wetting > -1"),
         ("(humidity < 1))", "(humidity <= 1))"),
@@ -929,9 +928,11 @@ MUTANTS = {
         ("tabulated_density(_REFERENCE) / tabulated_density(temperature)", "1.0"),
         ("_REFERENCE = 300.0", "_REFERENCE = 298.15"),
         ("16.945176", "16.95176"),
+        ("surface_energy(temperature) * _wetting", "WATER_SURFACE_ENERGY * _wetting"),
+        ("return height, -float(", "return height, float("),
         (
-            "tension * meniscus_height(humidity, temperature, contact_angles)",
-            "tension * meniscus_height(humidity, temperature)",
+            "meniscus_height(humidity, temperature, contact_angles))",
+            "meniscus_height(humidity, temperature))",
         ),
     ],
     "contact.vanderwaals": [
@@ -1029,6 +1030,12 @@ MUTANTS = {
         ("-1 < self.poisson_ratio <= 0.5", "-1 <= self.poisson_ratio <= 0.6"),
         ("0 <= self.contact_angle <= np.pi", "0 <= self.contact_angle"),
         ('"hardness": self.hardness} | constants', '"hardness": self.hardness}'),
+        (
+            "asperity(composite_modulus(first, second), attraction",
+            "asperity(composite_modulus(first, first), attraction",
+        ),
+        ("attraction(medium, constant)", "attraction(medium)"),
+        ('if medium == "none" else', "if False else"),
     ],
     "contact.pair": [
         ("area[k - 1] = higher / heights.size", "area[k - 1] = higher"),
@@ -1541,12 +1548,7 @@ MUTANTS = {
         ("draft.replace(path)", "path.write_bytes(draft.read_bytes())"),
     ],
     "stages.curves": [
-        ("film = height, -float(", "film = height, float("),
-        ("film = height,", "film = 0.5 * height,"),
-        (
-            "meniscus_height(humidity, water.temperature, water.contact_angles)",
-            "meniscus_height(humidity, water.temperature)",
-        ),
+        ("film(humidity, water.temperature, water.contact_angles)", "film(humidity, water.temperature)"),
         ("flooded_energy(water.temperature, water.contact_angles)", "flooded_energy(water.temperature)"),
         (".max() >= 0\n", ".max() >= -1e12\n"),
     ],

@@ -9,7 +9,7 @@ from standard_errors import ALLOWED
 from stiction.analysis import sensitivity
 from stiction.contact.asperity import MaugisTable, reduced_modulus
 from stiction.contact.forcelaw import humid_curves, parametrise
-from stiction.contact.meniscus import laplace_pressure, meniscus_height
+from stiction.contact.meniscus import film
 from stiction.contact.pair import SurfacePair, contact_of_samples
 from stiction.contact.vanderwaals import attraction
 from stiction.streams import stream
@@ -82,8 +82,7 @@ def energies(moments, seeds):
     pair = SurfacePair(RoughSurface(underlying, translation, rms, GRID), SUB1.on(GRID), 5e-11, asperity=solid)
     curves = contact_of_samples(pair, lambda k: (stream(k, "beam"), stream(k, "substrate")), seeds)
     starts = pair.distances.solid[0], pair.distances.bearing[0]
-    film = float(meniscus_height(0.67, 300.0)), -float(laplace_pressure(0.67, 300.0))
-    return parametrise(*humid_curves(*curves, starts, pair.step, film), len(seeds))[0][:, 0]
+    return parametrise(*humid_curves(*curves, starts, pair.step, film(0.67, 300.0)), len(seeds))[0][:, 0]
 
 
 @pytest.mark.slow

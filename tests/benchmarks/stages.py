@@ -23,7 +23,7 @@ from stiction.chaos import model as chaos  # noqa: E402
 from stiction.config import files  # noqa: E402
 from stiction.config.plan import Plan  # noqa: E402
 from stiction.config.units import typed  # noqa: E402
-from stiction.contact.meniscus import laplace_pressure, meniscus_height  # noqa: E402
+from stiction.contact.meniscus import film  # noqa: E402
 from stiction.scans.estimate import estimate  # noqa: E402
 from stiction.scans.levelling import Levelling  # noqa: E402
 from stiction.scans.model_scans import draw_model_scans  # noqa: E402
@@ -82,12 +82,11 @@ def force_rows():
     study, samples = PairStudy.of(CONFIG, "b"), 5000
     contact = study.contact.isel(sample=np.arange(samples) % study.contact.sizes["sample"])
     settings = forces.Settings(typed(curves.Water, Plan(CONFIG).water("b")), 0.67)
-    water = settings.humidity, settings.water.temperature
-    film = meniscus_height(*water), -laplace_pressure(*water)
+    water = film(settings.humidity, settings.water.temperature)
     yield side_by_side(
         f"forces of one case, {samples} samples",
         lambda _: forces.compute(contact, settings),
-        lambda _: floors.forces(tables(contact), film),
+        lambda _: floors.forces(tables(contact), water),
         10,
     )
 

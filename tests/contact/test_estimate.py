@@ -14,7 +14,7 @@ from stiction.beam.foundation import decay_length, ground_stiffness
 from stiction.contact import forcelaw
 from stiction.contact.asperity import HertzAsperity, MaugisTable, hertz_force, reduced_modulus
 from stiction.contact.estimate import ProfileMoments, force_law, repulsion_and_attraction, solid_pressure
-from stiction.contact.meniscus import laplace_pressure, meniscus_height
+from stiction.contact.meniscus import film
 from stiction.contact.pair import SurfacePair, contact_of_samples
 from stiction.contact.vanderwaals import attraction
 from stiction.stages import curves
@@ -28,10 +28,6 @@ scales = st.floats(0.3, 30)
 
 def moments(name, rms=None):
     return ProfileMoments.of_spectrum(rms or SURFACES[name].rms, SURFACES[name].spectrum)
-
-
-def film(humidity):
-    return float(meniscus_height(humidity, 300.0)), -float(laplace_pressure(humidity, 300.0))
 
 
 @pytest.mark.parametrize("name", SURFACES)
@@ -113,9 +109,9 @@ def test_a_ratio_above_three_means_that_the_solids_resist_and_below_one_that_the
     both = ProfileMoments.of_sum([moments("B2", rms), moments("Sub1")])
     starts = pair.distances.solid[0], pair.distances.bearing[0]
     for humidity in (0.3, 0.5, 0.7, 0.8, 0.92):
-        _, curve = forcelaw.humid_curves(*tables, starts, pair.step, film(humidity))
+        _, curve = forcelaw.humid_curves(*tables, starts, pair.step, film(humidity, 300.0))
         mean = np.mean([curve(k).copy() for k in range(4)], axis=0)
-        ((repulsion, pull),) = repulsion_and_attraction(both, pair.asperity, [film(humidity)])
+        ((repulsion, pull),) = repulsion_and_attraction(both, pair.asperity, [film(humidity, 300.0)])
         resists = mean.max() >= -mean.min()
         assert resists or repulsion < 3 * pull
         assert not resists or repulsion > pull
@@ -123,7 +119,7 @@ def test_a_ratio_above_three_means_that_the_solids_resist_and_below_one_that_the
 
 def test_a_stiffer_solid_and_wetter_air_resist_more():
     both = ProfileMoments.of_sum([moments("B2"), moments("Sub1")])
-    films = [film(humidity) for humidity in (0.3, 0.6, 0.9)]
+    films = [film(humidity, 300.0) for humidity in (0.3, 0.6, 0.9)]
     soft, stiff = (repulsion_and_attraction(both, HertzAsperity(modulus), films) for modulus in (1e9, 1e11))
     assert all(more[0] > less[0] for less, more in zip(soft, stiff, strict=True))
     assert soft[0][0] < soft[1][0] < soft[2][0]
@@ -140,9 +136,9 @@ def quantiles(name):
 
 def test_gaussian_heights_have_the_attraction_of_the_mean_curve():
     surface, solid = moments("B2"), MaugisTable(POLYSILICON, attraction("water"))
-    ((_, pull),) = repulsion_and_attraction(surface, solid, [film(0.95)])
+    ((_, pull),) = repulsion_and_attraction(surface, solid, [film(0.95, 300.0)])
     heights = SURFACES["B2"].rms * quantiles("B2")[0]
-    assert force_law(surface, solid, heights, film(0.95))[0] == pytest.approx(pull, rel=0.01)
+    assert force_law(surface, solid, heights, film(0.95, 300.0))[0] == pytest.approx(pull, rel=0.01)
 
 
 @pytest.mark.parametrize("humidity", [0.67, 0.88])
@@ -153,10 +149,10 @@ def test_the_foundation_length_is_that_of_surfaces_that_are_drawn(humidity):
     laws = forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit)
     drawn = decay_length(1.0, ground_stiffness(laws[:, 0], laws[:, 2]).mean())
     solid = MaugisTable(POLYSILICON, attraction("water"))
-    found = ground_stiffness(*force_law(moments("B2"), solid, quantiles("B2")[1], film(humidity)))
+    found = ground_stiffness(*force_law(moments("B2"), solid, quantiles("B2")[1], film(humidity, 300.0)))
     assert 0.85 < decay_length(1.0, found) / drawn < 1.05
     gaussian = ground_stiffness(
-        *force_law(moments("B2"), solid, SURFACES["B2"].rms * quantiles("B2")[0], film(humidity))
+        *force_law(moments("B2"), solid, SURFACES["B2"].rms * quantiles("B2")[0], film(humidity, 300.0))
     )
     assert abs(decay_length(1.0, gaussian) / drawn - 1) > 0.15  # control: heights decide
 
@@ -165,7 +161,7 @@ def test_forces_of_heights_and_radii_that_grow_together_keep_their_ratio():
     # Twice the heights and the film at the same tension: Hertz pressures and the water pull over twice the distance.
     surface, solid = moments("B2"), HertzAsperity(POLYSILICON)
     wide = ProfileMoments(4 * surface.m0, 4 * surface.m2 / 4, 4 * surface.m4 / 16)
-    heights, (height, tension) = quantiles("B2")[1], film(0.8)
+    heights, (height, tension) = quantiles("B2")[1], film(0.8, 300.0)
     one = force_law(surface, solid, heights, (height, tension))
     other = force_law(wide, solid, 2 * heights, (2 * height, tension))
     assert other[0] == pytest.approx(one[0], rel=1e-6)
@@ -176,12 +172,12 @@ def test_heights_of_half_the_size_have_the_law_of_a_surface_of_half_the_roughnes
     surface, solid, factor = moments("B2"), HertzAsperity(POLYSILICON), 0.5
     smooth = ProfileMoments(*(factor**2 * moment for moment in dataclasses.astuple(surface)))
     heights = factor * SURFACES["B2"].rms * quantiles("B2")[0]
-    halved, own = (force_law(each, solid, heights, film(0.95), points=400) for each in (surface, smooth))
+    halved, own = (force_law(each, solid, heights, film(0.95, 300.0), points=400) for each in (surface, smooth))
     assert halved == pytest.approx(own, rel=0.01)  # the highest summits, beyond the last of the heights, differ
 
 
 def test_the_law_of_gaussian_heights_reaches_f_limit_where_their_mean_curve_does():
-    surface, solid, (height, tension) = moments("B2"), HertzAsperity(POLYSILICON), film(0.88)
+    surface, solid, (height, tension) = moments("B2"), HertzAsperity(POLYSILICON), film(0.88, 300.0)
     distance = np.linspace(0, 6e-9 + height, 20_000)
     curve = solid_pressure(surface, solid, distance) - tension * ndtr((height - distance) / np.sqrt(surface.m0))
     heights = SURFACES["B2"].rms * quantiles("B2")[0]
@@ -193,4 +189,4 @@ def test_the_law_of_gaussian_heights_reaches_f_limit_where_their_mean_curve_does
 
 def test_a_solid_that_does_not_resist_has_no_force_law():
     with pytest.raises(ValueError, match="does not rise to f_limit"):
-        force_law(moments("B2"), HertzAsperity(1e3), quantiles("B2")[1], film(0.8))
+        force_law(moments("B2"), HertzAsperity(1e3), quantiles("B2")[1], film(0.8, 300.0))

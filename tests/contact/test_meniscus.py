@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 
 from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
 from stiction.contact.meniscus import (
+    film,
     flooded_energy,
     kelvin_radius,
     laplace_pressure,
@@ -34,9 +35,14 @@ def test_water_at_65_percent_has_the_tension_and_the_height_of_the_paper():
 
 @given(humidities, temperatures, angles, angles)
 def test_tension_times_height_is_the_surface_energy_times_the_cosines(humidity, temperature, first, second):
-    product = abs(laplace_pressure(humidity, temperature)) * meniscus_height(humidity, temperature, (first, second))
+    height, tension = film(humidity, temperature, (first, second))
+    assert (height, -tension) == (
+        meniscus_height(humidity, temperature, (first, second)),
+        laplace_pressure(humidity, temperature),
+    )
     expected = surface_energy(temperature) * (np.cos(first) + np.cos(second))
-    np.testing.assert_allclose(product, expected, rtol=ROUNDING)
+    np.testing.assert_allclose(tension * height, expected, rtol=ROUNDING)
+    np.testing.assert_allclose(tension * height, flooded_energy(temperature, (first, second)), rtol=ROUNDING)
 
 
 @given(humidities, temperatures)

@@ -6,14 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stiction.constants import HAMAKER_CONSTANT, HARDNESS
-from stiction.contact.asperity import reduced_modulus
+from stiction.contact.asperity import HertzAsperity, MaugisTable, reduced_modulus
 from stiction.contact.solids import (
     Solid,
+    asperity_between,
     composite_modulus,
     hamaker_constant,
     hamaker_through,
     softer_hardness,
 )
+from stiction.contact.vanderwaals import DugdaleAttraction
 
 POLYSILICON = Solid()
 GOLD = Solid(79e9, 0.42, 1e9, {"water": 25e-20}, np.radians(70))
@@ -60,6 +62,13 @@ def test_the_mixture_is_between_its_parts_and_the_softer_body_yields():
     mixed = hamaker_constant(POLYSILICON, GOLD, "water")
     assert HAMAKER_CONSTANT["water"] < mixed < 25e-20
     assert softer_hardness(POLYSILICON, GOLD) == softer_hardness(GOLD, POLYSILICON) == 1e9
+
+
+def test_an_asperity_has_the_modulus_and_the_attraction_of_both_bodies():
+    modulus = composite_modulus(POLYSILICON, GOLD)
+    both = DugdaleAttraction(hamaker_constant(POLYSILICON, GOLD, "water"))
+    assert asperity_between(POLYSILICON, GOLD, "water") == MaugisTable(modulus, both)
+    assert asperity_between(POLYSILICON, GOLD, "none") == HertzAsperity(modulus)
 
 
 def test_a_constant_that_is_not_stated_is_reported():

@@ -19,12 +19,10 @@ from stiction.config import measured, memory
 from stiction.config.cases import NAMEABLE, decimals
 from stiction.config.messages import ConfigError, Problem, did_you_mean, dotted, duplicates, schema_problems, shown
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, to_si, typed
-from stiction.contact.asperity import asperity
 from stiction.contact.bounds import least_law
 from stiction.contact.estimate import ProfileMoments, force_law, repulsion_and_attraction
-from stiction.contact.meniscus import laplace_pressure, meniscus_height
-from stiction.contact.solids import Solid, composite_modulus, hamaker_constant
-from stiction.contact.vanderwaals import attraction
+from stiction.contact.meniscus import film, meniscus_height
+from stiction.contact.solids import Solid, asperity_between
 from stiction.devices import limits
 from stiction.errors import NotConverged
 from stiction.models import SIDES
@@ -471,14 +469,14 @@ def not_apart(gap: float, humidities: float | list, temperature: float, sides: l
     angles = wetting(sides, materials)
     if not angles:
         return None
-    film = float(np.max(meniscus_height(humidities, temperature, angles)))
+    height = float(np.max(meniscus_height(humidities, temperature, angles)))
     rms = math.hypot(*(to_si(side["rms_nm"], "nm") for side in sides))
-    least = from_si(limits.least_gap(film, rms), "um")
+    least = from_si(limits.least_gap(height, rms), "um")
     if gap >= least:
         return None
     return (
         f"must be at least {least:.4g} µm, {limits.FILMS} times the sum of the height of the water film, "
-        f"{from_si(film, 'nm'):.5g} nm, and the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
+        f"{from_si(height, 'nm'):.5g} nm, and the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
     )
 
 
@@ -512,8 +510,7 @@ def longest_strip(
     rms = np.array([to_si(side["rms_nm"], "nm") for side in sides])
     heights, top = np.add.outer(rms[0] * np.array(beam), rms[1] * np.array(substrate)), float(rms @ highest)
     bending = to_si(modulus, "GPa") * to_si(thickness, "um") ** 3 / 12
-    film = float(meniscus_height(humidity, temperature, angles)), -float(laplace_pressure(humidity, temperature))
-    f_max, a_left = least_law(heights, top, film)
+    f_max, a_left = least_law(heights, top, film(humidity, temperature, angles))
     if not f_max:
         return math.inf
     return from_si(STRIP * decay_length(bending, ground_stiffness(f_max, a_left)), "um")
@@ -531,11 +528,9 @@ def estimated_strip(
     if not angles or not shapes:
         return math.inf
     bodies = [typed(Solid, solid | stated) for stated in of_material(sides, materials)]
-    constant = None if medium == "none" else hamaker_constant(*bodies, medium)
-    elastic = composite_modulus(*bodies), medium, constant
-    film = float(meniscus_height(humidity, temperature, angles)), -float(laplace_pressure(humidity, temperature))
+    summit, water = asperity_between(*bodies, medium), film(humidity, temperature, angles)
     try:
-        stiffness = _estimated_stiffness(tuple(map(_summit_source, sides)), tuple(s for s, _ in shapes), elastic, film)
+        stiffness = _estimated_stiffness(tuple(map(_summit_source, sides)), tuple(s for s, _ in shapes), summit, water)
     except (ValueError, ArithmeticError):
         return math.inf  # other relations report what is out of range
     bending = bodies[0].young_modulus * to_si(thickness, "um") ** 3 / 12
@@ -543,14 +538,13 @@ def estimated_strip(
 
 
 @functools.lru_cache(maxsize=1000)
-def _estimated_stiffness(sources, shapes, elastic, film):
+def _estimated_stiffness(sources, shapes, summit, water):
     """Estimated stiffness of the ground of a pair [Pa/m]."""
-    modulus, medium, constant = elastic
     rms = [to_si(source[0], "nm") for source in sources]
     heights = np.sort(np.add.outer(rms[0] * np.array(shapes[0]), rms[1] * np.array(shapes[1])).ravel())
     with np.errstate(all="raise", under="ignore"):
         surface = ProfileMoments.of_sum(map(_moments, sources))
-        return ground_stiffness(*force_law(surface, asperity(modulus, attraction(medium, constant)), heights, film))
+        return ground_stiffness(*force_law(surface, summit, heights, water))
 
 
 def sides_of(beam: str, substrate: str, surfaces: dict) -> list[dict]:
@@ -646,9 +640,8 @@ def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature
         return None  # no water, which another relation reports
     try:
         bodies = [typed(Solid, solid | stated) for stated in of_material(both, materials)]
-        constant = None if medium == "none" else hamaker_constant(*bodies, medium)
-        elastic = composite_modulus(*bodies), medium, constant
-        forces = _estimated(tuple(map(_summit_source, both)), elastic, (temperature, angles), humidities)
+        films = tuple(film(humidity, temperature, angles) for humidity in humidities)
+        forces = _estimated(tuple(map(_summit_source, both)), asperity_between(*bodies, medium), films)
     except (ValueError, ArithmeticError):
         return "must have surfaces and a solid for which the adhesion can be estimated; some value is far out of range"
     stuck = [
@@ -691,15 +684,10 @@ def _summit_source(surface):
 
 
 @functools.lru_cache(maxsize=1000)
-def _estimated(sources, elastic, water, humidities):
-    """Estimated repulsion at zero distance and attraction of a pair at all humidities [Pa]."""
-    modulus, medium, constant = elastic
-    temperature = water[0]
+def _estimated(sources, summit, films):
+    """Estimated repulsion at zero distance and attraction of a pair with each film of water [Pa]."""
     with np.errstate(all="raise", under="ignore"):
-        surface = ProfileMoments.of_sum(map(_moments, sources))
-        solid = asperity(modulus, attraction(medium, constant))
-        films = [(float(meniscus_height(h, *water)), -float(laplace_pressure(h, temperature))) for h in humidities]
-        return repulsion_and_attraction(surface, solid, films)
+        return repulsion_and_attraction(ProfileMoments.of_sum(map(_moments, sources)), summit, films)
 
 
 def _moments(source):

@@ -114,18 +114,27 @@ def meniscus_height(
     ValueError
         If the cosines add up to zero or less, so that no water condenses.
     """
-    wetting = np.cos(contact_angles[0]) + np.cos(contact_angles[1])
-    if not wetting > 0:
-        degrees = " and ".join(f"{np.degrees(angle):.3g}" for angle in contact_angles)
-        raise ValueError(f"no water condenses between flats with contact angles of {degrees} degrees")
-    return -wetting * kelvin_radius(humidity, temperature)
+    return -_wetting(contact_angles) * kelvin_radius(humidity, temperature)
+
+
+def film(humidity: float, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
+    """Height h_C [m] and tension -ΔP [Pa] of the water at one humidity, see `meniscus_height`."""
+    height = float(meniscus_height(humidity, temperature, contact_angles))
+    return height, -float(laplace_pressure(humidity, temperature))
 
 
 def flooded_energy(temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:
     """Adhesion energy of flats in saturated air, γ (cos θ₁ + cos θ₂) [J m⁻²]; temperature [K], angles [rad].
 
-    It is tension times height of the water, which does not depend on the humidity, and the limit of wet rough surfaces.
+    It is tension times height of the water at any humidity, and the limit of wet rough surfaces.
     """
-    humidity = 0.5  # any
-    tension = -laplace_pressure(humidity, temperature)
-    return float(tension * meniscus_height(humidity, temperature, contact_angles))
+    return float(surface_energy(temperature) * _wetting(contact_angles))
+
+
+def _wetting(contact_angles):
+    """Sum of the cosines of the contact angles of two solids, which must be positive."""
+    wetting = np.cos(contact_angles[0]) + np.cos(contact_angles[1])
+    if not wetting > 0:
+        degrees = " and ".join(f"{np.degrees(angle):.3g}" for angle in contact_angles)
+        raise ValueError(f"no water condenses between flats with contact angles of {degrees} degrees")
+    return wetting

@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from stiction.constants import HAMAKER_CONSTANT, HARDNESS
-from stiction.contact.asperity import reduced_modulus
+from stiction.contact.asperity import Asperity, asperity, reduced_modulus
+from stiction.contact.vanderwaals import attraction
 
 
 @dataclass(frozen=True)
@@ -87,3 +88,9 @@ def hamaker_constant(first: Solid, second: Solid, medium: str) -> float:
             stated = ", ".join(solid.hamaker_constant)
             raise ValueError(f"the Hamaker constant of a solid through {medium} is not stated, only through {stated}")
     return float(np.sqrt(first.hamaker_constant[medium] * second.hamaker_constant[medium]))
+
+
+def asperity_between(first: Solid, second: Solid, medium: str) -> Asperity:
+    """Model of one asperity between two bodies, with attraction through a stated medium or ``"none"``."""
+    constant = None if medium == "none" else hamaker_constant(first, second, medium)
+    return asperity(composite_modulus(first, second), attraction(medium, constant))

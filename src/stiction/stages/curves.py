@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.contact import forcelaw
-from stiction.contact.meniscus import flooded_energy, laplace_pressure, meniscus_height
+from stiction.contact.meniscus import film, flooded_energy
 from stiction.stages.contact import tables
 
 
@@ -21,9 +21,7 @@ class Water:
 
 def force_curves(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, Callable[[int], np.ndarray]]:
     """Distance (n_d,) [m] and ``curve(k)``, force of sample k [Pa], from `stiction.contact.forcelaw.humid_curves`."""
-    height = float(meniscus_height(humidity, water.temperature, water.contact_angles))
-    film = height, -float(laplace_pressure(humidity, water.temperature))
-    return forcelaw.humid_curves(*tables(contact), film)
+    return forcelaw.humid_curves(*tables(contact), film(humidity, water.temperature, water.contact_angles))
 
 
 def energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:

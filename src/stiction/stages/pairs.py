@@ -11,9 +11,8 @@ import numpy as np
 import xarray as xr
 
 from stiction.contact import solids
-from stiction.contact.asperity import Asperity, asperity
+from stiction.contact.asperity import Asperity
 from stiction.contact.pair import EquivalentSurface, SurfacePair
-from stiction.contact.vanderwaals import attraction
 from stiction.models import SIDES
 from stiction.stages.surfaces import Sampling, Width, rough_surface
 from stiction.streams import stream
@@ -77,9 +76,7 @@ def bodies(settings: Solids) -> tuple[solids.Solid, solids.Solid]:
 
 def asperity_of(settings: Solids) -> Asperity:
     """Model of one summit of the two bodies."""
-    both, medium = bodies(settings), settings.van_der_waals
-    constant = None if medium == "none" else solids.hamaker_constant(*both, medium)
-    return asperity(solids.composite_modulus(*both), attraction(medium, constant))
+    return solids.asperity_between(*bodies(settings), settings.van_der_waals)
 
 
 def equivalent_surface(
