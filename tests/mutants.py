@@ -1803,7 +1803,7 @@ MUTANTS = {
         ("scatter=0,", "scatter=0.01,"),
         ("releases.released(model, case, beams)", 'releases.released(model, "b_rh055", beams)'),
         ("refined=settings.refined", "refined=False"),
-        ("sorted(cases.items(), key=lambda item: float(item[1].humidity[0]))", "cases.items()"),
+        ("sorted(cases.items(), key=lambda item: item[0][1])", "cases.items()"),
         ("settings.chaos.order, settings", "1, settings"),
         ("first(contact, settings.samples)", "contact"),
         ('releases.ended(chosen, "S-shape")', 'releases.ended(chosen, "arc")'),
@@ -1829,7 +1829,10 @@ MUTANTS = {
     ],
     "stages.named": [
         ("key(Path(path).stem)", "Path(path).stem"),
-        ("return (*key, model) if model else key", "return key"),
+        ("return (*key, rest) if rest else key", "return key"),
+        ("return surface, model", "return model, surface"),
+        ("    *_, surface, quantity, _ = name", "    _, surface, quantity, *_ = name"),
+        ('split("_", 2)[2]', 'split("_", 2)[1]'),
     ],
     "stages.contact": [
         ("samples * (number + 1) // chunks)", "samples * (number + 1) // chunks - 1)"),

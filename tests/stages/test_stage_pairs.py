@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 from published import SPACING, SURFACES
 from scipy.constants import pi
@@ -6,6 +8,8 @@ from stiction.config import jobs
 from stiction.config.files import load
 from stiction.config.plan import Plan
 from stiction.config.units import typed
+from stiction.constants import HAMAKER_CONSTANT
+from stiction.contact.asperity import HertzAsperity
 from stiction.stages import contact, heights, pairs, spectrum
 from stiction.stages.parameters import spectrum_of
 from stiction.streams import stream
@@ -35,6 +39,13 @@ def test_asperities_of_the_paper_have_the_modulus_and_the_attraction_of_a_hand_c
     radius = 1e-6
     pull_off = -table.force(np.linspace(-5e-9, 5e-9, 2001), radius).min()
     assert 1.5 < pull_off / (pi * table.attraction.work_of_adhesion * radius) < 2
+
+
+def test_asperities_attract_through_the_medium_of_the_configuration():
+    dry, none = (pairs.asperity_of(replace(SETTINGS, van_der_waals=medium)) for medium in ("dry", "none"))
+    ratio = dry.attraction.work_of_adhesion / pair().asperity.attraction.work_of_adhesion
+    np.testing.assert_allclose(ratio, HAMAKER_CONSTANT["dry"] / HAMAKER_CONSTANT["water"], rtol=1e-12)
+    assert none == HertzAsperity(dry.modulus)
 
 
 def test_a_pair_has_the_strips_the_steps_and_the_rms_of_the_configuration():

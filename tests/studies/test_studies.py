@@ -516,7 +516,7 @@ def test_cases_of_a_pair_are_joined_from_dry_to_humid():
         return variant_beams.layout([humidity], [[1e-3 * humidity]], beams)
 
     found = variant_beams.by_pair(
-        {("b", "rh080", "dry"): case(0.8), ("b", "rh0655", "dry"): case(0.655), ("a", "rh090", "base"): case(0.9)}
+        {("b", 0.8, "dry"): case(0.8), ("b", 0.655, "dry"): case(0.655), ("a", 0.9, "base"): case(0.9)}
     )
     assert list(found) == [("b", "dry"), ("a", "base")]
     assert_array_equal(found["b", "dry"].humidity, [0.655, 0.8])

@@ -5,15 +5,15 @@ from stiction.designs import budget, inputs
 from stiction.devices.budget import OF_SOLIDS
 from stiction.run.logs import logged
 from stiction.stages import storage
-from stiction.stages.named import load_named
+from stiction.stages.named import after_patch, load_named, side_of, surface_and_quantity
 
 
 def main(job):
     """Compare contacts with less and with more of every input, and those under other choices of the model."""
     plain = job.params.settings
     settings = typed(inputs.Settings, plain["budget"])
-    less, more = (load_named(paths, "contact", _quantity) for paths in (job.input.less, job.input.more))
-    solids = {name: load_named(getattr(job.input, name), "contact", _side) for name in OF_SOLIDS}
+    less, more = (load_named(paths, "contact", surface_and_quantity) for paths in (job.input.less, job.input.more))
+    solids = {name: load_named(getattr(job.input, name), "contact", side_of) for name in OF_SOLIDS}
     heights, spectra, estimates = (
         load_named(paths, stage)
         for paths, stage in (
@@ -22,7 +22,7 @@ def main(job):
             (job.input.estimates, "estimate"),
         )
     )
-    choices = load_named(job.input.choices, "contact", _choice)
+    choices = load_named(job.input.choices, "contact", after_patch)
     described = {name: (heights[name], spectra[name]) for name, _ in plain["quantities"]}
     dataset = budget.compute(
         storage.load(job.input.contact, "contact"),
@@ -33,21 +33,6 @@ def main(job):
         settings,
     )
     storage.save(dataset, job.output[0], "budget", plain, job.input)
-
-
-def _quantity(name):
-    """Surface and quantity in a name such as ``b_1500x30000_B2_rms_less``."""
-    return tuple(name.split("_")[-3:-1])
-
-
-def _side(name):
-    """Side in a name such as ``b_1500x30000_less``."""
-    return name.rpartition("_")[2]
-
-
-def _choice(name):
-    """Choice of the model in a name such as ``b_1500x30000_van_der_waals_dry``."""
-    return name.split("_", 2)[2]
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ from stiction.report import checks
 from stiction.run import atomic
 from stiction.run.logs import logged
 from stiction.stages.cantilevers import Cantilevers, StripLength, cantilever
-from stiction.stages.named import key_of, load_named, model_of, surface_of
+from stiction.stages.named import key_of, load_named, surface_and_model
 from stiction.stages.spectrum import defect
 
 
@@ -20,16 +20,16 @@ def main(job):
     heights = load_named(job.input.heights, "heights")
     spectra = load_named(job.input.spectrum, "spectrum")
     identified = load_named(job.input.identification, "identification")
-    characters = load_named(job.input.character, "character", lambda name: (surface_of(name), model_of(name)))
+    characters = load_named(job.input.character, "character", surface_and_model)
     forces, chaoses, outcomes = (load_named(job.input[stage], stage, key_of) for stage in ("forces", "chaos", "beams"))
-    resampled = load_named(job.input.resampling, "resampling", lambda name: (*key_of(name), "NG"))
+    resampled = load_named(job.input.resampling, "resampling", key_of)
     found = chain(
         checks.of_surfaces(heights, characters, targets, {name: defect(found) for name, found in spectra.items()}),
         checks.of_identifications(identified),
         checks.of_force_laws(forces, chaoses),
         checks.of_trends(forces, settings["skewed"]),
         checks.of_beams(outcomes, forces, beams, strip, settings["on_mesh_of_paper"]),
-        checks.of_resampling(outcomes, resampled),
+        checks.of_resampling(outcomes, {(*case, "NG"): found for case, found in resampled.items()}),
     )
     table = checks.table(found)
     atomic.save_text(table.to_csv(index=False), job.output.csv)

@@ -8,14 +8,14 @@ from stiction.report.style import save
 from stiction.run.logs import logged
 from stiction.stages.cantilevers import Cantilevers, cantilever
 from stiction.stages.curves import Water
-from stiction.stages.named import key_of, load_named, model_of, surface_of
+from stiction.stages.named import key_of, load_named, surface_and_model
 
 
 def main(job):
     """Draw the energies of all pairs with the published and measured ones."""
     settings = job.params.settings
     beams = load_named(job.input.beams, "beams", key_of)
-    bands = load_named(job.input.humidity, "humidity", lambda name: (surface_of(name), model_of(name)))
+    bands = load_named(job.input.humidity, "humidity", surface_and_model)
     sections = typed(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
     pairs = {pair: (cantilever(sections, pair), *_of(pair, beams, bands)) for pair in settings["pairs"]}
     known = published.of_paper(published.read(job.input.published), settings["of_paper"])

@@ -3,15 +3,15 @@
 from stiction.config.units import typed
 from stiction.run.logs import logged
 from stiction.stages import storage
-from stiction.stages.named import load_named
+from stiction.stages.named import after_pair, load_named
 from stiction.studies import scan_uncertainty
 
 
 def main(job):
     """Multiply the slopes by the errors of the estimates, and compare the choices with the base."""
-    slopes = load_named(job.input.slopes, "slopes", lambda name: name.partition("_")[2])
+    slopes = load_named(job.input.slopes, "slopes", after_pair)
     estimates = load_named(job.input.estimates, "estimate")
-    choices = load_named(job.input.choices, "contact", lambda name: name.partition("_")[2])
+    choices = load_named(job.input.choices, "contact", after_pair)
     base = storage.load(job.input.base, "contact")
     errors = scan_uncertainty.errors_by_surface(slopes, estimates)
     dataset = scan_uncertainty.compute(

@@ -3,16 +3,14 @@
 from stiction.config.units import typed
 from stiction.run.logs import logged
 from stiction.stages import storage
-from stiction.stages.named import load_named
+from stiction.stages.named import load_named, surface_and_quantity
 from stiction.studies import slopes
 
 
 def main(job):
     """Compare the energies at both values of every quantity."""
-    sides = [
-        load_named(paths, "contact", lambda name: name.split("_")[2]) for paths in (job.input.less, job.input.more)
-    ]
-    contacts = {quantity: [side[quantity] for side in sides] for quantity in sides[0]}
+    less, more = (load_named(paths, "contact", surface_and_quantity) for paths in (job.input.less, job.input.more))
+    contacts = {quantity: [less[surface, quantity], more[surface, quantity]] for surface, quantity in less}
     dataset = slopes.compute(contacts, typed(slopes.Settings, job.params.settings))
     storage.save(dataset, job.output[0], "slopes", job.params.settings, job.input)
 

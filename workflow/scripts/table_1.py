@@ -6,13 +6,13 @@ from stiction.report.tables import save
 from stiction.report.tables_surfaces import table_1
 from stiction.run.logs import logged
 from stiction.stages.heights import substitution
-from stiction.stages.named import load_named, model_of, surface_of
+from stiction.stages.named import load_named, surface_and_model
 
 
 def main(job):
     """Compare simulated, published and measured statistics."""
     settings = job.params.settings
-    characters = load_named(job.input.characters, "character", lambda name: (surface_of(name), model_of(name)))
+    characters = load_named(job.input.characters, "character", surface_and_model)
     substitutions = {name: substitution(found) for name, found in load_named(job.input.heights, "heights").items()}
     scanned = {name: estimate.statistics(found) for name, found in load_named(job.input.estimates, "estimate").items()}
     known = published.of_paper(published.read(job.input.published), settings["of_paper"])

@@ -8,7 +8,8 @@ from stiction.stages.named import key_of, load_named
 
 def main(job):
     """Compare both for every case of model NG."""
-    beams = load_named(job.input.beams, "beams", lambda name: key_of(name)[:2])
+    released = load_named(job.input.beams, "beams", key_of)
+    beams = {(pair, humidity): found for (pair, humidity, _), found in released.items()}
     save(resampling(beams, load_named(job.input.resampled, "resampling", key_of)), job.output)
 
 

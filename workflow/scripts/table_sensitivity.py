@@ -4,13 +4,13 @@ from stiction.report import published
 from stiction.report.tables import save
 from stiction.report.tables_studies import sensitivity
 from stiction.run.logs import logged
-from stiction.stages.named import load_named
+from stiction.stages.named import after_pair, load_named
 
 
 def main(job):
     """Compare the sensitivities with the published ones."""
     settings = job.params.settings
-    studies = load_named(job.input.studies, "sensitivity", lambda name: name.partition("_")[2])
+    studies = load_named(job.input.studies, "sensitivity", after_pair)
     known = published.of_paper(published.read(job.input.published), settings["of_paper"])
     save(sensitivity(studies, settings["pair"], known), job.output)
 

@@ -19,30 +19,81 @@ def load_named(paths: Iterable[str | Path], stage: str, key: Callable[[str], Any
     return {key(Path(path).stem): load(path, stage) for path in paths}
 
 
-def key_of(path: str | Path) -> tuple:
-    """Pair, humidity and model of a file such as ``beams/b_rh067_NG.nc``; no model if the file name has none.
+def key_of(name: str) -> tuple:
+    """Pair, humidity and model or variant in a file name such as ``b_rh067_NG``; only the first two if it ends there.
 
     Examples
     --------
-    >>> key_of("results/beams/b_rh067_GEO.nc"), key_of("b_rh067.nc")
-    (('b', 0.67, 'GEO'), ('b', 0.67))
+    >>> key_of("b_rh067_GEO"), key_of("b_rh067_van_der_waals_dry"), key_of("b_rh067")
+    (('b', 0.67, 'GEO'), ('b', 0.67, 'van_der_waals_dry'), ('b', 0.67))
     """
-    case, _, model = re.fullmatch(rf"({CASE})(_(\w+))?", Path(path).stem).groups()
+    case, _, rest = re.fullmatch(rf"({CASE})(_(.+))?", name).groups()
     key = pair_of(case), humidity_of(case)
-    return (*key, model) if model else key
+    return (*key, rest) if rest else key
+
+
+def surface_and_model(name: str) -> tuple[str, str]:
+    """Surface or pair, and model, in a file name such as ``B2_NG``.
+
+    Examples
+    --------
+    >>> surface_and_model("B2_NG")
+    ('B2', 'NG')
+    """
+    surface, _, model = name.partition("_")
+    return surface, model
 
 
 def surface_of(name: str) -> str:
-    """Surface or pair in a file name such as ``B2_NG``.
-
-    Examples
-    --------
-    >>> surface_of("B2_NG"), model_of("B2_NG")
-    ('B2', 'NG')
-    """
-    return name.partition("_")[0]
+    """Surface in a file name such as ``B2_NG``."""
+    return surface_and_model(name)[0]
 
 
 def model_of(name: str) -> str:
     """Model in a file name such as ``B2_NG``."""
+    return surface_and_model(name)[1]
+
+
+def after_pair(name: str) -> str:
+    """What follows the pair in a file name: a moment, a surface or a choice.
+
+    Examples
+    --------
+    >>> after_pair("b_skewness"), after_pair("b_Sub1")
+    ('skewness', 'Sub1')
+    """
+    return name.partition("_")[2]
+
+
+def surface_and_quantity(name: str) -> tuple[str, str]:
+    """Surface and quantity in the file name of a contact with less or more of it.
+
+    Examples
+    --------
+    >>> surface_and_quantity("b_B2_rms_less"), surface_and_quantity("b_1500x30000_B2_rms_less")
+    (('B2', 'rms'), ('B2', 'rms'))
+    """
+    *_, surface, quantity, _ = name.split("_")
+    return surface, quantity
+
+
+def side_of(name: str) -> str:
+    """Side in the file name of a contact with less or more of a quantity.
+
+    Examples
+    --------
+    >>> side_of("b_1500x30000_less")
+    'less'
+    """
     return name.rpartition("_")[2]
+
+
+def after_patch(name: str) -> str:
+    """Choice of the model in the file name of a contact on patches.
+
+    Examples
+    --------
+    >>> after_patch("b_1500x30000_van_der_waals_dry")
+    'van_der_waals_dry'
+    """
+    return name.split("_", 2)[2]

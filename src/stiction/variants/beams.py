@@ -69,11 +69,10 @@ def layout(humidities: Sequence[float], energies: Sequence, beams: Sequence[dict
     )
 
 
-def by_pair(cases: Mapping[tuple[str, str, str], xr.Dataset]) -> dict[tuple[str, str], xr.Dataset]:
+def by_pair(cases: Mapping[tuple[str, float, str], xr.Dataset]) -> dict[tuple[str, str], xr.Dataset]:
     """Datasets of all humidities by pair and variant, from those by pair, humidity and variant."""
-    ordered = sorted(cases.items(), key=lambda item: float(item[1].humidity[0]))
     found = {}
-    for (pair, _, variant), dataset in ordered:
+    for (pair, _, variant), dataset in sorted(cases.items(), key=lambda item: item[0][1]):
         found.setdefault((pair, variant), []).append(dataset)
     return {key: xr.concat(found[key], "humidity") for key in dict.fromkeys((pair, name) for pair, _, name in cases)}
 
