@@ -26,7 +26,7 @@ PATIENCE = 4, 120
 #: Marks of tests.
 FAST, SLOW = "not slow and not cluster and not browser", "slow and not cluster and not browser"
 
-#: Tests of modules that have no test file of their name: names of test files are unique.
+#: Tests of modules that have other test files than one of their name: names of test files are unique.
 TESTS = {
     "chaos.model": "chaos/test_chaos_model.py",
     "report.tables_surfaces": "report",
@@ -63,6 +63,7 @@ TESTS = {
 }
 TESTS |= {"designs.stoppers": "designs/test_stage_stoppers.py", "designs.budget": "designs/test_stage_budget.py"}
 TESTS |= {"designs.figures_budget": "designs/test_tables_budget.py"}
+TESTS |= {"designs.inputs": "designs/test_inputs.py stages/test_measured_choices.py"}
 #: Stages and studies whose tests are in one file each.
 STAGES = "parameters heights spectrum surfaces identification character forces chaos releases beams cantilevers"
 MEASURED = "scan estimate heights spectrum"
@@ -816,9 +817,6 @@ MUTANTS = {
         ("block_diag(found.heights, found.spectrum)", "block_diag(found.heights, 2 * found.spectrum)"),
         ("return ARC if self.share else S_SHAPE", "return S_SHAPE"),
         ('["the residual stress"] if device.cracks == 2 else []', '["the residual stress"]'),
-        ("(below if below >= least else value)", "below"),
-        ("(below if below >= least else value)", "value"),
-        ("underlying, (side, side), reach)", "underlying, (side, side / 2), reach)"),
     ],
     "designs.budget": [
         ("state.humidity, state.water), state.area", "state.humidity, state.water), 1.0"),
@@ -836,9 +834,6 @@ MUTANTS = {
         ("    if settings.share:\n", "    if False:\n"),
         ("arcs.arc_length(of_state, state.device.beam)", "arcs.arc_length(of_state, states[0].device.beam)"),
         ("fit_tail(lengths).length(share))", "fit_tail(lengths).length(1e-4))"),
-        ("np.hypot(own, CRACK_LENGTH_POWER * common)", "own"),
-        ("np.hypot(own, CRACK_LENGTH_POWER * common)", "np.hypot(own, common)"),
-        ("np.mean if np.isfinite(values).all() else np.median", "np.mean"),
         ("choice_effect(*map(found.centre, found.values))", "choice_effect(*map(found.centre, found.values[::-1]))"),
         ('first(contact, changed.sizes["sample"])', "contact"),
         ("known.std(ddof=1) / known.mean()", "known.std(ddof=1)"),
@@ -1327,7 +1322,6 @@ MUTANTS = {
         ("length > 1.5 * strip * strips", "length > 0.5 * strip * strips"),
         ("return None if size < length", "return None if size <= length"),
         ("return path[:depth] == fault[:depth]", "return path == fault"),
-        ("if len(path) > 2 and path[0]", "if path[0]"),
         ('(*path[:2], "scans", "files")', "path"),
         ('if ("surfaces",) in paths:', "if False:"),
         ("for name in files if name in _met(paths, values)]", "for name in files]"),
@@ -1995,15 +1989,15 @@ def source_of(module):
 
 
 def tests_of(module):
-    """File or folder of its tests."""
+    """Files or folder of its tests."""
     *folder, name = module.split(".")
-    return f"tests/{TESTS.get(module, '/'.join([*folder, f'test_{name}.py']))}"
+    return [f"tests/{path}" for path in TESTS.get(module, "/".join([*folder, f"test_{name}.py"])).split()]
 
 
 def rounds(module):
     """Tests and their marks, one after the other: each for the mutants that those before have missed."""
     own, folder = tests_of(module), "/".join(["tests", *module.split(".")[:-1]])
-    neighbours = [(folder, FAST)] if folder not in ("tests", own) and (ROOT / folder).is_dir() else []
+    neighbours = [([folder], FAST)] if folder not in ("tests", *own) and (ROOT / folder).is_dir() else []
     return [(own, FAST), (own, SLOW), *neighbours]
 
 
@@ -2020,9 +2014,9 @@ class Copy:
 
     def tests(self, module, cache, which, limit=None):
         """Run tests of a module, at most for a time [s]; the name of the first that fails, empty if all pass."""
-        path, marks = which
+        paths, marks = which
         command = [sys.executable, "-B", "-m", "pytest", "-x", "--tb=no", "-p", "no:cacheprovider", "-m", marks]
-        command += [path, source_of(module)]
+        command += [*paths, source_of(module)]
         environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), "OMP_NUM_THREADS": "1"}
         environment["PYTHONPATH"] = str(self.folder / "src")
         try:

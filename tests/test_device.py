@@ -175,6 +175,16 @@ def test_the_budget_of_the_tips_is_that_of_their_contacts(uncertain):
     assert found.centre.attrs["response"] == "arc"
 
 
+@pytest.mark.parametrize(("stated", "names"), [({"scan_um": 10}, ["B2", "Sub1"]), ({"gap_um": 0.1}, [])])
+def test_a_budget_needs_the_errors_of_the_surfaces_with_uncertain_quantities_only(monkeypatch, stated, names):
+    monkeypatch.setattr(contact, "compute", lambda *_: None)
+    monkeypatch.setattr(stiction.Device, "_changed", ({}, {}, {}))
+    monkeypatch.setattr(inputs, "covariances", lambda surfaces, *_: list(surfaces))
+    monkeypatch.setattr(budget, "compute", lambda *given: given[4])
+    config = stiction.load(CONFIG, {"devices": {"C1": {"uncertainty": stated}}})
+    assert stiction.Device.of(config, "C1").budget(0.88) == names
+
+
 @pytest.mark.parametrize(("strip", "length"), [({}, 1.5e-6), ({"strip_um": 3}, 3e-6)])
 def test_contacts_of_a_budget_are_on_the_strips_of_the_device_and_choices_change_them(
     monkeypatch, uncertain, strip, length

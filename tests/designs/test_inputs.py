@@ -102,6 +102,17 @@ def test_what_counts_as_exact_if_it_is_not_stated_has_the_name_of_its_group():
     assert {entry.group for entry, _ in found.values()} < set(inputs.countable(SETTINGS))
 
 
+def test_only_a_beam_held_at_both_ends_has_a_residual_stress():
+    assert "the residual stress" in inputs.countable(replace(SETTINGS, device=R1))
+    assert "the residual stress" not in inputs.countable(SETTINGS)
+
+
+def test_a_budget_is_of_a_length_that_tips_hold_if_their_share_is_stated_and_of_a_force_without_a_beam():
+    shares = {0.0: inputs.S_SHAPE, 0.01: inputs.ARC}
+    assert {share: replace(SETTINGS, share=share).response for share in shares} == shares
+    assert replace(SETTINGS, device=None).response == inputs.FORCE
+
+
 def test_a_stopper_has_no_dimensions_of_a_beam():
     assert set(uncertain(Uncertainty(thickness=1e-7, gap=1e-7, residual_stress=1.0, humidity=0.01), of=None)) == {
         "humidity"

@@ -157,7 +157,7 @@ def _checked(holds, paths, config, faults, files):
 
 def _known(path, value, files):
     """Key and value as given by the user: the numbers of a measured surface come from its files."""
-    if len(path) > 2 and path[0] == "surfaces" and path[1] in files:
+    if path[0] == "surfaces" and path[1] in files:
         return (*path[:2], "scans", "files"), [Path(file).name for file in files[path[1]]]
     return path, value
 
