@@ -1401,7 +1401,7 @@ MUTANTS = {
         ('samples=study["samples"])} | shifts', 'samples=plan.config["contact"]["samples"])} | shifts'),
         ('of_beam if one == bodies["beam"] else one', "of_beam"),
         ('of_beam if one == bodies["beam"] else one', 'of_beam if at == "beam" else one'),
-        ('("less", "more").index(side)', '("more", "less").index(side)'),
+        ("SHIFTED.index(side)", '("more", "less").index(side)'),
         ("tip_contact(plan, pair, length, width), solid_property", 'tip_contact(plan, pair, length, width), "modulus"'),
     ],
     "measured.scan": [
@@ -1875,7 +1875,7 @@ MUTANTS = {
         ('if shared == "base" and self.plan.has_samples_of_variants:', "if self.plan.has_samples_of_variants:"),
         ("if self._designs.has_strips_of_pair(device):\n            return f", "if False:\n            return f"),
         ('if self._section(device)["kind"] == "bridge":', "if False:"),
-        ("for side in LESS_AND_MORE if name in uncertain]", "for side in LESS_AND_MORE]"),
+        ("for side in SHIFTED if name in uncertain]", "for side in SHIFTED]"),
         ("{folder}/{name}/{patch}_{side}.nc", "{_CONTACT}/{name}/{patch}_{side}.nc"),
         ("if device in designs.budgeted else []", ""),
         ("os.path.relpath(self", "str(self"),

@@ -15,6 +15,7 @@ from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.designs import budget, chart, cracks, findings, inputs, safe_lengths, stoppers
+from stiction.models import SHIFTED
 from stiction.stages import contact as stage_contact
 from stiction.stages import identification
 from stiction.studies import slope_contact
@@ -148,7 +149,7 @@ class Device:
             for key in designs.quantities(self.name)
         }
         solids = {
-            name: tuple(self._met(patch.pair, solid_job(plan, *patch, name, side)) for side in ("less", "more"))
+            name: tuple(self._met(patch.pair, solid_job(plan, *patch, name, side)) for side in SHIFTED)
             for name in designs.uncertain_solids(self.name)
         }
         return shifted, solids

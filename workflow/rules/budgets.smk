@@ -5,7 +5,7 @@ use rule slope_contact as device_slope_contact with:
     output:
         expand(
             "results/devices/contact/slopes/{{pair}}_{{length}}x{{width}}_{{surface}}_{{quantity}}_{side}.nc",
-            side=("less", "more"),
+            side=SHIFTED,
         ),
     log:
         "results/logs/devices/contact/slopes/{pair}_{length}x{width}_{surface}_{quantity}.log",
@@ -34,7 +34,7 @@ use rule device_slope_contact as tip_slope_contact with:
     output:
         expand(
             "results/devices/contact/tips/slopes/{{pair}}_{{length}}x{{width}}_{{surface}}_{{quantity}}_{side}.nc",
-            side=("less", "more"),
+            side=SHIFTED,
         ),
     log:
         "results/logs/devices/contact/tips/slopes/{pair}_{length}x{width}_{surface}_{quantity}.log",

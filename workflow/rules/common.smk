@@ -14,6 +14,7 @@ from stiction.models import (
     OF_MEASURED,
     OF_MOMENTS,
     OF_SPECTRUM,
+    SHIFTED,
     SURFACE_MODELS,
     surface_model,
 )
@@ -33,7 +34,7 @@ wildcard_constraints:
     number="[0-9]+",
     moment="|".join(OF_MOMENTS),
     quantity="|".join({*OF_MOMENTS, *OF_MEASURED, *OF_SPECTRUM}),
-    side="less|more",
+    side="|".join(SHIFTED),
     solid_property="|".join(KEYS_OF_SOLIDS),
     choice="|".join(ALTERNATIVES_OF_SCANS),
     variant="base|[a-z_]+_[a-z0-9.-]+",

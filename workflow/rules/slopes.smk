@@ -7,7 +7,7 @@ rule slope_contact:
         # Modes are those of the measured heights, which the surface may not have.
         estimates=lambda w: ["results/estimate/{surface}.nc"] if w.quantity in OF_MEASURED[1:] else [],
     output:
-        expand("results/studies/slopes/contact/{{pair}}_{{surface}}_{{quantity}}_{side}.nc", side=("less", "more")),
+        expand("results/studies/slopes/contact/{{pair}}_{{surface}}_{{quantity}}_{side}.nc", side=SHIFTED),
     log:
         "results/logs/studies/slopes/contact/{pair}_{surface}_{quantity}.log",
     resources:

@@ -8,7 +8,7 @@ rule sensitivity_contact:
         expand(
             "results/studies/sensitivity/contact/{{pair}}_{moment}_{side}.nc",
             moment=plan.shifted_moments,
-            side=("less", "more"),
+            side=SHIFTED,
         ),
     log:
         "results/logs/studies/sensitivity/contact/{pair}.log",
@@ -28,7 +28,7 @@ rule sensitivity_contact:
 
 rule sensitivity:
     input:
-        contacts=expand("results/studies/sensitivity/contact/{{pair}}_{{moment}}_{side}.nc", side=("less", "more")),
+        contacts=expand("results/studies/sensitivity/contact/{{pair}}_{{moment}}_{side}.nc", side=SHIFTED),
     output:
         "results/studies/sensitivity/{pair}_{moment}.nc",
     log:

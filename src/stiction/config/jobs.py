@@ -16,7 +16,7 @@ from stiction.config.files import paper
 from stiction.config.merging import merged
 from stiction.config.plan import ELASTIC, MOMENTS, SUMMITS, Plan, chosen
 from stiction.config.units import NM_PER_UM
-from stiction.models import SIDES
+from stiction.models import SHIFTED, SIDES
 
 
 def _strip(plan):
@@ -381,7 +381,7 @@ def _changed(material, name, side):
     """Material with less or more of a property; of its Hamaker constants through all media by the same factor."""
     from stiction.devices.budget import OF_SOLIDS  # its import takes a tenth of a plan, which few configurations need
 
-    key, end = KEYS_OF_SOLIDS[name], ("less", "more").index(side)
+    key, end = KEYS_OF_SOLIDS[name], SHIFTED.index(side)
     if name == "hamaker_constant":
         constants = hamaker_constants(material).items()
         return material | {key: {medium: OF_SOLIDS[name].ends(constant)[end] for medium, constant in constants}}

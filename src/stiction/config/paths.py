@@ -12,9 +12,8 @@ from functools import cached_property
 from stiction.config.cases import case_id, pair_of
 from stiction.config.designs import KEYS_OF_SOLIDS, Designs
 from stiction.config.plan import Plan
+from stiction.models import SHIFTED
 
-#: The two values of a shifted quantity, in the order in which rules name their files.
-LESS_AND_MORE = ("less", "more")
 #: Folder of the contacts of devices.
 _CONTACT = "results/devices/contact"
 
@@ -93,7 +92,7 @@ class Paths:
     def shifted_contacts(self, pair: str, surface: str) -> dict[str, list[str]]:
         """Contacts of a pair with less and with more of every quantity of a surface."""
         quantities = self.plan.quantities(surface)
-        return {side: [f"{_shifted(pair)}_{surface}_{name}_{side}.nc" for name in quantities] for side in LESS_AND_MORE}
+        return {side: [f"{_shifted(pair)}_{surface}_{name}_{side}.nc" for name in quantities] for side in SHIFTED}
 
     def summits_of_variant(self, pair: str, variant: str) -> str:
         """Summits of a pair under a variant, which other variants may share."""
@@ -147,10 +146,10 @@ class Paths:
         ``slopes`` is the beginning of the names of those with a shifted quantity of a surface.
         """
         quantities = [f"{slopes}_{surface}_{quantity}" for surface, quantity in self._designs.quantities(device)]
-        shifted = {side: [f"{begin}_{side}.nc" for begin in quantities] for side in LESS_AND_MORE}
+        shifted = {side: [f"{begin}_{side}.nc" for begin in quantities] for side in SHIFTED}
         uncertain = self._designs.uncertain_solids(device)
         solids = {
-            name: [f"{folder}/{name}/{patch}_{side}.nc" for side in LESS_AND_MORE if name in uncertain]
+            name: [f"{folder}/{name}/{patch}_{side}.nc" for side in SHIFTED if name in uncertain]
             for name in KEYS_OF_SOLIDS
         }
         return shifted | solids | {"choices": [f"{folder}/choices/{patch}_{variant}.nc" for variant in choices]}
