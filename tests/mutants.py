@@ -1492,6 +1492,7 @@ MUTANTS = {
     "run.forkserver": [
         ("gc.freeze()  #", "pass  #"),
         ('importlib.import_module("stiction.run.warmup").main()', "pass"),
+        ('importlib.import_module("stiction.report.style").preload()', "pass"),
         ("        importlib.import_module(module.name)", "        pass"),
         ("raise_signal(signal.SIGINT)", "raise_signal(signal.SIGTERM)"),
         ("    sys.stdout.flush()  # an", "    pass  # an"),

@@ -157,6 +157,27 @@ def test_libraries_and_kernels_are_loaded_before_a_script_begins(server, tmp_pat
     assert json.loads(printed(path))[1:3] == [0, 0]
 
 
+DRAWN = """
+    before = set(sys.modules)
+    from stiction.report import style
+    figure, axes = style.styled(style.panels)(1, 2, (3, 2))
+    axes[0, 0].set(xlabel="$x$", yscale="log")
+    style.save(figure, "figure.pdf", "figure.png")
+    print(len(set(sys.modules) - before))
+"""
+
+
+def test_a_figure_needs_nothing_that_is_not_loaded_before(server, tmp_path):
+    path = script(tmp_path, f"os.chdir({str(tmp_path)!r})\n{textwrap.dedent(DRAWN)}")
+    found = []
+    for run in (server.run, lambda path: subprocess.run([sys.executable, path], check=True).returncode):
+        assert run(path) == 0, printed(path)
+        found.append((int(printed(path)), [(tmp_path / f"figure.{suffix}").read_bytes() for suffix in ("pdf", "png")]))
+    (more_of_server, drawn), (more, expected) = found
+    assert drawn == expected
+    assert more_of_server == 0 < more
+
+
 COMPUTED = """
     import numpy as np, xarray as xr, matplotlib.pyplot as plt
     from stiction.streams import stream

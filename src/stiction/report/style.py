@@ -246,6 +246,18 @@ def save(figure: Figure, *paths: str | Path) -> None:
 
 
 @styled
+def preload() -> None:
+    """Draw a small figure and discard it.
+
+    Fonts, the parser of formulas and all that files need are then loaded, also for the processes forked from this one.
+    """
+    figure, axes = panels(1, 1, (SINGLE, SINGLE))
+    axes[0, 0].set(xlabel="$x$", xscale="log")
+    for write in _WRITERS.values():
+        write(figure, io.BytesIO())
+
+
+@styled
 def png(figure: Figure) -> bytes:
     """Content of a PNG file of a figure, for pages that contain their figures."""
     content = io.BytesIO()

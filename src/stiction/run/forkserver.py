@@ -111,12 +111,13 @@ def main() -> None:
 
 
 def preload() -> None:
-    """Import all modules of the package and what jobs import late; load the compiled kernels, compiled if necessary."""
+    """Import all modules and what jobs import late; load fonts and the compiled kernels, compiled if necessary."""
     for module in pkgutil.walk_packages([str(PACKAGE)], "stiction."):
         importlib.import_module(module.name)
     for name in LATE:
         importlib.import_module(name)
     importlib.import_module("stiction.run.warmup").main()
+    importlib.import_module("stiction.report.style").preload()
     gc.collect()
     gc.freeze()  # the collector of a child would otherwise write to, and thereby copy, every page that it shares
 
