@@ -1060,6 +1060,8 @@ MUTANTS = {
         ("np.log(1 + np.sqrt(1 + f_limit / f_max))", "np.log(np.sqrt(1 + f_limit / f_max))"),
         ("e / f_max - 0.5 /", "e / f_max - 1.5 /"),
         ("1.5 / reach]", "0.5 / reach]"),
+        ("if not lawful.all():", "if False:"),
+        ("1.5 / reach]), reach > 0", "1.5 / reach]), reach > -1"),
         ("f_max * decay * (decay - 2)", "f_max * decay * (decay - 1)"),
         ("(1.5 / a_right + 0.5 / a_left)", "(0.5 / a_right + 1.5 / a_left)"),
         ("float(f_max.max())", "float(f_max.min())"),
@@ -1067,7 +1069,9 @@ MUTANTS = {
     "chaos.coordinates": [
         ("d_max - np.exp(log_gap)", "d_max + np.exp(log_gap)"),
         ("@ self.axes / np.sqrt(self.variances)", "@ self.axes / self.variances"),
-        ("(q * self.scale[:, None])", "q"),
+        ("(mean[c] + along) * scale[c]", "mean[c] + along"),
+        ("(mean[c] + along) * scale[c]", "along * scale[c]"),
+        ("for k in range(1, len(eta))", "for k in range(2, len(eta))"),
         ("np.cumsum(variances[:0:-1])[::-1]", "np.cumsum(variances[1:])"),
         (
             "return PrincipalCoordinates(scale, q.mean(axis=0), variances.copy(), axes * signs)",
@@ -1098,6 +1102,7 @@ MUTANTS = {
         ("self.coefficients[:, 1:] ** 2", "self.coefficients ** 2"),
         ("<= tolerance))", "< 10 * tolerance))"),
         ("missing -= int(good.sum())", "missing -= int(good.size)"),
+        ("rows if good.all() else rows[good]", "rows"),
         ("<= order\n", "< order\n"),
         ("lawful[rng.integers(len(lawful), size=n)]", "lawful[:n]"),
     ],

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
 
 def unconstrained(vectors: np.ndarray) -> np.ndarray:
@@ -22,6 +23,18 @@ def dimension_error(variances: np.ndarray) -> np.ndarray:
     return np.append(np.cumsum(variances[:0:-1])[::-1], 0.0) / np.sum(variances)
 
 
+@njit(cache=True, nogil=True)
+def _shift_and_scale(eta, steps, mean, scale, free):
+    """Write (mean + Σ steps · η) · scale, (4, m), from coordinates (N_g, m)."""
+    # A sum over coordinates: the rounding of a matrix product would depend on the number of vectors.
+    for c in range(len(free)):
+        for i in range(eta.shape[1]):
+            along = steps[c, 0] * eta[0, i]
+            for k in range(1, len(eta)):
+                along += steps[c, k] * eta[k, i]
+            free[c, i] = (mean[c] + along) * scale[c]
+
+
 @dataclass(frozen=True)
 class PrincipalCoordinates:
     """Transformation between vectors v and uncorrelated coordinates η of unit variance, Eqs. (15)-(17)."""
@@ -38,10 +51,9 @@ class PrincipalCoordinates:
     def restore(self, eta: np.ndarray) -> np.ndarray:
         """Vectors v (m, 4) from the first coordinates η (m, N_g), with the others at their mean, Eq. (17)."""
         steps = self.axes[:, : eta.shape[1]] * np.sqrt(self.variances[: eta.shape[1]])
-        # A sum over coordinates: the rounding of a matrix product would depend on the number of vectors. Rows of q are
-        # components, because loops over a long last axis are several times faster.
-        q = self.mean[:, None] + sum(np.outer(step, along) for along, step in zip(eta.T, steps.T, strict=True))
-        return constrained((q * self.scale[:, None]).T)
+        free = np.empty((len(steps), len(eta)))
+        _shift_and_scale(*map(np.ascontiguousarray, (eta.T, steps, self.mean, self.scale)), free)
+        return constrained(free.T)
 
 
 def principal_coordinates(vectors: np.ndarray) -> PrincipalCoordinates:

@@ -98,19 +98,18 @@ def truncated(model: ChaosModel, order: int) -> ChaosModel:
 # Draws
 
 
-def _accept(candidates: Callable[[int], np.ndarray], n: int, f_limit: float) -> tuple[np.ndarray, int]:
-    """Collect n admissible vectors, in the order of the stream, and count the others.
+def _accept(candidates: Callable[[int], tuple[np.ndarray, np.ndarray]], n: int) -> tuple[np.ndarray, int]:
+    """Collect n admissible vectors or their laws, in the order of the stream, and count the others.
 
     DEPARTS: Eq. (15) admits vectors without a force law of Eq. (12), a_right <= 0; they are redrawn.
 
-    ``candidates(k)`` draws k vectors. Only the missing number is drawn, so that the result does not depend on how the
-    draws are batched.
+    ``candidates(k)`` draws k rows and states which are admissible. Only the missing number is drawn, so that the result
+    does not depend on how the draws are batched.
     """
     kept, missing, rejected = [], n, 0
     while missing > 0:
-        vectors = candidates(missing)
-        good = forcelaw.admissible(vectors, f_limit)
-        kept.append(vectors if good.all() else vectors[good])
+        rows, good = candidates(missing)
+        kept.append(rows if good.all() else rows[good])
         missing -= int(good.sum())
         rejected += int((~good).sum())
         if rejected > 10 * n + 1000:
@@ -135,15 +134,21 @@ def draw(model: ChaosModel, n: int, rng: np.random.Generator) -> tuple[np.ndarra
     """
 
     def candidates(k):
-        return model.coordinates.restore(model(rng.random((k, model.dimension))))
+        vectors = _vectors(model, k, rng)
+        return vectors, forcelaw.admissible(vectors, model.f_limit)
 
-    return _accept(candidates, n, model.f_limit)
+    return _accept(candidates, n)
 
 
 def draw_laws(model: ChaosModel, n: int, rng: np.random.Generator) -> np.ndarray:
-    """Draw force laws [f_max, d_max, a_left, a_right] (n, 4), by the vectors of `draw`."""
-    vectors, _ = draw(model, n, rng)
-    return forcelaw.coefficients(vectors, model.f_limit)
+    """Draw force laws [f_max, d_max, a_left, a_right] (n, 4), those of the vectors of `draw`."""
+    laws, _ = _accept(lambda k: forcelaw.coefficients_where_lawful(_vectors(model, k, rng), model.f_limit), n)
+    return laws
+
+
+def _vectors(model, n, rng):
+    """Vectors v of uniform points (n, 4), admissible or not."""
+    return model.coordinates.restore(model(rng.random((n, model.dimension))))
 
 
 def draw_kernels(model: ChaosModel, vectors: np.ndarray, n: int, rng: np.random.Generator) -> tuple[np.ndarray, int]:
@@ -153,7 +158,12 @@ def draw_kernels(model: ChaosModel, vectors: np.ndarray, n: int, rng: np.random.
     error.
     """
     density = kernel_density(model.coordinates.reduce(vectors)[:, : model.dimension])
-    return _accept(lambda k: model.coordinates.restore(density.draw(k, rng)), n, model.f_limit)
+
+    def candidates(k):
+        drawn = model.coordinates.restore(density.draw(k, rng))
+        return drawn, forcelaw.admissible(drawn, model.f_limit)
+
+    return _accept(candidates, n)
 
 
 def resample_laws(vectors: np.ndarray, f_limit: float, n: int, rng: np.random.Generator) -> np.ndarray:

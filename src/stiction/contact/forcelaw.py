@@ -319,14 +319,21 @@ def coefficients(vectors: np.ndarray, f_limit: float) -> np.ndarray:
     >>> [round(float(a) * 1e-9, 3) for a in law[0, 2:]]  # nm⁻¹
     [0.632, 0.554]
     """
+    laws, lawful = coefficients_where_lawful(vectors, f_limit)
+    if not lawful.all():
+        first = int(np.argmin(lawful))
+        raise ValueError(
+            f"vector {first} has no law: e = {vectors[first, 0]:.3g} J/m² is less than the energy of its left branch"
+        )
+    return laws
+
+
+def coefficients_where_lawful(vectors: np.ndarray, f_limit: float) -> tuple[np.ndarray, np.ndarray]:
+    """As `coefficients`, with a_right <= 0 or infinite where a vector is not `admissible`, and where it is (n,)."""
     a_left = _left_steepness(vectors, f_limit)
     reach = _right_range(vectors, a_left)
-    if not np.all(reach > 0):
-        worst = int(np.argmin(reach))
-        raise ValueError(
-            f"vector {worst} has no law: e = {vectors[worst, 0]:.3g} J/m² is less than the energy of its left branch"
-        )
-    return np.column_stack([vectors[:, 1], vectors[:, 2], a_left, 1.5 / reach])
+    with np.errstate(divide="ignore"):
+        return np.column_stack([vectors[:, 1], vectors[:, 2], a_left, 1.5 / reach]), reach > 0
 
 
 def pressure(law: np.ndarray, distance: float | np.ndarray) -> float | np.ndarray:
