@@ -1061,6 +1061,7 @@ MUTANTS = {
         ("e / f_max - 0.5 /", "e / f_max - 1.5 /"),
         ("1.5 / reach]", "0.5 / reach]"),
         ("if not lawful.all():", "if False:"),
+        ("{f_max / (2 * a_left):.3g}", "{f_max / a_left:.3g}"),
         ("1.5 / reach]), reach > 0", "1.5 / reach]), reach > -1"),
         ("f_max * decay * (decay - 2)", "f_max * decay * (decay - 1)"),
         ("(1.5 / a_right + 0.5 / a_left)", "(0.5 / a_right + 1.5 / a_left)"),

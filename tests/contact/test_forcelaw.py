@@ -80,8 +80,12 @@ def test_a_vector_without_a_force_law_is_an_error_with_its_number():
     poor = VECTORS.copy()
     poor[1, 0] = 1e-4
     assert admissible(poor, F_LIMIT).tolist() == [True, False, True]
-    with pytest.raises(ValueError, match="vector 1 has no law: e = 0.0001"):
+    with pytest.raises(ValueError, match="vector 1 has no law: its energy e = 0.0001 J/m²") as refused:
         coefficients(poor, F_LIMIT)
+    least = float(str(refused.value).split()[-2])  # with three digits
+    for share in (0.99, 1.01):
+        poor[1, 0] = share * least
+        assert admissible(poor, F_LIMIT)[1] == (share > 1)
 
 
 # parameters of sampled curves

@@ -117,6 +117,11 @@ def _accept(candidates: Callable[[int], tuple[np.ndarray, np.ndarray]], n: int) 
     return kept[0] if len(kept) == 1 else np.concatenate([np.empty((0, 4)), *kept]), rejected
 
 
+def _judged(vectors, f_limit):
+    """Vectors and which of them are admissible, for `_accept`."""
+    return vectors, forcelaw.admissible(vectors, f_limit)
+
+
 def draw(model: ChaosModel, n: int, rng: np.random.Generator) -> tuple[np.ndarray, int]:
     """Draw vectors v from the chaos model; those without a force law of Eq. (12) are rejected and redrawn.
 
@@ -132,12 +137,7 @@ def draw(model: ChaosModel, n: int, rng: np.random.Generator) -> tuple[np.ndarra
     ValueError
         If nearly all vectors are rejected.
     """
-
-    def candidates(k):
-        vectors = _vectors(model, k, rng)
-        return vectors, forcelaw.admissible(vectors, model.f_limit)
-
-    return _accept(candidates, n)
+    return _accept(lambda k: _judged(_vectors(model, k, rng), model.f_limit), n)
 
 
 def draw_laws(model: ChaosModel, n: int, rng: np.random.Generator) -> np.ndarray:
@@ -158,12 +158,7 @@ def draw_kernels(model: ChaosModel, vectors: np.ndarray, n: int, rng: np.random.
     error.
     """
     density = kernel_density(model.coordinates.reduce(vectors)[:, : model.dimension])
-
-    def candidates(k):
-        drawn = model.coordinates.restore(density.draw(k, rng))
-        return drawn, forcelaw.admissible(drawn, model.f_limit)
-
-    return _accept(candidates, n)
+    return _accept(lambda k: _judged(model.coordinates.restore(density.draw(k, rng)), model.f_limit), n)
 
 
 def resample_laws(vectors: np.ndarray, f_limit: float, n: int, rng: np.random.Generator) -> np.ndarray:

@@ -322,8 +322,10 @@ def coefficients(vectors: np.ndarray, f_limit: float) -> np.ndarray:
     laws, lawful = coefficients_where_lawful(vectors, f_limit)
     if not lawful.all():
         first = int(np.argmin(lawful))
+        f_max, _, a_left, _ = laws[first]
         raise ValueError(
-            f"vector {first} has no law: e = {vectors[first, 0]:.3g} J/m² is less than the energy of its left branch"
+            f"vector {first} has no law: its energy e = {vectors[first, 0]:.3g} J/m² must be above that of its left "
+            f"branch alone, f_max / (2 a_left) = {f_max / (2 * a_left):.3g} J/m²"
         )
     return laws
 
