@@ -1070,8 +1070,9 @@ MUTANTS = {
     "chaos.coordinates": [
         ("d_max - np.exp(log_gap)", "d_max + np.exp(log_gap)"),
         ("@ self.axes / np.sqrt(self.variances)", "@ self.axes / self.variances"),
-        ("(mean[c] + along) * scale[c]", "mean[c] + along"),
-        ("(mean[c] + along) * scale[c]", "along * scale[c]"),
+        ("(mean[c] + free[c, i]) * scale[c]", "mean[c] + free[c, i]"),
+        ("(mean[c] + free[c, i]) * scale[c]", "free[c, i] * scale[c]"),
+        ("free[c, i] += steps", "free[c, i] = steps"),
         ("for k in range(1, len(eta))", "for k in range(2, len(eta))"),
         ("np.cumsum(variances[:0:-1])[::-1]", "np.cumsum(variances[1:])"),
         (
@@ -1097,6 +1098,9 @@ MUTANTS = {
         ("if sum(alpha) <= order]", "if sum(alpha) < order]"),
         ("first += 1  #", "first += 2  #"),
         ("used -= 1  #", "used -= 2  #"),
+        ("+ factors[a + 1] * (left[i] *", "+ factors[a] * (left[i] *"),
+        ("(left[i] * values[a + 1, i])", "(left[i] * values[a, i])"),
+        ("range(2 * pairs, factors.size)", "range(2 * pairs, factors.size - 1)"),
         ("used = ~indices[:, k:]", "used = ~indices[:, k - 1 :]"),
     ],
     "chaos.model": [

@@ -29,10 +29,12 @@ def _shift_and_scale(eta, steps, mean, scale, free):
     # A sum over coordinates: the rounding of a matrix product would depend on the number of vectors.
     for c in range(len(free)):
         for i in range(eta.shape[1]):
-            along = steps[c, 0] * eta[0, i]
-            for k in range(1, len(eta)):
-                along += steps[c, k] * eta[k, i]
-            free[c, i] = (mean[c] + along) * scale[c]
+            free[c, i] = steps[c, 0] * eta[0, i]
+        for k in range(1, len(eta)):
+            for i in range(eta.shape[1]):
+                free[c, i] += steps[c, k] * eta[k, i]
+        for i in range(eta.shape[1]):
+            free[c, i] = (mean[c] + free[c, i]) * scale[c]
 
 
 @dataclass(frozen=True)
