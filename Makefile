@@ -2,7 +2,7 @@
 #   make paper      the whole paper: tables and figures in results/ (6 to 10 minutes)
 #   make smoke      the same with small samples (half a minute), in results/smoke/   (takes CONFIG=... too)
 #   make run CONFIG=mine.yaml    your own surfaces, pairs and beams; the file changes single keys of config.yaml
-#   make example    crack lengths from drawn scans, compared with the true values (2 minutes), in results/example/
+#   make example    crack lengths from drawn scans, compared with the true values (1 to 2 minutes), in results/example/
 #   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (5 to 10 minutes)
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)

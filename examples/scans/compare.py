@@ -51,15 +51,15 @@ def written(found):
         {
             "RH": f"{row.relative_humidity:g}",
             "l_s from scans [µm]": with_error(row.predicted_um, np.hypot(row.scans_se_um, row.simulation_se_um)),
-            "of it: scans": error_alone(row.scans_se_um),
-            "of it: simulation": error_alone(row.simulation_se_um),
+            "error due to scans": error_alone(row.scans_se_um),
+            "error due to simulation": error_alone(row.simulation_se_um),
             "l_s of the true surfaces [µm]": with_error(row.true_um, row.true_se_um),
             "difference in standard errors": number(row.errors_off, "+.1f"),
         }
         for row in found.itertuples()
     ]
     caption = (
-        "Crack length predicted from scans, ± standard error by the scans and by the simulation, and its true value."
+        "Crack length predicted from scans, ± standard error due to scans and to the simulation, and its true value."
     )
     return Table(found, caption, pd.DataFrame(rows))
 

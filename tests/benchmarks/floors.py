@@ -1,4 +1,4 @@
-"""Floors of the stages: the least work that gives the same result with the same algorithm and the same random numbers.
+"""Floors of the stages: work that the same algorithm with the same random numbers cannot avoid.
 
 Each function does this work and nothing else, compiled, on numbers of the same size. It leaves out what a stage does
 besides: a stage close to its floor cannot become much faster without other results.

@@ -74,7 +74,7 @@ def contact_rows():
             for number, side in enumerate((pair.beam, pair.substrate), 1):
                 floors.surface(side, stream(number, k))
 
-        yield side_by_side(f"contact of a pair of surfaces, {name}", contact, floor, 40)
+        yield side_by_side(f"contact of one sample, pair {name}", contact, floor, 40)
 
 
 def force_rows():

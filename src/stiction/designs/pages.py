@@ -125,7 +125,7 @@ _OF_BEAMS = {
         "What a length rests on: simulated beams alone; a line through the shortest 5 % of them, within what many more "
         "beams, tips and bridges on the surfaces of the paper's pair b confirmed; or that line beyond it."
     ),
-    "Saturated air": "Length that sticks where water fills all gaps: wetter air cannot hold shorter beams.",
+    "Saturated air": "Length that sticks where water fills all gaps: shorter beams do not stick at any humidity.",
 }
 _OF_CHARTS = {
     "Finite elements, power law": (

@@ -99,10 +99,10 @@ def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
     caption = (
         "Relative standard error of the mean adhesion energy ē due to the finite scans of measured surfaces, by what "
         "the scans measure (skewness and kurtosis with their correlation), and of the mean crack length l_s; the total "
-        "± its standard error by sampling. Needed: scans of each surface, the fewest in all, with which the error of ē "
-        f"is below {100 * GOAL:g} %. Last columns: change of ē if the measured surfaces had the other value of that "
-        "key, ± standard error by sampling and, for heights, by the scans, which measure the shape of the height "
-        "density less precisely than the moments."
+        "± its standard error due to sampling. Needed: scans of each surface, the fewest in all, with which the error "
+        f"of ē is below {100 * GOAL:g} %. Last columns: change of ē if the measured surfaces had the other value of "
+        "that key, ± standard error due to sampling and, for heights, to the scans, which measure the shape of the "
+        "height density less precisely than the moments."
     )
     return Table(frame, caption, pd.DataFrame([_cells(row) for row in frame.to_dict("records")]))
 

@@ -47,9 +47,9 @@ def table_3(
     frame = pd.DataFrame(rows)
     caption = (
         "Table III: crack length of the S-shaped beams, mean ± standard deviation over the beams; se: standard error of"
-        " the mean, over beams and sampled pairs of surfaces; deviations from the published and from the measured "
-        "length. Published bias: absolute deviation of the paper's model NG from the measured length, as the paper "
-        "states it. Γ: mean apparent adhesion energy of the S-shaped beams, Eq. (13); ē: mean energy of the samples; "
+        " the mean, over beams and samples; deviations from the published and from the measured length. Published "
+        "bias: absolute deviation of the paper's model NG from the measured length, as the paper states it. Γ: mean "
+        "apparent adhesion energy of the S-shaped beams, Eq. (13); ē: mean energy of the samples; "
         "cv(ē): their standard deviation over their mean. S/arc/free: shares of the end states of the beams; an arc is "
         "held by its tip alone. The share of arcs depends on the length of the strips and is no prediction."
     )
@@ -77,7 +77,7 @@ def _row_3(key, beams, forces, published):
 
 
 def _simulated(beams, forces):
-    """Crack length and energies of one case; errors are over beams and over the sampled pairs that all beams share."""
+    """Crack length and energies of one case; errors are over beams and over the samples that all beams share."""
     meso = stage_forces.energies(forces)
     quantities = {
         "crack_length": ("um", stuck_lengths(beams) / UM, CRACK_LENGTH_POWER),
@@ -207,7 +207,7 @@ def resampling(
     frame = pd.DataFrame([_row_resampling(key, beams[key], resampled[key]) for key in beams])
     caption = (
         "Effect of the chaos model on the crack length, model NG: mean under laws drawn from it, and under laws of the "
-        "sampled pairs themselves, drawn with replacement; ± standard error over beams."
+        "samples themselves, drawn with replacement; ± standard error over beams."
     )
     return Table(frame, caption, pd.DataFrame([_cells_resampling(row) for row in frame.itertuples()]))
 

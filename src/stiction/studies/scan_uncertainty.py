@@ -148,7 +148,7 @@ def layout(
     scans : sequence
         Number of scans of each surface.
     choices : dict
-        Choice to the relative change of ē and its standard error by sampling, (n_rh, 2) [-].
+        Choice to the relative change of ē and its standard error due to sampling, (n_rh, 2) [-].
     """
     total = found.parts[:, -1]
     pair, form = np.linalg.norm(total, axis=0), np.linalg.norm(found.form, axis=0)

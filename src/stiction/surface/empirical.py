@@ -20,7 +20,7 @@ _INTERVAL = 0.01
 class MeasuredDensity:
     """The `stiction.surface.translation.Density` of measured quantiles.
 
-    ASSUME: beyond the outermost quantiles that have enough of the scan beyond them, heights are straight lines in the
+    ASSUME: beyond the outermost quantiles that have enough of the scan beyond them, heights are linear in the
     score, with the slope of the last part.
     """
 
