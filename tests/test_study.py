@@ -125,3 +125,9 @@ def test_what_a_valid_configuration_allows_can_be_computed(extreme):
 def test_an_undefined_pair_is_reported_by_name():
     with pytest.raises(ValueError, match="there is no pair nope; the configuration has a, b, c"):
         PairStudy.of(CONFIG, "nope")
+
+
+@pytest.mark.parametrize("model", ["g", "gaussian", "GEO"])
+def test_an_unknown_model_of_the_heights_is_reported_with_those_that_exist(model):
+    with pytest.raises(ValueError, match=f"no model {model} of the heights; the models are G, NG"):
+        PairStudy.of(CONFIG, "b", model)

@@ -13,7 +13,7 @@ OF_MEASURED = ("rms", *(f"mode{k}" for k in range(2, 9)))
 SHIFTED = ("less", "more")
 #: Keys of a surface described by scans that choose how these are evaluated, and the two values of each.
 ALTERNATIVES_OF_SCANS = {"beyond": ("cut", "continued"), "heights": ("moments", "measured")}
-#: Side of the periodic fields on which spectra are estimated [m].
+#: Least side of the periodic fields on which spectra are estimated [m].
 FIELD = 10.24e-6
 
 

@@ -15,6 +15,7 @@ from stiction.config.cases import case_id
 from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.contact.pair import SurfacePair
+from stiction.models import SURFACE_MODELS
 from stiction.stages import beams, chaos, curves, forces, heights, identification, pairs, spectrum
 from stiction.stages import contact as stage_contact
 from stiction.stages.cantilevers import Cantilevers, cantilever
@@ -56,8 +57,10 @@ class PairStudy:
         Raises
         ------
         ValueError
-            If the configuration has no such pair.
+            If the configuration has no such pair, or the package no such model.
         """
+        if model not in SURFACE_MODELS:
+            raise ValueError(f"there is no model {model} of the heights; the models are {', '.join(SURFACE_MODELS)}")
         if name not in config["pairs"]:
             raise ValueError(f"there is no pair {name}; the configuration has {', '.join(config['pairs'])}")
         plan = Plan(config)

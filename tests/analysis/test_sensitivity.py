@@ -10,7 +10,7 @@ from stiction.analysis import sensitivity
 from stiction.contact.asperity import MaugisTable, reduced_modulus
 from stiction.contact.forcelaw import humid_curves, parametrise
 from stiction.contact.meniscus import film
-from stiction.contact.pair import SurfacePair, contact_of_samples
+from stiction.contact.pair import SurfacePair, contacts_of_samples
 from stiction.contact.vanderwaals import attraction
 from stiction.streams import stream
 from stiction.surface.field import RoughSurface, StripGrid
@@ -80,7 +80,7 @@ def energies(moments, seeds):
     underlying = underlying_spectrum(B2.spectrum, translation, GRID.spacing)[0]
     solid = MaugisTable(reduced_modulus(164e9, 0.23), attraction("water"))
     pair = SurfacePair(RoughSurface(underlying, translation, rms, GRID), SUB1.on(GRID), 5e-11, asperity=solid)
-    curves = contact_of_samples(pair, lambda k: (stream(k, "beam"), stream(k, "substrate")), seeds)
+    curves = contacts_of_samples([pair], lambda k: (stream(k, "beam"), stream(k, "substrate")), seeds)[0]
     starts = pair.distances.solid[0], pair.distances.bearing[0]
     return parametrise(*humid_curves(*curves, starts, pair.step, film(0.67, 300.0)), len(seeds))[0][:, 0]
 

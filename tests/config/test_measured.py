@@ -417,6 +417,12 @@ def test_a_configuration_without_scans_imports_nothing_of_them(tmp_path):
     assert not (tmp_path / "kept").exists()
 
 
+def test_numbers_that_cannot_be_kept_are_used_all_the_same(folder, tmp_path, monkeypatch):
+    (tmp_path / "kept").touch()  # no folder
+    monkeypatch.setattr(measured, "_KNOWN", {})
+    assert validate(configured(both(folder)[0]), kept=tmp_path / "kept")
+
+
 def test_another_version_of_the_library_reads_the_files_again(folder, monkeypatch):
     config = configured(both(folder)[0])
     validate(config)

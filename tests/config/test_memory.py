@@ -105,6 +105,10 @@ def test_joining_the_chunks_of_many_samples_takes_at_most_the_stated_memory_and_
     assert before + 0.5 * (stated - before) < used < stated
 
 
+#: Pairs that run: a smooth one, and with it the roughest one.
+RUNNING = ("[a]", "[a, c]")
+
+
 def test_the_roughest_pair_that_runs_determines_the_memory_of_the_samples():
     sizes = {
         pairs: memory.of_samples(changed(f"contact: {{samples: 100000}}\nrun: {{pairs: {pairs}}}"))
@@ -156,6 +160,18 @@ def test_a_job_that_draws_all_samples_holds_field_and_curves():
     assert stored == pytest.approx(2 * (memory.of_samples(plain) - 350), rel=0.02)
 
 
+def test_a_job_that_draws_samples_of_pairs_holds_the_curves_of_the_roughest_one_that_runs():
+    smooth, rough = (
+        changed(f"run: {{pairs: {pairs}}}\ncontact: {{samples: 100000, chunks: 100}}") for pairs in RUNNING
+    )
+    field = memory.of_field(2.5, 31, 5)
+    one = memory.of_drawn(rough, 100_000) - field
+    assert one == pytest.approx(2 * (memory.of_samples(rough) - 350), rel=0.02)
+    assert memory.of_drawn(rough, 100_000, contacts=3) - field == pytest.approx(3 * one, rel=1e-3)
+    assert memory.of_drawn(smooth, 100_000) < memory.of_drawn(rough, 100_000)
+    assert memory.of_drawn(rough, 500) == memory.USUAL
+
+
 def of_estimate(points, pixel, files, corner=12):
     return memory.of_estimate({"points": points, "pixel_nm": pixel, "corner_rad_per_um": corner}, files)
 
@@ -196,14 +212,34 @@ def test_the_transforms_are_those_of_the_evaluation():
     assert (memory._PERIOD, memory._TRANSFORMED) == (_PERIOD * _CORRELATED, _POINTS)
 
 
-#: Rules of jobs of devices that run on a cluster, and the name of the memory that they reserve.
-RESERVED = {"device_contact": "CONTACT", "cracks": "SAMPLES", "chart": "SAMPLES"}
-RESERVED |= {"budget": "lambda w, input: memory.of_budget(VIEW, len(input))"}
+#: Rules of jobs of devices that run on a cluster, and the memory that they reserve.
+OF_DEVICES = {"device_contact": "CONTACT", "cracks": "SAMPLES", "chart": "SAMPLES"}
+OF_DEVICES |= {"budget": "lambda w, input: memory.of_budget(VIEW, len(input))", "device_choice_summits": "MEMORY"}
+SHIFTS = "memory.of_contact(VIEW, contacts=len(SHIFTED))"
+OF_DEVICES |= {"device_slope_contact": SHIFTS, "tip_slope_contact": SHIFTS}
+#: The same for jobs that draw samples of pairs.
+OF_PAIRS = {
+    "contact_chunk": 'config["contact"]["samples"] / config["contact"]["chunks"]',
+    "sensitivity_contact": 'config["studies"]["sensitivity"]["samples"], '
+    "contacts=len(plan.shifted_moments) * len(SHIFTED)",
+    "slope_contact": 'config["studies"]["slopes"]["samples"], contacts=len(SHIFTED)',
+    "choice_contact": 'config["studies"]["slopes"]["samples"]',
+}
 
 
-@pytest.mark.parametrize(("rule", "reserved"), RESERVED.items())
-def test_rules_of_devices_reserve_memory_and_more_time_than_the_default(rule, reserved):
+def lines_of(rule):
+    """Text of a rule, with single spaces."""
     text = "".join(path.read_text(encoding="utf-8") for path in sorted((ROOT / "workflow" / "rules").glob("*.smk")))
-    (block,) = re.findall(rf"^rule {rule}:\n(.*?)^(?:rule|use rule) ", text, re.MULTILINE | re.DOTALL)
-    assert f"        mem_mb={reserved},\n" in block
-    assert "        runtime=120,\n" in block
+    head = rf"^(?:rule {rule}|use rule \w+ as {rule} with):\n"
+    (block,) = re.findall(rf"{head}(.*?)^(?:rule|use rule|def) ", text, re.MULTILINE | re.DOTALL)
+    return " ".join(block.split())
+
+
+@pytest.mark.parametrize(("rule", "reserved"), OF_DEVICES.items())
+def test_rules_of_devices_reserve_memory_and_more_time_than_the_default(rule, reserved):
+    assert f"resources: runtime=120, mem_mb={reserved}," in lines_of(rule)
+
+
+@pytest.mark.parametrize(("rule", "drawn"), OF_PAIRS.items())
+def test_rules_that_draw_samples_of_pairs_reserve_memory_for_them(rule, drawn):
+    assert f"memory.of_drawn(VIEW, {drawn})" in lines_of(rule).replace("( VIEW", "(VIEW").replace(" ),", "),")

@@ -15,7 +15,7 @@ from stiction.contact import forcelaw
 from stiction.contact.asperity import HertzAsperity, MaugisTable, hertz_force, reduced_modulus
 from stiction.contact.estimate import ProfileMoments, force_law, repulsion_and_attraction, solid_pressure
 from stiction.contact.meniscus import film
-from stiction.contact.pair import SurfacePair, contact_of_samples
+from stiction.contact.pair import SurfacePair, contacts_of_samples
 from stiction.contact.vanderwaals import attraction
 from stiction.stages import curves
 from stiction.streams import stream
@@ -87,7 +87,7 @@ def drawn(rms, medium):
     solid = HertzAsperity(POLYSILICON) if medium == "none" else MaugisTable(POLYSILICON, attraction(medium))
     pair = SurfacePair(dataclasses.replace(beam, rms=rms), substrate, 0.05e-9, asperity=solid)
     streams = [(stream(1, "beam", k), stream(1, "substrate", k)) for k in range(4)]
-    return pair, contact_of_samples(pair, streams.__getitem__, range(4))
+    return pair, contacts_of_samples([pair], streams.__getitem__, range(4))[0]
 
 
 @pytest.mark.parametrize("rms", [0.2e-9, 0.5e-9, 1.2e-9, 3.4e-9])

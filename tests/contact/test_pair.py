@@ -10,7 +10,7 @@ from scipy.stats import norm
 from standard_errors import ALLOWED, errors_off
 
 from stiction.contact.asperity import HertzAsperity, MaugisTable, hertz_force, reduced_modulus
-from stiction.contact.pair import DistanceGrid, SurfacePair, bearing_area, contact_of_samples, contacts_of_samples
+from stiction.contact.pair import DistanceGrid, SurfacePair, bearing_area, contacts_of_samples
 from stiction.contact.vanderwaals import attraction
 from stiction.streams import stream
 from stiction.surface import maxent
@@ -203,10 +203,10 @@ def test_one_bump_of_any_solid_is_the_exact_solution_however_deep(modulus, top):
 def test_rough_surfaces_have_a_contact_with_strong_and_with_weak_attraction(rms, constant):
     beam = dataclasses.replace(PAIR.beam, rms=rms)
     solid = MaugisTable(POLYSILICON, attraction("water", constant))
-    (pressure,), (area,) = contact_of_samples(
-        dataclasses.replace(PAIR, beam=beam, step=1e-9, asperity=solid), streams, [0]
-    )
-    hertz, _ = contact_of_samples(dataclasses.replace(PAIR, beam=beam, step=1e-9, asperity=NONE), streams, [0])
+    (pressure,), (area,) = contacts_of_samples(
+        [dataclasses.replace(PAIR, beam=beam, step=1e-9, asperity=solid)], streams, [0]
+    )[0]
+    hertz, _ = contacts_of_samples([dataclasses.replace(PAIR, beam=beam, step=1e-9, asperity=NONE)], streams, [0])[0]
     assert np.all(np.diff(area) <= 0)
     np.testing.assert_allclose(pressure[0], hertz[0, 0], rtol=0.05)
     assert np.all(pressure <= 1.0001 * hertz[0] + 1)
@@ -314,8 +314,8 @@ def test_equivalent_surface_is_the_sum_of_the_two_surfaces():
 
 
 def test_contact_of_a_sample_does_not_depend_on_the_samples_it_is_computed_with():
-    together = contact_of_samples(PAIR, streams, range(4))
-    apart = [contact_of_samples(PAIR, streams, chunk) for chunk in ([2, 3], [0, 1])]
+    together = contacts_of_samples([PAIR], streams, range(4))[0]
+    apart = [contacts_of_samples([PAIR], streams, chunk)[0] for chunk in ([2, 3], [0, 1])]
     for which in range(2):
         assert together[which].dtype == np.float32
         np.testing.assert_array_equal(together[which], np.concatenate([apart[1][which], apart[0][which]]))
@@ -328,7 +328,7 @@ def test_pairs_with_a_common_surface_have_the_contact_of_each_alone(shared):
     substrate = PAIR.substrate if shared else dataclasses.replace(PAIR.substrate)
     others = [dataclasses.replace(PAIR, beam=rougher, substrate=substrate), dataclasses.replace(HERTZ, every=2)]
     for pair, found in zip([PAIR, *others], contacts_of_samples([PAIR, *others], streams, range(3)), strict=True):
-        for curves, alone in zip(found, contact_of_samples(pair, streams, range(3)), strict=True):
+        for curves, alone in zip(found, contacts_of_samples([pair], streams, range(3))[0], strict=True):
             np.testing.assert_array_equal(curves, alone)
 
 

@@ -10,6 +10,8 @@ from beams import PAPER
 from numpy.testing import assert_allclose, assert_array_equal
 from vectors import sampled_vectors
 
+from stiction.beam.energy import arrest_length
+from stiction.beam.tension import release_rate
 from stiction.contact import forcelaw
 from stiction.designs import budget
 from stiction.designs.budget import Responses
@@ -114,6 +116,20 @@ def test_the_error_of_a_slope_contains_that_of_the_samples_that_all_beams_share(
     for case in (found, scattered):
         own, common = (log_slope(np.mean, *values, 0.2)[1] for values in (case.values, case.shared))
         assert_allclose(budget.slopes([INPUTS[0]], lambda _, case=case: case)[0, 1], np.hypot(own, 0.25 * common))
+
+
+def test_the_error_of_the_samples_moves_a_bridge_less_gently_than_a_beam_without_tension():
+    states = [replace(BASE, device=R1, contact=factor) for factor in (np.exp(-0.1), np.exp(0.1))]
+    mesh = replace(R1.beam, length=300e-6, elements=100)
+    found = budget.of_beams(states, mesh, strips=200, number=20, address=lambda k: stream(1, k))
+    found = replace(found, shared=found.shared * np.exp(np.random.default_rng(1).normal(size=found.shared.shape)))
+    own, common = (log_slope(np.mean, *values, 0.2)[1] for values in (found.values, found.shared))
+    crack, mean = R1.beam.gap * np.exp([-0.01, 0.01]), found.shared.mean()
+    crack = crack * arrest_length(mean, R1.beam) / R1.beam.gap
+    power = 0.02 / np.log(np.divide(*release_rate(crack, R1.beam)))
+    assert 0.27 < power < 0.5
+    ((_, error),) = budget.slopes([Input("energy", "energy", tuple(states), 0.2)], lambda _: found)
+    assert_allclose(np.sqrt(error**2 - own**2), power * common, rtol=0.1)
 
 
 def test_stoppers_share_no_samples_and_their_force_is_that_of_their_area():

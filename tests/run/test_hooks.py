@@ -354,6 +354,7 @@ def test_jobs_start_as_before_once_the_server_has_ended(monkeypatch):
     assert hooks.fork_jobs()
     PythonScript.execute_script(job, "job.py")
     assert started == [(job, "job.py", False)]
+    assert PythonScript.execute_script is execute_script  # the server is not tried again
 
 
 PLAIN = {"container_img": None, "conda_env": None, "env_modules": None, "shadow_dir": None, "bench_record": None}

@@ -8,11 +8,11 @@ from test_moments import CLOSED_FORM
 
 from stiction.estimates import mean_with_error
 from stiction.scans.levelling import Levelling, level
-from stiction.scans.model_scans import ModelScans, SurfaceModel, draw_model_scans, radius_and_density, summits_per_area
+from stiction.scans.model_scans import ModelScans, SurfaceModel, draw_model_scans, summits_of_map
 from stiction.scans.moments import moments, powers
 from stiction.scans.scan import Frame
 from stiction.streams import stream
-from stiction.surface.summits import find_summits
+from stiction.surface.summits import find_summits, radius_and_density
 
 B2 = SURFACES["B2"]
 FRAME = Frame((200, 200), (4e-6, 4e-6))
@@ -133,14 +133,14 @@ def test_summits_are_counted_per_area_where_pixels_are_square():
     z = MODEL.draw(stream(1, "model", 0))
     _, curvature, density = find_summits(z, 20e-9)
     np.testing.assert_allclose(
-        radius_and_density(summits_per_area(z, FRAME)), [1 / curvature.mean(), density], rtol=1e-12
+        radius_and_density(summits_of_map(z, FRAME)), [1 / curvature.mean(), density], rtol=1e-12
     )
-    assert np.isnan(summits_per_area(z, Frame((200, 200), (4e-6, 4.1e-6)))).all()
+    assert np.isnan(summits_of_map(z, Frame((200, 200), (4e-6, 4.1e-6)))).all()
 
 
 def test_a_map_without_summits_has_none_of_them_and_no_radius():
     slope = np.add.outer(np.arange(40.0), np.arange(40.0))
-    found = summits_per_area(slope, Frame((40, 40), (1e-6, 1e-6)))
+    found = summits_of_map(slope, Frame((40, 40), (1e-6, 1e-6)))
     np.testing.assert_array_equal(found, [0, 0])
     assert np.isnan(radius_and_density(found)).all()
 

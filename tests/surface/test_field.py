@@ -9,8 +9,9 @@ from standard_errors import ALLOWED, errors_off
 
 from stiction.streams import stream
 from stiction.surface.field import RoughSurface, StripGrid, add_heights, radial_periodogram
+from stiction.surface.maxent import GAUSSIAN
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum, autocovariance, correlation_length
-from stiction.surface.translation import LARGEST_SCORE, spectrum_of_heights
+from stiction.surface.translation import LARGEST_SCORE, Translation, spectrum_of_heights
 
 #: Whole periodic fields, without edges.
 FIELD = StripGrid(1.28e-6, 1.28e-6, SPACING, margin=0)
@@ -129,6 +130,24 @@ def test_spectrum_of_gaussian_surfaces_is_the_target_with_a_control_that_fails(s
     assert found[:, ~inside].max(initial=0) < 1e-9 * expected.max()  # single precision
     other = dataclasses.replace(surface.spectrum, corner=1.1 * surface.spectrum.corner)
     assert errors_off(found[:, inside], on_rings(other, FIELD)[inside]) > ALLOWED
+
+
+@pytest.mark.parametrize("points", [128, 101])
+def test_a_periodic_square_has_the_whole_spectrum_with_a_control_that_leaks(points):
+    side = points * SPACING
+    steep = CutoffSelfAffine(1e-32, 1e-40, 4 * 2 * np.pi / side, np.pi / SPACING)
+
+    def off(grid):
+        """Largest logarithm of the ratio of drawn spectra to the target below 0.9 of the Nyquist wave number."""
+        wavenumber, _ = radial_periodogram(np.zeros(grid.shape), SPACING)
+        inside = wavenumber < 0.9 * np.pi / SPACING
+        found = periodograms(RoughSurface(steep, Translation(GAUSSIAN), 1e-9, grid), 20).mean(axis=0)
+        return np.abs(np.log(found / on_rings(steep, grid)[: len(found)]))[inside].max()
+
+    grid = StripGrid.periodic(side, SPACING)
+    assert grid.shape == grid.field_shape
+    assert side < 1.001 * grid.length < 1.1 * side
+    assert off(grid) < 0.7 < 2 < off(StripGrid(side - 7 * SPACING, side - 7 * SPACING, SPACING, 7 * SPACING))
 
 
 @published

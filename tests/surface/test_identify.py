@@ -58,6 +58,13 @@ def test_no_isotropic_spectrum_has_the_summits_of_sub2():
     assert found.density / target.density > 1.1
 
 
+def test_patches_without_summits_are_refused_with_the_keys_that_help(monkeypatch):
+    target, translation = afm("B2")
+    monkeypatch.setattr(identification.RoughSurface, "draw", lambda surface, _: np.zeros(surface.grid.shape, "f4"))
+    with pytest.raises(ValueError, match=r"no patch has a summit: increase identification\.patch_um or decrease"):
+        identify(target, translation, GRID, partial(streams, patches=1), CONTROL)
+
+
 def test_a_search_that_does_not_converge_is_an_error(monkeypatch):
     monkeypatch.setattr(identification, "_MAX_EVALUATIONS", 2)
     target, translation = afm("B2")

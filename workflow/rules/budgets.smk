@@ -9,6 +9,9 @@ use rule slope_contact as device_slope_contact with:
         ),
     log:
         "results/logs/devices/contact/slopes/{pair}_{length}x{width}_{surface}_{quantity}.log",
+    resources:
+        runtime=120,
+        mem_mb=memory.of_contact(VIEW, contacts=len(SHIFTED)),
     params:
         settings=lambda w: jobs.device_slope_contact(plan, w.pair, w.length, w.width),
         code=code("slope_contact.py"),
@@ -39,7 +42,8 @@ use rule device_slope_contact as tip_slope_contact with:
     log:
         "results/logs/devices/contact/tips/slopes/{pair}_{length}x{width}_{surface}_{quantity}.log",
     resources:
-        mem_mb=memory.of_contact(VIEW, contacts=2),
+        runtime=120,
+        mem_mb=memory.of_contact(VIEW, contacts=len(SHIFTED)),
     params:
         settings=lambda w: jobs.tip_contact(plan, w.pair, w.length, w.width),
         code=code("slope_contact.py"),
@@ -78,6 +82,9 @@ use rule variant_summits as device_choice_summits with:
         "results/devices/contact/summits/{pair}_{length}x{width}_{variant}.nc",
     log:
         "results/logs/devices/contact/summits/{pair}_{length}x{width}_{variant}.log",
+    resources:
+        runtime=120,
+        mem_mb=MEMORY,
     params:
         settings=lambda w: jobs.device_choice_summits(plan, w.pair, w.length, w.width, w.variant),
         code=code("variant_summits.py"),

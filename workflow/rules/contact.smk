@@ -10,7 +10,7 @@ rule contact_chunk:
         "results/logs/contact/{pair}_{model}/{chunk}-of-{number}.log",
     resources:
         runtime=30,
-        mem_mb=MEMORY,
+        mem_mb=memory.of_drawn(VIEW, config["contact"]["samples"] / config["contact"]["chunks"]),
     params:
         settings=lambda w: jobs.contact(plan, w.pair),
         code=code("contact_chunk.py"),

@@ -11,7 +11,7 @@ rule slope_contact:
     log:
         "results/logs/studies/slopes/contact/{pair}_{surface}_{quantity}.log",
     resources:
-        mem_mb=MEMORY,
+        mem_mb=memory.of_drawn(VIEW, config["studies"]["slopes"]["samples"], contacts=len(SHIFTED)),
     params:
         settings=lambda w: jobs.slope_contact(plan, w.pair),
         code=code("slope_contact.py"),
@@ -50,7 +50,7 @@ rule choice_contact:
     log:
         "results/logs/studies/choices/{pair}_{choice}.log",
     resources:
-        mem_mb=MEMORY,
+        mem_mb=memory.of_drawn(VIEW, config["studies"]["slopes"]["samples"]),
     params:
         settings=lambda w: jobs.choice_contact(plan, w.pair),
         code=code("choice_contact.py"),

@@ -16,7 +16,9 @@ rule sensitivity_contact:
     priority: 1
     resources:
         runtime=30,
-        mem_mb=MEMORY,
+        mem_mb=memory.of_drawn(
+            VIEW, config["studies"]["sensitivity"]["samples"], contacts=len(plan.shifted_moments) * len(SHIFTED)
+        ),
     params:
         settings=lambda w: jobs.sensitivity_contact(plan, w.pair),
         code=code("sensitivity_contact.py"),

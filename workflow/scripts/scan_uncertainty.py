@@ -12,7 +12,8 @@ def main(job):
     slopes = load_named(job.input.slopes, "slopes", after_pair)
     estimates = load_named(job.input.estimates, "estimate")
     choices = load_named(job.input.choices, "contact", after_pair)
-    base = storage.load(job.input.base, "contact")
+    samples = max(choice.sizes["sample"] for choice in choices.values())
+    base = storage.load(job.input.base, "contact", sample=slice(samples))
     errors = scan_uncertainty.errors_by_surface(slopes, estimates)
     dataset = scan_uncertainty.compute(
         slopes, errors, base, choices, typed(scan_uncertainty.Settings, job.params.settings)

@@ -8,7 +8,7 @@ import numpy as np
 from stiction.beam import tension
 from stiction.beam.cantilever import Beam
 
-#: Power with which the crack length depends on the adhesion energy: l_s ~ Γ^(-1/4), Eq. (13).
+#: Power with which the crack length of a beam without tension depends on the adhesion energy: l_s ~ Γ^(-1/4), Eq. (13).
 CRACK_LENGTH_POWER = -1 / 4
 
 

@@ -35,7 +35,7 @@ class Equilibrium:
 
     deflection: np.ndarray  #: [u, u'] of every node, (elements + 1, 2) [m, -]
     imbalance: float  #: largest unbalanced force [N]
-    iterations: int  #: Newton steps
+    iterations: int  #: Newton steps, among them those that were rejected
 
 
 class _Mesh(NamedTuple):

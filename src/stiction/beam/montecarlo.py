@@ -76,6 +76,8 @@ def release_beam(experiment: Experiment, sample: int, rng: np.random.Generator) 
 
     Raises
     ------
+    ValueError
+        If the elements do not resolve a crack.
     NotConverged
         If no equilibrium is found.
     """
@@ -134,7 +136,7 @@ def columns(outcomes: Sequence[Outcome], shapes: int = 0) -> dict[str, np.ndarra
     -------
     dict of arrays
         ``sample``, ``state``, ``crack_length``, ``energy``, ``imbalance``, ``iterations``, each (n,), and
-        ``deflection`` (shapes, elements + 1).
+        ``deflection`` (shapes, elements + 1), or (0,) without shapes.
     """
     names = ("sample", "state", "crack_length", "energy", "imbalance", "iterations")
     arrays = {name: np.array([getattr(outcome, name) for outcome in outcomes]) for name in names}

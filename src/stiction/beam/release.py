@@ -48,7 +48,10 @@ def holding_load(beam: Beam, crack: float) -> float:
 
 
 def s_shape(beam: Beam, depth: float, crack: float) -> np.ndarray:
-    """Deflection under `holding_load` of a beam that touches down at ``depth`` [m]; (elements + 1, 2) [m, -]."""
+    """Deflection under `holding_load` of a beam that touches down at ``depth`` [m]; (elements + 1, 2) [m, -].
+
+    That of a beam without tension; for others it is where the search for the equilibrium starts.
+    """
     s = np.minimum(beam.nodes / crack, 1)
     return depth * np.stack([s**2 * (6 - 8 * s + 3 * s**2), 12 * s * (1 - s) ** 2 / crack], axis=-1)
 
@@ -87,7 +90,8 @@ def release(beam: Beam, laws: np.ndarray, start_crack: float) -> Equilibrium:
             return end
         start_crack /= 2
     raise ValueError(
-        f"elements of {beam.element_length:.3g} m do not resolve a crack of {start_crack:.3g} m: use more elements"
+        f"elements of {1e6 * beam.element_length:.3g} µm do not resolve a crack of {1e6 * start_crack:.3g} µm: use "
+        "more elements along the beam"
     )
 
 

@@ -77,7 +77,7 @@ def fit(vectors: np.ndarray, f_limit: float, order: int, tolerance: float) -> Ch
     Raises
     ------
     ValueError
-        If order or tolerance is out of range or a sample violates a constraint.
+        If order or tolerance is out of range, a sample violates a constraint, or components do not vary independently.
     """
     if not (1 <= order <= MAX_ORDER and tolerance >= 0):
         raise ValueError(f"need a total order in 1 ... {MAX_ORDER} and a tolerance >= 0, got {order}, {tolerance}")
@@ -113,7 +113,10 @@ def _accept(candidates: Callable[[int], tuple[np.ndarray, np.ndarray]], n: int) 
         missing -= int(good.sum())
         rejected += int((~good).sum())
         if rejected > 10 * n + 1000:
-            raise ValueError(f"{rejected} of {n - missing + rejected} vectors have no force law: the model is unusable")
+            raise ValueError(
+                f"{rejected} of {n - missing + rejected} vectors drawn from the model have no force law: use more "
+                "samples or a lower order of the polynomials"
+            )
     return kept[0] if len(kept) == 1 else np.concatenate([np.empty((0, 4)), *kept]), rejected
 
 
@@ -135,7 +138,7 @@ def draw(model: ChaosModel, n: int, rng: np.random.Generator) -> tuple[np.ndarra
     Raises
     ------
     ValueError
-        If nearly all vectors are rejected.
+        If more than ten times as many vectors are rejected as accepted.
     """
     return _accept(lambda k: _judged(_vectors(model, k, rng), model.f_limit), n)
 

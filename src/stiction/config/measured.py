@@ -5,6 +5,7 @@ question which studies are possible. They are kept by the content of the files, 
 process that checks the same configuration again does not read the files.
 """
 
+import contextlib
 import hashlib
 import json
 import math
@@ -18,7 +19,7 @@ from stiction.config.messages import Problem
 from stiction.config.units import NM_PER_UM, from_si, typed
 from stiction.errors import ScanError
 from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
-from stiction.run.atomic import save_text
+from stiction.run.atomic import DataError, save_text
 from stiction.run.fingerprint import fingerprint
 from stiction.run.provenance import version_of
 
@@ -159,8 +160,8 @@ def _evaluated(entry, section, kept):
         file = None if kept is None else Path(kept) / f"{key}.json"
         _KNOWN[key] = _read(file) or _preliminary(files, *settings)
         if file is not None and not file.exists():
-            file.parent.mkdir(parents=True, exist_ok=True)
-            save_text(json.dumps(_KNOWN[key]), file)
+            with contextlib.suppress(DataError):  # they are computed again, or another process keeps them
+                save_text(json.dumps(_KNOWN[key]), file)
     return _KNOWN[key]
 
 

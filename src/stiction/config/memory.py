@@ -73,10 +73,18 @@ def of_job(config: dict) -> int:
     return max(USUAL, round(_of_largest_field(config)))
 
 
+def of_drawn(config: dict, samples: float, contacts: int = 1) -> int:
+    """Memory to reserve for any job that draws samples of a pair and holds one or more contacts of them [MB]."""
+    return _of_drawn(config, config["run"]["pairs"], samples, contacts)
+
+
 def of_contact(config: dict, contacts: int = 1) -> int:
-    """Memory to reserve for any job that draws all samples of a device and holds one or more contacts of them [MB]."""
+    """As `of_drawn`, for all samples of a device."""
     pairs = [device["pair"] for device in config.get("devices", {}).values()]
-    samples = max(config["contact"]["samples"], config["design"]["beams"])
+    return _of_drawn(config, pairs, max(config["contact"]["samples"], config["design"]["beams"]), contacts)
+
+
+def _of_drawn(config, pairs, samples, contacts):
     # The curves of the samples are collected before they become one array.
     return max(USUAL, round(_of_largest_field(config) + 2 * contacts * samples * _stored(config, pairs)))
 

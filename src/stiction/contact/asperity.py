@@ -228,18 +228,21 @@ class MaugisTable:
 
     @cached_property
     def _branches(self):
-        return [maugis_branch(x) for x in self.rows]
+        """`snap_off` and `load`: one branch at a time, because a branch has three times as many points as its row."""
+        root, rows = np.linspace(*self.roots), []
+        for load, delta in map(maugis_branch, self.rows):
+            rows.append((delta[0], np.interp(root, np.sqrt(delta - delta[0]), load)))
+        return tuple(map(np.array, zip(*rows, strict=True)))
 
-    @cached_property
+    @property
     def snap_off(self) -> np.ndarray:
         """Interference δ̄_min of every tabulated λ, (n_λ,) [-]."""
-        return np.array([interference[0] for _, interference in self._branches])
+        return self._branches[0]
 
-    @cached_property
+    @property
     def load(self) -> np.ndarray:
         """Load P̄, (n_λ, n_root) [-]."""
-        root = np.linspace(*self.roots)
-        return np.array([np.interp(root, np.sqrt(delta - delta[0]), load) for load, delta in self._branches])
+        return self._branches[1]
 
     @property
     def scales(self) -> TableScales:

@@ -257,12 +257,12 @@ def parametrise(distance: np.ndarray, curve: Callable[[int], np.ndarray], sample
 
 
 def adhesion_energies(distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int) -> np.ndarray:
-    """Energies e of all sampled curves (m,) [J m⁻²]; parameters and errors as in `parametrise`."""
+    """Energies e of all sampled curves (m,) [J m⁻²]; parameters of `parametrise`, errors of `adhesion_energy`."""
     return _each_sample(lambda f: adhesion_energy(distance, f), curve, samples)
 
 
 def pull_offs(distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int) -> np.ndarray:
-    """Largest attraction f_max of all sampled curves (m,) [Pa]; parameters and errors as in `parametrise`."""
+    """Largest attraction f_max of all sampled curves (m,) [Pa]; parameters of `parametrise`, errors of `extremum`."""
     return _each_sample(lambda f: extremum(distance, f)[1], curve, samples)
 
 

@@ -158,24 +158,15 @@ def _cells_below(heights, step, below, above, cells):
         cells[j] = np.int32(cell) + np.int32(below + 1)
 
 
-def contact_of_samples(
-    pair: SurfacePair,
-    streams: Callable[[int], tuple[np.random.Generator, np.random.Generator]],
-    samples: Iterable[int],
-) -> tuple[np.ndarray, np.ndarray]:
-    """Contact of numbered samples: (n, n_solid) pressures [Pa] and (n, n_bearing) areas [-], both float32.
-
-    ``streams(k)`` returns the streams of the two surfaces of sample k; its result does not depend on other samples.
-    """
-    return contacts_of_samples([pair], streams, samples)[0]
-
-
 def contacts_of_samples(
     pairs: Sequence[SurfacePair],
     streams: Callable[[int], tuple[np.random.Generator, np.random.Generator]],
     samples: Iterable[int],
 ) -> list[tuple[np.ndarray, np.ndarray]]:
-    """As `contact_of_samples`, for several pairs with the same random numbers.
+    """Contact of numbered samples of several pairs with the same random numbers.
+
+    For each pair (n, n_solid) pressures [Pa] and (n, n_bearing) areas [-], both float32. ``streams(k)`` returns the
+    streams of the two surfaces of sample k; its result does not depend on other samples.
 
     A surface that is the same object in several pairs is drawn once for all of them.
     """
@@ -189,7 +180,7 @@ def contacts_of_samples(
 
 def _drawn(pairs, streams, sample):
     """Equivalent surface of one sample of each pair."""
-    if len(pairs) == 1:
+    if len(pairs) == 1:  # the second surface is added in place, which needs no array of its heights
         yield pairs[0].draw(*streams(sample))
         return
     strips = {}

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
-from stiction.beam.energy import CRACK_LENGTH_POWER
+from stiction.beam.energy import arrest_length
 from stiction.beam.montecarlo import Experiment, columns, simulate
 from stiction.beam.release import EndState
 from stiction.contact import forcelaw
@@ -37,6 +37,7 @@ class Responses:
     values: np.ndarray  #: (states, devices); infinite where a beam has no S-shaped crack
     centre: Callable[[np.ndarray], float]  #: the number that stands for all devices of a state
     shared: np.ndarray | None = None  #: adhesion energies of the samples that all beams share (states, m) [J m⁻²]
+    length: Callable[[np.ndarray], float] | None = None  #: crack length on the mean of these energies [m]
 
 
 #: Devices at several states.
@@ -140,7 +141,12 @@ def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, addr
 
     values = np.array([cracks(state, of_state) for state, of_state in zip(states, laws, strict=True)])
     # Some lengths may not be known.
-    return Responses(values, np.mean if np.isfinite(values).all() else np.median, forcelaw.energy(np.array(laws)))
+    centre = np.mean if np.isfinite(values).all() else np.median
+    beam = states[0].device.beam
+    # ASSUME: lengths follow the mean energy of the samples as in Eq. (13), as far as the error of these is concerned.
+    return Responses(
+        values, centre, forcelaw.energy(np.array(laws)), lambda energies: arrest_length(energies.mean(), beam)
+    )
 
 
 def shared_laws(found: Sequence[tuple[np.ndarray, float]]) -> list[np.ndarray]:
@@ -181,9 +187,7 @@ def _slope(found, step):
     value, own = log_slope(found.centre, *found.values, step)
     if found.shared is None:
         return value, own
-    _, common = log_slope(np.mean, *found.shared, step)
-    # ASSUME: lengths follow the mean energy of the samples as in Eq. (13), as far as the error of these is concerned.
-    return value, np.hypot(own, CRACK_LENGTH_POWER * common)
+    return value, np.hypot(own, log_slope(found.length, *found.shared, step)[1])
 
 
 def effect(base: State, changed: State, respond: Respond) -> tuple[float, float]:

@@ -84,7 +84,7 @@ class Server:
                 socket.send_fds(self._requests, [os.fsencode(script)], [theirs.fileno()])
             status = reply.recv(64)
         if not status:
-            raise ConnectionError("the server of jobs ended")
+            raise ConnectionError("the server of jobs ended while a script was running: perhaps the memory was full")
         return int(status)
 
     def close(self) -> None:

@@ -50,8 +50,13 @@ def fork_jobs() -> bool:
         return _refused(str(error))
 
     def execute_script(script, fname, edit=False):
-        if not (_plain(script, server) and _run(server, fname)):
-            start(script, fname, edit)
+        if _plain(script, server):
+            try:
+                return _run(server, fname)
+            except BrokenPipeError:
+                PythonScript.execute_script = start
+                _refused("the server of jobs was stopped")
+        return start(script, fname, edit)
 
     PythonScript.execute_script = execute_script
     return True
@@ -64,14 +69,9 @@ def _refused(reason):
 
 
 def _run(server, script):
-    """Run a script as a fork; returns whether the server was there to run it, and raises the errors of Snakemake."""
-    try:
-        status = server.run(script)
-    except BrokenPipeError:
-        return _refused("the server of jobs was stopped")
-    if status:
+    """Run a script as a fork; raises the errors of Snakemake."""
+    if status := server.run(script):
         raise subprocess.CalledProcessError(status, f"{sys.executable} {script}")
-    return True
 
 
 def _plain(script, server):

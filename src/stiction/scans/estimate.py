@@ -14,12 +14,7 @@ from stiction.errors import NotConverged, ScanError
 from stiction.estimates import jackknife
 from stiction.scans import periodogram as spectra
 from stiction.scans.levelling import Levelling, level, line_jump
-from stiction.scans.model_scans import (
-    SurfaceModel,
-    draw_model_scans,
-    radius_and_density,
-    summits_per_area,
-)
+from stiction.scans.model_scans import SurfaceModel, draw_model_scans, summits_of_map
 from stiction.scans.moments import homogeneity, moments, powers, tile_errors, tiles
 from stiction.scans.periodogram import Periodogram, Rings
 from stiction.scans.quantiles import (
@@ -40,6 +35,7 @@ from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import LARGEST_DISTANCE_OF_SCANS
 from stiction.surface.maxent import HeightDensity
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
+from stiction.surface.summits import radius_and_density
 
 #: Fewest wavelengths of the corner along a scan: for a plateau at all, and for reliable errors.
 FEWEST_WAVELENGTHS, ENOUGH_WAVELENGTHS = 4, 10
@@ -318,7 +314,7 @@ def _summits(found, drawn):
     """Summits of the scans, with errors by tiles, and of the model scans."""
     count = found.settings.tiles
     per_tile = [
-        summits_per_area(tile, _tile_frame(found.frame, tile)) for z in found.levelled for tile in tiles(z, count)
+        summits_of_map(tile, _tile_frame(found.frame, tile)) for z in found.levelled for tile in tiles(z, count)
     ]
     values, errors = jackknife(radius_and_density, np.array(per_tile))
     modelled, error = jackknife(radius_and_density, drawn.summits)

@@ -15,7 +15,7 @@ from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.field import RoughSurface, StripGrid
 from stiction.surface.maxent import HeightDensity
 from stiction.surface.spectrum import Spectrum, TabulatedSpectrum
-from stiction.surface.summits import find_summits
+from stiction.surface.summits import summits_per_area
 from stiction.surface.translation import Translation, underlying_spectrum
 
 #: Period of the transforms from the heights to the underlying Gaussian field over the correlation; least and largest
@@ -93,7 +93,7 @@ class ModelScans:
     influence: np.ndarray  #: means of the influence functions over the scans before levelling; expectation 0, (n, 3)
     quantiles: np.ndarray  #: at `stiction.scans.quantiles.SCORES`, (n, 49)
     levelled_off: np.ndarray  #: change of the quantiles by levelling, (n, 49)
-    summits: np.ndarray  #: `summits_per_area`, (n, 2)
+    summits: np.ndarray  #: `summits_of_map`, (n, 2)
 
     def bias(self, truth: np.ndarray, scans: int) -> np.ndarray:
         """Bias of the moments of ``scans`` scans by levelling and finite size, (3,).
@@ -125,20 +125,12 @@ def draw_model_scans(model: SurfaceModel, levelling: Levelling, rngs: Iterable[n
                 influence(powers(raw) / model.rms ** np.arange(1, 5), *model.moments[1:]),
                 heights,
                 heights - quantiles([raw]),
-                summits_per_area(levelled, model.frame),
+                summits_of_map(levelled, model.frame),
             )
         )
     return ModelScans(*map(np.array, zip(*rows, strict=True)))
 
 
-def summits_per_area(heights: np.ndarray, frame: Frame) -> np.ndarray:
-    """Number and total curvature of the summits per area, (2,) [m⁻²], [m⁻³]; ``nan`` if pixels are not square."""
-    if not frame.square:
-        return np.full(2, np.nan)
-    _, curvature, density = find_summits(heights, frame.pixel[0])
-    return np.array([density, density * curvature.mean()]) if len(curvature) else np.zeros(2)
-
-
-def radius_and_density(per_area: np.ndarray) -> np.ndarray:
-    """Radius 1 / mean curvature [m] and density [m⁻²] of summits from `summits_per_area`, (2,); ``nan`` without any."""
-    return np.array([per_area[0] / per_area[1], per_area[0]]) if per_area[1] > 0 else np.full(2, np.nan)
+def summits_of_map(heights: np.ndarray, frame: Frame) -> np.ndarray:
+    """`summits_per_area` of a map, (2,) [m⁻²], [m⁻³]; ``nan`` if its pixels are not square."""
+    return summits_per_area(heights, frame.pixel[0]) if frame.square else np.full(2, np.nan)

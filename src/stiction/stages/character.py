@@ -54,7 +54,7 @@ def compute(heights: xr.Dataset, spectrum: xr.Dataset, surface: str, model: str,
     grid = settings.sampling.strips(settings.beam.width)
     drawn = rough_surface(heights, spectrum, model, grid)
     strips, summits = _strips(drawn, surface, settings)
-    field = rough_surface(heights, spectrum, model, StripGrid(FIELD, FIELD, grid.spacing, margin=0.0))
+    field = rough_surface(heights, spectrum, model, StripGrid.periodic(FIELD, grid.spacing))
     fields = [field.draw(stream(settings.seed, "character", surface, "field", k)) for k in range(_FIELDS)]
     wavenumbers, densities = zip(*(radial_periodogram(z, grid.spacing) for z in fields), strict=True)
     patch = grid.spacing, fields[0][:_PATCH, :_PATCH]

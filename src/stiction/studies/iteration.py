@@ -47,7 +47,7 @@ def compute(heights: xr.Dataset, spectrum: xr.Dataset, surface: str, settings: S
     """
     target, wanted = parameters.spectrum_of(spectrum), settings.iteration
     translation = Translation(density(heights, "NG"))
-    grid = StripGrid(FIELD, FIELD, settings.spacing, margin=0.0)
+    grid = StripGrid.periodic(FIELD, settings.spacing)
     steps = iterate(target, translation, grid, wanted.fields, stream(settings.seed, "iteration", surface))
     kept = list(progress(islice(steps, wanted.iterations), "iterations", total=wanted.iterations))
     underlying, periodograms = (np.array(column) for column in zip(*kept, strict=True))

@@ -27,6 +27,12 @@ class StripGrid:
                 f"need 0 < spacing <= strip, got {self.spacing:.3g} and {self.length:.3g} x {self.width:.3g} m"
             )
 
+    @classmethod
+    def periodic(cls, side: float, spacing: float) -> "StripGrid":
+        """Square of about a side [m] that is a whole period, so that its spectrum has no leakage."""
+        length = fft.next_fast_len(round(side / spacing), real=True) * spacing
+        return cls(length, length, spacing, margin=0.0)
+
     @property
     def shape(self) -> tuple[int, int]:
         """Points of the strip (along the beam, across)."""

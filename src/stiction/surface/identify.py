@@ -10,7 +10,7 @@ from stiction.errors import NotConverged
 from stiction.estimates import jackknife
 from stiction.surface.field import RoughSurface, StripGrid
 from stiction.surface.spectrum import CutoffSelfAffine, NayakSummits
-from stiction.surface.summits import find_summits
+from stiction.surface.summits import radius_and_density, summits_per_area
 from stiction.surface.translation import TranslationMap, underlying_spectrum
 
 #: Range of the search: exponent of the power law, with its sign reversed, and corner relative to the cut-off [-].
@@ -80,6 +80,8 @@ def identify(
     ------
     NotConverged
         If the search does not converge.
+    ValueError
+        If no patch of a trial has a summit.
     """
 
     def simulated(parameters, streams):
@@ -92,7 +94,7 @@ def identify(
     def misfit(parameters):
         key = tuple(parameters)
         if key not in known:
-            radius, density = _radius_and_density(simulated(parameters, rngs()).mean(axis=0))
+            radius, density = radius_and_density(simulated(parameters, rngs()).mean(axis=0))
             known[key] = np.log([radius / target.mean_radius, density / target.density])
         return known[key]
 
@@ -104,7 +106,7 @@ def identify(
     fit = least_squares(misfit, _start(target), slopes, bounds, xtol=_TOLERANCE, max_nfev=_MAX_EVALUATIONS)
     if not fit.success:
         raise NotConverged("identified spectrum, gradient of the misfit", fit.optimality, _TOLERANCE, fit.nfev)
-    values, errors = jackknife(_radius_and_density, simulated(fit.x, control()))
+    values, errors = jackknife(radius_and_density, simulated(fit.x, control()))
     return Identification(_spectrum(fit.x, target), len(known), *map(float, (*values, *errors)))
 
 
@@ -140,12 +142,7 @@ def _summits_per_area(surface, spacing, streams):
     every = round(spacing / surface.grid.spacing)
     rows = []
     for rng in streams:
-        _, curvature, density = find_summits(surface.draw(rng)[::every, ::every], spacing)
-        rows.append((density, density * curvature.mean()))
+        rows.append(summits_per_area(surface.draw(rng)[::every, ::every], spacing))
+    if not np.any(rows):
+        raise ValueError("no patch has a summit: increase identification.patch_um or decrease character.spacing_nm")
     return np.array(rows)
-
-
-def _radius_and_density(per_area):
-    """Radius 1 / mean curvature [m] and density [m⁻²] from number and total curvature of summits per area, (2,)."""
-    density, curvature = per_area
-    return np.array([density / curvature, density])

@@ -44,7 +44,7 @@ def iterate(
     translation : TranslationMap
         Eq. (5).
     grid : StripGrid
-        Periodic square without margin.
+        `StripGrid.periodic`.
     fields : int
         Number of new fields drawn for each estimate s_Z^(i).
     rng : numpy.random.Generator

@@ -169,7 +169,10 @@ def correlation_length(spectrum: Spectrum, threshold: float = 0.01, reach: float
     covariance = autocovariance(spectrum, lag, panels=1500)
     last = np.flatnonzero(covariance >= threshold * covariance[0])[-1]
     if last == len(lag) - 1:
-        raise ValueError(f"heights {lag[-1]:.3g} m apart are still correlated by {threshold:g} or more: increase reach")
+        raise ValueError(
+            f"heights {1e6 * lag[-1]:.3g} µm apart, {reach:g} wavelengths of the corner of their spectrum, are still "
+            f"correlated by {threshold:g} or more"
+        )
     return float(lag[last])
 
 

@@ -61,3 +61,18 @@ def find_summits(heights: np.ndarray, spacing: float) -> tuple[np.ndarray, np.nd
     height, curvature = np.empty(inner), np.empty(inner)
     count = _collect(z, spacing, height, curvature)
     return height[:count].copy(), curvature[:count].copy(), count / (inner * spacing**2)
+
+
+def summits_per_area(heights: np.ndarray, spacing: float) -> np.ndarray:
+    """Number and total curvature of the summits of a surface per area, (2,) [m⁻²], [m⁻³]; arguments of `find_summits`.
+
+    Unlike the mean curvature, both are known without a summit, and their means over surfaces have no bias.
+    """
+    _, curvature, density = find_summits(heights, spacing)
+    return np.array([density, density * curvature.mean()]) if len(curvature) else np.zeros(2)
+
+
+def radius_and_density(per_area: np.ndarray) -> np.ndarray:
+    """Radius 1 / mean curvature [m] and density [m⁻²] of summits from `summits_per_area`, (2,); ``nan`` without any."""
+    number, curvature = per_area
+    return np.array([number / curvature, number]) if curvature > 0 else np.full(2, np.nan)
