@@ -132,5 +132,5 @@ def draw_model_scans(model: SurfaceModel, levelling: Levelling, rngs: Iterable[n
 
 
 def summits_of_map(heights: np.ndarray, frame: Frame) -> np.ndarray:
-    """`summits_per_area` of a map, (2,) [m⁻²], [m⁻³]; ``nan`` if its pixels are not square."""
+    """Summits per area of a map, see `stiction.surface.summits.summits_per_area`, (2,) [m⁻²], [m⁻³]; ``nan`` if its pixels are not square."""
     return summits_per_area(heights, frame.pixel[0]) if frame.square else np.full(2, np.nan)

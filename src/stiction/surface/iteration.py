@@ -44,7 +44,7 @@ def iterate(
     translation : TranslationMap
         Eq. (5).
     grid : StripGrid
-        `StripGrid.periodic`.
+        `stiction.surface.field.StripGrid.periodic`.
     fields : int
         Number of new fields drawn for each estimate s_Z^(i).
     rng : numpy.random.Generator
