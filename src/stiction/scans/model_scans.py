@@ -132,5 +132,8 @@ def draw_model_scans(model: SurfaceModel, levelling: Levelling, rngs: Iterable[n
 
 
 def summits_of_map(heights: np.ndarray, frame: Frame) -> np.ndarray:
-    """Summits per area of a map, see `stiction.surface.summits.summits_per_area`, (2,) [m⁻²], [m⁻³]; ``nan`` if its pixels are not square."""
+    """Summits of a map per area, (2,) [m⁻²], [m⁻³], from `stiction.surface.summits.summits_per_area`.
+
+    They are ``nan`` if the pixels of the map are not square.
+    """
     return summits_per_area(heights, frame.pixel[0]) if frame.square else np.full(2, np.nan)
