@@ -12,7 +12,7 @@ from stiction.estimates import mean_with_error
 from stiction.streams import stream
 from stiction.surface.field import StripGrid
 from stiction.surface.spectrum import NayakSummits, autocovariance
-from stiction.surface.summits import find_summits
+from stiction.surface.summits import find_summits, radius_and_density, summits_per_area
 
 #: Table I, column Sim-G: mean summit radius [µm] and summit density [µm⁻²] as published, and from an independent
 #: implementation of these model choices: heights every 20 nm, eight neighbours, radius = 1 / mean curvature.
@@ -185,3 +185,9 @@ def test_density_counts_only_points_with_eight_neighbours_with_a_control_that_fa
     density = np.array([find_summits(z, UNIT)[2] for z in noise])
     assert errors_off(density, 1 / 9) < ALLOWED
     assert errors_off(density * (28 / 30) ** 2, 1 / 9) > ALLOWED
+
+
+def test_a_slope_has_no_summits_and_no_radius():
+    slope = np.add.outer(np.arange(8.0), np.arange(8.0))
+    np.testing.assert_array_equal(summits_per_area(slope, 1e-9), [0, 0])
+    assert np.isnan(radius_and_density(np.zeros(2))).all()
