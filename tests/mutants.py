@@ -222,6 +222,7 @@ MUTANTS = {
     "surface.iteration": [
         ("spectrum.density * wanted / periodograms", "spectrum.density * periodograms"),
         ("(square.sum() * step**2)", "square.sum()"),
+        ("if grid.shape != grid.field_shape:", "if False:"),
         ("np.sqrt(2 / np.pi /", "np.sqrt(2 /"),
     ],
     "scans.scan": [
@@ -1602,6 +1603,7 @@ MUTANTS = {
         ("100 * error / target", "100 * value / target"),
         ("spectrum.density, {", "2 * spectrum.density, {"),
         ("µm for the spectrum {source}", "µm"),
+        ("({error}) for the spectrum {source}", "({error})"),
     ],
     "stages.character": [
         ("[::every, ::every]", "[::every, :]"),

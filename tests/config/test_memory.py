@@ -212,6 +212,42 @@ def test_the_transforms_are_those_of_the_evaluation():
     assert (memory._PERIOD, memory._TRANSFORMED) == (_PERIOD * _CORRELATED, _POINTS)
 
 
+HOLDING = """
+import sys
+import yaml
+from stiction.config import jobs
+from stiction.config.plan import Plan
+from stiction.config.units import typed
+from stiction.run.logs import peak_memory
+from stiction.stages import contact, heights, spectrum
+
+plan, surfaces = Plan(yaml.safe_load(sys.stdin)), []
+for name in plan.sides("b"):
+    density = heights.compute(typed(heights.Settings, jobs.heights(plan, name)))
+    surfaces.append((density, spectrum.compute(density, None, typed(spectrum.Settings, jobs.spectrum(plan, name)))))
+settings = typed(contact.Settings, jobs.contact(plan, "b"))
+alternatives = [surfaces] * int(sys.argv[1])
+contact.compute_each(alternatives, "b", "NG", settings, range(settings.contact.samples // 2))
+before = peak_memory()
+contact.compute_each(alternatives, "b", "NG", settings)
+print(before, peak_memory())
+"""
+
+
+def test_more_samples_of_a_rough_pair_add_at_most_the_stated_memory_and_at_least_half_of_it():
+    rough = changed(
+        "surfaces: {B2: {rms_nm: 15}, Sub1: {rms_nm: 15}}\ncontact: {samples: 400}\nrun: {pairs: [b]}\n"
+        "sampling: {strip_length_um: 0.6}\nbeam: {width_um: 0.9}"
+    )
+    contacts, samples = 8, rough["contact"]["samples"]
+    # What is stated for so many samples is linear in their number: no other job of the study is as large.
+    stated = memory.of_drawn(rough, 100 * samples, contacts) - memory.of_drawn(rough, 50 * samples, contacts)
+    words = [sys.executable, "-c", HOLDING, str(contacts)]
+    done = subprocess.run(words, input=yaml.safe_dump(rough), text=True, capture_output=True, check=True)
+    of_half, of_all = map(float, done.stdout.split())
+    assert 0.5 * stated / 100 < of_all - of_half < stated / 100
+
+
 #: Rules of jobs of devices that run on a cluster, and the memory that they reserve.
 OF_DEVICES = {"device_contact": "CONTACT", "cracks": "SAMPLES", "chart": "SAMPLES"}
 OF_DEVICES |= {"budget": "lambda w, input: memory.of_budget(VIEW, len(input))", "device_choice_summits": "MEMORY"}

@@ -124,8 +124,7 @@ def test_the_error_of_the_samples_moves_a_bridge_less_gently_than_a_beam_without
     found = budget.of_beams(states, mesh, strips=200, number=20, address=lambda k: stream(1, k))
     found = replace(found, shared=found.shared * np.exp(np.random.default_rng(1).normal(size=found.shared.shape)))
     own, common = (log_slope(np.mean, *values, 0.2)[1] for values in (found.values, found.shared))
-    crack, mean = R1.beam.gap * np.exp([-0.01, 0.01]), found.shared.mean()
-    crack = crack * arrest_length(mean, R1.beam) / R1.beam.gap
+    crack = arrest_length(found.shared.mean(), R1.beam) * np.exp([-0.01, 0.01])
     power = 0.02 / np.log(np.divide(*release_rate(crack, R1.beam)))
     assert 0.27 < power < 0.5
     ((_, error),) = budget.slopes([Input("energy", "energy", tuple(states), 0.2)], lambda _: found)

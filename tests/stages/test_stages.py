@@ -148,6 +148,16 @@ def test_an_identified_spectrum_is_used_for_strips_longer_than_its_correlation()
                 spectrum.refuse_misuse(identified(corner=corner), use)
 
 
+def test_heights_that_never_become_uncorrelated_are_reported_with_surface_source_and_remedy():
+    wavenumber = np.array([0.99e7, 1e7, 1.01e7])
+    wave = TabulatedSpectrum(wavenumber, np.array([0.0, 1e-32, 0.0]), 1.01e7)
+    message = (
+        r"surface B2 has no correlation length \(heights .* µm apart.*\) for the spectrum from a.spm; psd: fitted has"
+    )
+    with pytest.raises(ValueError, match=message):
+        parameters.refuse_long_correlation("B2", wave, {"sampling.margin_um": 1e-6}, "from a.spm")
+
+
 def test_a_patch_is_longer_than_the_correlation_of_the_identified_spectrum(monkeypatch):
     settings = small.settings_of(identification, jobs.identification(small.PLAN, "B2"))
     wide = Identification(CutoffSelfAffine(1e-30, 1e-38, 1e6, 138e6), 9, 4e-7, 7e13, 1e-9, 1e12)

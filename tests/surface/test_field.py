@@ -138,16 +138,14 @@ def test_a_periodic_square_has_the_whole_spectrum_with_a_control_that_leaks(poin
     steep = CutoffSelfAffine(1e-32, 1e-40, 4 * 2 * np.pi / side, np.pi / SPACING)
 
     def off(grid):
-        """Largest logarithm of the ratio of drawn spectra to the target below 0.9 of the Nyquist wave number."""
-        wavenumber, _ = radial_periodogram(np.zeros(grid.shape), SPACING)
-        inside = wavenumber < 0.9 * np.pi / SPACING
-        found = periodograms(RoughSurface(steep, Translation(GAUSSIAN), 1e-9, grid), 20).mean(axis=0)
-        return np.abs(np.log(found / on_rings(steep, grid)[: len(found)]))[inside].max()
+        found = periodograms(RoughSurface(steep, Translation(GAUSSIAN), 1e-9, grid), 100)
+        inside = slice(0, int(0.9 * found.shape[1]))  # single precision limits the spectrum in the corners
+        return errors_off(found[:, inside], on_rings(steep, grid)[: found.shape[1]][inside])
 
     grid = StripGrid.periodic(side, SPACING)
     assert grid.shape == grid.field_shape
     assert side < 1.001 * grid.length < 1.1 * side
-    assert off(grid) < 0.7 < 2 < off(StripGrid(side - 7 * SPACING, side - 7 * SPACING, SPACING, 7 * SPACING))
+    assert off(grid) < ALLOWED < off(StripGrid(side - 7 * SPACING, side - 7 * SPACING, SPACING, 7 * SPACING))
 
 
 @published

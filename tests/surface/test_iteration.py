@@ -94,3 +94,10 @@ def test_misfit_of_a_factor_is_its_logarithm():
 def test_sampling_misfit_falls_with_the_root_of_the_number_of_fields():
     periodograms = stream(3).exponential(size=(400, 300))
     assert sampling_misfit(periodograms[:100]) / sampling_misfit(periodograms) == pytest.approx(2, rel=0.05)
+
+
+def test_a_strip_that_is_no_whole_period_is_refused():
+    side = 101 * 10e-9
+    assert target_rings(TARGET, StripGrid.periodic(side, 10e-9))[0][0] > 0
+    with pytest.raises(ValueError, match=r"\(101, 101\) points is cut from .*: use StripGrid.periodic"):
+        target_rings(TARGET, StripGrid(side, side, 10e-9, margin=0.0))

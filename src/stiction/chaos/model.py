@@ -114,8 +114,8 @@ def _accept(candidates: Callable[[int], tuple[np.ndarray, np.ndarray]], n: int) 
         rejected += int((~good).sum())
         if rejected > 10 * n + 1000:
             raise ValueError(
-                f"{rejected} of {n - missing + rejected} vectors drawn from the model have no force law: use more "
-                "samples or a lower order of the polynomials"
+                f"{rejected} of {n - missing + rejected} vectors drawn from the model have no force law, a_right <= 0: "
+                "most samples have none either, or they are too few for chaos.order"
             )
     return kept[0] if len(kept) == 1 else np.concatenate([np.empty((0, 4)), *kept]), rejected
 

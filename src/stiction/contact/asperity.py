@@ -227,7 +227,7 @@ class MaugisTable:
         return np.hstack([low * ratio ** np.arange(-below, 0.0), inner, high * ratio ** np.arange(1.0, above + 1)])
 
     @cached_property
-    def _branches(self):
+    def _tabulated(self):
         """`snap_off` and `load`: one branch at a time, because a branch has three times as many points as its row."""
         root, rows = np.linspace(*self.roots), []
         for load, delta in map(maugis_branch, self.rows):
@@ -237,12 +237,12 @@ class MaugisTable:
     @property
     def snap_off(self) -> np.ndarray:
         """Interference δ̄_min of every tabulated λ, (n_λ,) [-]."""
-        return self._branches[0]
+        return self._tabulated[0]
 
     @property
     def load(self) -> np.ndarray:
         """Load P̄, (n_λ, n_root) [-]."""
-        return self._branches[1]
+        return self._tabulated[1]
 
     @property
     def scales(self) -> TableScales:

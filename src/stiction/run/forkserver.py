@@ -84,7 +84,10 @@ class Server:
                 socket.send_fds(self._requests, [os.fsencode(script)], [theirs.fileno()])
             status = reply.recv(64)
         if not status:
-            raise ConnectionError("the server of jobs ended while a script was running: perhaps the memory was full")
+            raise ConnectionError(
+                "the server of jobs ended while a script was running. If the memory was full, run fewer jobs at a "
+                "time, for example with ARGS='--cores 1'"
+            )
         return int(status)
 
     def close(self) -> None:

@@ -41,10 +41,17 @@ def refuse_long_correlation(
 ) -> None:
     """Raise a ValueError if the heights are correlated over any of the lengths, by key of the configuration [m].
 
+    It is raised as well if the heights of a tabulated spectrum do not become uncorrelated.
+
     The same condition as for published spectra, see `stiction.config.relations.length_exceeds_the_correlation`. The
     message states the source of the spectrum.
     """
-    bound = correlation_length(spectrum)
+    try:
+        bound = correlation_length(spectrum)
+    except ValueError as error:
+        raise ValueError(
+            f"surface {surface} has no correlation length ({error}) for the spectrum {source}; psd: fitted has one"
+        ) from error
     for key, length in lengths.items():
         if length <= bound:
             raise ValueError(

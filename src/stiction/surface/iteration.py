@@ -21,7 +21,16 @@ def target_rings(target: Spectrum, grid: StripGrid) -> tuple[np.ndarray, np.ndar
     -------
     wavenumber, spectrum : (n,) arrays
         Rings up to the cut-off of the target [rad m⁻¹], [m²].
+
+    Raises
+    ------
+    ValueError
+        If the grid is no whole period.
     """
+    if grid.shape != grid.field_shape:
+        raise ValueError(
+            f"a strip of {grid.shape} points is cut from a period of {grid.field_shape}: use StripGrid.periodic"
+        )
     step = grid.wavenumber_steps[0]
     axis = step * fft.fftfreq(grid.shape[0], 1 / grid.shape[0])
     square = target(np.hypot(axis[:, None], axis))
