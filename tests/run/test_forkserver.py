@@ -136,11 +136,14 @@ PRELOADED = """
     import gc, json
     wanted = ("scipy.fft", "matplotlib.figure", "netCDF4", "stiction.stages.beams")
     libraries = [name for name in wanted if name in sys.modules]
+    unwanted = [name for name in ("snakemake.api", "scipy.stats") if name in sys.modules]
     from numba.core.dispatcher import Dispatcher
     beam = [vars(module).values() for name, module in sys.modules.items() if name.startswith("stiction.beam.")]
     kernels = [value for values in beam for value in values if isinstance(value, Dispatcher) and value.signatures]
     threads = os.listdir(f"/proc/{os.getppid()}/task")
     print(json.dumps([os.getppid(), len(libraries), len(kernels), len(threads), gc.get_freeze_count()]))
+    assert not unwanted, unwanted
+    assert gc.isenabled()
 """
 
 

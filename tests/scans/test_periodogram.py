@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from drawn_scans import published
 from published import SURFACES
+from scipy.signal.windows import tukey
 
 from stiction.scans import periodogram as spectra
 from stiction.scans.levelling import Levelling, level
@@ -44,7 +45,7 @@ def test_without_taper_the_edges_add_to_short_waves(monkeypatch):
 def test_the_integral_of_the_spectrum_is_the_variance_under_the_window():
     z = stream(1, "white").standard_normal((60, 40))
     found = periodogram([z], (3.0, 5.0))
-    window = np.outer(*(spectra.tukey(n + 1, 0.5)[:n] for n in z.shape))
+    window = np.outer(*(tukey(n + 1, 0.5)[:n] for n in z.shape))
     cell = 4 * np.pi**2 / 15
     np.testing.assert_allclose(found.power.sum() * cell, np.mean((z * window) ** 2) / np.mean(window**2), rtol=1e-12)
 

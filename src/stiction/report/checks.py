@@ -12,7 +12,7 @@ from os import PathLike
 import numpy as np
 import pandas as pd
 import xarray as xr
-from scipy.stats import norm, t
+from scipy.special import ndtr, stdtrit
 
 from stiction.analysis.mesh import resolution, rigid_energy
 from stiction.beam.cantilever import Beam
@@ -127,7 +127,7 @@ def moments_meet_targets(
     """
     values, errors = surface_statistics(character)
     # The error of few strips is itself uncertain: allow a deviation as improbable as 4 standard errors of many strips.
-    allowed = t.isf(norm.sf(ALLOWED), character.sizes["strip"] - 1)
+    allowed = -stdtrit(character.sizes["strip"] - 1, ndtr(-ALLOWED))
     for name, target in targets.items():
         off, error = values[name] - target, errors[name]
         within = allowed * error + (defect * target if name == "rms_nm" else 0)

@@ -23,6 +23,8 @@ from typing import NoReturn
 PACKAGE = Path(__file__).parents[1]
 #: Command that starts the process of a `Server`. With -P, no file in the working directory is imported as a library.
 COMMAND = [sys.executable, "-P", "-m", "stiction.run.forkserver"]
+#: Module that changes Snakemake itself, of which jobs import only a small part.
+_OF_SNAKEMAKE = "stiction.run.hooks"
 #: Modules that jobs import only when they start, read, write or draw.
 LATE = (
     "snakemake.iocontainers",
@@ -114,15 +116,17 @@ def main() -> None:
 
 
 def preload() -> None:
-    """Import all modules and what jobs import late; load fonts and the compiled kernels, compiled if necessary."""
+    """Import all that jobs import; load fonts and the compiled kernels, compiled if necessary."""
+    gc.disable()  # nearly all objects remain, and looking for garbage among them would take a tenth of the time
     for module in pkgutil.walk_packages([str(PACKAGE)], "stiction."):
-        importlib.import_module(module.name)
+        if module.name != _OF_SNAKEMAKE:
+            importlib.import_module(module.name)
     for name in LATE:
         importlib.import_module(name)
     importlib.import_module("stiction.run.warmup").main()
     importlib.import_module("stiction.report.style").preload()
-    gc.collect()
     gc.freeze()  # the collector of a child would otherwise write to, and thereby copy, every page that it shares
+    gc.enable()
 
 
 def serve(requests: socket.socket) -> str | None:

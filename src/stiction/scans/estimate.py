@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import stats
+from scipy.special import chdtrc
 
 from stiction.errors import NotConverged, ScanError
 from stiction.estimates import jackknife
@@ -360,7 +360,7 @@ def _scans_differ(found):
 def _spectrum_misfits(found):
     fit = found.inspection.fit
     ratio = fit.chi2 / fit.freedom
-    if ratio > _MISFIT and stats.chi2.sf(fit.chi2, fit.freedom) < _UNLIKELY:
+    if ratio > _MISFIT and chdtrc(fit.freedom, fit.chi2) < _UNLIKELY:
         return f"the spectrum is not of the form of Eq. (7) (chi²/dof {ratio:.2g}); psd: tabulated follows it"
     return ""
 

@@ -13,7 +13,7 @@ orthonormal Hermite polynomials, coefficients a_ik, and ρ the autocorrelation o
 from collections.abc import Sequence
 
 import numpy as np
-from scipy import stats
+from scipy.special import chdtrc
 
 from stiction.estimates import jackknife
 from stiction.surface.spectrum import Spectrum, autocovariance
@@ -152,7 +152,7 @@ def homogeneity(per_scan: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarra
     if freedom == 0:
         return np.full(3, np.nan), np.full(3, np.nan)
     chi2 = np.sum((per_scan - per_scan.mean(axis=0)) ** 2, axis=0) / np.diag(covariance)
-    return chi2, stats.chi2.sf(chi2, freedom)
+    return chi2, chdtrc(freedom, chi2)
 
 
 def tiles(scan: np.ndarray, sides: int) -> list[np.ndarray]:

@@ -10,7 +10,6 @@ from itertools import product
 
 import numpy as np
 from scipy import fft
-from scipy.signal.windows import tukey
 
 #: Share of each side that is tapered: no bias on slopes of -5, and half of the scatter of a Hann window.
 _TAPERED = 0.5
@@ -67,6 +66,8 @@ class Rings:
 
 def periodogram(scans: Sequence[np.ndarray], size: tuple[float, float]) -> Periodogram:
     """Mean periodogram of levelled scans (n1, n2) of equal size; undefined points are at the level."""
+    from scipy.signal.windows import tukey  # noqa: PLC0415, slow, and needed for scans only
+
     n1, n2 = scans[0].shape
     tapers = [tukey(n + 1, _TAPERED)[:n] for n in (n1, n2)]
     window = np.outer(*tapers)

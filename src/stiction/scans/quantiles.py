@@ -7,8 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
-from scipy.special import ndtr, ndtri
+from scipy.special import fdtrc, ndtr, ndtri
 
 from stiction.errors import NotConverged
 from stiction.surface import maxent
@@ -146,4 +145,4 @@ def goodness(residual: np.ndarray, model_residuals: np.ndarray, scans: int) -> t
     difference = residual - model_residuals.mean(axis=0)
     covariance = np.cov(model_residuals.T) * (1 / scans + 1 / n)
     chi2 = float(difference @ np.linalg.solve(covariance, difference))
-    return chi2, float(stats.f.sf(chi2 * (n - size) / (size * (n - 1)), size, n - size))
+    return chi2, float(fdtrc(size, n - size, chi2 * (n - size) / (size * (n - 1))))
