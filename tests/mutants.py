@@ -459,8 +459,10 @@ MUTANTS = {
         ("np.abs(by_shift) @ shift", "np.linalg.norm(by_shift * shift)"),
     ],
     "analysis.convergence": [
-        ("KOLMOGOROV_MEAN / np.sqrt(samples)", "KOLMOGOROV_MEAN / samples"),
-        ("1 / size - 1 / len(samples)", "1 / size"),
+        ("sum(1 / number for", "sum(1 / number**2 for"),
+        ("1 / size - 1 / n)", "1 / size)"),
+        ("(size / (n - size)) ** 2", "(size / (n - size))"),
+        ("(len(parts) - 1) * correlation", "0 * correlation"),
         ("first = far[-1] + 1", "first = far[0] + 1"),
     ],
     "analysis.mesh": [
@@ -1564,6 +1566,8 @@ MUTANTS = {
         ("film(humidity, water.temperature, water.contact_angles)", "film(humidity, water.temperature)"),
         ("flooded_energy(water.temperature, water.contact_angles)", "flooded_energy(water.temperature)"),
         (".max() >= 0\n", ".max() >= -1e12\n"),
+        ("[1] if _resist(f) else -f.min()", "[0] if _resist(f) else -f.min()"),
+        ("else -f.min()", "else -f.max()"),
     ],
     "stages.heights": [
         ("used = replace(settings, skewness=found.skewness, kurtosis=found.kurtosis)", "used = settings"),
@@ -1623,6 +1627,9 @@ MUTANTS = {
         ("[curve(k).copy() for k", "[curve(k) for k"),
         ("min(_KEPT, contact", "min(1, contact"),
         ("for name in COMPONENTS]", "for name in COMPONENTS[::-1]]"),
+        ("len(lawful) // 2]", "len(lawful) // 4]"),
+        ('samples[: forces.sizes["curve"]]', "samples"),
+        ("np.flatnonzero(admissible(samples", "np.arange(len(samples"),
     ],
     "stages.chaos": [
         ("settings.chaos.order, settings.chaos.dimension_tolerance)", "settings.chaos.order, 0.5)"),
@@ -1790,10 +1797,11 @@ MUTANTS = {
         ('"orders", settings.case)', '"orders")'),
         ("[:, : fitted.dimension]", "[:, -fitted.dimension :]"),
         ("distances[0].T]", "distances[1].T + 1]"),
+        ("len(eta), settings.draws", "len(eta), len(eta)"),
         ('"target": ["kernels", "input"]', '"target": ["input", "kernels"]'),
     ],
     "studies.mesh": [
-        ("len(energies) // 2]", "len(energies) // 4]"),
+        ("sample = stage_forces.typical(forces)", "sample = 0"),
         ("coefficients(samples[[sample]], limit)", "coefficients(samples[[sample]], 2 * limit)"),
         ("round(beam.length / point)", "round(beam.length / element)"),
         ("(distance, curves[sample])", "(distance, curves[0])"),
@@ -1962,7 +1970,7 @@ MUTANTS = {
     "report.figures_overview": [
         ("points = min(int(_SHOWN / spacing)", "points = max(int(_SHOWN / spacing)"),
         ("[:points, :points].T", "[:points, :points]"),
-        ("[len(force) // 2])", "[len(force) // 4])"),
+        ("k = stage_forces.typical(forces)", "k = 0"),
         ("humidity - _APART, mean", "humidity - 10 * _APART, mean"),
         ("found.std(ddof=1)) for", "found.std(ddof=0)) for"),
         ("published.geo, published.geo_std", "published.geo, published.experiment_std"),

@@ -46,8 +46,9 @@ def test_parts_of_independent_samples_follow_kolmogorovs_law_and_those_of_a_drif
     assert convergence.distance_of_parts(samples, 6000) == (0.0, 0.0)
 
 
-def test_the_standard_error_of_a_distance_is_the_scatter_of_repeated_studies():
-    studies = [convergence.distance_of_parts(stream(7, k).standard_normal(2000), 200) for k in range(600)]
+@pytest.mark.parametrize("parts", [2, 3, 10])
+def test_the_standard_error_of_a_distance_is_the_scatter_of_repeated_studies(parts):
+    studies = [convergence.distance_of_parts(stream(7, k).standard_normal(2000), 2000 // parts) for k in range(600)]
     distances, errors = np.transpose(studies)
     # The limit distribution is a little wider than that of 200 samples.
     assert distances.std(ddof=1) == pytest.approx(errors[0], rel=ALLOWED / np.sqrt(2 * 599) + 0.05)
@@ -79,7 +80,15 @@ def test_kernel_estimates_of_a_density_contain_all_samples_and_follow_their_unit
 
 def test_an_order_has_converged_when_no_higher_one_is_worse_than_the_samples():
     far, near = 2 * convergence.sampling_distance(100), 0.5 * convergence.sampling_distance(100)
-    assert convergence.converged_order([2, 4, 8], [far, near, near], 100) == 4
-    assert convergence.converged_order([2, 4, 8], [near, far, near], 100) == 8
-    assert convergence.converged_order([2, 4, 8], [near, near, near], 100) == 2
-    assert convergence.converged_order([2, 4, 8], [near, near, far], 100) == 0
+    assert convergence.converged_order([2, 4, 8], [far, near, near], 100, 10_000) == 4
+    assert convergence.converged_order([2, 4, 8], [near, far, near], 100, 10_000) == 8
+    assert convergence.converged_order([2, 4, 8], [near, near, near], 100, 10_000) == 2
+    assert convergence.converged_order([2, 4, 8], [near, near, far], 100, 10_000) == 0
+
+
+def test_few_draws_from_the_target_itself_are_no_reason_to_reject_an_order():
+    samples, draws = 5000, 2000
+    distances = [convergence.distance_to(stream(8, k).standard_normal(draws), norm.cdf) for k in range(200)]
+    mean = np.mean(distances)
+    assert mean > convergence.sampling_distance(samples)
+    assert convergence.converged_order([1], [mean], samples, draws) == 1

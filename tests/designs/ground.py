@@ -66,7 +66,10 @@ def safe_without_tips(device=R1, **more):
 def safe_with_tips(energies, **more):
     """Dataset of stage safe_lengths of a cantilever whose tips have given adhesion energies (n,) [J m⁻²]."""
     pulls = np.full(len(energies), PULL)
-    with patch.object(curves, "tip_energies", lambda *_: energies), patch.object(curves, "pull_offs", lambda *_: pulls):
+    with (
+        patch.object(curves, "tip_energies", lambda *_: energies),
+        patch.object(curves, "tip_pull_offs", lambda *_: pulls),
+    ):
         return safe_lengths.compute(lognormal_cracks(len(energies), **more), xr.Dataset(), wanted())
 
 

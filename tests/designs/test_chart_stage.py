@@ -117,7 +117,7 @@ def computed(device, thicknesses, gaps, tips=None, shares=(1e-2,)):
     with (
         patch.object(curves, "vectors", lambda *_: (VECTORS, 1.2 * VECTORS[:, 1].max())),
         patch.object(curves, "tip_energies", lambda *_: tips),
-        patch.object(curves, "pull_offs", lambda *_: np.full(len(tips), PULL)),
+        patch.object(curves, "tip_pull_offs", lambda *_: np.full(len(tips), PULL)),
     ):
         return chart.compute(contact(), None if tips is None else xr.Dataset(), wanted), wanted
 

@@ -81,7 +81,7 @@ def orders(dimension, last):
         RNG.random(shape[1:]),
         RNG.random(shape),
         RNG.random((2, *shape[:2])),
-        50,
+        (50, 400),
         [0] * dimension,
     )
 
@@ -178,7 +178,7 @@ def test_figure_16_labels_pairs_without_contact():
 
 def test_figure_18_shows_the_error_of_the_samples():
     panel = figures_studies.order_convergence(orders(2, 4)).axes[3]
-    assert any(np.allclose(line.get_ydata(), sampling_distance(50)) for line in panel.get_lines())
+    assert any(np.allclose(line.get_ydata(), sampling_distance(50, 400)) for line in panel.get_lines())
 
 
 def test_figure_16_has_one_scale_of_stress_and_of_number_for_all_pairs():

@@ -6,7 +6,7 @@ import pytest
 from stiction.contact.meniscus import flooded_energy
 from stiction.contact.pair import DistanceGrid
 from stiction.stages import contact
-from stiction.stages.curves import Water, energies, force_curves, tip_energies
+from stiction.stages.curves import Water, energies, force_curves, pull_offs, tip_energies, tip_pull_offs
 
 
 def test_force_at_a_humidity_is_solid_pressure_less_tension_on_the_wet_area():
@@ -44,3 +44,10 @@ def test_a_tip_that_no_solid_stops_is_flooded_and_others_have_the_energy_of_thei
     assert held < flooded_energy(300.0, (0.3, 0.0))
     with pytest.raises(ValueError, match="sample 1: the force does not rise"):
         energies(dataset, 0.65, wet)
+    largest = tip_pull_offs(dataset, 0.65, wet)
+    assert largest[0] == pull_offs(dataset.isel(sample=[0]), 0.65, wet)
+    # The water pulls hardest where its film covers most, at the mean planes.
+    _, curve = force_curves(dataset, 0.65, wet)
+    assert largest[1] == -curve(1)[0] > largest[0]
+    with pytest.raises(ValueError, match="sample 1: the minimum of the force is at an end of its grid"):
+        pull_offs(dataset, 0.65, wet)

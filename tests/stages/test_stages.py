@@ -106,9 +106,10 @@ def test_spectra_have_unit_variance_and_the_heights_get_what_was_asked_for():
         assert_allclose(2 * np.pi * np.trapezoid(zeta * found[name], zeta), 1, rtol=0.05)
     inside = zeta < 0.5 * B2.published_psd.cutoff
     assert_allclose(spectrum.achieved(found, zeta[inside]), found.target[inside], rtol=0.05)
-    assert np.abs(found.underlying / found.target - 1).max() > 0.1
+    within = found.target > 0  # the last ring of the grid is beyond the cutoff
+    assert np.abs(found.underlying / found.target - 1).where(within).max() > 0.05
     # No Gaussian field provides all of it.
-    assert np.abs(found.achieved / found.target - 1).max() > 1e-3
+    assert np.abs(found.achieved / found.target - 1).where(within).max() > 1e-3
     assert_array_equal(spectrum.achieved(found, zeta), found.achieved)
     between = 0.5 * (zeta[3] + zeta[4])
     assert spectrum.achieved(found, between) == pytest.approx(float(found.achieved[3:5].mean()))
@@ -291,6 +292,18 @@ def test_forces_are_those_of_the_curves_at_the_humidity(through_a_file):
         # Pull-off is the strongest attraction, at its distance.
         assert found.pull_off[k] == pytest.approx(-float(found.force[k].min()), rel=1e-2)
     assert np.all(found.limit_distance < found.pull_off_distance)
+
+
+def test_the_typical_sample_has_a_curve_a_law_and_the_median_energy_of_such_samples():
+    vectors = sampled_vectors(9)
+    limit, order = vectors[:, 1].max(), np.argsort(vectors[:7, 0])
+    # Seven have a stored curve; without law and with next to no energy, the lowest moves the median by half a place.
+    dataset = forces.layout(vectors, limit, np.zeros(1), np.zeros((7, 1)))
+    assert forces.typical(dataset) == order[3]
+    dataset.adhesion_energy[order[3]] = 1e-9
+    assert forces.typical(dataset) == order[4]
+    dataset.adhesion_energy[[7, 8]] = 1.0
+    assert forces.typical(dataset) == order[4]
 
 
 def test_chaos_model_draws_what_the_fitted_one_does(through_a_file):

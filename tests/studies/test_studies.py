@@ -340,7 +340,7 @@ def test_marginals_of_every_order_are_drawn_from_the_model_cut_there():
     dataset = chaos.layout(model, (np.zeros((3, 4, 4)), np.zeros((3, 4, 4))), 0.0)
     found = orders.compute(of_vectors(vectors), dataset, settings)
     assert list(found.order) == [1, 2]
-    assert found.samples == 300
+    assert (found.samples, found.draws) == (300, 2000)
     eta = model.coordinates.reduce(vectors)[:, : model.dimension]
     edges = np.linspace(-4, 4, 65)
     for order in (1, 2):
@@ -356,7 +356,7 @@ def test_marginals_of_every_order_are_drawn_from_the_model_cut_there():
     assert_allclose(*(found.distance.sel(target=name) for name in ("kernels", "input")), atol=0.1)
     assert np.all(found.distance.sel(target="kernels") != found.distance.sel(target="input"))
     assert_allclose(found.input_density.sum("position") / 8, 1)
-    close = found.distance.sel(target="kernels") <= 0.869 / np.sqrt(300)
+    close = found.distance.sel(target="kernels") <= 0.869 * np.sqrt(1 / 300 + 1 / 2000)
     for k, column in enumerate(close.values.T):
         expected = 0 if not column[1] else 1 if column[0] else 2
         assert found.converged_order[k] == expected

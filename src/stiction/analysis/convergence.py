@@ -16,15 +16,20 @@ KOLMOGOROV_MEAN = np.sqrt(np.pi / 2) * np.log(2)
 KOLMOGOROV_DEVIATION = np.sqrt(np.pi**2 / 12 - KOLMOGOROV_MEAN**2)
 
 
-def sampling_distance(samples: int) -> float:
-    """Expected distance of ``samples`` independent draws from their distribution [-].
+def sampling_distance(*numbers: int) -> float:
+    """Expected distance of independent draws from their distribution, or of two sets of draws from each other [-].
+
+    Parameters
+    ----------
+    *numbers : int
+        Number of draws in one set or in each of two.
 
     Examples
     --------
     >>> round(float(sampling_distance(5000)), 4)
     0.0123
     """
-    return KOLMOGOROV_MEAN / np.sqrt(samples)
+    return KOLMOGOROV_MEAN * np.sqrt(sum(1 / number for number in numbers))
 
 
 def distance_to(samples: np.ndarray, distribution: Callable[[np.ndarray], np.ndarray]) -> float:
@@ -44,12 +49,17 @@ def distance_between(samples: np.ndarray, others: np.ndarray) -> float:
 def distance_of_parts(samples: np.ndarray, size: int) -> tuple[float, float]:
     """Mean distance of subsets of ``size`` samples from all samples, with its standard error by Kolmogorov's law [-].
 
-    The subsets are consecutive and disjoint; independent samples give 0.869 √(1/size - 1/n).
+    The subsets are consecutive and disjoint; independent samples give 0.869 √(1/size - 1/n). All samples contain every
+    subset, so that F - G of two subsets has the correlation -size / (n - size), and their distances, which do not
+    depend on its sign, have about the square of it: two halves have the same distance.
     """
-    parts = [samples[k : k + size] for k in range(0, len(samples) - size + 1, size)]
+    n = len(samples)
+    parts = [samples[k : k + size] for k in range(0, n - size + 1, size)]
     if not parts:
-        raise ValueError(f"{len(samples)} samples have no part of {size}")
-    error = KOLMOGOROV_DEVIATION * np.sqrt((1 / size - 1 / len(samples)) / len(parts))
+        raise ValueError(f"{n} samples have no part of {size}")
+    correlation = (size / (n - size)) ** 2 if len(parts) > 1 else 0.0
+    independent = len(parts) / (1 + (len(parts) - 1) * correlation)  # parts that would give the same error
+    error = KOLMOGOROV_DEVIATION * np.sqrt((1 / size - 1 / n) / independent)
     return np.mean([distance_between(part, samples) for part in parts]), error
 
 
@@ -68,8 +78,10 @@ def kernel_estimate(samples: np.ndarray, at: np.ndarray) -> np.ndarray:
     return np.array([np.exp(-(((x - samples) / width) ** 2) / 2).mean() for x in at]) / (np.sqrt(2 * np.pi) * width)
 
 
-def converged_order(orders: Sequence[int], distances: np.ndarray, samples: int) -> int:
+def converged_order(orders: Sequence[int], distances: np.ndarray, samples: int, draws: int) -> int:
     """Smallest order beyond which a marginal is as close as ``samples`` draws from the target; 0 if there is none.
+
+    A marginal is known from draws, whose own distance from it is allowed in addition.
 
     Parameters
     ----------
@@ -78,12 +90,14 @@ def converged_order(orders: Sequence[int], distances: np.ndarray, samples: int) 
     distances : (n,) array
         Kolmogorov's distance of the marginal from its target at every order [-].
     samples : int
+    draws : int
+        Number of draws from which the distances were computed.
 
     Examples
     --------
-    >>> converged_order([1, 2, 3, 4], [0.2, 0.01, 0.1, 0.01], 1000)
+    >>> converged_order([1, 2, 3, 4], [0.2, 0.01, 0.1, 0.01], 1000, 200_000)
     4
     """
-    far = np.flatnonzero(np.asarray(distances) > sampling_distance(samples))
+    far = np.flatnonzero(np.asarray(distances) > sampling_distance(samples, draws))
     first = far[-1] + 1 if len(far) else 0
     return int(orders[first]) if first < len(orders) else 0

@@ -43,7 +43,8 @@ def flooded_lengths(device: DesignedBeam, water: curves.Water) -> list[float]:
 
 def mean_wedge(tips: xr.Dataset, slope: float | np.ndarray, settings: Settings) -> float | np.ndarray:
     """Length of the wedge at a tip with a slope, any shape, from mean energy and mean pull-off force [m]."""
-    energies, pulls = (of(tips, settings.humidity, settings.water) for of in (curves.tip_energies, curves.pull_offs))
+    found = (of(tips, settings.humidity, settings.water) for of in (curves.tip_energies, curves.tip_pull_offs))
+    energies, pulls = found
     return arcs.wedge_length(energies.mean(), pulls.mean(), slope)
 
 

@@ -86,7 +86,7 @@ def _forces(panel, forces):
     panel.add_collection(LineCollection(lines[:_HIGHLIGHTED], color=_COLOUR, linewidth=0.6))
     vector, limit = stage_forces.vectors(forces)
     # ASSUME: the curve of median energy is the typical one.
-    k = int(np.argsort(vector[: len(force), 0])[len(force) // 2])
+    k = stage_forces.typical(forces)
     law = forcelaw.coefficients(vector[k][None], limit)[0]
     attracting = distance[(force < -_FOLLOWED * deepest.max()).any(axis=0)]
     first, last = attracting[[0, -1]]

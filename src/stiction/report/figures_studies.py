@@ -253,7 +253,7 @@ def _order_distances(panel, orders):
     for k, eta in enumerate(orders.eta.values):
         distance = orders.distance.sel(target="kernels", eta=eta)
         panel.plot(orders.order, distance, marker=marker(k), linestyle=dashes(k), label=rf"$\eta_{eta}$")
-    bound = convergence.sampling_distance(int(orders.samples))
+    bound = convergence.sampling_distance(int(orders.samples), int(orders.draws))
     panel.axhline(bound, **_BOUND, label=f"error of {int(orders.samples)} samples")
     panel.set(xlabel="order $N_d$", ylabel="Kolmogorov distance [–]", yscale="log")
     panel.xaxis.get_major_locator().set_params(integer=True)

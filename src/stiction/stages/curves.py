@@ -37,12 +37,23 @@ def tip_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarr
     """
     distance, curve = force_curves(contact, humidity, water)
     flooded = flooded_energy(water.temperature, water.contact_angles)
+    forces = map(curve, range(contact.sizes["sample"]))
+    return np.array([forcelaw.adhesion_energy(distance, f) if _resist(f) else flooded for f in forces])
 
-    def energy(force):
-        resists = force[: int(np.argmin(force)) + 1].max() >= 0
-        return forcelaw.adhesion_energy(distance, force) if resists else flooded
 
-    return np.array([energy(curve(k)) for k in range(contact.sizes["sample"])])
+def tip_pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
+    """Largest attraction f_max of the strips of `tip_energies` (m,) [Pa].
+
+    ASSUME: where the solids do not stop the attraction, f_max is the largest on the grid, at the mean planes or above.
+    """
+    distance, curve = force_curves(contact, humidity, water)
+    forces = map(curve, range(contact.sizes["sample"]))
+    return np.array([forcelaw.extremum(distance, f)[1] if _resist(f) else -f.min() for f in forces])
+
+
+def _resist(force):
+    """Whether the solids stop the attraction at some distance below that of its maximum."""
+    return force[: int(np.argmin(force)) + 1].max() >= 0
 
 
 def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:

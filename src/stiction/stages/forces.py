@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from stiction.contact.forcelaw import parametrise
+from stiction.contact.forcelaw import admissible, parametrise
 from stiction.stages.curves import Water, force_curves
 
 #: Components of v, Eq. (11), and their units.
@@ -74,6 +74,13 @@ def vectors(forces: xr.Dataset) -> tuple[np.ndarray, float]:
 def energies(forces: xr.Dataset) -> np.ndarray:
     """Adhesion energies e of all samples (m,) [J m⁻²]."""
     return forces.adhesion_energy.values
+
+
+def typical(forces: xr.Dataset) -> int:
+    """Number of the sample of median energy e among those with a stored curve and a force law of Eq. (12)."""
+    samples, limit = vectors(forces)
+    lawful = np.flatnonzero(admissible(samples[: forces.sizes["curve"]], limit))
+    return int(lawful[np.argsort(samples[lawful, 0])[len(lawful) // 2]])
 
 
 def curves(forces: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:

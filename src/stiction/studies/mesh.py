@@ -46,9 +46,8 @@ def compute(forces: xr.Dataset, settings: Settings) -> xr.Dataset:
         If no mesh resolves the crack; the message contains the lengths that would.
     """
     distance, curves = stage_forces.curves(forces)
-    energies = stage_forces.energies(forces)[: len(curves)]
     # ASSUME: the single realisation of the paper is a typical one: of the stored curves, that with the median energy.
-    sample = int(np.argsort(energies)[len(energies) // 2])
+    sample = stage_forces.typical(forces)
     samples, limit = stage_forces.vectors(forces)
     law = forcelaw.coefficients(samples[[sample]], limit)[0]
     beam = cantilever(settings, settings.pair)

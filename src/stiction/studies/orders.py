@@ -55,9 +55,10 @@ def compute(forces: xr.Dataset, model: xr.Dataset, settings: Settings) -> xr.Dat
         to_kernels = [convergence.distance_to(column, target) for column, target in zip(drawn.T, targets, strict=True)]
         distances.append((to_kernels, list(map(convergence.distance_between, drawn.T, eta.T))))
     distances = np.swapaxes(distances, 0, 1)
-    converged = [convergence.converged_order(orders, column, len(eta)) for column in distances[0].T]
+    sizes = len(eta), settings.draws
+    converged = [convergence.converged_order(orders, column, *sizes) for column in distances[0].T]
     of_input = [histogram(column)[0] for column in eta.T]
-    return layout(_EDGES, of_input, densities, distances, len(eta), converged)
+    return layout(_EDGES, of_input, densities, distances, sizes, converged)
 
 
 def layout(
@@ -65,7 +66,7 @@ def layout(
     input_density: Sequence,
     densities: Sequence,
     distances: np.ndarray,
-    samples: int,
+    sizes: tuple[int, int],
     converged: Sequence[int],
 ) -> xr.Dataset:
     """Marginals of η drawn from polynomials of increasing order.
@@ -80,11 +81,10 @@ def layout(
         Marginal densities of the draws, for total orders 1 ... N_d [-].
     distances : (2, N_d, N_g) array
         Kolmogorov distance of the draws to the kernel density and to the samples [-].
-    samples : int
-        Number m of samples.
+    sizes : tuple of int
+        Number m of samples, and number of draws.
     converged : (N_g,) sequence
-        Lowest order from which on a marginal is indistinguishable from the kernel density with ``samples`` draws; 0
-        if none.
+        Lowest order from which on a marginal is indistinguishable from the kernel density with m draws; 0 if none.
     """
     count = len(densities)
     return xr.Dataset(
@@ -92,7 +92,8 @@ def layout(
             "density": (("order", "eta", "position"), densities),
             "input_density": (("eta", "position"), input_density),
             "distance": (("target", "order", "eta"), distances, {"long_name": "Kolmogorov's distance"}),
-            "samples": ((), samples),
+            "samples": ((), sizes[0]),
+            "draws": ((), sizes[1]),
             "converged_order": ("eta", list(converged), {"long_name": "0 if not converged"}),
         },
         coords={
