@@ -22,8 +22,9 @@ def test_files_are_merged_as_snakemake_does(base, overlay):
     assert merged({"root": base}, {"root": overlay}) == merging
 
 
-def test_the_configuration_of_the_package_is_that_of_the_checkout():
-    assert files.PAPER.read_bytes() == (ROOT / "config.yaml").read_bytes()
+def test_the_configuration_of_the_package_is_a_copy_of_that_of_the_checkout():
+    assert not files.PAPER.is_symlink()
+    assert files.PAPER.read_bytes() == (ROOT / "config.yaml").read_bytes(), "copy config.yaml to src/stiction/config"
     assert load() == PAPER
 
 

@@ -8,7 +8,7 @@ from stiction.config.measured import anchored, complete
 from stiction.config.merging import merged
 from stiction.config.reading import read
 
-#: Configuration of the paper; in a checkout, a link to ``config.yaml`` in the root folder.
+#: Configuration of the paper: a copy of ``config.yaml`` in the root folder, which users may edit.
 PAPER = Path(__file__).with_name("paper.yaml")
 
 
