@@ -122,6 +122,21 @@ def test_preliminary_numbers_are_those_of_the_scans(folder):
     assert grid == pytest.approx(np.pi / 0.01)
 
 
+def test_measured_surfaces_keep_their_material_and_make_devices_uncertain():
+    found = {"rms_nm": 3.0, "end_rad_per_um": 125.0, "plateau_nm4": 500.0, "corner_rad_per_um": 30.0, "slope": -4.0}
+    found |= {"feasible": [-0.5, 3.5]}
+    devices = {name: {"kind": "stopper", "pair": name} for name in ("a", "b", "c")} | {"lost": {"pair": "d"}}
+    devices["b"] |= {"uncertainty": {"humidity": 0.01}}
+    config = merged(configured("any.gwy"), {"devices": devices, "pairs": {"a": {"beam": "Etched"}}})
+    config["surfaces"]["Etched"]["material"] = "Gold"
+    config["pairs"]["b"]["substrate"] = "Etched"
+    seen = measured.view(config, {"Etched": found})
+    assert seen["surfaces"]["Etched"]["material"] == "Gold"
+    stated = {name: device.get("uncertainty") for name, device in seen["devices"].items()}
+    assert stated == {"a": {}, "b": {"humidity": 0.01}, "c": None, "lost": None}
+    assert "devices" not in measured.view(configured("any.gwy"), {"Etched": found})
+
+
 def test_a_configuration_with_good_scans_is_valid_and_its_surfaces_are_shifted_like_others(folder):
     config = files.load(etched(*both(folder)))
     plan = Plan(config)

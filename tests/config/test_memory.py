@@ -152,6 +152,15 @@ def test_a_budget_holds_all_contacts_that_it_compares():
     assert twice == pytest.approx(memory.of_contact(config) - memory.of_field(2.5, 31, 5), rel=0.02)
 
 
+def test_samples_of_slopes_count_for_devices_where_they_are_more_than_those_of_the_budget():
+    few, many = (
+        changed(STICKING.replace("PAIR", "c").replace("100000", "100") + f"studies: {{slopes: {{samples: {n}}}}}")
+        for n in (100, 100_000)
+    )
+    assert memory.of_contact(many) > 2 * memory.of_contact(few)
+    assert memory.of_budget(many, 7) > 2 * memory.of_budget(few, 7)
+
+
 def test_a_job_that_draws_all_samples_holds_field_and_curves():
     plain = changed(STICKING.replace("PAIR", "c"))
     few = changed(STICKING.replace("PAIR", "c").replace("100000", "100"))

@@ -81,6 +81,25 @@ def test_variants_of_the_solids_share_the_summits_of_the_base_and_no_others_do()
     assert PAPER.variant_contact("b", "base") == {key: PAPER.config[key] for key in ("solid", "van_der_waals")}
 
 
+def test_a_variant_of_the_solid_changes_what_a_material_does_not_state_and_nothing_else():
+    oxide = {"materials": {"Oxide": {"young_modulus_GPa": 70}}, "surfaces": {"Sub1": {"material": "Oxide"}}}
+    found = plan(**oxide).variant_contact("b", "poisson_ratio_0.18")["materials"]
+    assert [found[side]["poisson_ratio"] for side in ("beam", "substrate")] == [0.18, 0.18]
+    assert [found[side]["young_modulus_GPa"] for side in ("beam", "substrate")] == [164, 70]
+    assert "poisson_ratio_0.18" in plan(**oxide).choices("b")
+    stated = {"materials": {"Oxide": {"poisson_ratio": 0.17}}}
+    whole = plan(**stated, surfaces={name: {"material": "Oxide"} for name in ("B2", "Sub1")})
+    changing = {name for name in PAPER.choices("b") if not name.startswith("poisson_ratio")}
+    assert set(whole.choices("b")) == changing
+    assert {variant for pair, variant in whole.studied if pair == "b"} == {"base", *changing, *PAPER.finer_beams}
+    assert ("c", "poisson_ratio_0.18") in whole.studied
+
+
+def test_the_choices_of_a_pair_do_not_depend_on_the_pairs_that_run():
+    assert plan(run={"pairs": ["c"]}).choices("b") == PAPER.choices("b")
+    assert "psd_identified" in PAPER.choices("b")
+
+
 @pytest.mark.parametrize(
     ("changes", "known"),
     [
@@ -140,6 +159,9 @@ def test_the_main_line_has_the_samples_of_the_variants_if_it_has_as_many(samples
         ({"beam": {"width_um": 20}}, "abc"),
         ({"beam": {"elements": 500}}, ""),
         ({"beam": {"thickness_um": 2.0}}, ""),
+        ({"solid": {"young_modulus_GPa": 60}}, ""),
+        ({"materials": {"Soft": {"young_modulus_GPa": 60}}, "surfaces": {"B2": {"material": "Soft"}}}, "ac"),
+        ({"materials": {"Soft": {"young_modulus_GPa": 60}}, "surfaces": {"Sub1": {"material": "Soft"}}}, "abc"),
         ({"sampling": {"strip_length_um": 1.25}, "studies": {"variants": {"every": []}}}, ""),
     ],
 )

@@ -211,6 +211,18 @@ def test_the_density_of_summits_is_that_of_the_rougher_surface_or_half_of_its_sp
     assert relations.summit_density([smooth, unstated]) == pytest.approx(stated, rel=0.3)
 
 
+@pytest.mark.parametrize("figures", ["{humidity: 0.97}", "{humidity: 0.97, pair: a}"])
+def test_strips_resolve_the_crack_at_the_humidity_of_the_figures(figures):
+    dry = "beam: {thickness_um: 0.7}\nrun: {pairs: [b]}\npairs: {b: {humidities: [0.44]}}\n"
+    assert problems(changed(dry)) == ()
+    (line,) = problems(changed(f"{dry}figures: {figures}"))
+    assert line.startswith(
+        "sampling.strip_length_um is 1.5, must be at most 1.37 µm to resolve the cracks of pair b at RH"
+    )
+    (line,) = problems(changed(f"{dry.replace('0.44', '0.97')}figures: {figures}"))
+    assert "pairs.b.humidities = [0.97]" in line
+
+
 @pytest.mark.parametrize(("more", "wet"), [(0, True), (4.9, True), (5.1, False)])
 def test_water_condenses_up_to_contact_angles_that_add_up_to_180_degrees(more, wet):
     named = {"One": {"contact_angle_deg": 100}, "Other": {"contact_angle_deg": 70}}

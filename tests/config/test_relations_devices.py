@@ -85,6 +85,12 @@ WRONG = [
     ({"chart": CHART | {"thicknesses_um": [0.1, 2]}}, "devices.C1.chart.thicknesses_um", "so large that strips"),
     ({"width_um": 4}, "design.tip_um", "0.05 x 4 µm of pair b hold about 4.2 (given devices.C1.width_um = 4)"),
     ({"uncertainty": {"gap_um": -1}}, "devices.C1.uncertainty.gap_um", "at least 0"),
+    ({"uncertainty": {"temperature_K": 80}}, "devices.C1.uncertainty.temperature_K", "between 273 and 373 K"),
+    (
+        {"gap_um": 0.5, "humidities": [0.44], "chart": {"thicknesses_um": [2, 2.6], "humidities": [0.44, 0.97]}},
+        "devices.C1.gap_um",
+        "20 times the sum of the height",
+    ),
 ]
 
 
@@ -102,6 +108,7 @@ def test_a_wrong_device_is_refused_by_name(keys, key, message):
         (TIPS.replace("0.055", "0.02"), "design.tip_um", "at least three contact points"),
         ("design: {beams: 199}", "design.beams", "at least 200"),
         ("design: {shares: [0.06]}", "design.shares[0]", "at most 0.05"),
+        ("design: {shares: [0.01, 0.010]}", "design.shares", "each share once; 0.01 is listed twice"),
         ("surfaces: {B2: {material: Gold}}", "surfaces.B2.material", "must be one of"),
         ("materials: {Gold: {hamaker_constant_zJ: {water: 250}}}", "materials.Gold.hamaker_constant_zJ.dry", "missing"),
         ("materials: {Wax: {contact_angle_deg: 180}}\nsurfaces: {B2: {material: Wax}}", "pairs.b.beam",
@@ -193,6 +200,30 @@ def test_an_uncertain_property_of_the_material_of_the_beam_stays_possible(key, d
     found = [line for line in problems(config) if "uncertainty" in line]
     assert len(found) == (value is not None)
     assert all(line.startswith(f"devices.C1.uncertainty.{key} is ") and value in line for line in found)
+
+
+@pytest.mark.parametrize(
+    ("temperature", "deviation", "refused"), [(300, 27, 0), (300, 28, 1), (360, 13, 0), (360, 14, 1)]
+)
+def test_uncertain_temperatures_are_those_of_liquid_water(temperature, deviation, refused):
+    config = merged(with_device(uncertainty={"temperature_K": deviation}), {"water": {"temperature_K": temperature}})
+    assert len([line for line in problems(config) if "uncertainty.temperature_K is" in line]) == refused
+
+
+def test_the_gap_of_a_device_does_not_matter_for_a_chart_of_other_gaps():
+    near = with_device(gap_um=0.5, humidities=[0.44], chart={"thicknesses_um": [2, 2.6], "humidities": [0.44, 0.97]})
+    assert [line.split(" is ")[0] for line in problems(near)] == ["devices.C1.gap_um"]
+    assert problems(merged(near, {"devices": {"C1": {"chart": {"gaps_um": [10, 20]}}}})) == ()
+
+
+def test_a_stopper_resists_at_all_humidities_among_which_its_worst_one_is_sought():
+    overlay = {"pairs": {"b": {"humidities": [0.9]}}, "figures": {"humidity": 0.9}, "run": {"pairs": ["b"]}}
+    soft = {"solid": {"young_modulus_GPa": 18}, "devices": {"S1": S1 | {"humidities": [0.9]}}}
+    found = problems(functools.reduce(merged, (overlay, soft), PAPER))
+    assert [line.split(" is ")[0] for line in found] == ["devices.S1.pair"]
+    assert "at 0.4, water" in found[0]
+    humid = {"design": {"worst_humidities": [0.9, 0.98]}}
+    assert problems(functools.reduce(merged, (overlay, soft, humid), PAPER)) == ()
 
 
 def test_the_patch_of_a_stopper_is_whole_on_the_grid():

@@ -162,13 +162,20 @@ def test_a_warning_about_tips_names_the_length_in_saturated_air():
 
 def test_a_shape_has_the_warnings_of_its_own_length():
     found, of = device(energy=20e-3)
-    alone, tip = (1e6 * float(found.estimate.sel(shape=shape).min()) for shape in (S_SHAPE, EITHER))
+    alone, tip = (1e6 * float(found.safe_length.sel(shape=shape).min()) for shape in (S_SHAPE, EITHER))
     assert tip < 0.7 * alone
     steep = replace(of, device=replace(C1, gap=0.08 / 1.5 * alone * UM))
     assert only(found, steep, S_SHAPE) == []
     (sentence,) = only(found, steep, EITHER)
     assert sentence.startswith(f"At a length of {tip:.0f} µm the beam reaches a slope of {0.08 * alone / tip:.3g}")
     assert only(found, replace(of, tip=1.5 * UM), S_SHAPE) == []  # strips of tips do not matter to the beam alone
+
+
+def test_a_device_is_checked_at_its_safe_length_not_at_the_longer_estimate():
+    found, of = device()
+    assert only(found.assign(estimate=0.1 * found.estimate), of) == []
+    (sentence,) = only(found.assign(safe_length=0.5 * found.safe_length), of)
+    assert "reaches a slope of" in sentence
 
 
 def test_plastic_contact_of_a_device_is_said_and_so_is_that_it_was_not_studied():
@@ -187,7 +194,7 @@ def test_a_gap_that_the_film_fills_is_said():
 
 def test_a_bridge_that_stretches_is_said_and_has_half_its_length_as_crack():
     wide = safe_without_tips()
-    crack = float(wide.estimate.min()) / 2
+    crack = float(wide.safe_length.min()) / 2
     assert only(wide, findings.OfDevice(replace(R1, thickness=3 * UM), 0.15 * UM), S_SHAPE) == []
     (sentence,) = only(wide, findings.OfDevice(R1, 0.15 * UM), S_SHAPE)
     assert "equal to the thickness of the bridge" in sentence

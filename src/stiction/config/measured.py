@@ -18,7 +18,7 @@ from typing import Any
 from stiction.config.messages import Problem
 from stiction.config.units import NM_PER_UM, from_si, typed
 from stiction.errors import ScanError
-from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
+from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM, SIDES
 from stiction.run.atomic import DataError, save_text
 from stiction.run.fingerprint import fingerprint
 from stiction.run.provenance import version_of
@@ -265,10 +265,23 @@ def _problem(name, entry, refusal):
 
 
 def view(config: dict[str, Any], found: Mapping[str, dict]) -> dict[str, Any]:
-    """Configuration in which measured surfaces are described by their preliminary numbers, as other surfaces are."""
+    """Configuration in which measured surfaces are described by their preliminary numbers, as other surfaces are.
+
+    Devices on measured surfaces are uncertain even if nothing else about them is.
+    """
     spacing = config["sampling"]["spacing_nm"]
     described = {name: _described(complete(config["surfaces"][name]), found[name], spacing) for name in found}
-    return config | {"surfaces": config["surfaces"] | described}
+    devices = {name: _with_uncertainty(device, config, found) for name, device in config.get("devices", {}).items()}
+    return config | {"surfaces": config["surfaces"] | described} | ({"devices": devices} if devices else {})
+
+
+def _with_uncertainty(device, config, found):
+    """Section of a device with a section of its uncertainty, if one of its surfaces is measured."""
+    try:
+        measured = any(config["pairs"][device["pair"]][side] in found for side in SIDES)
+    except (KeyError, TypeError):
+        return device  # other relations report what is missing
+    return {"uncertainty": {}} | device if measured else device
 
 
 def _described(entry, found, spacing):
@@ -286,4 +299,5 @@ def _described(entry, found, spacing):
         shape = {"form": tuple(map(tuple, found["form"]))}
     else:
         shape = dict(zip(("skewness", "kurtosis"), found["feasible"] or (), strict=False))
-    return {"rms_nm": found["rms_nm"], **shape, "psd": "published", "published_psd": psd}
+    material = {"material": entry["material"]} if "material" in entry else {}
+    return {"rms_nm": found["rms_nm"], **shape, "psd": "published", "published_psd": psd, **material}

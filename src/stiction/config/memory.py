@@ -81,7 +81,12 @@ def of_drawn(config: dict, samples: float, contacts: int = 1) -> int:
 def of_contact(config: dict, contacts: int = 1) -> int:
     """As `of_drawn`, for all samples of a device."""
     pairs = [device["pair"] for device in config.get("devices", {}).values()]
-    return _of_drawn(config, pairs, max(config["contact"]["samples"], config["design"]["beams"]), contacts)
+    return _of_drawn(config, pairs, max(config["contact"]["samples"], _of_change(config)), contacts)
+
+
+def _of_change(config):
+    """Largest number of samples of a contact that shows what one changed input does to a device."""
+    return max(config["design"]["beams"], config["studies"]["slopes"]["samples"])
 
 
 def _of_drawn(config, pairs, samples, contacts):
@@ -92,7 +97,7 @@ def _of_drawn(config, pairs, samples, contacts):
 def of_budget(config: dict, contacts: int) -> int:
     """Memory to reserve for the budget of a device, which compares this number of contacts [MB]."""
     pairs = [device["pair"] for device in config.get("devices", {}).values()]
-    return of_samples(config) + round(contacts * config["design"]["beams"] * _stored(config, pairs))
+    return of_samples(config) + round(contacts * _of_change(config) * _stored(config, pairs))
 
 
 def _of_largest_field(config):

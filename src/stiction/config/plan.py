@@ -27,8 +27,8 @@ _CHANGED = {"van_der_waals": None, "psd": None, "every": "contact", "spacing_nm"
 _SOLIDS = ("solid", "van_der_waals")
 #: Keys that define the beam that the paper measured and simulated.
 _OF_BEAM = {"beam": ("length_um", "width_um", "thickness_um"), "solid": ("young_modulus_GPa",)}
-#: Keys that define the mesh of the paper and, with the force laws, how fine it is; a mesh has no width.
-_OF_MESH = _OF_BEAM | {"beam": ("length_um", "thickness_um", "elements"), "sampling": ("strip_length_um",)}
+#: Keys that define the mesh of the paper and, with Young's modulus and the force laws, how fine it is; it has no width.
+_OF_MESH = {"beam": ("length_um", "thickness_um", "elements"), "sampling": ("strip_length_um",)}
 
 
 def chosen(section: dict[str, Any], names: Iterable[str]) -> dict[str, Any]:
@@ -65,13 +65,16 @@ class Plan:
         named = self.config.get("materials", {})
         return [named.get(self.config["surfaces"][surface].get("material"), {}) for surface in self.sides(pair)]
 
-    def materials(self, pair: str, properties: Sequence[str]) -> dict[str, dict]:
-        """Some properties of the materials of a pair by side; empty if those of section solid and polysilicon hold."""
+    def materials(self, pair: str, properties: Sequence[str], solid: dict | None = None) -> dict[str, dict]:
+        """Some properties of the materials of a pair by side; empty if those of section solid and polysilicon hold.
+
+        What a material does not state is taken from section ``solid``, by default that of the configuration.
+        """
         stated = [chosen(material, properties) for material in self._stated(pair)]
         if not any(stated):
             return {}
-        solid = self.config["solid"]
-        return {"materials": {side: solid | material for side, material in zip(SIDES, stated, strict=True)}}
+        others = solid or self.config["solid"]
+        return {"materials": {side: others | material for side, material in zip(SIDES, stated, strict=True)}}
 
     def water(self, pair: str) -> dict:
         """Section ``water`` with the contact angles on both surfaces of a pair if one of them is not zero."""
@@ -129,7 +132,11 @@ class Plan:
     @cached_property
     def with_summits(self) -> list[str]:
         """Surfaces with measured summits, whose spectrum can therefore be identified."""
-        return [name for name in self.surfaces if all(key in self.config["surfaces"][name] for key in SUMMITS)]
+        return [name for name in self.surfaces if self._has_summits(name)]
+
+    def _has_summits(self, surface):
+        """Whether the summits of a surface are given."""
+        return all(key in self.config["surfaces"][surface] for key in SUMMITS)
 
     @cached_property
     def cases(self) -> list[str]:
@@ -185,8 +192,13 @@ class Plan:
             pair: max(of_paper["humidities"])
             for pair, of_paper in known["pairs"].items()
             if _same(of_paper, self.config["pairs"].get(pair), but=["humidities"])
+            and self._has_modulus_of_paper(pair)
             and all(self._has_heights_of_paper(name) for name in self.sides(pair))
         }
+
+    def _has_modulus_of_paper(self, pair):
+        """Whether the beam of a pair has the Young's modulus of the paper."""
+        return _same(self.config["solid"] | self.beam_modulus(pair), paper()["solid"], only=["young_modulus_GPa"])
 
     def _has_heights_of_paper(self, surface):
         """Whether a surface has the moments of the paper, and the published spectrum or the summits that give it."""
@@ -294,7 +306,7 @@ class Plan:
     def _psd_under(self, variant, surface):
         """Source of the spectrum of a surface: that of the variant where available, otherwise unchanged."""
         entry = self.config["surfaces"][surface]
-        known = {"published": "published_psd" in entry, "identified": surface in self.with_summits}
+        known = {"published": "published_psd" in entry, "identified": self._has_summits(surface)}
         wanted = self.variants[variant].get("psd", entry["psd"])
         return wanted if known[wanted] else entry["psd"]
 
@@ -319,7 +331,7 @@ class Plan:
     def variant_contact(self, pair: str, variant: str) -> dict:
         """Solids of a pair under a variant: the settings of the contact, given the summits."""
         found = merged(chosen(self.config, _SOLIDS), chosen(self.variants[variant], _SOLIDS))
-        return found | self.materials(pair, ELASTIC)
+        return found | self.materials(pair, ELASTIC, found["solid"])
 
     def summits_under(self, pair: str, variant: str) -> str:
         """First variant with the same summits of a pair: solids do not change them."""
@@ -342,7 +354,10 @@ class Plan:
 
     def _under(self, pair, variant):
         """All settings that distinguish the variants of a pair."""
-        return self._summits(pair, variant), self.variant_contact(pair, variant), self.finer_beams.get(variant)
+        contact = self.variant_contact(pair, variant)
+        if "materials" in contact:  # of both sides, with all properties of section solid
+            del contact["solid"]
+        return self._summits(pair, variant), contact, self.finer_beams.get(variant)
 
     def choices(self, pair: str) -> list[str]:
         """Variants that change the contact of a pair, which need not run."""

@@ -496,6 +496,28 @@ def strips_resolve_the_crack(strip, thickness, modulus, humidities, running, pai
     return None
 
 
+@relation(
+    "sampling.strip_length_um",
+    "beam.thickness_um",
+    "solid.young_modulus_GPa",
+    "figures.humidity",
+    "pairs.*.humidities",
+    "figures.pair",
+    *_MEETING,
+)
+def strips_resolve_the_crack_of_the_figures(
+    strip, thickness, modulus, shown, humidities, of_figures, running, pair, *meeting
+):
+    """As above, for the beams of the figures, whose humidity need not be one of their pair."""
+    if pair != (of_figures if of_figures in running else running[0]):
+        return None
+    own, of_shown = (
+        strips_resolve_the_crack(strip, thickness, modulus, each, running, pair, *meeting)
+        for each in (humidities, [shown])
+    )
+    return None if own else of_shown  # one refusal is enough
+
+
 def longest_strip(
     thickness: float, modulus: float, humidity: float, temperature: float, sides: list, materials: dict
 ) -> float:

@@ -5,6 +5,7 @@ Lengths are in µm, as in the configuration. A relation gets the name of a devic
 
 from stiction.config import memory
 from stiction.config.designs import KEYS, OPTIONAL, hamaker_constant
+from stiction.config.messages import duplicates, shown
 from stiction.config.relations import (
     cases_have_unique_names,
     estimated_strip,
@@ -102,6 +103,13 @@ def _too_few_summits(length, width, device, pairs, surfaces):
     )
 
 
+@relation("design.shares")
+def shares_have_no_duplicates(shares):
+    """Each share has one safe length."""
+    repeated = duplicates(shares)
+    return f"must list each share once; {shown(repeated[0])} is listed twice" if repeated else None
+
+
 @relation("design.worst_humidities")
 @relation("devices.*.chart.humidities")
 @relation("devices.*.chart.thicknesses_um")
@@ -113,10 +121,17 @@ def axis_increases(values):
 
 
 @relation("devices.*.gap_um", "devices.*.humidities", *_MEETING)
-@relation("devices.*.gap_um", "devices.*.chart.humidities", *_MEETING)
 def device_is_apart_from_the_film(gap, humidities, name, devices, pairs, surfaces, materials, temperature):
     """The gap of a device is far above the film of water and the peaks, as for pairs."""
     return not_apart(gap, humidities, temperature, _sides(devices[name], pairs, surfaces), materials)
+
+
+@relation("devices.*.gap_um", "devices.*.chart.humidities", *_MEETING)
+def charted_device_is_apart_from_the_film(gap, humidities, name, devices, *meeting):
+    """As above, along the axis of a chart without gaps of its own."""
+    if "gaps_um" in devices[name]["chart"]:
+        return None
+    return device_is_apart_from_the_film(gap, humidities, name, devices, *meeting)
 
 
 @relation("devices.*.chart.gaps_um", "devices.*.chart.humidities", *_MEETING)
@@ -169,11 +184,14 @@ def strips_of_a_device_exceed_the_correlation(strip, pair, pairs, surfaces, spac
     return None
 
 
-@relation("devices.*.pair", *_MEETING, "solid", "van_der_waals")
-def solids_resist_the_adhesion_of_a_device(pair, name, devices, pairs, surfaces, materials, temperature, solid, medium):
-    """As for pairs that run, at the humidities of a device."""
+@relation("devices.*.pair", *_MEETING, "solid", "van_der_waals", "design.worst_humidities")
+def solids_resist_the_adhesion_of_a_device(
+    pair, name, devices, pairs, surfaces, materials, temperature, solid, medium, worst
+):
+    """As for pairs that run, at the humidities of a device, and at those among which its worst one is sought."""
     device = devices[name]
     humidities = [*device["humidities"], *device.get("chart", {}).get("humidities", ())]
+    humidities += worst if device["kind"] == "stopper" else []
     met = {name: section | {"humidities": humidities} for name, section in pairs.items() if name == pair}
     return solids_resist_the_adhesion(pair, met, surfaces, solid, medium, temperature, humidities[0], materials)
 
@@ -195,6 +213,10 @@ def device_fits_into_memory(_, name, devices, sampling, of_variants):
 def dimension_stays_positive(deviation, value):
     """A dimension is positive one standard uncertainty below its value, too."""
     return None if deviation < value else "must be below the dimension itself"
+
+
+#: Temperatures between which water is liquid, those of the schema [K].
+_FREEZING, _BOILING = 273, 373
 
 
 #: What the relations about uncertain properties of the material of a beam need.
@@ -229,6 +251,13 @@ def uncertain_humidity_stays_within_its_limits(deviation, humidities):
     """Humidities are above 0 and below 1 one standard uncertainty around their values, too."""
     inside = min(humidities) - deviation > 0 and max(humidities) + deviation < 1
     return None if inside else "must leave the humidities above 0 and below 1"
+
+
+@relation("devices.*.uncertainty.temperature_K", "water.temperature_K")
+def water_stays_liquid(deviation, temperature):
+    """Water is liquid one standard uncertainty around its temperature, too."""
+    inside = temperature - deviation >= _FREEZING and temperature + deviation <= _BOILING
+    return None if inside else f"must leave the temperature of the water between {_FREEZING} and {_BOILING} K"
 
 
 @relation("devices.*.uncertainty.contact_angle_deg", *_GROUND, "materials")

@@ -71,7 +71,7 @@ def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan) -> dict[
     plastic : float
         Plastic share of the contact area; NaN if it was not studied [-].
     """
-    shortest = found.estimate.min("share")
+    shortest = found.safe_length.min("share")
     return {
         shape: _of_length(float(shortest.sel(shape=shape)), shape, found.sel(shape=shape), of, plastic)
         for shape in map(str, found["shape"].values)
