@@ -63,9 +63,10 @@ TESTS = {
 }
 TESTS |= {"designs.stoppers": "designs/test_stage_stoppers.py", "designs.budget": "designs/test_stage_budget.py"}
 TESTS |= {"designs.figures_budget": "designs/test_tables_budget.py"}
+TESTS |= {"stages.character": "stages/test_stages.py stages/test_stage_character.py"}
 TESTS |= {"designs.inputs": "designs/test_inputs.py stages/test_measured_choices.py"}
 #: Stages and studies whose tests are in one file each.
-STAGES = "parameters heights spectrum surfaces identification character forces chaos releases beams cantilevers"
+STAGES = "parameters heights spectrum surfaces identification forces chaos releases beams cantilevers"
 MEASURED = "scan estimate heights spectrum"
 STUDIES = "sensitivity_contact sensitivity plasticity fit humidity iteration sample_sizes orders mesh correlation"
 STUDIES += " resampling descriptions slope_contact slopes"
@@ -1637,7 +1638,11 @@ MUTANTS = {
         ("np.hstack(summits)[:, :_KEPT]", "np.hstack(summits)[:, 1:_KEPT]"),
         ("find_summits(z, spacing)", "find_summits(z, surface.grid.spacing)"),
         ("third / rms**3", "third / rms**2"),
-        ("1 / curvature, density", "curvature, density"),
+        ("= with_summit / curvature if", "= with_summit * curvature if"),
+        ("= with_summit / curvature if", "= 1 / curvature if"),
+        ("/ curvature if with_summit else np.nan", "/ curvature"),
+        ("np.where(with_summit, curvature, 0)", "curvature"),
+        ("curvature.mean() if len(curvature) else np.nan", "curvature.mean()"),
         ("density]) / units", "density])"),
     ],
     "stages.forces": [

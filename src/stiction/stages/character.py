@@ -69,7 +69,8 @@ def layout(
     Parameters
     ----------
     strips : dict
-        Per strip: powers of the heights (n, 4) [m^k], summit_density (n,) [m⁻²], mean_curvature (n,) [m⁻¹].
+        Per strip: powers of the heights (n, 4) [m^k], summit_density (n,) [m⁻²], mean_curvature (n,) [m⁻¹], NaN in a
+        strip without a summit.
     fields : tuple
         Wave numbers (n_ζ,) [rad m⁻¹] and periodograms of periodic fields (n_f, n_ζ) [m⁴].
     summits : tuple
@@ -111,23 +112,24 @@ def statistics(character: xr.Dataset, units: Sequence[float] = (1, 1, 1, 1, 1)) 
     Returns
     -------
     values, errors : (5,) arrays
-        Rms [m], skewness [-], kurtosis [-], mean radius [m] and density [m⁻²] of the summits, over the units.
+        Rms [m], skewness [-], kurtosis [-], mean radius [m] and density [m⁻²] of the summits, over the units. The
+        radius is that of the strips with a summit; it is NaN without any, and its error with a single one.
     """
 
     def estimate(mean):
-        m1, m2, m3, m4, density, curvature = mean
+        m1, m2, m3, m4, density, curvature, with_summit = mean
         variance = m2 - m1**2
         third = m3 - 3 * m1 * m2 + 2 * m1**3
         fourth = m4 - 4 * m1 * m3 + 6 * m1**2 * m2 - 3 * m1**4
         rms = np.sqrt(variance)
-        return np.array([rms, third / rms**3, fourth / rms**4, 1 / curvature, density]) / units
+        radius = with_summit / curvature if with_summit else np.nan
+        return np.array([rms, third / rms**3, fourth / rms**4, radius, density]) / units
 
-    columns = [
-        character.power.values,
-        character.summit_density.values[:, None],
-        character.mean_curvature.values[:, None],
-    ]
-    return jackknife(estimate, np.hstack(columns))
+    density, curvature = character.summit_density.values, character.mean_curvature.values
+    with_summit = np.isfinite(curvature)
+    # The share of strips with a summit makes the mean curvature over all strips that over these.
+    columns = [density, np.where(with_summit, curvature, 0), with_summit]
+    return jackknife(estimate, np.column_stack([character.power.values, *columns]))
 
 
 def _strips(surface: RoughSurface, name: str, settings: Settings):
@@ -140,6 +142,6 @@ def _strips(surface: RoughSurface, name: str, settings: Settings):
         height, curvature, density = find_summits(z, spacing)
         statistics["power"].append([np.mean(z.astype(float) ** order) for order in (1, 2, 3, 4)])
         statistics["summit_density"].append(density)
-        statistics["mean_curvature"].append(curvature.mean())
+        statistics["mean_curvature"].append(curvature.mean() if len(curvature) else np.nan)
         summits.append((height, curvature))
     return statistics, summits
