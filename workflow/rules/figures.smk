@@ -233,7 +233,8 @@ rule measured:
     input:
         expand("results/figures/surface_sheet_{surface}.{kind}", surface=plan.scanned, kind=("pdf", "png")),
         rules.table_3.output,
-        [rules.table_scans.output, rules.table_scan_uncertainty.output] if plan.scanned else [],
+        rules.table_scans.output if plan.scanned else [],
+        rules.table_scan_uncertainty.output if plan.scanned_pairs else [],
     localrule: True
     message:
         "Sheets and tables of the measured surfaces."

@@ -174,7 +174,8 @@ rule tables:
         rules.table_1.output,
         rules.table_2.output if plan.with_summits else [],
         rules.table_3.output,
-        [rules.table_scans.output, rules.table_scan_uncertainty.output] if plan.scanned else [],
+        rules.table_scans.output if plan.scanned else [],
+        rules.table_scan_uncertainty.output if plan.scanned_pairs else [],
     localrule: True
     message:
         "All tables."
