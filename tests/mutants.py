@@ -921,6 +921,7 @@ MUTANTS = {
             '    if share == 0:\n        return None\n    return (\n        f"Only',
         ),
         ("if quantity not in stated]", "]"),
+        ("if len(missing) == 1:", "if False:"),
         ("        stubby_beam(crack_length, thickness),\n", ""),
     ],
     "contact.meniscus": [
@@ -1225,6 +1226,8 @@ MUTANTS = {
     ],
     "report.tables_beams": [
         ("spread, error = values.std(ddof=1), np.hypot(*errors)", "spread, error = values.std(ddof=1), errors[0]"),
+        ("if len(curve) >= 2", "if len(curve) >= 1"),
+        ("np.median(curve), np.quantile(curve, 0.95)", "np.quantile(curve, 0.95), np.median(curve)"),
         ("100 * np.hypot(chaos_error, samples_error) / samples", "100 * (chaos_error + samples_error) / samples"),
     ],
     "report.tables_studies": [
@@ -1799,7 +1802,7 @@ MUTANTS = {
     "studies.humidity": [
         ("np.array([0.05, 0.5, 0.95])", "np.array([0.01, 0.5, 0.99])"),
         ("np.linspace(*settings.range, settings.points)", "np.linspace(*settings.range[::-1], settings.points)"),
-        ("mean_with_error(energies.T)", "mean_with_error(energies.T[1:])"),
+        ("np.quantile(energies, probabilities", "np.quantile(energies[:, 1:], probabilities"),
     ],
     "studies.iteration": [
         ("misfit(periodograms.mean(axis=1), rings)", "misfit(periodograms[:, 0], rings)"),
@@ -2018,6 +2021,10 @@ MUTANTS = {
         ("range(0, len(of_key), most)", "range(0, most, most)"),
         ("groups[-1]) + len(part) > most", "groups[-1]) + len(part) > 99"),
         ("if place[0] > np.mean(panel.get_xlim())", "if False"),
+        ("1.3 * max(_PAPER_LENGTH, lengths.min())", "1.3 * _PAPER_LENGTH"),
+        ("1.3 * max(_PAPER_LENGTH, lengths.min())", "1.3 * lengths.min()"),
+        ("len(etas) // 2 + 1", "2"),
+        ("        panel.remove()\n", "        pass\n"),
     ],
     "report.figures_surfaces": [
         ("np.sqrt(2 * np.pi) / rms", "np.sqrt(2 * np.pi)"),

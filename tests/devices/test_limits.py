@@ -15,6 +15,12 @@ CASES = [
     (limits.plastic_contact, (0.58,), "58 %.*2 %", (0.02,)),
     (limits.plastic_contact, (np.nan,), "was not checked.*distance_nm", (0.0,)),
     (limits.default_material, ("gold", ("hardness",)), "4 properties of gold.*Hamaker constant", ("polysilicon", ())),
+    (
+        limits.default_material,
+        ("gold", limits.OF_THE_MATERIAL[1:]),
+        "^1 property of gold is not.*: Young's modulus.$",
+        ("gold", limits.OF_THE_MATERIAL),
+    ),
     (limits.default_material, ("gold", ()), "5 properties of gold", ("gold", limits.OF_THE_MATERIAL)),
     (limits.filled_gap, (2 * UM, 103 * NM, 3.4 * NM), "2 µm.*106 nm", (20 * UM, 103 * NM, 3.4 * NM)),
     (limits.large_rotation, (40 * UM, 500 * UM), "500 µm.*0.12", (20 * UM, 700 * UM)),

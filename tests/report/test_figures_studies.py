@@ -177,8 +177,19 @@ def test_figure_16_labels_pairs_without_contact():
 
 
 def test_figure_18_shows_the_error_of_the_samples():
-    panel = figures_studies.order_convergence(orders(2, 4)).axes[3]
+    panel = figures_studies.order_convergence(orders(2, 4)).axes[-1]
     assert any(np.allclose(line.get_ydata(), sampling_distance(50, 400)) for line in panel.get_lines())
+
+
+@pytest.mark.parametrize(("dimension", "marginals"), [(1, 1), (2, 2), (3, 3), (4, 3)])
+def test_figure_18_has_a_panel_for_each_coordinate_and_one_for_the_distances(dimension, marginals):
+    figure = figures_studies.order_convergence(orders(dimension, 2))
+    assert [panel.get_title(loc="left") for panel in figure.axes] == [
+        *(rf"({'abc'[k]}) marginal of $\eta_{k + 1}$" for k in range(marginals)),
+        f"({'abcd'[marginals]}) distance from the kernel density",
+    ]
+    assert all(panel.get_lines() or panel.patches for panel in figure.axes)
+    assert figure.get_figheight() == (4.4 if dimension > 1 else 2.2)
 
 
 def test_figure_16_has_one_scale_of_stress_and_of_number_for_all_pairs():
@@ -205,6 +216,16 @@ def test_figure_19_shows_gamma_the_energy_of_the_law_and_their_signed_difference
     assert_allclose(panel.get_lines()[-1].get_ydata(), 1e3 * energy)
     (inset,) = panel.child_axes
     assert_allclose(heights(inset)[0], 100 * (np.array([6e-3, 5.9e-3]) / energy - 1))
+
+
+@pytest.mark.parametrize("lengths", [(3e-5, 1.5e-5), (7.5e-6, 1.5e-6)])
+def test_the_inset_of_figure_19_shows_the_shortest_elements_and_those_of_the_paper(lengths):
+    found = mesh()
+    found = found.assign(element_length=found.element_length.copy(data=np.array(lengths)))
+    (inset,) = figures_studies.mesh_convergence(found, correlation()).axes[1].child_axes
+    low, high = inset.get_xlim()
+    assert low < 1e6 * min(lengths) < high
+    assert high == pytest.approx(1.3 * max(7.5, 1e6 * min(lengths)))
 
 
 def test_base_and_experiment_lie_above_the_other_variants():

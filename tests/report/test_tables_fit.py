@@ -29,6 +29,17 @@ def test_samples_without_a_law_are_counted_not_averaged(table):
     assert table.frame.share_without_law[0] == pytest.approx(24 / 125)
 
 
+@pytest.mark.parametrize("samples", [0, 1])
+def test_fewer_than_two_samples_with_a_law_have_no_errors(samples):
+    few = study_fit.layout(np.arange(samples), (np.full(samples, 0.1), np.full(samples, 1e-16)), 125)
+    table = fit_quality({("b", 0.67, "NG"): few})
+    (row,) = table.frame.to_dict("records")
+    assert row["samples"] == samples
+    assert row["share_without_law"] == pytest.approx(1 - samples / 125)
+    assert all(np.isnan(number) for name, number in row.items() if "_error_" in name)
+    assert table.cells["curve [%]"].item() == table.cells["ē at most [%]"].item() == "–"
+
+
 def test_markdown_describes_the_numbers(table):
     text = table.markdown
     assert "11.00 ± 0.58" in text

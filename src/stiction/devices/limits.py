@@ -71,6 +71,8 @@ def default_material(name: str, stated: Sequence[str]) -> str | None:
     missing = [quantity for quantity in OF_THE_MATERIAL if quantity not in stated]
     if name == "polysilicon" or not missing:
         return None
+    if len(missing) == 1:
+        return f"1 property of {name} is not stated; that of section solid or of polysilicon is used: {missing[0]}."
     return (
         f"{len(missing)} properties of {name} are not stated; those of section solid and of polysilicon are used: "
         f"{', '.join(missing)}."

@@ -231,10 +231,15 @@ def order_convergence(orders: xr.Dataset) -> Figure:
     orders : Dataset
         Study orders.
     """
-    figure, axes = panels(2, 2, (DOUBLE, 4.4))
+    etas = orders.eta.values[:3]
+    lines = len(etas) // 2 + 1
+    figure, axes = panels(lines, 2, (DOUBLE, 2.2 * lines))
+    used, unused = np.split(axes.ravel(), [len(etas) + 1])
+    for panel in unused:
+        panel.remove()
     last = int(orders.order[-1])
     shown = sorted({-(-last * share // 6) for share in (1, 2, 4, 6)})  # 2, 4, 8 and 12 of 12
-    for panel, eta in zip(axes.flat, orders.eta.values[:3], strict=False):
+    for panel, eta in zip(used[:-1], etas, strict=True):
         found = orders.sel(eta=eta)
         panel.fill_between(orders.position, found.input_density, step="mid", color="0.85", label="samples")
         for k, (order, shade) in enumerate(zip(shown, shades(len(shown)), strict=True)):
@@ -242,9 +247,9 @@ def order_convergence(orders: xr.Dataset) -> Figure:
             panel.step(orders.position, found.density.sel(order=order), where="mid", **style)
         panel.set(xlabel=rf"$\eta_{eta}$ [–]", ylabel="density [–]", ylim=(0, None))
         panel.margins(x=0)
-    axes[0, 0].legend()
-    _order_distances(axes[1, 1], orders)
-    letter(axes, [*(rf"marginal of $\eta_{k}$" for k in (1, 2, 3)), "distance from the kernel density"])
+    used[0].legend()
+    _order_distances(used[-1], orders)
+    letter(used, [*(rf"marginal of $\eta_{eta}$" for eta in etas), "distance from the kernel density"])
     return figure
 
 
@@ -329,7 +334,8 @@ def _small_differences(panel, excess, lengths):
     inset.annotate(
         f"{_PAPER_ERROR} %, paper", (0.03, _PAPER_ERROR), (0, 2), ("axes fraction", "data"), "offset points", fontsize=6
     )
-    inset.set(xscale="log", xlim=(lengths.min() / 1.3, 1.3 * _PAPER_LENGTH), ylim=(1.2 * low - 0.2 * high, 1.3 * high))
+    limits = lengths.min() / 1.3, 1.3 * max(_PAPER_LENGTH, lengths.min())  # all elements may be longer than the paper's
+    inset.set(xscale="log", xlim=limits, ylim=(1.2 * low - 0.2 * high, 1.3 * high))
     inset.set_ylabel(r"$\Gamma/\bar e - 1$ [%]", fontsize=6)
     inset.tick_params(labelsize=6, pad=2)
     plain_log(inset.xaxis)

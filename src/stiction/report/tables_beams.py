@@ -51,7 +51,8 @@ def table_3(
         "bias: absolute deviation of the paper's model NG from the measured length, as the paper states it. Γ: mean "
         "apparent adhesion energy of the S-shaped beams, Eq. (13); ē: mean energy of the samples; "
         "cv(ē): their standard deviation over their mean. S/arc/free: shares of the end states of the beams; an arc is "
-        "held by its tip alone. The share of arcs depends on the length of the strips and is no prediction."
+        "held by its tip alone. The share of arcs depends on the length of the strips and is no prediction. Where the "
+        "share of S-shapes is small, se is the error of these few beams, not of the mean over all beams."
     )
     if by_scans:
         caption += " Scans: standard error of the mean due to the finite scans of measured surfaces."
@@ -160,18 +161,21 @@ def fit_quality(fits: Mapping[Case, xr.Dataset]) -> Table:
 
 
 def _row_fit(key, fit):
-    """Case, share of samples without a law, and errors of those with one."""
+    """Case, share of samples without a law, and errors of those with one; NaN for fewer than two."""
     row = dict(zip(("pair", "relative_humidity", "model"), key, strict=True))
     curve, energy = 100 * fit.curve_error.values, 100 * fit.energy_error.values
-    mean, error = mean_with_error(curve)
+    mean = error = median = high = largest = np.nan
+    if len(curve) >= 2:
+        mean, error = mean_with_error(curve)
+        median, high, largest = np.median(curve), np.quantile(curve, 0.95), energy.max()
     return row | {
         "samples": len(curve),
         "share_without_law": float(fit.without_law),
         "curve_error_percent": mean,
         "curve_error_se_percent": error,
-        "curve_error_median_percent": np.median(curve),
-        "curve_error_95_percent": np.quantile(curve, 0.95),
-        "energy_error_max_percent": energy.max(),
+        "curve_error_median_percent": median,
+        "curve_error_95_percent": high,
+        "energy_error_max_percent": largest,
     }
 
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from stiction.estimates import mean_with_error
 from stiction.progress import progress
 from stiction.stages.curves import Water, energies
 
@@ -23,7 +22,7 @@ class Settings:
 
 
 def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Compute the energy of every sample at every humidity; store mean and quantiles."""
+    """Compute the energy of every sample at every humidity; store the quantiles."""
     humidities = np.linspace(*settings.range, settings.points)
     found = np.array([energies(contact, float(h), settings.water) for h in progress(humidities, "humidities")])
     return layout(humidities, _PROBABILITIES, found)
@@ -42,13 +41,8 @@ def layout(humidity: np.ndarray, probabilities: np.ndarray, energies: np.ndarray
         Adhesion energies e of all samples [J m⁻²].
     """
     unit = {"units": "J m-2"}
-    mean, error = mean_with_error(energies.T)
     return xr.Dataset(
-        {
-            "energy_mean": ("humidity", mean, unit),
-            "energy_mean_error": ("humidity", error, unit | {"long_name": "standard error of the mean"}),
-            "energy_quantile": (("probability", "humidity"), np.quantile(energies, probabilities, axis=1), unit),
-        },
+        {"energy_quantile": (("probability", "humidity"), np.quantile(energies, probabilities, axis=1), unit)},
         coords={
             "humidity": ("humidity", humidity, {"units": "1"}),
             "probability": ("probability", probabilities, {"units": "1"}),
