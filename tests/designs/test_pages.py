@@ -60,7 +60,7 @@ def test_the_page_of_a_stopper_says_how_many_stick_and_in_which_air(stopper):
         1e6 * float(force.max()) for force in (found.safe_force.sel(part="safe"), found.safe_force_along)
     )
     assert f"a restoring force of {stated:.3g} µN leaves at most 1 in 100 stuck (95 % confidence)" in stopper
-    assert f"and at any from 0.4 to 0.9, one of {any_air:.3g} µN." in stopper
+    assert f"; at any humidity from 0.4 to 0.9, {any_air:.3g} µN are needed." in stopper
     assert "1 in 1000" not in stopper
     assert "<td>3 x 3 µm</td>" in stopper
 

@@ -42,7 +42,7 @@ class Outcome:
 
     sample: int  #: number of the beam
     state: EndState
-    crack_length: float  #: l_s, up to the first contact [m]; the length of the beam if it is free
+    crack_length: float  #: l_s, `stiction.beam.release.crack_length` [m]; the length of the beam if it is free
     #: Γ of Eq. (13) [J m⁻²], an adhesion energy for an S-shape only. ASSUME: nominal dimensions, as in experiments.
     energy: float
     deflection: np.ndarray  #: of the nodes (elements + 1,) [m]

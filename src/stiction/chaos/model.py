@@ -138,7 +138,7 @@ def draw(model: ChaosModel, n: int, rng: np.random.Generator) -> tuple[np.ndarra
     Raises
     ------
     ValueError
-        If more than ten times as many vectors are rejected as accepted.
+        If more than 10 n + 1000 vectors are rejected.
     """
     return _accept(lambda k: _judged(_vectors(model, k, rng), model.f_limit), n)
 

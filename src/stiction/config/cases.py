@@ -5,7 +5,7 @@ import re
 #: Pattern of a case in paths: name of the pair, two to four decimals of the relative humidity.
 CASE = "[A-Za-z][A-Za-z0-9]*_rh0[0-9]{2,4}"
 #: Requirement on a humidity, as part of an error message.
-NAMEABLE = "have at most 4 decimals, which name its files"
+NAMEABLE = "have at most 4 decimals, because the names of files contain them"
 
 
 def case_id(pair: str, humidity: float) -> str:

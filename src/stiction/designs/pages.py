@@ -136,7 +136,10 @@ _OF_CHARTS = {
 _OF_STOPPERS = {
     "Pull-off force": "Largest force with which the two surfaces hold each other while they are separated.",
     "P(stuck)": "Share of equal stoppers whose pull-off force exceeds the restoring force.",
-    "Safe force": "Restoring force that at most the stated share of stoppers exceeds, with a confidence of 95 %.",
+    "Safe force": (
+        "Restoring force that is exceeded by the pull-off force of at most the stated share of stoppers, with a "
+        "confidence of 95 %."
+    ),
     "Worst humidity": "Humidity of the largest mean pull-off force. Wetter air wets more area, but pulls less.",
 }
 _OF_BUDGETS = {
@@ -267,8 +270,8 @@ def safe_force_sentences(found: xr.Dataset) -> list[str]:
     stated, (low, high) = found.safe_force.sel(part="safe").max("humidity"), _ends(found)
     return [
         f"At all these humidities, a restoring force of {float(force) / UN:.3g} µN leaves at most 1 in "
-        f"{1 / float(force.share):g} stuck (95 % confidence), and at any from {low} to {high}, one of "
-        f"{float(more) / UN:.3g} µN."
+        f"{1 / float(force.share):g} stuck (95 % confidence); at any humidity from {low} to {high}, "
+        f"{float(more) / UN:.3g} µN are needed."
         for force, more in zip(stated, in_any_air(found)[1], strict=True)
         if np.isfinite(force)
     ]

@@ -63,9 +63,9 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
     caption = (
         "Stoppers: force that pulls a patch off, mean ± standard error and standard deviation over the patches; "
         "P(stuck): share of the patches that hold more than the restoring force, with its 95 % band; safe force: "
-        "restoring force that the pull-off force of at most this share of all patches exceeds, with 95 % confidence; – "
-        "where there are too few patches. The last row of a stopper has the largest values along a fine axis of "
-        "humidities. Worst RH: humidity of the largest mean pull-off force along this axis."
+        "restoring force that is exceeded by the pull-off force of at most this share of all patches, with 95 % "
+        "confidence; – where there are too few patches. The last row of a stopper has the largest values along a fine "
+        "axis of humidities. Worst RH: humidity of the largest mean pull-off force along this axis."
     )
     listed = [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found]
     caption = with_list(" ".join([caption, NOT_MODELLED, *(["Warnings:"] if listed else [])]), listed)

@@ -192,10 +192,10 @@ def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator) ->
 def error_of_surfaces(of_group: np.ndarray) -> float | np.ndarray:
     """Standard error due to the finite number of sampled surfaces, from the scatter between groups of them.
 
-    It contains the error due to the number of devices, divided by the square root of the number of groups: a jackknife
-    would multiply it, because a slightly changed ground may stop a crack at quite another place. It is NaN where the
-    groups do not differ: tips, one for each beam, are the same in all groups, and their scatter is among the errors due
-    to the number of devices.
+    It contains the error due to the number of devices, divided by the square root of the number of groups. A jackknife
+    would enlarge this part: leaving out a few samples changes the ground slightly, and a crack may then stop at quite
+    another place. The error is NaN where the groups do not differ: tips, one for each beam, are the same in all groups,
+    and their scatter is among the errors due to the number of devices.
 
     Parameters
     ----------

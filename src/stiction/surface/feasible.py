@@ -17,9 +17,9 @@ from stiction.surface.translation import LARGEST_SCORE
 #: ASSUME: moments whose errors are not known are those of this number of independent Gaussian heights. One scan of
 #: 10 µm x 10 µm of a surface like B2 contains A m₂ / (4 π² s(0)) = 2036 areas of correlated heights.
 SAMPLE = 2000
-#: Largest distance of the substituted moments from the measured ones [standard errors]: if the measured ones are an
-#: estimate of feasible ones, their distance from these is larger with a probability of 5 %, of 0.1 % for scans, whose
-#: errors are known. ASSUME: to refuse a Gaussian surface is worse than to accept one that is beyond the border.
+#: Largest distance of the substituted moments from the measured ones [standard errors]. If the true moments are
+#: feasible, measured ones are farther from them with a probability of 5 %; for scans, whose errors are known, of 0.1 %.
+#: ASSUME: to refuse a Gaussian surface is worse than to accept one that is beyond the border.
 LARGEST_DISTANCE, LARGEST_DISTANCE_OF_SCANS = (float(np.sqrt(-2 * np.log(p))) for p in (0.05, 0.001))
 
 #: Kurtosis above skewness² + 1 that is feasible at any skewness of a surface.
