@@ -70,8 +70,8 @@ def test_cracks_are_computed_once_for_each_humidity(device, monkeypatch):
 def test_warnings_are_those_of_all_shapes_and_that_plasticity_is_not_checked(device):
     found = device.safe_lengths(0.88)
     assert device.warnings(found) == [limits.plastic_contact(np.nan)]
-    length = float(found.estimate.sel(shape="S-shape").min())
-    warnings = device.warnings(found.assign(estimate=found.estimate * 100e-6 / length))
+    length = float(found.safe_length.sel(shape="S-shape").min())
+    warnings = device.warnings(found.assign(safe_length=found.safe_length * 100e-6 / length))
     assert warnings[0] == limits.large_rotation(10e-6, 100e-6)
     assert sum("slope" in sentence for sentence in warnings) == 2  # of beam and tip
     assert len(warnings) == len(set(warnings))
