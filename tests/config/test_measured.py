@@ -284,7 +284,7 @@ def test_a_wrong_key_of_a_measured_surface_is_one_sentence(folder, keys, begins,
 WRONG_SCANS = {
     "no files": ({"files": []}, "scans.files is [], must be a list with at least one entry"),
     "one file": ({"files": "a.gwy"}, "scans.files is 'a.gwy', must be a list"),
-    "twice": ({"files": ["a.gwy", "a.gwy"]}, "scans.files is ['a.gwy', 'a.gwy'], must list each file once; 'a.gwy' is"),
+    "twice": ({"files": ["a.gwy", "a.gwy"]}, "scans.files is ['a.gwy', 'a.gwy'], must list each value once; 'a.gwy'"),
     "level": ({"level": "cubic"}, "scans.level is 'cubic', must be one of mean, plane, quadratic"),
     "lines": ({"lines": False}, "scans.lines is False, must be one of none, offset, tilt, bow"),
     "axis": ({"fast_axis": "z"}, "scans.fast_axis is 'z', must be one of x, y"),

@@ -108,7 +108,7 @@ def test_a_wrong_device_is_refused_by_name(keys, key, message):
         (TIPS.replace("0.055", "0.02"), "design.tip_um", "at least three contact points"),
         ("design: {beams: 199}", "design.beams", "at least 200"),
         ("design: {shares: [0.06]}", "design.shares[0]", "at most 0.05"),
-        ("design: {shares: [0.01, 0.010]}", "design.shares", "each share once; 0.01 is listed twice"),
+        ("design: {shares: [0.01, 0.010]}", "design.shares", "each value once; 0.01 is listed twice"),
         ("surfaces: {B2: {material: Gold}}", "surfaces.B2.material", "must be one of"),
         ("materials: {Gold: {hamaker_constant_zJ: {water: 250}}}", "materials.Gold.hamaker_constant_zJ.dry", "missing"),
         ("materials: {Wax: {contact_angle_deg: 180}}\nsurfaces: {B2: {material: Wax}}", "pairs.b.beam",
@@ -222,8 +222,14 @@ def test_a_stopper_resists_at_all_humidities_among_which_its_worst_one_is_sought
     found = problems(functools.reduce(merged, (overlay, soft), PAPER))
     assert [line.split(" is ")[0] for line in found] == ["devices.S1.pair"]
     assert "at 0.4, water" in found[0]
+    assert "or choose other humidities in design.worst_humidities (given" in found[0]
     humid = {"design": {"worst_humidities": [0.9, 0.98]}}
     assert problems(functools.reduce(merged, (overlay, soft, humid), PAPER)) == ()
+    dry = soft | {"devices": {"S1": S1 | {"humidities": [0.4]}}}
+    (line,) = problems(functools.reduce(merged, (overlay, dry), PAPER))
+    assert "or choose other humidities (given" in line
+    beam = soft | {"devices": {"C1": C1 | {"humidities": [0.9]}}}
+    assert problems(functools.reduce(merged, (overlay, beam), PAPER)) == ()
 
 
 def test_the_patch_of_a_stopper_is_whole_on_the_grid():

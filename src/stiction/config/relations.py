@@ -204,10 +204,12 @@ def _names(section):
 
 
 @relation("run.pairs")
-def selection_has_no_duplicates(names):
-    """Each pair runs only once."""
-    repeated = duplicates(names)
-    return f"must list each pair once; {shown(repeated[0])} is listed twice" if repeated else None
+@relation("surfaces.*.scans.files")
+@relation("design.shares")
+def list_has_no_duplicates(values):
+    """A pair runs once, a scan counts once, and a share has one safe length."""
+    repeated = duplicates(values)
+    return f"must list each value once; {shown(repeated[0])} is listed twice" if repeated else None
 
 
 @relation("run.pairs", "pairs.#")
@@ -270,13 +272,6 @@ def spectrum_suits_the_surface(psd, keys):
 def only_scans_leave_this_choice(choice, keys):  # noqa: ARG001
     """Other surfaces have the heights of their moments and a spectrum with a cut-off."""
     return None if "scans" in keys else "must not be given for a surface without scans"
-
-
-@relation("surfaces.*.scans.files")
-def files_have_no_duplicates(files):
-    """A scan counts once."""
-    repeated = duplicates(files)
-    return f"must list each file once; {shown(repeated[0])} is listed twice" if repeated else None
 
 
 @relation("surfaces.*.kurtosis", "surfaces.*.skewness")
@@ -677,7 +672,7 @@ def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature
         f"must have surfaces rough enough and a solid stiff enough for its humidities: at {humidity}"
         f"{' and others' if len(stuck) > 1 else ''}, water and van der Waals forces pull with an estimated {pull} and "
         f"the summits resist with {repulsion} where the mean planes meet, where {_SAFE} times the pull is needed; "
-        "increase the roughness or young_modulus_GPa, or lower the humidity"
+        "increase the roughness or young_modulus_GPa, or choose other humidities"
     )
 
 

@@ -5,7 +5,6 @@ Lengths are in µm, as in the configuration. A relation gets the name of a devic
 
 from stiction.config import memory
 from stiction.config.designs import KEYS, OPTIONAL, hamaker_constant
-from stiction.config.messages import duplicates, shown
 from stiction.config.relations import (
     cases_have_unique_names,
     estimated_strip,
@@ -15,6 +14,7 @@ from stiction.config.relations import (
     name_is_defined,
     not_apart,
     relation,
+    schema,
     sides_of,
     solids_resist_the_adhesion,
     strip_is_whole_on_the_grid,
@@ -103,13 +103,6 @@ def _too_few_summits(length, width, device, pairs, surfaces):
     )
 
 
-@relation("design.shares")
-def shares_have_no_duplicates(shares):
-    """Each share has one safe length."""
-    repeated = duplicates(shares)
-    return f"must list each share once; {shown(repeated[0])} is listed twice" if repeated else None
-
-
 @relation("design.worst_humidities")
 @relation("devices.*.chart.humidities")
 @relation("devices.*.chart.thicknesses_um")
@@ -190,10 +183,16 @@ def solids_resist_the_adhesion_of_a_device(
 ):
     """As for pairs that run, at the humidities of a device, and at those among which its worst one is sought."""
     device = devices[name]
-    humidities = [*device["humidities"], *device.get("chart", {}).get("humidities", ())]
-    humidities += worst if device["kind"] == "stopper" else []
-    met = {name: section | {"humidities": humidities} for name, section in pairs.items() if name == pair}
-    return solids_resist_the_adhesion(pair, met, surfaces, solid, medium, temperature, humidities[0], materials)
+
+    def refusal(humidities):
+        met = {name: section | {"humidities": humidities} for name, section in pairs.items() if name == pair}
+        return solids_resist_the_adhesion(pair, met, surfaces, solid, medium, temperature, humidities[0], materials)
+
+    stated = refusal([*device["humidities"], *device.get("chart", {}).get("humidities", ())])
+    if stated or device["kind"] != "stopper":
+        return stated
+    sought = refusal(worst)
+    return f"{sought} in design.worst_humidities" if sought else None
 
 
 @relation("devices.*.width_um", "devices.*.@", "devices", "sampling", "studies.variants.spacing_nm")
@@ -213,10 +212,6 @@ def device_fits_into_memory(_, name, devices, sampling, of_variants):
 def dimension_stays_positive(deviation, value):
     """A dimension is positive one standard uncertainty below its value, too."""
     return None if deviation < value else "must be below the dimension itself"
-
-
-#: Temperatures between which water is liquid, those of the schema [K].
-_FREEZING, _BOILING = 273, 373
 
 
 #: What the relations about uncertain properties of the material of a beam need.
@@ -256,8 +251,10 @@ def uncertain_humidity_stays_within_its_limits(deviation, humidities):
 @relation("devices.*.uncertainty.temperature_K", "water.temperature_K")
 def water_stays_liquid(deviation, temperature):
     """Water is liquid one standard uncertainty around its temperature, too."""
-    inside = temperature - deviation >= _FREEZING and temperature + deviation <= _BOILING
-    return None if inside else f"must leave the temperature of the water between {_FREEZING} and {_BOILING} K"
+    liquid = schema()["properties"]["water"]["properties"]["temperature_K"]
+    freezing, boiling = liquid["minimum"], liquid["maximum"]
+    inside = temperature - deviation >= freezing and temperature + deviation <= boiling
+    return None if inside else f"must leave the temperature of the water between {freezing} and {boiling} K"
 
 
 @relation("devices.*.uncertainty.contact_angle_deg", *_GROUND, "materials")

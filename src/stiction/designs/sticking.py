@@ -43,8 +43,8 @@ def flooded_lengths(device: DesignedBeam, water: curves.Water) -> list[float]:
 
 def mean_wedge(tips: xr.Dataset, slope: float | np.ndarray, settings: Settings) -> float | np.ndarray:
     """Length of the wedge at a tip with a slope, any shape, from mean energy and mean pull-off force [m]."""
-    found = (of(tips, settings.humidity, settings.water) for of in (curves.tip_energies, curves.tip_pull_offs))
-    energies, pulls = found
+    energies = curves.tip_energies(tips, settings.humidity, settings.water)
+    pulls = curves.tip_pull_offs(tips, settings.humidity, settings.water)
     return arcs.wedge_length(energies.mean(), pulls.mean(), slope)
 
 
