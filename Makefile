@@ -1,9 +1,9 @@
 # Each target first creates the virtual environment .venv if necessary and runs in it.
-#   make paper      the whole paper: tables and figures in results/ (6 to 10 minutes)
+#   make paper      the whole paper: tables and figures in results/ (5 to 10 minutes)
 #   make smoke      the same with small samples (half a minute), in results/smoke/   (takes CONFIG=... too)
 #   make run CONFIG=mine.yaml    your own surfaces, pairs and beams; the file changes single keys of config.yaml
 #   make example    crack lengths from drawn scans, compared with the true values (1 to 2 minutes), in results/example/
-#   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (5 to 10 minutes)
+#   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (4 to 10 minutes)
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
 #
