@@ -126,14 +126,14 @@ def test_measured_surfaces_keep_their_material_and_make_devices_uncertain():
     found = {"rms_nm": 3.0, "end_rad_per_um": 125.0, "plateau_nm4": 500.0, "corner_rad_per_um": 30.0, "slope": -4.0}
     found |= {"feasible": [-0.5, 3.5]}
     devices = {name: {"kind": "stopper", "pair": name} for name in ("a", "b", "c")} | {"lost": {"pair": "d"}}
-    devices["b"] |= {"uncertainty": {"humidity": 0.01}}
-    config = merged(configured("any.gwy"), {"devices": devices, "pairs": {"a": {"beam": "Etched"}}})
+    devices["uncertain"] = {"pair": "a", "uncertainty": {"humidity": 0.01}}
+    pairs = {"a": {"beam": "Etched"}, "b": {"beam": "B2", "substrate": "Etched"}}
+    config = merged(configured("any.gwy"), {"devices": devices, "pairs": pairs})
     config["surfaces"]["Etched"]["material"] = "Gold"
-    config["pairs"]["b"]["substrate"] = "Etched"
     seen = measured.view(config, {"Etched": found})
     assert seen["surfaces"]["Etched"]["material"] == "Gold"
     stated = {name: device.get("uncertainty") for name, device in seen["devices"].items()}
-    assert stated == {"a": {}, "b": {"humidity": 0.01}, "c": None, "lost": None}
+    assert stated == {"a": {}, "b": {}, "c": None, "lost": None, "uncertain": {"humidity": 0.01}}
     assert "devices" not in measured.view(configured("any.gwy"), {"Etched": found})
 
 
