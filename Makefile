@@ -8,7 +8,7 @@
 #   make report     results/report.html                      (takes CONFIG=... too)
 #
 #   make test       format, lint and tests                   make test-all   the slow tests as well
-#   make format     format the code                          make mutants    break the code, count undetected errors
+#   make format     format the code                          make mutants    break the code, name undetected errors
 #   make bench      time the stages                          make times      time the commands (half an hour)
 #   make docs       the documentation                        make jobs       time and memory of the jobs of the last run
 #   make cluster    test with SLURM on this machine          make lock       update requirements.lock
@@ -106,7 +106,8 @@ cluster: $(VENV)/ready
 	$(BIN)/python -m stiction.run.warmup
 	$(BIN)/python -m pytest -m cluster -rs tests/workflow/test_slurm.py $(ARGS)
 
-# Introduce one small error at a time into a copy of the code, and count the errors that no test detects.
+# Makes one small error at a time in a copy of the code, and names those that no test detects.
+# ARGS: modules or folders such as devices.risk, --number 600, --seed 0, --list.
 mutants: $(VENV)/ready
 	$(BIN)/python tests/mutants.py $(ARGS)
 
