@@ -12,7 +12,7 @@ from stiction.config.files import read
 from stiction.config.merging import merged
 from stiction.config.messages import ConfigError
 from stiction.config.relations import schema
-from stiction.config.relations_devices import validate
+from stiction.config.validation import validate
 from stiction.surface import maxent
 
 ROOT = Path(__file__).parents[1]

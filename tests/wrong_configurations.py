@@ -129,6 +129,14 @@ WRONG_RELATIONS = [
     ("pairs: {c: {gap_um: 0.2}}", "pairs.c.gap_um", "0.2",
      "at least 0.3124 µm, 20 times the sum of the height of the water film"),
     ("pairs: {a: {humidities: [0.9999]}}", "pairs.a.gap_um", "20", "at least 207.9 µm"),
+    ("pairs: {a: {humidities: [0.6, 0.29]}}", "pairs.a.humidities", "[0.6, 0.29]",
+     "must be at least 0.2903: in drier air, at 300 K and contact angles of 0 and 0 degrees, the film between the "
+     "surfaces is thinner than 3 molecules, 0.84 nm, which are no liquid"),
+    ("figures: {humidity: 0.01}", "figures.humidity", "0.01", "must be at least 0.2903"),
+    ("figures: {humidity: 0.4}\nwater: {temperature_K: 373}", "figures.humidity", "0.4", "at least 0.4272: in drier"),
+    ("run: {pairs: [c]}\npairs: {c: {humidities: [0.9]}}\nfigures: {humidity: 0.67}\n"
+     "materials: {M: {contact_angle_deg: 80}}\nsurfaces: {B1: {material: M}, Sub2: {material: M}}",
+     "figures.humidity", "0.67", "must be at least 0.8067: in drier air, at 300 K and contact angles of 80 and 80 deg"),
     ("figures: {humidity: 0.9902}", "pairs.c.gap_um", "2", "figures.humidity = 0.9902"),
     ("surfaces: {B2: {kurtosis: 1.5777}}", "sampling.strip_length_um", "1.5",
      "at most 1.27 µm to resolve the cracks of pair b at RH 0.44 (given beam.thickness_um = 2.6, solid.young_modulus"),

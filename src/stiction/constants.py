@@ -7,6 +7,8 @@ GAS_CONSTANT = 8.31446261815324
 WATER_MOLAR_VOLUME = 1.8e-5
 #: Liquid-vapour surface energy γ_LG of water, 300 K [N m⁻¹]; paper, below Eq. (8).
 WATER_SURFACE_ENERGY = 0.072
+#: Diameter of a water molecule [m]; distance of neighbours in liquid water, X-ray diffraction (Narten and Levy, 1971).
+WATER_MOLECULE = 2.8e-10
 
 #: Hamaker constants of polysilicon through a medium [J]; paper, below Eq. (10).
 HAMAKER_CONSTANT = {"water": 9.75e-20, "dry": 18.65e-20}

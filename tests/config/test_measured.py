@@ -17,8 +17,8 @@ from written_scans import BAD, SIDE, bad_files, etched, scans_of, write
 from stiction.config import files, jobs, measured
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
-from stiction.config.relations_devices import validate
 from stiction.config.units import typed
+from stiction.config.validation import validate
 from stiction.measured import estimate as stage_estimate
 from stiction.measured import heights, scan, spectrum
 from stiction.scans import estimate
@@ -401,9 +401,9 @@ def test_a_real_file_gives_heights_and_a_spectrum_or_is_refused_in_sentences_tha
 
 CHECK = """
 import json, sys
-from stiction.config import files, relations
+from stiction.config import files, validation
 config = json.loads(sys.stdin.read())
-relations.validate(config, kept=sys.argv[1])
+validation.validate(config, kept=sys.argv[1])
 print("SurfaceTopography" in sys.modules, any(name.startswith("stiction.scans") for name in sys.modules))
 """
 

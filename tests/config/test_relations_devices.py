@@ -2,6 +2,8 @@
 
 import functools
 import json
+import subprocess
+import sys
 from dataclasses import MISSING, fields
 
 import pytest
@@ -62,6 +64,23 @@ def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
 TIPS = "design: {tip_um: 0.055}\ndevices: {S1: {kind: stopper, pair: b, contact_um: [3, 3], "
 TIPS += "restoring_force_uN: 9, humidities: [0.5]}}"
 WRONG = [
+    ({"humidities": [0.67, 0.2]}, "devices.C1.humidities", "must be at least 0.2903: in drier air"),
+    ({"chart": CHART | {"humidities": [0.1, 0.9]}}, "devices.C1.chart.humidities", "must be at least 0.2903"),
+    (
+        {"humidities": [0.3], "uncertainty": {"humidity": 0.02}},
+        "devices.C1.uncertainty.humidity",
+        "must leave water that is a liquid: the humidity, 0.28, must be at least 0.2903",
+    ),
+    (
+        {"humidities": [0.291], "uncertainty": {"temperature_K": 5}},
+        "devices.C1.uncertainty.temperature_K",
+        "the humidity, 0.291, must be at least 0.2",
+    ),
+    (
+        {"humidities": [0.291], "uncertainty": {"contact_angle_deg": 20}},
+        "devices.C1.uncertainty.contact_angle_deg",
+        "contact angles of 20 and 20 degrees",
+    ),
     ({"kind": "bridge"}, "devices.C1.kind", "must come with residual_stress_MPa"),
     ({"residual_stress_MPa": 5}, "devices.C1.kind", "must come without residual_stress_MPa"),
     ({"restoring_force_uN": 5, "contact_um": [1, 1]}, "devices.C1.kind", "without contact_um, restoring_force_uN"),
@@ -161,7 +180,8 @@ def test_only_cantilevers_have_tips():
         ((95, 80), 5, True),
         ((95, 80), 1, False),
         ((0, 0), 90, True),
-        ((0, 0), 89, False),
+        ((0, 0), 30, False),  # beyond, the film at RH 0.44 is thinner than three molecules
+        ((0, 0), 89, True),
         ((170, 5), 2, False),
         ((170, 5), 20, True),
     ],
@@ -359,3 +379,17 @@ def test_patches_of_devices_count_for_the_memory_of_jobs():
     assert memory.of_job(wide) == round(memory.of_field(2.5, 601, 10))
     stopper = normalised(merged(PAPER, {"devices": {"S1": S1 | {"contact_um": [30, 40]}}}))
     assert memory.of_job(stopper) == round(memory.of_field(31, 41, 10))
+
+
+def test_the_axis_of_the_worst_humidity_holds_no_air_that_is_too_dry_for_a_stopper():
+    dry = {"design": {"worst_humidities": [0.2, 0.9]}}
+    assert problems(merged(PAPER, dry)) == problems(merged(PAPER, dry | {"devices": {"C1": C1}})) == ()
+    (line,) = problems(merged(PAPER, dry | {"devices": {"S1": S1}}))
+    assert line.startswith("design.worst_humidities is [0.2, 0.9], must be at least 0.2903: in drier air")
+
+
+def test_a_configuration_is_checked_for_devices_whatever_was_imported_before():
+    code = "import json, sys; from stiction.config.validation import validate; validate(json.load(sys.stdin))"
+    broken = json.dumps(with_device(pair="d"))
+    run = subprocess.run([sys.executable, "-c", code], input=broken, text=True, capture_output=True, check=False)
+    assert "devices.C1.pair is 'd', must be one of a, b, c" in run.stderr

@@ -3,12 +3,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
+from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_MOLECULE, WATER_SURFACE_ENERGY
 from stiction.contact.meniscus import (
+    dry_air,
     film,
     flooded_energy,
     kelvin_radius,
     laplace_pressure,
+    least_humidity,
     meniscus_height,
     molar_volume,
     surface_energy,
@@ -18,6 +20,7 @@ from stiction.contact.meniscus import (
 
 ROUNDING = 1e-12  # a dozen operations in double precision, and the logarithm near RH = 1
 humidities = st.floats(0.01, 0.999)
+liquid = st.floats(0.001, 0.999)  # share of the way from the driest air in which water is a liquid to saturated air
 temperatures = st.floats(273, 373)
 angles = st.floats(0, 1.5)
 
@@ -33,8 +36,10 @@ def test_water_at_65_percent_has_the_tension_and_the_height_of_the_paper():
     assert round(float(meniscus_height(0.65, 300)) * 1e9, 2) == 2.41
 
 
-@given(humidities, temperatures, angles, angles)
-def test_tension_times_height_is_the_surface_energy_times_the_cosines(humidity, temperature, first, second):
+@given(liquid, temperatures, angles, angles)
+def test_tension_times_height_is_the_surface_energy_times_the_cosines(above, temperature, first, second):
+    least = least_humidity(temperature, (first, second))
+    humidity = least + above * (1 - least)
     height, tension = film(humidity, temperature, (first, second))
     assert (height, -tension) == (
         meniscus_height(humidity, temperature, (first, second)),
@@ -98,6 +103,29 @@ def test_humidity_outside_the_open_interval_is_refused_with_its_value(humidity):
     shown = str(np.ravel(humidity)[-1]).removesuffix(".0")
     with pytest.raises(ValueError, match=rf"\(0, 1\), got .*{shown}"):
         laplace_pressure(humidity, 300)
+
+
+@given(temperatures, angles, angles)
+def test_in_the_driest_air_the_film_is_three_molecules_thick(temperature, first, second):
+    least = least_humidity(temperature, (first, second))
+    np.testing.assert_allclose(meniscus_height(least, temperature, (first, second)), 3 * WATER_MOLECULE, rtol=1e-9)
+
+
+def test_the_driest_air_is_wetter_where_water_wets_less_and_where_it_is_warm():
+    assert round(least_humidity(300), 3) == 0.290  # by hand: exp(-2 x 0.5196 nm / 0.84 nm)
+    of_angles = [least_humidity(300, (np.radians(angle), np.radians(angle))) for angle in (0, 40, 60, 80)]
+    assert np.all(np.diff(of_angles) > 0.05)
+    assert least_humidity(300) < least_humidity(320) < least_humidity(370)
+
+
+@pytest.mark.parametrize("humidity", [0.01, 0.2, 0.29])
+def test_water_in_air_that_is_too_dry_is_refused_with_the_limit(humidity):
+    # Below it the tension of the film exceeds what any experiment found water to bear, 140 to 180 MPa.
+    assert laplace_pressure(0.2903, 300) > -180e6
+    with pytest.raises(ValueError, match=f"humidity of {humidity} must be at least 0.2903: .* 300 K .* 0 and 0 deg"):
+        film(humidity, 300.0)
+    assert dry_air(0.2903, 300.0) is None
+    assert "at least 0.8067" in dry_air(0.67, 300.0, (np.radians(80), np.radians(80)))
 
 
 # Density: CRC Handbook (ITS-90) at atmospheric pressure; surface tension: table of IAPWS R1-76(2014).

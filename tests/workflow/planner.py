@@ -12,7 +12,7 @@ import gc, json, os, sys
 from pathlib import Path
 import jsonschema, netCDF4, numba, scipy.integrate, scipy.interpolate, scipy.optimize, scipy.stats, smart_open, xarray
 import snakemake.cli
-import stiction.config.jobs, stiction.config.relations_devices, stiction.run.hooks, stiction.run.kept
+import stiction.config.jobs, stiction.config.validation, stiction.run.hooks, stiction.run.kept
 from snakemake.executors.touch import Executor
 from stiction.config.files import load
 from stiction.run.fingerprint import fingerprint

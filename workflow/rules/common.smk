@@ -55,7 +55,7 @@ def code(script):
 
 def validated():
     """Preliminary numbers of the measured surfaces of a valid configuration."""
-    from stiction.config.relations_devices import validate
+    from stiction.config.validation import validate
 
     return validate(config, kept=".snakemake/scans")
 
@@ -63,7 +63,7 @@ def validated():
 def rules_of_the_configuration():
     """Code and schema that decide whether a configuration is valid."""
     folder = BASE / "src" / "stiction" / "config"
-    modules = [code(folder / f"{name}.py") for name in ("relations", "relations_devices", "messages")]
+    modules = [code(folder / f"{name}.py") for name in ("validation", "conditions", "relations", "relations_devices", "messages")]
     return [*modules, (folder / "schema.yaml").read_text(encoding="utf-8")]
 
 

@@ -32,7 +32,7 @@ def load(*overlays: str | Path | Mapping) -> dict:
     {'pairs': ['b']}
     """
     # Imports the physics, which reading alone does not need.
-    from stiction.config.relations_devices import validate
+    from stiction.config.validation import validate
 
     changes = (overlay if isinstance(overlay, Mapping) else located(overlay) for overlay in overlays)
     config = functools.reduce(merged, changes, read(PAPER))
@@ -67,7 +67,7 @@ def normalised(config: dict) -> dict:
     Parameters
     ----------
     config : dict
-        Complete configuration that `stiction.config.relations.validate` accepts.
+        Complete configuration that `stiction.config.validation.validate` accepts.
     """
     named = {section: config[section] for section in ("pairs", "devices") if section in config}
     surfaces = {name: complete(entry) for name, entry in config["surfaces"].items()}

@@ -1,4 +1,4 @@
-"""Relations between the keys of a configuration, and the validation of a whole configuration.
+"""Relations between the keys of a configuration.
 
 The schema bounds every key on its own. Conditions between keys are the relations below: functions of the values that
 return ``None``, or the end of the error message about the offending key. Values keep the units of their keys.
@@ -7,7 +7,6 @@ return ``None``, or the end of the error message about the offending key. Values
 import functools
 import itertools
 import math
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +14,14 @@ import yaml
 from scipy.special import ndtri
 
 from stiction.beam.foundation import STRIP, decay_length, ground_stiffness
-from stiction.config import measured, memory
+from stiction.config import memory
 from stiction.config.cases import NAMEABLE, decimals
-from stiction.config.messages import ConfigError, Problem, did_you_mean, dotted, duplicates, schema_problems, shown
+from stiction.config.conditions import Relations
+from stiction.config.messages import did_you_mean, duplicates, shown
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, to_si, typed
 from stiction.contact.bounds import least_law
 from stiction.contact.estimate import ProfileMoments, force_law, repulsion_and_attraction
-from stiction.contact.meniscus import film, meniscus_height
+from stiction.contact.meniscus import dry_air, film, meniscus_height
 from stiction.contact.solids import Solid, asperity_between
 from stiction.devices import limits
 from stiction.errors import NotConverged
@@ -44,46 +44,8 @@ def schema() -> dict:
     return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # in C where PyYAML was built with it
 
 
-def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
-    """Check a configuration against the schema and the relations between its keys, and the files of its scans.
-
-    Relations hold for the preliminary numbers of measured surfaces as for the given numbers of others.
-
-    Parameters
-    ----------
-    config : dict
-        Complete configuration.
-    kept : path, optional
-        Folder in which the preliminary numbers of measured surfaces are kept between processes.
-
-    Returns
-    -------
-    dict
-        Preliminary numbers of the measured surfaces by name, see `stiction.config.measured.evaluated`.
-
-    Raises
-    ------
-    ConfigError
-        If the configuration is invalid; one line per problem: full key, value, allowed values.
-    """
-    faults = schema_problems(config, schema())
-    wrong = [fault.path for fault in faults]
-    sections = _OPTIONAL | config if isinstance(config, dict) else config
-    broken = _broken_relations(sections, wrong)
-    of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
-    found, refused = measured.evaluated(config, wrong + of_surfaces, kept)
-    problems = faults + broken + refused
-    if found:
-        files = {name: config["surfaces"][name]["scans"]["files"] for name in found}
-        problems += _broken_relations(measured.view(sections, found), wrong, files)
-    if problems:
-        raise ConfigError(*dict.fromkeys(map(str, problems)))
-    return found
-
-
-_RELATIONS = []
-#: Sections that a configuration need not have.
-_OPTIONAL = {"materials": {}, "devices": {}}
+#: Relations between the keys of surfaces, pairs and the sizes of computations.
+relation = Relations()
 #: Keys of the targets of an identification.
 _TARGET = (
     "surfaces.*.rms_nm",
@@ -91,116 +53,6 @@ _TARGET = (
     "surfaces.*.summit_density_per_um2",
     "character.spacing_nm",
 )
-
-
-def relation(*keys: str) -> Callable:
-    """Register a relation between keys; it is only checked for values that the schema accepts.
-
-    The values are the arguments of the relation, in order; error messages are about the first key. In a key, ``*``
-    stands for each name in a section or each index of a list in turn, the same in all keys, ``#`` for the list of
-    names in a section, and ``@`` for the name of a section.
-    """
-
-    def register(holds):
-        _RELATIONS.append((keys, holds))
-        return holds
-
-    return register
-
-
-def _broken_relations(config, faults, files=None):
-    """Violated relations between keys that are valid on their own; ``files`` of the measured surfaces by name."""
-    cases = ((holds, paths) for keys, holds in _RELATIONS for paths in _spelled_out(keys, config))
-    return [problem for holds, paths in cases for problem in _checked(holds, paths, config, faults, files or {})]
-
-
-def _spelled_out(keys, config):
-    """Paths of the keys, for each combination of the members that ``*`` stands for."""
-    paths = [tuple(key.split(".")) for key in keys]
-    sections = list(dict.fromkeys(path[: path.index("*")] for path in paths if "*" in path))
-    choices = itertools.product(*(_members(config, section) for section in sections))
-    return [[_chosen(path, dict(zip(sections, choice, strict=True))) for path in paths] for choice in choices]
-
-
-def _chosen(path, members):
-    """Path in which ``*`` is replaced by the chosen member of its section."""
-    if "*" not in path:
-        return path
-    depth = path.index("*")
-    return (*path[:depth], members[path[:depth]], *path[depth + 1 :])
-
-
-def _members(config, path):
-    """Names in a section or indices of a list; empty if there is neither."""
-    try:
-        found = _value(config, path)
-    except (KeyError, TypeError):
-        return []
-    return range(len(found)) if isinstance(found, list) else _names(found)
-
-
-def _checked(holds, paths, config, faults, files):
-    """Problem, if any, of one relation at the values of the paths."""
-    if any(_overlap(path, fault) for path in paths for fault in faults):
-        return []
-    try:
-        values = [_value(config, path) for path in paths]
-    except KeyError:  # an optional key that is not given
-        return []
-    message = holds(*values)
-    if message is None:
-        return []
-    path, value = _known(paths[0], values[0], files)
-    number = "" if path == paths[0] else f", which gives {paths[0][-1]} = {values[0]:.4g}"
-    return [Problem(path, f"is {shown(value)}{number}, {message}{_given(paths, values, files)}")]
-
-
-def _known(path, value, files):
-    """Key and value as given by the user: the numbers of a measured surface come from its files."""
-    if path[0] == "surfaces" and path[1] in files:
-        return (*path[:2], "scans", "files"), [Path(file).name for file in files[path[1]]]
-    return path, value
-
-
-def _given(paths, values, files):
-    """The other values of a violated relation, except names and whole sections of the configuration."""
-    given = [
-        _known(path, value, files)
-        for path, value in zip(paths[1:], values[1:], strict=True)
-        if path[-1] not in "#@" and (len(path) > 1 or not isinstance(value, dict))
-    ]
-    if ("surfaces",) in paths:
-        given += [_known(("surfaces", name, "rms_nm"), None, files) for name in files if name in _met(paths, values)]
-    others = [f"{dotted(path)} = {shown(value)}" for path, value in given]
-    return f" (given {', '.join(dict.fromkeys(others))})" if others else ""
-
-
-def _met(paths, values):
-    """Names among the values of a relation, and those to which the devices and pairs of these names refer."""
-    sections = {path: value for path, value in zip(paths, values, strict=True) if isinstance(value, dict)}
-    names = {value for value in values if isinstance(value, str)}
-    for section in (("devices",), ("pairs",)):
-        entries = [entry for name, entry in sections.get(section, {}).items() if name in names]
-        names |= {value for entry in entries for value in entry.values() if isinstance(value, str)}
-    return names
-
-
-def _overlap(path, fault):
-    """Whether a fault lies at, above or below a path."""
-    depth = min(len(path), len(fault))
-    return path[:depth] == fault[:depth]
-
-
-def _value(config, path):
-    """Value at a path; ``#`` stands for the names in a section, ``@`` for the name of the section itself."""
-    for before, key in zip((None, *path), path, strict=False):
-        config = _names(config) if key == "#" else before if key == "@" else config[key]
-    return config
-
-
-def _names(section):
-    """Names in a section; empty if it is not a section."""
-    return [name for name in section if isinstance(name, str)] if isinstance(section, dict) else []
 
 
 @relation("run.pairs")
@@ -475,6 +327,26 @@ def not_apart(gap: float, humidities: float | list, temperature: float, sides: l
     )
 
 
+@relation("pairs.*.humidities", *_MEETING)
+def water_is_a_liquid(humidities, running, pair, temperature, *meeting):
+    """The air is not too dry for a film of liquid water between the surfaces of a pair that runs."""
+    return too_dry(humidities, temperature, sides_of(*meeting[:-1]) if pair in running else [], meeting[-1])
+
+
+@relation("figures.humidity", "run.pairs", "pairs", "surfaces", "materials", "water.temperature_K")
+def water_of_the_figures_is_a_liquid(humidity, running, pairs, surfaces, materials, temperature):
+    """As above, for the humidity at which all pairs that run are shown."""
+    meeting = [[pairs.get(name, {}).get(side) for side in SIDES] for name in running]
+    refusals = (too_dry(humidity, temperature, sides_of(*names, surfaces), materials) for names in meeting)
+    return next(filter(None, refusals), None)
+
+
+def too_dry(humidities: float | list, temperature: float, sides: list, materials: dict, more: float = 0) -> str | None:
+    """Refusal of the lowest humidity if the film between two surfaces is no liquid, contact angles as in `wetting`."""
+    angles = wetting(sides, materials, more)
+    return dry_air(float(np.min(humidities)), temperature, angles) if angles else None
+
+
 @relation("sampling.strip_length_um", "beam.thickness_um", "solid.young_modulus_GPa", "pairs.*.humidities", *_MEETING)
 def strips_resolve_the_crack(strip, thickness, modulus, humidities, running, pair, temperature, *meeting):
     """Strips are short enough for the force laws of a pair that runs, as far as known without computing its contact.
@@ -521,7 +393,7 @@ def longest_strip(
     It is infinite where nothing is known without the contact.
     """
     shapes, angles = _shapes(sides), wetting(sides, materials)
-    if not angles or not shapes:
+    if not angles or not shapes or dry_air(humidity, temperature, angles):
         return math.inf
     (beam, substrate), highest = zip(*shapes, strict=True)
     rms = np.array([to_si(side["rms_nm"], "nm") for side in sides])
@@ -542,7 +414,7 @@ def estimated_strip(
 ) -> float:
     """As `longest_strip`, from the estimated force law, which is far closer but no bound; section ``solid``."""
     shapes, angles = _shapes(sides), wetting(sides, materials)
-    if not angles or not shapes:
+    if not angles or not shapes or dry_air(humidity, temperature, angles):
         return math.inf
     bodies = [typed(Solid, solid | stated) for stated in of_material(sides, materials)]
     summit, water = asperity_between(*bodies, medium), film(humidity, temperature, angles)
@@ -653,8 +525,8 @@ def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature
         return None
     humidities = tuple(sorted({*pair["humidities"], shown_humidity}))
     angles = wetting(both, materials)
-    if not angles:
-        return None  # no water, which another relation reports
+    if not angles or dry_air(humidities[0], temperature, angles):
+        return None  # no water, which other relations report
     try:
         bodies = [typed(Solid, solid | stated) for stated in of_material(both, materials)]
         films = tuple(film(humidity, temperature, angles) for humidity in humidities)

@@ -1,9 +1,10 @@
-"""Relations between the keys of devices, registered with those of `stiction.config.relations`.
+"""Relations between the keys of devices.
 
 Lengths are in µm, as in the configuration. A relation gets the name of a device, and takes the rest from its section.
 """
 
 from stiction.config import memory
+from stiction.config.conditions import Relations
 from stiction.config.designs import KEYS, OPTIONAL, hamaker_constant
 from stiction.config.relations import (
     cases_have_unique_names,
@@ -13,18 +14,20 @@ from stiction.config.relations import (
     length_exceeds_the_correlation,
     name_is_defined,
     not_apart,
-    relation,
     schema,
     sides_of,
     solids_resist_the_adhesion,
     strip_is_whole_on_the_grid,
     summit_density,
+    too_dry,
     wetting,
 )
-from stiction.config.relations import validate as validate  # of all relations, those of this module among them
 from stiction.config.units import NM_PER_UM
 from stiction.devices.budget import OF_SOLIDS
 from stiction.models import SIDES
+
+#: Relations between the keys of devices.
+relation = Relations()
 
 #: Keys that every device may have.
 _COMMON = {"kind", "pair", "humidities", "uncertainty"}
@@ -131,6 +134,51 @@ def charted_device_is_apart_from_the_film(gap, humidities, name, devices, *meeti
 def charted_gaps_are_apart_from_the_film(gaps, humidities, *meeting):
     """As above, for the smallest gap of a chart."""
     return device_is_apart_from_the_film(gaps[0], humidities, *meeting)
+
+
+@relation("devices.*.humidities", *_MEETING)
+@relation("devices.*.chart.humidities", *_MEETING)
+def water_of_a_device_is_a_liquid(humidities, name, devices, pairs, surfaces, materials, temperature):
+    """The air is not too dry for a film of liquid water, at the humidities of a device and along its chart."""
+    return too_dry(humidities, temperature, _sides(devices[name], pairs, surfaces), materials)
+
+
+@relation("design.worst_humidities", *_MEETING)
+def water_of_a_stopper_is_a_liquid(humidities, name, devices, *meeting):
+    """As above, along the axis on which the worst humidity of a stopper is sought."""
+    if devices[name]["kind"] != "stopper":
+        return None
+    return water_of_a_device_is_a_liquid(humidities, name, devices, *meeting)
+
+
+@relation("devices.*.uncertainty.humidity", "devices.*.humidities", *_MEETING)
+def water_at_an_uncertain_humidity_is_a_liquid(deviation, humidities, *meeting):
+    """As above, one standard uncertainty below the humidities, too."""
+    driest = min(humidities) - deviation
+    return _too_dry(driest, humidities, *meeting) if driest > 0 else None  # otherwise another relation reports it
+
+
+@relation("devices.*.uncertainty.temperature_K", "devices.*.humidities", *_MEETING)
+def water_at_an_uncertain_temperature_is_a_liquid(deviation, humidities, *meeting):
+    """As above, one standard uncertainty above the temperature, too."""
+    if water_stays_liquid(deviation, meeting[-1]):
+        return None
+    return _too_dry(min(humidities), humidities, *meeting, warmer=deviation)
+
+
+@relation("devices.*.uncertainty.contact_angle_deg", "devices.*.humidities", *_MEETING)
+def water_at_uncertain_contact_angles_is_a_liquid(deviation, humidities, *meeting):
+    """As above, one standard uncertainty above the contact angles, too."""
+    return _too_dry(min(humidities), humidities, *meeting, more=deviation)
+
+
+def _too_dry(driest, humidities, name, devices, pairs, surfaces, materials, temperature, warmer=0, more=0):
+    """Refusal of an uncertainty with which the air is too dry, unless it is so without; in K and degrees."""
+    sides = _sides(devices[name], pairs, surfaces)
+    if too_dry(humidities, temperature, sides, materials):
+        return None
+    refusal = too_dry(driest, temperature + warmer, sides, materials, more)
+    return f"must leave water that is a liquid: the humidity, {driest:g}, {refusal}" if refusal else None
 
 
 #: What it takes to resolve a crack.

@@ -7,8 +7,13 @@ correlations give 71.7 and 18.08), and its numbers are to be reproduced.
 
 import numpy as np
 
-from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
+from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_MOLECULE, WATER_SURFACE_ENERGY
 
+#: ASSUME: fewest molecules across a film that is a liquid: one adsorbed on each solid, and one between them. On silica
+#: the first three layers, which grow up to RH 0.3, are ordered as in ice, and only those beyond are liquid (Asay and
+#: Kim, J. Phys. Chem. B 109, 16760, 2005); on mica, water is solid-like between RH 0.2 and 0.4 (Hu, Xiao, Ogletree and
+#: Salmeron, Surf. Sci. 344, 221, 1995). Eqs. (8) and (9) give thinner films a tension that grows without limit.
+MOLECULES = 3
 #: Temperature of the paper [K].
 _REFERENCE = 300.0
 #: Critical temperature of water [K]; IAPWS R1-76(2014).
@@ -117,8 +122,46 @@ def meniscus_height(
     return -_wetting(contact_angles) * kelvin_radius(humidity, temperature)
 
 
+def least_humidity(temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:
+    r"""Humidity at which the film between two flats is `MOLECULES` molecules thick; below, it is no liquid [-].
+
+    .. math:: \mathrm{RH} = \exp \Bigl( -\frac{\gamma V_m (\cos\theta_1 + \cos\theta_2)}
+        {\mathcal{R} T \cdot 3 d_{H_2 O}} \Bigr)
+
+    Parameters as in `meniscus_height`, which raises an error where no water condenses.
+
+    Examples
+    --------
+    >>> round(least_humidity(300.0), 3)
+    0.29
+    """
+    height = float(meniscus_height(np.exp(-1), temperature, contact_angles))  # it is inverse to -ln RH
+    return float(np.exp(-height / (MOLECULES * WATER_MOLECULE)))
+
+
+def dry_air(humidity: float, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> str | None:
+    """Refusal of a humidity below the `least_humidity`, as the end of a sentence; ``None`` if it is not below."""
+    least = least_humidity(temperature, contact_angles)
+    if humidity >= least:
+        return None
+    degrees = " and ".join(f"{np.degrees(angle):.3g}" for angle in contact_angles)
+    return (
+        f"must be at least {np.ceil(1e4 * least) / 1e4:.4g}: in drier air, at {temperature:g} K and contact angles of "
+        f"{degrees} degrees, the film between the surfaces is thinner than {MOLECULES} molecules, "
+        f"{1e9 * MOLECULES * WATER_MOLECULE:.2g} nm, which are no liquid"
+    )
+
+
 def film(humidity: float, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
-    """Height h_C [m] and tension -ΔP [Pa] of the water at one humidity, see `meniscus_height`."""
+    """Height h_C [m] and tension -ΔP [Pa] of the water at one humidity, see `meniscus_height`.
+
+    Raises
+    ------
+    ValueError
+        If the air is too dry for a film that is a liquid, or if no water condenses at all.
+    """
+    if refusal := dry_air(humidity, temperature, contact_angles):
+        raise ValueError(f"a relative humidity of {humidity:g} {refusal}")
     height = float(meniscus_height(humidity, temperature, contact_angles))
     return height, -float(laplace_pressure(humidity, temperature))
 

@@ -1,0 +1,50 @@
+"""Validation of a whole configuration: schema, relations between its keys, files of scans."""
+
+from pathlib import Path
+
+from stiction.config import measured, relations, relations_devices
+from stiction.config.conditions import violated
+from stiction.config.messages import ConfigError, schema_problems
+from stiction.config.relations import schema
+
+#: All relations between keys.
+RELATIONS = (*relations.relation, *relations_devices.relation)
+#: Sections that a configuration need not have.
+_OPTIONAL = {"materials": {}, "devices": {}}
+
+
+def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
+    """Check a configuration against the schema and the relations between its keys, and the files of its scans.
+
+    Relations hold for the preliminary numbers of measured surfaces as for the given numbers of others.
+
+    Parameters
+    ----------
+    config : dict
+        Complete configuration.
+    kept : path, optional
+        Folder in which the preliminary numbers of measured surfaces are kept between processes.
+
+    Returns
+    -------
+    dict
+        Preliminary numbers of the measured surfaces by name, see `stiction.config.measured.evaluated`.
+
+    Raises
+    ------
+    ConfigError
+        If the configuration is invalid; one line per problem: full key, value, allowed values.
+    """
+    faults = schema_problems(config, schema())
+    wrong = [fault.path for fault in faults]
+    sections = _OPTIONAL | config if isinstance(config, dict) else config
+    broken = violated(RELATIONS, sections, wrong)
+    of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
+    found, refused = measured.evaluated(config, wrong + of_surfaces, kept)
+    problems = faults + broken + refused
+    if found:
+        files = {name: config["surfaces"][name]["scans"]["files"] for name in found}
+        problems += violated(RELATIONS, measured.view(sections, found), wrong, files)
+    if problems:
+        raise ConfigError(*dict.fromkeys(map(str, problems)))
+    return found
