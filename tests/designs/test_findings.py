@@ -11,8 +11,10 @@ from ground import C1, R1, UM, safe_with_tips, safe_without_tips
 from stiction.config import jobs
 from stiction.config.files import load
 from stiction.config.plan import Plan
+from stiction.contact.meniscus import film, surface_energy
 from stiction.designs import findings
 from stiction.designs.sticking import EITHER, S_SHAPE
+from stiction.devices import limits
 from stiction.devices.limits import NOT_MODELLED
 
 PLAN = Plan(load())
@@ -224,6 +226,21 @@ def test_settings_of_jobs_are_those_of_the_warnings():
     assert set(jobs.device_limits(plan)) == {"cases", "pressed", "devices", "charts", "stoppers"}
 
 
+def test_a_film_that_is_hardly_a_liquid_is_said_of_a_device():
+    found, of = device()
+    (sentence,) = only(found.assign(film=film(0.39, 300.0)[0]), of)
+    assert sentence.startswith("The film of water is 1.1 nm high, thinner than 4 molecules")
+    assert only(found.assign(film=film(0.4, 300.0)[0]), of) == []
+
+
+def test_cases_of_the_main_line_in_air_that_is_hardly_humid_enough_are_said():
+    cases = {("b", 0.39, "NG"): beams(9, 0), ("b", 0.39, "G"): beams(9, 0), ("b", 0.4, "NG"): beams(9, 0)}
+    said = {subject for subject, sentences in about_pairs(cases, PLASTIC).items() if "thinner" in " ".join(sentences)}
+    assert said == {"pair b, RH 0.39, NG", "pair b, RH 0.39, G"}
+    (sentence,) = findings.of_thin_films(cases, {"b": {"temperature_K": 300}})
+    assert sentence.startswith("Pair b, RH 0.39: The film of water is 1.1 nm high")
+
+
 # Charts
 
 
@@ -260,6 +277,12 @@ def test_the_air_of_the_shortest_length_of_a_curve_counts():
     assert findings.of_chart(along[:1], of, 0.0)[3 * UM, 20 * UM, S_SHAPE] == []
 
 
+def test_the_thinnest_film_of_a_curve_counts_whatever_the_air_of_its_shortest_length():
+    along = [charted(800 * UM, film=1e-9), charted(700 * UM)]
+    found = findings.of_chart(along, findings.OfDevice(C1, 0.15 * UM), 0.0)
+    assert all("The film of water is 1 nm high" in " ".join(sentences) for sentences in found.values())
+
+
 def test_the_shortest_wedge_of_a_curve_counts_whatever_the_air_of_its_shortest_length():
     along = [charted(800 * UM, wedge=0.14 * UM), charted(700 * UM)]
     found = findings.of_chart(along, findings.OfDevice(C1, 0.15 * UM), 0.0)
@@ -279,8 +302,41 @@ def test_the_thickness_of_a_curve_counts():
 # Stoppers
 
 
+def stopper(humidities=(0.44, 0.9), worst=(0.4, 0.98), side=3, angle=0, **more):
+    """Settings of the warnings about a stopper."""
+    water = {"temperature_K": 300, "contact_angles_deg": [angle, angle]}
+    plain = {"pair": "b", "materials": [], "water": water, "contact_um": [side, side]}
+    return plain | {"humidities": list(humidities), "worst_humidities": list(worst)} | more
+
+
+@pytest.mark.parametrize("humid", [{"humidities": [0.9999]}, {"worst": [0.4, 0.9999]}])
+def test_a_film_that_is_not_small_against_a_stopper_is_said(humid):
+    wet = findings.of_stoppers(PLASTIC, {"S1": stopper(**humid), "S2": stopper(side=300, **humid)})
+    (sentence,) = wet["S1"]
+    assert "The film of water is up to 10.4 µm high, not small against the area in contact" in sentence
+    assert "adds up to 693 % of the force of the film, more than 10 %" in sentence
+    assert "unsafe side" in sentence
+    assert wet["S2"] == []
+
+
+def test_the_rim_of_a_film_adds_its_share_to_the_force_of_the_film():
+    # Surface energy times the length of the rim, over tension times area.
+    height, tension = film(0.995, 300.0)
+    share = surface_energy(300.0) * (2 * 3e-6 + 2 * 5e-6) / (tension * 3e-6 * 5e-6)
+    assert f"adds up to {100 * share:.3g} %" in limits.wide_meniscus(height, (3e-6, 5e-6))
+
+
+@pytest.mark.parametrize(
+    "dry", [{"humidities": [0.39, 0.9]}, {"worst": [0.3, 0.9]}, {"humidities": [0.6], "angle": 60}]
+)
+def test_a_stopper_in_air_that_is_hardly_humid_enough_for_a_liquid_is_said(dry):
+    (sentence,) = findings.of_stoppers(PLASTIC, {"S1": stopper(**dry)})["S1"]
+    assert sentence.startswith("The film of water is ")
+    assert "thinner than 4 molecules, 1.12 nm: the air is drier than the range in which" in sentence
+
+
 def test_a_stopper_has_the_warnings_of_its_contact():
-    plain = {"S1": {"pair": "c", "materials": [["Gold", ["hardness"]]]}, "S2": {"pair": "d", "materials": []}}
+    plain = {"S1": stopper(pair="c", materials=[["Gold", ["hardness"]]]), "S2": stopper(pair="d")}
     found = findings.of_stoppers(PLASTIC, plain)
     assert [sentence.split()[0] for sentence in found["S1"]] == ["58", "4"]
     assert "stoppers hold more than the elastic model predicts, which is the unsafe side." in found["S1"][0]

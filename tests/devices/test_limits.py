@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from beams import PAPER
 
+from stiction.constants import WATER_MOLECULE
 from stiction.devices import limits
 
 UM, NM = 1e-6, 1e-9
@@ -22,6 +23,8 @@ CASES = [
         ("gold", limits.OF_THE_MATERIAL),
     ),
     (limits.default_material, ("gold", ()), "5 properties of gold", ("gold", limits.OF_THE_MATERIAL)),
+    (limits.thin_film, (1 * NM,), "1 nm high, thinner than 4 molecules, 1.12 nm", (1.13 * NM,)),
+    (limits.wide_meniscus, (10 * UM, (3 * UM, 3 * UM)), "10 µm.*667 %.*10 %", (0.1 * UM, (3 * UM, 3 * UM))),
     (limits.filled_gap, (2 * UM, 103 * NM, 3.4 * NM), "2 µm.*106 nm", (20 * UM, 103 * NM, 3.4 * NM)),
     (limits.large_rotation, (40 * UM, 500 * UM), "500 µm.*0.12", (20 * UM, 700 * UM)),
     (limits.stubby_beam, (50 * UM, 2.6 * UM), "50 µm.*19.2 times", (52.1 * UM, 2.6 * UM)),
@@ -62,6 +65,8 @@ def test_every_limit_is_tested():
         (lambda x: limits.plastic_contact(x), 0.02),
         (lambda x: limits.short_wedge(x, 1.0, 1.0), 1.0),
         (lambda x: limits.stretched_bridge(x, 1.0), 1.0),
+        (lambda x: limits.thin_film(4 * WATER_MOLECULE / x), 1.0),
+        (lambda x: limits.wide_meniscus(x, (0.3, 0.6)), 0.1 / 5),
     ],
 )
 def test_a_warning_appears_at_its_limit(limit, at):

@@ -1,5 +1,6 @@
 """Table III: crack lengths and adhesion energies."""
 
+from stiction.designs import findings
 from stiction.report import published
 from stiction.report.tables import save
 from stiction.report.tables_beams import table_3
@@ -15,7 +16,8 @@ def main(job):
     known = published.of_paper(published.read(job.input.published), job.params.settings["of_paper"])
     scanned = load_named(job.input.by_scans, "scan_uncertainty")
     by_scans = {(pair, humidity): e for pair, found in scanned.items() for humidity, e in pair_errors(found).items()}
-    save(table_3(beams, forces, known, by_scans), job.output)
+    warnings = findings.of_thin_films(beams, job.params.settings["water"])
+    save(table_3(beams, forces, known, by_scans, warnings), job.output)
 
 
 if __name__ == "__main__":

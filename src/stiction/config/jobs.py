@@ -327,9 +327,14 @@ def device_limits(plan: Plan) -> dict:
     return beyond_the_model(plan) | {"charts": charts(plan)["charts"], "stoppers": beyond_stoppers(plan)}
 
 
+def _waters(plan):
+    """Water of every pair that runs."""
+    return {"water": {pair: plan.water(pair) for pair in plan.pairs}}
+
+
 def model_limits(plan: Plan) -> dict:
     """Cases, nominal beams, strips and stated properties of all pairs that run."""
-    pairs = {"sampling": _strip(plan)} | cantilevers(plan, *plan.pairs)
+    pairs = {"sampling": _strip(plan)} | _waters(plan) | cantilevers(plan, *plan.pairs)
     materials = {pair: _stated(plan, pair) for pair in plan.pairs}
     return {"outcomes": plan.outcomes, "pressed": plan.pressed_pairs, "pairs": pairs, "materials": materials}
 
@@ -421,10 +426,12 @@ def tip_budget(plan: Plan, case: str) -> dict:
 
 
 def beyond_stoppers(plan: Plan) -> dict:
-    """Input of the warnings about stoppers: their pairs and the stated properties of their materials."""
+    """Input of the warnings about stoppers: their pairs, water, patches and the stated properties of materials."""
     devices = {name: plan.config["devices"][name] for name in Designs(plan.config).stoppers}
     return {
-        name: {"pair": device["pair"], "materials": _stated(plan, device["pair"])} for name, device in devices.items()
+        name: {"pair": device["pair"], "materials": _stated(plan, device["pair"])}
+        | chosen(stoppers(plan, name), ("water", "contact_um", "humidities", "worst_humidities"))
+        for name, device in devices.items()
     }
 
 
@@ -468,7 +475,7 @@ def table_2(plan: Plan) -> dict:
 
 def table_3(plan: Plan) -> dict:
     """Cases of Table III, and the pairs whose published values are shown."""
-    return {"outcomes": plan.outcomes, "of_paper": plan.paper_pairs}
+    return {"outcomes": plan.outcomes, "of_paper": plan.paper_pairs} | _waters(plan)
 
 
 def table_variants(plan: Plan) -> dict:
@@ -502,7 +509,7 @@ def figure_13(plan: Plan) -> dict:
 def figure_15(plan: Plan) -> dict:
     """Cases of Fig. 15, water of each pair, the nominal beams, and the pairs whose published values are drawn."""
     shown = {"outcomes": plan.outcomes, "of_paper": plan.paper_pairs}
-    return shown | {"water": {pair: plan.water(pair) for pair in plan.pairs}} | cantilevers(plan, *plan.pairs)
+    return shown | _waters(plan) | cantilevers(plan, *plan.pairs)
 
 
 def figure_17(plan: Plan) -> dict:

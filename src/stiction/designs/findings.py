@@ -1,6 +1,6 @@
 """Where results of pairs and devices are beyond the limits of the model, in sentences of `stiction.devices.limits`."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
@@ -10,10 +10,12 @@ import xarray as xr
 
 from stiction.beam.cantilever import Beam
 from stiction.config.units import from_si, typed
+from stiction.contact.meniscus import meniscus_height
 from stiction.designs.releases import DesignedBeam
 from stiction.designs.sticking import EITHER, S_SHAPE
 from stiction.devices import limits
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever
+from stiction.stages.curves import Water
 from stiction.stages.releases import ended, stuck_lengths
 
 #: Warnings by their subject, such as ``pair b, RH 0.67, G``.
@@ -32,6 +34,7 @@ class OfPairs:
     beam: Dimensions
     pairs: dict[str, Gap]
     sampling: StripLength
+    water: dict[str, Water]  #: by pair
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,23 @@ class OfDevice:
     device: DesignedBeam
     tip: float  #: length of the strips of tips [m]
     materials: Materials = ()  #: of its pair
+
+
+@dataclass(frozen=True)
+class OfStopper:
+    """A stopper and its pair."""
+
+    pair: str
+    water: Water
+    contact: tuple[float, float]  #: sides of the patch [m]
+    humidities: tuple[float, ...]  #: of the stopper [-]
+    worst_humidities: tuple[float, float]  #: ends of the axis along which the worst humidity is sought [-]
+    materials: Materials = ()  #: of its pair
+
+
+def height(humidity: float, water: Water) -> float:
+    """Height h_C of the film at a relative humidity [m]."""
+    return float(meniscus_height(humidity, water.temperature, water.contact_angles))
 
 
 def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
@@ -99,7 +119,9 @@ def of_chart(
         shortest = shortest.assign(wedge=min(float(one.wedge) for one in along))
         of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
         length = float(shortest.safe_length.min())
-        warnings[thickness, gap, shape] = _of_length(length, shape, shortest, of_size, plastic)
+        warnings[thickness, gap, shape] = _of_length(
+            length, shape, shortest, of_size, plastic, min(float(one.film) for one in along)
+        )
     return warnings
 
 
@@ -108,15 +130,25 @@ def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
     return list(product(*(chart[name].values.tolist() for name in ("thickness", "gap", "shape"))))
 
 
-def _of_length(length, shape, found, of, plastic):
-    """Warnings about a device of a length [m] in a shape; film, rms, wedge and its limit from a dataset."""
+def _of_length(length, shape, found, of, plastic, thinnest=None):
+    """Warnings about a device of a length [m] in a shape; film, rms, wedge and its limit from a dataset.
+
+    The thinnest film [m] is that of the dataset, or along the axis of a chart.
+    """
     device = of.device
     sizes = device.gap, device.width, device.thickness, length / device.cracks
     return limits.of_beam(*sizes, float(found.film), float(found.rms)) + limits.given(
+        limits.thin_film(thinnest or float(found.film)),
         limits.stretched_bridge(device.gap, device.thickness) if device.kind == "bridge" else None,
         limits.short_wedge(of.tip, float(found.wedge), float(found.flooded_length)) if shape == EITHER else None,
         *_of_contact(plastic, of.materials),
     )
+
+
+def _of_water(of):
+    """Warnings, or None, about the thinnest and the thickest film on the patch of a stopper."""
+    films = [height(humidity, of.water) for humidity in (*of.humidities, *of.worst_humidities)]
+    return limits.thin_film(min(films)), limits.wide_meniscus(max(films), of.contact)
 
 
 def _of_contact(plastic, materials, effect=limits.SHORTER):
@@ -156,8 +188,26 @@ def of_pairs(
     }
     for (pair, humidity, model), dataset in beams.items():
         nominal = cantilever(settings, pair)
-        found[f"pair {pair}, RH {humidity:g}, {model}"] = of_beams(dataset, nominal, settings.sampling.strip_length)
+        film = limits.given(limits.thin_film(height(humidity, settings.water[pair])))
+        found[f"pair {pair}, RH {humidity:g}, {model}"] = film + of_beams(
+            dataset, nominal, settings.sampling.strip_length
+        )
     return found
+
+
+def of_thin_films(cases: Iterable[tuple[str, float, str]], plain: Mapping[str, dict[str, Any]]) -> list[str]:
+    """Warnings about films that are hardly a liquid, one for each pair and humidity of some cases.
+
+    Parameters
+    ----------
+    cases : iterable of tuple
+        Pair, humidity and model.
+    plain : dict
+        Water by pair in units of the configuration.
+    """
+    films = {(pair, humidity): height(humidity, typed(Water, plain[pair])) for pair, humidity, _ in cases}
+    found = {case: limits.thin_film(film) for case, film in films.items()}
+    return [f"Pair {pair}, RH {humidity:g}: {sentence}" for (pair, humidity), sentence in found.items() if sentence]
 
 
 def of_devices(
@@ -208,12 +258,14 @@ def of_stoppers(plasticity: Mapping[str, xr.Dataset], plain: Mapping[str, dict[s
     plasticity : dict
         As in `of_pairs`.
     plain : dict
-        Settings of a job: name to its ``pair`` and the ``materials`` as in `OfDevice`.
+        Settings of a job: name to `OfStopper` in units of the configuration.
     """
     return {
-        name: limits.given(*_of_contact(share, section["materials"], limits.STRONGER))
+        name: limits.given(
+            *_of_water(of), *_of_contact(_plastic_share(plasticity, of.pair), of.materials, limits.STRONGER)
+        )
         for name, section in plain.items()
-        for share in [_plastic_share(plasticity, section["pair"])]
+        for of in [typed(OfStopper, section)]
     }
 
 

@@ -134,7 +134,11 @@ _OF_CHARTS = {
     ),
 }
 _OF_STOPPERS = {
-    "Pull-off force": "Largest force with which the two surfaces hold each other while they are separated.",
+    "Pull-off force": (
+        "Largest force with which the two surfaces hold each other while they are separated: pressure times area, for "
+        "an area that moves as a whole. One that tilts, or is so large that it bends, comes off part by part and holds "
+        "less: for it, this force is an upper bound."
+    ),
     "P(stuck)": "Share of equal stoppers whose pull-off force exceeds the restoring force.",
     "Safe force": (
         "Restoring force that is exceeded by the pull-off force of at most the stated share of stoppers, with a "

@@ -61,7 +61,8 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
     rows = [row for device, dataset in datasets.items() for row in _of_stopper(device, dataset)]
     frame = pd.DataFrame([row | {"warnings": " ".join(warnings[row["device"]])} for row in rows])
     caption = (
-        "Stoppers: force that pulls a patch off, mean ± standard error and standard deviation over the patches; "
+        "Stoppers: force that pulls a patch off, an upper bound if it tilts or bends, mean ± standard error and "
+        "standard deviation over the patches; "
         "P(stuck): share of the patches that hold more than the restoring force, with its 95 % band; safe force: "
         "restoring force that is exceeded by the pull-off force of at most this share of all patches, with 95 % "
         "confidence; – where there are too few patches. The last row of a stopper has the largest values along a fine "

@@ -6,11 +6,18 @@ Lengths are in metres, angles of rotation in radians, shares between 0 and 1.
 import math
 from collections.abc import Sequence
 
+from stiction.constants import WATER_MOLECULE
+
 #: Largest plastic share of the contact area. Pair c has 58 %, and its beams stick at 72 % of the predicted length.
 PLASTIC = 0.02
 #: ASSUME: smallest gap, in units of film height plus rms roughness. The model takes the range of the force laws as
 #: short compared with the gap: with a film of half the gap, Eq. (13) gives half of the adhesion energy.
 FILMS = 20
+#: Fewest molecules across a film for which results are within the range of validity, RH 0.395 at 300 K where water wets
+#: both surfaces perfectly. Films of less than `stiction.contact.meniscus.MOLECULES` are refused.
+MOLECULES = 4
+#: ASSUME: largest share of the force on a patch that the surface tension along its rim may add.
+RIM = 0.1
 #: Largest slope of a beam.
 ROTATION = 0.1
 #: Smallest ratio of crack length to thickness.
@@ -76,6 +83,34 @@ def default_material(name: str, stated: Sequence[str]) -> str | None:
     return (
         f"{len(missing)} properties of {name} are not stated; those of section solid and of polysilicon are used: "
         f"{', '.join(missing)}."
+    )
+
+
+def thin_film(film: float) -> str | None:
+    """Film of height h_C that is hardly a liquid."""
+    if film >= MOLECULES * WATER_MOLECULE:
+        return None
+    return (
+        f"The film of water is {film * 1e9:.2g} nm high, thinner than {MOLECULES} molecules, "
+        f"{MOLECULES * WATER_MOLECULE * 1e9:.3g} nm: the air is drier than the range in which the theory of a liquid "
+        "is valid, so that this result may be off to either side."
+    )
+
+
+def wide_meniscus(film: float, sides: Sequence[float]) -> str | None:
+    r"""Film of height h_C that is not small against the sides a and b of a patch of surface.
+
+    The tension in the film pulls on the patch with :math:`\gamma (\cos\theta_1 + \cos\theta_2) a b / h_C`, and the
+    surface of the water along its rim with at most :math:`2 \gamma (a + b)`. Where the solids are wetted, the ratio is
+    :math:`h_C (1/a + 1/b)`.
+    """
+    share = film * sum(1 / side for side in sides)
+    if share <= RIM:
+        return None
+    return (
+        f"The film of water is up to {film * 1e6:.3g} µm high, not small against the area in contact: the surface "
+        f"tension along its rim, which is left out, adds up to {100 * share:.3g} % of the force of the film, more than "
+        f"{100 * RIM:.0f} %. Stoppers may hold more than computed, which is the unsafe side."
     )
 
 

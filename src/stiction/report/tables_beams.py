@@ -1,6 +1,6 @@
 """Tables of force laws and beams: Table III compared with the published one, the fit by Eq. (12), the chaos model."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -12,7 +12,7 @@ from stiction.estimates import mean_on_shared_samples, mean_with_error
 from stiction.models import surface_model
 from stiction.report.format import TO_MJ, UM, as_published, error_alone, number, percent, with_error
 from stiction.report.published import value
-from stiction.report.tables import Table
+from stiction.report.tables import Table, with_list
 from stiction.stages import forces as stage_forces
 from stiction.stages.named import Case
 from stiction.stages.releases import STATES, ended, stuck_energies, stuck_lengths
@@ -29,6 +29,7 @@ def table_3(
     forces: Mapping[Case, xr.Dataset],
     published: pd.DataFrame,
     by_scans: Mapping[tuple[str, float], float] | None = None,
+    warnings: Sequence[str] = (),
 ) -> Table:
     """Table III: crack lengths and adhesion energies of released beams.
 
@@ -40,6 +41,8 @@ def table_3(
         The published table, rows of the paper's own pairs.
     by_scans : dict, optional
         (pair, humidity) to the relative standard error of ē due to finite scans, of pairs with measured surfaces.
+    warnings : sequence of str, optional
+        Sentences about single cases.
     """
     rows = [_row_3(key, beams[key], forces[*key[:2], surface_model(key[2])], published) for key in beams]
     if by_scans:
@@ -56,6 +59,8 @@ def table_3(
     )
     if by_scans:
         caption += " Scans: standard error of the mean due to the finite scans of measured surfaces."
+    if warnings:
+        caption = with_list(f"{caption} Warnings:", warnings)
     return Table(frame, caption, pd.DataFrame([_cells_3(row) for _, row in frame.iterrows()]))
 
 
