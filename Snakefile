@@ -42,7 +42,7 @@ include: "workflow/rules/figures_studies.smk"
 include: "workflow/rules/figures.smk"
 
 
-if workflow.is_main_process:
+if hooks.is_main(workflow):
     remember.save()
 
 
@@ -61,10 +61,10 @@ onstart:
         raise WorkflowError(f"results/ cannot be used: {reason}. Make it writable or choose another --directory.")
     except (RuntimeError, ValueError) as error:
         raise WorkflowError(str(error))
-    hooks.limit_timers(workflow.scheduler)
+    hooks.limit_timers(workflow)
     # Kernels are compiled and cached before jobs run in parallel, because two jobs could corrupt a shared cache entry.
     # The server of local jobs does it; the jobs of a cluster run on other machines.
-    if not (workflow.local_exec and hooks.fork_jobs()):
+    if not (hooks.runs_here(workflow) and hooks.fork_jobs()):
         shell("{sys.executable:q} -m stiction.run.warmup")
 
 

@@ -27,7 +27,7 @@ EMPTY_JOBS = """
 from stiction.run import hooks
 
 onstart:
-    hooks.limit_timers(workflow.scheduler)
+    hooks.limit_timers(workflow)
     hooks.fork_jobs()
 
 rule all:

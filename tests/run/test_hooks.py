@@ -1,18 +1,18 @@
 """Snakemake with the changes of a plan and a run: the same jobs, the same messages, one look, one timer."""
 
+import inspect
 import json
 import os
 import re
 import subprocess
 import sys
 import threading
-import time
 from types import SimpleNamespace
 
 import pandas
 import pytest
 import snakemake.api
-from snakemake import common, persistence, rules
+from snakemake import persistence
 from snakemake.persistence.file import FilePersistence
 from snakemake.scheduling.job_scheduler import JobScheduler
 from snakemake.script import PythonScript
@@ -29,7 +29,7 @@ forkserver.COMMAND = [sys.executable, "-P", "-c", {bare!r}]
 
 onstart:
     if config["changed"]:
-        hooks.limit_timers(workflow.scheduler)
+        hooks.limit_timers(workflow)
         print("forked:", hooks.fork_jobs(), flush=True)
 
 onerror:
@@ -155,6 +155,24 @@ def test_the_scheduler_of_this_version_of_snakemake_is_changed(both):
     assert "timers limited: False" in slow
 
 
+class Timer(threading.Timer):
+    """Timer that ends when it is told to."""
+
+    def start(self):
+        started.append(self)
+
+
+started = []
+
+
+@pytest.fixture
+def timers(monkeypatch):
+    """Timers that were started."""
+    started.clear()
+    monkeypatch.setattr(threading, "Timer", Timer)
+    return started
+
+
 def scheduler():
     """The parts of a scheduler that timers use, with the method of Snakemake."""
     found = SimpleNamespace(_open_jobs=threading.Semaphore(0))
@@ -162,25 +180,26 @@ def scheduler():
     return found
 
 
-@pytest.mark.parametrize(("changed", "woken"), [(True, 1), (False, 20)])
-def test_a_scheduler_is_woken_once_per_timer(changed, woken):
+@pytest.mark.parametrize(("changed", "number"), [(True, 1), (False, 20)])
+def test_a_scheduler_is_woken_once_per_timer(timers, changed, number):
     found = scheduler()
     if changed:
-        hooks.limit_timers(found)
+        hooks.limit_timers(SimpleNamespace(scheduler=found))
     for _ in range(20):
         found._schedule_reevalutation(0.2)
-    timers = [each for each in threading.enumerate() if isinstance(each, threading.Timer)]
-    assert len(timers) == woken
+    assert [timer.interval for timer in timers] == [0.2] * number
     assert all(timer.daemon == changed for timer in timers), "Snakemake waits for timers at its end"
-    time.sleep(1)
-    assert [found._open_jobs.acquire(blocking=False) for _ in range(21)].count(True) == woken
+    for timer in timers:
+        timer.function(*timer.args)
+    assert [found._open_jobs.acquire(blocking=False) for _ in range(21)].count(True) == number
     found._schedule_reevalutation(0.2)
-    assert found._open_jobs.acquire(timeout=10), "a timer must follow the one that has ended"
+    assert len(timers) == number + 1, "a timer must follow the one that has ended"
 
 
 def test_an_unknown_scheduler_remains_as_it_is():
     unknown = SimpleNamespace(_open_jobs=threading.Semaphore(0))
-    hooks.limit_timers(unknown)
+    hooks.limit_timers(SimpleNamespace(scheduler=unknown))
+    hooks.limit_timers(SimpleNamespace())
     assert not hasattr(unknown, "_schedule_reevalutation")
 
 
@@ -205,103 +224,6 @@ def test_unknown_records_of_parameters_remain_as_they_are(monkeypatch):
     monkeypatch.delattr(persistence, "PersistenceBase")
     hooks.compare_without_pandas()
     assert not hasattr(persistence, "PersistenceBase")
-
-
-class Called:
-    """Input function without a hash."""
-
-    __hash__ = None
-
-    def __call__(self, wildcards, input):
-        """Nothing."""
-
-
-@pytest.fixture
-def signatures(monkeypatch):
-    """Functions whose signatures Snakemake has read since the change."""
-    read, known = [], common.get_function_params
-
-    def get_function_params(func):
-        read.append(func)
-        return known(func)
-
-    for module in (common, rules):
-        monkeypatch.setattr(module, "get_function_params", get_function_params)
-    hooks.remember_signatures()
-    return read
-
-
-def test_a_signature_is_read_once(signatures):
-    def found(wildcards, attempt):
-        """Nothing."""
-
-    called, candidates = Called(), {"input": 1, "attempt": 2, "threads": 3}
-    for _ in range(3):
-        assert list(rules.get_function_params(found)) == ["wildcards", "attempt"]
-        assert common.get_input_function_aux_params(found, candidates) == {"attempt": 2}
-        assert common.get_input_function_aux_params(called, candidates) == {"input": 1}
-    assert signatures == [found, called, called, called]
-
-
-def test_an_unknown_way_to_read_signatures_remains_as_it_is(monkeypatch):
-    def another(func, wildcards):
-        """A way that is not known."""
-
-    monkeypatch.setattr(rules, "get_function_params", another)
-    known = common.get_function_params
-    hooks.remember_signatures()
-    assert (common.get_function_params, rules.get_function_params) == (known, another)
-    monkeypatch.setattr(common, "get_function_params", another)
-    hooks.remember_signatures()
-    assert common.get_function_params is rules.get_function_params is another
-
-
-@pytest.mark.parametrize(("script", "number"), [("a.py", 1), ("{wildcards.name}.py", 3), (ROOT / "a.py", 3), (None, 3)])
-def test_a_script_is_looked_for_once_unless_its_name_depends_on_the_job(monkeypatch, script, number):
-    looked = []
-
-    def process_job(self, job):
-        looked.append((self.script_type, job))
-
-    monkeypatch.setattr(snakemake.dag.ScriptProcessor, "process_job", process_job)
-    hooks.check_scripts_once()
-    for _ in range(2):  # what one plan has found, another looks for again
-        looked.clear()
-        processor = snakemake.dag.ScriptProcessor(None)
-        jobs = [SimpleNamespace(rule=rule) for rule in 3 * [Rule(script)] + [Rule("other.py")]]
-        for job in jobs:
-            processor.process_job(job)
-        assert [job for _, job in looked] == [*jobs[:number], jobs[-1]]
-
-
-class Rule:
-    """Rule with a script."""
-
-    def __init__(self, script):
-        self.script = script
-
-
-def test_an_unknown_search_for_scripts_remains_as_it_is(monkeypatch):
-    def another(self, jobs):
-        """A search that is not known."""
-
-    monkeypatch.setattr(snakemake.dag.ScriptProcessor, "process_job", another)
-    hooks.check_scripts_once()
-    assert snakemake.dag.ScriptProcessor.process_job is another
-    monkeypatch.delattr(snakemake.dag, "ScriptProcessor")
-    hooks.check_scripts_once()
-    assert not hasattr(snakemake.dag, "ScriptProcessor")
-
-
-def test_this_version_of_snakemake_plans_with_the_changes(monkeypatch):
-    before = common.get_function_params, snakemake.dag.ScriptProcessor.process_job
-    for module in (common, rules):
-        monkeypatch.setattr(module, "get_function_params", before[0])
-    monkeypatch.setattr(snakemake.dag.ScriptProcessor, "process_job", before[1])
-    hooks.remember_signatures()
-    hooks.check_scripts_once()
-    assert common.get_function_params is rules.get_function_params is not before[0]
-    assert snakemake.dag.ScriptProcessor.process_job is not before[1]
 
 
 @pytest.fixture
@@ -369,3 +291,80 @@ def test_only_scripts_with_the_surroundings_of_the_server_are_forked(special, pl
     server = SimpleNamespace(environment=hooks.environment(1, folder))
     script = SimpleNamespace(**PLAIN | {"threads": 1, "resources": {"tmpdir": folder}} | special)
     assert hooks._plain(script, server) == plain
+
+
+@pytest.mark.parametrize("name", [*PLAIN, "threads", "resources"])
+def test_a_script_about_which_snakemake_no_longer_tells_all_is_not_forked(name):
+    server = SimpleNamespace(environment=hooks.environment(1, hooks.tempfile.gettempdir()))
+    script = SimpleNamespace(**PLAIN, threads=1, resources={})
+    assert hooks._plain(script, server)
+    delattr(script, name)
+    assert not hooks._plain(script, server)
+
+
+def test_a_server_starts_without_a_module_that_a_library_no_longer_has(monkeypatch):
+    names = []
+
+    def imported(name):
+        names.append(name)
+        if name == "snakemake.iocontainers":
+            raise ModuleNotFoundError(name)
+        return SimpleNamespace(main=lambda: None, preload=lambda: None)
+
+    monkeypatch.setattr(forkserver.importlib, "import_module", imported)
+    forkserver.preload()
+    assert set(forkserver.LATE) <= set(names)
+
+
+class Workflow:
+    """What is asked of the workflow of Snakemake, of which any part may be missing."""
+
+    def __init__(self, **parts):
+        vars(self).update(parts)
+
+
+def test_this_version_of_snakemake_has_all_that_is_asked_of_it():
+    parts = {"is_main_process", "local_exec", "overwrite_configfiles", "rules", "scheduler"}
+    assert parts <= set(dir(snakemake.workflow.Workflow))
+    assert "self.configfiles = " in inspect.getsource(snakemake.workflow)
+    assert "self.forcefiles = set()" in inspect.getsource(snakemake.dag)
+
+
+@pytest.mark.parametrize(
+    ("words", "main"), [([], True), (["--mode", "subprocess"], False), (["--mode", "remote"], False)]
+)
+def test_the_main_process_is_known_by_snakemake_or_by_its_arguments(monkeypatch, words, main):
+    monkeypatch.setattr(sys, "argv", ["snakemake", *words])
+    assert hooks.is_main(Workflow()) == main
+    assert hooks.is_main(Workflow(is_main_process=not main)) != main
+
+
+def test_jobs_are_not_forked_where_snakemake_does_not_say_where_they_run():
+    assert not hooks.runs_here(Workflow())
+    assert hooks.runs_here(Workflow(local_exec=True))
+
+
+def test_files_of_the_configuration_come_before_those_that_they_overwrite():
+    files = ["first.yaml", "second.yaml"]
+    found = hooks.files_of_configuration(Workflow(overwrite_configfiles=files, configfiles=[*files, "config.yaml"]))
+    assert [path.name for path in found] == ["second.yaml", "first.yaml", "config.yaml"]
+    assert hooks.files_of_configuration(Workflow()) == []
+
+
+def test_a_line_says_if_snakemake_does_not_list_its_rules(monkeypatch):
+    lines = []
+    monkeypatch.setattr(hooks.logger, "warning", lines.append)
+    assert hooks.rules_of(Workflow(rules=["rule"])) == ["rule"]
+    assert not lines
+    assert list(hooks.rules_of(Workflow())) == []
+    assert "does not list its rules" in lines[0]
+
+
+def test_unusable_files_are_computed_again_or_refused():
+    plan = SimpleNamespace(forcefiles={"first"})
+    hooks.force(Workflow(dag=plan), {"second": "reason"})
+    assert plan.forcefiles == {"first", "second"}
+    for unknown in (Workflow(), Workflow(dag=SimpleNamespace())):
+        hooks.force(unknown, {})
+        with pytest.raises(hooks.WorkflowError, match=r"cannot be used in this run: a, b\. Delete"):
+            hooks.force(unknown, {"b": "reason", "a": "reason"})

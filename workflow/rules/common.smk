@@ -43,8 +43,6 @@ wildcard_constraints:
 
 
 hooks.compare_without_pandas()
-hooks.remember_signatures()
-hooks.check_scripts_once()
 remember = Remembered(".snakemake/planning.json")
 
 
@@ -69,11 +67,8 @@ def rules_of_the_configuration():
 
 try:
     # Read again, because Snakemake silently uses the last of duplicate keys.
-    contents = {Path(file): files.read(file) for file in workflow.configfiles}
-    for file in [
-        *reversed(workflow.overwrite_configfiles),
-        *contents,
-    ]:  # files of scans are relative to the first match
+    contents = {file: files.read(file) for file in hooks.files_of_configuration(workflow)}
+    for file in contents:  # files of scans are relative to the first match
         config.update(measured.anchored(config, contents[file], file.parent))
     scanned = measured.has_scans(config)
     preliminary = validated() if scanned else remember(["valid", config, rules_of_the_configuration()], validated)
@@ -100,7 +95,7 @@ ON_DEVICES = "Devices"
 @cache
 def settings_of(path):
     """Settings of the job that writes a dataset; ``None`` if this configuration has no such job."""
-    return kept.settings(path, workflow.rules)
+    return kept.settings(path, hooks.rules_of(workflow))
 
 
 def foreign():
@@ -122,8 +117,8 @@ def unusable():
 
 def planned(wildcards):
     """No input. Snakemake calls this while it plans a run, because every run begins with the heights of a surface."""
-    if workflow.is_main_process:
-        workflow.dag.forcefiles.update(unusable())
+    if hooks.is_main(workflow):
+        hooks.force(workflow, unusable())
     return []
 
 

@@ -5,6 +5,7 @@ has done so begins within hundredths of a second. `Server` starts that process, 
 and asks it to run scripts. The process has a single thread, because only then a fork is safe.
 """
 
+import contextlib
 import ctypes
 import gc
 import importlib
@@ -122,7 +123,8 @@ def preload() -> None:
         if module.name != _OF_SNAKEMAKE:
             importlib.import_module(module.name)
     for name in LATE:
-        importlib.import_module(name)
+        with contextlib.suppress(ImportError):  # what a library no longer has, no job imports
+            importlib.import_module(name)
     importlib.import_module("stiction.run.warmup").main()
     importlib.import_module("stiction.report.style").preload()
     gc.freeze()  # the collector of a child would otherwise write to, and thereby copy, every page that it shares

@@ -1,7 +1,7 @@
-"""Changes of Snakemake during a plan and a run, to save time: look-ups, starts of jobs, timers, an import.
+"""What this project changes in Snakemake, and what it asks of it, beyond Snakemake's public interface.
 
-Each change replaces a method that is not part of Snakemake's public interface. A version of Snakemake that has another
-method in its place remains as it is.
+Every use of a private part is one function here, which says what happens in a version of Snakemake without that part.
+Changes save time only: another version remains as it is and is slower.
 """
 
 import inspect
@@ -10,12 +10,13 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Hashable
-from functools import cache
+from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
-import snakemake.api  # first, because its imports are circular
-from snakemake import common, persistence, rules
+import snakemake.api  # noqa: F401  first, because its imports are circular
+from snakemake import persistence
+from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
 from snakemake.script import PythonScript
 
@@ -74,11 +75,20 @@ def _run(server, script):
         raise subprocess.CalledProcessError(status, f"{sys.executable} {script}")
 
 
+#: Attributes of a script that Snakemake runs in other surroundings than those of the server, if they are set.
+SPECIAL = ("container_img", "conda_env", "env_modules", "shadow_dir", "bench_record")
+
+
 def _plain(script, server):
-    """Whether Snakemake would start a script with the interpreter and the environment of the server."""
-    special = (script.container_img, script.conda_env, script.env_modules, script.shadow_dir, script.bench_record)
+    """Whether Snakemake would start a script with the interpreter and the environment of the server.
+
+    Not if Snakemake no longer says what this depends on.
+    """
+    if not {*SPECIAL, "threads", "resources"} <= set(dir(script)):
+        return False
     folder = script.resources.get("tmpdir", tempfile.gettempdir())
     alike = environment(script.threads, folder) == server.environment
+    special = [getattr(script, name) for name in SPECIAL]
     return alike and not any(special) and not script.resources.get("shell_exec")
 
 
@@ -99,51 +109,13 @@ def compare_without_pandas() -> None:
     records._serialize_param_pandas = serialize
 
 
-def remember_signatures() -> None:
-    """Let Snakemake read the signature of an input function once.
-
-    It reads about nine signatures for each planned job, most of them of the same functions.
-    """
-    read = getattr(common, "get_function_params", None)
-    if read is None or getattr(rules, "get_function_params", None) is not read:
-        return
-    if list(inspect.signature(read).parameters) != ["func"]:
-        return
-    known = cache(read)
-
-    def get_function_params(func):
-        return known(func) if isinstance(func, Hashable) else read(func)
-
-    common.get_function_params = rules.get_function_params = get_function_params
-
-
-def check_scripts_once() -> None:
-    """Let Snakemake look for the script of a rule once, not for each planned job.
-
-    A script is looked for once per job if its name depends on the job.
-    """
-    processor = getattr(snakemake.dag, "ScriptProcessor", None)
-    check = getattr(processor, "process_job", None)
-    if check is None or list(inspect.signature(check).parameters) != ["self", "job"]:
-        return
-
-    def process_job(self, job):
-        script = job.rule.script
-        of_rule = isinstance(script, str) and "{" not in script
-        found = vars(self).setdefault("_found", set())
-        if not (of_rule and job.rule in found):
-            check(self, job)
-            found.add(job.rule)
-
-    processor.process_job = process_job
-
-
-def limit_timers(scheduler: Any) -> None:
-    """Let a scheduler of Snakemake hold one timer at a time.
+def limit_timers(workflow: Any) -> None:
+    """Let the scheduler of a run hold one timer at a time; an unknown one keeps its timers, which cost some time.
 
     Every pass of the scheduler starts a timer that starts another pass, and so does every job that ends: after n jobs,
     there are about n passes per second until the end of the run.
     """
+    scheduler = getattr(workflow, "scheduler", None)
     if not {"_schedule_reevalutation", "_open_jobs"} <= set(dir(scheduler)):
         return
     waiting = threading.Lock()
@@ -159,3 +131,50 @@ def limit_timers(scheduler: Any) -> None:
         scheduler._open_jobs.release()
 
     scheduler._schedule_reevalutation = reevaluate
+
+
+def is_main(workflow: Any) -> bool:
+    """Whether this process plans the run, and is not one that Snakemake starts for a job with the option ``--mode``."""
+    return getattr(workflow, "is_main_process", not {"subprocess", "remote"} & set(sys.argv))
+
+
+def runs_here(workflow: Any) -> bool:
+    """Whether jobs run on this machine; if Snakemake no longer says so, each job starts an interpreter of its own."""
+    return getattr(workflow, "local_exec", False)
+
+
+def files_of_configuration(workflow: Any) -> list[Path]:
+    """Files of the configuration, each before those that it overwrites.
+
+    If Snakemake no longer names them there are none: then duplicate keys are not found, and paths of scans are relative
+    to the working directory.
+    """
+    names = [*reversed(getattr(workflow, "overwrite_configfiles", ())), *getattr(workflow, "configfiles", ())]
+    return list(dict.fromkeys(map(Path, names)))
+
+
+def rules_of(workflow: Any) -> Iterable[Any]:
+    """Rules of a workflow.
+
+    If Snakemake no longer lists them there are none: then results of other studies are recognised only by Snakemake's
+    own records of files, and a line says so.
+    """
+    found = getattr(workflow, "rules", None)
+    if found is None:
+        logger.warning("This version of Snakemake does not list its rules: results/ is not searched for foreign files.")
+    return found or ()
+
+
+def force(workflow: Any, paths: Iterable[str]) -> None:
+    """Let a plan take files as missing.
+
+    Raises
+    ------
+    WorkflowError
+        If there are such files and this version of Snakemake cannot be told: they must not be used.
+    """
+    forced = getattr(getattr(workflow, "dag", None), "forcefiles", None)
+    if isinstance(forced, set):
+        forced.update(paths)
+    elif names := sorted(paths):
+        raise WorkflowError(f"These files cannot be used in this run: {', '.join(names)}. Delete them and try again.")
