@@ -65,10 +65,10 @@ class Cubic:
         return a * score + b * (score**2 - 1) + c * score**3
 
 
-def fleishman(side, count):
-    """Scans with the spectrum and the four moments of B2, but another density."""
+def fleishman(side, count, skewness=SURFACES["B2"].skewness, kurtosis=SURFACES["B2"].kurtosis):
+    """Scans with the spectrum and the rms of B2, and by default its four moments, but another density."""
     b2 = SURFACES["B2"]
-    translation = Translation(Cubic(b2.skewness, b2.kurtosis))
+    translation = Translation(Cubic(skewness, kurtosis))
     underlying = underlying_spectrum(b2.spectrum, translation, SPACING)[0]
     return scans(RoughSurface(underlying, translation, b2.rms, grid(side)), side, count, "fleishman")
 

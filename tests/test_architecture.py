@@ -13,7 +13,7 @@ PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 ORDER = """
 constants errors streams estimates numbers models progress
 surface: maxent spectrum translation empirical feasible normals field iteration summits identify
-scans: scan levelling moments periodogram whittle quantiles model_scans histogram estimate
+scans: scan levelling holes remainder moments periodogram whittle quantiles model_scans histogram estimate
 contact: meniscus vanderwaals asperity solids estimate pair forcelaw bounds
 chaos: coordinates density polynomials model
 beam: cantilever tension energy foundation equilibrium release resolution montecarlo

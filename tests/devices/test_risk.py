@@ -12,6 +12,7 @@ from stiction.beam.release import EndState, released_beam
 from stiction.contact import forcelaw
 from stiction.devices import arcs, risk
 from stiction.devices.risk import Basis
+from stiction.devices.tail import fit_tail, scaled_errors
 from stiction.streams import stream
 
 SPREAD, MEDIAN = 0.025, 700e-6
@@ -51,6 +52,40 @@ def test_shares_are_those_of_shorter_sticking_lengths():
     assert_array_equal(share, [0, 0, 0.5, 0.75])
     assert np.all((low <= share) & (share <= high))
     assert low[0] == 0
+
+
+@pytest.mark.parametrize(("samples", "share"), [(299, 0.01), (473, 0.01), (1000, 0.02), (2500, 0.003), (200, 0.05)])
+def test_the_sampled_bound_is_the_largest_order_statistic_that_so_many_devices_allow(samples, share):
+    bound = risk.sampled_bound(np.arange(float(samples)), share)[0]
+    # The k-th smallest value is below the quantile unless k values or fewer are: binomials by summation.
+    assert binom.cdf(bound, samples, share) <= 0.05 < binom.cdf(bound + 1, samples, share)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.05, 0.01, 0.0123, 1e-3])
+def test_one_sample_fewer_does_not_bound_a_share(share):
+    samples = risk.samples_for(share)
+    assert binom.pmf(0, samples, share) <= 0.05 < binom.pmf(0, samples - 1, share)
+    with pytest.raises(ValueError, match=f"needs {samples} samples, got {samples - 1}"):
+        risk.sampled_bound(np.arange(float(samples - 1)), share)
+    assert risk.sampled_bound(np.arange(float(samples)), share)[0] == 0
+
+
+def test_both_ends_of_a_band_leave_one_of_forty_cases():
+    sticking, stuck = np.arange(60.0), np.arange(1, 60)
+    share, low, high = risk.stuck_share(stuck - 0.5, sticking)
+    assert_allclose(share, stuck / 60)
+    assert_allclose(binom.sf(stuck - 1, 60, low), 0.025, rtol=1e-9)
+    assert_allclose(binom.cdf(stuck, 60, high), 0.025, rtol=1e-9)
+
+
+def test_a_fitted_bound_is_exceeded_by_the_estimate_of_one_of_twenty_simulated_studies():
+    sticking = lognormal(np.random.default_rng(9), 500)
+    found = risk.safe_length(sticking, 1e-3, stream(0))
+    errors, pivots = scaled_errors(500, 1e-3, stream(0))
+    slope = fit_tail(sticking).slope
+    above = pivots * slope > np.log(found.estimate / found.length)
+    assert_allclose(np.mean(above), 0.05, atol=1 / len(pivots))
+    assert_allclose(found.error, found.estimate * slope * np.std(errors))
 
 
 def test_wilks_smallest_of_so_many_bounds_the_length():
@@ -152,6 +187,13 @@ def test_the_error_from_groups_is_the_scatter_of_repeated_studies():
     assert_allclose(np.sqrt(np.mean(np.square(errors))), np.std(values), rtol=4 / np.sqrt(2 * 400) + 0.02)
     same = np.column_stack([np.full(10, 0.1), np.linspace(1, 2, 10)])
     assert_array_equal(np.isnan(risk.error_of_surfaces(same)), [True, False])
+
+
+def test_the_error_from_groups_is_that_of_their_mean():
+    values = np.array([1.0, 2.0, 4.0])
+    expected = np.sqrt(np.sum((values - values.mean()) ** 2) / (3 * 2))
+    assert_allclose(risk.error_of_surfaces(values), expected)
+    assert_allclose(risk.error_of_surfaces([1.0, 2.0]), 0.5)
 
 
 def test_the_scatter_of_one_group_is_refused():

@@ -105,12 +105,6 @@ def test_offsets_and_tilts_of_lines_stay_in_the_band_near_the_slow_axis():
     assert with_band.slope / before.slope < 0.9
 
 
-def test_undefined_points_are_at_the_level():
-    z = MAPS[0].copy()
-    z[5:8, 9] = np.nan
-    np.testing.assert_array_equal(periodogram([z], SIZE).power, periodogram([np.nan_to_num(z)], SIZE).power)
-
-
 def test_pixels_need_not_be_square():
     oblong, square = rings(periodogram([z[:, ::2] for z in MAPS], SIZE)), rings(ISOTROPIC)
     np.testing.assert_allclose(oblong.density[6:24] / square.density[6:24], 1, rtol=0, atol=0.1)

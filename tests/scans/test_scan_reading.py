@@ -364,7 +364,9 @@ def test_damage_that_shows_only_later_is_told_in_the_same_sentence(tmp_path, mon
 def test_without_the_library_the_message_tells_how_to_install_it(tmp_path, monkeypatch):
     path = written(tmp_path, "gwy", topography())
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
-    with pytest.raises(ScanError, match="needs the library SurfaceTopography to be read: pip install 'stiction"):
+    with pytest.raises(
+        ScanError, match="needs the library SurfaceTopography to be read: pip install 'SurfaceTopography>=1.27'"
+    ):
         read(path)
 
 

@@ -8,10 +8,11 @@ from published import IDENTITY, SPACING, SURFACES
 from scipy import stats
 
 from stiction.errors import ScanError
-from stiction.scans.estimate import Settings, _residual, estimate, inspect, nearest_density
+from stiction.scans import estimate as evaluation
+from stiction.scans.estimate import Settings, _model, _residual, estimate, inspect, nearest_density, widened
 from stiction.scans.levelling import Levelling
-from stiction.scans.model_scans import ModelScans
-from stiction.scans.moments import homogeneity, moments, powers
+from stiction.scans.model_scans import ModelScans, draw_model_scans
+from stiction.scans.moments import homogeneity, moments, powers, tile_errors
 from stiction.scans.quantiles import SCORES, Feasible, measured_density
 from stiction.scans.scan import Scan
 from stiction.streams import stream
@@ -61,6 +62,44 @@ def test_three_scans_have_smaller_errors_than_one():
     np.testing.assert_allclose(of_b2().model_summit_errors / one.summit_errors, 1, rtol=0, atol=0.5)
     assert np.isnan(one.homogeneity[1]).all()
     assert np.isfinite(of_b2().homogeneity[1]).all()
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_errors_by_model_scans_are_their_scatter_over_the_root_of_the_scans(count, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(
+        evaluation, "draw_model_scans", lambda *given: drawn.append(draw_model_scans(*given)) or drawn[-1]
+    )
+    found, last = estimate(B2[:count], SEED, model_scans=8), drawn[-1]
+    n = len(last.quantiles)
+    assert n == max(8, 8 * count)
+    deviation = last.quantiles - last.quantiles.mean(axis=0)
+    expected = np.sqrt(np.sum(deviation**2, axis=0) / (n - 1) / count)
+    np.testing.assert_allclose(found.quantile_errors, expected)
+    # Of the ratio of the sums, whose terms are independent: by linear propagation, for one model scan.
+    number, curvature = last.summits.T
+    radius = number.sum() / curvature.sum()
+    terms = np.array([(number - radius * curvature) / curvature.mean(), number])
+    np.testing.assert_allclose(found.model_summit_errors, terms.std(axis=1, ddof=1), rtol=0.05)
+    closed = found.model.covariance / count + last.bias_covariance
+    np.testing.assert_allclose(found.closed_form_errors, np.sqrt(np.diag(closed)))
+    np.testing.assert_allclose(found.homogeneity, homogeneity(moments(found.inspection.powers), found.model.covariance))
+
+
+def test_widened_errors_are_those_by_tiles_unless_the_closed_form_has_larger_ones():
+    closed = np.array([[4.0, 1, 0], [1, 9, -5], [0, -5, 25]])
+    wide = widened(closed, np.array([1.0, 6.0, 7.5]))
+    np.testing.assert_allclose(np.sqrt(np.diag(wide)), [2, 6, 7.5])
+    np.testing.assert_allclose(wide[1, 2] / (6 * 7.5), closed[1, 2] / 15, err_msg="correlations stay")
+
+
+@pytest.mark.parametrize("fitness", [(40.0, 0.001), (5.0, 0.5), (np.nan, np.nan)])
+def test_errors_are_wider_only_where_four_moments_do_not_describe_the_heights(fitness, monkeypatch):
+    monkeypatch.setattr(evaluation, "goodness", lambda *_: fitness)
+    monkeypatch.setattr(evaluation, "tile_errors", lambda *_: 10 * of_b2().errors)
+    found = estimate(B2, SEED)
+    ratio = found.errors / found.closed_form_errors
+    np.testing.assert_allclose(ratio, 10 if fitness[1] < 0.01 else 1, rtol=1e-6)
 
 
 def test_moments_of_several_scans_are_those_of_all_their_heights():
@@ -223,6 +262,8 @@ FLAGS = {
                         feasible=Feasible(of_b2().feasible.density, 0.15, 3.06, 1.5)),
     "four moments do not describe the heights (T² 35, p 0.003); heights: measured does":
         lambda: changed(goodness=(35.0, 0.003)),
+    "errors of rms, kurtosis are those by tiles, up to 1.5 times those in closed form":
+        lambda: changed(closed_form_errors=of_b2().errors / [1.2, 1.05, 1.5]),
     "the tip rounds waves shorter than 50 nm":
         lambda: with_inspection(reach=dataclasses.replace(of_b2().inspection.reach, tip=np.pi / 25e-9)),
     "lines jump by 2.5 nm, against steps of 1 nm along a line; lines: offset levels them":
@@ -410,6 +451,26 @@ def test_errors_cover_the_truth_as_often_as_they_say():
     assert np.all(np.mean(np.abs(deviation) < 2, axis=0) >= 0.88)
     scatter = deviation.std(axis=0, ddof=1)
     assert np.all((scatter > 0.85) & (scatter < 1.2)), scatter
+
+
+@pytest.mark.slow
+def test_errors_by_tiles_cover_the_moments_of_heavy_tails_and_the_closed_form_does_not():
+    skewness, kurtosis = 1.0, 5.0
+    scans = fleishman(10e-6, 40, skewness, kurtosis)
+    inspected = [inspect([scan], Settings()) for scan in scans]
+    deviation = np.array([found.moments[1:] - (skewness, kurtosis) for found in inspected])
+    closed = [_model(found, found.moments, found.quantiles)[0].covariance for found in inspected]
+    wide = [widened(part, tile_errors(found.levelled, 4)) for part, found in zip(closed, inspected, strict=True)]
+    too_small, ratio = (
+        np.sqrt(np.mean([np.diag(part)[1:] for part in covariances], axis=0) / np.mean(deviation**2, axis=0))
+        for covariances in (closed, wide)
+    )
+    assert too_small[1] < 0.7
+    assert np.all((ratio > 0.75) & (ratio < 1.3)), ratio  # a single large ridge widens kurtosis and error together
+    found = estimates(scans[:3], count=12)
+    for one in found:
+        assert about(one.flags, "four moments do not describe the heights")
+        np.testing.assert_array_equal(one.errors, np.maximum(one.closed_form_errors, one.tile_errors))
 
 
 @pytest.mark.slow

@@ -11,10 +11,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 from published import SURFACES
 from written_scans import SIDE, scans_of, write
 
+from stiction.analysis.shifts import ORDERS
 from stiction.errors import ScanError
 from stiction.measured import estimate, heights, scan, spectrum
 from stiction.scans import estimate as evaluation
-from stiction.scans.histogram import histogram
+from stiction.scans.histogram import histogram, histogram_errors
+from stiction.scans.moments import mode_covariance
 from stiction.scans.quantiles import Feasible
 from stiction.scans.reading import ScanFile, Source
 from stiction.stages import heights as stage_heights
@@ -186,6 +188,14 @@ def test_the_band_near_the_slow_axis_holds_jumps_of_lines():
 
 def test_errors_of_modes_and_moments_agree_on_the_rms():
     assert float(b2().mode_covariance[0, 0]) == float(b2().covariance[0, 0])
+
+
+def test_errors_of_two_scans_are_those_of_one_over_the_root_of_two():
+    found, model = b2(), object_of_b2().model
+    assert_allclose(np.sqrt(2) * found.histogram_error, histogram_errors(model), rtol=1e-9)
+    modes = mode_covariance(model.translation, model.overlaps, ORDERS)
+    assert_allclose(2 * found.mode_covariance.values[1:, 1:], modes[1:, 1:], rtol=1e-9, atol=1e-15)
+    assert_allclose(2 * found.mode_covariance.values[0, 1:], modes[0, 1:], rtol=1e-9)
 
 
 # Heights

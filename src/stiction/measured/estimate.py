@@ -86,6 +86,11 @@ def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
             "covariance": (("moment", "other_moment"), found.covariance, {"long_name": "of the moments"}),
             "raw_moments": ("moment", inspection.moments, {"long_name": "of the levelled scans, with their bias"}),
             "scan_moments": (("scan", "moment"), moments(inspection.powers), {"long_name": "of every scan"}),
+            "closed_form_errors": (
+                "moment",
+                found.closed_form_errors,
+                {"long_name": "standard errors if the heights have the density of the model"},
+            ),
             "tile_errors": ("moment", found.tile_errors, {"long_name": "standard errors from the scatter of tiles"}),
             "homogeneity_chi2": ("moment", found.homogeneity[0], _CHI2),
             "homogeneity_p": ("moment", found.homogeneity[1], _P),

@@ -62,7 +62,7 @@ def _title(name, estimate):
     size, points = " × ".join(f"{TO_UM * length:.4g}" for length in frame.size), " × ".join(map(str, frame.shape))
     rms, errors = TO_NM * stage_estimate.rms(estimate), np.sqrt(np.diag(estimate.covariance))
     skewness, kurtosis = stage_estimate.shape(estimate)
-    tiles = np.max(estimate.tile_errors.values / errors)
+    tiles = np.max(estimate.tile_errors.values / estimate.closed_form_errors.values)
     sectors = float(estimate.sectors.max() / estimate.sectors.min())
     sector_error = np.sqrt(2) * sectors * float(estimate.sector_errors.max())
     numbers = (

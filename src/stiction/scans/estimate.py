@@ -13,7 +13,8 @@ from scipy.special import chdtrc
 from stiction.errors import NotConverged, ScanError
 from stiction.estimates import jackknife
 from stiction.scans import periodogram as spectra
-from stiction.scans.levelling import Levelling, level, line_jump
+from stiction.scans.holes import filled
+from stiction.scans.levelling import LEVELS, Levelling, level, line_jump
 from stiction.scans.model_scans import SurfaceModel, draw_model_scans, summits_of_map
 from stiction.scans.moments import homogeneity, moments, powers, tile_errors, tiles
 from stiction.scans.periodogram import Periodogram, Rings
@@ -28,6 +29,7 @@ from stiction.scans.quantiles import (
     measured_density,
     quantiles,
 )
+from stiction.scans.remainder import Remainder, remainders
 from stiction.scans.scan import Frame, Scan
 from stiction.scans.whittle import Reach, WhittleFit, fit_to_the_end, reach, tabulated, tip_reach
 from stiction.streams import stream
@@ -50,6 +52,8 @@ _CORRELATED = 2
 #: Limits of the flags: error by tiles over that of the closed form, χ² per degree of freedom, sector ratio, p, step
 #: between lines over step along them, and difference of the summits in standard errors.
 _TILES, _MISFIT, _ANISOTROPY, _UNLIKELY, _JUMP, _SUMMITS = 2.0, 2.0, 1.5, 0.01, 2.0, 4.0
+#: Names of the moments in flags, and a factor of an error that is worth a flag.
+_MOMENTS, _WIDER = ("rms", "skewness", "kurtosis"), 1.1
 #: Difference of the largest and the smallest of 8 normal values that is exceeded with the probability 0.01, in standard
 #: deviations (studentized range).
 _RANGE_OF_SECTORS = 4.99
@@ -73,7 +77,8 @@ class Inspection:
     names: tuple[str, ...]  #: of the scans
     frame: Frame
     settings: Settings
-    levelled: tuple[np.ndarray, ...]  #: heights, (n1, n2) each [m]
+    levelled: tuple[np.ndarray, ...]  #: heights, NaN where undefined, (n1, n2) each [m]
+    complete: tuple[np.ndarray, ...]  #: the same with undefined points filled from their neighbours [m]
     periodogram: Periodogram
     rings: Rings
     reach: Reach
@@ -98,6 +103,17 @@ class Inspection:
     def spectrum(self) -> CutoffSelfAffine:
         """Fit, up to the end of the measured spectrum."""
         return self.fit.spectrum(self.reach.end)
+
+    @property
+    def filled_share(self) -> float:
+        """Share of the undefined points of all scans [-]."""
+        return float(np.mean(~np.isfinite(self.levelled)))
+
+    @cached_property
+    def remainders(self) -> tuple[Remainder, ...]:
+        """Tilts and bows that levelling left."""
+        error = np.sqrt(self.fit.covariance[0, 0])
+        return remainders(self.levelled, self.frame.size, self.settings.levelling, self.spectrum, error)
 
     @property
     def wavelengths(self) -> float:
@@ -126,15 +142,16 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
             share = f"{100 * scan.undefined_share:.3g} % of its points undefined"
             raise ScanError(scan.name, "files", f"has {share}, at most {100 * settings.undefined_share:.3g} % may be")
     levelled = tuple(level(scan.heights, settings.levelling) for scan in scans)
-    spectrum = spectra.periodogram(levelled, frame.size)
-    tip = np.inf if settings.tip_radius is None else tip_reach(levelled, frame.pixel[0], settings.tip_radius)
+    complete = tuple(filled(z, frame.pixel) for z in levelled)
+    spectrum = spectra.periodogram(complete, frame.size)
+    tip = np.inf if settings.tip_radius is None else tip_reach(complete, frame.pixel[0], settings.tip_radius)
     within = reach(frame.size, frame.pixel, settings.shortest, tip)
     rings = spectra.rings(spectrum)
     try:
         fitted, within = fit_to_the_end(rings, within)
     except ValueError as reason:
         raise ScanError(", ".join(names), "files", f"cannot give a spectrum: {reason}") from None
-    found = Inspection(names, frame, settings, levelled, spectrum, rings, within, fitted)
+    found = Inspection(names, frame, settings, levelled, complete, spectrum, rings, within, fitted)
     if found.wavelengths < FEWEST_WAVELENGTHS:
         raise ScanError(
             ", ".join(names),
@@ -161,7 +178,8 @@ class SurfaceEstimate:
 
     inspection: Inspection
     moments: np.ndarray  #: without the bias of levelling and finite size, (3,)
-    covariance: np.ndarray  #: of the moments, by the finite scans and the finite number of model scans, (3, 3)
+    covariance: np.ndarray  #: of the moments, by the finite scans and model scans; see `widened`, (3, 3)
+    closed_form_errors: np.ndarray  #: standard errors of the moments if the heights have the density of the model, (3,)
     tile_errors: np.ndarray  #: standard errors of the moments from the scatter of tiles, (3,)
     homogeneity: tuple[np.ndarray, np.ndarray]  #: χ² of the scatter between scans and p, (3,) each
     model: SurfaceModel  #: surface of which the model scans were drawn
@@ -244,18 +262,23 @@ def estimate(
         heights = found.quantiles - drawn.levelled_off.mean(axis=0)
         residuals.append(_residual(nearest, drawn.quantiles, moments(drawn.powers)))
         model, nearest = _model(found, values, heights, largest)
+    closed_form = model.covariance / len(scans) + drawn.bias_covariance
+    by_tiles = tile_errors(found.levelled, settings.tiles)
+    fitness = goodness(_residual(nearest, found.quantiles, found.moments), np.vstack(residuals), len(scans))
+    described = nearest is not None and not fitness[1] < _UNLIKELY
     sectors, sector_errors = spectra.sectors(found.periodogram, found.rings, found.reach.low, found.reach.high)
     return SurfaceEstimate(
         inspection=found,
         moments=values,
-        covariance=model.covariance / len(scans) + drawn.bias_covariance,
-        tile_errors=tile_errors(found.levelled, settings.tiles),
+        covariance=closed_form if described else widened(closed_form, by_tiles),
+        closed_form_errors=np.sqrt(np.diag(closed_form)),
+        tile_errors=by_tiles,
         homogeneity=homogeneity(moments(found.powers), model.covariance),
         model=model,
         feasible=nearest,
         quantiles=heights,
         quantile_errors=drawn.quantiles.std(axis=0, ddof=1) / np.sqrt(len(scans)),
-        goodness=goodness(_residual(nearest, found.quantiles, found.moments), np.vstack(residuals), len(scans)),
+        goodness=fitness,
         sectors=sectors,
         sector_errors=sector_errors,
         **_summits(found, drawn),
@@ -293,6 +316,23 @@ def _model(found, values, heights, largest=LARGEST_DISTANCE_OF_SCANS):
     return model, density
 
 
+def widened(closed_form: np.ndarray, by_tiles: np.ndarray) -> np.ndarray:
+    """Covariance with the standard errors by tiles where these are larger, and unchanged correlations, (3, 3).
+
+    For heights that four moments do not describe: errors in closed form follow from moments of the density up to the
+    eighth, and those of the real heights, which the tiles sample, may be much larger.
+
+    Parameters
+    ----------
+    closed_form : (3, 3) array
+        Covariance.
+    by_tiles : (3,) array
+        Standard errors.
+    """
+    ratio = np.maximum(by_tiles / np.sqrt(np.diag(closed_form)), 1)
+    return closed_form * np.outer(ratio, ratio)
+
+
 def _residual(nearest: Feasible | None, quantile: np.ndarray, moment: np.ndarray):
     """Compared quantiles less those of maximum entropy with the moments (..., 3) of the same scan, (..., 5) [-].
 
@@ -314,7 +354,7 @@ def _summits(found, drawn):
     """Summits of the scans, with errors by tiles, and of the model scans."""
     count = found.settings.tiles
     per_tile = [
-        summits_of_map(tile, _tile_frame(found.frame, tile)) for z in found.levelled for tile in tiles(z, count)
+        summits_of_map(tile, _tile_frame(found.frame, tile)) for z in found.complete for tile in tiles(z, count)
     ]
     values, errors = jackknife(radius_and_density, np.array(per_tile))
     modelled, error = jackknife(radius_and_density, drawn.summits)
@@ -344,16 +384,31 @@ def _few_wavelengths(found):
 
 
 def _not_homogeneous(found):
-    ratio = np.max(found.tile_errors / found.errors)
+    ratio = np.max(found.tile_errors / found.closed_form_errors)
     if ratio > _TILES:
         reason = "bow, particles or marks"
         return f"parts of a scan differ {ratio:.2g} times as much as those of one homogeneous surface ({reason})"
     return ""
 
 
+def _bowed(found):
+    inspection = found.inspection
+    left = [remainder for remainder in inspection.remainders if remainder.likely < _UNLIKELY]
+    if not left:
+        return ""
+    size = left[-1].rms / np.exp(inspection.moments[0])
+    shape = "tilt" if LEVELS[left[-1].level] == 1 else "bow"
+    return f"levelling leaves a {shape} of {size:.2g} rms (p {left[-1].likely:.1g}); level: {left[-1].level} removes it"
+
+
+def _holes(found):
+    share = found.inspection.filled_share
+    return f"{100 * share:.2g} % of the points were undefined and are filled from their neighbours" if share else ""
+
+
 def _scans_differ(found):
     likely = found.homogeneity[1]
-    names = [name for name, p in zip(("rms", "skewness", "kurtosis"), likely, strict=True) if p < _UNLIKELY]
+    names = [name for name, p in zip(_MOMENTS, likely, strict=True) if p < _UNLIKELY]
     return f"the scans differ in {', '.join(names)} by more than their errors" if names else ""
 
 
@@ -399,6 +454,14 @@ def _moments_do_not_describe(found):
     return ""
 
 
+def _errors_are_wider(found):
+    ratio = found.errors / found.closed_form_errors
+    names = [name for name, r in zip(_MOMENTS, ratio, strict=True) if r > _WIDER]
+    if not names:
+        return ""
+    return f"errors of {', '.join(names)} are those by tiles, up to {ratio.max():.2g} times those in closed form"
+
+
 def _tip_rounds(found):
     within = found.inspection.reach
     if within.tip < within.nyquist:
@@ -435,6 +498,8 @@ def _no_summits(found):
 
 _FLAGS = (
     _few_wavelengths,
+    _bowed,
+    _holes,
     _not_homogeneous,
     _scans_differ,
     _spectrum_misfits,
@@ -442,6 +507,7 @@ _FLAGS = (
     _anisotropic,
     _moments_have_no_density,
     _moments_do_not_describe,
+    _errors_are_wider,
     _tip_rounds,
     _lines_jump,
     _summits_differ,

@@ -37,11 +37,26 @@ def level(heights: np.ndarray, levelling: Levelling) -> np.ndarray:
 def _surface(heights, degree):
     """Polynomial of total degree ``degree`` that is closest to the defined heights, (n1, n2) [m]."""
     along, across = (_legendre(n, degree) for n in heights.shape)
+    weights = polynomial(heights, degree)
+    return sum(c * np.outer(along[:, a], across[:, b]) for (a, b), c in weights.items())
+
+
+def polynomial(heights: np.ndarray, degree: int) -> dict[tuple[int, int], float]:
+    """Weights of the products P_a P_b of Legendre polynomials in the one that is closest to the defined heights [m].
+
+    Parameters
+    ----------
+    heights : (n1, n2) array
+        Fast axis first, NaN where undefined [m].
+    degree : int
+        Largest sum of the degrees a along the fast and b along the slow axis.
+    """
+    along, across = (_legendre(n, degree) for n in heights.shape)
     terms = [(a, b) for a in range(degree + 1) for b in range(degree + 1 - a)]
     defined = np.isfinite(heights)
     basis = np.array([np.outer(along[:, a], across[:, b])[defined] for a, b in terms])
     weights = np.linalg.solve(basis @ basis.T, basis @ heights[defined])
-    return sum(c * np.outer(along[:, a], across[:, b]) for c, (a, b) in zip(weights, terms, strict=True))
+    return dict(zip(terms, weights, strict=True))
 
 
 def _lines(heights, degree):

@@ -131,7 +131,7 @@ def _library(name):
         from SurfaceTopography import IO
     except ImportError:
         raise ScanError(
-            name, "files", "needs the library SurfaceTopography to be read: pip install 'stiction[scans]'"
+            name, "files", "needs the library SurfaceTopography to be read: pip install 'SurfaceTopography>=1.27'"
         ) from None
     return SimpleNamespace(
         open=IO.open_topography,
