@@ -16,7 +16,7 @@ surface: maxent spectrum translation empirical feasible normals field iteration 
 scans: scan levelling holes remainder moments periodogram whittle quantiles model_scans histogram estimate
 contact: meniscus vanderwaals asperity solids estimate pair forcelaw bounds
 chaos: coordinates density polynomials model
-beam: cantilever tension energy foundation equilibrium release resolution montecarlo
+beam: cantilever tension energy foundation equilibrium release resolution middle montecarlo
 analysis: plasticity sensitivity shifts convergence mesh variants
 devices: arcs bridges tail risk stoppers chart budget limits
 run: fingerprint logs folder atomic labels kept remembered provenance warmup forkserver hooks

@@ -87,7 +87,7 @@ def test_the_chart_at_the_size_of_the_device_has_its_safe_lengths(device):
 def test_a_bridge_has_strips_of_its_own_width_and_no_tips():
     bridge = stiction.Device.of(CONFIG, "R1")
     assert bridge.tips is None
-    xr.testing.assert_identical(bridge.contact, drawn(jobs.device_contact(PLAN, "b", 1500, 4000)))
+    xr.testing.assert_identical(bridge.contact, drawn(jobs.device_contact(PLAN, "b", 500, 4000)))
 
 
 def test_a_stopper_has_its_whole_area_and_the_forces_of_its_stage():

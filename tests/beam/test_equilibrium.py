@@ -20,8 +20,8 @@ def weightless_laws(points):
 def assembled(beam, laws, deflection, load=0.0, tip_force=0.0):
     """Unbalanced forces and dense tangent of the whole beam, with the clamp fixed, in the scaled unknowns."""
     u = (deflection * [1, beam.element_length]).ravel()
-    system = equilibrium._System(np.zeros((u.size + 3, 4)), np.zeros(u.size + 3), np.zeros(len(laws)))
-    mesh = equilibrium._mesh(beam, laws, load, tip_force)
+    system = equilibrium.System(np.zeros((u.size + 3, 4)), np.zeros(u.size + 3), np.zeros(len(laws)))
+    mesh = equilibrium.mesh_of(beam, laws, load, tip_force)
     equilibrium._assemble(u, laws, system, mesh, (0, beam.elements), 0.0)
     tangent = np.zeros((u.size + 3, u.size + 3))
     for k in range(4):
@@ -143,7 +143,7 @@ def test_a_crack_that_is_too_long_closes_to_the_equilibrium_of_all_elements():
 
 def test_the_crack_only_opens():
     laws = scattered_laws(np.random.default_rng(6), 1000, 0.5)
-    mesh = equilibrium._mesh(PAPER, laws, 0, 0)
+    mesh = equilibrium.mesh_of(PAPER, laws, 0, 0)
     start = equilibrate(PAPER, laws, s_shape(PAPER, PAPER.gap - 7e-9, 240e-6), holding_load(PAPER, 240e-6)).deflection
     cracks = []
     for steps in range(0, 600, 40):

@@ -103,7 +103,7 @@ def _newton(steps, stretch, decay, stencil, band, force):
             force[i] = 1.0
             for k in range(4):
                 band[i, k] = stencil[k]
-        equilibrium._solve(band, force, 0, rows)
+        equilibrium.solve(band, force, 0, rows)
 
 
 def newton_steps(experiment, numbers, stream):

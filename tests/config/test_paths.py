@@ -98,7 +98,7 @@ def test_the_base_of_the_variants_has_the_contact_of_the_main_line_if_that_has_a
 
 def test_a_device_on_the_strips_of_its_pair_shares_their_contact():
     assert PAPER.ground("C1") == "results/contact/b_NG.nc"
-    assert PAPER.ground("R1") == "results/devices/contact/a_1500x20000.nc"
+    assert PAPER.ground("R1") == "results/devices/contact/a_500x20000.nc"
     assert PAPER.ground("S1") == "results/devices/contact/b_3000x2000.nc"
 
 

@@ -157,7 +157,7 @@ def test_a_device_whose_solids_do_not_resist_is_refused_although_its_pair_does_n
 @pytest.mark.parametrize(
     ("device", "key", "message"),
     [
-        (R1 | {"humidities": [0.67], "width_um": 0.5}, "width_um", "1.5 x 0.5 µm of pair b hold about 16 (given"),
+        (R1 | {"humidities": [0.67], "width_um": 1.5}, "width_um", "0.5 x 1.5 µm of pair b hold about 16 (given"),
         (R1 | {"humidities": [0.67], "width_um": 1, "strip_um": 1.2}, "width_um", ""),
         (R1 | {"humidities": [0.67], "width_um": 0.7, "strip_um": 1.2}, "width_um", "1.2 x 0.7 µm of pair b"),
         (S1 | {"contact_um": [1, 0.8]}, "contact_um", "1 x 0.8 µm of pair b hold about 17"),

@@ -18,7 +18,9 @@ from stiction.streams import stream
 UM = 1e-6
 WATER = curves.Water(300.0)
 C1 = DesignedBeam("cantilever", "b", 2.6 * UM, 20 * UM, 30 * UM, 164e9, 1.5 * UM)
-R1 = DesignedBeam("bridge", "b", 2 * UM, 2 * UM, 30 * UM, 164e9, 1.5 * UM, residual_stress=50e6)
+R1 = DesignedBeam(
+    "bridge", "b", 2 * UM, 2 * UM, 30 * UM, 164e9, 0.5 * UM, residual_stress=50e6, hamaker_constant=9.75e-20
+)
 #: Largest attraction of the strips of tips [Pa].
 PULL = 3e5
 #: Root mean square of the heights of both surfaces [m].
@@ -46,12 +48,13 @@ def computed(wanted, vectors, groups=2):
 VECTORS = sampled_vectors(400, 0.24)
 
 
-def lognormal_cracks(number=400, groups=4, spread=0.025, seed=1):
-    """Dataset of stage cracks with lognormal crack lengths around 700 µm."""
+def lognormal_cracks(number=400, groups=4, spread=0.025, seed=1, name=cracks.CRACK):
+    """Dataset of stage cracks with lognormal lengths around 700 µm."""
     rng = np.random.default_rng(seed)
     found = 700 * UM * np.exp(spread * rng.standard_normal((groups + 1, number)))
     laws = forcelaw.coefficients(VECTORS[:50], 1.2 * VECTORS[:, 1].max())
-    return cracks.layout(found[0], list(found[1:]), Beam(1500 * UM, 30 * UM, 2.6 * UM, 164e9, 20 * UM, 200), laws, RMS)
+    beam = Beam(1500 * UM, 30 * UM, 2.6 * UM, 164e9, 20 * UM, 200)
+    return cracks.layout(name, found[0], list(found[1:]), beam, laws, RMS)
 
 
 def wanted(device=C1, shares=(1e-2, 1e-3)):
@@ -60,7 +63,7 @@ def wanted(device=C1, shares=(1e-2, 1e-3)):
 
 def safe_without_tips(device=R1, **more):
     """Dataset of stage safe_lengths of a bridge."""
-    return safe_lengths.compute(lognormal_cracks(800, **more), None, wanted(device))
+    return safe_lengths.compute(lognormal_cracks(name=cracks.HELD, **more), None, wanted(device))
 
 
 def safe_with_tips(energies, **more):

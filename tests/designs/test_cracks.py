@@ -13,6 +13,7 @@ from stiction.beam.release import EndState
 from stiction.chaos.model import draw_laws, fit
 from stiction.contact import forcelaw
 from stiction.designs import cracks, releases
+from stiction.devices import bridges
 from stiction.streams import stream
 
 
@@ -52,16 +53,22 @@ def test_each_group_of_the_samples_is_fitted_alone_and_the_random_numbers_are_th
 
 @pytest.mark.parametrize(("samples", "groups"), [(60, 2), (160, 3), pytest.param(2000, 10, marks=pytest.mark.slow)])
 def test_a_group_has_fifty_samples_unless_there_are_few(monkeypatch, samples, groups):
-    monkeypatch.setattr(cracks, "crack_lengths", lambda *_: np.ones(2))
+    monkeypatch.setattr(cracks, "arrests", lambda *_: np.ones(2))
     found = computed(settings(beams=2), sampled_vectors(samples, 0.24), groups=10)
     assert found.sizes["group"] == groups
 
 
-def test_cracks_of_a_bridge_are_twice_as_many_and_longer_under_its_tension():
-    found = computed(settings(R1, beams=4), VECTORS)
-    assert found.sizes["crack"] == 8
-    free = computed(settings(replace(R1, residual_stress=0.0), beams=4), VECTORS)
-    assert np.all(found.crack_length.values > free.crack_length.values)
+def test_bridges_are_those_that_their_middle_holds_on_laws_of_the_chaos_model():
+    found = computed(settings(R1, beams=6), VECTORS)
+    model = fit(VECTORS, 1.2 * VECTORS[:, 1].max(), 3, 0.001)
+    address = partial(stream, 2021, "devices", "b")
+    zone, strips = bridges.middle_zone(R1.beam, R1.strip, draw_laws(model, releases.LAWS, address("mesh")))
+    held = [bridges.held_length(zone, draw_laws(model, strips, address(k))) for k in range(6)]
+    assert_array_equal(found.held_length, held)
+    assert_array_equal(cracks.lengths(found)[0], held)
+    assert "crack_length" not in found
+    free = computed(settings(replace(R1, residual_stress=0.0), beams=6), VECTORS)
+    assert np.all(found.held_length.values > free.held_length.values)
 
 
 def test_a_dataset_keeps_all_lengths(found):

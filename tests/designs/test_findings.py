@@ -13,7 +13,7 @@ from stiction.config.files import load
 from stiction.config.plan import Plan
 from stiction.contact.meniscus import film, surface_energy
 from stiction.designs import findings
-from stiction.designs.sticking import EITHER, S_SHAPE
+from stiction.designs.sticking import EITHER, MIDDLE, S_SHAPE
 from stiction.devices import limits
 from stiction.devices.limits import NOT_MODELLED
 
@@ -197,11 +197,11 @@ def test_a_gap_that_the_film_fills_is_said():
 def test_a_bridge_that_stretches_is_said_and_has_half_its_length_as_crack():
     wide = safe_without_tips()
     crack = float(wide.safe_length.min()) / 2
-    assert only(wide, findings.OfDevice(replace(R1, thickness=3 * UM), 0.15 * UM), S_SHAPE) == []
-    (sentence,) = only(wide, findings.OfDevice(R1, 0.15 * UM), S_SHAPE)
+    assert only(wide, findings.OfDevice(replace(R1, thickness=5 * UM), 0.15 * UM), MIDDLE) == []
+    (sentence,) = only(wide, findings.OfDevice(R1, 0.15 * UM), MIDDLE)
     assert "equal to the thickness of the bridge" in sentence
     steep = findings.OfDevice(replace(R1, gap=0.11 / 1.5 * crack, thickness=80 * UM), 0.0)
-    assert any("slope of 0.11" in sentence for sentence in only(wide, steep, S_SHAPE))
+    assert any("slope of 0.11" in sentence for sentence in only(wide, steep, MIDDLE))
 
 
 BEYOND = {"device": {"kind": "cantilever", "pair": "c", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}}

@@ -30,7 +30,7 @@ def safe(kind="cantilever", longest=600e-6, wedge=2e-7):
     """Safe lengths of 400 devices that stick between two thirds of a length and this length."""
     device = DesignedBeam(kind, "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
     settings = safe_lengths.Settings(1, Water(300.0), 0.67, device, (1e-2, 1e-3, 1e-4), 1.5e-7)
-    shapes = {sticking.S_SHAPE: np.linspace(2 / 3, 1, 400) * longest}
+    shapes = {sticking.shapes(device)[0]: np.linspace(2 / 3, 1, 400) * longest}
     if kind == "cantilever":
         shapes[sticking.EITHER] = 0.7 * shapes[sticking.S_SHAPE]
     bounds = {shape: sticking.safe_lengths(values, settings) for shape, values in shapes.items()}
@@ -114,7 +114,7 @@ def test_a_computed_length_below_that_in_saturated_air_remains_the_answer():
 
 def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():
     silent = {("C1", 0.67, shape): [] for shape in SHAPES}
-    assert "<dt>Saturated air</dt>" in pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).html
+    assert "<dt>Bound</dt>" in pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).html
 
 
 SHAPES = sticking.S_SHAPE, sticking.EITHER

@@ -10,7 +10,7 @@ from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
 from stiction.beam.release import START
 from stiction.beam.resolution import ALONG_START
-from stiction.chaos.model import fit
+from stiction.chaos.model import draw_laws, fit
 from stiction.config.files import load
 from stiction.contact import forcelaw
 from stiction.designs import releases
@@ -21,7 +21,7 @@ def test_beams_that_are_not_s_shaped_have_no_crack():
     model = fit(VECTORS, 1.2 * VECTORS[:, 1].max(), 3, 0.001)
     address = partial(stream, 2021, "devices", "b")
     short = replace(C1.beam, length=450 * UM, elements=60)
-    assert np.all(np.isinf(releases.crack_lengths(model, short, 300, 3, address)))
+    assert np.all(np.isinf(releases.arrests(C1, (short, 300), partial(draw_laws, model), 3, address)))
 
 
 def test_devices_of_a_pair_share_their_random_numbers():
@@ -63,7 +63,11 @@ def test_what_the_configuration_lets_pass_near_the_limit_is_refused_on_the_force
         releases.long_beam(replace(C1, thickness=thickness * UM), uniform_laws(20))
 
 
-def test_a_bridge_has_two_cracks_and_its_half_is_under_its_tension():
+def test_a_bridge_has_two_arms_under_its_tension_and_its_middle_is_resolved():
     assert R1.beam.tension == pytest.approx(50e6 * 60e-12)
-    assert R1.cracks == 2 * C1.cracks == 2
+    assert R1.arms == 2 * C1.arms == 2
+    zone, strips = releases.resolved_part(R1, uniform_laws(20))
+    assert zone.tension == R1.beam.tension
+    assert zone.length / strips == pytest.approx(R1.strip, rel=1e-12)
+    assert releases.resolved_part(C1, uniform_laws(20)) == releases.long_beam(C1, uniform_laws(20))
     assert C1.beam.tension == 0

@@ -67,18 +67,17 @@ def test_tips_that_hardly_adhere_hold_no_beam_and_strong_ones_hold_all():
     assert np.all(np.isnan(strong.surfaces_error.sel(shape=EITHER)))  # the samples of strips do not matter
 
 
-def test_a_bridge_sticks_at_the_sum_of_its_two_cracks():
+def test_a_bridge_sticks_if_it_is_longer_than_the_shortest_that_its_middle_holds():
     found = safe_without_tips()
-    assert list(found["shape"]) == [S_SHAPE]
-    lengths, *_ = cracks.lengths(lognormal_cracks(800))
-    sums = lengths[::2] + lengths[1::2]
-    assert_array_equal(found.stuck[0], risk.stuck_share(found.length.values, sums)[0])
+    assert list(found["shape"]) == [sticking.MIDDLE]
+    lengths, *_ = cracks.lengths(lognormal_cracks(name=cracks.HELD))
+    assert_array_equal(found.stuck[0], risk.stuck_share(found.length.values, lengths)[0])
 
 
 def test_the_axis_of_lengths_is_finite_although_some_beams_never_stick():
-    dataset = lognormal_cracks()
-    dataset["crack_length"][:20] = np.inf
-    found = safe_lengths.compute(dataset.isel(crack=slice(0, 400)), None, wanted(R1))
+    dataset = lognormal_cracks(name=cracks.HELD)
+    dataset["held_length"][:20] = np.inf
+    found = safe_lengths.compute(dataset, None, wanted(R1))
     assert np.isfinite(found.length).all()
     assert float(found.stuck[0, -1]) == pytest.approx(0.95)
 
@@ -102,5 +101,5 @@ def test_lengths_in_saturated_air_are_those_of_flooded_flats(cantilever):
 
 def test_contact_angles_reduce_the_film():
     tilted = replace(wanted(R1), water=curves.Water(300.0, (np.radians(60), 0.0)))
-    found = safe_lengths.compute(lognormal_cracks(800), None, tilted)
+    found = safe_lengths.compute(lognormal_cracks(name=cracks.HELD), None, tilted)
     assert_allclose(float(found.film / safe_without_tips().film), 0.75, rtol=1e-12)

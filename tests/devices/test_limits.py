@@ -29,8 +29,8 @@ CASES = [
     (limits.large_rotation, (40 * UM, 500 * UM), "500 µm.*0.12", (20 * UM, 700 * UM)),
     (limits.stubby_beam, (50 * UM, 2.6 * UM), "50 µm.*19.2 times", (52.1 * UM, 2.6 * UM)),
     (limits.wide_beam, (20 * UM, 500 * UM, 2.6 * UM, 700 * UM), "700 µm.*23.5", (20 * UM, 30 * UM, 2.6 * UM, 700 * UM)),
-    (limits.stretched_bridge, (2 * UM, 2 * UM), "gap is equal to the thickness of", (1.9 * UM, 2 * UM)),
-    (limits.stretched_bridge, (3 * UM, 2 * UM), "gap is 1.5 times the thickness of", (1.9 * UM, 2 * UM)),
+    (limits.stretched_bridge, (2 * UM, 2 * UM), "gap is equal to the thickness of", (0.9 * UM, 2 * UM)),
+    (limits.stretched_bridge, (3 * UM, 2 * UM), "gap is 1.5 times the thickness of", (0.9 * UM, 2 * UM)),
     (limits.short_wedge, (1.5 * UM, 0.1 * UM, 234 * UM), "1.5 µm.*0.1 µm.*234 µm", (0.1 * UM, 0.1 * UM, 1.0)),
 ]
 EACH = pytest.mark.parametrize(("limit", "beyond", "number", "within"), CASES)
@@ -64,7 +64,7 @@ def test_every_limit_is_tested():
         (lambda x: limits.filled_gap(1 / x, 0.3, 0.7), 1 / 20),
         (lambda x: limits.plastic_contact(x), 0.02),
         (lambda x: limits.short_wedge(x, 1.0, 1.0), 1.0),
-        (lambda x: limits.stretched_bridge(x, 1.0), 1.0),
+        (lambda x: limits.stretched_bridge(x, 1.0), 0.5),
         (lambda x: limits.thin_film(4 * WATER_MOLECULE / x), 1.0),
         (lambda x: limits.wide_meniscus(x, (0.3, 0.6)), 0.1 / 5),
     ],

@@ -38,7 +38,7 @@ class Equilibrium:
     iterations: int  #: Newton steps, among them those that were rejected
 
 
-class _Mesh(NamedTuple):
+class Mesh(NamedTuple):
     """Mesh, stiffness and load of a beam as the compiled code uses them."""
 
     hermite: np.ndarray  # Hermite functions at the points of an element, (points per element, 4)
@@ -51,7 +51,7 @@ class _Mesh(NamedTuple):
     decay: float  # √(N/EI) l_e [-]; 0 without tension
 
 
-class _System(NamedTuple):
+class System(NamedTuple):
     """The linear system of one Newton step: upper band, right-hand side, and position of each point on its law."""
 
     band: np.ndarray  # (2 nodes + 3, 4) [N/m]; row i holds A[i, i:i+4]
@@ -70,7 +70,7 @@ def hermite(s: float | np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True, nogil=True)
-def _add_element(u, system, mesh, element):
+def add_element(u, system, mesh, element):
     """Add bending force, stiffness and load of one element."""
     i, k, load = 2 * element, mesh.stiffness, mesh.load
     band, force = system.band, system.force
@@ -116,7 +116,7 @@ def _hold(system, node):
 
 
 @njit(cache=True, nogil=True)
-def _add_points(u, laws, system, mesh, element, viscosity):
+def add_points(u, laws, system, mesh, element, viscosity):
     """Add force and tangent of the contact points of one element, Eq. (12), with a dashpot at each within reach."""
     i, points = 2 * element, mesh.points_per_element
     for p in range(points):
@@ -144,11 +144,11 @@ def _assemble(u, laws, system, mesh, window, viscosity):
     system.band[rows] = 0.0
     system.force[rows] = 0.0
     for element in range(first, last):
-        _add_element(u, system, mesh, element)
+        add_element(u, system, mesh, element)
         if mesh.decay > 0:
             pull = mesh.stiffness * mesh.decay**2
             add_tension(u, system.band, system.force, pull, 2 * element)
-        _add_points(u, laws, system, mesh, element, viscosity)
+        add_points(u, laws, system, mesh, element, viscosity)
     if first > 0 and mesh.decay > 0:
         kl = first * mesh.decay
         add_open_part_in_tension(u, system.band, system.force, first, kl, mesh.stiffness, mesh.load)
@@ -164,7 +164,7 @@ def _assemble(u, laws, system, mesh, window, viscosity):
 
 
 @njit(cache=True, nogil=True)
-def _solve(band, x, start, stop):
+def solve(band, x, start, stop):
     """Solve rows [start, stop) of a symmetric system by LDLᵀ, in place; returns False if it is not positive definite.
 
     Entries beyond ``stop`` are zero, so that the last rows need no special treatment.
@@ -184,7 +184,7 @@ def _solve(band, x, start, stop):
 
 
 @njit(cache=True, nogil=True)
-def _largest_move(laws, system, mesh, window):
+def largest_move(laws, system, mesh, window):
     """Largest change of distance in the solved step, relative to the allowed change [-]."""
     points, step, move = mesh.points_per_element, system.force, 0.0
     for element in range(window[0], window[1]):
@@ -201,12 +201,12 @@ def _largest_move(laws, system, mesh, window):
 
 
 @njit(cache=True, nogil=True)
-def _step(u, laws, system, mesh, window):
-    """Solve and take the step unless it is too long; returns its relative length (`_largest_move`) [-], or infinity."""
+def newton_step(u, laws, system, mesh, window):
+    """Solve and take the step unless it is too long; returns its relative length (`largest_move`) [-], or infinity."""
     rows = slice(2 * window[0], 2 * window[1] + 2)
-    if not _solve(system.band, system.force, rows.start, rows.stop):
+    if not solve(system.band, system.force, rows.start, rows.stop):
         return np.inf
-    move = _largest_move(laws, system, mesh, window)
+    move = largest_move(laws, system, mesh, window)
     if move <= 2:
         u[rows] += system.force[rows]
     return move
@@ -261,7 +261,7 @@ def _relax(u, laws, mesh, tolerance, max_iterations):
     updated only in every WHOLE-th step.
     """
     elements, points = u.size // 2 - 1, mesh.points_per_element
-    system = _System(np.zeros((u.size + 3, 4)), np.zeros(u.size + 3), np.full(laws.shape[0], -1.0))
+    system = System(np.zeros((u.size + 3, 4)), np.zeros(u.size + 3), np.full(laws.shape[0], -1.0))
     steepest = 0.5 * np.max(laws[:, 0] * laws[:, 3]) * mesh.area if laws.size else 0.0
     viscosity, first, front, residual, settled = steepest, 0, 0, np.inf, False
     for iteration in range(max_iterations):
@@ -277,7 +277,7 @@ def _relax(u, laws, mesh, tolerance, max_iterations):
                 return residual, iteration
             first = 0  # the crack has closed again
         elif not settled:
-            move = _step(u, laws, system, mesh, window)
+            move = newton_step(u, laws, system, mesh, window)
             viscosity = max(viscosity, 0.01 * steepest * (move > 1)) * min(max(move, 0.25), 4.0)
     return residual, max_iterations
 
@@ -299,13 +299,13 @@ def _points(beam, laws):
     return hermite((np.arange(points) + 0.5) / max(points, 1))
 
 
-def _mesh(beam, laws, load, tip_force):
-    """Mesh of a beam for the compiled code."""
+def mesh_of(beam: Beam, laws: np.ndarray, load: float, tip_force: float) -> Mesh:
+    """Mesh of a beam for compiled code; parameters and errors as in `equilibrate`."""
     functions, l_e = _points(beam, laws), beam.element_length
     points = len(functions)
     area = beam.width * l_e / max(points, 1)
     stiffness = beam.bending_stiffness / l_e**3
-    return _Mesh(
+    return Mesh(
         functions, points, stiffness, float(beam.gap), area, float(load) * l_e, float(tip_force), beam.decay * l_e
     )
 
@@ -345,7 +345,7 @@ def equilibrate(
         If no equilibrium is found.
     """
     laws = np.ascontiguousarray(laws, float)
-    mesh = _mesh(beam, laws, load, tip_force)
+    mesh = mesh_of(beam, laws, load, tip_force)
     tolerance = allowed_imbalance(beam, laws[:, 0].mean() * mesh.area if len(laws) else 0.0)
     scale = np.array([1, beam.element_length])
     u = (np.asarray(start, float) * scale).ravel()

@@ -7,6 +7,7 @@ import numpy as np
 
 from stiction.config.cases import case_id
 from stiction.config.measured import is_measured, quantities
+from stiction.config.memory import strip_of
 from stiction.config.units import NM_PER_UM, from_si
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.models import OF_MOMENTS, SIDES
@@ -124,7 +125,7 @@ class Designs:
 
     def strip(self, device: str) -> float:
         """Length of the strips along a device [µm]."""
-        return self.devices[device].get("strip_um", self.config["sampling"]["strip_length_um"])
+        return strip_of(self.devices[device], self.config["sampling"]["strip_length_um"])
 
     def strips(self, device: str) -> Patch:
         """Strips along a device."""

@@ -255,7 +255,8 @@ def _device(plan, name):
     section = plan.config["devices"][name]
     sizes = chosen(section, ("kind", "pair", "thickness_um", "gap_um", "width_um", "residual_stress_MPa"))
     modulus = chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(section["pair"])
-    return sizes | modulus | {"strip_um": Designs(plan.config).strip(name)}
+    solids = {"hamaker_constant_zJ": plan.hamaker_constant(section["pair"])} if section["kind"] == "bridge" else {}
+    return sizes | modulus | solids | {"strip_um": Designs(plan.config).strip(name)}
 
 
 def cracks(plan: Plan, case: str) -> dict:

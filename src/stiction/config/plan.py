@@ -4,13 +4,14 @@ The rules of the workflow and the library use the same plan and therefore the sa
 they are needed, because a repeated plan takes what it needs of them from `stiction.run.remembered`.
 """
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 from stiction.config.cases import case_id, humidity_of, pair_of
-from stiction.config.designs import hamaker_constant
+from stiction.config.designs import hamaker_constant, hamaker_constants
 from stiction.config.files import paper
 from stiction.config.measured import evaluated, is_measured, quantities
 from stiction.config.merging import merged
@@ -84,6 +85,13 @@ class Plan:
     def beam_modulus(self, pair: str) -> dict:
         """Young's modulus of the beam of a pair if its material states one, otherwise empty."""
         return chosen(self._stated(pair)[0], ["young_modulus_GPa"])
+
+    def hamaker_constant(self, pair: str) -> float:
+        """Hamaker constant of the two bodies of a pair, zero without van der Waals forces [zJ]."""
+        medium = self.config["van_der_waals"]
+        if medium == "none":
+            return 0.0
+        return math.sqrt(math.prod(hamaker_constants(material)[medium] for material in self._stated(pair)))
 
     def beam_hamaker_constant(self, pair: str) -> float:
         """Hamaker constant of two bodies like the beam of a pair, through the medium between the solids [zJ]."""

@@ -40,6 +40,17 @@ relation("devices.*.strip_um", "sampling.spacing_nm", "contact.every")(strip_is_
 relation("devices.*.width_um", "sampling.spacing_nm", "contact.every")(strip_is_whole_on_the_grid)
 
 
+@relation(
+    "devices.*.kind", "devices.*.@", "devices", "sampling.strip_length_um", "sampling.spacing_nm", "contact.every"
+)
+def strips_of_a_bridge_are_whole_on_the_grid(kind, name, devices, strip, spacing, every):
+    """Strips at the middle of a bridge are whole on the grid also if their length is not stated."""
+    if kind != "bridge" or "strip_um" in devices[name]:
+        return None
+    refusal = strip_is_whole_on_the_grid(memory.strip_of(devices[name], strip), spacing, every)
+    return refusal and f"must come with strip_um, because {memory.MIDDLE} µm are not whole on the grid: it {refusal}"
+
+
 @relation("design.tip_um", "sampling.spacing_nm", "contact.every", "devices")
 def tips_are_whole_on_the_grid(side, spacing, every, devices):
     """Strips of tips are three contact points long or more, so that they can hold a summit, if there are devices."""
@@ -82,7 +93,7 @@ def tips_hold_enough_summits(length, width, name, devices, *surfaces):
 @relation("devices.*.width_um", *_GROUND, "sampling.strip_length_um")
 def strips_hold_enough_summits(width, name, devices, pairs, surfaces, length):
     """As above, for the strips along a beam."""
-    return _too_few_summits(devices[name].get("strip_um", length), width, devices[name], pairs, surfaces)
+    return _too_few_summits(memory.strip_of(devices[name], length), width, devices[name], pairs, surfaces)
 
 
 @relation("devices.*.contact_um", *_GROUND)
@@ -193,7 +204,7 @@ def strips_resolve_the_cracks_of_a_device(
 
     What passes may still be refused after the contact, by `stiction.beam.resolution.resolved`.
     """
-    strip, sides = devices[name].get("strip_um", strip), _sides(devices[name], pairs, surfaces)
+    strip, sides = memory.strip_of(devices[name], strip), _sides(devices[name], pairs, surfaces)
     meeting = temperature, sides, materials
     needed = {rh: estimated_strip(thickness, solid, medium, rh, *meeting) for rh in humidities} if sides else {}
     shortest = min(needed, key=needed.get, default=None)
@@ -211,9 +222,14 @@ def strips_resolve_the_thinnest_beam_of_a_chart(thicknesses, humidities, *meetin
     return strips_resolve_the_cracks_of_a_device(thicknesses[0], humidities, *meeting)
 
 
-@relation("devices.*.strip_um", "devices.*.pair", "pairs", "surfaces", "character.spacing_nm")
-def strips_of_a_device_exceed_the_correlation(strip, pair, pairs, surfaces, spacing):
-    """Strips are independent samples; those of tips, which are never next to each other, may be shorter."""
+@relation("devices.*.strip_um", "devices.*.kind", "devices.*.pair", "pairs", "surfaces", "character.spacing_nm")
+def strips_of_a_device_exceed_the_correlation(strip, kind, pair, pairs, surfaces, spacing):
+    """Strips are independent samples; those of tips, which are never next to each other, may be shorter.
+
+    So may those of bridges: force laws of neighbouring strips of 0.25 and 0.5 µm correlate by less than 0.05 on pair b.
+    """
+    if kind == "bridge":
+        return None
     for side in _sides({"pair": pair}, pairs, surfaces):
         target = side["rms_nm"], side.get("mean_summit_radius_um"), side.get("summit_density_per_um2"), spacing
         if side["psd"] == "published":

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from stiction.contact.vanderwaals import DugdaleAttraction
+
 
 def least_law(heights: np.ndarray, highest: float, film: tuple[float, float]) -> tuple[float, float]:
     r"""Lower bounds of f_max and a_left of Eq. (12) for a strip whose highest point is known.
@@ -29,3 +31,22 @@ def least_law(heights: np.ndarray, highest: float, film: tuple[float, float]) ->
     """
     height, tension = film
     return tension * float(np.mean(heights > highest - height)), float(np.log(1 + np.sqrt(2)) / highest)
+
+
+def flooded_law(film: tuple[float, float], hamaker_constant: float) -> tuple[float, float]:
+    """Upper bounds of e [J m⁻²] and f_max [Pa] of any surfaces at a humidity: those of flooded flats that touch.
+
+    Water pulls nowhere harder or farther than between flats, and neither do the solids.
+
+    Parameters
+    ----------
+    film : tuple of 2 floats
+        Height h_C and tension -ΔP of the water [m], [Pa].
+    hamaker_constant : float
+        Of the two solids [J]; 0 without van der Waals forces.
+    """
+    height, tension = film
+    if not hamaker_constant:
+        return height * tension, tension
+    solid = DugdaleAttraction(hamaker_constant)
+    return height * tension + solid.work_of_adhesion, tension + solid.stress

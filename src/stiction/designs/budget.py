@@ -1,6 +1,6 @@
 """Stage budget: which input of a device moves its length, or the pull-off force of a stopper, by how much.
 
-A beam has a budget of its sticking length as an S-shape, and a cantilever another one of the length that its tip holds:
+A cantilever has a budget of its sticking length as an S-shape, and another one of the length that its tip holds:
 its contact is that of the tips. Slopes are central differences with common random numbers: sample k of two contacts has
 the same random numbers, and device j meets the same samples on both sides. The chaos model is left out: force laws are
 those of the samples.
@@ -15,12 +15,10 @@ import xarray as xr
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
-from stiction.beam.montecarlo import Experiment, columns, simulate
-from stiction.beam.release import EndState
 from stiction.contact import forcelaw
 from stiction.designs.inputs import FORCE, Input, Known, Settings, State, countable, uncertain
 from stiction.designs.patches import noted
-from stiction.designs.releases import DesignedBeam, addresses, long_beam
+from stiction.designs.releases import addresses, arrests, resolved_part
 from stiction.devices import arcs, bridges
 from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.stoppers import pull_off_force
@@ -36,8 +34,8 @@ class Responses:
 
     values: np.ndarray  #: (states, devices); infinite where a beam has no S-shaped crack
     centre: Callable[[np.ndarray], float]  #: the number that stands for all devices of a state
-    shared: np.ndarray | None = None  #: adhesion energies of the samples that all beams share (states, m) [J m⁻²]
-    length: Callable[[np.ndarray], float] | None = None  #: crack length on the mean of these energies [m]
+    shared: np.ndarray | None = None  #: of the samples that all beams share (states, m, ...): energies, for example
+    length: Callable[[np.ndarray], float] | None = None  #: length on the mean of the samples (m, ...) [m]
 
 
 #: Devices at several states.
@@ -78,7 +76,7 @@ def compute(
         base = replace(state, contact=first(contact, changed.sizes["sample"]))
         with noted(f"This is the contact under the choice {name}."):
             changes[name] = effect(base, replace(state, contact=changed), respond)
-    return layout(inputs, found, covariance, of_devices(respond([state]), settings.device), changes, settings)
+    return layout(inputs, found, covariance, respond([state]), changes, settings)
 
 
 def nominal(contact: xr.Dataset, settings: Settings) -> State:
@@ -94,9 +92,8 @@ def responder(state: State, settings: Settings) -> Respond:
     if settings.share:
         return partial(of_tips, share=settings.share)
     laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water)])[0]
-    beam, strips = long_beam(settings.device, laws)
-    number = settings.beams * settings.device.cracks
-    return partial(of_beams, mesh=beam, strips=strips, number=number, address=addresses(settings))
+    part, strips = resolved_part(settings.device, laws)
+    return partial(of_beams, mesh=part, strips=strips, number=settings.beams, address=addresses(settings))
 
 
 def of_stoppers(states: Sequence[State]) -> Responses:
@@ -118,13 +115,15 @@ def of_tips(states: Sequence[State], share: float) -> Responses:
 
 
 def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, address: Callable) -> Responses:
-    """Crack lengths of the same beams at several states, on force laws resampled from the contact.
+    """Crack lengths, or lengths of held bridges, of the same beams at several states, on resampled force laws.
+
+    ASSUME: for a cantilever, the two foundation lengths that hold its crack are left out, 1 % of the length.
 
     Parameters
     ----------
     states : sequence of State
     mesh : Beam
-        Length and elements of all beams.
+        Length and elements of the part of all beams that finite elements resolve.
     strips : int
         Number of force laws along a beam.
     number : int
@@ -134,19 +133,27 @@ def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, addr
     """
     laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water) for state in states])
 
-    def cracks(state, laws):
-        beam = replace(state.device.beam, length=mesh.length, elements=mesh.elements)
-        ended = columns(list(simulate(Experiment(beam, strips, partial(_picked, laws)), range(number), address)))
-        return np.where(ended["state"] == EndState.S_SHAPE, ended["crack_length"], np.inf)
+    def lengths(state, laws):
+        part = replace(state.device.beam, length=mesh.length, elements=mesh.elements)
+        return arrests(state.device, (part, strips), partial(_picked, laws), number, address)
 
-    values = np.array([cracks(state, of_state) for state, of_state in zip(states, laws, strict=True)])
+    values = np.array([lengths(state, of_state) for state, of_state in zip(states, laws, strict=True)])
     # Some lengths may not be known.
     centre = np.mean if np.isfinite(values).all() else np.median
-    beam = states[0].device.beam
-    # ASSUME: lengths follow the mean energy of the samples as in Eq. (13), as far as the error of these is concerned.
-    return Responses(
-        values, centre, forcelaw.energy(np.array(laws)), lambda energies: arrest_length(energies.mean(), beam)
-    )
+    return Responses(values, centre, *_of_samples(states[0].device, np.array(laws)))
+
+
+def _of_samples(device, laws):
+    """What the samples contribute to the length of a device at several states, and the length on their mean.
+
+    ASSUME: lengths follow the mean energy of the samples as in Eq. (13), and those of bridges their mean energy and
+    pull-off force as in `stiction.devices.bridges.least_length`, as far as the error of the samples is concerned.
+    """
+    energies, beam = forcelaw.energy(laws), device.beam
+    if device.is_bridge:
+        both = np.stack([energies, laws[..., 0]], axis=-1)
+        return both, lambda sample: bridges.least_length(*sample.mean(axis=0), beam)
+    return energies, lambda sample: arrest_length(sample.mean(), beam)
 
 
 def shared_laws(found: Sequence[tuple[np.ndarray, float]]) -> list[np.ndarray]:
@@ -158,16 +165,6 @@ def shared_laws(found: Sequence[tuple[np.ndarray, float]]) -> list[np.ndarray]:
 def _picked(laws, number, rng):
     """Laws drawn with replacement."""
     return laws[rng.integers(len(laws), size=number)]
-
-
-def of_devices(found: Responses, device: DesignedBeam | None) -> Responses:
-    """Lengths at which devices stick, or forces: the two cracks of a bridge add up.
-
-    ASSUME: for a cantilever, the two foundation lengths that hold its crack are left out, 1 % of the length.
-    """
-    if device is None or device.cracks == 1:
-        return found
-    return replace(found, values=np.array([bridges.sticking_lengths(cracks) for cracks in found.values]))
 
 
 # Slopes

@@ -6,6 +6,7 @@ predicts beams in the middle, to which it was not fitted, within 1 %.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -74,11 +75,11 @@ def _of_size(settings, thickness, gap):
 
 def _safe_lengths(device, model, laws, energies, settings):
     """Safe lengths of a device, (shapes, shares) [m]."""
-    beam, points = releases.long_beam(device, laws)
-    number, address = settings.beams * device.cracks, releases.addresses(settings)
-    cracks = releases.crack_lengths(model, beam, points, number, address)
+    ground = releases.resolved_part(device, laws)
+    address, draw = releases.addresses(settings), partial(draw_laws, model)
+    cracks = releases.arrests(device, ground, draw, settings.beams, address)
     held = None if energies is None else arcs.arc_length(energies, device.beam)
-    lengths = sticking.sticking_lengths(cracks, foundation_length(beam, laws), device, held)
+    lengths = sticking.sticking_lengths(cracks, foundation_length(device.beam, laws), device, held)
     return np.array([[one.length for one in sticking.safe_lengths(values, settings)] for values in lengths.values()])
 
 
@@ -147,7 +148,7 @@ def layout(found: Filled, wedges: np.ndarray, rms: float, settings: Settings) ->
     shapes = sticking.shapes(settings.device)
     film = meniscus_height(settings.humidity, settings.water.temperature, settings.water.contact_angles)
     designed = (_of_size(settings, *one) for one in product(settings.thicknesses, settings.gaps))
-    limits = [sticking.flooded_lengths(device, settings.water) for device in designed]
+    limits = [sticking.flooded_lengths(device, settings.water, settings.humidity) for device in designed]
     metres, none = {"units": "m"}, {"units": "1"}
     return xr.Dataset(
         {

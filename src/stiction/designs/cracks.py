@@ -1,11 +1,13 @@
 """Stage cracks: where the cracks of long beams of a device stop at a humidity, and the error of few sampled surfaces.
 
+Of a bridge, the stage finds the shortest length that its middle holds instead.
 A simulation of long beams gives P(stuck) at every length (`stiction.devices.risk`). For the error due to the number of
 sampled surfaces, force laws are fitted to each of some groups of the samples alone, and the beams are released again
 with the same random numbers.
 """
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -15,12 +17,15 @@ from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
 from stiction.contact import forcelaw
 from stiction.designs.patches import on_patch
-from stiction.designs.releases import LAWS, DesignedBeam, addresses, crack_lengths, fitted, long_beam
+from stiction.designs.releases import LAWS, DesignedBeam, addresses, arrests, fitted, resolved_part
 from stiction.stages import curves
 from stiction.stages.contact import surface_rms
 
 #: Most groups of the samples of contact, and the least number of samples in each, but always two groups.
 GROUPS, PER_GROUP = 10, 50
+#: Names of the lengths of cantilevers and of bridges, and what they are.
+CRACK, HELD = "crack_length", "held_length"
+_WORDS = {CRACK: "infinite if not S-shaped", HELD: "of the shortest bridge that its middle holds"}
 
 
 @dataclass(frozen=True)
@@ -48,30 +53,35 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
     model = fitted(vectors, limit, settings.chaos)
     address = addresses(settings)
     laws = draw_laws(model, LAWS, address("mesh"))
-    beam, points = long_beam(settings.device, laws)
-    number = settings.beams * settings.device.cracks
+    device, ground = settings.device, resolved_part(settings.device, laws)
     groups = max(2, min(GROUPS, len(vectors) // PER_GROUP))
     models = [model, *(fitted(vectors[k::groups], limit, settings.chaos) for k in range(groups))]
-    released = [crack_lengths(model, beam, points, number, address) for model in models]
-    return layout(released[0], released[1:], beam, laws, surface_rms(contact))
+    released = [arrests(device, ground, partial(draw_laws, one), settings.beams, address) for one in models]
+    name = HELD if device.is_bridge else CRACK
+    return layout(name, released[0], released[1:], ground[0], laws, surface_rms(contact))
 
 
-def layout(cracks: np.ndarray, of_group: list[np.ndarray], beam: Beam, laws: np.ndarray, rms: float) -> xr.Dataset:
-    """Dataset of the crack lengths of a device at a humidity.
+def layout(
+    name: str, arrested: np.ndarray, of_group: list[np.ndarray], beam: Beam, laws: np.ndarray, rms: float
+) -> xr.Dataset:
+    """Dataset of the lengths at which the cracks of a device stop at a humidity.
 
     Parameters
     ----------
-    cracks : (n,) array
-        Crack lengths with all samples of contact, infinite for beams that are not S-shaped [m].
+    name : str
+        What they are, ``CRACK`` or ``HELD``.
+    arrested : (n,) array
+        Lengths with all samples of contact, as from `stiction.designs.releases.arrests` [m].
     of_group : sequence of (n,) arrays
         The same with each group of the samples alone.
     beam : Beam
+        The part that finite elements resolve.
     laws : (k, 4) array
         Sample of the force laws [SI].
     rms : float
         Of the sum of both surfaces [m].
     """
-    note = {"units": "m", "long_name": "infinite if not S-shaped"}
+    note = {"units": "m", "long_name": _WORDS[name]}
     lengths = {
         "foundation_length": foundation_length(beam, laws),
         "beam_length": beam.length,
@@ -80,8 +90,8 @@ def layout(cracks: np.ndarray, of_group: list[np.ndarray], beam: Beam, laws: np.
     }
     return xr.Dataset(
         {
-            "crack_length": ("crack", cracks, note),
-            "crack_length_of_group": (("group", "crack"), np.array(of_group), note),
+            name: ("device", arrested, note),
+            f"{name}_of_group": (("group", "device"), np.array(of_group), note),
             "mean_energy": ((), float(forcelaw.energy(laws).mean()), {"units": "J m-2"}),
         }
         | {name: ((), value, {"units": "m"}) for name, value in lengths.items()}
@@ -89,5 +99,6 @@ def layout(cracks: np.ndarray, of_group: list[np.ndarray], beam: Beam, laws: np.
 
 
 def lengths(cracks: xr.Dataset) -> tuple[np.ndarray, np.ndarray, float]:
-    """Crack lengths with all samples (n,), with each group alone (g, n), and the foundation length [m]."""
-    return cracks.crack_length.values, cracks.crack_length_of_group.values, float(cracks.foundation_length)
+    """Crack or held lengths with all samples (n,), with each group alone (g, n), and the foundation length [m]."""
+    name = HELD if HELD in cracks else CRACK
+    return cracks[name].values, cracks[f"{name}_of_group"].values, float(cracks.foundation_length)

@@ -25,9 +25,17 @@ from stiction.report.style import (
 )
 
 #: Line style of each shape in which a beam sticks, and what holds it.
-_SHAPES = {"S-shape": ("--", "held by the beam"), "S-shape or arc": ("-", "held by beam or tip")}
-#: Line style of their limits in saturated air.
-_SATURATED = {"S-shape": ":", "S-shape or arc": "-."}
+_SHAPES = {
+    "S-shape": ("--", "held by the beam"),
+    "S-shape or arc": ("-", "held by beam or tip"),
+    "middle": ("-", "held by the middle"),
+}
+#: Line style of their bounds by flooded flats, and what these are.
+_BOUNDS = {
+    "S-shape": (":", "saturated air"),
+    "S-shape or arc": ("-.", "saturated air"),
+    "middle": (":", "flooded flats"),
+}
 #: Marker of each basis of a safe length.
 _BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x"}
 #: Characters in a line of warnings.
@@ -164,23 +172,22 @@ def _shapes_of(dataset):
 
 
 def _thicknesses(panel, whole, shape, marks):
-    """Curves of all thicknesses of one device, gap and shape, their limits in saturated air, and what a power law gave.
+    """Curves of all thicknesses of one device, gap and shape, their bounds, and what a power law gave.
 
     Returns the entries of a legend of the thicknesses.
     """
     share, named = whole.share.values[len(whole.share) // 2], []
-    line, text = _SHAPES[shape]
+    (line, text), (dotted, bound) = _SHAPES[shape], _BOUNDS[shape]
     for thickness, shade, mark in zip(whole.thickness.values, shades(len(marks), _LIGHTEST), marks, strict=True):
         one = whole.sel(thickness=thickness, share=share)
         between, lengths = one.by_elements.values == 0, TO_UM * one.safe_length
         panel.plot(one.relative_humidity, lengths, line, color=shade)
         panel.plot(one.relative_humidity[between], lengths[between], "o", color=shade, fillstyle="none")
-        limit = TO_UM * float(one.flooded_length.isel(relative_humidity=0))
-        panel.axhline(limit, color=shade, linestyle=_SATURATED[shape], linewidth=0.8)
+        panel.plot(one.relative_humidity, TO_UM * one.flooded_length, dotted, color=shade, linewidth=0.8)
         label = f"thickness {TO_UM * thickness:g} µm{mark}"
         named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=label))
     panel.plot([], [], line, color="0.3", label=f"{text}, p = {share:g}")
-    panel.plot([], [], color="0.3", linestyle=_SATURATED[shape], label=f"{text}, saturated air")
+    panel.plot([], [], dotted, color="0.3", label=f"{text}, {bound}")
     if not whole.by_elements.all():
         label = f"by a power law, ± {100 * float(whole.power_law_error.max()):.2g} %"
         named.append(Line2D([], [], color="0.3", marker="o", fillstyle="none", linestyle="", label=label))

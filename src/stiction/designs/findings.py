@@ -12,7 +12,7 @@ from stiction.beam.cantilever import Beam
 from stiction.config.units import from_si, typed
 from stiction.contact.meniscus import meniscus_height
 from stiction.designs.releases import DesignedBeam
-from stiction.designs.sticking import EITHER, S_SHAPE
+from stiction.designs.sticking import EITHER, MIDDLE, S_SHAPE
 from stiction.devices import limits
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever
 from stiction.stages.curves import Water
@@ -23,7 +23,7 @@ Warnings = dict[str, list[str]]
 #: Names of materials, each with the properties that are stated.
 Materials = Sequence[tuple[str, Sequence[str]]]
 #: Shapes in words: what holds a device that sticks.
-HELD_BY = {S_SHAPE: "beam", EITHER: "beam or tip"}
+HELD_BY = {S_SHAPE: "beam", EITHER: "beam or tip", MIDDLE: "middle"}
 
 
 @dataclass(frozen=True)
@@ -136,10 +136,10 @@ def _of_length(length, shape, found, of, plastic, thinnest=None):
     The thinnest film [m] is that of the dataset, or along the axis of a chart.
     """
     device = of.device
-    sizes = device.gap, device.width, device.thickness, length / device.cracks
+    sizes = device.gap, device.width, device.thickness, length / device.arms
     return limits.of_beam(*sizes, float(found.film), float(found.rms)) + limits.given(
         limits.thin_film(thinnest or float(found.film)),
-        limits.stretched_bridge(device.gap, device.thickness) if device.kind == "bridge" else None,
+        limits.stretched_bridge(device.gap, device.thickness) if device.is_bridge else None,
         limits.short_wedge(of.tip, float(found.wedge), float(found.flooded_length)) if shape == EITHER else None,
         *_of_contact(plastic, of.materials),
     )

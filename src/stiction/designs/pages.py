@@ -120,12 +120,19 @@ _OF_BEAMS = {
     ),
     "Estimate": "Length at which exactly the stated share sticks, as well as it is known; it is no bound.",
     "Held by the beam": "The beam touches down behind an open crack and stays flat there (S-shape).",
+    "Held by the middle": (
+        "Both cracks of a bridge have met, and a few micrometres of its middle hold it, where it has no slope. Bridges "
+        "much shorter than two cracks are held in this way."
+    ),
     "Held by the tip": "Only the free end touches and holds the beam (arc). Shorter beams can be held in this way.",
     "Sampled, fitted, extrapolated": (
         "What a length rests on: simulated beams alone; a line through the shortest 5 % of them, within what many more "
         "beams, tips and bridges on the surfaces of the paper's pair b confirmed; or that line beyond it."
     ),
-    "Saturated air": "Length that sticks where water fills all gaps: shorter beams do not stick at any humidity.",
+    "Bound": (
+        "Of a cantilever: the length that sticks where water fills all gaps. Of a bridge: the length below which no "
+        "surfaces hold it at this humidity, not even flooded flats in contact."
+    ),
 }
 _OF_CHARTS = {
     "Finite elements, power law": (

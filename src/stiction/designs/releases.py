@@ -1,4 +1,6 @@
-"""Release of long beams of a device at a humidity, shared by stage cracks, charts and budgets.
+"""Release of the beams of a device at a humidity, shared by stage cracks, charts and budgets.
+
+Cantilevers are longer than their cracks; bridges are shortened until their middle comes free.
 
 Separate from `stiction.designs.cracks`, so that a change of the dataset of that stage reruns no chart and no budget.
 
@@ -18,10 +20,10 @@ from stiction.beam.energy import arrest_length
 from stiction.beam.montecarlo import Experiment, released_beams
 from stiction.beam.release import EndState
 from stiction.beam.resolution import resolved
-from stiction.chaos.model import ChaosModel, Truncation, draw_laws, fit
+from stiction.chaos.model import ChaosModel, Truncation, fit
 from stiction.config.units import from_si
 from stiction.contact import forcelaw
-from stiction.devices.bridges import half_of_bridge
+from stiction.devices.bridges import half_of_bridge, held_lengths, middle_zone
 from stiction.streams import stream
 
 #: Length of the long beams, in crack lengths that Eq. (13) predicts from the mean adhesion energy. Cracks stop where
@@ -47,11 +49,17 @@ class DesignedBeam:
     young_modulus: float  #: E [Pa]
     strip: float  #: length of a strip along the beam [m]
     residual_stress: float = 0.0  #: σ_R [Pa]
+    hamaker_constant: float = 0.0  #: of the two solids, for the bound of a bridge [J]; 0 without van der Waals forces
 
     @property
-    def cracks(self) -> int:
-        """Number of cracks of one beam."""
-        return 2 if self.kind == "bridge" else 1
+    def is_bridge(self) -> bool:
+        """Whether both ends are clamped."""
+        return self.kind == "bridge"
+
+    @property
+    def arms(self) -> int:
+        """Number of clamped ends, from each of which a crack opens."""
+        return 2 if self.is_bridge else 1
 
     @property
     def beam(self) -> Beam:
@@ -97,7 +105,32 @@ def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
         raise
 
 
-def crack_lengths(model: ChaosModel, beam: Beam, points: int, number: int, address: Callable) -> np.ndarray:
-    """Crack lengths of beams on force laws drawn from a chaos model, infinite for beams that are not S-shaped (n,)."""
-    found = released_beams(Experiment(beam, points, partial(draw_laws, model)), number, address)
+def resolved_part(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
+    """Part of a device that finite elements resolve, and its number of strips: a long beam, or the middle of a bridge.
+
+    Parameters and errors as in `long_beam`.
+    """
+    return middle_zone(device.beam, device.strip, laws) if device.is_bridge else long_beam(device, laws)
+
+
+def arrests(
+    device: DesignedBeam, ground: tuple[Beam, int], draw: Callable, number: int, address: Callable
+) -> np.ndarray:
+    """Crack lengths of cantilevers, infinite if not S-shaped, or of the shortest bridges that are held (n,) [m].
+
+    Parameters
+    ----------
+    device : DesignedBeam
+    ground : tuple
+        Part of the device and number of its strips, from `resolved_part`.
+    draw : callable
+        ``draw(n, rng)`` gives n force laws (n, 4) [SI].
+    number : int
+        Number n of devices.
+    address : callable
+        ``address(k)`` is the stream of device k.
+    """
+    if device.is_bridge:
+        return held_lengths(*ground, draw, number, address)
+    found = released_beams(Experiment(*ground, draw), number, address)
     return np.where(found["state"] == EndState.S_SHAPE, found["crack_length"], np.inf)

@@ -94,12 +94,12 @@ def layout(
     }
     film = float(meniscus_height(settings.humidity, settings.water.temperature, settings.water.contact_angles))
     scalars = {"film": film, "wedge": wedge, "tip_strip": settings.tip, "rms": rms}
-    flooded = flooded_lengths(settings.device, settings.water)
+    flooded = flooded_lengths(settings.device, settings.water, settings.humidity)
     return xr.Dataset(
         {
             "stuck": (("shape", "length"), stuck[:, 0], {"units": "1"}),
             "stuck_band": (("shape", "bound", "length"), stuck[:, 1:], {"units": "1"}),
-            "flooded_length": ("shape", flooded, metres | {"long_name": "length that sticks in saturated air"}),
+            "flooded_length": ("shape", flooded, metres | {"long_name": "bound by flooded flats"}),
             "basis": (shaped, [[str(one.basis) for one in rows] for rows in safe.values()]),
         }
         | {name: (shaped, values, metres | {"long_name": text}) for name, (values, text) in columns.items()}

@@ -8,7 +8,8 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
-from stiction.contact.meniscus import flooded_energy
+from stiction.contact.bounds import flooded_law
+from stiction.contact.meniscus import film, flooded_energy
 from stiction.designs.releases import DesignedBeam
 from stiction.devices import arcs, bridges, risk
 from stiction.devices.chart import flooded_length
@@ -16,8 +17,9 @@ from stiction.devices.risk import SafeLength
 from stiction.stages import curves
 from stiction.streams import stream
 
-#: Shapes in which a device may stick: cracks stop on the way, or the tip holds as well. A bridge has no tip.
-S_SHAPE, EITHER = "S-shape", "S-shape or arc"
+#: Shapes in which a device may stick: cracks stop on the way, or the tip holds as well; a bridge has no tip, but a
+#: middle.
+S_SHAPE, EITHER, MIDDLE = "S-shape", "S-shape or arc", "middle"
 
 
 class Settings(Protocol):
@@ -31,14 +33,20 @@ class Settings(Protocol):
 
 def shapes(device: DesignedBeam) -> list[str]:
     """Shapes in which a device may stick."""
-    return [S_SHAPE] if device.kind == "bridge" else [S_SHAPE, EITHER]
+    return [MIDDLE] if device.is_bridge else [S_SHAPE, EITHER]
 
 
-def flooded_lengths(device: DesignedBeam, water: curves.Water) -> list[float]:
-    """Lengths that stick in saturated air, one for each of the `shapes`: at the energy of flooded flats [m]."""
+def flooded_lengths(device: DesignedBeam, water: curves.Water, humidity: float) -> list[float]:
+    """Bounds of the lengths that stick, one for each of the `shapes`, by flooded flats [m].
+
+    A cantilever has the length that sticks in saturated air. The worst air of a bridge is not the wettest: it has the
+    length below which its middle comes free of flats in contact at this humidity.
+    """
     wet = water.temperature, water.contact_angles
-    alone = device.cracks * flooded_length(device.beam, *wet)
-    return [alone] if device.kind == "bridge" else [alone, arcs.arc_length(flooded_energy(*wet), device.beam)]
+    if device.is_bridge:
+        law = flooded_law(film(humidity, *wet), device.hamaker_constant)
+        return [bridges.least_length(*law, device.beam)]
+    return [flooded_length(device.beam, *wet), arcs.arc_length(flooded_energy(*wet), device.beam)]
 
 
 def mean_wedge(tips: xr.Dataset, slope: float | np.ndarray, settings: Settings) -> float | np.ndarray:
@@ -55,16 +63,16 @@ def sticking_lengths(
 
     Parameters
     ----------
-    cracks : (n,) or, for bridges, (2n,) array
-        Crack lengths, infinite for beams that are not S-shaped [m].
+    cracks : (n,) array
+        Crack lengths, infinite for beams that are not S-shaped, or lengths of bridges that their middle holds [m].
     foundation : float
         Foundation length [m].
     device : DesignedBeam
     held : (n,) array or None
         Longest arcs that come free [m].
     """
-    if device.kind == "bridge":
-        return {S_SHAPE: bridges.sticking_lengths(cracks)}
+    if device.is_bridge:
+        return {MIDDLE: cracks}
     alone = risk.sticking_lengths(cracks, np.isfinite(cracks), foundation)
     return {S_SHAPE: alone, EITHER: risk.with_arcs(alone, held)}
 

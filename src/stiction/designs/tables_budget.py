@@ -7,7 +7,7 @@ import pandas as pd
 import xarray as xr
 
 from stiction.designs.budget import budget_of, groups_of, response_of
-from stiction.designs.inputs import ARC, FORCE, S_SHAPE
+from stiction.designs.inputs import ARC, FORCE, MIDDLE, S_SHAPE
 from stiction.designs.stoppers import in_any_air, is_at_an_end, shares_stuck
 from stiction.devices.budget import advice
 from stiction.devices.limits import NOT_MODELLED
@@ -18,8 +18,12 @@ from stiction.report.tables import Table, with_list
 #: Rows of a budget below those of its measurements.
 TOTAL, INDEPENDENT, SCATTER = "total", "total, if all errors were independent", "scatter between devices"
 #: What the inputs of a budget move, and what holds the device.
-_RESPONSES = {S_SHAPE: "mean length at which beams stick (S-shape)", FORCE: "mean pull-off force"}
-_HELD_BY = {S_SHAPE: "beam", ARC: "tip", FORCE: "whole area"}
+_RESPONSES = {
+    S_SHAPE: "mean length at which beams stick (S-shape)",
+    MIDDLE: "mean length at which the middle of bridges holds",
+    FORCE: "mean pull-off force",
+}
+_HELD_BY = {S_SHAPE: "beam", ARC: "tip", MIDDLE: "middle", FORCE: "whole area"}
 #: Other choices of the model in words for those who design.
 _CHOICES = {
     "van_der_waals_dry": "van der Waals in dry gaps",
@@ -152,10 +156,10 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Table:
     omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in datasets.items()}
     caption = with_list(
         "Relative standard uncertainty of the mean length at which beams stick as S-shapes, of the length at which "
-        "few are held by their tip, and of the mean pull-off force of stoppers, due to every measurement, the others "
-        "being exact, ± standard error of the simulation. Remaining: what would be left if the measurement were exact. "
-        "Scatter between devices and other choices of the model, with the sign of their effect, are no part of the "
-        "total.",
+        "few are held by their tip, of the mean length at which bridges are held by their middle, and of the mean "
+        "pull-off force of stoppers, due to every measurement, the others being exact, ± standard error of the "
+        "simulation. Remaining: what would be left if the measurement were exact. Scatter between devices and other "
+        "choices of the model, with the sign of their effect, are no part of the total.",
         [*sentences, *omitted],
     )
     shown = frame[frame.part != "input"]

@@ -13,17 +13,20 @@ from stiction.report.tables import Table, with_list
 
 _SAFE_LENGTHS = (
     "Safe length: the largest length at which, with a confidence of 95 % given the drawn surfaces, at most a share p "
-    "of the devices sticks. A device is held by its beam (S-shape) or by its tip alone (arc). Estimate: length at "
+    "of the devices sticks. A cantilever is held by its beam (S-shape) or by its tip alone (arc), a bridge by its "
+    "middle. Estimate: length at "
     "which a share p sticks, with its standard errors due to the number of beams and to that of sampled surfaces. "
     "Every beam has its own tip, whose scatter is part of the first. Basis: sampled, by order statistics; fitted, by "
-    "a line through the shortest 5 %; extrapolated, beyond what was verified. Saturated air: length that sticks where "
-    "water fills all gaps, the shortest that water holds."
+    "a line through the shortest 5 %; extrapolated, beyond what was verified. Bound: for a cantilever, the length that "
+    "sticks in saturated air, where water fills all gaps; for a bridge, the length below which even flooded flats in "
+    "contact do not hold its middle at this humidity, on which this bound depends."
 )
 _CHART = (
     "Safe length of beams of the thicknesses and gaps of a chart over the relative humidity: the largest length at "
     "which, with a confidence of 95 % given the drawn surfaces, at most a share p sticks. From: finite elements, or a "
-    "power law between them, with its largest error at beams to which it was not fitted. Saturated air: length that "
-    "sticks where water fills all gaps. The warnings are about the shortest length of each thickness and gap."
+    "power law between them, with its largest error at beams to which it was not fitted. Bound: for a cantilever, the "
+    "length that sticks where water fills all gaps; for a bridge, that below which even flooded flats do not hold its "
+    "middle at this humidity. The warnings are about the shortest length of each thickness and gap."
 )
 
 
@@ -67,12 +70,12 @@ def _safe_length(one):
         "estimate_se_beams_um": float(one.beams_error) / UM,
         "estimate_se_surfaces_um": float(one.surfaces_error) / UM,
         "basis": str(one.basis.values),
-        "saturated_air_um": _saturated(one),
+        "bound_um": _bound(one),
     }
 
 
-def _saturated(one):
-    """Length that sticks in saturated air [µm]."""
+def _bound(one):
+    """Bound of the length by flooded flats [µm]."""
     return float(one.flooded_length) / UM
 
 
@@ -88,7 +91,7 @@ def _safe_length_as_text(row, marks):
         "se, beams": error_alone(row["estimate_se_beams_um"]),
         "se, surfaces": error_alone(row["estimate_se_surfaces_um"]),
         "basis": row["basis"],
-        "saturated air [µm]": number(row["saturated_air_um"], ".1f"),
+        "bound [µm]": number(row["bound_um"], ".1f"),
         "warnings": marks,
     }
 
@@ -131,7 +134,7 @@ def _beam(one):
         "held_by": HELD_BY[str(one["shape"].values)],
         "from": "finite elements" if computed else "power law",
         "power_law_error_percent": np.nan if computed else 100 * float(one.power_law_error),
-        "saturated_air_um": _saturated(one),
+        "bound_um": _bound(one),
     }
 
 
@@ -146,5 +149,5 @@ def _beam_as_text(beam, lengths):
         "RH": f"{beam['relative_humidity']:g}",
         **{f"p = {share:g} [µm]": number(length, ".1f") for share, length in lengths.items()},
         "from": beam["from"] + ("" if np.isnan(error) else f", ± {error:.2g} %"),
-        "saturated air [µm]": number(beam["saturated_air_um"], ".1f"),
+        "bound [µm]": number(beam["bound_um"], ".1f"),
     }
