@@ -56,6 +56,12 @@ def test_error_of_the_mesh_is_that_against_a_very_fine_one():
     assert found.excess == pytest.approx(fine.energy / forcelaw.energy(law), abs=0.016)
 
 
+def test_a_stiff_beam_has_the_mean_energy_of_laws_that_push_and_pull_at_the_same_distances():
+    # However far a law reaches beyond the others
+    laws = np.stack([LAW, LAW * [1, 1, 1, 0.04], LAW * [0.5, 1, 1, 0.3]])
+    assert rigid_energy(laws) == pytest.approx(forcelaw.energy(laws).mean(), rel=1e-4)
+
+
 def test_a_stiff_beam_has_the_energy_of_a_single_law_and_less_than_the_mean_of_laws_at_several_distances():
     # The trapezoidal rule on 20000 nodes and the tail beyond 20 / a_right
     assert rigid_energy(LAW[None]) == pytest.approx(forcelaw.energy(LAW), rel=1e-5)

@@ -152,9 +152,16 @@ def test_tips_of_a_chart_hold_as_those_of_the_device():
     found, wanted = computed(C1, (2 * UM, C1.thickness), (C1.gap,), tips, (1e-2, 1e-3))
     expected = [sticking.safe_lengths(values, wanted) for values in alone(C1, 200, tips).values()]
     np.testing.assert_array_equal(found.safe_length[1, 0], [[one.length for one in row] for row in expected])
+
+
+def test_the_wedge_at_the_tip_is_that_of_the_shortest_beam_at_its_own_gap():
+    tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(200))
+    found, _ = computed(C1, (2 * UM, C1.thickness), (C1.gap, 2 * C1.gap), tips, (1e-2, 1e-3))
     # e / f_max over the slope 3 h / 2 L of the shortest beams that tips hold
     shortest = found.safe_length.sel(shape=sticking.EITHER).min("share")
-    assert_allclose(found.wedge, tips.mean() / PULL * shortest / (1.5 * C1.gap), rtol=1e-9)
+    assert_allclose(found.wedge, tips.mean() / PULL * shortest / (1.5 * found.gap), rtol=1e-9)
+    assert np.all(found.wedge[0] < found.wedge[1])  # thicker beams are longer
+    assert np.all(found.wedge[:, 0] > found.wedge[:, 1])  # L grows as the root of h, the slope as h
 
 
 def test_limits_of_saturated_air_are_those_of_flooded_flats_by_shape():

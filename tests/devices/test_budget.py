@@ -126,6 +126,22 @@ def test_the_measurement_with_the_largest_gain_is_named():
     assert "of the force would fall" in budget.advice(whole, groups, "force")
 
 
+def test_what_others_compensate_is_not_worth_measuring_although_its_effect_is_largest():
+    # The first two effects nearly cancel: to know one of them alone leaves most of the variance 0.2 + 0.25.
+    covariance = np.array([[1.0, -0.9, 0.0], [-0.9, 1.0, 0.0], [0.0, 0.0, 0.25]]) * 1e-4
+    found = Budget(("skewness", "kurtosis", "gap"), np.ones(3), covariance)
+    groups = {f"the {name}": (name,) for name in found.names}
+    rows = budget.ranked(found, groups)
+    assert max(rows, key=lambda row: row[1])[0] != "the gap"
+    assert rows[0][0] == "the gap"
+    assert_allclose(rows[0][1:], 1e-2 * np.sqrt([0.25, 0.2]), rtol=1e-12)
+    assert_allclose([row[2] for row in rows[1:]], 1e-2 * np.sqrt(0.19 + 0.25), rtol=1e-12)
+    expected = (
+        "Measure the gap better: known exactly, the standard uncertainty of the length would fall from 0.7 to 0.4 %."
+    )
+    assert budget.advice(found, groups) == expected
+
+
 def test_a_choice_of_the_model_is_a_ratio():
     assert_allclose(budget.choice_effect(700.0, 700 * np.exp(0.042)), 0.042, rtol=1e-12)
 
