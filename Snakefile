@@ -69,7 +69,7 @@ onstart:
 
 
 onsuccess:
-    foreign()
+    unlike_this_run()
 
 
 rule all:

@@ -213,7 +213,7 @@ def timing(results):
         "job_memory": f"{max(megabytes):.0f}",
         "cpu": " ".join(machine["cpu"].split()),
         "cores": str(machine["cores"]),
-        "commit": git["commit"][:7] + " with changes" * git["changed"],
+        "commit": git["commit"][:7] + " with changes" * bool(git["changed"]),
     }
 
 

@@ -19,7 +19,7 @@ chaos: coordinates density polynomials model
 beam: cantilever tension energy foundation equilibrium release resolution middle montecarlo
 analysis: plasticity sensitivity shifts convergence mesh variants
 devices: arcs bridges tail risk stoppers chart budget limits
-run: fingerprint logs folder atomic labels kept remembered provenance warmup forkserver hooks
+run: fingerprint logs folder atomic regular labels kept remembered provenance warmup forkserver hooks
 scans: reading
 config: units cases merging messages reading measured memory conditions relations designs
 config: relations_devices validation files plan jobs paths

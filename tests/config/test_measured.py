@@ -19,12 +19,14 @@ from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.config.validation import validate
+from stiction.errors import ScanError
 from stiction.measured import estimate as stage_estimate
 from stiction.measured import heights, scan, spectrum
 from stiction.scans import estimate
 from stiction.scans.levelling import LEVELS, LINES, Levelling
 from stiction.scans.quantiles import measured_density, quantiles
 from stiction.scans.reading import UNITS, ScanFile, Source
+from stiction.scans.reading import read as read_scan
 from stiction.stages import parameters
 from stiction.stages.heights import measured_moments
 
@@ -289,10 +291,10 @@ WRONG_SCANS = {
     "lines": ({"lines": False}, "scans.lines is False, must be one of none, offset, tilt, bow"),
     "axis": ({"fast_axis": "z"}, "scans.fast_axis is 'z', must be one of x, y"),
     "sides": ({"size_um": [5]}, "scans.size_um is [5], must be a list with 2 entries"),
-    "side": ({"size_um": [5, 0]}, "scans.size_um[1] is 0, must be a number above 0"),
+    "side": ({"size_um": [5, 0]}, "scans.size_um[1] is 0, must be a number at least 0.001"),
     "unit": ({"height_unit": "furlong"}, "scans.height_unit is 'furlong', must be one of m, mm, µm"),
     "key": ({"tip_radius": 10}, "scans.tip_radius is unknown (value 10), must be one of files, channel"),
-    "radius": ({"tip_radius_nm": -1}, "scans.tip_radius_nm is -1, must be a number above 0"),
+    "radius": ({"tip_radius_nm": -1}, "scans.tip_radius_nm is -1, must be a number at least 0.001"),
 }  # fmt: skip
 
 
@@ -334,6 +336,43 @@ def test_an_unusable_file_is_one_sentence_about_the_key_that_helps(bad, capfd, n
     assert line.startswith(f"surfaces.Etched.scans.{key} {sentence}")
     assert len(line) < 300
     assert capfd.readouterr() == ("", "")
+
+
+#: Names of files that cannot be read like files, or that Snakemake cannot be given, and the reason.
+UNREADABLE = {
+    "pipe": "cannot be opened: it is a pipe, must be a regular file",
+    "zero": "cannot be opened: it is a device, must be a regular file",
+    "folder": "cannot be opened: it is a folder, must be a regular file",
+    "nu\0ll": "cannot be opened: its name contains a null character",
+    "a{b}.gwy": "has braces in its path",
+    "a{surface}.gwy": "has braces in its path",
+    "brace}/a.gwy": "has braces in its path",
+}
+
+
+@pytest.mark.parametrize("name", UNREADABLE)
+def test_only_regular_files_with_names_for_snakemake_are_read(folder, tmp_path, name):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "zero").symlink_to("/dev/zero")
+    (tmp_path / "folder").mkdir()
+    if "{" in name or "}" in name:
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        shutil.copy(both(folder)[0], tmp_path / name)
+    (line,) = problems(configured(tmp_path / name))
+    assert line.startswith(f"surfaces.Etched.scans.files[0] is {Path(name).name!r}, which {UNREADABLE[name]}")
+    if "brace" not in UNREADABLE[name]:  # the package alone reads files of any name
+        with pytest.raises(ScanError, match=UNREADABLE[name]):
+            read_scan(tmp_path / name)
+
+
+def test_heights_in_another_unit_are_named_as_such(tmp_path):
+    np.save(tmp_path / "z.npy", 1e9 * published("B2", SIDE, 1)[0].heights)
+    given = {"size_um": [1e6 * SIDE, 1e6 * SIDE]}
+    assert problems(configured(tmp_path / "z.npy", height_unit="nm", **given)) == ()
+    for unit in ("m", "mm"):
+        (line,) = problems(configured(tmp_path / "z.npy", height_unit=unit, **given))
+        assert line.startswith(f"surfaces.Etched.scans.height_unit is {unit!r}: z.npy has heights with an rms of ")
+        assert line.endswith("nm, must be from 0.001 to 1000 nm: they are in another unit than is stated")
 
 
 def test_every_unusable_file_is_tested(bad):

@@ -3,15 +3,17 @@
 import copy
 import math
 import re
-from functools import reduce
+from functools import partial, reduce
 
 import jsonschema
 import pytest
+import yaml
 from configurations import LEAVES, NUMBERS, PAPER, SCHEMA, changed, entries, problems, replaced, without
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from wrong_configurations import UNKNOWN, UNNAMEABLE, WRONG, WRONG_VALUES
 
+from stiction.config import messages
 from stiction.config.merging import merged
 
 
@@ -68,7 +70,7 @@ def test_no_number_is_replaced_by_something_else(leaf):
 
 @pytest.mark.parametrize("leaf", NUMBERS, ids=str)
 def test_a_number_is_rejected_outside_its_bounds_and_not_inside(leaf):
-    refusal = re.compile(rf"{re.escape(str(leaf))} is .*: {re.escape(leaf.entry['description'])}$")
+    refusal = re.compile(rf"{re.escape(str(leaf))} is .*: {re.escape(leaf.entry['description'])}(;.*)?$")
     for side, outward in (("inimum", -1), ("aximum", 1)):
         closed = f"m{side}" in leaf.entry
         bound = leaf.entry[f"m{side}" if closed else f"exclusiveM{side}"]
@@ -133,6 +135,60 @@ UNPRINTABLE = {
 def test_values_that_python_cannot_print_are_rejected(path, junk):
     (line,) = problems(replaced(path, UNPRINTABLE[junk]))
     assert "cannot be printed" in line
+
+
+#: Values of every wrong kind, as a YAML file may hold them.
+MISWRITTEN = [
+    "5,000",
+    "5,5",
+    "1,234,567",
+    "12 000",
+    "5'000",
+    "1e3",
+    "1.5e-3",
+    "2 nm",
+    "2.6 um",
+    "2600 nm",
+    "3 kg",
+    "-1",
+]
+MISWRITTEN += [
+    3,
+    0.5,
+    2.5e-9,
+    2e-5,
+    1.64e11,
+    5000.0,
+    10**9,
+    -1,
+    "a",
+    "B1, B2",
+    {"b": None},
+    {"b": 1},
+    {"a": None, "b": None},
+]
+ADVICE = re.compile(r"; (?:YAML reads .* as text, )?write (?:it without a decimal point: )?(.*)$")
+
+
+@pytest.mark.parametrize("entry", [part for part in entries(SCHEMA) if part["type"] != "object"], ids=str)
+def test_what_a_message_advises_to_write_is_accepted(entry):
+    strict = partial(messages.schema_problems, schema=entry)
+    for value in filter(strict, MISWRITTEN):
+        for path in ("thickness_um", "rms_nm", "young_modulus_GPa", "name"):
+            hint = messages._hint((path,), value, entry)
+            if advice := ADVICE.match(hint):
+                words = re.split(r" without |, the value| if ", advice[1])[0]
+                for text in words.split(" or "):
+                    assert strict(yaml.safe_load(text)) == [], (value, hint)
+
+
+def test_advice_is_given_where_there_is_a_value_to_advise():
+    pair = {"type": "array", "minItems": 2, "maxItems": 2, "items": {"type": "number", "minimum": 0}}
+    assert messages._hint(("contact_um",), 3, pair) == "; write [3, 3]"
+    names = {"type": "array", "items": {"type": "string"}}
+    assert messages._hint(("pairs",), {"b": None}, names) == "; write [b]"
+    assert messages._hint(("pairs",), {"b": {"gap_um": 2}}, names) == ""
+    assert messages._hint(("pairs",), "no", names) == "; write ['no']", "YAML reads no as a truth value"
 
 
 def test_a_long_value_is_cut_off_in_a_message():

@@ -1,5 +1,6 @@
 """Files are read strictly, and problems are one line with the name of the file; also before Snakemake reads them."""
 
+import os
 import subprocess
 import sys
 
@@ -51,6 +52,17 @@ def test_an_invalid_file_is_rejected_in_one_line_with_its_name(tmp_path, content
 def test_a_missing_file_is_reported_by_name(tmp_path):
     with pytest.raises(ConfigError, match=r"nowhere\.yaml cannot be read: .*No such file"):
         read(tmp_path / "nowhere.yaml")
+
+
+def test_only_regular_files_are_read(tmp_path):
+    os.mkfifo(tmp_path / "pipe")  # waits for ever
+    (tmp_path / "to zero").symlink_to("/dev/zero")  # has no end
+    for path, kind in {"pipe": "a pipe", "to zero": "a device", ".": "a folder"}.items():
+        with pytest.raises(ConfigError) as refused:
+            read(tmp_path / path)
+        assert str(refused.value) == f"{tmp_path / path} cannot be read: it is {kind}, must be a regular file"
+    with pytest.raises(ConfigError, match="cannot be read: its name contains a null character"):
+        read(f"{tmp_path}/mine\0.yaml")
 
 
 def test_an_anchor_may_be_changed_key_by_key(tmp_path):

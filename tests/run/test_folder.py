@@ -42,3 +42,24 @@ def test_a_disk_without_locks_is_reported_with_the_remedy(tmp_path, monkeypatch)
     monkeypatch.setattr(fcntl, "flock", flock)
     with pytest.raises(RuntimeError, match=r"cannot be locked \(.*not supported\)\. Choose a --directory"):
         folder.reserved(tmp_path / "running")
+
+
+def test_a_folder_that_cannot_be_written_is_refused_in_one_sentence(tmp_path):
+    folder.require_writable(tmp_path / ".snakemake")
+    assert list((tmp_path / ".snakemake").iterdir()) == []
+    (tmp_path / "file").touch()  # in place of a folder: root ignores permissions
+    with pytest.raises(RuntimeError) as refused:
+        folder.require_writable(tmp_path / "file" / ".snakemake")
+    assert str(refused.value).startswith(f"{tmp_path / 'file'} cannot be written (Not a directory), which Snakemake")
+
+
+def test_a_read_only_disk_is_refused(tmp_path):
+    check = "from stiction.run import folder; folder.require_writable('.snakemake')"
+    read_only = 'mount --bind "$0" "$0" && mount -o remount,ro,bind "$0" && cd "$0" && exec "$@"'
+    words = ["unshare", "--map-root-user", "--mount", "sh", "-c", read_only, tmp_path]
+    if subprocess.run([*words, "true"], capture_output=True).returncode:
+        pytest.skip("mounting is not permitted on this machine")
+    done = subprocess.run([*words, sys.executable, "-c", check], capture_output=True, text=True)
+    (line,) = done.stderr.splitlines()[-1:]
+    assert line.startswith(f"RuntimeError: {tmp_path} cannot be written (Read-only file system), which Snakemake")
+    assert line.endswith("choose another --directory.")

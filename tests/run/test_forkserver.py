@@ -17,14 +17,16 @@ from stiction.run.forkserver import Server
 
 #: Starts a server that imports nothing beforehand.
 BARE = "from stiction.run import forkserver; forkserver.preload = lambda: None; forkserver.main()"
+#: Variables by which libraries start threads.
+THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "DUCC0_NUM_THREADS")
 #: Longest wait for the end of a process [s].
 PATIENCE = 60
 
 
 @pytest.fixture(scope="module")
 def server():
-    """Server that has imported all libraries and loaded all kernels."""
-    server = Server(dict(os.environ) | {"OPENBLAS_NUM_THREADS": "1"})
+    """Server that has imported all libraries and loaded all kernels, in an environment that allows several threads."""
+    server = Server(dict(os.environ) | dict.fromkeys(THREADS, "4"))
     yield server
     server.close()
 
@@ -265,3 +267,18 @@ def test_a_server_that_cannot_load_the_package_is_reported(monkeypatch):
     monkeypatch.setattr(forkserver, "COMMAND", [sys.executable, "-c", "raise SystemExit(1)"])
     with pytest.raises(ConnectionError, match="ended before it was ready"):
         Server(dict(os.environ))
+
+
+THREADED = """
+import threading
+from stiction.run import forkserver
+forkserver.preload = lambda: threading.Thread(target=threading.Event().wait, daemon=True).start()
+forkserver.main()
+"""
+
+
+def test_a_server_in_which_a_library_has_started_a_thread_is_refused(monkeypatch, capfd):
+    monkeypatch.setattr(forkserver, "COMMAND", [sys.executable, "-P", "-c", THREADED])
+    with pytest.raises(ConnectionError, match="ended before it was ready"):
+        Server(dict(os.environ))
+    assert "a library has started threads in the server of jobs (2 in all)" in capfd.readouterr().err

@@ -7,12 +7,13 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import netCDF4
+import numpy as np
 import pytest
 import xarray as xr
 
 from stiction.run import kept, labels
 from stiction.run.atomic import DataError
-from stiction.run.logs import logged, recorded
+from stiction.run.logs import checksum, logged, recorded
 from stiction.run.remembered import Remembered
 from stiction.stages import storage
 
@@ -33,6 +34,14 @@ def reasons(wanted, **changed):
     """Files that a run with these settings cannot use; a plan knows the labels that those before it have read."""
     remember = Remembered("labels.json")
     found = dict(kept.foreign(["heights/B2.nc", "spectrum/B2.nc"], (wanted | changed).get, remember))
+    remember.save()
+    return found
+
+
+def damaged():
+    """Files that are not as their jobs wrote them; a plan knows the checksums that those before it have computed."""
+    remember = Remembered("labels.json")
+    found = dict(kept.damaged("logs", remember))
     remember.save()
     return found
 
@@ -176,12 +185,52 @@ def test_a_result_that_was_cut_off_or_changed_after_its_job_is_recognised(tmp_pa
         result.write_bytes(b"a,b\n1,2\n3,4\n")
         other.write_bytes(b"a,b\n")
     assert set(recorded("logs")) == {result.name, other.name}
-    assert dict(kept.damaged("logs")) == {}
+    assert damaged() == {}
     for content in (b"a,b\n1,2\n", b"", b"a,b\n1,2\n3,5\n"):
         result.write_bytes(content)
-        assert dict(kept.damaged("logs")) == {result.name: "is not as its job wrote it"}
+        assert damaged() == {result.name: "is not as its job wrote it"}
     result.unlink()
-    assert dict(kept.damaged("logs")) == {}, "Snakemake sees that a file is missing"
+    assert damaged() == {}, "Snakemake sees that a file is missing"
+
+
+#: Where a byte of a dataset is flipped: in its numbers, as a share of their length.
+PLACES = [0.0, 0.3, 0.999]
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_a_byte_of_a_dataset_that_changed_at_the_same_time_and_size_is_noticed(tmp_path, monkeypatch, place):
+    monkeypatch.chdir(tmp_path)
+    path, numbers = Path("forces/b.nc"), np.linspace(1, 2, 500)
+    with logged("logs/forces/b.log", [path]):
+        storage.save(xr.Dataset({"force": ("sample", numbers)}), path, "forces", {"samples": 500})
+    assert damaged() == {}
+    before, content = path.stat(), bytearray(path.read_bytes())
+    content[content.index(numbers.tobytes()) + int(place * numbers.nbytes)] ^= 1
+    path.write_bytes(content)
+    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+    assert path.stat().st_mtime_ns == before.st_mtime_ns
+    assert reasons_of(path) == {}, "neither format nor label show it"
+    assert not np.array_equal(storage.load(path, "forces").force, numbers), "it would be used"
+    assert damaged() == {"forces/b.nc": "is not as its job wrote it"}
+
+
+def reasons_of(path):
+    """Whether labels alone refuse a dataset with its own settings."""
+    settings = {path.as_posix(): labels.read(path).settings}
+    return dict(kept.foreign([path], settings.get, Remembered("none.json")))
+
+
+def test_the_checksum_of_an_unchanged_file_is_computed_once(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with logged("logs/x.log", ["x.csv"]):
+        Path("x.csv").write_text("1")
+    seen = []
+    monkeypatch.setattr(kept, "checksum", lambda path: seen.append(path) or checksum(path))
+    assert damaged() == damaged() == {}
+    assert seen == [Path("x.csv")]
+    Path("x.csv").write_text("2")
+    assert damaged() != {}
+    assert len(seen) == 2
 
 
 def test_a_failed_job_records_no_checksum(tmp_path, monkeypatch):

@@ -55,13 +55,19 @@ def checkout(tmp_path):
     return tmp_path, git
 
 
-def test_git_state_is_the_commit_and_whether_files_differ_from_it(checkout, tmp_path_factory):
-    folder, _ = checkout
+def test_git_state_is_the_commit_and_the_files_that_differ_from_it_apart_from_untracked_ones(
+    checkout, tmp_path_factory
+):
+    folder, git = checkout
     clean = provenance.git_state(folder)
     assert len(clean["commit"]) == 40
-    assert not clean["changed"]
+    assert (clean["changed"], clean["untracked"]) == ([], [])
+    (folder / "my notes µ").write_text("1")
+    assert provenance.git_state(folder) == clean | {"untracked": ["my notes µ"]}, "the code is that of the commit"
     (folder / "law").write_text("2")
-    assert provenance.git_state(folder) == clean | {"changed": True}
+    assert provenance.git_state(folder) == clean | {"changed": ["law"], "untracked": ["my notes µ"]}
+    git("add", "my notes µ")
+    assert provenance.git_state(folder)["changed"] == ["law", "my notes µ"]
     assert provenance.git_state(tmp_path_factory.mktemp("bare")) is None
 
 

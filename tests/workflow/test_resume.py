@@ -179,7 +179,18 @@ def of_another_order(path):
     kept.unlink()
 
 
+def flipped(path):
+    """Flip one bit of the numbers of a dataset and give the file its old time."""
+    before, content = path.stat(), bytearray(path.read_bytes())
+    with xr.open_dataset(path) as dataset:
+        numbers = max((values.values for values in dataset.values()), key=lambda values: values.nbytes)
+    content[content.index(numbers.tobytes()[:64]) + 8] ^= 1
+    path.write_bytes(content)
+    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+
+
 SPOILS = {
+    flipped: "is not as its job wrote it",
     truncated: "cannot be read",
     empty: "cannot be read",
     foreign: "holds no result of this study",

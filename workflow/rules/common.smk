@@ -42,6 +42,11 @@ wildcard_constraints:
     width="[0-9]+",
 
 
+try:
+    folder.require_writable(".snakemake")
+except RuntimeError as error:
+    raise WorkflowError(str(error))
+
 hooks.compare_without_pandas()
 remember = Remembered(".snakemake/planning.json")
 
@@ -61,7 +66,10 @@ def validated():
 def rules_of_the_configuration():
     """Code and schema that decide whether a configuration is valid."""
     folder = BASE / "src" / "stiction" / "config"
-    modules = [code(folder / f"{name}.py") for name in ("validation", "conditions", "relations", "relations_devices", "messages")]
+    modules = [
+        code(folder / f"{name}.py")
+        for name in ("validation", "conditions", "relations", "relations_devices", "messages")
+    ]
     return [*modules, (folder / "schema.yaml").read_text(encoding="utf-8")]
 
 
@@ -98,18 +106,19 @@ def settings_of(path):
     return kept.settings(path, hooks.rules_of(workflow))
 
 
-def foreign():
-    """Datasets in results/ that other settings gave. Labels that are read here are known to the next plan."""
-    labels = Remembered(".snakemake/labels.json")
-    found = dict(kept.foreign(Path("results").rglob("*.nc"), settings_of, labels))
-    labels.save()
+def unlike_this_run():
+    """Files in results/ that other settings gave, or that are damaged; what is read of them, the next plan knows."""
+    read = Remembered(".snakemake/labels.json")
+    found = dict(kept.damaged("results/logs", read))
+    found |= dict(kept.foreign(Path("results").rglob("*.nc"), settings_of, read))
+    read.save()
     return found
 
 
 @cache
 def unusable():
-    """Files in results/ that other settings gave, or that are damaged: to this run they are missing."""
-    found = foreign() | dict(kept.damaged("results/logs"))
+    """These files, which are named: to this run they are missing."""
+    found = unlike_this_run()
     for line in kept.summary(found):
         logger.warning(line)
     return found

@@ -17,5 +17,5 @@ def main(job):
 
 
 if __name__ == "__main__":
-    with logged(snakemake.log[0]):
+    with logged(snakemake.log[0], snakemake.output):
         main(snakemake)

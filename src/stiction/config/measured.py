@@ -22,9 +22,12 @@ from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM, SIDES
 from stiction.run.atomic import DataError, save_text
 from stiction.run.fingerprint import fingerprint
 from stiction.run.provenance import version_of
+from stiction.run.regular import require_regular
 
 #: Values of the keys of a measured surface that are not given.
 _DEFAULTS = {"heights": "moments", "psd": "fitted", "beyond": "cut"}
+#: Range of the key ``rms_nm`` of other surfaces, which only a wrong unit exceeds [nm].
+_SMOOTHEST, _ROUGHEST = 1e-3, 1e3
 _OF_SCANS = {"fast_axis": "x", "level": "plane", "lines": "none"}
 #: Keys that say how a file is read, and how its map is evaluated.
 _READING = ("channel", "fast_axis", "size_um", "height_unit")
@@ -105,7 +108,8 @@ def evaluation(entry: Mapping[str, Any], section: Mapping[str, Any]) -> dict[str
 
 
 def digest(path: str | Path) -> str:
-    """SHA-256 of the content of a file; raises OSError."""
+    """SHA-256 of the content of a regular file; raises OSError."""
+    require_regular(path)
     path = Path(path)
     found = path.stat()
     return _digest(path.absolute(), found.st_mtime_ns, found.st_size)
@@ -173,13 +177,20 @@ def _labels(entry):
 
 
 def _contents(files):
-    """Name and SHA-256 of every file, by label; refuses equal contents, because scans are independent samples."""
+    """Name and SHA-256 of every file, by label; refuses equal contents, because scans are independent samples.
+
+    Snakemake leaves no way to write a brace in the name of a file.
+    """
     seen = {}
     for label, path in files.items():
+        if set("{}") & set(str(path)):
+            raise ScanError(
+                label, "files", f"has braces in its path ({path}), which Snakemake reads as wildcards: rename it"
+            )
         try:
             content = digest(path)
         except OSError as reason:
-            raise ScanError(label, "files", f"cannot be opened: {reason.strerror} ({path})") from None
+            raise ScanError(label, "files", f"cannot be opened: {reason.strerror} ({str(path)!r})") from None
         if content in seen:
             raise ScanError(label, "files", f"has the same content as {seen[content]}; a scan counts once")
         seen[content] = label
@@ -214,11 +225,12 @@ def _preliminary(files, reading, evaluating):
 
     scans = [_scan(path, label, reading) for label, path in files.items()]
     found = estimate.inspect(scans, typed(estimate.Settings, evaluating))
+    rms = _in_range(from_si(math.exp(found.moments[0]), "nm"), next(iter(files)), reading)
     nearest = estimate.nearest_density(found)
     form = measured_density(quantiles(found.levelled), found.areas)
-    ln_rms, skewness, kurtosis = map(float, found.moments)
+    skewness, kurtosis = map(float, found.moments[1:])
     return {
-        "rms_nm": from_si(math.exp(ln_rms), "nm"),
+        "rms_nm": rms,
         "measured": [skewness, kurtosis],
         "feasible": None if nearest is None else [nearest.skewness, nearest.kurtosis],
         "form": [form.scores.tolist(), form.heights.tolist()],
@@ -239,6 +251,15 @@ def _scan(path, label, settings):
         return replace(read(path, typed(Source, settings)).scan, name=label)
     except ScanError as refusal:
         raise ScanError(label, refusal.key, refusal.reason) from None
+
+
+def _in_range(rms, file, reading):
+    """Rms of levelled heights [nm] if a surface can have it; otherwise the heights are in another unit."""
+    if _SMOOTHEST <= rms <= _ROUGHEST:
+        return rms
+    key = "height_unit" if "height_unit" in reading else "files"
+    reason = f"has heights with an rms of {rms:.3g} nm, must be from {_SMOOTHEST:g} to {_ROUGHEST:g} nm"
+    raise ScanError(file, key, f"{reason}: they are in another unit than is stated")
 
 
 def _without_density(name, entry, found):

@@ -4,11 +4,16 @@ The messages do not affect the results: `stiction.run.fingerprint` leaves this m
 """
 
 import difflib
+import math
 import re
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
+
+import yaml
+
+from stiction.config.units import from_si, to_si
 
 
 class ConfigError(ValueError):
@@ -78,7 +83,7 @@ def _explained(error, schema):
     if error.validator == "additionalProperties":
         known = list(error.schema["properties"])
         return [Problem((*path, key), _unknown(key, value[key], known)) for key in value if key not in known]
-    return [Problem(path, f"is {shown(value)}, must be {_allowed(error.schema)}{_hint(value, error.schema)}")]
+    return [Problem(path, f"is {shown(value)}, must be {_allowed(error.schema)}{_hint(path, value, error.schema)}")]
 
 
 def _entry(schema, path):
@@ -124,33 +129,102 @@ def _question(meant):
     return f"; did you mean {meant[0]}?" if meant else ""
 
 
-def _hint(value, entry):
-    """Likely cause of a value of the wrong type; may be empty."""
+def _hint(path, value, entry):
+    """Likely cause of a value of the wrong type or size; may be empty."""
     if value is None:
         return "; there is no value after the key"
     if isinstance(value, bool):
         return "; YAML reads yes, no, on, off, true and false as truth values"
     if entry["type"] == "array" and not isinstance(value, list):
-        return f"; write [{value}]"
+        return _list_hint(value, entry)
     if isinstance(value, str):
-        return did_you_mean(value.lower(), entry["enum"]) if "enum" in entry else _number_hint(value, entry)
+        return did_you_mean(value.lower(), entry["enum"]) if "enum" in entry else _number_hint(path, value, entry)
     if isinstance(value, float) and entry["type"] == "integer" and value.is_integer():
-        return f"; write it without a decimal point: {value:.15g}"
-    return ""
+        return _advice(entry, f"{value:.15g}", "write it without a decimal point: {}")
+    return _unit_hint(path, value, entry)
 
 
-def _number_hint(text, entry):
-    """How to write a number that YAML read as text."""
-    parts = re.fullmatch(r"([-+]?\d+(?:[.,]\d*)?)(?:[eE]([-+]?\d{1,2}))?\s*([^\W\d][^%]*)?", text)
-    if entry["type"] not in ("number", "integer") or not parts:
+def _accepts(entry, value):
+    """Whether a value agrees with its part of the schema: only then a message may advise to write it."""
+    return _strict()(entry).is_valid(value)
+
+
+def _advice(entry, text, sentence="write {}"):
+    """Advice to write a value as this text in YAML; empty if it would be refused as well."""
+    return f"; {sentence.format(text)}" if _accepts(entry, yaml.safe_load(text)) else ""
+
+
+def _list_hint(value, entry):
+    """How to write one value, or keys without values, as a list of the least length."""
+    keys = isinstance(value, dict) and not any(value.values())
+    items = list(value) if keys else [value] * entry.get("minItems", 1)
+    if not _accepts(entry, items):
         return ""
-    mantissa, exponent, unit = parts[1].replace(",", "."), parts[2], parts[3]
-    value = float(f"{mantissa}e{exponent or 0}")
-    whole = entry["type"] == "integer" and value.is_integer()
-    written = f"{value:.15g}" if whole else f"{float(mantissa)}e{int(exponent):+d}" if exponent else mantissa
+    return f"; write {yaml.safe_dump(items, default_flow_style=True, allow_unicode=True, width=math.inf).strip()}"
+
+
+#: Units of keys whose values in SI lie outside the bounds of the schema, and the names of these values.
+_IN_SI = {"nm": "metres", "um": "metres", "GPa": "pascals", "MPa": "pascals", "uN": "newtons"}
+
+
+def _unit_of(path):
+    """Unit in the last key of a path that has one; empty if none has."""
+    units = (key.rpartition("_")[2] for key in reversed(path) if isinstance(key, str))
+    return next((unit for unit in units if unit in _IN_SI), "")
+
+
+def _unit_hint(path, value, entry):
+    """How to write a number that would be allowed if it were in SI units."""
+    unit = _unit_of(path)
+    if not unit or not _is_number(None, value):
+        return ""
+    return _advice(entry, f"{from_si(value, unit):.12g}", f"write {{}} if {value:g} is in {_IN_SI[unit]}")
+
+
+#: A number with separators of thousands; one as YAML reads it or with a decimal comma, its exponent and its unit.
+_GROUPED = re.compile(r"([-+]?\d{1,3}(?:([,' ])\d{3})(?:\2\d{3})*)")
+_WRITTEN = re.compile(r"([-+]?\d+(?:[.,]\d*)?)(?:[eE]([-+]?\d{1,2}))?\s*([^\W\d][^%]*)?")
+
+
+def _number_hint(path, text, entry):
+    """How to write a number that YAML read as text."""
+    if entry["type"] not in ("number", "integer"):
+        return ""
+    if _GROUPED.fullmatch(text):
+        return _grouped_hint(text, entry)
+    if not (parts := _WRITTEN.fullmatch(text)):
+        return ""
+    mantissa, exponent, unit = parts[1].replace(",", "."), parts[2], (parts[3] or "").replace("µ", "u")
+    if unit and unit != _unit_of(path):
+        return _converted_hint(float(f"{mantissa}e{exponent or 0}"), unit, path, entry)
+    written = _in_yaml(mantissa, exponent, entry)
     if exponent and not unit:
-        return f"; YAML reads {text} as text, write {written}"
-    return f"; write {written} without quotes, unit or decimal comma"
+        return _advice(entry, written, f"YAML reads {text} as text, write {{}}")
+    return _advice(entry, written, "write {} without quotes, unit or decimal comma")
+
+
+def _in_yaml(mantissa, exponent, entry):
+    """A number as YAML reads it: without an exponent if it is to be whole, otherwise with a point and a sign."""
+    value = float(f"{mantissa}e{exponent or 0}")
+    if entry["type"] == "integer" and value.is_integer():
+        return f"{value:.15g}"
+    return f"{float(mantissa)}e{int(exponent):+d}" if exponent else mantissa
+
+
+def _grouped_hint(text, entry):
+    """How to write 5,000: without separators, or with a decimal point where that can be meant."""
+    whole, decimal = re.sub(r"[,' ]", "", text), text.replace(",", ".")
+    readings = [whole] if decimal.count(".") != 1 else [whole, decimal]
+    allowed = [reading for reading in readings if _accepts(entry, yaml.safe_load(reading))]
+    return f"; write {' or '.join(allowed)} without a separator of thousands" if allowed else ""
+
+
+def _converted_hint(value, unit, path, entry):
+    """How to write a number with another unit than its key has; empty if that is no length, stress or force."""
+    kind, own = _IN_SI.get(unit), _unit_of(path)
+    if kind is None or kind != _IN_SI.get(own):
+        return ""
+    return _advice(entry, f"{from_si(to_si(value, unit), own):.12g}", f"write {{}}, the value in {own}")
 
 
 def _name_hint(name):

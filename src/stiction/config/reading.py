@@ -14,6 +14,7 @@ from pathlib import Path
 import yaml
 
 from stiction.config.messages import ConfigError, duplicates, shown
+from stiction.run.regular import require_regular
 
 #: Numbers that YAML 1.1 reads in base 60 and in base 8.
 _BASE_60 = re.compile(r"[-+]?\d[\d_]*(:[0-5]?\d)+(\.[\d_]*)?")
@@ -50,12 +51,13 @@ def _one_line(reason):
     """An error in one line, that of the parser with the line of the file first."""
     mark = getattr(reason, "problem_mark", None)
     if mark is None:
-        return " ".join(str(reason).split())
+        return " ".join((getattr(reason, "strerror", None) or str(reason)).split())
     return f"line {mark.line + 1}, column {mark.column + 1}: {' '.join(filter(None, (reason.context, reason.problem)))}"
 
 
 def _text(path):
     """Text of a file in UTF-8."""
+    require_regular(path)
     data = Path(path).read_bytes()
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise ValueError("it is text in UTF-16, must be UTF-8: save it as UTF-8")

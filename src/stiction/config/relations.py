@@ -74,11 +74,18 @@ def selected_pairs_exist(names, pairs):
 
 @relation("pairs.*.beam", "surfaces.#")
 @relation("pairs.*.substrate", "surfaces.#")
-@relation("surfaces.*.material", "materials.#")
 @relation("figures.pair", "pairs.#")
 def name_is_defined(name, defined):
     """References must be to defined names."""
     return None if name in defined else f"must be one of {', '.join(defined)}{did_you_mean(name, defined)}"
+
+
+@relation("surfaces.*.material", "materials.#")
+def material_is_defined(name, defined):
+    """Materials are defined in a section of their own, which the paper does not have."""
+    if not defined:
+        return "must be the name of a section of materials, where no material is described"
+    return name_is_defined(name, defined)
 
 
 @relation("pairs.*.humidities")

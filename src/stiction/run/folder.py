@@ -1,8 +1,28 @@
-"""Lock on the folder of a run; unlike Snakemake's own lock, it is released when the run is killed."""
+"""Folder of a run: whether it can be written, and a lock that, unlike Snakemake's, ends with a run that is killed."""
 
 import fcntl
+import tempfile
 from pathlib import Path
 from typing import IO
+
+
+def require_writable(record: str | Path) -> None:
+    """Refuse a folder in which Snakemake cannot keep its record, which it changes even if nothing is to do.
+
+    Raises
+    ------
+    RuntimeError
+        If no file can be written in the folder of the record.
+    """
+    try:
+        Path(record).mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=record).close()
+    except OSError as error:
+        where = Path(record).absolute().parent
+        raise RuntimeError(
+            f"{where} cannot be written ({error.strerror}), which Snakemake needs even if nothing is to do. "
+            "Make it writable, copy it or choose another --directory."
+        ) from error
 
 
 def reserved(lock: str | Path) -> IO[str]:

@@ -18,6 +18,7 @@ import subprocess
 import sys
 import traceback
 import types
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NoReturn
 
@@ -38,6 +39,9 @@ LATE = (
     "pandas.io.formats.html",
     "tabulate",
 )
+#: Variables that limit the threads of libraries. OpenBLAS reads its own when it is loaded; the FFT of SciPy 1.18 and
+#: newer, DUCC, at its first transform and at every fork, after which it starts its threads again.
+_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "DUCC0_NUM_THREADS")
 _READY = b"ready"
 _PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
@@ -107,13 +111,38 @@ def _channel():
 def main() -> None:
     """Serve requests on the socket whose number is the argument; each child runs its script and ends."""
     requests = socket.socket(fileno=int(sys.argv[1]))
-    preload()
-    # Ctrl-C reaches the children, which must have ended before the server does.
-    interrupt = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    requests.send(_READY)
-    if script := serve(requests):
+    with one_thread():
+        preload()
+        refuse_threads()
+        # Ctrl-C reaches the children, which must have ended before the server does.
+        interrupt = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        requests.send(_READY)
+        script = serve(requests)
+    if script:
         signal.signal(signal.SIGINT, interrupt)
         become(script)
+
+
+@contextlib.contextmanager
+def one_thread() -> Iterator[None]:
+    """Let libraries have one thread in this context, also after a fork; its end restores the variables."""
+    before = {name: os.environ[name] for name in _THREADS if name in os.environ}
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name in _THREADS:
+            os.environ.pop(name)
+        os.environ.update(before)
+
+
+def refuse_threads() -> None:
+    """End this process if it has several threads: a child has only one of them, and could wait for the others."""
+    threads = len(list(Path("/proc/self/task").iterdir()))
+    if threads > 1:
+        sys.exit(
+            f"a library has started threads in the server of jobs ({threads} in all), whose forks would not be safe"
+        )
 
 
 def preload() -> None:

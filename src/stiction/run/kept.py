@@ -4,9 +4,9 @@ Snakemake compares settings only where its own record of a file exists, and neve
 from another run, or a table cut off by a full disk, would be used silently.
 """
 
-import hashlib
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from itertools import groupby
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,7 +14,7 @@ from typing import Any
 
 from stiction.run import labels
 from stiction.run.atomic import DataError
-from stiction.run.logs import recorded
+from stiction.run.logs import checksum, recorded
 
 
 def settings(path: str, rules: Iterable[Any]) -> dict[str, Any] | None:
@@ -84,9 +84,13 @@ def _difference(path, settings, expected, remember):
 
 def _label(path, remember):
     """Label of a dataset, which is read again if the file may have changed."""
+    return labels.Label(*remember([_state(path), labels.Label._fields], lambda: labels.read(path)))
+
+
+def _state(path):
+    """What the disk says about a file; whoever writes into it changes the last number, which nobody can set."""
     state = path.stat()
-    unchanged = [str(path), state.st_ino, state.st_size, state.st_mtime_ns, state.st_ctime_ns]
-    return labels.Label(*remember([unchanged, labels.Label._fields], lambda: labels.read(path)))
+    return [str(path), state.st_ino, state.st_size, state.st_mtime_ns, state.st_ctime_ns]
 
 
 def _first(found, wanted, path=()):
@@ -103,14 +107,21 @@ def _value(value):
     return "nothing" if value is None else value
 
 
-def damaged(logs: str | Path) -> Iterator[tuple[str, str]]:
+def damaged(logs: str | Path, remember: Callable[[object, Callable[[], Any]], Any]) -> Iterator[tuple[str, str]]:
     """Files that are no longer as their jobs wrote them, according to the checksums in the logs, each with the reason.
 
     Files that are missing and files without a checksum are left out.
+
+    Parameters
+    ----------
+    logs : path
+        Folder of the logs.
+    remember : callable
+        Keeps the checksums of files that have not changed, see `stiction.run.remembered.Remembered`.
     """
-    for path, checksum in recorded(logs).items():
+    for path, written in recorded(logs).items():
         file = Path(path)
-        if file.is_file() and hashlib.sha256(file.read_bytes()).hexdigest() != checksum:
+        if file.is_file() and remember([_state(file), "checksum"], partial(checksum, file)) != written:
             yield path, "is not as its job wrote it"
 
 

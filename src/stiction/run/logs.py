@@ -15,7 +15,7 @@ from pathlib import Path
 def logged(path: str | Path, results: Iterable[str] = ()) -> Iterator[None]:
     """Write warnings, progress and the traceback of an error to a log; print one line about the error on the terminal.
 
-    The log of a successful job ends with the SHA-256 checksums of its final results, its run time and its peak memory.
+    The log of a successful job ends with the SHA-256 checksums of its results, its run time and its peak memory.
     """
     start, failure = time.perf_counter(), None
     Path(path).parent.mkdir(parents=True, exist_ok=True)
@@ -29,14 +29,20 @@ def logged(path: str | Path, results: Iterable[str] = ()) -> Iterator[None]:
             failure = " ".join([f"{type(error).__name__}: {error}", *getattr(error, "__notes__", [])])
             traceback.print_exc(file=log)
         else:
-            log.writelines(f"{hashlib.sha256(Path(file).read_bytes()).hexdigest()}  {file}\n" for file in results)
+            log.writelines(f"{checksum(file)}  {file}\n" for file in results)
             log.write(f"took {time.perf_counter() - start:.1f} s, {peak_memory():.0f} MB\n")
     if failure:
         sys.exit(failure)
 
 
+def checksum(path: str | Path) -> str:
+    """SHA-256 of a file, read in parts: datasets are large."""
+    with Path(path).open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
 def recorded(folder: str | Path) -> dict[str, str]:
-    """Checksums of final results in the logs of a folder, by file."""
+    """Checksums of results in the logs of a folder, by file."""
     texts = (path.read_text(encoding="utf-8") for path in sorted(Path(folder).rglob("*.log")))
     return {file: found for text in texts for found, file in re.findall(r"^([0-9a-f]{64})  (.+)$", text, re.MULTILINE)}
 

@@ -81,24 +81,29 @@ def version_of(library: str) -> str | None:
         return None
 
 
+#: Questions to git about a checkout; names of files end with a null character.
+_COMMIT = ["rev-parse", "HEAD"]
+_CHANGED = ["diff", "--name-only", "-z", "HEAD"]
+_UNTRACKED = ["ls-files", "--others", "--exclude-standard", "-z"]
+
+
 def git_state(checkout: str | Path) -> dict | None:
-    """Commit of a checkout and whether files differ from the commit; ``None`` without git or without a commit.
+    """Commit of a checkout, files that differ from it and files that it does not know; ``None`` without a commit.
 
     The checkout may belong to another user, which git by itself refuses.
     """
     try:
-        commit, changes = (
-            subprocess.run(
-                ["git", "-c", f"safe.directory={Path(checkout).resolve()}", "-C", checkout, *command],
-                capture_output=True,
-                text=True,
-                check=True,
-            ).stdout
-            for command in (["rev-parse", "HEAD"], ["status", "--porcelain"])
-        )
+        commit, changed, untracked = (_git(checkout, *command) for command in (_COMMIT, _CHANGED, _UNTRACKED))
     except (OSError, subprocess.CalledProcessError):
         return None
-    return {"commit": commit.strip(), "changed": bool(changes.strip())}
+    files = {"changed": changed, "untracked": untracked}
+    return {"commit": commit.strip()} | {kind: text.split("\0")[:-1] for kind, text in files.items()}
+
+
+def _git(checkout, *command):
+    """What git prints about a checkout."""
+    words = ["git", "-c", f"safe.directory={Path(checkout).resolve()}", "-C", checkout, *command]
+    return subprocess.run(words, capture_output=True, text=True, check=True).stdout
 
 
 def cpu_name() -> str:

@@ -17,6 +17,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from stiction.errors import ScanError
+from stiction.run.regular import require_regular
 from stiction.scans.scan import Scan
 
 #: Units of length [m], and those of them that files have: an A in a file may be an ampere.
@@ -100,6 +101,7 @@ def _read(library, path, source):
 
 def _refuse_empty(path):
     try:
+        require_regular(path)
         with path.open("rb") as file:
             first = file.read(1)
     except OSError as reason:
