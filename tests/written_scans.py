@@ -58,6 +58,7 @@ def bad_files(folder, good):
         "half.gwy": half,
         "damaged.gwy": bytes(damaged),
         "nonsense.txt": b"nothing in here is a height\n" * 9,
+        "cut.di": b"\\*File list\r\n\\Version: 0x05120130\r\n\\*File list end\r\n\x1a" + bytes(2000),
         "profile.xyz": "\n".join(f"{x} {x**2}" for x in range(40)).encode(),
     }
     for name, text in texts.items():
@@ -74,6 +75,7 @@ def bad_files(folder, good):
         "half.gwy": ({}, "files[0]", f"is 'half.gwy', {damage}"),
         "damaged.gwy": ({}, "files[0]", f"is 'damaged.gwy', {damage}"),
         "nonsense.txt": (_GIVEN, "files[0]", f"is 'nonsense.txt', {damage}"),
+        "cut.di": ({}, "files[0]", "is 'cut.di', which holds no channel at all: the file is damaged or not complete"),
         "profile.xyz": (_GIVEN, "files[0]", "is 'profile.xyz', which is a profile; a map of heights is needed"),
         "bare.npy": ({"height_unit": "nm"}, "size_um", "is missing: bare.npy has no size in a unit of length"),
         "bare.npy ": ({"size_um": [1, 1]}, "height_unit", "is missing: bare.npy has no unit; give one of m, mm"),
@@ -88,6 +90,16 @@ def bad_files(folder, good):
 
 #: Names of unusable files; a space tells apart two configurations of the same file.
 BAD = [
-    *("missing.spm", "empty.spm", "half.gwy", "damaged.gwy", "nonsense.txt", "profile.xyz", "bare.npy", "bare.npy "),
+    *(
+        "missing.spm",
+        "empty.spm",
+        "half.gwy",
+        "damaged.gwy",
+        "nonsense.txt",
+        "cut.di",
+        "profile.xyz",
+        "bare.npy",
+        "bare.npy ",
+    ),
     *("holes.gwy", "coarse.gwy", "tiny.gwy", "far.gwy", "B2-0.gwy", "B2-0.gwy "),
 ]

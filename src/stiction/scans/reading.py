@@ -87,6 +87,8 @@ def _read(library, path, source):
     """`ScanFile` of a file that is not empty."""
     name = path.name
     with _opened(library, path) as reader:
+        if not reader.channels:
+            raise ScanError(name, "files", "holds no channel at all: the file is damaged or not complete")
         channel, notes = _height_channel(reader.channels, source.channel, name)
         if channel.dim != 2:
             raise ScanError(name, "files", "is a profile; a map of heights is needed")
@@ -198,7 +200,7 @@ def _unit_of(channel):
 
 def _height_channel(channels, wanted, name):
     """Channel of the heights and notes on its choice."""
-    listed = ", ".join(channel.channel_id for channel in channels) or "none"
+    listed = ", ".join(channel.channel_id for channel in channels)
     if wanted is not None:
         chosen = [channel for channel in channels if wanted in (channel.channel_id, channel.name)]
         if not chosen:
