@@ -76,7 +76,10 @@ class Device:
         return cls(name, ground, tips, config, surfaces)
 
     def cracks(self, humidity: float) -> xr.Dataset:
-        """Crack lengths of long beams; dataset of `stiction.designs.cracks`. The first call takes half a minute."""
+        """Crack lengths of long beams, or lengths of held bridges; dataset of `stiction.designs.cracks`.
+
+        The first call takes half a minute, for a bridge a minute.
+        """
         self._must_be(*BEAMS)
         if humidity not in self._known_cracks:
             self._known_cracks[humidity] = cracks.compute(self.contact, self._settings(cracks, jobs.cracks, humidity))

@@ -41,8 +41,8 @@ def test_a_run_gives_table_figures_and_warnings(finished):
         ("C1", "beam", "0.001"),
         ("C1", "beam or tip", "0.01"),
         ("C1", "beam or tip", "0.001"),
-        ("R1", "beam", "0.01"),
-        ("R1", "beam", "0.001"),
+        ("R1", "middle", "0.01"),
+        ("R1", "middle", "0.001"),
     ]
     assert all(float(row["safe_length_um"]) < float(row["estimate_um"]) for row in rows)
     assert "Not in the model" in (results / "devices" / "warnings.md").read_text()

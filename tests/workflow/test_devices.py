@@ -68,7 +68,7 @@ def test_every_device_has_a_page_and_every_table_and_figure_is_there(run):
 
 def test_warnings_of_all_devices_are_listed_and_the_plasticity_of_their_pair_is_checked(run):
     text = (run / "results" / "devices" / "warnings.md").read_text(encoding="utf-8")
-    assert "R1, RH 0.67, held by the beam: The gap is equal to the thickness" in text
+    assert "R1, RH 0.67, held by the middle: The gap is equal to the thickness" in text
     assert "was not checked" not in text
     assert "Not in the model" in text
 
