@@ -261,7 +261,7 @@ def modules():
 
 @cache
 def imported(path):
-    """Modules that a file imports, with those of the helpers of tests that it imports."""
+    """Modules that a file imports and what it imports from them, with those of the helpers of tests that it imports."""
     found = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("stiction"):
@@ -270,6 +270,15 @@ def imported(path):
         elif isinstance(node, ast.ImportFrom) and (helper := ROOT / "tests" / f"{node.module}.py").is_file():
             found |= imported(helper) if helper != path else set()
     return frozenset(found)
+
+
+def users(module):
+    """A module, those that import it, those that import these, and so on."""
+    found, new = set(), {module}
+    while new:
+        found |= new
+        new = {name for name in modules() if imported(path_of(name)) & new} - found
+    return found
 
 
 def rounds(module):
@@ -314,6 +323,11 @@ class Copy:
         text, times = path.read_bytes(), path.stat()
         shutil.rmtree(self.cache, ignore_errors=True)
         shutil.copytree(self.warm, self.cache)
+        # Numba compiles a kernel again if its own file changes, but not if that of a kernel that it calls does.
+        changed = {name.rpartition(".")[2] for name in users(mutant.module)}
+        for kernel in self.cache.rglob("*.nb?"):
+            if kernel.name.partition(".")[0] in changed:
+                kernel.unlink()
         try:
             path.write_bytes(mutated(text, mutant))
             return self.failure(mutant.module, self.cache, which, limit)

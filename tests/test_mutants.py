@@ -74,6 +74,11 @@ def test_every_module_has_tests(module):
     assert mutants.rounds(module)
 
 
+def test_modules_with_kernels_that_call_those_of_a_module_use_it():
+    assert {"beam.tension", "beam.equilibrium", "beam.release", "devices.bridges"} <= mutants.users("beam.tension")
+    assert not {"beam.cantilever", "surface.field"} & mutants.users("beam.tension")
+
+
 def test_mutants_are_valid_code():
     for mutant in mutants.sample(["surface.maxent", "beam.release", "config.relations"], 100):
         text = mutants.path_of(mutant.module).read_bytes()
