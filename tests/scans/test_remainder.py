@@ -10,6 +10,7 @@ from stiction.estimates import mean_with_error
 from stiction.scans.estimate import Settings, estimate, inspect
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.remainder import coefficients, remainders, variances
+from stiction.streams import stream
 from stiction.surface.spectrum import CutoffSelfAffine
 
 SIZE = (5e-6, 3e-6)
@@ -101,10 +102,16 @@ def test_several_scans_show_a_bow_that_one_does_not():
     assert remainders(opposite, SIZE, Levelling(), absolute_spectrum(), 0.02)[0].likely == pytest.approx(of[1].likely)
 
 
-def test_an_unsure_spectrum_makes_bows_less_unlikely():
-    z = [level(SCANS[0].heights + 0.3 * B2.rms * FORMS["twist"], Levelling())]
-    sure, unsure = (remainders(z, SIZE, Levelling(), absolute_spectrum(), error)[0].likely for error in (0.01, 0.5))
-    assert sure < unsure
+@pytest.mark.parametrize("error", [0.05, 0.3])
+def test_bows_are_as_unlikely_as_a_spectrum_known_to_this_error_makes_them(error):
+    z = level(SCANS[0].heights + 0.1 * B2.rms * FORMS["twist"], Levelling())
+    size = np.sum(coefficients(z, BOWS) ** 2 / variances(absolute_spectrum(), SIZE, BOWS))
+    rng, count = stream(1, "unsure"), 100_000
+    scale = rng.gamma(error**-2, error**2, count)  # of mean 1 and this standard deviation
+    expected = np.mean(rng.chisquare(3, count) / scale > size)
+    found = remainders([z], SIZE, Levelling(), absolute_spectrum(), error)[0].likely
+    assert abs(found - expected) < 4 * np.sqrt(expected / count)
+    assert 0.001 < found < 0.9
 
 
 def about_bows(found):

@@ -1,5 +1,6 @@
 import dataclasses
 import functools
+import re
 
 import numpy as np
 import pytest
@@ -224,6 +225,8 @@ def test_a_scan_without_plateau_is_refused():
     z = np.cumsum(np.cumsum(stream(1, "walk").standard_normal((200, 200)), axis=0), axis=1)  # a power law throughout
     walks = [Scan(1e-10 * part, (SIDE, SIDE), f"{name}.spm") for name, part in (("a", z), ("b", z.T))]
     assert "files: a.spm, b.spm shows no plateau of the spectrum: " in refused(walks)
+    number, side = re.search(r": (\S+) wavelengths .* on a side of about (\S+) µm", refused(walks)).groups()
+    assert float(side) == pytest.approx(4 / float(number) * 1e6 * SIDE, rel=0.05)
     tiny = Scan(B2[0].heights[:34, :34], (0.7e-6, 0.7e-6), "tiny.spm")
     assert "files: tiny.spm cannot give a spectrum: 8 rings are needed" in refused([tiny])
 

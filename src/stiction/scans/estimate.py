@@ -153,11 +153,12 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
         raise ScanError(", ".join(names), "files", f"cannot give a spectrum: {reason}") from None
     found = Inspection(names, frame, settings, levelled, complete, spectrum, rings, within, fitted)
     if found.wavelengths < FEWEST_WAVELENGTHS:
+        side = min(frame.size) * FEWEST_WAVELENGTHS / found.wavelengths
         raise ScanError(
             ", ".join(names),
             "files",
             f"shows no plateau of the spectrum: {found.wavelengths:.2g} wavelengths of its corner fit into the scan, "
-            f"{FEWEST_WAVELENGTHS} are needed",
+            f"{FEWEST_WAVELENGTHS} are needed, as on a side of about {1e6 * side:.2g} µm or more",
         )
     return found
 
