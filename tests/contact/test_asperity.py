@@ -281,6 +281,21 @@ def test_force_of_a_surface_with_one_summit_is_that_of_a_sphere(model):
     )
 
 
+def test_a_summit_in_deep_contact_has_the_deep_load_of_its_own_radius():
+    water, radius, tops = attraction("water"), 3e-7, 8e-9 - 0.05e-9 * np.arange(120)
+    weak = SimpleNamespace(work_of_adhesion=water.work_of_adhesion / 200, stress=water.stress)
+    found = np.zeros(120)
+    MaugisTable(POLYSILICON, weak).add_forces(np.array([tops[0]]), np.array([1 / radius]), 0.05e-9, found)
+    transition = transition_parameter(radius, POLYSILICON, weak)
+    interference = tops / interference_scale(radius, POLYSILICON, weak)
+    deep = interference > 950  # beyond the table
+    unit = np.pi * weak.work_of_adhesion * radius
+    load, other = (unit * np.array([deep_load(x, f * transition) for x in interference[deep]]) for f in (1, 1.01))
+    np.testing.assert_allclose(found[deep], load, rtol=1e-9)
+    assert np.all(np.abs(other / load - 1) > 1e-8)
+    assert 0 < deep.sum() < 120
+
+
 @pytest.mark.parametrize("model", [HertzAsperity(POLYSILICON), WATER], ids=["Hertz", "Maugis"])
 @pytest.mark.parametrize(("height", "feels"), [(-0.1e-9, False), (0.1e-9, True)])
 def test_summits_below_the_mean_plane_feel_nothing(model, height, feels):
