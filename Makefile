@@ -1,9 +1,11 @@
-# Each target first creates the virtual environment .venv if necessary and runs in it.
+# Each target first creates the virtual environment .venv if necessary and runs in it. Results are in results/ below the
+# folder of a run: the folder of this file, or runs/smoke, runs/example and runs/devices.
 #   make paper      the whole paper: tables and figures in results/ (5 to 10 minutes)
-#   make smoke      the same with small samples (half a minute), in results/smoke/   (takes CONFIG=... too)
+#   make smoke      the same with small samples (half a minute), in runs/smoke/results/   (takes CONFIG=... too)
 #   make run CONFIG=mine.yaml    your own surfaces, pairs and beams; the file changes single keys of config.yaml
-#   make example    crack lengths from drawn scans, compared with the true values (1 to 2 minutes), in results/example/
-#   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (4 to 10 minutes)
+#   make example    crack lengths from drawn scans, compared with the true values (1 to 2 minutes), in runs/example/
+#   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (4 to 10 minutes),
+#                   in runs/devices/results/
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
 #
@@ -14,16 +16,14 @@
 #   make cluster    test with SLURM on this machine          make lock       update requirements.lock
 #   make clean      delete .venv, keep results
 #
-#   ARGS=...        further arguments for the tool that a target runs: ARGS=-n shows what Snakemake would do
+#   ARGS=...        further arguments for the tool that a target runs, which is Snakemake for the first group: ARGS=-n
+#                   says what it would compute. These targets call the command .venv/bin/stiction, see stiction --help.
 
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 SNAKEMAKE := $(BIN)/snakemake
-SMOKE := --configfile config.yaml workflow/smoke.yaml
-MINE := $(if $(CONFIG),--configfile config.yaml $(CONFIG))
-# Snakemake reads files and settings before the Snakefile can check them.
-CHECKED = $(if $(CONFIG)$(findstring -C,$(ARGS))$(findstring --config,$(ARGS)),@$(BIN)/python -m stiction.config.reading $(CONFIG) -- $(ARGS))
+STICTION := $(BIN)/stiction
 # The tests of a file share what they compute; the longest files come first, in the order of tests/conftest.py.
 WORKERS := --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 EMPTY :=
@@ -37,9 +37,6 @@ endif
 ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
-ifneq ($(CONFIG),$(wildcard $(CONFIG)))
-$(error cannot read $(CONFIG))
-endif
 
 .PHONY: help paper smoke example devices figures run report test test-all lint format cluster mutants bench times jobs docs lock clean
 .DELETE_ON_ERROR:
@@ -49,37 +46,30 @@ help:
 	@sed -n 's/^#   //p; s/^#$$//p' Makefile
 
 paper: $(VENV)/ready
-	$(CHECKED)
-	$(SNAKEMAKE) $(ARGS) $(MINE)
+	$(STICTION) $(if $(CONFIG),run $(CONFIG),paper) -- $(ARGS)
 
 smoke: $(VENV)/ready
-	$(CHECKED)
-	$(SNAKEMAKE) --directory results/smoke $(SMOKE) $(CONFIG) $(ARGS)
+	$(STICTION) run workflow/smoke.yaml $(CONFIG) --directory runs/smoke -- $(ARGS)
 
 # Draws the scans, writes them as files of microscopes, and computes the tables and the sheets of the surfaces from the files.
 example: $(VENV)/ready
-	$(BIN)/python examples/scans/draw.py results/example
-	cp examples/scans/mine.yaml results/example/
-	$(SNAKEMAKE) measured --directory results/example --configfile config.yaml results/example/mine.yaml $(ARGS)
-	$(BIN)/python examples/scans/compare.py results/example
+	$(BIN)/python examples/scans/draw.py runs/example
+	cp examples/scans/mine.yaml runs/example/
+	$(STICTION) run runs/example/mine.yaml --directory runs/example -- measured $(ARGS)
+	$(BIN)/python examples/scans/compare.py runs/example
 
 devices: $(VENV)/ready
-	$(CHECKED)
-	$(SNAKEMAKE) devices --directory results/devices --configfile config.yaml $(or $(CONFIG),examples/devices.yaml) $(ARGS)
+	$(STICTION) devices $(CONFIG) --directory runs/devices -- $(ARGS)
 
 figures: $(VENV)/ready
-	$(CHECKED)
-	$(SNAKEMAKE) figures $(ARGS) $(MINE)
+	$(STICTION) figures $(CONFIG) -- $(ARGS)
 
 run: $(VENV)/ready
 	@test -n "$(CONFIG)" || { echo "make run needs a file with your settings: make run CONFIG=mine.yaml"; exit 2; }
-	$(CHECKED)
-	$(SNAKEMAKE) $(ARGS) $(MINE)
+	$(STICTION) run $(CONFIG) -- $(ARGS)
 
 report: $(VENV)/ready
-	@test -e results/verdict.txt || { echo "there are no results for a report yet: run make paper or make run CONFIG=... first (make devices is not enough)"; exit 2; }
-	$(CHECKED)
-	$(SNAKEMAKE) --report results/report.html --report-stylesheet $(CURDIR)/workflow/report/style.css $(ARGS) $(MINE)
+	$(STICTION) report $(CONFIG) -- $(ARGS)
 
 test: lint
 	$(BIN)/python -m stiction.run.warmup

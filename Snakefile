@@ -8,8 +8,9 @@ import threading
 from pathlib import Path
 
 BASE = Path(workflow.basedir)
-# Jobs use the code next to this file, because the fingerprint of that code decides what reruns.
-SOURCE = str(BASE / "src")
+# Jobs use the code that belongs to this file, because its fingerprint decides what reruns: next to it in a checkout, and
+# around it in an installed package.
+SOURCE = str(BASE / "src" if (BASE / "src").is_dir() else BASE.parents[1])
 sys.path.insert(0, SOURCE)
 PATHS = [SOURCE, *filter(None, dict(os.environ).get("PYTHONPATH", "").split(os.pathsep))]
 os.environ.update(PYTHONPATH=os.pathsep.join(dict.fromkeys(PATHS)))

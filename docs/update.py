@@ -2,7 +2,7 @@
 
 1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
    and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``
-   and ``make devices`` in its subfolders ``example`` and ``devices``.
+   and ``make devices`` in ``runs/example`` and ``runs/devices`` beside the folder.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
 3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted, and the block between
    the markers in ``README.md`` is rewritten.
@@ -76,10 +76,11 @@ NOTE = "<!-- Written by docs/update.py from docs/templates/{name}: edit that fil
 
 def main(results):
     """Update everything, and print a message if the numbers of an earlier run are kept."""
+    runs = results.resolve().parent / "runs"
     for folder, why, collected in (
         (results, unfinished, collect),
-        (results / "example", unfinished_example, collect_example),
-        (results / "devices", unfinished_devices, collect_devices),
+        (runs / "example", unfinished_example, collect_example),
+        (runs / "devices", unfinished_devices, collect_devices),
     ):
         if reason := why(folder):
             print(f"{reason}: the docs keep their present numbers")  # noqa: T201

@@ -84,7 +84,7 @@ def rows(scratch):
     yield "humidity", taken, "make run with one humidity of pair b added, with its studies, tables and all figures"
     yield "smoke", workflow(smoke, "--configfile", CONFIG, ROOT / "workflow" / "smoke.yaml"), "make smoke"
     for name in ("example", "devices"):
-        shutil.rmtree(ROOT / "results" / name, ignore_errors=True)
+        shutil.rmtree(ROOT / "runs" / name, ignore_errors=True)
         yield name, run("make", name), f"make {name}"
     yield tests()
     empty.mkdir()

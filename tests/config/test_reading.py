@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from stiction.config.messages import ConfigError
-from stiction.config.reading import main, problems, read
+from stiction.config.reading import problems, read
 
 
 @pytest.mark.parametrize(
@@ -157,18 +157,7 @@ def test_settings_that_snakemake_cannot_take_are_reported(monkeypatch, arguments
     assert all("must be a key of the first level" in line or "nowhere.yaml cannot be read" in line for line in found)
 
 
-def test_the_check_prints_every_problem_and_its_status_stops_make(tmp_path, capsys):
-    (tmp_path / "mine.yaml").write_text("- 1\n")
-    assert main([str(ROOT / "config.yaml")]) == 0
-    assert capsys.readouterr().err == ""
-    assert main([str(tmp_path / "mine.yaml"), "--", "--config", "seed"]) == 2
-    assert [line.split()[0] for line in capsys.readouterr().err.splitlines()] == [
-        str(tmp_path / "mine.yaml"),
-        "--config",
-    ]
-
-
-def test_the_check_imports_no_library_for_numbers():
-    code = "import sys, stiction.config.reading; print(*sys.modules)"
+def test_the_command_imports_no_library_for_numbers_before_it_checks_its_files():
+    code = "import sys, stiction.command.main; print(*sys.modules)"
     modules = subprocess.run([sys.executable, "-c", code], text=True, capture_output=True, check=True).stdout.split()
     assert not {"numpy", "scipy", "numba", "xarray", "snakemake"} & set(modules)

@@ -128,13 +128,6 @@ def ready(folder):
         (folder / name).touch()
 
 
-def test_a_report_without_results_is_rejected_with_the_command_to_run_first(tmp_path):
-    ready(tmp_path)
-    done = made(tmp_path, "report")
-    assert done.returncode == 2
-    assert "run make paper or make run CONFIG=... first (make devices is not enough)" in done.stdout
-
-
 @pytest.mark.parametrize(
     ("target", "name"),
     [
@@ -174,55 +167,6 @@ def test_a_smoke_run_takes_the_configuration_of_the_user(tmp_path):
     (tmp_path / "mine.yaml").touch()
     done = made(tmp_path, "--dry-run", "smoke", "CONFIG=mine.yaml")
     assert "workflow/smoke.yaml mine.yaml" in done.stdout
-
-
-def installed(folder):
-    """Makefile in a folder whose virtual environment has the Python of the tests and a Snakemake that prints a line."""
-    ready(folder)
-    (folder / ".venv" / "bin").mkdir()
-    for name, line in {"python": f'exec {sys.executable} "$@"', "snakemake": "echo Snakemake starts"}.items():
-        path = folder / ".venv" / "bin" / name
-        path.write_text(f"#!/bin/sh\n{line}\n")
-        path.chmod(0o755)
-    (folder / "results").mkdir()
-    (folder / "results" / "verdict.txt").touch()
-
-
-BAD_FILES = {
-    "latin-1": "seed: 1 # µ".encode("latin-1"),
-    "utf-16": "seed: 1".encode("utf-16"),
-    "empty": b"",
-    "list": b"- seed\n",
-    "tabs": b"beam:\n\telements: 2\n",
-    "two documents": b"seed: 1\n---\nseed: 2\n",
-    "base 60": b"beam: {thickness_um: 1:30}\n",
-    "octal": b"seed: 010\n",
-}
-
-
-EVERY_TARGET = [(target, b"- seed\n") for target in ("paper", "smoke", "figures", "report")]
-
-
-@pytest.mark.parametrize(("target", "content"), [*(("run", content) for content in BAD_FILES.values()), *EVERY_TARGET])
-def test_a_file_that_snakemake_would_misread_is_rejected_in_one_line_before_it_starts(tmp_path, target, content):
-    installed(tmp_path)
-    (tmp_path / "mine.yaml").write_bytes(content)
-    done = made(tmp_path, "--silent", target, "CONFIG=mine.yaml")
-    assert done.returncode == 2
-    (line,) = [line for line in done.stdout.splitlines() if not line.startswith("make")]
-    assert line.startswith("mine.yaml ")
-    (tmp_path / "mine.yaml").write_text("seed: 1\n")
-    assert "Snakemake starts" in made(tmp_path, target, "CONFIG=mine.yaml").stdout
-
-
-@pytest.mark.parametrize("setting", ["beam.thickness_um=2.5", "seed"])
-def test_a_setting_that_snakemake_cannot_take_is_rejected_in_one_line(tmp_path, setting):
-    installed(tmp_path)
-    done = made(tmp_path, "--silent", "paper", f"ARGS=--config {setting}")
-    assert done.returncode == 2
-    assert f"--config {setting} must be a key of the first level" in done.stdout
-    assert "Snakemake starts" not in done.stdout
-    assert "Snakemake starts" in made(tmp_path, "paper", "ARGS=--config seed=1").stdout
 
 
 @pytest.mark.parametrize(("version", "compiler", "stops"), [("14", "", True), ("14", "cc", False), ("13", "", False)])

@@ -20,7 +20,7 @@ from stiction.models import (
 )
 from stiction.run import folder, hooks, kept, provenance
 from stiction.run.atomic import DataError
-from stiction.run.fingerprint import fingerprint
+from stiction.run.fingerprint import PACKAGE, fingerprint
 from stiction.run.remembered import Remembered
 
 
@@ -65,7 +65,7 @@ def validated():
 
 def rules_of_the_configuration():
     """Code and schema that decide whether a configuration is valid."""
-    folder = BASE / "src" / "stiction" / "config"
+    folder = PACKAGE / "config"
     modules = [
         code(folder / f"{name}.py")
         for name in ("validation", "conditions", "relations", "relations_devices", "messages")
@@ -86,14 +86,14 @@ except messages.ConfigError as error:
 config.update(files.normalised(config))
 plan = Plan(config, preliminary)
 if not scanned:  # finding out takes the solver of densities
-    shifted = ["shifted", config, code(BASE / "src" / "stiction" / "config" / "plan.py")]
+    shifted = ["shifted", config, code(PACKAGE / "config" / "plan.py")]
     vars(plan)["shifted_moments"] = remember(shifted, lambda: plan.shifted_moments)
 designs = Designs(config)
 paths = Paths(plan)
 MEMORY = memory.of_job(config)  # of the jobs that draw surfaces [MB]
 VIEW = measured.view(config, preliminary)  # configuration with preliminary numbers of measured surfaces
 SAMPLES = memory.of_samples(VIEW)  # of the jobs that hold the contact of all samples [MB]
-STYLE = str(BASE / "src" / "stiction" / "report" / "stiction.mplstyle")
+STYLE = str(PACKAGE / "report" / "stiction.mplstyle")
 # Categories of the report.
 ON_SURFACES, ON_FORCES, ON_BEAMS = "Surfaces (Sec. II)", "Contact forces (Sec. III)", "Beams (Secs. IV and V)"
 ON_STUDIES = "Sensitivity, appendices, model choices"

@@ -1,13 +1,10 @@
 """Strict reading of one configuration file, and a check before Snakemake reads files and arguments.
 
-    python -m stiction.config.reading FILE ... [-- ARGUMENTS OF SNAKEMAKE]
-
 Snakemake reads files before the Snakefile can check them, and prints tracebacks or sentences without the name of the
 file. This module imports little, so that the check takes a fraction of a second.
 """
 
 import re
-import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -123,15 +120,3 @@ def _values(arguments, options):
                 yield value
         elif taken:
             yield word
-
-
-def main(words: list[str]) -> int:
-    """Print the problems of files and, after ``--``, of arguments of Snakemake; 2 if there are any, otherwise 0."""
-    cut = words.index("--") if "--" in words else len(words)
-    found = list(problems(words[:cut], words[cut + 1 :]))
-    print("\n".join(found), file=sys.stderr, end="\n" if found else "")  # noqa: T201
-    return 2 if found else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

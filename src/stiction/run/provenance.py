@@ -90,8 +90,11 @@ _UNTRACKED = ["ls-files", "--others", "--exclude-standard", "-z"]
 def git_state(checkout: str | Path) -> dict | None:
     """Commit of a checkout, files that differ from it and files that it does not know; ``None`` without a commit.
 
-    The checkout may belong to another user, which git by itself refuses.
+    The checkout may belong to another user, which git by itself refuses. A folder inside of another repository, such as
+    that of an installed package, is no checkout.
     """
+    if not (Path(checkout) / ".git").exists():
+        return None
     try:
         commit, changed, untracked = (_git(checkout, *command) for command in (_COMMIT, _CHANGED, _UNTRACKED))
     except (OSError, subprocess.CalledProcessError):

@@ -1,0 +1,135 @@
+"""The last lines of a command, and its exit status."""
+
+import csv
+import os
+import re
+from collections.abc import Iterable, Iterator
+from enum import IntEnum
+from pathlib import Path
+
+from stiction.command.display import duration
+from stiction.command.follow import Job, Run
+
+
+class Status(IntEnum):
+    """Exit status of the command."""
+
+    DONE = 0  #: everything is up to date
+    FAILED = 1  #: a job failed
+    REFUSED = 2  #: nothing was computed: wrong input, or another run uses the folder
+    CHECKS = 3  #: everything was computed, but checks of the results failed
+    STOPPED = 130  #: by Ctrl-C
+
+
+#: Job that fails if a check of the results does.
+_VERDICT = "verdict"
+#: Pages and tables of results to open first, the most important one first.
+_PAGES = ("devices/*.html", "figures/overview.png", "figures/surface_sheet_*.png", "figures/*.png")
+_TABLES = ("tables/safe_lengths.md", "tables/stoppers.md", "tables/table_3.md")
+#: Head of a line of a traceback that names an error, with the modules of its class.
+_MODULES = re.compile(r"\A(?:\w+\.)+(?=\w+:)")
+
+
+def status(run: Run, code: int, stopped: bool) -> Status:
+    """Exit status of a run of Snakemake that ended with a code."""
+    if stopped:
+        return Status.STOPPED
+    if code == 0:
+        return Status.DONE
+    if {job.rule for job in run.failures.values()} == {_VERDICT}:
+        return Status.CHECKS
+    return Status.FAILED if run.failures or run.jobs else Status.REFUSED
+
+
+def last_lines(run: Run, ended: Status, directory: Path, printed: str = "") -> Iterator[str]:
+    """What a user reads at the end of a run.
+
+    Parameters
+    ----------
+    run : Run
+    ended : Status
+    directory : path
+        Folder of the run.
+    printed : str
+        What Snakemake printed last, for errors that it does not report otherwise.
+    """
+    if ended == Status.STOPPED:
+        after = f" after {run.done} of {run.total} jobs" if run.planned else ""
+        yield f"stopped{after}; run the same command to continue"
+    elif ended == Status.CHECKS:
+        yield from _failed_checks(_below(directory))
+    elif run.failures:
+        yield from _failed(list(run.failures.values()), directory)
+    elif ended != Status.DONE:
+        yield run.refusal or printed or "Snakemake stopped without a message"
+    elif run.planned or run.up_to_date:
+        yield _finished(run)
+        yield from where_to_look(_below(directory))
+
+
+def _below(directory):
+    """Folder of results, as short as it can be written."""
+    return Path(os.path.relpath(directory / "results"))
+
+
+def _finished(run):
+    """That a run has finished, and how long it took."""
+    if run.up_to_date:
+        return "Nothing to do: all results are up to date."
+    return f"Done: {run.done} jobs in {duration(run.last - run.started)}."
+
+
+def where_to_look(results: Path) -> Iterator[str]:
+    """Verdict, warnings, and the files to open first, of a folder of results."""
+    verdict = results / "verdict.txt"
+    if verdict.exists():
+        yield f"{verdict.read_text(encoding='utf-8').strip()} The numbers are in {results / 'checks.md'}."
+    pages = [results / "warnings.md", results / "devices" / "warnings.md"]
+    if counted := [f"{number} in {page}" for page in pages if (number := _warnings(page))]:
+        yield f"Warnings about results beyond the limits of the model: {', '.join(counted)}."
+    if first := [*_first(results, _PAGES), *_first(results, _TABLES)]:
+        yield f"Open first: {' and '.join(map(str, first))}."
+
+
+def _warnings(page):
+    """Number of warnings on a page."""
+    return page.exists() and sum(line.startswith("- ") for line in page.read_text(encoding="utf-8").splitlines())
+
+
+def _first(results, patterns):
+    """The first file that matches the first pattern that any file matches; empty if there is none."""
+    found = (sorted(results.glob(pattern)) for pattern in patterns)
+    return next(filter(None, found), [])[:1]
+
+
+def _failed_checks(results):
+    """The first check that failed, and where the others are."""
+    with (results / "checks.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    failed = [row for row in rows if row["passed"] != "True"]
+    yield "; ".join(f"{row['name']}: {row['case']}: {row['message']}" for row in failed[:1])
+    yield f"{len(failed)} of {len(rows)} checks of the results failed: {results / 'checks.md'}"
+
+
+def _failed(jobs: list[Job], directory: Path) -> Iterator[str]:
+    """What went wrong in the first job that failed, and its log."""
+    first, logs = jobs[0], list(_existing(jobs[0].logs, directory))
+    others = f" (and {len(jobs) - 1} more)" if len(jobs) > 1 else ""
+    yield f"failed: {first.message}{others}"
+    yield next(filter(None, map(sentence, logs)), "the job ended without a message: was it killed, or the memory full?")
+    yield f"log: {logs[0] if logs else _below(directory) / 'logs'}"
+
+
+def _existing(logs: Iterable[str], directory: Path) -> Iterator[Path]:
+    """Those logs that exist; their paths are relative to the folder of the run."""
+    for log in logs:
+        if (directory / log).is_file():
+            yield Path(os.path.relpath(directory / log))
+
+
+def sentence(log: Path) -> str:
+    """The error with which a log ends, without its traceback; empty if the log holds none."""
+    lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
+    frames = [number for number, text in enumerate(lines) if text.startswith("  File ")]
+    last = (text for text in lines[frames[-1] :] if not text.startswith("  ")) if frames else ()
+    return _MODULES.sub("", " ".join(" ".join(last).split()))

@@ -1,0 +1,87 @@
+"""What a run would compute and why, in words, from a dry run of Snakemake."""
+
+import ast
+import re
+from collections import Counter
+from collections.abc import Iterator
+
+from stiction.command.follow import Job, Run
+
+#: A reason of Snakemake, by its first words, and what it says.
+_REASONS = {
+    "Missing output files": "results are missing",
+    "Input files updated by another job": "",  # follows from another job
+    "Updated input files": "an input file is newer",
+    "Forced execution": "results that this run does not use",
+    "Incomplete": "an earlier run was stopped while the job was running",
+    "Software environment": "the software environment changed",
+    "Code has changed": "the code changed",
+}
+_CHANGED = re.compile(r"before: (.*?) now: (.*)", re.DOTALL)
+
+
+def explained(run: Run) -> Iterator[str]:
+    """Lines on what a run would compute and why; the first counts the jobs.
+
+    Parameters
+    ----------
+    run : Run
+        Everything that a dry run has reported.
+    """
+    jobs = [job for job in run.jobs.values() if job.logs]  # the others only collect files
+    if not jobs:
+        yield "Nothing would be computed: all results are up to date."
+        return
+    causes = Counter((job.rule, "; ".join(reasons(job))) for job in jobs)
+    yield f"{len(jobs)} jobs would run."
+    yield from run.warnings
+    for cause in sorted({cause for _, cause in causes}, key=lambda cause: (not cause, cause)):
+        rules = Counter({rule: number for (rule, why), number in causes.items() if why == cause})
+        yield f"{cause or 'follow from the jobs above'}: {counted(rules)}"
+
+
+def counted(rules: Counter) -> str:
+    """Rules with the numbers of their jobs, in the order of their first occurrence."""
+    return ", ".join(f"{rule} ({number})" if number > 1 else rule for rule, number in rules.items())
+
+
+def reasons(job: Job) -> Iterator[str]:
+    """Why a job runs, apart from jobs before it, in words."""
+    others, params, values = job.reason.partition("Params have changed")
+    if params:  # also explains results that are missing because they were temporary
+        yield changed(values)
+        return
+    for part in filter(None, others.split("; ")):
+        known = [words for start, words in _REASONS.items() if part.startswith(start)]
+        yield from filter(None, known or [part])
+
+
+def changed(reason: str) -> str:
+    """Which code or settings of a job changed, from the parameters that Snakemake prints."""
+    try:
+        before, now = map(_merged, _CHANGED.search(reason).groups())
+    except (AttributeError, SyntaxError, ValueError, TypeError):
+        return "settings or code changed"
+    differing = [key for key in sorted({*before, *now}) if before.get(key) != now.get(key)]
+    code = [key for key in differing if key.startswith("stiction.") or key.endswith(".py")]
+    settings = [
+        f"{key}: {before.get(key, 'nothing')} → {now.get(key, 'nothing')}" for key in differing if key not in code
+    ]
+    parts = [f"the code of {', '.join(code)}"] * bool(code) + [f"settings: {', '.join(settings)}"] * bool(settings)
+    return " and ".join(parts) or "settings or code changed"
+
+
+def _merged(text):
+    """Parameters printed one after the other, as one dictionary with dotted keys."""
+    none = "<nothing exclusive>"
+    parts = () if text.strip() == none else ast.literal_eval(f"[{text.strip()}]")
+    return {key: value for part in parts for key, value in _dotted(part)}
+
+
+def _dotted(section, path=()):
+    """Dotted key and value of every entry of nested sections."""
+    for key, value in section.items():
+        if isinstance(value, dict):
+            yield from _dotted(value, (*path, str(key)))
+        else:
+            yield ".".join((*path, str(key))), value

@@ -1,0 +1,147 @@
+"""What a run of Snakemake has reported so far: its jobs, the time they take, and what went wrong.
+
+Snakemake reports by records of the standard library's ``logging``, whose attribute ``event`` names the kind of report.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from logging import WARNING, LogRecord
+
+#: First line of an error of Snakemake, and the places in files that follow the message.
+_ORIGIN = re.compile(r"\A\w+( in rule \S+)?( in file \"[^\n]*)?:\n|(\n  File \"[^\n]*)+\s*\Z")
+
+
+@dataclass(frozen=True)
+class Job:
+    """One job."""
+
+    rule: str
+    message: str  #: what the job does, in words
+    reason: str  #: why Snakemake runs the job
+    logs: tuple[str, ...]
+    started: float  #: seconds since the epoch
+
+
+@dataclass
+class Run:
+    """A run, from the reports of Snakemake.
+
+    Attributes
+    ----------
+    planned : Counter
+        Number of jobs by rule, of all that this run needs.
+    jobs : dict
+        Jobs that have started, by their number; in a dry run, all of them.
+    seconds : dict
+        Durations of the finished jobs, by rule [s].
+    failures : dict
+        Jobs that failed, by their number.
+    refusal : str
+        Last error of Snakemake that concerns no job, without its place in a file; empty if there was none.
+    warnings : list of str
+        Warnings about the results that are present.
+    up_to_date : bool
+        Whether there was nothing to do.
+    started, last : float
+        Times of the first and the last report [s since the epoch].
+    quiet : bool
+        Whether Snakemake prints nothing itself.
+    changed : callable
+        Called with the run and the time after each report.
+    """
+
+    planned: Counter = field(default_factory=Counter)
+    jobs: dict[int, Job] = field(default_factory=dict)
+    seconds: dict[str, list[float]] = field(default_factory=dict)
+    failures: dict[int, Job] = field(default_factory=dict)
+    refusal: str = ""
+    warnings: list[str] = field(default_factory=list)
+    up_to_date: bool = False
+    started: float | None = None
+    last: float = 0.0
+    quiet: bool = True
+    changed: Callable[["Run", float], None] | None = None
+
+    @property
+    def done(self) -> int:
+        """Number of finished jobs."""
+        return sum(map(len, self.seconds.values()))
+
+    @property
+    def total(self) -> int:
+        """Number of jobs that this run needs."""
+        return self.planned.total()
+
+    def hear(self, record: LogRecord) -> None:
+        """Follow one report of Snakemake; reports of unknown kinds are left out."""
+        event = getattr(record, "event", None)
+        self.last = record.created
+        self.started = record.created if self.started is None else self.started
+        if follow := _EVENTS.get(str(event)):
+            follow(self, record)
+        elif event is None:
+            self._hear_text(record)
+        if self.changed:
+            self.changed(self, record.created)
+
+    def _hear_text(self, record):
+        """A sentence without a kind."""
+        text = str(record.msg)
+        self.up_to_date |= text.startswith("Nothing to be done")
+        if record.levelno == WARNING:
+            self.warnings.append(text)
+
+    def _hear_plan(self, record):
+        """Number of jobs of each rule."""
+        self.planned = Counter({rule: int(number) for rule, number in record.stats.items() if rule != "total"})
+
+    def _hear_start(self, record):
+        """A job starts, perhaps for the second time."""
+        logs = tuple(map(str, record.log))
+        message = " ".join(str(record.rule_msg or record.rule_name).split())
+        self.jobs[record.jobid] = Job(record.rule_name, message, str(record.reason), logs, record.created)
+        self.failures.pop(record.jobid, None)
+
+    def _hear_end(self, record):
+        """A job has finished."""
+        job = self.jobs[record.job_id]
+        self.seconds.setdefault(job.rule, []).append(record.created - job.started)
+
+    def _hear_failure(self, record):
+        """A job has failed; its logs include that of a cluster."""
+        job = self.jobs.get(record.jobid, Job(record.rule_name, record.rule_name, "", (), record.created))
+        self.failures[record.jobid] = replace(job, logs=tuple(map(str, record.log)))
+
+    def _hear_error(self, record):
+        """An error of the run itself."""
+        self.refusal = _ORIGIN.sub("", str(record.msg)).strip()
+
+    def seconds_left(self, now: float) -> float | None:
+        """Estimate of the time that the run still takes [s]; ``None`` while too little is known.
+
+        A job is expected to take as long as the finished jobs of its rule, or else as long as all jobs so far. The
+        speed is that of the run so far, so that the estimate includes the number of cores.
+        """
+        started = min((job.started for job in self.jobs.values()), default=now)
+        if self.done < 3 or now - started < 5:
+            return None
+        finished = sum(map(sum, self.seconds.values()))
+        expected = {rule: sum(spent) / len(spent) for rule, spent in self.seconds.items()}
+        left = sum(
+            (number - len(self.seconds.get(rule, ()))) * expected.get(rule, finished / self.done)
+            for rule, number in self.planned.items()
+        )
+        return (now - started) * left / finished if finished else None
+
+
+_EVENTS = {
+    "run_info": Run._hear_plan,
+    "job_info": Run._hear_start,
+    "job_finished": Run._hear_end,
+    "job_error": Run._hear_failure,
+    "error": Run._hear_error,
+}
+#: The run that this process follows: a process of Snakemake has one.
+RUN = Run()

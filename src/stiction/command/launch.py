@@ -1,0 +1,139 @@
+"""Snakemake, started in this process with the workflow of this package."""
+
+import contextlib
+import importlib.util
+import os
+import signal
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TextIO
+
+from stiction.command.display import Display
+from stiction.command.follow import RUN
+
+PACKAGE = Path(__file__).parents[1]
+#: Folder of Snakefile, configuration and profiles: within an installed package, or the root of a checkout.
+WORKFLOW = PACKAGE / "project" if (PACKAGE / "project").is_dir() else PACKAGE.parents[1]
+#: Signs in a path that Snakemake's command lines do not survive.
+_SPECIAL = set(" '\"&;|<>`*?[]()\\!")
+
+
+class RefusedError(Exception):
+    """A sentence on why nothing was started."""
+
+
+def require_snakemake() -> None:
+    """Raise an error with the remedy if Snakemake is missing, or cannot be started from this folder."""
+    if importlib.util.find_spec("snakemake") is None:
+        from importlib import metadata  # takes longer than all other imports
+
+        needed = (text.partition(";")[0].strip() for text in metadata.requires("stiction") or () if "workflow" in text)
+        raise RefusedError(f"this needs Snakemake: {sys.executable} -m pip install '{' '.join(needed)}'")
+    if signs := sorted(_SPECIAL & set(sys.executable)):
+        raise RefusedError(
+            f"the path of Python ({sys.executable}) contains {' '.join(map(repr, signs))}, which Snakemake does not "
+            "support: install it elsewhere"
+        )
+
+
+def words(configs: Sequence[str], directory: str, arguments: Sequence[str]) -> list[str]:
+    """Arguments of Snakemake.
+
+    Parameters
+    ----------
+    configs : sequence of str
+        Files that change single keys of the configuration of the paper.
+    directory : str
+        Folder of the run.
+    arguments : sequence of str
+        Targets and further options; they come last, where none of the options before takes them for its values.
+    """
+    files = ["--configfile", str(WORKFLOW / "config.yaml"), *configs]
+    return [*files, "--directory", directory, "--snakefile", str(WORKFLOW / "Snakefile"), *arguments]
+
+
+def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: bool) -> tuple[int, bool]:
+    """Run Snakemake, which reports to `stiction.command.follow.RUN`.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        See `words`.
+    directory : path
+        Folder of the run.
+    quiet : bool
+        Keep everything that Snakemake and its jobs print as errors in a file.
+    progress : bool
+        Show one line of progress instead.
+
+    Returns
+    -------
+    tuple of int and bool
+        Exit status of Snakemake, and whether Ctrl-C stopped it.
+    """
+    from snakemake import cli
+
+    stopped = []
+
+    def interrupt(*received):
+        stopped.append(received)
+        signal.default_int_handler(*received)
+
+    signal.signal(signal.SIGINT, interrupt)
+    RUN.quiet = quiet
+    try:
+        with _kept_errors(directory) if quiet else contextlib.nullcontext() as terminal:
+            RUN.changed = display = Display(terminal) if quiet and progress else None
+            code = _code(cli.main, ["--logger", "stiction", *arguments])
+            if display:
+                display.clear()
+            return code, bool(stopped)
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _code(program, arguments):
+    """Exit status of a program that ends as ``sys.exit`` does, or by Ctrl-C."""
+    try:
+        program(list(map(str, arguments)))
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else int(end.code is not None)
+    except KeyboardInterrupt:
+        return 1
+    return 0
+
+
+#: Where everything goes that Snakemake and its jobs print, relative to the folder of the run.
+PRINTED = Path(".snakemake", "printed.log")
+
+
+@contextlib.contextmanager
+def _kept_errors(directory: Path) -> Iterator[TextIO]:
+    """Let this process and those that it starts write errors to a file; yields what standard error was before."""
+    sys.stderr.flush()
+    with _opened(directory / PRINTED) as file, os.fdopen(os.dup(2), "w") as terminal:
+        os.dup2(file.fileno(), 2)
+        try:
+            yield terminal
+        finally:
+            sys.stderr.flush()
+            os.dup2(terminal.fileno(), 2)
+
+
+def _opened(path):
+    """New file for what is printed; one without a name if the folder cannot be written, which the run then reports."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        return path.open("w")
+    except OSError:
+        return tempfile.TemporaryFile("w")
+
+
+def printed_last(directory: Path) -> str:
+    """Last line that Snakemake or one of its jobs has printed; empty if there is none."""
+    with contextlib.suppress(OSError):
+        lines = (directory / PRINTED).read_text(encoding="utf-8", errors="replace").split("\n")
+        return next(filter(None, map(str.strip, reversed(lines))), "")
+    return ""

@@ -1,0 +1,162 @@
+"""The command line: ``stiction COMMAND [FILE ...] [OPTIONS] [-- ARGUMENTS OF SNAKEMAKE]``."""
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from stiction.command import explain, launch
+from stiction.command.ending import Status, last_lines, status
+from stiction.command.follow import RUN
+from stiction.config import reading
+from stiction.config.messages import ConfigError
+
+_PURPOSE = "From the statistics of two rough surfaces to the crack lengths and safe lengths of MEMS beams that stick."
+_STATUS = """
+exit status: 0 done, 1 a job failed, 2 refused (wrong input, or another run uses the folder),
+3 checks of the results failed, 130 stopped by Ctrl-C. Results are in results/, below the
+current folder or --directory. Everything after -- is passed to Snakemake.
+"""
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Run a command, and return its exit status."""
+    words = list(sys.argv[1:] if words is None else words)
+    cut = words.index("--") if "--" in words else len(words)
+    arguments = _parser().parse_args(words[:cut])
+    arguments.more = words[cut + 1 :]
+    try:
+        return arguments.run(arguments)
+    except (launch.RefusedError, ConfigError) as error:
+        _say(str(error), sys.stderr)
+        return Status.REFUSED
+    except KeyboardInterrupt:
+        _say("stopped; run the same command to continue", sys.stderr)
+        return Status.STOPPED
+
+
+def _say(line, stream=None):
+    """Print one line."""
+    print(line, file=stream, flush=True)  # noqa: T201
+
+
+def _parser():
+    """Commands and their options."""
+    shape = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser("stiction", description=_PURPOSE, epilog=_STATUS, formatter_class=shape)
+    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    _add(commands, "init", _init, "write study.yaml, a commented study to start from", files=None)
+    _add(commands, "check", _check, "check files without computing anything", files="+")
+    _add(commands, "run", _run, "compute your own surfaces, pairs, beams and devices", files="+")
+    _add(commands, "paper", _run, "compute every table and figure of the paper", files=None)
+    _add(commands, "devices", _devices, "compute only what a design of devices needs (default: the example)", files="*")
+    _add(commands, "figures", _figures, "draw the figures", files="*")
+    _add(commands, "report", _report, "put the results into one file, results/report.html", files="*")
+    _add(commands, "explain", _explain, "say what would be computed, and why", files="*")
+    return parser
+
+
+class _Version(argparse.Action):
+    """Shows the version, which takes an import of its own."""
+
+    def __call__(self, parser, *_):
+        from importlib import metadata
+
+        _say(f"stiction {metadata.version('stiction')}")
+        parser.exit()
+
+
+def _add(commands, name: str, run: Callable, purpose: str, files: str | None):
+    """Add one command."""
+    added = commands.add_parser(name, help=purpose, description=f"{purpose[0].upper()}{purpose[1:]}.", epilog=_STATUS)
+    added.formatter_class = argparse.RawDescriptionHelpFormatter
+    added.set_defaults(run=run, files=[])
+    if files:
+        added.add_argument(
+            "files", nargs=files, metavar="FILE", help="changes single keys of the paper's configuration"
+        )
+    added.add_argument("--directory", "-d", default=".", metavar="DIR", help="results go to DIR/results (default: .)")
+    if run not in (_init, _check):
+        added.add_argument("--cores", "-c", metavar="N", help="number of jobs at the same time (default: all cores)")
+        added.add_argument("--dry-run", "-n", action="store_true", help="only say what would be computed")
+        added.add_argument("--verbose", "-v", action="store_true", help="show everything that Snakemake prints")
+
+
+def _init(arguments):
+    """Write a study."""
+    target = Path(arguments.directory) / "study.yaml"
+    try:
+        with target.open("x", encoding="utf-8") as file:
+            file.write(Path(__file__).with_name("study.yaml").read_text(encoding="utf-8"))
+    except FileExistsError:
+        raise launch.RefusedError(f"{target} exists already: nothing was written") from None
+    except OSError as error:
+        raise launch.RefusedError(f"{target} cannot be written: {error.strerror}") from error
+    _say(f"{target} describes a surface, a pair and a beam: change them into yours. Then")
+    _say(f"  stiction check {target}     says whether it can run")
+    _say(f"  stiction run {target}       computes it: tables and figures in results/")
+    return Status.DONE
+
+
+def _check(arguments):
+    """Check files."""
+    from stiction.config.files import load  # imports the physics
+
+    config = load(*arguments.files)
+    pairs, devices = config["run"]["pairs"], config.get("devices", {})
+    parts = [f"pair{'s' * (len(pairs) > 1)} {', '.join(pairs)}", f"devices {', '.join(devices)}" if devices else ""]
+    _say(f"{' '.join(arguments.files)} can run: {' and '.join(filter(None, parts))}.")
+    return Status.DONE
+
+
+def _run(arguments, *targets):
+    """Run the workflow, or a part of it."""
+    launch.require_snakemake()
+    directory = Path(arguments.directory)
+    if problems := list(reading.problems(arguments.files, arguments.more)):
+        raise launch.RefusedError("\n".join(problems))
+    options = ["--cores", arguments.cores] * bool(arguments.cores) + ["--dry-run"] * arguments.dry_run
+    words = launch.words(arguments.files, arguments.directory, [*options, *targets, *arguments.more])
+    verbose = arguments.verbose or "--verbose" in arguments.more
+    dry = arguments.dry_run or bool({"-n", "--dry-run", "--dryrun"} & set(arguments.more))
+    code, stopped = launch.snakemake(words, directory, quiet=not verbose, progress=not dry)
+    ended = status(RUN, code, stopped)
+    printed = "" if verbose else launch.printed_last(directory)
+    lines = explain.explained(RUN) if dry and not ended else last_lines(RUN, ended, directory, printed)
+    for line in lines:
+        _say(line, sys.stderr if ended else None)
+    return ended
+
+
+def _devices(arguments):
+    """Run what devices need."""
+    arguments.files = arguments.files or [str(launch.WORKFLOW / "examples" / "devices.yaml")]
+    return _run(arguments, "devices")
+
+
+def _figures(arguments):
+    """Draw the figures."""
+    return _run(arguments, "figures")
+
+
+def _report(arguments):
+    """Write the report of finished results."""
+    results = Path(arguments.directory) / "results"
+    if not (results / "verdict.txt").exists():
+        raise launch.RefusedError(
+            f"there are no results for a report in {results}: run stiction paper or stiction run FILE first "
+            "(stiction devices is not enough)"
+        )
+    style = launch.WORKFLOW / "workflow" / "report" / "style.css"
+    return _run(arguments, "--report", "results/report.html", "--report-stylesheet", str(style))
+
+
+def _explain(arguments):
+    """Say what would be computed, and why."""
+    arguments.dry_run = True
+    return _run(arguments)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

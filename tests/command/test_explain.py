@@ -1,0 +1,59 @@
+"""What a run would compute and why, in words."""
+
+import logging
+
+import pytest
+from test_follow import heard, plan, record, start
+
+from stiction.command.explain import explained
+
+PARAMS = "Params have changed since last execution: Union of exclusive params before and now across all output: "
+
+
+def because(reason, rule="beams"):
+    return list(explained(heard(plan(**{rule: 1}), start(0, rule, reason=reason))))[1]
+
+
+def test_nothing_to_do():
+    assert list(explained(heard())) == ["Nothing would be computed: all results are up to date."]
+
+
+def test_causes_come_before_what_follows_from_them():
+    run = heard(
+        plan(beams=2, chaos=1, all=1),
+        record("results/a.nc was computed with x: 1 instead of 2.", logging.WARNING),
+        start(0, reason="Input files updated by another job: a, b"),
+        start(1, "chaos", reason="Forced execution"),
+        start(2, reason="Input files updated by another job: a"),
+        start(3, "all", log=()),
+    )
+    assert list(explained(run)) == [
+        "3 jobs would run.",
+        "results/a.nc was computed with x: 1 instead of 2.",
+        "results that this run does not use: chaos",
+        "follow from the jobs above: beams (2)",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("reason", "words"),
+    [
+        ("Missing output files: a.nc", "results are missing: beams"),
+        ("Missing output files: a.nc; Input files updated by another job: b.nc", "results are missing: beams"),
+        ("Updated input files: scan.gwy", "an input file is newer: beams"),
+        ("Something new", "Something new: beams"),
+        (
+            PARAMS + "before: {'stiction.a': '1', 'x.py': '2'} now: {'stiction.a': '3', 'x.py': '2'}",
+            "the code of stiction.a: beams",
+        ),
+        (
+            PARAMS + "before: {'of': ['b'], 'beam': {'gap': 1}} now: {'of': ['b'], 'beam': {'gap': 3}}",
+            "settings: beam.gap: 1 → 3: beams",
+        ),
+        (PARAMS + "before: <nothing exclusive> now: {'a': 1}", "settings: a: nothing → 1: beams"),
+        (PARAMS + "before: <object at 0x1> now: {'a': 1}", "settings or code changed: beams"),
+        ("Missing output files: a; " + PARAMS + "before: {'a': 2} now: {'a': 1}", "settings: a: 2 → 1: beams"),
+    ],
+)
+def test_reasons_in_words(reason, words):
+    assert because(reason) == words

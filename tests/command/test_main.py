@@ -1,0 +1,180 @@
+"""The command line, without Snakemake: what is asked of it, and what is refused before it starts."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+import stiction
+from stiction.command import launch
+from stiction.command.main import main
+
+ROOT = Path(__file__).parents[2]
+BASE = ["--configfile", str(ROOT / "config.yaml")]
+
+
+@pytest.fixture
+def asked(monkeypatch, tmp_path):
+    """Arguments of Snakemake, which does not run, in an empty folder."""
+    calls = []
+
+    def snakemake(arguments, directory, quiet, progress):
+        calls.append((list(map(str, arguments)), directory, quiet, progress))
+        return 0, False
+
+    monkeypatch.setattr(launch, "snakemake", snakemake)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.yaml").write_text("seed: 1\n")
+    (tmp_path / "more.yaml").write_text("seed: 2\n")
+    return calls
+
+
+def options(asked):
+    """Arguments behind the files, and files."""
+    ((arguments, *_),) = asked
+    cut = arguments.index("--directory")
+    assert arguments[: len(BASE)] == BASE
+    assert arguments[cut + 2 : cut + 4] == ["--snakefile", str(ROOT / "Snakefile")]
+    return arguments[cut + 4 :], arguments[len(BASE) : cut]
+
+
+@pytest.mark.parametrize(
+    ("words", "passed", "files"),
+    [
+        ("paper", [], []),
+        ("run mine.yaml", [], ["mine.yaml"]),
+        ("run mine.yaml more.yaml --cores 2", ["--cores", "2"], ["mine.yaml", "more.yaml"]),
+        ("run mine.yaml -- --forceall tables", ["--forceall", "tables"], ["mine.yaml"]),
+        ("devices mine.yaml --dry-run", ["--dry-run", "devices"], ["mine.yaml"]),
+        ("devices", ["devices"], [str(ROOT / "examples" / "devices.yaml")]),
+        ("figures", ["figures"], []),
+        ("figures mine.yaml", ["figures"], ["mine.yaml"]),
+        ("explain mine.yaml", ["--dry-run"], ["mine.yaml"]),
+        ("run mine.yaml -- -- devices", ["--", "devices"], ["mine.yaml"]),
+    ],
+)
+def test_what_every_command_asks_of_snakemake(asked, words, passed, files):
+    assert main(words.split()) == 0
+    assert options(asked) == (passed, files)
+
+
+def test_the_folder_of_a_run_and_the_report_in_it(asked, tmp_path):
+    (tmp_path / "here" / "results").mkdir(parents=True)
+    assert main(["report", "--directory", "here"]) == 2, "nothing to report yet"
+    assert asked == []
+    (tmp_path / "here" / "results" / "verdict.txt").touch()
+    assert main(["report", "--directory", "here"]) == 0
+    found, _ = options(asked)
+    style = ROOT / "workflow" / "report" / "style.css"
+    assert found == ["--report", "results/report.html", "--report-stylesheet", str(style)]
+    assert style.exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "quiet", "progress"),
+    [
+        ("paper", True, True),
+        ("paper -n", True, False),
+        ("paper -- -n", True, False),
+        ("paper -v", False, True),
+        ("paper -- --verbose", False, True),
+    ],
+)
+def test_progress_is_shown_unless_snakemake_prints_or_nothing_runs(asked, words, quiet, progress):
+    main(words.split())
+    assert asked[0][2:] == (quiet, progress)
+
+
+BAD_FILES = {
+    "latin-1": "seed: 1 # µ".encode("latin-1"),
+    "utf-16": "seed: 1".encode("utf-16"),
+    "empty": b"",
+    "list": b"- seed\n",
+    "tabs": b"beam:\n\telements: 2\n",
+    "two documents": b"seed: 1\n---\nseed: 2\n",
+    "base 60": b"beam: {thickness_um: 1:30}\n",
+    "octal": b"seed: 010\n",
+    "missing": None,
+}
+COMMANDS = ("run", "devices", "figures", "explain", "check")
+
+
+@pytest.mark.parametrize(
+    ("command", "kind"), [*(("run", kind) for kind in BAD_FILES), *((command, "list") for command in COMMANDS)]
+)
+def test_a_file_that_snakemake_would_misread_is_refused_in_one_line_before_it_starts(asked, capsys, command, kind):
+    Path("mine.yaml").unlink()
+    if BAD_FILES[kind] is not None:
+        Path("mine.yaml").write_bytes(BAD_FILES[kind])
+    assert main([command, "mine.yaml"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("mine.yaml ")
+    assert asked == []
+
+
+@pytest.mark.parametrize("setting", ["beam.thickness_um=2.5", "seed"])
+def test_a_setting_that_snakemake_cannot_take_is_refused_in_one_line(asked, capsys, setting):
+    assert main(["paper", "--", "--config", setting]) == 2
+    assert f"--config {setting} must be a key of the first level" in capsys.readouterr().err
+    assert asked == []
+    assert main(["paper", "--", "--config", "seed=1"]) == 0
+
+
+def test_without_snakemake_the_command_says_what_to_install(asked, capsys, monkeypatch):
+    monkeypatch.setattr(launch.importlib.util, "find_spec", {}.get)
+    assert main(["paper"]) == 2
+    assert "-m pip install 'snakemake[reports]" in capsys.readouterr().err
+    assert asked == []
+    assert main(["check", "mine.yaml"]) == 0, "needs no Snakemake"
+
+
+def test_a_path_of_python_that_snakemake_does_not_support_is_refused(asked, capsys, monkeypatch):
+    monkeypatch.setattr(sys, "executable", "/my folder/python")
+    assert main(["paper"]) == 2
+    assert "the path of Python (/my folder/python) contains ' '" in capsys.readouterr().err
+    assert asked == []
+
+
+def test_the_study_that_is_written_is_valid_and_never_overwritten(tmp_path, capsys):
+    assert main(["init", "--directory", str(tmp_path)]) == 0
+    study = tmp_path / "study.yaml"
+    assert f"stiction run {study}" in capsys.readouterr().out
+    text = study.read_text(encoding="utf-8")
+    assert stiction.load(study)["run"]["pairs"] == ["mine"]
+    study.write_text(text.replace("# devices:", "devices:").replace("#   C1", "  C1").replace("#   S1", "  S1"))
+    assert list(stiction.load(study)["devices"]) == ["C1", "S1"]
+    changed = study.read_text()
+    assert main(["init", "--directory", str(tmp_path)]) == 2
+    assert study.read_text() == changed
+    assert main(["init", "--directory", str(tmp_path / "none")]) == 2
+
+
+def test_a_check_names_what_would_be_computed_or_every_problem(tmp_path, capsys):
+    path = tmp_path / "mine.yaml"
+    path.write_text("run: {pairs: [a, b]}\n")
+    assert main(["check", str(path)]) == 0
+    assert capsys.readouterr().out == f"{path} can run: pairs a, b.\n"
+    path.write_text("seeds: 1\nchaos: {ordr: 2}\n")
+    assert main(["check", str(path)]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 2
+
+
+@pytest.mark.parametrize("words", [["--help"], ["run", "--help"]])
+def test_the_help_tells_exit_statuses_and_where_results_are(capsys, words):
+    with pytest.raises(SystemExit, match="0"):
+        main(words)
+    text = capsys.readouterr().out
+    assert "3 checks of the results failed" in text
+    assert "results/" in text
+
+
+def test_the_version(capsys):
+    with pytest.raises(SystemExit, match="0"):
+        main(["--version"])
+    assert capsys.readouterr().out == f"stiction {stiction.__version__}\n"
+
+
+@pytest.mark.parametrize("words", [[], ["paint"], ["run"], ["paper", "--colour"]])
+def test_an_unknown_command_is_refused_with_the_usage(words):
+    with pytest.raises(SystemExit, match="2"):
+        main(words)
