@@ -60,6 +60,11 @@ def test_a_flat_spectrum_gives_the_variance_of_independent_areas():
     np.testing.assert_allclose(variances(flat, SIZE, [(0, 0), (1, 0), *BOWS]), 8 * np.pi**2 / np.prod(SIZE), rtol=0.03)
 
 
+def test_a_bow_along_the_short_side_has_shorter_waves_and_less_of_them():
+    along, _, across = variances(absolute_spectrum(), (1e-6, 10e-6), BOWS)
+    assert along < 0.9 * across
+
+
 def test_coefficients_of_drawn_oblong_scans_scatter_as_their_variances():
     drawn = np.array([coefficients(scan.heights, BOWS) for scan in SCANS])
     square, error = mean_with_error(drawn**2 / variances(absolute_spectrum(), SIZE, BOWS))
