@@ -105,8 +105,8 @@ MATRIX = [
      "tip_contact cracks safe_lengths chart", (), "variants/summits"),
     ("grid of surfaces", "sampling: {spacing_nm: 5}", "identification spectrum variant_summits", (), "heights"),
     ("length of strips", "sampling: {strip_length_um: 2.5}\ndevices: {R1: {thickness_um: 3}}",
-     "character contact_chunk beams resampling sensitivity_contact plasticity variant_summits checks device_contact "
-     "cracks safe_lengths chart", (),
+     "character contact_chunk beams resampling sensitivity_contact plasticity variant_summits checks cracks "
+     "safe_lengths chart", (),
      "heights|identification|spectrum|tips"),
     ("strips of Table I", "character: {strips: 50}", "character", (), "contact|forces"),
     ("spacing of Table I", "character: {spacing_nm: 10}", "identification character", (), "results/contact|forces"),
