@@ -133,7 +133,7 @@ class Device:
         pair, ground = self._section["pair"], designs.ground(self.name)
         shared = designs.has_strips_of_pair(self.name)
         shifts = jobs.slope_contact(plan, pair) if shared else jobs.device_slope_contact(plan, *ground)
-        choices = {name: self._choice(plan, *ground, name) for name in plan.choices(pair)}
+        choices = {name: self._choice(plan, *ground, name) for name in plan.choices_of_device(self.name)}
         return *self._changes(ground, shifts, jobs.solid_contact), choices
 
     @cached_property

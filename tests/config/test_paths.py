@@ -144,6 +144,13 @@ def test_other_properties_of_the_solids_are_changed_only_where_they_are_uncertai
     assert all(found.contacts_of_budget("C1")[key] == PAPER.contacts_of_budget("C1")[key] for key in shared)
 
 
+def test_the_short_strips_of_a_bridge_have_the_choices_of_the_solids_alone():
+    found = PAPER.contacts_of_budget("R1")["choices"]
+    folder = "results/devices/contact/choices/a_500x20000"
+    assert found == [f"{folder}_{name}.nc" for name in PAPER.plan.choices_of_solids("a")]
+    assert len(found) < len(PAPER.plan.choices("a"))
+
+
 def test_choices_are_the_variants_that_change_the_contact():
     found = PAPER.contacts_of_budget("S1")["choices"]
     assert len(found) == len(PAPER.plan.choices("b")) == 7

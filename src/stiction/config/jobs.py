@@ -415,7 +415,8 @@ def budget(plan: Plan, case: str) -> dict:
         found |= chosen(section, ["contact_um"])
     else:
         found |= {"device": _device(plan, name), "beams": plan.config["design"]["budget_beams"]}
-    return {"budget": found, "quantities": list(map(list, designs.quantities(name))), "choices": plan.choices(pair)}
+    quantities = list(map(list, designs.quantities(name)))
+    return {"budget": found, "quantities": quantities, "choices": plan.choices_of_device(name)}
 
 
 def tip_budget(plan: Plan, case: str) -> dict:

@@ -131,7 +131,7 @@ class Paths:
         """Contact of the patch of a device, with less and more of every uncertain input, and under other choices."""
         pair, patch = self._section(device)["pair"], self._designs.ground(device).name
         slopes = _shifted(pair) if self._designs.has_strips_of_pair(device) else f"{_CONTACT}/slopes/{patch}"
-        changed = self._changed_contacts(device, slopes, _CONTACT, patch, self.plan.choices(pair))
+        changed = self._changed_contacts(device, slopes, _CONTACT, patch, self.plan.choices_of_device(device))
         return {"contact": self.ground(device)} | changed
 
     def contacts_of_tip_budget(self, device: str) -> dict[str, str | list[str]]:

@@ -376,6 +376,12 @@ class Plan:
         """Those of `choices` that leave the surfaces as they are, on patches of any size."""
         return [name for name in self.choices(pair) if self.summits_under(pair, name) == "base"]
 
+    def choices_of_device(self, name: str) -> list[str]:
+        """Those of `choices` for a device: the short strips of a bridge have those of the solids alone."""
+        section = self.config["devices"][name]
+        of_pair = self.choices_of_solids if section["kind"] == "bridge" else self.choices
+        return of_pair(section["pair"])
+
     @cached_property
     def studied(self) -> list[tuple[str, str]]:
         """Pairs and their variants, without those that change nothing for the pair."""
