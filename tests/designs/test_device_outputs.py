@@ -184,6 +184,18 @@ def test_no_legend_covers_a_panel_a_text_or_another_legend(found, count, tmp_pat
     assert covering(figures_devices.chart(axes, {}), tmp_path) == []
 
 
+def test_many_warnings_leave_the_panels_their_place_and_keep_their_numbers(found, tmp_path):
+    cases = {(f"C{k}", rh): found["C1", 0.44] for k in range(20) for rh in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)}
+    warned = {(*case, shape): [f"{case} is too wet."] for case in cases for shape in (S_SHAPE, EITHER)}
+    figure = figures_devices.risk(cases, warned)
+    assert figure._supxlabel.get_text() == "(1) to (120): warnings, written out with results/tables/safe_lengths.md"
+    assert named(figure.axes[0])[1] == "RH 0.5 (2)"
+    assert "(2) ('C0', 0.5) is too wet." in tables_devices.safe_lengths(cases, warned).caption
+    assert figure.get_figheight() <= 24
+    assert covering(figure, tmp_path) == []
+    assert sum(panel.get_position().height for panel in figure.axes[::4]) > 0.5
+
+
 def test_a_legend_within_a_panel_is_found(found, tmp_path):
     figure = figures_devices.risk(found, WARNINGS)
     panel = figure.axes[0]

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from legends import covering
+from matplotlib.lines import Line2D
 from numpy.testing import assert_allclose
 
 from stiction.config.files import load
@@ -15,7 +16,7 @@ from stiction.designs import stoppers as study_stoppers
 from stiction.designs.budget import Responses
 from stiction.designs.inputs import Input, Settings, State, Uncertainty
 from stiction.designs.releases import DesignedBeam
-from stiction.report.style import save
+from stiction.report.style import DOUBLE, legend_below, panels, save, styled
 from stiction.stages.curves import Water
 
 STATE = State(None, 0.5, Water(300.0))
@@ -209,9 +210,26 @@ def test_no_legend_of_stoppers_covers_a_panel_or_a_text(count, tmp_path):
     assert covering(figures_budget.stoppers(datasets, {"S0": ["Beware."]}), tmp_path) == []
 
 
+@pytest.mark.parametrize("count", [2, 6, 30])
+def test_every_panel_has_the_name_of_its_stopper_in_a_figure_that_is_not_too_tall(count):
+    datasets = {f"S{k}": stopper_dataset(peak=1 + k) for k in range(count)}
+    figure = figures_budget.stoppers(datasets, {name: ["Beware."] for name in datasets})
+    forces = [panel for panel in figure.axes if panel.get_xlabel().startswith("relative humidity")]
+    tops = {panel.get_title("left").split()[1]: max(panel.lines[0].get_ydata()) for panel in forces}
+    expected = {name: 1e6 * float(dataset.mean_along.max()) for name, dataset in datasets.items()}
+    assert tops == pytest.approx(expected)
+    assert figure.get_figheight() <= 24
+    below = figure._supxlabel.get_text()
+    assert below.count("\n") < 12
+    assert ("results/tables/stoppers.md" in below) == (count == 30)
+
+
 def test_a_shorter_label_leaves_room_for_more_columns():
-    shares, forces = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {}).axes
-    assert shares.get_legend()._ncols > forces.get_legend()._ncols > 1
+    _, axes = styled(panels)(1, 2, (DOUBLE, 3))
+    for panel, label in zip(axes.flat, ("mean", "5 to 95 % of the patches"), strict=True):
+        styled(legend_below)(panel, [Line2D([], [], label=label) for _ in range(6)])
+    short, long = (panel.get_legend()._ncols for panel in axes.flat)
+    assert short > long > 1
 
 
 def test_a_stopper_shows_the_share_of_patches_over_the_restoring_force():

@@ -22,6 +22,7 @@ from stiction.report.style import (
     humidity_axis,
     legend_below,
     letter,
+    letter_lines,
     panels,
     shades,
     styled,
@@ -49,12 +50,13 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
     figure, columns, lines = columns_of_panels(len(datasets), 2, lambda n: min(DOUBLE, SINGLE * n), 5.0)
     for column, dataset in zip(columns, datasets.values(), strict=True):
         _stuck_over_force(column[0], dataset)
-        _force_over_humidity(column[1], dataset)
+        shared = _force_over_humidity(column[1], dataset)
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
         line[1, 0].set_ylabel("pull-off force [µN]")
-    letter(np.concatenate([line.ravel() for line in lines]), [name for name in datasets for _ in range(2)])
-    below(figure, [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found])
+    letter_lines(lines, list(datasets))
+    figure.legend(handles=shared, loc="outside upper center", ncols=2)
+    below(figure, [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found], "stoppers")
     return figure
 
 
@@ -82,17 +84,22 @@ def _stuck_over_force(panel, dataset):
 
 
 def _force_over_humidity(panel, dataset):
-    """Mean and 5 to 95 % of the pull-off force along the fine axis, and the worst humidity."""
+    """Mean and 5 to 95 % of the pull-off force along the fine axis, and the worst humidity.
+
+    Returns the entries of the legend that are the same for all stoppers.
+    """
     low, high = (TO_UN * dataset.quantile_along.sel(probability=p) for p in dataset.probability.values[[0, -1]])
-    panel.fill_between(dataset.axis, low, high, color=_COLOUR, alpha=0.2, linewidth=0, label="5 to 95 % of the patches")
-    panel.plot(dataset.axis, TO_UN * dataset.mean_along, color=_COLOUR, label="mean")
+    light = {"color": _COLOUR, "alpha": 0.2, "linewidth": 0}
+    band = panel.fill_between(dataset.axis, low, high, **light, label="5 to 95 % of the patches")
+    (mean,) = panel.plot(dataset.axis, TO_UN * dataset.mean_along, color=_COLOUR, label="mean")
     panel.axhline(TO_UN * float(dataset.restoring_force), color="0.4", linestyle=":", linewidth=0.8)
     worst = float(dataset.worst_humidity)
     top = TO_UN * float(dataset.mean_along.max())
-    panel.plot([worst], [top], "v", color="black", label=f"worst humidity {worst:.2f}")
+    (mark,) = panel.plot([worst], [top], "v", color="black", label=f"worst humidity {worst:.2f}")
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
     humidity_axis(panel)
-    legend_below(panel, handles(panel)[0])
+    legend_below(panel, [mark])
+    return [mean, band]
 
 
 # Budget

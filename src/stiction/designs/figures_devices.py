@@ -38,8 +38,8 @@ _BOUNDS = {
 }
 #: Marker of each basis of a safe length.
 _BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x"}
-#: Characters in a line of warnings.
-_LINE = 130
+#: Characters in a line of warnings, and most lines below a figure: more would take the place of its panels.
+_LINE, _MOST_LINES = 130, 12
 #: Height of a line of panels, and of an entry of the legends below them [in].
 _PANEL, _ENTRY = 3.3, 0.12
 #: Lightest colour of a curve.
@@ -53,11 +53,13 @@ def _width(columns):
     return min(DOUBLE, 1.5 * SINGLE * columns)
 
 
-def below(figure: Figure, sentences: Sequence[str]) -> None:
-    """Write numbered sentences below a figure."""
-    lines = [textwrap.fill(f"({k}) {sentence}", _LINE) for k, sentence in enumerate(sentences, 1)]
+def below(figure: Figure, sentences: Sequence[str], table: str) -> None:
+    """Write numbered sentences below a figure, or the name of the table whose caption has them if they are many."""
+    lines = "\n".join(textwrap.fill(f"({k}) {sentence}", _LINE) for k, sentence in enumerate(sentences, 1))
+    if lines.count("\n") >= _MOST_LINES:
+        lines = f"(1) to ({len(sentences)}): warnings, written out with results/tables/{table}.md"
     if lines:
-        figure.supxlabel("\n".join(lines), fontsize=6, ha="left", x=0.01)
+        figure.supxlabel(lines, fontsize=6, ha="left", x=0.01)
 
 
 @styled
@@ -90,7 +92,7 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
     letter_lines(lines, names)
     _explain(columns[0, 0], found)
     figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=5)
-    below(figure, sentences)
+    below(figure, sentences, "safe_lengths")
     return figure
 
 
@@ -162,7 +164,7 @@ def chart(
         line[0, 0].set_ylabel("safe length [µm]")
     letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm, {_SHAPES[shape][1]}" for name, gap, shape in subjects])
     figure.legend(*handles(*columns[:, 0]), loc="outside upper center", ncols=2)
-    below(figure, sentences)
+    below(figure, sentences, "chart")
     return figure
 
 

@@ -26,6 +26,8 @@ from stiction.run.atomic import save_bytes
 STYLE = Path(__file__).with_name("stiction.mplstyle")
 #: Widths of one and of two columns of the journal [in].
 SINGLE, DOUBLE = 3.5, 7.16
+#: Largest height of a figure of many panels, which are smaller then [in].
+TALLEST = 24.0
 #: Shortest axis of the relative humidity, for figures of a single one [-].
 _SHORTEST = 0.1
 #: Largest number of columns of panels side by side.
@@ -89,7 +91,7 @@ def columns_of_panels(
     width : callable
         Width of the figure [in] by the number of columns.
     height : float
-        [in] of one line of columns.
+        [in] of one line of columns, less if the figure would be taller than `TALLEST`.
     shared
         As in Figure.subplots, of one line of columns.
 
@@ -116,7 +118,7 @@ def blocks_of_columns(
         Part of the figure, which can have a legend of its own, and its ``columns`` and ``lines``.
     """
     many, across = _arrangement(count)
-    figure = Figure(figsize=(width(across), height * many * blocks), layout="constrained")
+    figure = Figure(figsize=(width(across), min(height * many * blocks, TALLEST)), layout="constrained")
     parts = [figure] if blocks == 1 else figure.subfigures(blocks, 1)
     return figure, [(part, *_columns(part, count, rows, shared)) for part in parts]
 
