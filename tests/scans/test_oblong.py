@@ -153,3 +153,9 @@ def test_jumps_are_medians_over_the_points_of_a_line(pixel, steps):
     across = [np.median(z[:, j + steps[1]] - z[:, j]) for j in range(67 - steps[1])]
     expected = [np.sqrt(np.mean(np.square(jumps))) for jumps in (across, along)]
     np.testing.assert_allclose(line_jump(z, pixel), expected)
+
+
+@pytest.mark.parametrize("size", [(2.0, 5.0), (5.0, 2.0)])
+def test_two_waves_along_the_lines_are_near_the_slow_axis_whatever_the_other_side(size):
+    found = periodogram([np.ones((40, 64))], size)
+    np.testing.assert_array_equal(np.flatnonzero(found.near_slow_axis), [0, 1, 2, 38, 39])
