@@ -148,6 +148,9 @@ WRONG_RELATIONS = [
     ("run: {pairs: [c]}\npairs: {c: {humidities: [0.9]}}\nfigures: {humidity: 0.67}\n"
      "materials: {M: {contact_angle_deg: 80}}\nsurfaces: {B1: {material: M}, Sub2: {material: M}}",
      "figures.humidity", "0.67", "must be at least 0.8067: in drier air, at 300 K and contact angles of 80 and 80 deg"),
+    ("run: {pairs: [b]}\nbeam: {width_um: 0.06}", "beam.width_um", "0.06",
+     "must give patches of surface with at least 18 summits, so that every sample resists the adhesion: 1.5 x 0.06 µm "
+     "of pair b hold about 1.9"),
     ("figures: {humidity: 0.9902}", "pairs.c.gap_um", "2", "figures.humidity = 0.9902"),
     ("surfaces: {B2: {kurtosis: 1.5777}}", "sampling.strip_length_um", "1.5",
      "at most 1.27 µm to resolve the cracks of pair b at RH 0.44 (given beam.thickness_um = 2.6, solid.young_modulus"),

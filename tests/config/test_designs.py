@@ -174,11 +174,23 @@ def test_a_budget_has_the_hamaker_constant_through_the_medium_if_it_is_uncertain
     assert glass == {"water": 5, "dry": 65, "none": 65}[medium]
 
 
+def test_the_warnings_of_a_stopper_have_its_water_its_patch_and_all_humidities_that_it_meets():
+    section = PLAN.config["devices"]["S1"]
+    assert jobs.beyond_stoppers(PLAN)["S1"] == {
+        "pair": "b",
+        "materials": [],
+        "water": {"temperature_K": 300},
+        "contact_um": section["contact_um"],
+        "humidities": section["humidities"],
+        "worst_humidities": PLAN.config["design"]["worst_humidities"],
+    }
+
+
 def test_the_page_of_a_device_has_its_section_and_its_warnings_alone():
     assert jobs.page(PLAN, "S1") == {
         "name": "S1",
         "device": PLAN.config["devices"]["S1"],
-        "warned": {"S1": {"pair": "b", "materials": []}},
+        "warned": {"S1": jobs.beyond_stoppers(PLAN)["S1"]},
     }
     assert set(jobs.page(PLAN, "C1")["warned"]) == {"C1"}
 

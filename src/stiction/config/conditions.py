@@ -95,7 +95,7 @@ def _given(paths, values, files):
     given = [
         _known(path, value, files)
         for path, value in zip(paths[1:], values[1:], strict=True)
-        if path[-1] not in "#@" and (len(path) > 1 or not isinstance(value, dict))
+        if path[-1] not in ("#", "@") and (len(path) > 1 or not isinstance(value, dict))
     ]
     if ("surfaces",) in paths:
         given += [_known(("surfaces", name, "rms_nm"), None, files) for name in files if name in _met(paths, values)]

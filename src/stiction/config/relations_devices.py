@@ -18,8 +18,8 @@ from stiction.config.relations import (
     sides_of,
     solids_resist_the_adhesion,
     strip_is_whole_on_the_grid,
-    summit_density,
     too_dry,
+    too_few_summits,
     wetting,
 )
 from stiction.config.units import NM_PER_UM
@@ -76,10 +76,6 @@ def patch_of_a_stopper_is_whole_on_the_grid(sides, spacing, every):
     return next(filter(None, refusals), None)
 
 
-#: Least expected number of summits on a patch. ASSUME: as many resist the adhesion of every sample. Measured on patches
-#: of pair b that are 0.05 to 1.5 µm long: with 19 summits none of 5000 samples fails at RH 0.5 or more and 2 fail at RH
-#: 0.3; with 10 there are 2 of 1000 samples, and with 4 there are 50. Pairs a and c need fewer.
-_SUMMITS = 18
 #: What the relations about them need apart from the sides of a patch.
 _GROUND = ("devices.*.@", "devices", "pairs", "surfaces")
 
@@ -103,18 +99,8 @@ def patch_of_a_stopper_holds_enough_summits(sides, name, devices, *surfaces):
 
 
 def _too_few_summits(length, width, device, pairs, surfaces):
-    """Refusal of a patch [µm] that holds too few summits, as far as their density is known."""
-    sides = _sides(device, pairs, surfaces)
-    try:
-        number = summit_density(sides) * length * width if sides else _SUMMITS
-    except (ValueError, ArithmeticError):
-        return None  # other relations report what is out of range
-    if number >= _SUMMITS:
-        return None
-    return (
-        f"must give patches of surface with at least {_SUMMITS} summits, so that every sample resists the adhesion: "
-        f"{length:g} x {width:g} µm of pair {device['pair']} hold about {number:.2g}"
-    )
+    """Refusal of a patch [µm] of a device that holds too few summits."""
+    return too_few_summits(length, width, device["pair"], _sides(device, pairs, surfaces))
 
 
 @relation("design.worst_humidities")
