@@ -14,14 +14,14 @@ ORDER = """
 constants errors streams estimates numbers models progress
 surface: maxent spectrum translation empirical feasible normals field iteration summits identify
 scans: scan levelling holes remainder moments periodogram whittle quantiles model_scans histogram estimate
-contact: meniscus vanderwaals asperity solids estimate pair forcelaw bounds
+contact: meniscus vanderwaals asperity solids estimate pair forcelaw tilted bounds
 chaos: coordinates density polynomials model
 beam: cantilever tension energy foundation equilibrium release resolution middle montecarlo
 analysis: plasticity sensitivity shifts convergence mesh variants
 devices: arcs bridges tail risk stoppers chart budget limits
 run: fingerprint logs folder atomic regular labels kept remembered provenance warmup forkserver hooks
 scans: reading
-config: units cases merging messages reading measured memory conditions relations designs
+config: units cases merging messages reading measured designs memory conditions relations
 config: relations_devices validation files plan jobs paths
 stages: storage named heights parameters identification spectrum surfaces character pairs contact curves forces chaos
 stages: cantilevers releases beams

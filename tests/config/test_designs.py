@@ -36,7 +36,7 @@ def designs(**changes):
 
 
 PLAN = plan()
-PATCH, TIP = ("b", 3000, 2000), ("b", 50, 30000)
+PATCH, TIP = ("b", 3000, 2000), Designs(PLAN.config).tips("C1")
 #: Stage and the settings of one of its jobs.
 JOBS = [
     (stoppers, jobs.stoppers(PLAN, "S1")),
@@ -123,14 +123,15 @@ def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_tips_as_beams():
     for name in OF_SOLIDS:
         tips, strips = (of(PLAN, *TIP, name, "less") for of in (jobs.tip_solid_contact, jobs.solid_contact))
         assert tips["contact"]["samples"] == number
-        assert tips == strips | {"contact": tips["contact"]}
+        assert tips == strips | {"contact": tips["contact"], "tilt": tips["tilt"]}
 
 
 def test_the_contact_of_a_device_has_the_samples_of_a_pair_and_that_of_its_tips_one_for_each_beam():
     samples, beams = PLAN.config["contact"]["samples"], PLAN.config["design"]["beams"]
     assert samples != beams
     assert jobs.device_contact(PLAN, *PATCH)["contact"]["samples"] == samples
-    assert jobs.tip_contact(PLAN, *TIP)["contact"]["samples"] == beams
+    tips = jobs.tip_contact(PLAN, *TIP)["contact"]
+    assert (tips["samples"], tips["distance_step_nm"]) == (beams, 2 * PLAN.config["contact"]["distance_step_nm"])
 
 
 def test_contacts_of_a_budget_are_on_the_patch_of_the_device_with_the_samples_of_slopes():

@@ -8,6 +8,7 @@ import pytest
 
 from stiction import studies, variants
 from stiction.config import jobs
+from stiction.config.designs import Designs
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
@@ -155,13 +156,16 @@ def test_a_solid_counts_as_polysilicon_if_its_modulus_is_near_that_of_the_paper(
 
 GLASS = {"poisson_ratio": 0.2, "hamaker_constant_zJ": {"water": 5, "dry": 65}}
 OF_GLASS = {"materials": {"Glass": GLASS}, "surfaces": {"B2": {"material": "Glass"}}}
+BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
+WITH_BEAM = {"devices": {"C1": BEAM}}
+TIPS = Designs(load(WITH_BEAM)).tips("C1")
 
 
 @pytest.mark.parametrize("ratio", [0.23, 0, -0.3])
 def test_poissons_ratio_changes_by_the_same_amount_whatever_its_value(ratio):
-    plan = Plan(load({"solid": {"poisson_ratio": ratio}}))
+    plan = Plan(load(WITH_BEAM, {"solid": {"poisson_ratio": ratio}}))
     for contact_of in (jobs.solid_contact, jobs.tip_solid_contact):
-        less, more = (contact_of(plan, "b", 3000, 2000, "poisson_ratio", side)["solid"] for side in ("less", "more"))
+        less, more = (contact_of(plan, *TIPS, "poisson_ratio", side)["solid"] for side in ("less", "more"))
         assert (less["poisson_ratio"], more["poisson_ratio"]) == pytest.approx((ratio - 0.05, ratio + 0.05))
         assert less["young_modulus_GPa"] == more["young_modulus_GPa"] == 164
 
@@ -169,14 +173,15 @@ def test_poissons_ratio_changes_by_the_same_amount_whatever_its_value(ratio):
 @pytest.mark.parametrize("contact_of", [jobs.solid_contact, jobs.tip_solid_contact])
 def test_the_hamaker_constant_of_polysilicon_changes_in_both_bodies_and_that_of_glass_in_the_beam_alone(contact_of):
     def changed(plan, side):
-        return contact_of(plan, "b", 3000, 2000, "hamaker_constant", side)["materials"]
+        return contact_of(plan, *TIPS, "hamaker_constant", side)["materials"]
 
-    less, more, solid = changed(PLAN, "less"), changed(PLAN, "more"), PLAN.config["solid"]
+    plan = Plan(load(WITH_BEAM))
+    less, more, solid = changed(plan, "less"), changed(plan, "more"), plan.config["solid"]
     for body in ("beam", "substrate"):
         assert less[body] == solid | {"hamaker_constant_zJ": pytest.approx({"water": 78, "dry": 149.2})}
         assert more[body] == solid | {"hamaker_constant_zJ": pytest.approx({"water": 117, "dry": 223.8})}
-    glass = changed(Plan(load(OF_GLASS)), "more")
+    glass = changed(Plan(load(WITH_BEAM, OF_GLASS)), "more")
     assert glass["beam"]["hamaker_constant_zJ"] == pytest.approx({"water": 6, "dry": 78})
     assert glass["substrate"] == solid
-    both = merged(OF_GLASS, {"surfaces": {"Sub1": {"material": "Glass"}}})
+    both = merged(WITH_BEAM | OF_GLASS, {"surfaces": {"Sub1": {"material": "Glass"}}})
     assert changed(Plan(load(both)), "more")["substrate"] == glass["beam"]

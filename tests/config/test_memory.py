@@ -9,10 +9,14 @@ import pytest
 import yaml
 from configurations import PAPER, ROOT, changed
 
-from stiction.config import memory
+from stiction.config import jobs, memory
+from stiction.config.designs import Designs
+from stiction.config.plan import Plan
+from stiction.config.units import typed
 from stiction.scans.estimate import _CORRELATED
 from stiction.scans.model_scans import _PERIOD, _POINTS
 from stiction.stages import contact, storage
+from stiction.study import surface_datasets
 
 DRAWING = """
 import sys
@@ -130,8 +134,32 @@ def test_the_pairs_of_devices_and_their_tips_count_for_the_memory_of_the_samples
         for overlay in (STICKING.partition("devices")[0], STICKING.replace("PAIR", "a"), STICKING.replace("PAIR", "c"))
     )
     assert memory.USUAL < alone <= of_a < of_c
-    tips = memory.of_samples(changed(STICKING.replace("PAIR", "c") + "design: {beams: 100000}"))
-    assert tips - 350 == pytest.approx(2 * (of_c - 350), rel=0.02)
+
+
+TIPS = """
+devices: {D1: {kind: cantilever, pair: b, thickness_um: 2.6, gap_um: 20, width_um: 2, humidities: [0.67]}}
+"""
+
+
+def test_the_memory_of_tips_is_that_of_their_slopes_and_more_than_their_contact_takes():
+    few, many = (changed(TIPS + f"design: {{beams: {beams}}}") for beams in (50_000, 100_000))
+    plan = Plan(few)
+    tips = Designs(few).tips("D1")
+    settings = jobs.tip_contact(plan, *tips)
+    settings["contact"]["samples"] = 2
+    surfaces = [surface_datasets(plan, name) for name in plan.sides("b")]
+    held = contact.compute(surfaces, "b", "NG", typed(contact.Settings, settings)).nbytes / 2e6
+    stated = (memory.of_samples(many) - memory.of_samples(few)) / 50_000
+    assert 0.5 * stated < held < stated
+    assert memory.of_budget(many, 7) - memory.of_samples(many) == pytest.approx(7e5 * stated, rel=0.01)
+    assert memory.of_contact(many, contacts=2) - memory.of_contact(many) == pytest.approx(2e5 * stated, rel=0.01)
+
+
+def test_long_wedges_at_tips_count_for_the_memory_of_fields():
+    flat = changed(TIPS.replace("gap_um: 20", "gap_um: 0.5").replace("thickness_um: 2.6", "thickness_um: 80"))
+    length = Designs(flat).tips("D1").length / 1000
+    assert length > 20
+    assert memory._of_largest_field(flat) >= memory.of_field(length + 1, 3, 10)
 
 
 def test_the_patch_of_a_device_with_an_uncertainty_is_also_drawn_with_the_points_of_the_variants():
@@ -144,12 +172,10 @@ def test_the_patch_of_a_device_with_an_uncertainty_is_also_drawn_with_the_points
 
 
 def test_a_budget_holds_all_contacts_that_it_compares():
-    config = changed(STICKING.replace("PAIR", "c") + "design: {beams: 100000}")
-    one = memory.of_samples(config) - memory.of_samples(changed(STICKING.replace("PAIR", "c") + "design: {beams: 200}"))
+    config = changed(STICKING.replace("PAIR", "c") + "studies: {slopes: {samples: 100000}}")
+    one = memory.of_samples(config) - 350
     assert memory.of_budget(config, 7) - memory.of_samples(config) == pytest.approx(7 * one, rel=0.01)
     assert memory.of_budget(changed("{}"), 7) == memory.of_samples(changed("{}"))
-    twice = memory.of_contact(config, contacts=2) - memory.of_contact(config)
-    assert twice == pytest.approx(memory.of_contact(config) - memory.of_field(2.5, 31, 5), rel=0.02)
 
 
 def test_samples_of_slopes_count_for_devices_where_they_are_more_than_those_of_the_budget():

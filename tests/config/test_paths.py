@@ -103,7 +103,7 @@ def test_a_device_on_the_strips_of_its_pair_shares_their_contact():
 
 
 def test_only_a_cantilever_has_a_tip():
-    assert PAPER.tips("C1") == "results/devices/contact/tips/b_50x30000.nc"
+    assert PAPER.tips("C1") == "results/devices/contact/tips/b_520x30000.nc"
     assert PAPER.tips("R1") == []
 
 
@@ -138,7 +138,7 @@ def test_other_properties_of_the_solids_are_changed_only_where_they_are_uncertai
         folder, sides = "results/devices/contact", ("less", "more")
         strips, tips = (of("C1")[key] for of in (found.contacts_of_budget, found.contacts_of_tip_budget))
         assert strips == [f"{folder}/{key}/b_1500x30000_{side}.nc" for side in sides]
-        assert tips == [f"{folder}/tips/{key}/b_50x30000_{side}.nc" for side in sides]
+        assert tips == [f"{folder}/tips/{key}/b_520x30000_{side}.nc" for side in sides]
         assert found.contacts_of_budget("S1")[key] == []
     shared = {"less", "more", "modulus", "choices", "contact"}
     assert all(found.contacts_of_budget("C1")[key] == PAPER.contacts_of_budget("C1")[key] for key in shared)
@@ -160,14 +160,14 @@ def test_choices_are_the_variants_that_change_the_contact():
 def test_a_budget_of_tips_needs_contacts_of_the_tips_alone():
     folder = "results/devices/contact/tips"
     assert PAPER.contacts_of_tip_budget("C1") == {
-        "contact": f"{folder}/b_50x30000.nc",
-        "less": [f"{folder}/slopes/b_50x30000_{name}_less.nc" for name in SHIFTED],
-        "more": [f"{folder}/slopes/b_50x30000_{name}_more.nc" for name in SHIFTED],
-        "modulus": [f"{folder}/modulus/b_50x30000_less.nc", f"{folder}/modulus/b_50x30000_more.nc"],
+        "contact": f"{folder}/b_520x30000.nc",
+        "less": [f"{folder}/slopes/b_520x30000_{name}_less.nc" for name in SHIFTED],
+        "more": [f"{folder}/slopes/b_520x30000_{name}_more.nc" for name in SHIFTED],
+        "modulus": [f"{folder}/modulus/b_520x30000_less.nc", f"{folder}/modulus/b_520x30000_more.nc"],
         "poisson_ratio": [],
         "hamaker_constant": [],
         "choices": [
-            f"{folder}/choices/b_50x30000_{name}.nc"
+            f"{folder}/choices/b_520x30000_{name}.nc"
             for name in ("van_der_waals_dry", "van_der_waals_none", "poisson_ratio_0.18", "poisson_ratio_0.28")
         ],
     }

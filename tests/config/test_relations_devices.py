@@ -6,6 +6,7 @@ import subprocess
 import sys
 from dataclasses import MISSING, fields
 
+import numpy as np
 import pytest
 from configurations import PAPER, SCHEMA, changed, leaves, problems
 from test_messages import UNITS
@@ -16,6 +17,7 @@ from stiction.config.files import load, normalised
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
+from stiction.contact.meniscus import meniscus_height
 from stiction.designs import chart, cracks, findings, safe_lengths
 from stiction.stages import contact, curves
 from stiction.stages.cantilevers import Cantilevers, cantilever
@@ -61,8 +63,6 @@ def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
     assert leaf.entry["description"].endswith(tuple(units or (["[name]", "[choice]"] if text else ["[-]"])))
 
 
-TIPS = "design: {tip_um: 0.055}\ndevices: {S1: {kind: stopper, pair: b, contact_um: [3, 3], "
-TIPS += "restoring_force_uN: 9, humidities: [0.5]}}"
 WRONG = [
     ({"humidities": [0.67, 0.2]}, "devices.C1.humidities", "must be at least 0.2903: in drier air"),
     ({"chart": CHART | {"humidities": [0.1, 0.9]}}, "devices.C1.chart.humidities", "must be at least 0.2903"),
@@ -107,7 +107,6 @@ WRONG = [
     ({"chart": CHART | {"thicknesses_um": [2, 2]}}, "devices.C1.chart.thicknesses_um", "each value once"),
     ({"chart": CHART | {"gaps_um": [0.1, 20]}}, "devices.C1.chart.gaps_um", "20 times the sum of the height"),
     ({"chart": CHART | {"thicknesses_um": [0.1, 2]}}, "devices.C1.chart.thicknesses_um", "so large that strips"),
-    ({"width_um": 4}, "design.tip_um", "0.05 x 4 µm of pair b hold about 4.2 (given devices.C1.width_um = 4)"),
     ({"uncertainty": {"gap_um": -1}}, "devices.C1.uncertainty.gap_um", "at least 0"),
     ({"uncertainty": {"temperature_K": 80}}, "devices.C1.uncertainty.temperature_K", "between 273 and 373 K"),
     (
@@ -128,8 +127,8 @@ def test_a_wrong_device_is_refused_by_name(keys, key, message):
 @pytest.mark.parametrize(
     ("overlay", "key", "message"),
     [
-        (TIPS, "design.tip_um", "whole number of contact points"),
-        (TIPS.replace("0.055", "0.02"), "design.tip_um", "at least three contact points"),
+        ("design: {tip_um: 0.05}", "design.tip_um", "unknown"),
+        ("design: {tip_edge: sharp}", "design.tip_edge", "one of rounded, square"),
         ("design: {beams: 199}", "design.beams", "at least 200"),
         ("design: {shares: [0.06]}", "design.shares[0]", "at most 0.05"),
         ("design: {shares: [0.01, 0.010]}", "design.shares", "each value once; 0.01 is listed twice"),
@@ -145,11 +144,6 @@ def test_wrong_sizes_and_materials_are_refused_by_name(overlay, key, message):
     line = problems(changed(overlay))[0]
     assert line.startswith(f"{key} is ")
     assert message in line
-
-
-@pytest.mark.parametrize("side", ["0.055", "0.02"])
-def test_the_size_of_tips_does_not_matter_without_devices(side):
-    assert problems(changed(f"design: {{tip_um: {side}}}")) == ()
 
 
 def test_a_device_whose_solids_do_not_resist_is_refused_although_its_pair_does_not_run():
@@ -175,8 +169,11 @@ def test_patches_with_too_few_summits_are_refused(device, key, message):
     assert all(line.startswith(f"devices.D1.{key} is ") and message in line for line in found)
 
 
-def test_only_cantilevers_have_tips():
-    assert problems(merged(PAPER, {"devices": {"R1": R1 | {"humidities": [0.67], "width_um": 4}}})) == ()
+def test_wedges_of_stiff_beams_above_a_small_gap_that_do_not_fit_into_memory_are_refused():
+    stiff = {"kind": "cantilever", "pair": "b", "thickness_um": 100, "gap_um": 1, "width_um": 800, "humidities": [0.67]}
+    (line,) = problems(merged(PAPER, {"devices": {"C1": stiff}}))
+    assert line.startswith("devices.C1.gap_um is 1, must leave fields within 8 GB of memory")
+    assert problems(merged(PAPER, {"devices": {"C1": stiff | {"width_um": 30}}})) == ()
 
 
 @pytest.mark.parametrize(
@@ -297,7 +294,31 @@ def test_strips_equal_to_those_of_the_main_line_share_their_contact():
     assert [designs.has_strips_of_pair(name) for name in ("C1", "C2", "C3")] == [True, False, False]
     assert designs.strips("C2").name == "b_1500x20000"
     assert designs.strips("C3").name == "b_1200x30000"
-    assert designs.tips("C2").name == "b_50x20000"
+
+
+def test_the_strip_of_a_tip_holds_the_wedge_of_the_flattest_beam_and_its_film():
+    designs = Designs(load({"devices": {"C1": C1, "C2": C1 | {"width_um": 20}, "C3": C1 | {"gap_um": 5}}}))
+    for name in ("C1", "C2", "C3"):
+        tips = designs.tips(name)
+        tilt = designs.tilt(tips)
+        assert 0 <= tips.length * tilt["slopes"][0] - tilt["reach_nm"] < 10 * tilt["slopes"][0] + 0.1
+        film = float(meniscus_height(max(C1["humidities"]), 300))
+        assert 1e9 * film + 3 * np.hypot(3.4, 0.17) <= tilt["reach_nm"] < 1.2 * (1e9 * film + 10.3)
+    assert designs.tips("C1") == designs.tips("C2")._replace(width=30000)
+    assert designs.tips("C3").length > 1.5 * designs.tips("C1").length
+
+
+def test_slopes_of_tips_cover_charts_and_devices_share_strips_of_one_length():
+    alone, charted = (
+        Designs(load({"devices": {"C1": C1 | chart}})) for chart in ({}, {"chart": CHART | {"thicknesses_um": [2, 6]}})
+    )
+    few, many = (found.tilt(found.tips("C1"))["slopes"] for found in (alone, charted))
+    assert set(few) < set(many)
+    assert many[0] < few[0] / 1.6
+    both = Designs(load({"devices": {"C1": C1, "C2": C1 | {"thickness_um": 2.59}}}))
+    assert both.tips("C1") == both.tips("C2")
+    assert both.tilt(both.tips("C1"))["edge"] == "rounded"
+    assert set(both.tilt(both.tips("C1"))["slopes"]) >= set(few)
 
 
 def test_the_axis_of_a_chart_has_names_and_ends():
@@ -315,7 +336,7 @@ JOBS = {
     cracks: jobs.cracks(PLAN, "C1_rh067"),
     safe_lengths: jobs.safe_lengths(PLAN, "R1_rh067"),
     chart: jobs.chart(PLAN, "C1_rh067"),
-    contact: jobs.tip_contact(PLAN, "b", 50, 30000),
+    contact: jobs.tip_contact(PLAN, *Designs(PLAN.config).tips("C1")),
 }
 
 
@@ -335,7 +356,6 @@ def test_settings_in_si_are_those_of_the_device():
     assert found.water == curves.Water(300, pytest.approx((1.0471975512, 0.0)))
     bridge = typed(safe_lengths.Settings, JOBS[safe_lengths])
     assert bridge.device.beam.tension == pytest.approx(50e6 * 60e-12)
-    assert bridge.tip == pytest.approx(0.05e-6)
     assert typed(chart.Settings, JOBS[chart]).gaps == pytest.approx((10e-6, 20e-6))
     assert jobs.chart(plan(devices={"C1": {"chart": {"thicknesses_um": [2], "humidities": [0.4, 0.5]}}}), "C1_rh045")[
         "gaps_um"
@@ -344,7 +364,7 @@ def test_settings_in_si_are_those_of_the_device():
 
 def test_materials_reach_contact_forces_and_beams_and_nothing_changes_without_them():
     found = typed(contact.Settings, JOBS[contact])
-    assert found.sampling.strip_length == pytest.approx(0.05e-6)
+    assert found.sampling.strip_length == pytest.approx(1e-9 * Designs(PLAN.config).tips("C1").length)
     assert found.contact.samples == PAPER["design"]["beams"]
     assert found.materials["beam"].hamaker_constant == pytest.approx({"water": 2.5e-19, "dry": 4e-19})
     assert found.materials["substrate"].young_modulus == pytest.approx(164e9)

@@ -21,8 +21,8 @@ C1 = DesignedBeam("cantilever", "b", 2.6 * UM, 20 * UM, 30 * UM, 164e9, 1.5 * UM
 R1 = DesignedBeam(
     "bridge", "b", 2 * UM, 2 * UM, 30 * UM, 164e9, 0.5 * UM, residual_stress=50e6, hamaker_constant=9.75e-20
 )
-#: Largest attraction of the strips of tips [Pa].
-PULL = 3e5
+#: Slopes of the tips.
+SLOPES = np.geomspace(0.005, 2, 40)
 #: Root mean square of the heights of both surfaces [m].
 RMS = 3.4e-9
 
@@ -58,7 +58,7 @@ def lognormal_cracks(number=400, groups=4, spread=0.025, seed=1, name=cracks.CRA
 
 
 def wanted(device=C1, shares=(1e-2, 1e-3)):
-    return safe_lengths.Settings(2021, WATER, 0.67, device, shares, 0.15 * UM)
+    return safe_lengths.Settings(2021, WATER, 0.67, device, shares)
 
 
 def safe_without_tips(device=R1, **more):
@@ -66,13 +66,14 @@ def safe_without_tips(device=R1, **more):
     return safe_lengths.compute(lognormal_cracks(name=cracks.HELD, **more), None, wanted(device))
 
 
+def smooth_tips(energies):
+    """Slopes and forces of smooth tips that have given adhesion energies (n,) [J m⁻²]."""
+    return SLOPES, energies[:, None] / SLOPES
+
+
 def safe_with_tips(energies, **more):
     """Dataset of stage safe_lengths of a cantilever whose tips have given adhesion energies (n,) [J m⁻²]."""
-    pulls = np.full(len(energies), PULL)
-    with (
-        patch.object(curves, "tip_energies", lambda *_: energies),
-        patch.object(curves, "tip_pull_offs", lambda *_: pulls),
-    ):
+    with patch.object(curves, "tip_forces", lambda *_: smooth_tips(energies)):
         return safe_lengths.compute(lognormal_cracks(len(energies), **more), xr.Dataset(), wanted())
 
 

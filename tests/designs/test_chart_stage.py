@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from beams import E_BAR, PAPER
-from ground import C1, PULL, R1, RMS, UM, VECTORS, WATER, contact, settings
+from ground import C1, R1, RMS, UM, VECTORS, WATER, contact, settings, smooth_tips
 from numpy.testing import assert_allclose
 
 from stiction.beam.energy import apparent_adhesion_energy, arrest_length
@@ -114,11 +114,10 @@ def test_few_sizes_are_all_computed(count):
 
 
 def computed(device, thicknesses, gaps, tips=None, shares=(1e-2,)):
-    wanted = chart.Settings(2021, Truncation(3, 0.001), WATER, 0.67, device, 200, shares, 0.15e-6, thicknesses, gaps)
+    wanted = chart.Settings(2021, Truncation(3, 0.001), WATER, 0.67, device, 200, shares, thicknesses, gaps)
     with (
         patch.object(curves, "vectors", lambda *_: (VECTORS, 1.2 * VECTORS[:, 1].max())),
-        patch.object(curves, "tip_energies", lambda *_: tips),
-        patch.object(curves, "tip_pull_offs", lambda *_: np.full(len(tips), PULL)),
+        patch.object(curves, "tip_forces", lambda *_: smooth_tips(tips)),
     ):
         return chart.compute(contact(), None if tips is None else xr.Dataset(), wanted), wanted
 
@@ -144,24 +143,13 @@ def test_a_chart_has_the_safe_lengths_of_its_device_and_longer_ones_for_thicker_
     assert list(found["shape"]) == [sticking.MIDDLE]
     assert found.by_elements.values.tolist() == [[1], [1]]
     assert float(found.power_law_error) == 0
-    assert np.isnan(found.wedge).all()
 
 
 def test_tips_of_a_chart_hold_as_those_of_the_device():
     tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(200))
     found, wanted = computed(C1, (2 * UM, C1.thickness), (C1.gap,), tips, (1e-2, 1e-3))
     expected = [sticking.safe_lengths(values, wanted) for values in alone(C1, 200, tips).values()]
-    np.testing.assert_array_equal(found.safe_length[1, 0], [[one.length for one in row] for row in expected])
-
-
-def test_the_wedge_at_the_tip_is_that_of_the_shortest_beam_at_its_own_gap():
-    tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(200))
-    found, _ = computed(C1, (2 * UM, C1.thickness), (C1.gap, 2 * C1.gap), tips, (1e-2, 1e-3))
-    # e / f_max over the slope 3 h / 2 L of the shortest beams that tips hold
-    shortest = found.safe_length.sel(shape=sticking.EITHER).min("share")
-    assert_allclose(found.wedge, tips.mean() / PULL * shortest / (1.5 * found.gap), rtol=1e-9)
-    assert np.all(found.wedge[0] < found.wedge[1])  # thicker beams are longer
-    assert np.all(found.wedge[:, 0] > found.wedge[:, 1])  # L grows as the root of h, the slope as h
+    assert_allclose(found.safe_length[1, 0], [[one.length for one in row] for row in expected], rtol=1e-12)
 
 
 def test_limits_of_saturated_air_are_those_of_flooded_flats_by_shape():

@@ -28,7 +28,7 @@ def beams(s_shaped, arc, crack=700 * UM):
 
 def device(energy=2e-3, of=C1):
     tips = energy * np.exp(0.4 * np.random.default_rng(9).standard_normal(400))
-    return safe_with_tips(tips), findings.OfDevice(of, 0.15 * UM)
+    return safe_with_tips(tips), findings.OfDevice(of)
 
 
 # Main line
@@ -145,7 +145,6 @@ def test_a_device_within_the_limits_has_no_warning():
         ({"device": replace(C1, gap=100 * UM)}, "reaches a slope of"),
         ({"device": replace(C1, thickness=50 * UM)}, "times as long as the beam is thick"),
         ({"device": replace(C1, width=700 * UM)}, "bends as a plate"),
-        ({"tip": 1.5 * UM}, "strips of 1.5 µm, longer than the wedge"),
         ({"materials": (("Gold", ("hardness",)),)}, "4 properties of Gold are not stated"),
     ],
 )
@@ -153,13 +152,6 @@ def test_each_limit_of_a_device_is_said_once(changes, words):
     found, of = device()
     (sentence,) = only(found, replace(of, **changes))
     assert words in sentence
-
-
-def test_a_warning_about_tips_names_the_length_in_saturated_air():
-    found, of = device()
-    tip = 1e6 * float(found.flooded_length.sel(shape=EITHER))
-    (sentence,) = only(found, replace(of, tip=1.5 * UM))
-    assert f"saturated air, {tip:.0f} µm, the shortest that water holds, is safe." in sentence
 
 
 def test_a_shape_has_the_warnings_of_its_own_length():
@@ -170,7 +162,6 @@ def test_a_shape_has_the_warnings_of_its_own_length():
     assert only(found, steep, S_SHAPE) == []
     (sentence,) = only(found, steep, EITHER)
     assert sentence.startswith(f"At a length of {tip:.0f} µm the beam reaches a slope of {0.08 * alone / tip:.3g}")
-    assert only(found, replace(of, tip=1.5 * UM), S_SHAPE) == []  # strips of tips do not matter to the beam alone
 
 
 def test_a_device_is_checked_at_its_safe_length_not_at_the_longer_estimate():
@@ -197,16 +188,16 @@ def test_a_gap_that_the_film_fills_is_said():
 def test_a_bridge_that_stretches_is_said_and_has_half_its_length_as_crack():
     wide = safe_without_tips()
     crack = float(wide.safe_length.min()) / 2
-    assert only(wide, findings.OfDevice(replace(R1, thickness=5 * UM), 0.15 * UM), MIDDLE) == []
-    (sentence,) = only(wide, findings.OfDevice(R1, 0.15 * UM), MIDDLE)
+    assert only(wide, findings.OfDevice(replace(R1, thickness=5 * UM)), MIDDLE) == []
+    (sentence,) = only(wide, findings.OfDevice(R1), MIDDLE)
     assert "equal to the thickness of the bridge" in sentence
-    steep = findings.OfDevice(replace(R1, gap=0.11 / 1.5 * crack, thickness=80 * UM), 0.0)
+    steep = findings.OfDevice(replace(R1, gap=0.11 / 1.5 * crack, thickness=80 * UM))
     assert any("slope of 0.11" in sentence for sentence in only(wide, steep, MIDDLE))
 
 
 BEYOND = {"device": {"kind": "cantilever", "pair": "c", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}}
 BEYOND["device"] |= {"young_modulus_GPa": 164, "strip_um": 1.5}
-BEYOND |= {"materials": [], "tip_um": 0.15}
+BEYOND |= {"materials": []}
 
 
 def test_warnings_about_all_devices_have_their_names():
@@ -220,7 +211,7 @@ def test_settings_of_jobs_are_those_of_the_warnings():
     sizes = {"thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
     c1 = {"kind": "cantilever", "pair": "c"} | sizes
     plan = Plan(load({"devices": {"C1": c1 | {"chart": {"thicknesses_um": [2, 3], "humidities": [0.5, 0.9]}}}}))
-    assert jobs.beyond_the_model(plan)["devices"]["C1"] == BEYOND | {"tip_um": 0.05}
+    assert jobs.beyond_the_model(plan)["devices"]["C1"] == BEYOND
     assert jobs.charts(plan)["devices"] == jobs.beyond_the_model(plan)["devices"]
     assert len(jobs.charts(plan)["charts"]["C1"]) == plan.config["design"]["chart_points"]
     assert set(jobs.device_limits(plan)) == {"cases", "pressed", "devices", "charts", "stoppers"}
@@ -244,13 +235,12 @@ def test_cases_of_the_main_line_in_air_that_is_hardly_humid_enough_are_said():
 # Charts
 
 
-def charted(longest, film=3e-9, wedge=0.15 * UM):
+def charted(longest, film=3e-9):
     """Dataset of stage chart of two thicknesses and two shapes, whose arcs are half as long as beams alone."""
     lengths = longest * np.array([[[[1.0, 0.9], [0.5, 0.45]]], [[[1.5, 1.4], [0.75, 0.7]]]])
     return xr.Dataset(
         {
             "safe_length": (("thickness", "gap", "shape", "share"), lengths),
-            "wedge": (("thickness", "gap"), [[wedge], [wedge]]),
             "flooded_length": (("thickness", "gap", "shape"), UM * np.array([[[300, 200]], [[400, 210]]])),
             "film": film,
             "rms": 3e-9,
@@ -272,28 +262,19 @@ def test_a_curve_of_a_chart_has_the_warnings_of_its_shortest_length():
 
 def test_the_air_of_the_shortest_length_of_a_curve_counts():
     along = [charted(700 * UM), charted(600 * UM, film=2 * UM)]
-    of = findings.OfDevice(C1, 0.15 * UM)
+    of = findings.OfDevice(C1)
     assert "sum of film height and roughness" in findings.of_chart(along, of, 0.0)[3 * UM, 20 * UM, S_SHAPE][0]
     assert findings.of_chart(along[:1], of, 0.0)[3 * UM, 20 * UM, S_SHAPE] == []
 
 
 def test_the_thinnest_film_of_a_curve_counts_whatever_the_air_of_its_shortest_length():
     along = [charted(800 * UM, film=1e-9), charted(700 * UM)]
-    found = findings.of_chart(along, findings.OfDevice(C1, 0.15 * UM), 0.0)
+    found = findings.of_chart(along, findings.OfDevice(C1), 0.0)
     assert all("The film of water is 1 nm high" in " ".join(sentences) for sentences in found.values())
 
 
-def test_the_shortest_wedge_of_a_curve_counts_whatever_the_air_of_its_shortest_length():
-    along = [charted(800 * UM, wedge=0.14 * UM), charted(700 * UM)]
-    found = findings.of_chart(along, findings.OfDevice(C1, 0.15 * UM), 0.0)
-    (sentence,) = found[2 * UM, 20 * UM, EITHER]
-    assert "longer than the wedge on which it acts, 0.14 µm" in sentence
-    assert "saturated air, 200 µm," in sentence
-    assert found[2 * UM, 20 * UM, S_SHAPE] == []
-
-
 def test_the_thickness_of_a_curve_counts():
-    found = findings.of_chart([charted(50 * UM)], findings.OfDevice(C1, 0.15 * UM), 0.0)
+    found = findings.of_chart([charted(50 * UM)], findings.OfDevice(C1), 0.0)
     thin, thick = ([text for text in found[t * UM, 20 * UM, EITHER] if "thick" in text] for t in (2, 3))
     assert thin[0].startswith("A crack of 22 µm is only 11.2 times as long as the beam is thick")
     assert thick[0].startswith("A crack of 35 µm is only 11.7 times as long as the beam is thick")

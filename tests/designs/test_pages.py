@@ -26,16 +26,16 @@ CANTILEVER = {
 STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.44, 0.67]}
 
 
-def safe(kind="cantilever", longest=600e-6, wedge=2e-7):
+def safe(kind="cantilever", longest=600e-6):
     """Safe lengths of 400 devices that stick between two thirds of a length and this length."""
     device = DesignedBeam(kind, "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
-    settings = safe_lengths.Settings(1, Water(300.0), 0.67, device, (1e-2, 1e-3, 1e-4), 1.5e-7)
+    settings = safe_lengths.Settings(1, Water(300.0), 0.67, device, (1e-2, 1e-3, 1e-4))
     shapes = {sticking.shapes(device)[0]: np.linspace(2 / 3, 1, 400) * longest}
     if kind == "cantilever":
         shapes[sticking.EITHER] = 0.7 * shapes[sticking.S_SHAPE]
     bounds = {shape: sticking.safe_lengths(values, settings) for shape, values in shapes.items()}
     errors = {shape: np.full(3, 1e-6) for shape in shapes}
-    return safe_lengths.layout(shapes, bounds, errors, wedge, 3e-9, settings)
+    return safe_lengths.layout(shapes, bounds, errors, 3e-9, settings)
 
 
 @pytest.fixture(scope="module")
@@ -90,26 +90,7 @@ def test_the_page_of_a_beam_says_which_lengths_come_free():
     assert f"up to {lengths[1]:.0f} µm come free" in sentence
     assert "at most 1 in 1000 (95 % confidence, given the drawn surfaces)" in sentence
     assert sentence.endswith(f"this is true of up to {lengths[0]:.0f} µm.")
-    assert "tip" not in pages.safe_sentence(0.67, safe("bridge", wedge=np.nan))
-
-
-def test_where_tips_hold_more_than_computed_the_length_in_saturated_air_is_the_answer():
-    found = safe(wedge=1e-7)
-    alone, tip = (1e6 * float(found.safe_length.sel(shape=shape, share=1e-3)) for shape in found["shape"].values)
-    surest = 1e6 * float(found.flooded_length.sel(shape=sticking.EITHER))
-    sentence = pages.safe_sentence(0.44, found)
-    assert sentence.startswith(f"At a relative humidity of 0.44, devices of up to {surest:.0f} µm come free")
-    assert f"The computed {tip:.0f} µm, at which at most 1 in 1000 stick" in sentence
-    assert "are an upper limit, because the strips of the tips are longer than the wedge" in sentence
-    assert sentence.endswith(f"devices of up to {alone:.0f} µm come free, except for at most 1 in 1000.")
-    assert surest < tip < alone
-
-
-def test_a_computed_length_below_that_in_saturated_air_remains_the_answer():
-    found = safe(wedge=1e-7, longest=300e-6)
-    tip = 1e6 * float(found.safe_length.sel(shape=sticking.EITHER, share=1e-3))
-    assert tip < 1e6 * float(found.flooded_length.min())
-    assert f"devices of up to {tip:.0f} µm come free" in pages.safe_sentence(0.44, found)
+    assert "tip" not in pages.safe_sentence(0.67, safe("bridge"))
 
 
 def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ground import C1, PULL, R1, lognormal_cracks, safe_with_tips, safe_without_tips, wanted
+from ground import C1, R1, lognormal_cracks, safe_with_tips, safe_without_tips, wanted
 from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.beam.energy import apparent_adhesion_energy
@@ -84,10 +84,6 @@ def test_the_axis_of_lengths_is_finite_although_some_beams_never_stick():
 
 def test_limits_of_the_model_are_stated(cantilever):
     assert float(cantilever.film) == pytest.approx(2 * 0.072 * 1.8e-5 / (8.314462618 * 300 * -np.log(0.67)))
-    assert np.isnan(safe_without_tips().wedge)
-    # e / f_max over the slope 3 h / 2 L of the median arc
-    length = np.median(arcs.arc_length(energies(2e-3), C1.beam))
-    assert_allclose(float(cantilever.wedge), energies(2e-3).mean() / PULL / (1.5 * 20e-6 / length), rtol=1e-9)
 
 
 def test_lengths_in_saturated_air_are_those_of_flooded_flats(cantilever):
@@ -95,7 +91,6 @@ def test_lengths_in_saturated_air_are_those_of_flooded_flats(cantilever):
     energy = 2 * 0.072  # tension times two perfectly wetting sides [J/m²]
     assert_allclose(apparent_adhesion_energy(alone, C1.beam), energy, rtol=1e-9)
     assert_allclose(tip, arcs.arc_length(energy, C1.beam), rtol=1e-9)
-    assert float(cantilever.tip_strip) == wanted().tip
     assert safe_without_tips().flooded_length.shape == (1,)
 
 

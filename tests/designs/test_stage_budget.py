@@ -24,6 +24,7 @@ from stiction.streams import stream
 
 WATER = curves.Water(300.0)
 VECTORS = sampled_vectors(400, spread=0.2)
+SLOPES = np.geomspace(0.01, 1, 30)
 C1 = DesignedBeam("cantilever", "b", PAPER.thickness, PAPER.gap, PAPER.width, PAPER.young_modulus, 1.5e-6)
 R1 = DesignedBeam("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 0.5e-6, residual_stress=50e6)
 #: Forces and energies are multiplied by what a test passes as contact.
@@ -44,7 +45,7 @@ def given(monkeypatch, request):
 
     monkeypatch.setattr(curves, "vectors", vectors)
     monkeypatch.setattr(curves, "pull_offs", lambda contact, *_: contact * VECTORS[:, 1])
-    monkeypatch.setattr(curves, "tip_energies", lambda contact, *_: contact * VECTORS[:, 0])
+    monkeypatch.setattr(curves, "tip_forces", lambda contact, *_: (SLOPES, contact * VECTORS[:, :1] / SLOPES))
 
 
 @pytest.fixture
@@ -198,7 +199,8 @@ def test_the_budget_of_a_stopper_is_one_of_its_forces(study):
     assert_allclose(found.slope, np.log(ends[1] / ends[0]) / 0.02, rtol=1e-9)
 
 
-def test_the_budget_of_tips_is_one_of_their_arcs(study):
+def test_the_budget_of_tips_is_one_of_their_arcs(study, monkeypatch):
+    monkeypatch.setattr(curves, "tip_forces", lambda *air: (SLOPES, curves.energies(*air)[:, None] / SLOPES))
     many = study.isel(sample=np.arange(200) % study.sizes["sample"])
     settings = replace(SETTINGS, uncertainty=Uncertainty(gap=0.5e-6, humidity=0.01), share=0.01)
     found = budget.compute(many, {}, {}, {}, {}, settings)

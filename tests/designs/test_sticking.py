@@ -48,10 +48,3 @@ def test_there_is_one_safe_length_for_every_share():
     shares = (1e-2, 1e-3, 1e-4)
     found = sticking.safe_lengths(lengths, replace(wanted(), shares=shares))
     assert found == [risk.safe_length(lengths, share, stream(2021, "safe length")) for share in shares]
-
-
-def test_the_wedge_of_a_tip_is_mean_energy_over_mean_pull_off_and_slope(monkeypatch):
-    energies, pulls = np.array([1e-3, 3e-3]), np.array([1e5, 3e5])
-    monkeypatch.setattr(curves, "tip_energies", lambda *_: energies)
-    monkeypatch.setattr(curves, "tip_pull_offs", lambda *_: pulls)
-    assert_allclose(sticking.mean_wedge(None, np.array([0.04, 0.08]), wanted()), [2.5e-7, 1.25e-7], rtol=1e-12)

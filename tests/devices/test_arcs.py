@@ -71,7 +71,7 @@ def test_energy_of_an_arc_falls_as_its_end_opens():
 
 def test_arcs_of_strips_tend_to_the_peel_number_as_the_strips_shrink():
     limit = arcs.arc_length(ENERGY, PAPER)
-    wedge = arcs.wedge_length(ENERGY, LAW[0], arcs.tip_slope(limit, PAPER.gap))
+    wedge = ENERGY / LAW[0] / arcs.tip_slope(limit, PAPER.gap)
     shares = [arc_length_of_strips(strip) / limit for strip in wedge * np.array([10, 3, 1, 0.3, 0.1])]
     assert np.all(np.diff(shares) > 0)
     assert shares[0] < 0.6
@@ -84,7 +84,6 @@ def test_a_strip_that_is_longer_than_the_wedge_pulls_with_its_f_max():
 
 def test_a_finely_divided_wedge_pulls_with_its_energy_over_its_slope():
     assert_allclose(pull_of_strips(0.05, 5e-10), ENERGY / 0.05, rtol=1e-3)
-    assert_allclose(LAW[0] * arcs.wedge_length(ENERGY, LAW[0], 0.05), ENERGY / 0.05, rtol=1e-12)
 
 
 @pytest.mark.parametrize("strip", [1.5e-6, 0.5e-6])
@@ -97,10 +96,55 @@ def test_finite_elements_let_go_of_the_arc_where_the_wedge_of_strips_does(strip,
     assert released_beam(beam, laws, ENERGY).state is state
 
 
-def test_wedge_of_pair_b_is_about_a_tenth_of_a_micrometre():
-    # e / f_max of a few nm over a slope of about 0.04.
-    slope = arcs.tip_slope(np.array([500e-6, 750e-6]), PAPER.gap)
-    assert_allclose(slope, [0.06, 0.04], rtol=1e-12)
-    wedge = arcs.wedge_length(ENERGY, LAW[0], slope)
-    assert_allclose(wedge * slope, ENERGY / LAW[0], rtol=1e-12)
-    assert 0.05e-6 < wedge[1] < 0.2e-6
+# Forces over the slope
+
+SLOPES = np.geomspace(0.02, 0.3, 12)
+
+
+def test_tips_whose_force_is_energy_over_slope_have_the_closed_form():
+    energies = np.array([1e-3, 5e-3, 0.1])
+    held = arcs.longest_free(SLOPES, energies[:, None] / SLOPES, PAPER)
+    assert_allclose(held, arcs.arc_length(energies, PAPER), rtol=1e-12)
+
+
+@given(st.floats(-1.5, 2.5), st.floats(0.03, 0.25))
+def test_the_longest_arc_that_comes_free_balances_the_bending_of_the_beam(power, slope):
+    # P = c θ^power: the balance is where the line of the logarithms crosses that of the force, at the given slope.
+    forces = arcs.bending_force(slope, PAPER) * (SLOPES / slope) ** power
+    (length,) = arcs.longest_free(SLOPES, forces[None], PAPER)
+    assert_allclose(arcs.tip_slope(length, PAPER.gap), slope, rtol=1e-9)
+    bending = 3 * PAPER.bending_stiffness * PAPER.gap / length**3
+    assert_allclose(arcs.bending_force(slope, PAPER) * PAPER.width, bending, rtol=1e-9)
+
+
+def test_of_several_balances_the_shortest_arc_counts():
+    forces = 0.5 * arcs.bending_force(SLOPES, PAPER)
+    forces[[2, 7]] *= 4
+    (length,) = arcs.longest_free(SLOPES, forces[None], PAPER)
+    forces[2] /= 4
+    assert arcs.longest_free(SLOPES, forces[None], PAPER) == length
+    forces[7] /= 4  # control
+    assert arcs.longest_free(SLOPES, forces[None], PAPER) > length
+
+
+def test_below_the_slopes_tips_hold_no_longer_beams_than_smooth_ones_and_those_without_force_none():
+    energy = 1e-6
+    (length,) = arcs.longest_free(SLOPES, energy / SLOPES[None], PAPER)
+    assert arcs.tip_slope(length, PAPER.gap) < SLOPES[0]
+    assert_allclose(length, arcs.arc_length(energy, PAPER), rtol=1e-12)
+    assert np.isinf(arcs.longest_free(SLOPES, np.zeros((1, 12)), PAPER))
+
+
+def test_tips_that_hold_the_steepest_beams_are_refused():
+    forces = np.array([1e-3, 100.0])[:, None] / SLOPES
+    with pytest.raises(ValueError, match="1 of 2 tips hold beams of the largest slope that was computed, 0.3"):
+        arcs.longest_free(SLOPES, forces, PAPER)
+
+
+def test_slopes_are_common_to_devices_and_cover_lengths_from_two_thirds_to_four_times_those_in_saturated_air():
+    one, both = arcs.slopes_of_tips(0.1), arcs.slopes_of_tips(0.1, 0.3)
+    assert one[0] <= 0.025
+    assert one[-1] >= 0.15
+    assert both[-1] >= 0.45
+    assert set(one) < set(both)
+    assert_allclose(one[1:] / one[:-1], 2**0.25, rtol=1e-4)

@@ -31,7 +31,6 @@ CASES = [
     (limits.wide_beam, (20 * UM, 500 * UM, 2.6 * UM, 700 * UM), "700 µm.*23.5", (20 * UM, 30 * UM, 2.6 * UM, 700 * UM)),
     (limits.stretched_bridge, (2 * UM, 2 * UM), "gap is equal to the thickness of", (0.9 * UM, 2 * UM)),
     (limits.stretched_bridge, (3 * UM, 2 * UM), "gap is 1.5 times the thickness of", (0.9 * UM, 2 * UM)),
-    (limits.short_wedge, (1.5 * UM, 0.1 * UM, 234 * UM), "1.5 µm.*0.1 µm.*234 µm", (0.1 * UM, 0.1 * UM, 1.0)),
 ]
 EACH = pytest.mark.parametrize(("limit", "beyond", "number", "within"), CASES)
 
@@ -63,7 +62,6 @@ def test_every_limit_is_tested():
         (lambda x: limits.stubby_beam(1 / x, 1.0), 1 / 20),
         (lambda x: limits.filled_gap(1 / x, 0.3, 0.7), 1 / 20),
         (lambda x: limits.plastic_contact(x), 0.02),
-        (lambda x: limits.short_wedge(x, 1.0, 1.0), 1.0),
         (lambda x: limits.stretched_bridge(x, 1.0), 0.5),
         (lambda x: limits.thin_film(4 * WATER_MOLECULE / x), 1.0),
         (lambda x: limits.wide_meniscus(x, (0.3, 0.6)), 0.1 / 5),
@@ -81,11 +79,6 @@ def test_the_paper_s_beam_and_its_humidities_are_within_the_limits():
 
 def test_a_beam_beyond_all_limits_has_all_warnings():
     assert len(limits.of_beam(20 * UM, 100 * UM, 10 * UM, 100 * UM, 2e-6, 3.4 * NM)) == 4
-
-
-def test_the_tips_of_c1_have_a_warning_in_dry_air_and_none_in_wet_air():
-    wedges = {0.44: 0.0292 * UM, 0.67: 0.0297 * UM, 0.92: 0.0628 * UM}  # of the example, on strips of 0.05 µm
-    assert [rh for rh, wedge in wedges.items() if limits.short_wedge(0.05 * UM, wedge, 234 * UM)] == [0.44, 0.67]
 
 
 def test_what_is_not_in_the_model_is_said():

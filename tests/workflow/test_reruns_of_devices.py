@@ -91,7 +91,7 @@ MATRIX = [
     ("skewness of another surface", "surfaces: {B1: {skewness: -0.7}}", "", (), ""),
     ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (), "slopes|modulus|choices|tip"),
     ("chunks", "contact: {chunks: 2}", "", (), ""),
-    ("strips of tips", "design: {tip_um: 0.06}", "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact safe_lengths", (),
+    ("edge of tips", "design: {tip_edge: square}", "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact", (),
      "cracks|S1|contact/b|budget/C1_rh070.nc"),
     ("shares", "design: {shares: [0.02]}", "safe_lengths chart tip_budget", (), "cracks|S1|contact|budget/C1_rh070.nc"),
     ("points of charts", "design: {chart_points: 3}", "chart", (), "rh060|rh080|cracks|safe|S1|R1|contact"),

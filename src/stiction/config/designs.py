@@ -1,15 +1,19 @@
 """Plan of the devices of a configuration: their cases, the strips on which they stick, the axes of their charts."""
 
+import math
 from dataclasses import dataclass
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
+from stiction.beam.cantilever import Beam
 from stiction.config.cases import case_id
 from stiction.config.measured import is_measured, quantities
-from stiction.config.memory import strip_of
-from stiction.config.units import NM_PER_UM, from_si
+from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.constants import HAMAKER_CONSTANT
+from stiction.contact.meniscus import flooded_energy, meniscus_height
+from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
 from stiction.models import OF_MOMENTS, SIDES
 
 #: Kinds of devices that crack open; a stopper is pulled off at once.
@@ -23,12 +27,33 @@ KEYS = {
 #: Keys that a device need not have, by kind.
 OPTIONAL = {"cantilever": {"strip_um", "chart"}, "bridge": {"strip_um", "chart"}, "stopper": set()}
 
+#: Steps of the distance for the contact of tips, in those of section contact. ASSUME: they suffice for the largest
+#: attraction, the vertex of a parabola: with four, lengths of pair b are 0.02 to 0.19 % longer than with one.
+OF_TIPS = 2
 #: Keys of the properties of solids that may be uncertain, those of `stiction.devices.budget.OF_SOLIDS`.
 KEYS_OF_SOLIDS = {
     "modulus": "young_modulus_GPa",
     "poisson_ratio": "poisson_ratio",
     "hamaker_constant": "hamaker_constant_zJ",
 }
+
+
+#: ASSUME: strips of 0.5 µm resolve the middle of a bridge, which is held on 2 to 6 µm [µm]. Shorter ones hold more:
+#: on pair b (t = h = 2 µm, 50 MPa, p = 0.001), 0.25, 0.5 and 1.5 µm give 233, 236 and 242 µm at RH 0.44, 176, 175 and
+#: 181 µm at 0.67, 112.2, 112.2 and 113.2 µm at 0.92, with standard errors of about 1 %. Windows of one surface give the
+#: same as independent strips: 208.7 ± 1.2 and 208.2 ± 0.7 µm on average at RH 0.67.
+MIDDLE = 0.5
+
+
+def strip_of(device: dict, of_pairs: float) -> float:
+    """Length of the strips along a beam [µm]: as stated, or that of pairs, or shorter at the middle of a bridge.
+
+    Examples
+    --------
+    >>> strip_of({"kind": "cantilever"}, 1.5), strip_of({"kind": "bridge"}, 1.5), strip_of({"kind": "bridge"}, 0.3)
+    (1.5, 0.5, 0.3)
+    """
+    return device.get("strip_um", min(of_pairs, MIDDLE) if device["kind"] == "bridge" else of_pairs)
 
 
 def hamaker_constants(material: dict) -> dict[str, float]:
@@ -137,10 +162,53 @@ class Designs:
         main = self.config["sampling"]["strip_length_um"], self.config["beam"]["width_um"]
         return self.ground(device) == patch(self.devices[device]["pair"], *main)
 
+    # Tips of cantilevers
+
     def tips(self, device: str) -> Patch:
-        """Strips that hold the tips of the beams of a device."""
+        """Tilted strips that hold the tips of the beams of a device: as long as the wedge with the smallest slope."""
+        section, point = self.devices[device], self.config["sampling"]["spacing_nm"] * self.config["contact"]["every"]
+        points = math.ceil(self._reach(device) / self._slopes(device)[0] / point)
+        return patch(section["pair"], points * point / NM_PER_UM, section["width_um"])
+
+    def tilt(self, tips: Patch) -> dict:
+        """Slopes, reach and edge of the strips that hold the tips of one or several devices."""
+        devices = [name for name in self.of_kind("cantilever") if self.tips(name) == tips]
+        slopes = {float(slope) for name in devices for slope in self._slopes(name)}
+        reach = max(map(self._reach, devices))
+        return {"slopes": sorted(slopes), "reach_nm": reach, "edge": self.config["design"]["tip_edge"]}
+
+    def _slopes(self, device):
+        """Slopes of the tips of a device and of the beams of its chart."""
         section = self.devices[device]
-        return patch(section["pair"], self.config["design"]["tip_um"], section["width_um"])
+        chart = section.get("chart", {})
+        sizes = product(
+            [section["thickness_um"], *chart.get("thicknesses_um", [])], [section["gap_um"], *chart.get("gaps_um", [])]
+        )
+        return slopes_of_tips(*(self._saturated_slope(section, *size) for size in sizes))
+
+    def _saturated_slope(self, device, thickness, gap):
+        """Slope of the tip of a beam [µm] at the length that it holds in saturated air, perfectly wetting."""
+        solid = self.config["solid"] | self._material(self.config["pairs"][device["pair"]]["beam"])
+        sizes = to_si(device["width_um"], "um"), to_si(thickness, "um")
+        beam = Beam(1.0, *sizes, to_si(solid["young_modulus_GPa"], "GPa"), to_si(gap, "um"), 1)
+        return tip_slope(arc_length(flooded_energy(self.config["water"]["temperature_K"]), beam), beam.gap)
+
+    def _material(self, surface):
+        """Stated properties of the material of a surface."""
+        return self.config.get("materials", {}).get(self.config["surfaces"][surface].get("material"), {})
+
+    def _reach(self, device):
+        """How far below the mean plane of its edge a tip can be wet: film in the wettest air and peaks [nm].
+
+        A power of two to the 1/4, so that small changes of the air and of the surfaces leave the strips as they are.
+        ASSUME: peaks of three times the rms of both surfaces.
+        """
+        section = self.devices[device]
+        wettest = max(section["humidities"] + section.get("chart", {}).get("humidities", []))
+        rms = [self.config["surfaces"][self.config["pairs"][section["pair"]][side]]["rms_nm"] for side in SIDES]
+        film = float(meniscus_height(wettest, self.config["water"]["temperature_K"]))
+        least = from_si(film, "nm") + 3 * math.hypot(*rms)
+        return round(2 ** (math.ceil(4 * math.log2(least)) / 4), 3)
 
     # Stoppers and budgets
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from stiction.config import measured
 from stiction.config.cases import humidity_of, pair_of
-from stiction.config.designs import KEYS_OF_SOLIDS, Designs, hamaker_constants
+from stiction.config.designs import KEYS_OF_SOLIDS, OF_TIPS, Designs, Patch, hamaker_constants
 from stiction.config.files import paper
 from stiction.config.merging import merged
 from stiction.config.plan import ELASTIC, MOMENTS, SUMMITS, Plan, chosen
@@ -246,8 +246,11 @@ def device_contact(plan: Plan, pair: str, length: int, width: int) -> dict:
 
 
 def tip_contact(plan: Plan, pair: str, length: int, width: int) -> dict:
-    """As `device_contact`, for the strips that hold the tips of beams; every beam has its own."""
-    return _on_patch(plan, pair, length, width, plan.config["design"]["beams"])
+    """As `device_contact`, for the tilted strips that hold the tips of beams; every beam has its own."""
+    found = _on_patch(plan, pair, length, width, plan.config["design"]["beams"])
+    step = {"distance_step_nm": OF_TIPS * found["contact"]["distance_step_nm"]}
+    tips = Patch(pair, int(length), int(width))
+    return found | {"contact": found["contact"] | step, "tilt": Designs(plan.config).tilt(tips)}
 
 
 def _device(plan, name):
@@ -270,9 +273,9 @@ def cracks(plan: Plan, case: str) -> dict:
 
 
 def safe_lengths(plan: Plan, case: str) -> dict:
-    """As `cracks`, with the shares of stuck devices and the strips of tips, without the force laws."""
+    """As `cracks`, with the shares of stuck devices, without the force laws."""
     found = cracks(plan, case)
-    return chosen(found, ("seed", "water", "humidity", "device")) | chosen(plan.config["design"], ("shares", "tip_um"))
+    return chosen(found, ("seed", "water", "humidity", "device")) | chosen(plan.config["design"], ["shares"])
 
 
 def chart(plan: Plan, case: str) -> dict:
@@ -306,11 +309,10 @@ def _stated(plan, pair):
 
 
 def beyond_the_model(plan: Plan) -> dict:
-    """Cases of beams, and the input of the warnings about each device: sizes, strips of tips, stated properties."""
+    """Cases of beams, and the input of the warnings about each device: sizes, stated properties."""
     designs = Designs(plan.config)
     devices = {
         name: {"device": _device(plan, name), "materials": _stated(plan, plan.config["devices"][name]["pair"])}
-        | chosen(plan.config["design"], ["tip_um"])
         for name in designs.beams
     }
     return {"cases": designs.cases, "pressed": designs.pressed_pairs, "devices": devices}

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
+from stiction.config.designs import OF_TIPS, Designs, strip_of
 from stiction.config.units import NM_PER_UM, from_si
 from stiction.models import FIELD, SIDES
 
@@ -44,23 +45,26 @@ def of_samples(config: dict) -> int:
     """
     contact, devices = config["contact"], config.get("devices", {}).values()
     running = _stored(config, config["run"]["pairs"]) * contact["samples"] * (1 + 1 / contact["chunks"])
-    samples = contact["samples"] + config["design"]["beams"]
-    sticking = _stored(config, [device["pair"] for device in devices]) * samples
-    return max(USUAL, round(_BASE + max(running, sticking)))
+    sticking = _stored(config, [device["pair"] for device in devices]) * contact["samples"]
+    return max(USUAL, round(_BASE + max(running, sticking + _of_tip(config) * config["design"]["beams"])))
 
 
-def _stored(config, pairs):
-    """Contact of one sample of the roughest of some pairs [MB]; 0 without pairs."""
+def _stored(config, pairs, tilt=None):
+    """Contact of one sample of the roughest of some pairs, or of its tip at one slope [MB]; 0 without pairs."""
     rms = [[config["surfaces"][config["pairs"][pair][side]]["rms_nm"] for side in SIDES] for pair in pairs]
-    distances = _DISTANCES * max(map(sum, rms), default=0) / config["contact"]["distance_step_nm"]
-    return from_si(4 * distances, "MB")
+    reach, step = (tilt["reach_nm"], OF_TIPS) if tilt else (0, 1)
+    heights = _DISTANCES * max(map(sum, rms), default=0) + reach
+    return from_si(4 * heights / (step * config["contact"]["distance_step_nm"]), "MB")
 
 
-#: ASSUME: strips of 0.5 µm resolve the middle of a bridge, which is held on 2 to 6 µm [µm]. Shorter ones hold more:
-#: on pair b (t = h = 2 µm, 50 MPa, p = 0.001), 0.25, 0.5 and 1.5 µm give 233, 236 and 242 µm at RH 0.44, 176, 175 and
-#: 181 µm at 0.67, 112.2, 112.2 and 113.2 µm at 0.92, with standard errors of about 1 %. Windows of one surface give the
-#: same as independent strips: 208.7 ± 1.2 and 208.2 ± 0.7 µm on average at RH 0.67.
-MIDDLE = 0.5
+def _of_tip(config):
+    """Contact of the tip of one beam at all its slopes, the largest of all devices [MB]; 0 without cantilevers."""
+    designs = Designs(config)
+    tilts = {name: designs.tilt(designs.tips(name)) for name in designs.of_kind("cantilever")}
+    found = (
+        len(tilt["slopes"]) * _stored(config, [designs.devices[name]["pair"]], tilt) for name, tilt in tilts.items()
+    )
+    return max(found, default=0)
 
 
 def patch_of(device: dict, sampling: dict) -> tuple[float, float]:
@@ -68,17 +72,6 @@ def patch_of(device: dict, sampling: dict) -> tuple[float, float]:
     if device["kind"] == "stopper":
         return tuple(device["contact_um"])
     return strip_of(device, sampling["strip_length_um"]), device["width_um"]
-
-
-def strip_of(device: dict, of_pairs: float) -> float:
-    """Length of the strips along a beam [µm]: as stated, or that of pairs, or shorter at the middle of a bridge.
-
-    Examples
-    --------
-    >>> strip_of({"kind": "cantilever"}, 1.5), strip_of({"kind": "bridge"}, 1.5), strip_of({"kind": "bridge"}, 0.3)
-    (1.5, 0.5, 0.3)
-    """
-    return device.get("strip_um", min(of_pairs, MIDDLE) if device["kind"] == "bridge" else of_pairs)
 
 
 def spacings_of(device: dict, spacing_nm: float, others_nm: Sequence[float]) -> tuple[float, ...]:
@@ -93,29 +86,31 @@ def of_job(config: dict) -> int:
 
 def of_drawn(config: dict, samples: float, contacts: int = 1) -> int:
     """Memory to reserve for any job that draws samples of a pair and holds one or more contacts of them [MB]."""
-    return _of_drawn(config, config["run"]["pairs"], samples, contacts)
+    return _of_drawn(config, samples * _stored(config, config["run"]["pairs"]), contacts)
 
 
 def of_contact(config: dict, contacts: int = 1) -> int:
-    """As `of_drawn`, for all samples of a device."""
+    """As `of_drawn`, for all samples or tips of a device."""
     pairs = [device["pair"] for device in config.get("devices", {}).values()]
-    return _of_drawn(config, pairs, max(config["contact"]["samples"], _of_change(config)), contacts)
+    held = max(config["contact"]["samples"] * _stored(config, pairs), _of_change(config, pairs))
+    return _of_drawn(config, held, contacts)
 
 
-def _of_change(config):
-    """Largest number of samples of a contact that shows what one changed input does to a device."""
-    return max(config["design"]["beams"], config["studies"]["slopes"]["samples"])
+def _of_change(config, pairs):
+    """Largest contact that shows what one changed input does to a device or to its tips [MB]."""
+    samples = config["studies"]["slopes"]["samples"] * _stored(config, pairs)
+    return max(samples, config["design"]["beams"] * _of_tip(config))
 
 
-def _of_drawn(config, pairs, samples, contacts):
+def _of_drawn(config, held, contacts):
     # The curves of the samples are collected before they become one array.
-    return max(USUAL, round(_of_largest_field(config) + 2 * contacts * samples * _stored(config, pairs)))
+    return max(USUAL, round(_of_largest_field(config) + 2 * contacts * held))
 
 
 def of_budget(config: dict, contacts: int) -> int:
     """Memory to reserve for the budget of a device, which compares this number of contacts [MB]."""
     pairs = [device["pair"] for device in config.get("devices", {}).values()]
-    return of_samples(config) + round(contacts * _of_change(config) * _stored(config, pairs))
+    return of_samples(config) + round(contacts * _of_change(config, pairs))
 
 
 def _of_largest_field(config):
@@ -125,7 +120,10 @@ def _of_largest_field(config):
     drawn = [((FIELD_UM, FIELD_UM), spacing), ((patch, patch), spacing)]
     strip = sampling["strip_length_um"] + margin, config["beam"]["width_um"] + margin
     drawn += [(strip, at) for at in (spacing, *others)]
-    for device in config.get("devices", {}).values():
+    designs = Designs(config)
+    tips = [designs.tips(name) for name in designs.of_kind("cantilever")]
+    drawn += [((tip.length / NM_PER_UM + margin, tip.width / NM_PER_UM + margin), spacing) for tip in tips]
+    for device in designs.devices.values():
         length, width = patch_of(device, sampling)
         drawn += [((length + margin, width + margin), at) for at in spacings_of(device, spacing, others)]
     return max(of_field(*side, at) for side, at in drawn)

@@ -5,7 +5,7 @@ Lengths are in µm, as in the configuration. A relation gets the name of a devic
 
 from stiction.config import memory
 from stiction.config.conditions import Relations
-from stiction.config.designs import KEYS, OPTIONAL, hamaker_constant
+from stiction.config.designs import KEYS, MIDDLE, OPTIONAL, Designs, hamaker_constant, strip_of
 from stiction.config.relations import (
     cases_have_unique_names,
     estimated_strip,
@@ -47,17 +47,8 @@ def strips_of_a_bridge_are_whole_on_the_grid(kind, name, devices, strip, spacing
     """Strips at the middle of a bridge are whole on the grid also if their length is not stated."""
     if kind != "bridge" or "strip_um" in devices[name]:
         return None
-    refusal = strip_is_whole_on_the_grid(memory.strip_of(devices[name], strip), spacing, every)
-    return refusal and f"must come with strip_um, because {memory.MIDDLE} µm are not whole on the grid: it {refusal}"
-
-
-@relation("design.tip_um", "sampling.spacing_nm", "contact.every", "devices")
-def tips_are_whole_on_the_grid(side, spacing, every, devices):
-    """Strips of tips are three contact points long or more, so that they can hold a summit, if there are devices."""
-    if not devices:
-        return None
-    short = "must be at least three contact points long" if side * NM_PER_UM < 2.5 * spacing * every else None
-    return short or strip_is_whole_on_the_grid(side, spacing, every)
+    refusal = strip_is_whole_on_the_grid(strip_of(devices[name], strip), spacing, every)
+    return refusal and f"must come with strip_um, because {MIDDLE} µm are not whole on the grid: it {refusal}"
 
 
 @relation("devices.*.kind", "devices.*.#")
@@ -80,16 +71,10 @@ def patch_of_a_stopper_is_whole_on_the_grid(sides, spacing, every):
 _GROUND = ("devices.*.@", "devices", "pairs", "surfaces")
 
 
-@relation("design.tip_um", "devices.*.width_um", *_GROUND)
-def tips_hold_enough_summits(length, width, name, devices, *surfaces):
-    """The strips of the tips of a cantilever hold so many summits that each sample resists the adhesion."""
-    return None if devices[name]["kind"] != "cantilever" else _too_few_summits(length, width, devices[name], *surfaces)
-
-
 @relation("devices.*.width_um", *_GROUND, "sampling.strip_length_um")
 def strips_hold_enough_summits(width, name, devices, pairs, surfaces, length):
-    """As above, for the strips along a beam."""
-    return _too_few_summits(memory.strip_of(devices[name], length), width, devices[name], pairs, surfaces)
+    """The strips along a beam hold so many summits that each sample resists the adhesion."""
+    return _too_few_summits(strip_of(devices[name], length), width, devices[name], pairs, surfaces)
 
 
 @relation("devices.*.contact_um", *_GROUND)
@@ -101,6 +86,35 @@ def patch_of_a_stopper_holds_enough_summits(sides, name, devices, *surfaces):
 def _too_few_summits(length, width, device, pairs, surfaces):
     """Refusal of a patch [µm] of a device that holds too few summits."""
     return too_few_summits(length, width, device["pair"], _sides(device, pairs, surfaces))
+
+
+@relation(
+    "devices.*.gap_um",
+    "devices.*.@",
+    "devices",
+    "pairs",
+    "surfaces",
+    "materials",
+    "solid",
+    "water",
+    "sampling",
+    "contact",
+)
+def tips_fit_into_memory(_, name, devices, *sections):
+    """The fields of the strips that hold the tips of a cantilever fit into the memory of a job."""
+    if devices[name]["kind"] != "cantilever":
+        return None
+    keys = ("pairs", "surfaces", "materials", "solid", "water", "sampling", "contact")
+    config = {"devices": devices} | dict(zip(keys, sections, strict=True))
+    margin, spacing = (config["sampling"][key] for key in ("margin_um", "spacing_nm"))
+    try:
+        length, width = (side / NM_PER_UM for side in Designs(config).tips(name)[1:])
+    except (KeyError, ValueError, ArithmeticError):
+        return None  # other relations report what is missing or out of range
+    if length <= config["sampling"]["strip_length_um"]:
+        return None  # as for the strips along the beam, of which another relation reports
+    refusal = field_too_large(length + margin, width + margin, spacing)
+    return refusal and f"{refusal}; the wedge at the tip of a beam is the longer, the smaller the gap"
 
 
 @relation("design.worst_humidities")
@@ -190,7 +204,7 @@ def strips_resolve_the_cracks_of_a_device(
 
     What passes may still be refused after the contact, by `stiction.beam.resolution.resolved`.
     """
-    strip, sides = memory.strip_of(devices[name], strip), _sides(devices[name], pairs, surfaces)
+    strip, sides = strip_of(devices[name], strip), _sides(devices[name], pairs, surfaces)
     meeting = temperature, sides, materials
     needed = {rh: estimated_strip(thickness, solid, medium, rh, *meeting) for rh in humidities} if sides else {}
     shortest = min(needed, key=needed.get, default=None)

@@ -109,8 +109,8 @@ def of_tips(states: Sequence[State], share: float) -> Responses:
 
     ASSUME: no crack stops on beams that are so short that only a share p of the tips hold them.
     """
-    energies = [curves.tip_energies(state.contact, state.humidity, state.water) for state in states]
-    lengths = [arcs.arc_length(of_state, state.device.beam) for state, of_state in zip(states, energies, strict=True)]
+    found = [(curves.tip_forces(state.contact, state.humidity, state.water), state.device.beam) for state in states]
+    lengths = [arcs.longest_free(*forces, beam) for forces, beam in found]
     return Responses(np.array(lengths), lambda lengths: fit_tail(lengths).length(share))
 
 

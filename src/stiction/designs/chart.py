@@ -35,7 +35,6 @@ class Settings:
     device: DesignedBeam
     beams: int
     shares: tuple[float, ...]  #: [-]
-    tip: float  #: length of the strips of tips [m]
     thicknesses: tuple[float, ...]  #: increasing [m]
     gaps: tuple[float, ...]  #: increasing [m]
 
@@ -54,18 +53,14 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
     with on_patch(settings.device.strip, settings.device.width):
         model = releases.fitted(*curves.vectors(contact, settings.humidity, settings.water), settings.chaos)
     laws = draw_laws(model, releases.LAWS, releases.addresses(settings)("mesh"))
-    with on_patch(settings.tip, settings.device.width):
-        energies = None if tips is None else curves.tip_energies(tips, settings.humidity, settings.water)
+    held = None if tips is None else curves.tip_forces(tips, settings.humidity, settings.water)
 
     def by_elements(thickness, gap):
         """Safe lengths of beams of one size (shapes, shares) [m]."""
-        return _safe_lengths(_of_size(settings, thickness, gap), model, laws, energies, settings)
+        return _safe_lengths(_of_size(settings, thickness, gap), model, laws, held, settings)
 
     found = filled(settings.thicknesses, settings.gaps, by_elements)
-    shortest, gaps = found.lengths[:, -1].min(axis=-1), np.tile(settings.gaps, len(settings.thicknesses))
-    slopes = arcs.tip_slope(shortest, gaps)
-    wedges = np.full(len(gaps), np.nan) if tips is None else sticking.mean_wedge(tips, slopes, settings)
-    return layout(found, wedges, surface_rms(contact), settings)
+    return layout(found, surface_rms(contact), settings)
 
 
 def _of_size(settings, thickness, gap):
@@ -73,12 +68,12 @@ def _of_size(settings, thickness, gap):
     return replace(settings.device, thickness=float(thickness), gap=float(gap))
 
 
-def _safe_lengths(device, model, laws, energies, settings):
-    """Safe lengths of a device, (shapes, shares) [m]."""
+def _safe_lengths(device, model, laws, tips, settings):
+    """Safe lengths of a device, (shapes, shares) [m]; slopes and forces of its tips, or none."""
     ground = releases.resolved_part(device, laws)
     address, draw = releases.addresses(settings), partial(draw_laws, model)
     cracks = releases.arrests(device, ground, draw, settings.beams, address)
-    held = None if energies is None else arcs.arc_length(energies, device.beam)
+    held = None if tips is None else arcs.longest_free(*tips, device.beam)
     lengths = sticking.sticking_lengths(cracks, foundation_length(device.beam, laws), device, held)
     return np.array([[one.length for one in sticking.safe_lengths(values, settings)] for values in lengths.values()])
 
@@ -131,15 +126,13 @@ def _power_laws(sizes, found, test):
         return []
 
 
-def layout(found: Filled, wedges: np.ndarray, rms: float, settings: Settings) -> xr.Dataset:
+def layout(found: Filled, rms: float, settings: Settings) -> xr.Dataset:
     """Dataset of safe lengths over thickness and gap at one humidity.
 
     Parameters
     ----------
     found : Filled
         Lengths (sizes, shapes, shares) [m].
-    wedges : (sizes,) array
-        Length of the wedge at the tip of the shortest beam of each size, NaN for a bridge [m].
     rms : float
         Of the sum of both surfaces [m].
     settings : Settings
@@ -154,7 +147,6 @@ def layout(found: Filled, wedges: np.ndarray, rms: float, settings: Settings) ->
         {
             "safe_length": ((*size, "shape", "share"), found.lengths.reshape(*grid, len(shapes), -1), metres),
             "flooded_length": ((*size, "shape"), np.reshape(limits, (*grid, -1)), metres),
-            "wedge": (size, wedges.reshape(grid), metres),
             "by_elements": (size, found.by_elements.reshape(grid).astype(np.int8), none),
             "power_law_error": ((), found.error, none),
             "film": ((), float(film), metres),

@@ -42,7 +42,6 @@ class OfDevice:
     """A device and its pair."""
 
     device: DesignedBeam
-    tip: float  #: length of the strips of tips [m]
     materials: Materials = ()  #: of its pair
 
 
@@ -93,7 +92,7 @@ def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan) -> dict[
     """
     shortest = found.safe_length.min("share")
     return {
-        shape: _of_length(float(shortest.sel(shape=shape)), shape, found.sel(shape=shape), of, plastic)
+        shape: _of_length(float(shortest.sel(shape=shape)), found, of, plastic)
         for shape in map(str, found["shape"].values)
     }
 
@@ -103,7 +102,7 @@ def of_chart(
 ) -> dict[tuple[float, float, str], list[str]]:
     """Warnings about the chart of a device by thickness [m], gap [m] and shape.
 
-    Each curve is checked at its shortest length, and with the shortest wedge at a tip in any air.
+    Each curve is checked at its shortest length.
 
     Parameters
     ----------
@@ -116,11 +115,10 @@ def of_chart(
     for thickness, gap, shape in curves(found[0]):
         along = [one.sel(thickness=thickness, gap=gap, shape=shape) for one in found]
         shortest = min(along, key=lambda one: float(one.safe_length.min()))
-        shortest = shortest.assign(wedge=min(float(one.wedge) for one in along))
         of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
         length = float(shortest.safe_length.min())
         warnings[thickness, gap, shape] = _of_length(
-            length, shape, shortest, of_size, plastic, min(float(one.film) for one in along)
+            length, shortest, of_size, plastic, min(float(one.film) for one in along)
         )
     return warnings
 
@@ -130,8 +128,8 @@ def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
     return list(product(*(chart[name].values.tolist() for name in ("thickness", "gap", "shape"))))
 
 
-def _of_length(length, shape, found, of, plastic, thinnest=None):
-    """Warnings about a device of a length [m] in a shape; film, rms, wedge and its limit from a dataset.
+def _of_length(length, found, of, plastic, thinnest=None):
+    """Warnings about a device of a length [m]; film and rms from a dataset.
 
     The thinnest film [m] is that of the dataset, or along the axis of a chart.
     """
@@ -140,7 +138,6 @@ def _of_length(length, shape, found, of, plastic, thinnest=None):
     return limits.of_beam(*sizes, float(found.film), float(found.rms)) + limits.given(
         limits.thin_film(thinnest or float(found.film)),
         limits.stretched_bridge(device.gap, device.thickness) if device.is_bridge else None,
-        limits.short_wedge(of.tip, float(found.wedge), float(found.flooded_length)) if shape == EITHER else None,
         *_of_contact(plastic, of.materials),
     )
 

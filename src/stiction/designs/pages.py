@@ -11,7 +11,6 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.designs import figures_budget, figures_devices, findings, tables_budget, tables_devices
-from stiction.designs.sticking import S_SHAPE
 from stiction.designs.stoppers import in_any_air, is_at_an_end, shares_stuck
 from stiction.devices.limits import NOT_MODELLED
 from stiction.report.format import UM, UN
@@ -232,23 +231,11 @@ def _facts_of(section):
 
 
 def safe_sentence(humidity: float, found: xr.Dataset) -> str:
-    """The safe lengths of a device at one humidity in words, for the middle one of the shares.
-
-    Where the strips of the tips are longer than the wedge, tips hold shorter beams than computed: the length in
-    saturated air is then the one that is safe, unless the computed one is still shorter.
-    """
+    """The safe lengths of a device at one humidity in words, for the middle one of the shares."""
     share = float(found.share[found.sizes["share"] // 2])
-    lengths, surest = found.safe_length.sel(share=share) / UM, float(found.flooded_length.min()) / UM
+    lengths = found.safe_length.sel(share=share) / UM
     shortest, longest = float(lengths.min()), float(lengths.max())
     air, but = f"At a relative humidity of {humidity:g}", f"at most 1 in {1 / share:g}"
-    if float(found.tip_strip) > float(found.wedge) and surest < shortest:
-        return (
-            f"{air}, devices of up to {surest:.0f} µm come free after they were pressed down: this is the length in "
-            f"saturated air, the shortest that water holds. The computed {shortest:.0f} µm, at which {but} stick (95 % "
-            "confidence, given the drawn surfaces), are an upper limit, because the strips of the tips are longer than "
-            "the wedge on which they act. If the tip cannot hold them, devices of up to "
-            f"{float(lengths.sel(shape=S_SHAPE)):.0f} µm come free, except for {but}."
-        )
     sentence = (
         f"{air}, devices of up to {shortest:.0f} µm come free after they were pressed down, except for {but} (95 % "
         "confidence, given the drawn surfaces)."

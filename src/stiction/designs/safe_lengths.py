@@ -8,9 +8,8 @@ import xarray as xr
 
 from stiction.contact.meniscus import meniscus_height
 from stiction.designs import cracks as stage_cracks
-from stiction.designs.patches import on_patch
 from stiction.designs.releases import DesignedBeam
-from stiction.designs.sticking import flooded_lengths, mean_wedge, safe_lengths, sticking_lengths
+from stiction.designs.sticking import flooded_lengths, safe_lengths, sticking_lengths
 from stiction.devices import arcs, risk
 from stiction.devices.risk import SafeLength
 from stiction.stages import curves
@@ -28,7 +27,6 @@ class Settings:
     humidity: float  #: [-]
     device: DesignedBeam
     shares: tuple[float, ...]  #: p [-]
-    tip: float  #: length of the strips of tips [m]
 
 
 def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
@@ -39,15 +37,13 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
     cracks : Dataset
         Of stage cracks.
     tips : Dataset or None
-        Contact of the strips that hold the tips, one for each beam; ``None`` for a bridge.
+        Contact of the tips, one for each beam; ``None`` for a bridge.
     settings : Settings
     """
     found, of_group, foundation = stage_cracks.lengths(cracks)
-    device, held, wedge = settings.device, None, np.nan
+    device, held = settings.device, None
     if tips is not None:
-        with on_patch(settings.tip, device.width):
-            held = arcs.arc_length(curves.tip_energies(tips, settings.humidity, settings.water), device.beam)
-        wedge = mean_wedge(tips, arcs.tip_slope(float(np.median(held)), device.gap), settings)
+        held = arcs.longest_free(*curves.tip_forces(tips, settings.humidity, settings.water), device.beam)
     sticking = sticking_lengths(found, foundation, device, held)
     groups = [sticking_lengths(one, foundation, device, held) for one in of_group]
     safe = {shape: safe_lengths(values, settings) for shape, values in sticking.items()}
@@ -55,14 +51,13 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
         shape: [[one.estimate for one in safe_lengths(group[shape], settings)] for group in groups] for shape in safe
     }
     errors = {shape: risk.error_of_surfaces(found) for shape, found in estimates.items()}
-    return layout(sticking, safe, errors, wedge, float(cracks.rms), settings)
+    return layout(sticking, safe, errors, float(cracks.rms), settings)
 
 
 def layout(
     sticking: Mapping[str, np.ndarray],
     safe: Mapping[str, Sequence[SafeLength]],
     surfaces: Mapping[str, np.ndarray],
-    wedge: float,
     rms: float,
     settings: Settings,
 ) -> xr.Dataset:
@@ -76,8 +71,6 @@ def layout(
         Safe lengths by shape, one for every share.
     surfaces : dict
         Standard errors due to the finite number of sampled surfaces by shape, (shares,) each [m].
-    wedge : float
-        Length of the wedge at the tip of a beam [m].
     rms : float
         Of the sum of both surfaces [m].
     settings : Settings
@@ -93,7 +86,7 @@ def layout(
         "surfaces_error": (list(surfaces.values()), "standard error, number of sampled surfaces"),
     }
     film = float(meniscus_height(settings.humidity, settings.water.temperature, settings.water.contact_angles))
-    scalars = {"film": film, "wedge": wedge, "tip_strip": settings.tip, "rms": rms}
+    scalars = {"film": film, "rms": rms}
     flooded = flooded_lengths(settings.device, settings.water, settings.humidity)
     return xr.Dataset(
         {

@@ -6,7 +6,6 @@ Separate from `stiction.designs.safe_lengths`, so that a change of the dataset o
 from typing import Protocol
 
 import numpy as np
-import xarray as xr
 
 from stiction.contact.bounds import flooded_law
 from stiction.contact.meniscus import film, flooded_energy
@@ -47,13 +46,6 @@ def flooded_lengths(device: DesignedBeam, water: curves.Water, humidity: float) 
         law = flooded_law(film(humidity, *wet), device.hamaker_constant)
         return [bridges.least_length(*law, device.beam)]
     return [flooded_length(device.beam, *wet), arcs.arc_length(flooded_energy(*wet), device.beam)]
-
-
-def mean_wedge(tips: xr.Dataset, slope: float | np.ndarray, settings: Settings) -> float | np.ndarray:
-    """Length of the wedge at a tip with a slope, any shape, from mean energy and mean pull-off force [m]."""
-    energies = curves.tip_energies(tips, settings.humidity, settings.water)
-    pulls = curves.tip_pull_offs(tips, settings.humidity, settings.water)
-    return arcs.wedge_length(energies.mean(), pulls.mean(), slope)
 
 
 def sticking_lengths(

@@ -1,16 +1,18 @@
-r"""Beams whose crack has run to the tip: whether the tip comes free (peel number of Mastrangelo and Hsu).
+r"""Beams whose crack has run to the tip: whether the tip comes free.
 
-A beam of length L that adheres as an arc, with its tip only, has the slope θ = 3h/2L there, and the adhesion acts on a
-wedge. The wedge pulls with :math:`w \int f(\theta x) dx = w e / \theta`. Equal to the force :math:`3 EI h / L^3` that
-bends the beam, this is
+A beam of length L that adheres as an arc, with its tip only, has the slope θ = 3h/2L there, and touches as a wedge. It
+comes free if the largest attraction P(θ) of the tilted tip is below the force :math:`3 EI h / L^3` that bends it.
 
-.. math:: e_\mathrm{tip} = \frac{3 E t^3 h^2}{8 L^4} :
+On uniform surfaces the wedge pulls with :math:`w \int f(\theta x) dx = w e / \theta`, and the balance is the peel
+number of Mastrangelo and Hsu,
 
-the tip comes free if its adhesion energy is smaller. The wedge is less than 0.1 µm long, far shorter than the strips of
-a beam, so that the end state ``ARC`` of the finite elements depends on their length and is not used here.
+.. math:: e = \frac{3 E t^3 h^2}{8 L^4} .
 
-ASSUME: the adhesion energy of the tip is that of a strip about as long as the wedge, drawn independently of the strips
-of the crack.
+On rough ones P follows from tilted strips, `stiction.contact.tilted`. The wedge is less than 0.2 µm long, far shorter
+than the strips of a beam, so that the end state ``ARC`` of the finite elements depends on their length and is not used
+here.
+
+ASSUME: the surface at the tip is drawn independently of the strips of the crack.
 """
 
 import numpy as np
@@ -31,9 +33,70 @@ def arc_length(energy: float | np.ndarray, beam: Beam) -> float | np.ndarray:
     return (3 / 8 * beam.young_modulus * beam.thickness**3 * beam.gap**2 / energy) ** (1 / 4)
 
 
-def wedge_length(energy: float, pull_off: float, slope: float | np.ndarray) -> float | np.ndarray:
-    """Length of the wedge on which adhesion acts at the tip of an arc, e / f_max over its slope, any shape [m].
+def longest_free(slopes: np.ndarray, forces: np.ndarray, beam: Beam) -> np.ndarray:
+    r"""Longest arcs that come free of the largest attraction P(θ) of their tips (m,) [m].
 
-    Adhesion energy e [J m⁻²], largest attraction f_max [Pa].
+    At the slope θ the length is 3h/2θ, so that the tip comes free if
+
+    .. math:: \frac{P(\theta)}{w} < \frac{8 EI \theta^3}{9 w h^2} .
+
+    Between the slopes, the logarithm of P is interpolated in the logarithm of the slope. Where a longer arc would come
+    free of a tip that holds a shorter one, the shorter one counts.
+
+    ASSUME: below the smallest slope, P grows as 1/θ, as on smooth surfaces. On rough ones it grows less, because a long
+    wedge touches higher summits: this is the safe side.
+
+    Parameters
+    ----------
+    slopes : (s,) array
+        Increasing [-].
+    forces : (m, s) array
+        P/w of every tip [N m⁻¹]; zero where it does not attract.
+    beam : Beam
+
+    Raises
+    ------
+    ValueError
+        If a tip holds the beam even at the largest slope.
     """
-    return energy / pull_off / slope
+    with np.errstate(divide="ignore"):
+        # Logarithm of P/w over the force that frees the tip: positive at the slopes at which it holds the beam.
+        excess = np.log(forces / bending_force(slopes, beam))
+    if np.any(excess[:, -1] >= 0):
+        raise ValueError(
+            f"{np.sum(excess[:, -1] >= 0)} of {len(forces)} tips hold beams of the largest slope that was computed, "
+            f"{slopes[-1]:.3g}: beams that are too steep for the linear theory"
+        )
+    logarithms = np.log(slopes)
+    held = excess >= 0
+    above = np.where(held.any(axis=1), len(slopes) - np.argmax(held[:, ::-1], axis=1), 0)
+    below, row = np.maximum(above - 1, 0), np.arange(len(forces))
+    step = logarithms[above] - logarithms[below]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        inverse = np.where(above > 0, step / (excess[row, below] - excess[row, above]), 1 / 4)
+        return 1.5 * beam.gap / np.exp(logarithms[below] + inverse * excess[row, below])
+
+
+def bending_force(slope: float | np.ndarray, beam: Beam) -> float | np.ndarray:
+    """Force at its tip that bends a beam to a slope there, 3 EI h / L³ per width [N m⁻¹]; slope of any shape [-]."""
+    return 3 * beam.bending_stiffness * beam.gap / (beam.width * (1.5 * beam.gap / slope) ** 3)
+
+
+#: Slopes at which tips are computed: those of tips in saturated air times this, at least; and the largest ratio of
+#: neighbours, for an error of the lengths below 0.2 %. Slopes are powers of the ratio, so that devices share them.
+_FLATTEST, _STEEPEST, _RATIO = 1 / 4, 1.5, 2**0.25
+
+
+def slopes_of_tips(*saturated: float) -> np.ndarray:
+    """Slopes at which the tips of several beams are computed, increasing (s,) [-].
+
+    ``saturated`` are their slopes at the lengths that hold in saturated air [-], where tips are steepest.
+
+    Examples
+    --------
+    >>> slopes_of_tips(0.128)[[0, -1]].round(4)
+    array([0.0313, 0.2102])
+    """
+    first = np.floor(np.log(_FLATTEST * min(saturated)) / np.log(_RATIO))
+    last = np.ceil(np.log(_STEEPEST * max(saturated)) / np.log(_RATIO))
+    return np.round(_RATIO ** np.arange(first, last + 1), 6)  # the same on all machines

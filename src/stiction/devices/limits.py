@@ -43,8 +43,7 @@ def arcs_of_elements(share: float, strip: float) -> str | None:
         return None
     return (
         f"{100 * share:.4g} % of the beams end as arcs, held by the tip only. This share depends on the strip length, "
-        f"here {strip * 1e6:.3g} µm: P(stuck) of a cantilever in section devices has arcs on shorter strips, close to "
-        "the length of the wedge at the tip."
+        f"here {strip * 1e6:.3g} µm: P(stuck) of a cantilever in section devices has arcs on tilted strips at the tip."
     )
 
 
@@ -172,20 +171,6 @@ def stretched_bridge(gap: float, thickness: float) -> str | None:
         f"The gap is {size} of the bridge: its stretching, which is left out, helps to free it. Bridges would come "
         "free that are up to 5 % longer at a gap of half the thickness, up to 16 % where both are equal, and more "
         "beyond. The prediction is on the safe side."
-    )
-
-
-def short_wedge(strip: float, wedge: float, flooded: float) -> str | None:
-    """Strips that are longer than the wedge at the tip of an arc: shorter strips hold more, so that tips do as well.
-
-    ``flooded`` is the length that the tip holds in saturated air.
-    """
-    if strip <= wedge:
-        return None
-    return (
-        f"The adhesion of the tip comes from strips of {strip * 1e6:.3g} µm, longer than the wedge on which it acts, "
-        f"{wedge * 1e6:.3g} µm: tips hold shorter beams than computed, which is the unsafe side. The length in "
-        f"saturated air, {flooded * 1e6:.0f} µm, the shortest that water holds, is safe."
     )
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.contact.pair import DistanceGrid, contacts_of_samples
+from stiction.contact.tilted import TiltedPair
 from stiction.progress import progress
 from stiction.stages.pairs import Settings, streams_of_sides, surface_pairs
 
@@ -49,7 +50,8 @@ def compute_each(
     samples = range(settings.contact.samples) if samples is None else samples
     streams = streams_of_sides(settings.seed, pair)
     found = contacts_of_samples(pairs, streams, progress(samples, "surface pairs"))
-    return [layout(*curves, one.distances, samples) for curves, one in zip(found, pairs, strict=True)]
+    datasets = [layout(*curves, one.distances, samples) for curves, one in zip(found, pairs, strict=True)]
+    return [of_tips(*each) for each in zip(datasets, pairs, strict=True)] if settings.tilt else datasets
 
 
 def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceGrid, samples: range) -> xr.Dataset:
@@ -58,15 +60,16 @@ def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceG
     Parameters
     ----------
     solid_pressure, bearing_area : (n, n_solid), (n, n_bearing) arrays
-        Solid pressure p_s [Pa] and bearing area A [-].
+        Solid pressure p_s [Pa] and bearing area A [-]; of tips (n, n_slopes, n_solid) and so on.
     grid : DistanceGrid
     samples : range
         Indices of the samples within the study.
     """
+    over = ("sample", "slope") if np.ndim(solid_pressure) == 3 else ("sample",)
     return xr.Dataset(
         {
-            "solid_pressure": (("sample", "distance"), np.asarray(solid_pressure, np.float32), {"units": "Pa"}),
-            "bearing_area": (("sample", "height"), np.asarray(bearing_area, np.float32), {"units": "1"}),
+            "solid_pressure": ((*over, "distance"), np.asarray(solid_pressure, np.float32), {"units": "Pa"}),
+            "bearing_area": ((*over, "height"), np.asarray(bearing_area, np.float32), {"units": "1"}),
             "step": ((), grid.step, {"units": "m"}),
         },
         coords={
@@ -75,6 +78,12 @@ def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceG
             "height": ("height", grid.bearing, {"units": "m"}),
         },
     )
+
+
+def of_tips(contact: xr.Dataset, pair: TiltedPair) -> xr.Dataset:
+    """Dataset of tips: with their slopes, and the length of the strip to which pressures and areas refer."""
+    slopes = ("slope", list(pair.tilt.slopes), {"units": "1"})
+    return contact.assign(length=((), pair.length, {"units": "m"})).assign_coords(slope=slopes)
 
 
 def chunk(samples: int, number: int, chunks: int) -> range:

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.config.units import from_si
 from stiction.contact import forcelaw
-from stiction.contact.meniscus import film, flooded_energy
+from stiction.contact.meniscus import film
+from stiction.contact.tilted import largest_attractions
 from stiction.stages.contact import tables
 
 
@@ -29,31 +31,21 @@ def energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     return forcelaw.adhesion_energies(*force_curves(contact, humidity, water), contact.sizes["sample"])
 
 
-def tip_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
-    """Adhesion energies e of strips as short as the wedge at the tip of a beam (m,) [J m⁻²].
+def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, np.ndarray]:
+    """Slopes of tips (s,) [-] and the largest attraction of each tip at each slope, per width of the beam (m, s) [N/m].
 
-    ASSUME: where the solids stop the attraction at no distance between the mean planes, because a short strip lies low
-    as a whole (1 of 40 000 tips of pair b), the energy is that of flooded flats, the largest that water alone can give.
+    Raises
+    ------
+    ValueError
+        If the film is higher than the contact of the tips reaches.
     """
-    distance, curve = force_curves(contact, humidity, water)
-    flooded = flooded_energy(water.temperature, water.contact_angles)
-    forces = map(curve, range(contact.sizes["sample"]))
-    return np.array([forcelaw.adhesion_energy(distance, f) if _resist(f) else flooded for f in forces])
-
-
-def tip_pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
-    """Largest attraction f_max of the strips of `tip_energies` (m,) [Pa].
-
-    ASSUME: where the solids do not stop the attraction, f_max is the largest on the grid, at the mean planes or above.
-    """
-    distance, curve = force_curves(contact, humidity, water)
-    forces = map(curve, range(contact.sizes["sample"]))
-    return np.array([forcelaw.extremum(distance, f)[1] if _resist(f) else -f.min() for f in forces])
-
-
-def _resist(force):
-    """Whether the solids stop the attraction at some distance below that of its maximum."""
-    return force[: int(np.argmin(force)) + 1].max() >= 0
+    layer, reach = film(humidity, water.temperature, water.contact_angles), -float(contact.height[0])
+    if layer[0] > reach:
+        raise ValueError(
+            f"the contact of the tips is for films of up to {from_si(reach, 'nm'):.3g} nm, and that at a relative "
+            f"humidity of {humidity:g} is {from_si(layer[0], 'nm'):.3g} nm high: state this humidity with the device"
+        )
+    return contact.slope.values, largest_attractions(*tables(contact), layer) * float(contact.length)
 
 
 def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:

@@ -5,6 +5,7 @@ Separate from `stiction.stages.contact`, because studies use the same pairs for 
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -13,6 +14,7 @@ import xarray as xr
 from stiction.contact import solids
 from stiction.contact.asperity import Asperity
 from stiction.contact.pair import EquivalentSurface, SurfacePair
+from stiction.contact.tilted import Tilt, TiltedPair
 from stiction.models import SIDES
 from stiction.stages.surfaces import Sampling, Width, rough_surface
 from stiction.streams import stream
@@ -66,6 +68,7 @@ class Settings:
     beam: Width
     surfaces: tuple[str, ...] = ()  #: names of the two surfaces; they do not affect the results
     materials: Materials = field(default_factory=dict)
+    tilt: Tilt | None = None  #: of the tips of beams, with the step of their distances; none for surfaces without slope
 
 
 def bodies(settings: Solids) -> tuple[solids.Solid, solids.Solid]:
@@ -101,9 +104,10 @@ def surface_pairs(
     distinct = {id(datasets): datasets for surfaces in alternatives for datasets in surfaces}
     built = {key: rough_surface(*datasets, model, grid) for key, datasets in distinct.items()}
     step, every = settings.contact.distance_step, settings.contact.every
-    return [
-        SurfacePair(*(built[id(one)] for one in surfaces), step, every, asperity=solid) for surfaces in alternatives
-    ]
+    build = partial(SurfacePair, asperity=solid)
+    if settings.tilt:
+        build = partial(TiltedPair, asperity=solid, tilt=settings.tilt)
+    return [build(*(built[id(one)] for one in surfaces), step, every) for surfaces in alternatives]
 
 
 def streams_of_sides(seed: int, pair: str) -> Callable[[int], tuple[np.random.Generator, ...]]:

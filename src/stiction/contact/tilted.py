@@ -1,0 +1,223 @@
+r"""Contact of a strip of rough surface that is tilted about its edge: the tip of a beam (independent of humidity).
+
+A tip with the slope θ touches as a wedge. At the distance d between the mean planes at the edge, a point of height z at
+the distance x from the edge is as high as one of height z - θx on a strip without slope. The first row of grid points
+lies on the edge.
+
+ASSUME: the edge is one of two, between which the truth lies. A rounded edge carries neither solids nor water, and the
+summits are those of the surface before it is tilted; this is the safe side. A square edge touches as well: the summits
+are the maxima of the tilted surface, and those on its edge are spheres of the curvature along it.
+"""
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numba
+import numpy as np
+
+from stiction.contact.forcelaw import apparent_force
+from stiction.contact.pair import DistanceGrid, Summits, SurfacePair, solid_pressure
+from stiction.surface.summits import mark_summits, mean_curvature
+
+#: Largest radius of a maximum of a square edge [m]. ASSUME: flatter ones, whose curvature the grid does not resolve,
+#: would attract without bound.
+LARGEST_RADIUS = 2e-6
+
+
+class Edge(StrEnum):
+    """What the edge of a tip carries."""
+
+    ROUNDED = "rounded"  #: nothing
+    SQUARE = "square"  #: forces of its own maxima
+
+
+@dataclass(frozen=True)
+class Tilt:
+    """Slopes of a strip and its edge."""
+
+    slopes: tuple[float, ...]  #: increasing [-]
+    reach: float  #: how far below the distances points count as wet: at least the height of the film [m]
+    edge: Edge = Edge.ROUNDED
+
+
+@dataclass(frozen=True)
+class TiltedPair(SurfacePair):
+    """Two surfaces in contact at several slopes."""
+
+    tilt: Tilt = field(kw_only=True)
+
+    @property
+    def depth(self) -> float:
+        """How far below the mean plane the distances begin, which are measured from there [m].
+
+        ASSUME: no tip is pressed deeper than three times the rms of the heights. The edge of a narrow beam, whose wedge
+        has few summits, may be drawn below its mean plane.
+        """
+        return 3 * float(np.hypot(self.beam.rms, self.substrate.rms))
+
+    @property
+    def distances(self) -> DistanceGrid:
+        """Grid of the distances at the edge from `depth`, up to the highest possible height."""
+        above = int(np.ceil(self.depth / self.step)) + super().distances.above
+        return DistanceGrid(self.step, int(np.ceil(self.tilt.reach / self.step)), above)
+
+    @property
+    def spacing(self) -> float:
+        """Of the grid of the contact [m]."""
+        return self.beam.grid.spacing * self.every
+
+    @property
+    def length(self) -> float:
+        """Of the part of the strip that its points stand for [m]."""
+        return (len(range(0, self.beam.grid.shape[0], self.every)) - 1 + first_weight(self.tilt.edge)) * self.spacing
+
+    def contact(self, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Solid pressure and bearing area of one equivalent surface (n1, n2) [m] at every slope.
+
+        Both refer to the area of the strip, whose first axis begins at the edge.
+
+        Returns
+        -------
+        solid_pressure : (n_slopes, n_solid) array
+            At ``distances.solid`` [Pa].
+        bearing_area : (n_slopes, n_bearing) array
+            At ``distances.bearing`` [-].
+        """
+        grid, square, first = self.distances, self.tilt.edge == Edge.SQUARE, first_weight(self.tilt.edge)
+        upright = summits_by_row(heights, self.spacing, 0.0)
+        solid, bearing = [], []
+        for slope in self.tilt.slopes:
+            rise = slope * self.spacing
+            rows, tops, curvatures = summits_by_row(heights, self.spacing, rise) if square else upright
+            lowered = tops - rise * rows + self.depth
+            if square:
+                of_edge, along = edge_maxima(heights, self.spacing, rise)
+                lowered, curvatures = np.append(lowered, of_edge + self.depth), np.append(curvatures, along)
+            # ASSUME: no point at the sides of a strip is a summit, as in the contact without slope.
+            area = self.length * (heights.shape[1] - 2) * self.spacing
+            solid.append(solid_pressure(self.asperity, Summits(lowered, curvatures, area), grid))
+            bearing.append(tilted_bearing_area(heights, (rise, self.depth), first, grid.step, (grid.below, grid.above)))
+        return np.array(solid), np.array(bearing)
+
+
+def first_weight(edge: Edge) -> float:
+    """Share of a cell of the grid that wets on the row of points at the edge [-].
+
+    The strip then ends where its first summits do: half of a point outside the first inner row, or on the edge itself.
+    With another weight, lengths would depend on the grid: with half of a cell at a rounded edge, those of pair b change
+    by up to 9 % from 10 to 5 nm, and with none by 2 ± 1 %.
+    """
+    return 0.5 if edge == Edge.SQUARE else 0.0
+
+
+@numba.njit(cache=True, nogil=True)
+def _lowered(heights, i, rise, out):
+    """Write rows i - 1, i and i + 1 of a strip that falls by ``rise`` per row, seen from row i, to ``out`` (3, n2)."""
+    for k in range(3):
+        for j in range(heights.shape[1]):
+            out[k, j] = heights[i + k - 1, j] - (k - 1) * rise
+
+
+@numba.njit(cache=True, nogil=True)
+def _collect(heights, spacing, rise, rows, tops, curvatures):
+    count, marks, near = 0, np.empty(heights.shape[1], np.bool_), np.empty((3, heights.shape[1]))
+    for i in range(1, heights.shape[0] - 1):
+        _lowered(heights, i, rise, near)
+        mark_summits(near, 1, marks)
+        for j in range(1, heights.shape[1] - 1):
+            if marks[j]:
+                rows[count], tops[count] = i, heights[i, j]
+                curvatures[count] = mean_curvature(heights, i, j, spacing)
+                count += 1
+    return count
+
+
+def summits_by_row(heights: np.ndarray, spacing: float, rise: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Maxima of a strip (n1, n2) [m] that falls by ``rise`` [m] per row: row, height without slope, mean curvature.
+
+    Each (m,) [-], [m], [m⁻¹]; the slope does not change the curvature. Edges have no summits.
+    """
+    inner = (heights.shape[0] - 2) * (heights.shape[1] - 2)
+    rows, tops, curvatures = np.empty(inner), np.empty(inner), np.empty(inner)
+    count = _collect(heights, spacing, rise, rows, tops, curvatures)
+    return rows[:count].copy(), tops[:count].copy(), curvatures[:count].copy()
+
+
+def edge_maxima(heights: np.ndarray, spacing: float, rise: float) -> tuple[np.ndarray, np.ndarray]:
+    """Heights and curvatures of the maxima on the edge of a strip (n1, n2) [m] that falls by ``rise`` [m] per row.
+
+    Each (m,) [m], [m⁻¹]. They are higher than their five neighbours; the curvature is that along the edge, and at least
+    that of the `LARGEST_RADIUS`.
+    """
+    edge, inner = heights[0].astype(float), heights[1] - rise
+    middle = edge[1:-1]
+    neighbours = [edge[:-2], edge[2:], inner[:-2], inner[1:-1], inner[2:]]
+    maxima = np.all([middle > other for other in neighbours], axis=0)
+    curvatures = (2 * middle - edge[:-2] - edge[2:]) / spacing**2
+    return middle[maxima], np.maximum(curvatures[maxima], 1 / LARGEST_RADIUS)
+
+
+@numba.njit(cache=True, nogil=True)
+def tilted_bearing_area(
+    heights: np.ndarray, level: tuple[float, float], first: float, step: float, numbers: tuple[int, int]
+) -> np.ndarray:
+    """Share of the area of a strip (n1, n2) [m] that is higher than each distance at its edge [-].
+
+    ``level``: by how much the strip falls per row, and the depth from which the distances are measured [m]. Its first
+    row has the weight ``first``. ``numbers`` are those of the distances, ``step * arange(-below, above)`` [m].
+    """
+    (below, above), (rise, depth) = numbers, level
+    count = np.zeros(below + above + 1)
+    inverse, highest = 1 / step, np.float64(heights.max())
+    for i in range(heights.shape[0]):
+        lowered, weight = rise * i - depth, first if i == 0 else 1.0
+        if highest - lowered < -below * step:  # this row and those behind it are lower than all distances
+            break
+        for j in range(heights.shape[1]):
+            cell = int(np.floor((heights[i, j] - lowered) * inverse)) + below + 1
+            count[min(max(cell, 0), below + above)] += weight
+    area, higher = np.zeros(below + above), 0.0
+    for k in range(below + above, 0, -1):
+        higher += count[k]
+        area[k - 1] = higher / ((heights.shape[0] - 1 + first) * heights.shape[1])
+    return area
+
+
+@numba.njit(cache=True, nogil=True)
+def largest_attractions(
+    solid: np.ndarray, bearing: np.ndarray, starts: tuple[float, float], step: float, film: tuple[float, float]
+) -> np.ndarray:
+    """Largest attraction of every strip at every slope under one water film, per area of the strip (m, n_slopes) [Pa].
+
+    Parameters
+    ----------
+    solid, bearing : (m, n_slopes, n_s) and (m, n_slopes, n_b) arrays
+        Pressure of the solids p_s [Pa] and bearing area [-].
+    starts : tuple of 2 floats
+        Distance at the first node of ``solid`` and of ``bearing`` [m].
+    step : float
+        Common spacing of the grids [m].
+    film : tuple of 2 floats
+        Height h_C and tension of the water [m], [Pa].
+
+    Where a curve attracts most at its first node, because too few summits stop the tip, it is the force there.
+    """
+    samples, slopes, points = solid.shape
+    found, force = np.empty((samples, slopes)), np.empty(points)
+    for k in range(samples):
+        for i in range(slopes):
+            ends = (starts[0], starts[1], starts[0])
+            apparent_force(solid[k, i], bearing[k, i], ends, step, film[0], film[1], force)
+            found[k, i] = _largest(force)
+    return found
+
+
+@numba.njit(cache=True, nogil=True)
+def _largest(force):
+    """Largest attraction of a curve, by a parabola through its lowest three nodes; that of a node at its ends."""
+    i = np.argmin(force)
+    if i == 0 or i == force.size - 1:
+        return -force[i]
+    slope = 0.5 * (force[i + 1] - force[i - 1])
+    bend = force[i + 1] - 2 * force[i] + force[i - 1]
+    return -force[i] + 0.5 * slope * slope / bend if bend > 0 else -force[i]
