@@ -1,6 +1,8 @@
-"""The package installed from its wheel works in any folder, without checkout and without Snakemake."""
+"""The package installed from its wheel works in any folder, without checkout; all but its runs without Snakemake."""
 
 import json
+import os
+import re
 import shutil
 import subprocess
 import sys
@@ -53,8 +55,10 @@ def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("wheel")
     source = folder / "source"
     shutil.copytree(ROOT / "src", source / "src", ignore=shutil.ignore_patterns("*.egg-info", "__pycache__"))
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
+    for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE", "Snakefile", "config.yaml"):
         shutil.copy(ROOT / name, source)
+    for name in ("workflow", "profiles", "examples"):
+        shutil.copytree(ROOT / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
     pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet"]
     subprocess.run([*pip, "wheel", "--no-deps", "--no-build-isolation", "-w", folder, source], check=True)
     (wheel,) = folder.glob("*.whl")
@@ -63,11 +67,24 @@ def site(tmp_path_factory):
 
 
 def test_the_wheel_holds_all_files_that_the_package_reads(site):
-    names = ("config/schema.yaml", "config/paper.yaml", "report/stiction.mplstyle", "py.typed")
+    names = ("config/schema.yaml", "config/paper.yaml", "command/study.yaml", "report/stiction.mplstyle", "py.typed")
     for name in names:
         assert (site / "stiction" / name).read_bytes() == (ROOT / "src" / "stiction" / name).read_bytes()
     modules = {path.relative_to(ROOT / "src") for path in (ROOT / "src" / "stiction").rglob("*.py")}
-    assert modules == {path.relative_to(site) for path in (site / "stiction").rglob("*.py")}
+    travelled = {path.relative_to(site) for path in (site / "stiction").rglob("*.py")}
+    assert modules == {path for path in travelled if path.parts[1] != "project"}
+
+
+def test_the_wheel_holds_the_workflow_as_it_is_in_the_repository(site):
+    project = site / "stiction" / "project"
+    names = ["Snakefile", "config.yaml", "examples/devices.yaml"]
+    for folder in ("workflow", "profiles"):
+        files = (path for path in (ROOT / folder).rglob("*") if path.is_file() and path.suffix != ".pyc")
+        names += [path.relative_to(ROOT).as_posix() for path in files]
+    found = {path.relative_to(project).as_posix(): path for path in project.rglob("*") if path.is_file()}
+    assert set(found) == set(names)
+    for name, path in found.items():
+        assert path.read_bytes() == (ROOT / name).read_bytes()
 
 
 @pytest.fixture
@@ -97,3 +114,59 @@ def test_beams_are_computed_without_checkout_and_snakemake(alone):
     cracks = alone(BEAMS)
     assert len(cracks) == 2
     assert all(0 < crack < 1500e-6 for crack in cracks)
+
+
+@pytest.fixture(scope="module")
+def python(site, tmp_path_factory):
+    """Python of a virtual environment that holds the wheel, and finds the libraries but no other stiction."""
+    folder = tmp_path_factory.mktemp("environment")
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", folder], check=True)
+    (packages,) = folder.glob("lib/python*/site-packages")
+    # The folder of the libraries is not searched for .pth files, of which one leads to the checkout.
+    (packages / "libraries.pth").write_text(f"{site}\n{sysconfig.get_paths()['purelib']}\n", encoding="utf-8")
+    return folder / "bin" / "python"
+
+
+@pytest.fixture
+def command(python, tmp_path):
+    """Run the command of the wheel in an empty folder; returns its exit status and what it prints."""
+
+    def run(*words):
+        call = [python, "-m", "stiction.command.main", *words]
+        environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "PYTHON"))}
+        done = subprocess.run(
+            call, cwd=tmp_path, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+        )
+        return done.returncode, done.stdout
+
+    return run
+
+
+def test_the_wheel_installs_the_command_and_the_plugin_of_snakemake(site):
+    (scripts,) = site.glob("*.dist-info/entry_points.txt")
+    assert "stiction = stiction.command.main:main" in scripts.read_text(encoding="utf-8")
+    assert (site / "snakemake_logger_plugin_stiction" / "__init__.py").exists()
+
+
+def test_the_command_plans_every_kind_of_run_in_an_empty_folder(command, tmp_path):
+    status, printed = command("init")
+    assert status == 0, printed
+    assert command("check", "study.yaml") == (0, "study.yaml can run: pair mine.\n")
+    for words in (("paper",), ("devices",), ("run", "study.yaml"), ("figures", "study.yaml")):
+        status, printed = command(*words, "--dry-run")
+        assert status == 0, printed
+        assert re.match(r"\d+ jobs would run\.\n", printed), printed
+    assert command("report")[0] == 2
+    assert [path.name for path in tmp_path.iterdir() if path.name != ".snakemake"] == ["study.yaml"]
+
+
+def test_jobs_run_in_an_empty_folder_on_the_code_of_the_wheel(command, site, tmp_path):
+    (tmp_path / "tiny.yaml").write_text("identification: {patches: 2, patch_um: 2}\n", encoding="utf-8")
+    targets = ["results/heights/B1.nc", "results/tables/table_2.csv"]
+    status, printed = command("run", "tiny.yaml", "--", *targets)
+    assert status == 0, printed
+    assert all((tmp_path / target).exists() for target in targets)
+    (run,) = json.loads((tmp_path / "results" / "provenance.json").read_text(encoding="utf-8"))
+    assert run["git"] is None
+    (log,) = (tmp_path / ".snakemake" / "log").glob("*.log")
+    assert f"Snakefile: {site}" in log.read_text(encoding="utf-8")

@@ -21,7 +21,9 @@ DONE = heard(plan(beams=2), start(0), start(1, at=70), end(0, 70), end(1, 119))
         (heard(plan(verdict=2), start(0, "verdict"), failure(0, "verdict")), 1, False, Status.CHECKS),
         (heard(start(0, "verdict"), failure(0, "verdict"), start(1), failure(1)), 1, False, Status.FAILED),
         (heard(record("no", event="error")), 1, False, Status.REFUSED),
-        (heard(plan(beams=2)), 2, False, Status.REFUSED),
+        (heard(plan(beams=2), record("no", event="error")), 1, False, Status.REFUSED),
+        (heard(plan(beams=2), record("x", event="error", exception="CalledProcessError")), 1, False, Status.FAILED),
+        (heard(), 2, False, Status.REFUSED),
         (heard(plan(beams=2), start(0)), 1, False, Status.FAILED),
     ],
 )
@@ -46,6 +48,8 @@ def test_a_run_that_was_stopped_says_how_to_continue(tmp_path):
 def test_a_refusal_is_the_last_line(tmp_path):
     assert lines(heard(record("no", event="error")), Status.REFUSED, tmp_path, "other") == ["no"]
     assert lines(heard(), Status.REFUSED, tmp_path, "usage") == ["usage"]
+    run = heard(record("x returned 1", event="error", exception="CalledProcessError"))
+    assert lines(run, Status.FAILED, tmp_path, "OSError: y") == ["OSError: y"]
 
 
 def test_a_failure_ends_with_its_sentence_and_the_path_of_its_log(tmp_path, monkeypatch):

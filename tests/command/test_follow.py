@@ -63,6 +63,16 @@ def test_short_and_long_jobs_are_expected_to_take_as_long_as_those_of_their_rule
     assert run.seconds_left(201) == pytest.approx(100 + 11, rel=0.01)
 
 
+def test_the_time_left_falls_by_the_clock_until_the_next_job_finishes():
+    run = heard(plan(beams=5))
+    for number in range(3):
+        run.hear(start(number, at=10.0 * number))
+        run.hear(end(number, at=10.0 * number + 10))
+    assert run.seconds_left(30) == pytest.approx(20)
+    assert run.seconds_left(45) == pytest.approx(5)
+    assert run.seconds_left(51) is None
+
+
 def test_nothing_is_estimated_from_the_first_moments():
     run = heard(plan(beams=10), start(0), end(0, 1), start(1, at=1), end(1, 2))
     assert run.seconds_left(2) is None

@@ -1,12 +1,14 @@
 """Progress of a run: one line that is drawn again on a terminal, and few lines otherwise."""
 
 import shutil
+import threading
+import time
 from typing import TextIO
 
 from stiction.command.follow import Run
 
-#: Shortest time between two lines of a log, and between two drawings on a terminal [s].
-_APART, _REDRAWN = 30.0, 0.1
+#: Time between two lines of a file, and between two drawings on a terminal [s].
+_APART, _REDRAWN = 30.0, 1.0
 _START = "loading; after an installation, compiling for a minute"
 
 
@@ -15,43 +17,49 @@ class Display:
 
     Parameters
     ----------
+    run : Run
     stream : file
-        A terminal or a file.
+        On a terminal, the line is drawn again every second until `close`; a file gets a line from time to time.
     """
 
-    def __init__(self, stream: TextIO):
-        self._stream, self._redraws = stream, stream.isatty()
-        self._last, self._drawn = 0.0, False
+    def __init__(self, run: Run, stream: TextIO):
+        self._run, self._stream = run, stream
+        self._last, self._closed = 0.0, threading.Event()
+        self._clock = threading.Thread(target=self._draw, daemon=True) if stream.isatty() else None
+        if self._clock:
+            self._clock.start()
 
-    def __call__(self, run: Run, now: float) -> None:
-        """Show how far a run is, unless this was shown a moment ago."""
-        if run.planned and now - self._last >= (_REDRAWN if self._redraws else _APART):
+    def _draw(self):
+        """Draw the line until the end."""
+        while not self._closed.wait(_REDRAWN):
+            width = shutil.get_terminal_size().columns - 1
+            self._write(f"\r\x1b[K{line(self._run, time.time())[:width]}")
+
+    def __call__(self, now: float) -> None:
+        """Write a line to a file, unless this was done a moment ago."""
+        if self._clock is None and self._run.planned and now - self._last >= _APART:
             self._last = now
-            self._write(line(run, now))
+            self._write(f"{line(self._run, now)}\n")
 
     def _write(self, text):
-        if self._redraws:
-            self._drawn = True
-            width = shutil.get_terminal_size().columns - 1
-            self._stream.write(f"\r\x1b[K{text[:width]}")
-        else:
-            self._stream.write(f"{text}\n")
+        self._stream.write(text)
         self._stream.flush()
 
-    def clear(self) -> None:
+    def close(self) -> None:
         """Remove the line from a terminal."""
-        if self._drawn:
-            self._stream.write("\r\x1b[K")
-            self._stream.flush()
-            self._drawn = False
+        self._closed.set()
+        if self._clock:
+            self._clock.join()
+            self._write("\r\x1b[K")
 
 
 def line(run: Run, now: float) -> str:
     """How far a run is, in one line: jobs, time left, and the job that started last."""
     left = run.seconds_left(now)
     remaining = "" if left is None else f", about {duration(left)} left"
-    latest = max(run.jobs.values(), key=lambda job: job.started).message if run.jobs else _START
-    return f"{run.done} of {run.total} jobs{remaining}: {latest}"
+    jobs = list(run.jobs.values())  # another thread adds jobs
+    latest = max(jobs, key=lambda job: job.started).message if jobs else _START
+    return f"{run.done} of {run.total} jobs{remaining}: {latest}" if run.planned else "planning"
 
 
 def duration(seconds: float) -> str:

@@ -38,7 +38,7 @@ def status(run: Run, code: int, stopped: bool) -> Status:
         return Status.DONE
     if {job.rule for job in run.failures.values()} == {_VERDICT}:
         return Status.CHECKS
-    return Status.FAILED if run.failures or run.jobs else Status.REFUSED
+    return Status.FAILED if run.failures or run.jobs or (run.planned and not run.refusal) else Status.REFUSED
 
 
 def last_lines(run: Run, ended: Status, directory: Path, printed: str = "") -> Iterator[str]:

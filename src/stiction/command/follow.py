@@ -46,10 +46,12 @@ class Run:
         Whether there was nothing to do.
     started, last : float
         Times of the first and the last report [s since the epoch].
+    ended : float
+        Time at which the last job finished [s since the epoch].
     quiet : bool
         Whether Snakemake prints nothing itself.
     changed : callable
-        Called with the run and the time after each report.
+        Called with the time of each report.
     """
 
     planned: Counter = field(default_factory=Counter)
@@ -61,13 +63,14 @@ class Run:
     up_to_date: bool = False
     started: float | None = None
     last: float = 0.0
+    ended: float = 0.0
     quiet: bool = True
-    changed: Callable[["Run", float], None] | None = None
+    changed: Callable[[float], None] | None = None
 
     @property
     def done(self) -> int:
         """Number of finished jobs."""
-        return sum(map(len, self.seconds.values()))
+        return sum(map(len, list(self.seconds.values())))
 
     @property
     def total(self) -> int:
@@ -84,7 +87,7 @@ class Run:
         elif event is None:
             self._hear_text(record)
         if self.changed:
-            self.changed(self, record.created)
+            self.changed(record.created)
 
     def _hear_text(self, record):
         """A sentence without a kind."""
@@ -106,6 +109,7 @@ class Run:
 
     def _hear_end(self, record):
         """A job has finished."""
+        self.ended = record.created
         job = self.jobs[record.job_id]
         self.seconds.setdefault(job.rule, []).append(record.created - job.started)
 
@@ -115,25 +119,27 @@ class Run:
         self.failures[record.jobid] = replace(job, logs=tuple(map(str, record.log)))
 
     def _hear_error(self, record):
-        """An error of the run itself."""
-        self.refusal = _ORIGIN.sub("", str(record.msg)).strip()
+        """An error of the run itself; that of a command which a run starts says less than what the command printed."""
+        if getattr(record, "exception", "") != "CalledProcessError":
+            self.refusal = _ORIGIN.sub("", str(record.msg)).strip()
 
     def seconds_left(self, now: float) -> float | None:
-        """Estimate of the time that the run still takes [s]; ``None`` while too little is known.
+        """Estimate of the time that the run still takes [s]; ``None`` while too little is known, or when it is over.
 
         A job is expected to take as long as the finished jobs of its rule, or else as long as all jobs so far. The
-        speed is that of the run so far, so that the estimate includes the number of cores.
+        speed is that of the run until a job finished last, so that the estimate includes the number of cores.
         """
-        started = min((job.started for job in self.jobs.values()), default=now)
-        if self.done < 3 or now - started < 5:
+        elapsed = self.ended - min((job.started for job in list(self.jobs.values())), default=now)
+        finished = sum(map(sum, list(self.seconds.values())))
+        if self.done < 3 or elapsed < 5 or not finished:
             return None
-        finished = sum(map(sum, self.seconds.values()))
-        expected = {rule: sum(spent) / len(spent) for rule, spent in self.seconds.items()}
-        left = sum(
-            (number - len(self.seconds.get(rule, ()))) * expected.get(rule, finished / self.done)
-            for rule, number in self.planned.items()
-        )
-        return (now - started) * left / finished if finished else None
+        left = elapsed * self._expected(finished / self.done) / finished - (now - self.ended)
+        return left if left >= 0 else None
+
+    def _expected(self, mean):
+        """Time that all jobs take that have not finished [s]; the mean is for rules of which no job has finished."""
+        spent = ((number, self.seconds.get(rule, ())) for rule, number in self.planned.items())
+        return sum((number - len(times)) * (sum(times) / len(times) if times else mean) for number, times in spent)
 
 
 _EVENTS = {

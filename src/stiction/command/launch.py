@@ -85,10 +85,10 @@ def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: 
     RUN.quiet = quiet
     try:
         with _kept_errors(directory) if quiet else contextlib.nullcontext() as terminal:
-            RUN.changed = display = Display(terminal) if quiet and progress else None
+            RUN.changed = display = Display(RUN, terminal) if quiet and progress else None
             code = _code(cli.main, ["--logger", "stiction", *arguments])
             if display:
-                display.clear()
+                display.close()
             return code, bool(stopped)
     finally:
         signal.signal(signal.SIGINT, signal.default_int_handler)
