@@ -17,7 +17,8 @@ HOLD = 2.0
 #: Confidence of bounds and bands.
 CONFIDENCE = 0.95
 #: Smallest share down to which the fit of the lowest lengths has been verified by brute force: by 110 000 S-shapes and
-#: 200 000 tips of the paper's pair b. ASSUME: of bridges as well, which 20 000 of them confirm down to 1e-3.
+#: 200 000 strips of 0.05 µm of the paper's pair b. ASSUME: of tilted tips, and of bridges as well, which 20 000 of them
+#: confirm down to 1e-3.
 VERIFIED = 1e-4
 #: Expected number of samples below a length that is called fitted: one decade below the lowest sample.
 DECADE = 0.1
