@@ -162,11 +162,25 @@ def test_a_space_in_the_name_of_the_configuration_is_rejected(tmp_path):
     assert "CONFIG contains a space (my file.yaml): rename the file" in done.stdout
 
 
-def test_a_smoke_run_takes_the_configuration_of_the_user(tmp_path):
+@pytest.mark.parametrize(
+    ("words", "called"),
+    [
+        ("paper", "paper -- "),
+        ("paper CONFIG=mine.yaml", "run mine.yaml -- "),
+        ("run CONFIG=mine.yaml ARGS=-n", "run mine.yaml -- -n"),
+        ("smoke CONFIG=mine.yaml", "run workflow/smoke.yaml mine.yaml --directory runs/smoke -- "),
+        ("devices", "devices  --directory runs/devices -- "),
+        ("devices CONFIG=mine.yaml", "devices mine.yaml --directory runs/devices -- "),
+        ("example", "run runs/example/mine.yaml --directory runs/example -- measured "),
+        ("figures CONFIG=mine.yaml", "figures mine.yaml -- "),
+        ("report", "report  -- "),
+    ],
+)
+def test_targets_call_the_command(tmp_path, words, called):
     ready(tmp_path)
     (tmp_path / "mine.yaml").touch()
-    done = made(tmp_path, "--dry-run", "smoke", "CONFIG=mine.yaml")
-    assert "workflow/smoke.yaml mine.yaml" in done.stdout
+    done = made(tmp_path, "--dry-run", *words.split())
+    assert f".venv/bin/stiction {called}" in done.stdout.splitlines()
 
 
 @pytest.mark.parametrize(("version", "compiler", "stops"), [("14", "", True), ("14", "cc", False), ("13", "", False)])

@@ -75,10 +75,10 @@ def test_a_change_is_explained_by_its_key_and_computes_nothing(undisturbed, tiny
     assert status == 0
     assert printed[0] == "2 jobs would run."
     assert printed[1].startswith(
-        "results/beams/b_rh088_NG.nc depends on results/chaos/b_rh088_NG.nc with order: 2 inst"
+        "results/beams/b_rh088_NG.nc depends on results/chaos/b_rh088_NG.nc with chaos.order: 2"
     )
     assert "results/chaos/b_rh088_NG.nc was computed with chaos.order: 2 instead of 1" in printed[2]
-    assert printed[3:] == ["results that this run does not use: chaos, beams"]
+    assert printed[3:] == ["results that this run does not use: chaos", "follow from the jobs above: beams"]
     assert datasets(folder) == datasets(undisturbed)
 
 
