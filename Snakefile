@@ -27,24 +27,51 @@ container: "stiction.sif"
 
 
 include: "workflow/rules/common.smk"
-include: "workflow/rules/scans.smk"
-include: "workflow/rules/surfaces.smk"
-include: "workflow/rules/contact.smk"
-include: "workflow/rules/laws.smk"
-include: "workflow/rules/beams.smk"
-include: "workflow/rules/studies.smk"
-include: "workflow/rules/slopes.smk"
-include: "workflow/rules/tables.smk"
-include: "workflow/rules/common_devices.smk"
-include: "workflow/rules/devices.smk"
-include: "workflow/rules/budgets.smk"
-include: "workflow/rules/checks.smk"
-include: "workflow/rules/figures_studies.smk"
-include: "workflow/rules/figures.smk"
+include: "workflow/rules/stages.smk"
 
 
 if hooks.is_main(workflow):
     remember.save()
+
+
+rule tables:
+    input:
+        planner.wanted("tables"),
+    localrule: True
+    message:
+        "All tables."
+
+
+rule figures:
+    input:
+        planner.wanted("figures"),
+    localrule: True
+    message:
+        "All figures."
+
+
+rule study_figures:
+    input:
+        planner.wanted("study_figures"),
+    localrule: True
+    message:
+        "Figures and tables of the studies."
+
+
+rule devices:
+    input:
+        planner.wanted("devices"),
+    localrule: True
+    message:
+        "Tables, figures and pages of the devices."
+
+
+rule measured:
+    input:
+        planner.wanted("measured"),
+    localrule: True
+    message:
+        "Sheets and tables of the measured surfaces."
 
 
 HELD = []  # open file that holds the lock on the folder of this run
@@ -76,11 +103,10 @@ onsuccess:
 rule all:
     default_target: True
     input:
-        rules.tables.input,
-        rules.figures.input,
-        rules.devices.input,
-        rules.model_limits.output,
-        rules.verdict.output,
+        planner.wanted("tables"),
+        planner.wanted("figures"),
+        planner.wanted("devices"),
+        planner.wanted("all"),
     localrule: True
     message:
         "Tables, figures, checks, and what the configuration asks of devices."

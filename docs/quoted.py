@@ -10,7 +10,6 @@ import numpy as np
 import pandas as pd
 
 from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP
-from stiction.config import jobs
 from stiction.config.files import paper
 from stiction.config.plan import Plan
 from stiction.config.units import typed
@@ -19,7 +18,7 @@ from stiction.devices.chart import flooded_energy
 from stiction.devices.limits import FILMS
 from stiction.report.checks import MESH_OFF_OF_PAPER, RESOLVED
 from stiction.report.format import MISSING, TO_MJ, TO_UM, number, with_error
-from stiction.stages.cantilevers import Cantilevers, cantilever
+from stiction.stages.cantilevers import Cantilevers, cantilever, sections
 from stiction.surface import feasible
 
 #: Measured skewness and kurtosis of nearly Gaussian surfaces, as examples.
@@ -283,7 +282,7 @@ def drawn_lengths(safe, budget):
     ``saturated_C1``: in saturated air; ``least_C1``: the least over its humidities; ``drawn_C1``: that less twice the
     largest total of the budgets of the tip.
     """
-    beam = cantilever(typed(Cantilevers, jobs.cantilevers(Plan(paper()), "b")), "b")
+    beam = cantilever(typed(Cantilevers, sections(Plan(paper()), "b")), "b")
     saturated = TO_UM * arc_length(flooded_energy(paper()["water"]["temperature_K"]), beam)
     totals = budget[(budget.device == "C1") & (budget.held_by == "tip") & (budget["name"] == "total")].effect_percent
     of_tip = safe[(safe.device == "C1") & (safe.held_by == "beam or tip") & (safe.share == 1e-3)]

@@ -24,14 +24,13 @@ from PIL import Image
 
 from stiction.analysis.convergence import sampling_distance
 from stiction.beam.foundation import foundation_length
-from stiction.config import jobs as settings
 from stiction.config.cases import pair_of
 from stiction.config.files import paper
 from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.contact import forcelaw
 from stiction.report.format import TO_UM, with_error
-from stiction.stages.cantilevers import Cantilevers, StripLength, cantilever
+from stiction.stages.cantilevers import Cantilevers, StripLength, cantilever, sections
 from stiction.stages.forces import vectors
 from stiction.stages.storage import load
 
@@ -190,7 +189,7 @@ def meshes(results):
     plan, lengths = Plan(paper()), []
     for case, model in plan.laws:
         pair, (samples, limit) = pair_of(case), vectors(load(results / "forces" / f"{case}_{model}.nc", "forces"))
-        beam = cantilever(typed(Cantilevers, settings.cantilevers(plan, pair)), pair)
+        beam = cantilever(typed(Cantilevers, sections(plan, pair)), pair)
         laws = forcelaw.coefficients(samples[forcelaw.admissible(samples, limit)], limit)
         lengths.append(foundation_length(beam, laws))
     strip = typed(StripLength, {"strip_length_um": plan.config["sampling"]["strip_length_um"]}).strip_length

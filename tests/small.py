@@ -2,7 +2,8 @@
 
 from functools import cache
 
-from stiction.config import jobs
+from plans import job_settings
+
 from stiction.config.files import load
 from stiction.config.plan import Plan
 from stiction.config.units import typed
@@ -41,12 +42,12 @@ def settings_of(module, plain):
 
 @cache
 def heights_of(surface):
-    return heights.compute(settings_of(heights, jobs.heights(PLAN, surface)))
+    return heights.compute(settings_of(heights, job_settings(PLAN, f"heights/{surface}")))
 
 
 @cache
 def spectrum_of(surface):
-    return spectrum.compute(heights_of(surface), None, settings_of(spectrum, jobs.spectrum(PLAN, surface)))
+    return spectrum.compute(heights_of(surface), None, settings_of(spectrum, job_settings(PLAN, f"spectrum/{surface}")))
 
 
 @cache
@@ -57,14 +58,14 @@ def surfaces():
 
 @cache
 def contact_of_pair():
-    return contact.compute(surfaces(), "b", "NG", settings_of(contact, jobs.contact(PLAN, "b")))
+    return contact.compute(surfaces(), "b", "NG", settings_of(contact, job_settings(PLAN, "contact/b_NG")))
 
 
 @cache
 def forces_of_case():
-    return forces.compute(contact_of_pair(), settings_of(forces, jobs.forces(PLAN, CASE)))
+    return forces.compute(contact_of_pair(), settings_of(forces, job_settings(PLAN, f"forces/{CASE}_NG")))
 
 
 @cache
 def chaos_of_case():
-    return chaos.compute(forces_of_case(), CASE, "NG", settings_of(chaos, jobs.chaos(PLAN)))
+    return chaos.compute(forces_of_case(), CASE, "NG", settings_of(chaos, job_settings(PLAN, "chaos/b_rh067_NG")))

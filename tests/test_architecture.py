@@ -22,19 +22,22 @@ devices: arcs bridges tail risk stoppers chart budget limits
 run: fingerprint logs folder atomic regular labels kept remembered provenance warmup forkserver hooks
 scans: reading
 config: units cases merging messages reading measured designs memory conditions relations
-config: relations_devices validation files plan jobs paths
-stages: storage named heights parameters identification spectrum surfaces character pairs contact curves forces chaos
+config: relations_devices validation files plan
+plan: stage names graph planner
+stages: storage heights parameters identification spectrum surfaces character pairs contact curves forces chaos
 stages: cantilevers releases beams
 measured: scan estimate heights spectrum choices
 studies: iteration fit humidity descriptions slope_contact slopes sensitivity_contact sensitivity plasticity
 studies: sample_sizes orders mesh correlation resampling scan_uncertainty
 variants: summits contact beams
-designs: patches releases sticking cracks safe_lengths chart findings stoppers inputs budget
+designs: patches releases patch_settings contacts slope_contacts choice_contacts sticking cracks safe_lengths chart
+designs: pair_warnings device_warnings stoppers inputs budget
+plan: running
 study device
 report: format published tables tables_surfaces tables_beams tables_studies style figures_surfaces figures_forces
 report: figures_beams figures_studies figures_overview checks
-measured: tables_scans figures_scans
-designs: tables_devices tables_budget figures_devices figures_budget pages
+report.scans: tables_scans figures_scans
+report.devices: tables_devices tables_budget figures_devices figures_budget pages
 command: follow display ending explain launch main
 """
 MODULES = [

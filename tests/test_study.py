@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from plans import job_settings
 
 from stiction.beam.energy import arrest_length
 from stiction.chaos.model import Truncation
-from stiction.config import jobs
 from stiction.config.cases import case_id
 from stiction.config.files import load
 from stiction.config.merging import merged
@@ -37,9 +37,9 @@ def under(config, name):
     summits = variant_summits.compute({}, "b", *settings)
     found = variant_contact.compute(summits, typed(variant_contact.Settings, plan.variant_contact("b", name)))
     case = case_id("b", HUMIDITY)
-    return variant_beams.compute(found, case, typed(variant_beams.Settings, jobs.variant(plan, case, name))).isel(
-        humidity=0
-    )
+    return variant_beams.compute(
+        found, case, typed(variant_beams.Settings, job_settings(plan, f"studies/variants/{case}_{name}"))
+    ).isel(humidity=0)
 
 
 @pytest.mark.parametrize(("humidity", "published"), [(0.55, 878), (0.67, 710), (0.80, 538), (0.88, 434), (0.92, 391)])
@@ -102,11 +102,13 @@ def test_beams_do_not_depend_on_threads_and_scatter_with_their_dimensions(study)
 def test_a_spectrum_that_is_to_be_identified_is_identified_first():
     changes = {"surfaces": {"B2": {"psd": "identified"}}, "identification": {"patches": 2, "patch_um": 2}}
     plan = Plan(merged(CONFIG, changes | {"contact": {"samples": 5}}))
-    density = heights.compute(typed(heights.Settings, jobs.heights(plan, "B2")))
-    found = identification.compute(density, "B2", typed(identification.Settings, jobs.identification(plan, "B2")))
+    density = heights.compute(typed(heights.Settings, job_settings(plan, "heights/B2")))
+    found = identification.compute(
+        density, "B2", typed(identification.Settings, job_settings(plan, "identification/B2"))
+    )
     pair = PairStudy.of(plan.config, "b").surfaces
     assert pair.beam.underlying.cutoff == spectrum_of(found).cutoff != pair.substrate.underlying.cutoff
-    expected = spectrum.compute(density, found, typed(spectrum.Settings, jobs.spectrum(plan, "B2")))
+    expected = spectrum.compute(density, found, typed(spectrum.Settings, job_settings(plan, "spectrum/B2")))
     assert_array_equal(pair.beam.underlying.density, expected.underlying)
 
 

@@ -4,24 +4,15 @@ Stages, settings and addresses of random numbers are the same as in the workflow
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import xarray as xr
 
-from stiction.config import jobs
 from stiction.config.cases import case_id
 from stiction.config.designs import BEAMS, Designs
-from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.config.units import typed
-from stiction.designs import budget, chart, cracks, findings, inputs, safe_lengths, stoppers
-from stiction.models import SHIFTED
-from stiction.stages import contact as stage_contact
-from stiction.stages import identification
-from stiction.studies import slope_contact
-from stiction.study import estimate_of, surface_datasets
-from stiction.variants import contact as variant_contact
-from stiction.variants import summits
+from stiction.designs import device_warnings, pair_warnings
+from stiction.designs.patch_settings import contact_of, tips_of
+from stiction.plan.graph import Results
 
 
 @dataclass(frozen=True)
@@ -38,10 +29,7 @@ class Device:
     """
 
     name: str
-    contact: xr.Dataset  #: contact of the strips along a beam, or of the whole area of a stopper
-    tips: xr.Dataset | None  #: contact of the strips that hold the tips of a cantilever
-    config: dict  #: complete configuration
-    surfaces: list[tuple[xr.Dataset, xr.Dataset]]  #: datasets (heights, spectrum) of beam and substrate
+    results: Results  #: results of all stages by the names of their files
 
     @classmethod
     def of(cls, config: dict, name: str) -> "Device":
@@ -61,19 +49,22 @@ class Device:
         ValueError
             If the configuration has no such device.
         """
-        designs, plan = Designs(config), Plan(config)
-        if name not in designs.devices:
-            raise ValueError(f"there is no device {name}; the configuration has {', '.join(designs.devices) or 'none'}")
-        pair, kind = (config["devices"][name][key] for key in ("pair", "kind"))
-        surfaces = [surface_datasets(plan, side) for side in plan.sides(pair)]
+        devices = Designs(config).devices
+        if name not in devices:
+            raise ValueError(f"there is no device {name}; the configuration has {', '.join(devices) or 'none'}")
+        device = cls(name, Results.of(config))
+        device.contact, device.tips  # noqa: B018 - computed now, as the docstring says
+        return device
 
-        def contact(settings):
-            return stage_contact.compute(surfaces, pair, "NG", typed(stage_contact.Settings, settings))
+    @property
+    def contact(self) -> xr.Dataset:
+        """Contact of the strips along a beam, or of the whole area of a stopper."""
+        return self.results[contact_of(self._plan, self.name)]
 
-        shared = designs.has_strips_of_pair(name)
-        ground = contact(jobs.contact(plan, pair) if shared else jobs.device_contact(plan, *designs.ground(name)))
-        tips = contact(jobs.tip_contact(plan, *designs.tips(name))) if kind == "cantilever" else None
-        return cls(name, ground, tips, config, surfaces)
+    @property
+    def tips(self) -> xr.Dataset | None:
+        """Contact of the strips that hold the tips of a cantilever; ``None`` for other devices."""
+        return next((self.results[name] for name in tips_of(self._plan, self.name).values()), None)
 
     def cracks(self, humidity: float) -> xr.Dataset:
         """Crack lengths of long beams, or lengths of held bridges; dataset of `stiction.designs.cracks`.
@@ -81,121 +72,61 @@ class Device:
         The first call takes half a minute, for a bridge a minute.
         """
         self._must_be(*BEAMS)
-        if humidity not in self._known_cracks:
-            self._known_cracks[humidity] = cracks.compute(self.contact, self._settings(cracks, jobs.cracks, humidity))
-        return self._known_cracks[humidity]
+        return self._result("cracks", humidity)
 
     def safe_lengths(self, humidity: float) -> xr.Dataset:
         """P(stuck) over the length, and safe lengths; dataset of `stiction.designs.safe_lengths`."""
-        found, settings = self.cracks(humidity), self._settings(safe_lengths, jobs.safe_lengths, humidity)
-        return safe_lengths.compute(found, self.tips, settings)
+        self._must_be(*BEAMS)
+        return self._result("safe_lengths", humidity)
 
     def chart(self, humidity: float) -> xr.Dataset:
         """Safe lengths of the thicknesses and gaps of its chart; dataset of `stiction.designs.chart`."""
         self._must_be(*BEAMS)
         self._must_state("chart", self._section.get("chart"))
-        return chart.compute(self.contact, self.tips, self._settings(chart, jobs.chart, humidity))
+        return self._result("chart", humidity)
 
     def forces(self) -> xr.Dataset:
         """Pull-off forces of a stopper, P(stuck) and the worst humidity; dataset of `stiction.designs.stoppers`."""
         self._must_be("stopper")
-        return stoppers.compute(self.contact, typed(stoppers.Settings, jobs.stoppers(Plan(self.config), self.name)))
+        return self.results[f"devices/stoppers/{self.name}"]
 
     def budget(self, humidity: float) -> xr.Dataset:
         """Uncertainty of the mean length or force; dataset of `stiction.designs.budget`.
 
         The first call draws the surfaces with every uncertain input changed, a few minutes.
         """
-        self._must_state("uncertainty", self.name in Designs(self.config).budgeted)
-        return self._budget(self.contact, self._changed, jobs.budget, humidity)
+        self._must_state("uncertainty", self.name in self._plan.designs.budgeted)
+        return self._result("budget", humidity)
 
     def tip_budget(self, humidity: float) -> xr.Dataset:
         """As `budget`, of the length that the tip of a cantilever holds."""
         self._must_be("cantilever")
-        self._must_state("uncertainty", self.name in Designs(self.config).budgeted)
-        return self._budget(self.tips, self._changed_tips, jobs.tip_budget, humidity)
-
-    def _budget(self, contact, changed, job, humidity):
-        """Budget with the contacts of the device or of its tips."""
-        plan = Plan(self.config)
-        plain = job(plan, case_id(self.name, humidity))
-        settings = typed(inputs.Settings, plain["budget"])
-        described = dict(zip(plan.sides(self._section["pair"]), self.surfaces, strict=True))
-        uncertain = {name: described[name] for name, _ in plain["quantities"]}
-        estimates = {name: estimate_of(plan, name) for name in uncertain if name in plan.scanned}
-        known = inputs.covariances(uncertain, estimates, settings)
-        return budget.compute(contact, *changed, known, settings)
-
-    @cached_property
-    def _changed(self):
-        """Contacts with less and with more of every input, and under other choices of the model."""
-        plan, designs = Plan(self.config), Designs(self.config)
-        pair, ground = self._section["pair"], designs.ground(self.name)
-        shared = designs.has_strips_of_pair(self.name)
-        shifts = jobs.slope_contact(plan, pair) if shared else jobs.device_slope_contact(plan, *ground)
-        choices = {name: self._choice(plan, *ground, name) for name in plan.choices_of_device(self.name)}
-        return *self._changes(ground, shifts, jobs.solid_contact), choices
-
-    @cached_property
-    def _changed_tips(self):
-        """As `_changed`, of the strips that hold the tips."""
-        plan, tips = Plan(self.config), Designs(self.config).tips(self.name)
-        chosen = plan.choices_of_solids(tips.pair)
-        choices = {name: self._met(tips.pair, jobs.tip_choice_contact(plan, *tips, name)) for name in chosen}
-        return *self._changes(tips, jobs.tip_contact(plan, *tips), jobs.tip_solid_contact), choices
-
-    def _changes(self, patch, shifts, solid_job):
-        """Contacts of a patch with less and with more of every input."""
-        plan, designs, shifting = Plan(self.config), Designs(self.config), typed(slope_contact.Settings, shifts)
-        shifted = {
-            key: tuple(slope_contact.compute(self.surfaces, patch.pair, *key, shifting))
-            for key in designs.quantities(self.name)
-        }
-        solids = {
-            name: tuple(self._met(patch.pair, solid_job(plan, *patch, name, side)) for side in SHIFTED)
-            for name in designs.uncertain_solids(self.name)
-        }
-        return shifted, solids
-
-    def _met(self, pair, plain):
-        """Contact of the surfaces under the settings of a job."""
-        return stage_contact.compute(self.surfaces, pair, "NG", typed(stage_contact.Settings, plain))
-
-    def _choice(self, plan, pair, length, width, variant):
-        """Contact under another choice of the model."""
-        plain = jobs.device_choice_summits(plan, pair, length, width, variant)
-        described = dict(zip(plan.sides(pair), self.surfaces, strict=True))
-        identified = {
-            name: identification.compute(
-                described[name][0], name, typed(identification.Settings, jobs.identification(plan, name))
-            )
-            for name in plain["identified"]
-        }
-        measured = {name: described[name] for name in plan.scanned_sides(pair)}
-        both = (plain["base"], merged(plain["base"], plain["changes"]))
-        found = summits.compute(identified, pair, *(typed(summits.Settings, one) for one in both), measured)
-        return variant_contact.compute(found, typed(variant_contact.Settings, plan.variant_contact(pair, variant)))
+        self._must_state("uncertainty", self.name in self._plan.designs.budgeted)
+        return self._result("budget", humidity, "_tip")
 
     def warnings(self, found: xr.Dataset) -> list[str]:
         """Where a result of `safe_lengths` or `forces` is beyond the limits of the model, one sentence each.
 
         Plasticity is not checked, which is one of the sentences.
         """
-        plan = Plan(self.config)
-        if self._section["kind"] == "stopper":
-            return findings.of_stoppers({}, jobs.beyond_stoppers(plan))[self.name]
-        plain = jobs.beyond_the_model(plan)["devices"][self.name]
-        return findings.numbered(findings.of_device(found, typed(findings.OfDevice, plain)))[0]
+        settings = self.results.graph.job(f"devices/warnings/{self.name}.json").settings
+        if "stopper" in settings:
+            return device_warnings.of_stopper(typed(device_warnings.OfStopper, settings["stopper"]))
+        return pair_warnings.numbered(
+            device_warnings.of_device(found, typed(device_warnings.OfDevice, settings["beam"]))
+        )[0]
+
+    def _result(self, stage, humidity, end=""):
+        """Dataset of a stage at a humidity."""
+        return self.results[f"devices/{stage}/{case_id(self.name, humidity)}{end}"]
+
+    @property
+    def _plan(self):
+        return self.results.graph.plan
 
     @property
     def _section(self):
-        """Its section of the configuration."""
-        return self.config["devices"][self.name]
-
-    @cached_property
-    def _known_cracks(self):
-        """Cracks by humidity, as far as they were computed."""
-        return {}
+        return self._plan.config["devices"][self.name]
 
     def _must_be(self, *kinds):
         """Refuse a result that other kinds of devices have."""
@@ -206,7 +137,3 @@ class Device:
         """Refuse a result without the key of the device on which it depends."""
         if not stated:
             raise ValueError(f"device {self.name} has no {key}: state devices.{self.name}.{key}")
-
-    def _settings(self, stage, job, humidity):
-        """Settings of a stage at a humidity."""
-        return typed(stage.Settings, job(Plan(self.config), case_id(self.name, humidity)))

@@ -4,24 +4,18 @@ import re
 import sys
 from pathlib import Path
 
+from stiction.plan.graph import stages
+
 ROOT = Path(__file__).parents[2]
 TOOK = re.compile(r"^took ([\d.]+) s, (\d+) MB$", re.MULTILINE)
 
 
 def rules():
-    """For every rule with a script: name, pattern of its logs, and the requested memory [MB] and minutes."""
+    """For every stage: name, pattern of its logs, and the requested memory [MB] and minutes."""
     default = (ROOT / "profiles" / "default" / "config.yaml").read_text()
-    files = (ROOT / "workflow" / "rules").glob("*.smk")
-    for file in sorted(files, key=lambda file: (file.stem == "scans", file.name)):  # the paper's surfaces come first
-        for name, body in re.findall(
-            r"^(?:use )?rule (?:\w+ as )?(\w+)(?: with)?:\n((?:[ \n].*\n|\n)+)", file.read_text(), re.MULTILINE
-        ):
-            if log := re.search(r'"results/logs/(.+)\.log"', body):
-                requested = [
-                    int((re.search(key, body) or re.search(key, default))[1])
-                    for key in (r"mem_mb=(\d+)", r"runtime=(\d+)")
-                ]
-                yield name, re.compile(re.sub(r"{\w+}", "[^/]+", log[1])), *requested
+    memory = int(re.search(r"mem_mb=(\d+)", default)[1])
+    for name, (stage, _) in sorted(stages().items()):
+        yield name, re.compile(re.sub(r"{\w+}", "[^/]+", stage.log)), memory, stage.minutes
 
 
 def costs(results):

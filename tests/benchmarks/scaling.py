@@ -42,17 +42,14 @@ SAMPLES, HUMIDITIES = (1250, 5000, 20_000), (6, 25, 100)
 _CONTACT = """
 import json, sys, time
 from stiction.config import files, jobs
-from stiction.config.plan import Plan
-from stiction.config.units import typed
+from stiction.plan.graph import Results
 from stiction.run.logs import peak_memory
-from stiction.stages import contact, heights, spectrum
+from stiction.stages import contact
+from stiction.stages.surfaces import both
 
-plan = Plan(files.load(json.loads(sys.argv[1])))
-surfaces = []
-for name in plan.sides("b"):
-    density = heights.compute(typed(heights.Settings, jobs.heights(plan, name)))
-    surfaces.append((density, spectrum.compute(density, None, typed(spectrum.Settings, jobs.spectrum(plan, name)))))
-settings = typed(contact.Settings, jobs.contact(plan, "b"))
+results = Results.of(files.load(json.loads(sys.argv[1])))
+job = results.graph.job("contact/b_NG/0-of-1")
+surfaces, settings = both(results.inputs(job)), job.stage.converted(job.settings)
 contact.compute(surfaces, "b", "NG", settings, range(1))
 start = time.perf_counter()
 contact.compute(surfaces, "b", "NG", settings)

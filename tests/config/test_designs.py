@@ -5,8 +5,8 @@ from dataclasses import MISSING, fields
 
 import pytest
 from configurations import PAPER, problems
+from plans import job_settings
 
-from stiction.config import jobs
 from stiction.config.designs import Designs, patch
 from stiction.config.files import load
 from stiction.config.merging import merged
@@ -15,6 +15,7 @@ from stiction.config.units import typed
 from stiction.designs import inputs, stoppers
 from stiction.devices.budget import OF_SOLIDS
 from stiction.models import OF_MOMENTS, OF_SPECTRUM
+from stiction.plan.graph import Graph
 from stiction.stages import contact
 from stiction.studies import slope_contact
 from stiction.variants import summits
@@ -39,15 +40,21 @@ PLAN = plan()
 PATCH, TIP = ("b", 3000, 2000), Designs(PLAN.config).tips("C1")
 #: Stage and the settings of one of its jobs.
 JOBS = [
-    (stoppers, jobs.stoppers(PLAN, "S1")),
-    (inputs, jobs.budget(PLAN, "C1_rh067")["budget"]),
-    (inputs, jobs.budget(PLAN, "S1_rh090")["budget"]),
-    (inputs, jobs.tip_budget(PLAN, "C1_rh067")["budget"]),
-    *((contact, jobs.solid_contact(PLAN, *PATCH, name, "more")) for name in OF_SOLIDS),
-    *((contact, jobs.tip_solid_contact(PLAN, *TIP, name, "more")) for name in OF_SOLIDS),
-    (contact, jobs.tip_choice_contact(PLAN, *TIP, "van_der_waals_dry")),
-    (slope_contact, jobs.device_slope_contact(PLAN, *PATCH)),
-    (summits, jobs.device_choice_summits(PLAN, *PATCH, "every_2")["base"]),
+    (stoppers, job_settings(PLAN, "devices/stoppers/S1")),
+    (inputs, job_settings(PLAN, "devices/budget/C1_rh067")["budget"]),
+    (inputs, job_settings(PLAN, "devices/budget/S1_rh090")["budget"]),
+    (inputs, job_settings(PLAN, "devices/budget/C1_rh067_tip")["budget"]),
+    *(
+        (contact, job_settings(PLAN, f"devices/contact/{name}/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_more"))
+        for name in OF_SOLIDS
+    ),
+    *(
+        (contact, job_settings(PLAN, f"devices/contact/tips/{name}/{TIP[0]}_{TIP[1]}x{TIP[2]}_more"))
+        for name in OF_SOLIDS
+    ),
+    (contact, job_settings(PLAN, f"devices/contact/tips/choices/{TIP[0]}_{TIP[1]}x{TIP[2]}_van_der_waals_dry")),
+    (slope_contact, job_settings(PLAN, f"devices/contact/slopes/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_B2_rms_less")),
+    (summits, job_settings(PLAN, f"devices/contact/summits/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_every_2")["base"]),
 ]
 
 
@@ -84,7 +91,10 @@ def test_a_device_on_scans_has_a_budget_without_a_stated_uncertainty():
     found = Designs(merged(PLAN.config, {"surfaces": {"B2": scanned}}))
     assert found.budgeted == ["C1", "C2", "S1"]
     assert found.quantities("C2") == [("B2", quantity) for quantity in OF_MOMENTS + OF_SPECTRUM]
-    assert typed(inputs.Settings, jobs.budget(PLAN, "C2_rh067")["budget"]).uncertainty == inputs.Uncertainty()
+    assert (
+        typed(inputs.Settings, job_settings(PLAN, "devices/budget/C2_rh067")["budget"]).uncertainty
+        == inputs.Uncertainty()
+    )
 
 
 def test_heights_are_uncertain_if_a_scan_is_stated():
@@ -109,19 +119,24 @@ def test_choices_of_solids_leave_the_surfaces_as_they_are():
         "poisson_ratio_0.18",
         "poisson_ratio_0.28",
     ]
-    settings = jobs.tip_choice_contact(PLAN, *TIP, "poisson_ratio_0.28")
-    assert settings == jobs.tip_contact(PLAN, *TIP) | {"solid": PLAN.config["solid"] | {"poisson_ratio": 0.28}}
+    settings = job_settings(PLAN, f"devices/contact/tips/choices/{TIP[0]}_{TIP[1]}x{TIP[2]}_poisson_ratio_0.28")
+    assert settings == job_settings(PLAN, f"devices/contact/tips/{TIP[0]}_{TIP[1]}x{TIP[2]}") | {
+        "solid": PLAN.config["solid"] | {"poisson_ratio": 0.28}
+    }
 
 
 def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_tips_as_beams():
-    found = jobs.tip_budget(PLAN, "C1_rh067")
-    of_beam = jobs.budget(PLAN, "C1_rh067")
+    found = job_settings(PLAN, "devices/budget/C1_rh067_tip")
+    of_beam = job_settings(PLAN, "devices/budget/C1_rh067")
     assert found["budget"].pop("share") == 1e-3
     assert found["budget"] == {key: value for key, value in of_beam["budget"].items() if key != "beams"}
     assert (found["quantities"], found["choices"]) == (of_beam["quantities"], PLAN.choices_of_solids("b"))
     number = PLAN.config["design"]["beams"]
     for name in OF_SOLIDS:
-        tips, strips = (of(PLAN, *TIP, name, "less") for of in (jobs.tip_solid_contact, jobs.solid_contact))
+        tips, strips = (
+            job_settings(PLAN, f"devices/contact/{folder}{name}/{TIP[0]}_{TIP[1]}x{TIP[2]}_less")
+            for folder in ("tips/", "")
+        )
         assert tips["contact"]["samples"] == number
         assert tips == strips | {"contact": tips["contact"], "tilt": tips["tilt"]}
 
@@ -129,26 +144,31 @@ def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_tips_as_beams():
 def test_the_contact_of_a_device_has_the_samples_of_a_pair_and_that_of_its_tips_one_for_each_beam():
     samples, beams = PLAN.config["contact"]["samples"], PLAN.config["design"]["beams"]
     assert samples != beams
-    assert jobs.device_contact(PLAN, *PATCH)["contact"]["samples"] == samples
-    tips = jobs.tip_contact(PLAN, *TIP)["contact"]
+    assert job_settings(PLAN, f"devices/contact/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}")["contact"]["samples"] == samples
+    tips = job_settings(PLAN, f"devices/contact/tips/{TIP[0]}_{TIP[1]}x{TIP[2]}")["contact"]
     assert (tips["samples"], tips["distance_step_nm"]) == (beams, 2 * PLAN.config["contact"]["distance_step_nm"])
 
 
 def test_contacts_of_a_budget_are_on_the_patch_of_the_device_with_the_samples_of_slopes():
     samples = PLAN.config["studies"]["slopes"]["samples"]
     for settings in (
-        jobs.solid_contact(PLAN, *PATCH, "modulus", "less"),
-        jobs.device_choice_summits(PLAN, *PATCH, "every_2")["base"],
+        job_settings(PLAN, f"devices/contact/modulus/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_less"),
+        job_settings(PLAN, f"devices/contact/summits/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_every_2")["base"],
     ):
         assert settings["contact"]["samples"] == samples
         assert (settings["sampling"]["strip_length_um"], settings["beam"]["width_um"]) == (3, 2)
     few = plan(contact={"samples": samples - 1, "chunks": 1}, chaos={"order": 4})
-    assert jobs.device_choice_summits(few, *PATCH, "every_2")["base"]["contact"]["samples"] == samples - 1
+    assert (
+        job_settings(few, f"devices/contact/summits/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_every_2")["base"]["contact"][
+            "samples"
+        ]
+        == samples - 1
+    )
 
 
 def test_youngs_modulus_changes_in_every_body_of_the_material_of_the_beam():
     def changed(plan, side):
-        return jobs.solid_contact(plan, *PATCH, "modulus", side)
+        return job_settings(plan, f"devices/contact/modulus/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_{side}")
 
     less, more = (changed(PLAN, side)["solid"]["young_modulus_GPa"] for side in ("less", "more"))
     assert (less, more) == pytest.approx((0.95 * 164, 1.05 * 164))
@@ -158,26 +178,26 @@ def test_youngs_modulus_changes_in_every_body_of_the_material_of_the_beam():
     assert glass["substrate"]["young_modulus_GPa"] == 164
     both = merged(of_glass, {"surfaces": {"Sub1": {"material": "Glass"}}})
     assert len({one["young_modulus_GPa"] for one in changed(plan(**both), "more")["materials"].values()}) == 1
-    assert jobs.budget(plan(**of_glass), "C1_rh067")["budget"]["young_modulus_GPa"] == 70
-    assert jobs.budget(plan(**of_glass), "S1_rh090")["budget"]["water"]["contact_angles_deg"] == [20, 0]
+    assert job_settings(plan(**of_glass), "devices/budget/C1_rh067")["budget"]["young_modulus_GPa"] == 70
+    assert job_settings(plan(**of_glass), "devices/budget/S1_rh090")["budget"]["water"]["contact_angles_deg"] == [20, 0]
 
 
 @pytest.mark.parametrize(("medium", "expected"), [("water", 97.5), ("dry", 186.5), ("none", 186.5)])
 def test_a_budget_has_the_hamaker_constant_through_the_medium_if_it_is_uncertain(medium, expected):
     stated = {"devices": {"S1": {"uncertainty": {"hamaker_constant_zJ": 3}}}, "van_der_waals": medium}
-    found = jobs.budget(plan(**stated), "S1_rh090")["budget"]
+    found = job_settings(plan(**stated), "devices/budget/S1_rh090")["budget"]
     assert found["hamaker_constant_zJ"] == pytest.approx(expected)
     assert typed(inputs.Settings, found).uncertainty.hamaker_constant == pytest.approx(3e-21)
-    assert "hamaker_constant_zJ" not in jobs.budget(PLAN, "S1_rh090")["budget"]
+    assert "hamaker_constant_zJ" not in job_settings(PLAN, "devices/budget/S1_rh090")["budget"]
     constants = {"hamaker_constant_zJ": {"water": 5, "dry": 65}}
     of_glass = {"materials": {"Glass": GLASS | constants}, "surfaces": {"B2": {"material": "Glass"}}}
-    glass = jobs.budget(plan(**stated, **of_glass), "S1_rh090")["budget"]["hamaker_constant_zJ"]
+    glass = job_settings(plan(**stated, **of_glass), "devices/budget/S1_rh090")["budget"]["hamaker_constant_zJ"]
     assert glass == {"water": 5, "dry": 65, "none": 65}[medium]
 
 
 def test_the_warnings_of_a_stopper_have_its_water_its_patch_and_all_humidities_that_it_meets():
     section = PLAN.config["devices"]["S1"]
-    assert jobs.beyond_stoppers(PLAN)["S1"] == {
+    assert job_settings(PLAN, "devices/warnings/S1.json")["stopper"] == {
         "pair": "b",
         "materials": [],
         "water": {"temperature_K": 300},
@@ -188,12 +208,9 @@ def test_the_warnings_of_a_stopper_have_its_water_its_patch_and_all_humidities_t
 
 
 def test_the_page_of_a_device_has_its_section_and_its_warnings_alone():
-    assert jobs.page(PLAN, "S1") == {
-        "name": "S1",
-        "device": PLAN.config["devices"]["S1"],
-        "warned": {"S1": jobs.beyond_stoppers(PLAN)["S1"]},
-    }
-    assert set(jobs.page(PLAN, "C1")["warned"]) == {"C1"}
+    page = Graph(PLAN).job("devices/S1.html")
+    assert page.settings == PLAN.config["devices"]["S1"]
+    assert page.inputs["warnings"] == {"S1": "results/devices/warnings/S1.json"}
 
 
 @pytest.mark.parametrize(

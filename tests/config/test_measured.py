@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 from configurations import PAPER, SCHEMA, problems
 from drawn_scans import gaussian, published, truth
+from plans import job_settings
 from published import SURFACES
 from written_scans import BAD, SIDE, bad_files, etched, scans_of, write
 
-from stiction.config import files, jobs, measured
+from stiction.config import files, measured
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
@@ -151,29 +152,29 @@ def test_a_configuration_with_good_scans_is_valid_and_its_surfaces_are_shifted_l
     assert not plan.has_mesh_of_paper("b_rh067")
     assert plan.variant_summits("b", "psd_identified")["base"]["surfaces"]["Sub1"]["psd"] == "identified"
     assert "Etched" not in plan.variant_summits("b", "psd_identified")["base"]["surfaces"]
-    assert jobs.table_1(plan)["measured"].keys() == {"Sub1"}
-    assert jobs.checks(plan)["targets"].keys() == {"Sub1"}
+    assert job_settings(plan, "tables/table_1.csv")["measured"].keys() == {"Sub1"}
+    assert job_settings(plan, "checks.csv")["targets"].keys() == {"Sub1"}
 
 
 def test_settings_know_a_file_by_content_and_name_and_not_by_folder(folder, tmp_path):
     copy = shutil.copy(both(folder)[0], tmp_path)
     first, second, other = (
-        jobs.scan(Plan(files.normalised(configured(path))), "Etched", "0")
+        job_settings(Plan(files.normalised(configured(path))), "scan/Etched_0")
         for path in (*both(folder)[:1], copy, both(folder)[1])
     )
     assert first == second
     assert first["sha256"] != other["sha256"]
     with pytest.raises(KeyError):
-        jobs.scan(Plan(files.normalised(configured(copy))), "Etched", "1")
+        job_settings(Plan(files.normalised(configured(copy))), "scan/Etched_1")
 
 
 def test_stages_take_exactly_the_settings_of_their_jobs(folder):
     plan = Plan(files.load(etched(*both(folder), size_um=[5, 5], tip_radius_nm=10)))
     settings = {
-        scan: jobs.scan(plan, "Etched", "0"),
-        stage_estimate: jobs.estimate(plan, "Etched"),
-        heights: jobs.heights_of_scans(plan, "Etched"),
-        spectrum: jobs.spectrum_of_scans(plan, "Etched"),
+        scan: job_settings(plan, "scan/Etched_0"),
+        stage_estimate: job_settings(plan, "estimate/Etched"),
+        heights: job_settings(plan, "heights/Etched"),
+        spectrum: job_settings(plan, "spectrum/Etched"),
     }
     for stage, plain in settings.items():
         assert json.loads(json.dumps(plain)) == plain
@@ -426,10 +427,12 @@ def test_a_real_file_gives_heights_and_a_spectrum_or_is_refused_in_sentences_tha
         assert all(path.name in line and line.count("\n") == 0 and len(line) < 400 for line in lines)
     else:
         plan = Plan(files.normalised(config))
-        read = scan.compute(path, typed(scan.Settings, jobs.scan(plan, "Etched", "0")))
-        found = stage_estimate.compute([read], "Etched", typed(stage_estimate.Settings, jobs.estimate(plan, "Etched")))
-        used = heights.compute(found, typed(heights.Settings, jobs.heights_of_scans(plan, "Etched")))
-        drawn = spectrum.compute(found, used, typed(spectrum.Settings, jobs.spectrum_of_scans(plan, "Etched")))
+        read = scan.compute(path, typed(scan.Settings, job_settings(plan, "scan/Etched_0")))
+        found = stage_estimate.compute(
+            [read], "Etched", typed(stage_estimate.Settings, job_settings(plan, "estimate/Etched"))
+        )
+        used = heights.compute(found, typed(heights.Settings, job_settings(plan, "heights/Etched")))
+        drawn = spectrum.compute(found, used, typed(spectrum.Settings, job_settings(plan, "spectrum/Etched")))
         assert np.isfinite(stage_estimate.rms(found))
         assert np.all(np.isfinite(found.covariance))
         assert parameters.spectrum_of(drawn).variance > 0

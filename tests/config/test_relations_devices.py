@@ -9,18 +9,19 @@ from dataclasses import MISSING, fields
 import numpy as np
 import pytest
 from configurations import PAPER, SCHEMA, changed, leaves, problems
+from plans import job_settings
 from test_messages import UNITS
 
-from stiction.config import jobs, memory
+from stiction.config import memory
 from stiction.config.designs import KEYS, Designs
 from stiction.config.files import load, normalised
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.contact.meniscus import meniscus_height
-from stiction.designs import chart, cracks, findings, safe_lengths
+from stiction.designs import chart, cracks, device_warnings, pair_warnings, safe_lengths
 from stiction.stages import contact, curves
-from stiction.stages.cantilevers import Cantilevers, cantilever
+from stiction.stages.cantilevers import Cantilevers, cantilever, sections
 
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67, 0.44]}
 R1 = {"kind": "bridge", "pair": "b", "thickness_um": 2, "gap_um": 2, "width_um": 30, "residual_stress_MPa": 50}
@@ -333,10 +334,13 @@ def test_the_axis_of_a_chart_has_names_and_ends():
 
 PLAN = Plan(normalised(ALL))
 JOBS = {
-    cracks: jobs.cracks(PLAN, "C1_rh067"),
-    safe_lengths: jobs.safe_lengths(PLAN, "R1_rh067"),
-    chart: jobs.chart(PLAN, "C1_rh067"),
-    contact: jobs.tip_contact(PLAN, *Designs(PLAN.config).tips("C1")),
+    cracks: job_settings(PLAN, "devices/cracks/C1_rh067"),
+    safe_lengths: job_settings(PLAN, "devices/safe_lengths/R1_rh067"),
+    chart: job_settings(PLAN, "devices/chart/C1_rh067"),
+    contact: job_settings(
+        PLAN,
+        f"devices/contact/tips/{Designs(PLAN.config).tips('C1')[0]}_{Designs(PLAN.config).tips('C1')[1]}x{Designs(PLAN.config).tips('C1')[2]}",
+    ),
 }
 
 
@@ -357,9 +361,9 @@ def test_settings_in_si_are_those_of_the_device():
     bridge = typed(safe_lengths.Settings, JOBS[safe_lengths])
     assert bridge.device.beam.tension == pytest.approx(50e6 * 60e-12)
     assert typed(chart.Settings, JOBS[chart]).gaps == pytest.approx((10e-6, 20e-6))
-    assert jobs.chart(plan(devices={"C1": {"chart": {"thicknesses_um": [2], "humidities": [0.4, 0.5]}}}), "C1_rh045")[
-        "gaps_um"
-    ] == [20]
+    assert job_settings(
+        plan(devices={"C1": {"chart": {"thicknesses_um": [2], "humidities": [0.4, 0.5]}}}), "devices/chart/C1_rh045"
+    )["gaps_um"] == [20]
 
 
 def test_materials_reach_contact_forces_and_beams_and_nothing_changes_without_them():
@@ -368,11 +372,11 @@ def test_materials_reach_contact_forces_and_beams_and_nothing_changes_without_th
     assert found.contact.samples == PAPER["design"]["beams"]
     assert found.materials["beam"].hamaker_constant == pytest.approx({"water": 2.5e-19, "dry": 4e-19})
     assert found.materials["substrate"].young_modulus == pytest.approx(164e9)
-    assert cantilever(typed(Cantilevers, jobs.cantilevers(PLAN, "b")), "b").young_modulus == pytest.approx(79e9)
+    assert cantilever(typed(Cantilevers, sections(PLAN, "b")), "b").young_modulus == pytest.approx(79e9)
     paper = Plan(load())
-    assert "materials" not in jobs.contact(paper, "b")
-    assert jobs.forces(paper, "b_rh067") == {"water": {"temperature_K": 300}, "humidity": 0.67}
-    assert jobs.cantilevers(paper, "b")["pairs"] == {"b": {"gap_um": 20}}
+    assert "materials" not in job_settings(paper, "contact/b_NG")
+    assert job_settings(paper, "forces/b_rh067_NG") == {"water": {"temperature_K": 300}, "humidity": 0.67}
+    assert sections(paper, "b")["pairs"] == {"b": {"gap_um": 20}}
 
 
 def test_each_property_of_a_material_affects_only_its_stages():
@@ -381,22 +385,30 @@ def test_each_property_of_a_material_affects_only_its_stages():
 
     bare, paper = with_gold(hardness_GPa=1.0), Plan(load())
     wet = with_gold(contact_angle_deg=30)
-    assert jobs.contact(bare, "b") == jobs.contact(wet, "b") == jobs.contact(paper, "b")
-    assert jobs.plasticity(bare, "b") != jobs.plasticity(paper, "b") == jobs.plasticity(wet, "b")
-    assert jobs.forces(wet, "b_rh067")["water"]["contact_angles_deg"] == [0, 30]
-    assert jobs.forces(wet, "c_rh065") == jobs.forces(paper, "c_rh065")
-    assert jobs.contact(with_gold(young_modulus_GPa=79), "b") != jobs.contact(paper, "b")
+    assert (
+        job_settings(bare, "contact/b_NG") == job_settings(wet, "contact/b_NG") == job_settings(paper, "contact/b_NG")
+    )
+    assert (
+        job_settings(bare, "studies/plasticity/b")
+        != job_settings(paper, "studies/plasticity/b")
+        == job_settings(wet, "studies/plasticity/b")
+    )
+    assert job_settings(wet, "forces/b_rh067_NG")["water"]["contact_angles_deg"] == [0, 30]
+    assert job_settings(wet, "forces/c_rh065_NG") == job_settings(paper, "forces/c_rh065_NG")
+    assert job_settings(with_gold(young_modulus_GPa=79), "contact/b_NG") != job_settings(paper, "contact/b_NG")
 
 
 def test_the_uncertainty_of_a_device_is_no_setting_of_its_cracks():
-    assert "uncertainty" not in json.dumps([*JOBS.values(), jobs.beyond_the_model(PLAN)])
+    assert "uncertainty" not in json.dumps([*JOBS.values(), job_settings(PLAN, "devices/warnings/C1.json")])
 
 
 def test_warnings_know_what_is_stated_of_a_material():
-    found = typed(findings.OfDevice, jobs.beyond_the_model(PLAN)["devices"]["C1"])
+    found = typed(device_warnings.OfDevice, job_settings(PLAN, "devices/warnings/C1.json")["beam"])
     assert [name for name, _ in found.materials] == ["Gold"]
     assert len(found.materials[0][1]) == 5
-    assert typed(findings.OfPairs, jobs.model_limits(PLAN)["pairs"]).sampling.strip_length == pytest.approx(1.5e-6)
+    assert typed(
+        pair_warnings.OfPairs, job_settings(PLAN, "warnings.md")["pairs"]
+    ).sampling.strip_length == pytest.approx(1.5e-6)
 
 
 def test_patches_of_devices_count_for_the_memory_of_jobs():

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from plans import job_settings, surface_datasets
 
-from stiction.config import jobs
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
@@ -15,7 +15,6 @@ from stiction.devices.budget import OF_SOLIDS, Budget
 from stiction.models import OF_MOMENTS
 from stiction.stages import contact, curves
 from stiction.studies import slope_contact
-from stiction.study import surface_datasets
 
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.44, 0.67]}
 C1 |= {"uncertainty": {"thickness_um": 0.05, "gap_um": 0.3, "young_modulus_GPa": 5, "scan_um": 10}}
@@ -41,13 +40,13 @@ def surfaces():
 
 @pytest.fixture(scope="module")
 def base(surfaces):
-    return contact.compute(surfaces, "b", "NG", typed(contact.Settings, jobs.contact(PLAN, "b")))
+    return contact.compute(surfaces, "b", "NG", typed(contact.Settings, job_settings(PLAN, "contact/b_NG")))
 
 
 @pytest.fixture(scope="module")
 def changed(surfaces):
     """Contacts with less and with more of every quantity of B2."""
-    settings = typed(slope_contact.Settings, jobs.slope_contact(PLAN, "b"))
+    settings = typed(slope_contact.Settings, job_settings(PLAN, "studies/slopes/contact/b_B2_rms_less"))
     return {("B2", name): tuple(slope_contact.compute(surfaces, "b", "B2", name, settings)) for name in OF_MOMENTS}
 
 
@@ -56,7 +55,7 @@ def solids(surfaces):
     """Contacts with less and with more of every property of the solids."""
 
     def changed(name, side):
-        plain = jobs.solid_contact(PLAN, "b", 1500, 30000, name, side)
+        plain = job_settings(PLAN, f"devices/contact/{name}/b_1500x30000_{side}")
         return contact.compute(surfaces, "b", "NG", typed(contact.Settings, plain))
 
     return {name: tuple(changed(name, side) for side in ("less", "more")) for name in OF_SOLIDS}
@@ -66,7 +65,9 @@ def solids(surfaces):
 @pytest.mark.parametrize("humidity", KNOWN)
 def test_slopes_of_pair_b_are_those_of_an_independent_study(humidity, surfaces, base, changed, solids):
     known = {"B2": inputs.of_one_scan(*surfaces[0], 10e-6)}
-    settings = typed(inputs.Settings, jobs.budget(PLAN, f"C1_rh{round(100 * humidity):03}")["budget"])
+    settings = typed(
+        inputs.Settings, job_settings(PLAN, f"devices/budget/{f'C1_rh{round(100 * humidity):03}'}")["budget"]
+    )
     found = budget.compute(base, changed, {"modulus": solids["modulus"]}, {}, known, settings)
     slopes = dict(zip(found.input.values, zip(found.slope.values, found.slope_error.values, strict=True), strict=True))
     assert set(slopes) == set(KNOWN[humidity])
@@ -86,7 +87,9 @@ def test_slopes_of_pair_b_are_those_of_an_independent_study(humidity, surfaces, 
 @pytest.mark.parametrize("humidity", KNOWN)
 def test_slopes_of_the_solids_follow_the_energy_of_the_contact(humidity, base, solids):
     plan = Plan(merged(PLAN.config, {"devices": {"C1": {"uncertainty": SOLIDS}}}))
-    settings = typed(inputs.Settings, jobs.budget(plan, f"C1_rh{round(100 * humidity):03}")["budget"])
+    settings = typed(
+        inputs.Settings, job_settings(plan, f"devices/budget/{f'C1_rh{round(100 * humidity):03}'}")["budget"]
+    )
     found = budget.compute(base, {}, solids, {}, {}, settings)
     slopes = dict(zip(found.input.values, zip(found.slope.values, found.slope_error.values, strict=True), strict=True))
     # Eq. (13): the length has the power -1/4 of the energy of the contact.

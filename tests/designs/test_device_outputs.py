@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 from legends import covering
 
-from stiction.designs import figures_devices, tables_devices
+from stiction.report.devices import figures_devices, tables_devices
 from stiction.report.style import save
 
 sys.path.append(str(Path(__file__).parents[1] / "designs"))

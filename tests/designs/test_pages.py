@@ -9,10 +9,11 @@ import xarray as xr
 from test_device_outputs import charted
 from test_tables_budget import BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_dataset
 
-from stiction.designs import findings, pages, safe_lengths, sticking
-from stiction.designs.pages import Page, Section
+from stiction.designs import device_warnings, safe_lengths, sticking
 from stiction.designs.releases import DesignedBeam
 from stiction.devices.limits import NOT_MODELLED
+from stiction.report.devices import pages
+from stiction.report.devices.pages import Page, Section
 from stiction.stages.curves import Water
 
 CANTILEVER = {
@@ -119,7 +120,7 @@ def test_a_beam_without_chart_and_budget_has_neither():
 
 def test_warnings_of_a_beam_have_the_numbers_of_its_tables():
     warned = {("C1", 0.67, shape): ["Too steep."] * (shape == sticking.EITHER) for shape in SHAPES}
-    curves = [("C1", *curve) for curve in findings.curves(charted(0.5))]
+    curves = [("C1", *curve) for curve in device_warnings.curves(charted(0.5))]
     warned |= dict.fromkeys(curves, []) | {curves[0]: ["Too thin.", "Too steep."]}
     page = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {0.5: charted(0.5)}, {}, warned).html
     assert "<p>(1) Too steep.</p>\n<p>(2) Too thin.</p>" in page
@@ -132,7 +133,7 @@ def test_warnings_of_a_beam_have_the_numbers_of_its_tables():
 def test_a_long_table_is_folded():
     charts = {humidity: charted(humidity) for humidity in np.linspace(0.4, 0.9, 9).round(3)}
     silent = {("C1", 0.67, shape): [] for shape in SHAPES}
-    silent |= {("C1", *curve): [] for curve in findings.curves(charted(0.5))}
+    silent |= {("C1", *curve): [] for curve in device_warnings.curves(charted(0.5))}
     page = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, charts, {}, silent).html
     assert page.count("<details><summary>Table of 72 rows</summary>") == 1
 

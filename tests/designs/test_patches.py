@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 import small
+from plans import job_settings
 
-from stiction.config import jobs
+from stiction.config.merging import merged
 from stiction.config.units import typed
 from stiction.designs.patches import on_patch
 from stiction.stages import contact, curves
@@ -14,7 +15,10 @@ WATER = curves.Water(300.0)
 
 def energies(length, width):
     """Adhesion energies of 200 samples of patches with these sides [nm], as in the stages of devices."""
-    settings = typed(contact.Settings, jobs._on_patch(small.PLAN, "b", length, width, 200))
+    settings = typed(
+        contact.Settings,
+        merged(job_settings(small.PLAN, f"devices/contact/b_{length}x{width}"), {"contact": {"samples": 200}}),
+    )
     drawn = contact.compute(small.surfaces(), "b", "NG", settings)
     with on_patch(1e-9 * length, 1e-9 * width):
         return curves.energies(drawn, 0.5, WATER)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import small
 from numpy.testing import assert_allclose, assert_array_equal
+from plans import job_settings
 
-from stiction.config import jobs
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
@@ -29,12 +29,15 @@ def met(plain):
 
 def changed(name, plan=small.PLAN):
     """Contacts with less and with more of a property."""
-    return tuple(met(jobs.solid_contact(plan, *PATCH, name, side)) for side in ("less", "more"))
+    return tuple(
+        met(job_settings(plan, f"devices/contact/{name}/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_{side}"))
+        for side in ("less", "more")
+    )
 
 
 def with_solid(**properties):
     """Contact with other properties of the solid."""
-    return met(merged(jobs.contact(small.PLAN, "b"), {"solid": properties}))
+    return met(merged(job_settings(small.PLAN, "contact/b_NG"), {"solid": properties}))
 
 
 def slopes(stated, solids):
@@ -58,7 +61,7 @@ def test_poissons_ratio_acts_through_the_modulus_of_plane_strain_alone():
 def test_the_force_between_the_solids_is_proportional_to_both_stiffness_and_hamaker_constant():
     step = OF_SOLIDS["hamaker_constant"].size
     for factor, side in ((1 - step, "less"), (1 + step, "more")):
-        plain = jobs.solid_contact(small.PLAN, *PATCH, "hamaker_constant", side)
+        plain = job_settings(small.PLAN, f"devices/contact/hamaker_constant/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_{side}")
         stiffer = {"young_modulus_GPa": factor * E}
         found = met(merged(plain, {"materials": {"beam": stiffer, "substrate": stiffer}}))
         base = small.contact_of_pair().solid_pressure
@@ -106,7 +109,7 @@ def test_a_body_of_another_material_halves_the_change_of_the_attraction(medium):
     for factor, found in zip((0.8, 1.2), one, strict=True):
         mean = {at: np.sqrt(factor * glass["hamaker_constant_zJ"][at] * known) for at, known in KNOWN.items()}
         both = {side: {"hamaker_constant_zJ": mean} | small.PLAN.config["solid"] for side in ("beam", "substrate")}
-        plain = jobs.contact(small.PLAN, "b") | {"van_der_waals": medium, "materials": both}
+        plain = job_settings(small.PLAN, "contact/b_NG") | {"van_der_waals": medium, "materials": both}
         assert_allclose(found.solid_pressure, met(plain).solid_pressure, rtol=1e-5, atol=10)
 
 

@@ -11,11 +11,11 @@ from numpy.testing import assert_allclose
 from stiction.config.files import load
 from stiction.config.plan import Plan
 from stiction.designs import budget as study_budget
-from stiction.designs import figures_budget, tables_budget
 from stiction.designs import stoppers as study_stoppers
 from stiction.designs.budget import Responses
 from stiction.designs.inputs import Input, Settings, State, Uncertainty
 from stiction.designs.releases import DesignedBeam
+from stiction.report.devices import figures_budget, tables_budget
 from stiction.report.style import DOUBLE, legend_below, panels, save, styled
 from stiction.stages.curves import Water
 

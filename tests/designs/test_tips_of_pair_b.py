@@ -4,8 +4,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+from plans import job_settings, surface_datasets
 
-from stiction.config import jobs
 from stiction.config.designs import Designs
 from stiction.config.files import load
 from stiction.config.plan import Plan
@@ -16,7 +16,6 @@ from stiction.designs.releases import DesignedBeam
 from stiction.devices import arcs, risk
 from stiction.stages import contact, curves
 from stiction.streams import stream
-from stiction.study import surface_datasets
 
 WATER = curves.Water(300.0)
 BEAM = DesignedBeam("cantilever", "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6).beam
@@ -33,7 +32,10 @@ INDEPENDENT = {
 
 def settings(number, edge="rounded"):
     plan = Plan(load({"devices": {"C1": C1}, "design": {"beams": 200, "tip_edge": edge}}))
-    plain = jobs.tip_contact(plan, *Designs(plan.config).tips("C1"))
+    plain = job_settings(
+        plan,
+        f"devices/contact/tips/{Designs(plan.config).tips('C1')[0]}_{Designs(plan.config).tips('C1')[1]}x{Designs(plan.config).tips('C1')[2]}",
+    )
     plain["contact"] |= {"samples": number}
     return plan, plain
 

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 import small
+from plans import job_settings
 
 import stiction
 from stiction.beam.montecarlo import Experiment, columns, simulate
 from stiction.chaos.model import resample_laws
-from stiction.config import jobs
+from stiction.config.merging import merged
 from stiction.config.units import typed
 from stiction.constants import WATER_SURFACE_ENERGY
 from stiction.designs import cracks
@@ -24,7 +25,9 @@ SAMPLING = 0.8e-6
 
 
 def test_real_patches_hold_most_well_below_saturation_although_their_energy_keeps_growing():
-    patches = typed(contact.Settings, jobs._on_patch(small.PLAN, "b", 1500, 30_000, 60))
+    patches = typed(
+        contact.Settings, merged(job_settings(small.PLAN, "devices/contact/b_1500x30000"), {"contact": {"samples": 60}})
+    )
     drawn = contact.compute(small.surfaces(), "b", "NG", patches)
     axis, water = np.arange(80, 99) / 100, curves.Water(300.0)
     pulls = np.transpose([curves.pull_offs(drawn, humidity, water) for humidity in axis])

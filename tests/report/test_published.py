@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from stiction.report import published
 
 ROOT = Path(__file__).parents[2]
-RESOURCES = ROOT / "workflow" / "resources"
+RESOURCES = Path(published.__file__).with_name("resources")
 CONFIG = yaml.safe_load((ROOT / "config.yaml").read_text(encoding="utf-8"))
 TABLES = {name: published.read(RESOURCES / f"{name}.csv") for name in ("table_1", "table_2", "table_3", "sensitivity")}
 

@@ -11,8 +11,8 @@ from numpy.testing import assert_allclose
 
 from stiction.measured import estimate as stage_estimate
 from stiction.measured import scan as stage_scan
-from stiction.measured.figures_scans import surface_sheet
-from stiction.measured.tables_scans import scan_uncertainty, scans
+from stiction.report.scans.figures_scans import surface_sheet
+from stiction.report.scans.tables_scans import scan_uncertainty, scans
 from stiction.report.style import save
 from stiction.scans.estimate import Settings
 from stiction.scans.reading import ScanFile

@@ -1,7 +1,6 @@
 """Tables from datasets with known numbers."""
 
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -13,7 +12,7 @@ from stiction.models import surface_model
 from stiction.report import published, tables, tables_beams, tables_studies, tables_surfaces
 from stiction.stages import forces as stage_forces
 
-RESOURCES = Path(__file__).parents[2] / "workflow" / "resources"
+RESOURCES = Path(published.__file__).with_name("resources")
 PUBLISHED = published.read(RESOURCES / "table_3.csv")
 LENGTHS = np.array([600e-6, 640e-6, 1500e-6])
 ENERGIES = np.array([8e-3, 10e-3, 9e-3, 13e-3])
@@ -185,11 +184,11 @@ def test_resampling_compares_the_means_of_stuck_beams_with_errors_of_the_beams()
 def test_a_table_is_saved_as_numbers_as_markdown_and_as_html(tmp_path):
     key = ("a", 0.45, "NG")
     table = tables_beams.table_3({key: beams(0, 0, 1)}, {key: forces()}, PUBLISHED)
-    paths = SimpleNamespace(**{kind: tmp_path / kind for kind in ("csv", "markdown", "html")})
+    paths = {kind: tmp_path / kind for kind in ("csv", "markdown", "html")}
     tables.save(table, paths)
-    assert_allclose(pd.read_csv(paths.csv).crack_length_um, 620)
-    assert paths.markdown.read_text(encoding="utf-8").startswith("Table III")
-    page = paths.html.read_text(encoding="utf-8")
+    assert_allclose(pd.read_csv(paths["csv"]).crack_length_um, 620)
+    assert paths["markdown"].read_text(encoding="utf-8").startswith("Table III")
+    page = paths["html"].read_text(encoding="utf-8")
     assert page.count("<tr") == 2
     assert "<td>620 ± 28</td>" in page
 

@@ -349,22 +349,3 @@ def test_files_of_the_configuration_come_before_those_that_they_overwrite():
     found = hooks.files_of_configuration(Workflow(overwrite_configfiles=files, configfiles=[*files, "config.yaml"]))
     assert [path.name for path in found] == ["second.yaml", "first.yaml", "config.yaml"]
     assert hooks.files_of_configuration(Workflow()) == []
-
-
-def test_a_line_says_if_snakemake_does_not_list_its_rules(monkeypatch):
-    lines = []
-    monkeypatch.setattr(hooks.logger, "warning", lines.append)
-    assert hooks.rules_of(Workflow(rules=["rule"])) == ["rule"]
-    assert not lines
-    assert list(hooks.rules_of(Workflow())) == []
-    assert "does not list its rules" in lines[0]
-
-
-def test_unusable_files_are_computed_again_or_refused():
-    plan = SimpleNamespace(forcefiles={"first"})
-    hooks.force(Workflow(dag=plan), {"second": "reason"})
-    assert plan.forcefiles == {"first", "second"}
-    for unknown in (Workflow(), Workflow(dag=SimpleNamespace())):
-        hooks.force(unknown, {})
-        with pytest.raises(hooks.WorkflowError, match=r"cannot be used in this run: a, b\. Delete"):
-            hooks.force(unknown, {"b": "reason", "a": "reason"})

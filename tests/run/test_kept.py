@@ -51,21 +51,6 @@ def rule(pattern, settings):
     return SimpleNamespace(output=[re.compile(pattern)], params=SimpleNamespace(settings=settings))
 
 
-def test_settings_of_a_file_are_those_of_the_rule_that_writes_it():
-    moments = {"B1": {"rms_nm": 1.7}, "B2": {"rms_nm": 3.4}}
-    target = SimpleNamespace(output=[], params=None)
-    rules = [
-        target,
-        rule(r"heights/(?P<surface>\w+)\.nc$", lambda wildcards: moments[wildcards.surface]),
-        rule(r"orders\.nc$", {"draws": 5}),
-        rule(r"heights/\w+\.nc$", {"never": "reached"}),
-    ]
-    assert kept.settings("heights/B2.nc", rules) == {"rms_nm": 3.4}
-    assert kept.settings("orders.nc", rules) == {"draws": 5}
-    assert kept.settings("heights/Unknown.nc", rules) is None, "no surface of this configuration"
-    assert kept.settings("beams/b.nc", rules) is None, "no rule writes it"
-
-
 def test_the_label_of_an_unchanged_file_is_read_once(files, monkeypatch):
     assert reasons(files) == {}
     read, seen = labels.read, []

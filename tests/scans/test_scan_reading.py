@@ -309,7 +309,7 @@ def test_what_libraries_print_log_and_warn_of_is_not_shown(capfd, caplog):
 
 
 def test_a_folder_is_not_a_file(tmp_path):
-    with pytest.raises(ScanError, match="cannot be opened: Is a directory"):
+    with pytest.raises(ScanError, match="cannot be opened: it is a folder, must be a regular file"):
         read(tmp_path)
 
 

@@ -7,11 +7,11 @@ import pytest
 import small
 import xarray as xr
 from numpy.testing import assert_allclose, assert_array_equal
+from plans import job_settings
 from published import SURFACES
 from written_scans import etched, scans_of
 
 from stiction.analysis.shifts import ORDERS
-from stiction.config import jobs
 from stiction.config.files import load
 from stiction.config.measured import quantities as measured_quantities
 from stiction.config.plan import Plan
@@ -48,16 +48,16 @@ def estimated(plan):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         read = [
-            scan.compute(path, small.settings_of(scan, jobs.scan(plan, "Etched", number)))
+            scan.compute(path, small.settings_of(scan, job_settings(plan, f"scan/Etched_{number}")))
             for number, path in plan.scan_files("Etched").items()
         ]
-        return estimate.compute(read, "Etched", small.settings_of(estimate, jobs.estimate(plan, "Etched")))
+        return estimate.compute(read, "Etched", small.settings_of(estimate, job_settings(plan, "estimate/Etched")))
 
 
 def surfaces(plan, estimated):
     """Datasets (heights, spectrum) of both surfaces of pair b."""
-    found = heights.compute(estimated, small.settings_of(heights, jobs.heights_of_scans(plan, "Etched")))
-    settings = small.settings_of(spectrum, jobs.spectrum_of_scans(plan, "Etched"))
+    found = heights.compute(estimated, small.settings_of(heights, job_settings(plan, "heights/Etched")))
+    settings = small.settings_of(spectrum, job_settings(plan, "spectrum/Etched"))
     return (found, spectrum.compute(estimated, found, settings)), small.surfaces()[1]
 
 
@@ -70,7 +70,7 @@ def asked(monkeypatch):
 
 
 def settings_of(plan):
-    return small.settings_of(choices, jobs.choice_contact(plan, "b"))
+    return small.settings_of(choices, job_settings(plan, "studies/choices/b_beyond"))
 
 
 #: Largest wave number of B2 [rad/m]; the scans have no shorter waves.
@@ -122,8 +122,9 @@ def test_the_contact_of_a_choice_has_no_more_samples_than_that_of_the_pair_with_
 
 
 def test_the_estimate_keeps_the_levelled_map_and_the_histogram(plan, estimated):
-    read = [scan.scan_of(scan.compute(path, small.settings_of(scan, jobs.scan(plan, "Etched", n)))) for n, path in
-            plan.scan_files("Etched").items()]  # fmt: skip
+    files = plan.scan_files("Etched").items()
+    wanted = {n: small.settings_of(scan, job_settings(plan, f"scan/Etched_{n}")) for n, _ in files}
+    read = [scan.scan_of(scan.compute(path, wanted[n])) for n, path in files]
     levelled = [level(one.heights, Levelling()) for one in read]
     assert_allclose(estimated.elevation, levelled[0], atol=1e-14)
     corrected = histogram(levelled, quantiles(levelled), estimated["quantile"].values)
@@ -164,7 +165,7 @@ def test_slopes_of_measured_heights_keep_their_form_but_for_a_mode(files, estima
     monkeypatch.setattr(stage_contact, "compute_each", lambda *given: asked.extend(given[0]) or [contact, contact])
     plan = plan_of(files, heights="measured")
     given = surfaces(plan, estimated)
-    settings = small.settings_of(slope_contact, jobs.slope_contact(plan, "b"))
+    settings = small.settings_of(slope_contact, job_settings(plan, "studies/slopes/contact/b_B2_rms_less"))
     _, found = slope_contact.compute(given, "b", "Etched", quantity, settings)
     changed, before = asked[1][0][0], given[0][0]
     u = np.array([-2.0, 0.0, 2.0])
@@ -185,7 +186,7 @@ def test_modes_of_a_surface_with_the_heights_of_its_moments_are_those_of_its_mea
     asked, contact = [], small.contact_of_pair()
     monkeypatch.setattr(stage_contact, "compute_each", lambda *given: asked.append(given[0]) or [contact, contact])
     for plan in (plan_of(files), plan_of(files, heights="measured")):
-        settings = small.settings_of(slope_contact, jobs.slope_contact(plan, "b"))
+        settings = small.settings_of(slope_contact, job_settings(plan, "studies/slopes/contact/b_B2_rms_less"))
         slope_contact.compute(surfaces(plan, estimated), "b", "Etched", "mode4", settings, estimated)
     for from_moments, from_measured in zip(*asked, strict=True):
         for ours, theirs in zip(from_moments[0], from_measured[0], strict=True):
@@ -195,7 +196,7 @@ def test_modes_of_a_surface_with_the_heights_of_its_moments_are_those_of_its_mea
 @pytest.mark.parametrize(("form", "names"), [("moments", OF_MOMENTS), ("measured", OF_MEASURED)])
 def test_the_budget_of_a_device_takes_the_covariance_of_the_estimate(files, estimated, form, names):
     plan = plan_of(files, heights=form)
-    drawn = heights.compute(estimated, small.settings_of(heights, jobs.heights_of_scans(plan, "Etched")))
+    drawn = heights.compute(estimated, small.settings_of(heights, job_settings(plan, "heights/Etched")))
     found = inputs.of_scans(estimated, drawn)
     assert found.quantities == (*names, *OF_SPECTRUM)
     of_heights = estimated.covariance if form == "moments" else estimated.mode_covariance

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import small
 from numpy.testing import assert_allclose, assert_array_equal
+from plans import job_settings
 
-from stiction.config import jobs
 from stiction.stages import character
 
 POWERS = np.random.default_rng(3).random((6, 4)) * 1e-3 + [0, 1, 0, 3]
@@ -42,7 +42,7 @@ def test_the_radius_is_unknown_only_if_no_strip_has_a_summit():
 
 
 def test_narrow_strips_without_a_summit_are_drawn_without_a_warning():
-    settings = small.settings_of(character, jobs.character(small.PLAN))
+    settings = small.settings_of(character, job_settings(small.PLAN, "character/B2_NG"))
     narrow = replace(settings, beam=replace(settings.beam, width=0.3e-6), character=character.Strips(8, 100e-9))
     found = character.compute(small.heights_of("B2"), small.spectrum_of("B2"), "B2", "NG", narrow)
     assert_array_equal(np.isnan(found.mean_curvature), found.summit_density == 0)

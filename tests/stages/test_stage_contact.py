@@ -7,13 +7,13 @@ import pytest
 import small
 import xarray as xr
 from numpy.testing import assert_allclose, assert_array_equal
+from plans import job_settings
 from scipy.stats import norm
 
-from stiction.config import jobs
 from stiction.contact.pair import DistanceGrid
 from stiction.stages import contact
 
-SETTINGS = small.settings_of(contact, jobs.contact(small.PLAN, "b"))
+SETTINGS = small.settings_of(contact, job_settings(small.PLAN, "contact/b_NG"))
 SAMPLES = SETTINGS.contact.samples
 
 

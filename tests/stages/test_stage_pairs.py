@@ -1,10 +1,10 @@
 from dataclasses import replace
 
 import numpy as np
+from plans import job_settings
 from published import SPACING, SURFACES
 from scipy.constants import pi
 
-from stiction.config import jobs
 from stiction.config.files import load
 from stiction.config.plan import Plan
 from stiction.config.units import typed
@@ -15,7 +15,7 @@ from stiction.stages.parameters import spectrum_of
 from stiction.streams import stream
 from stiction.variants.summits import Sides, Surface, surfaces_of
 
-SETTINGS = typed(contact.Settings, jobs.contact(Plan(load()), "b"))
+SETTINGS = typed(contact.Settings, job_settings(Plan(load()), "contact/b_NG"))
 
 
 def datasets(name):
@@ -76,7 +76,7 @@ def test_surfaces_of_a_pair_are_those_of_their_stages_that_of_the_beam_first():
 def with_materials(**properties):
     """Settings under which the substrate is of another material."""
     changes = {"materials": {"Other": properties}, "surfaces": {"Sub1": {"material": "Other"}}}
-    return typed(contact.Settings, jobs.contact(Plan(load(changes)), "b"))
+    return typed(contact.Settings, job_settings(Plan(load(changes)), "contact/b_NG"))
 
 
 def test_stated_properties_of_polysilicon_give_the_asperities_of_the_paper():

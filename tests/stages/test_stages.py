@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import small
 from numpy.testing import assert_allclose, assert_array_equal
+from plans import job_settings
 from published import SURFACES
 from vectors import sampled_vectors
 
 from stiction.beam.montecarlo import Experiment, release_beam
 from stiction.beam.resolution import resolved
 from stiction.chaos.model import draw, draw_laws, fit, fit_report
-from stiction.config import jobs
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.contact.forcelaw import parametrise
@@ -160,7 +160,7 @@ def test_heights_that_never_become_uncorrelated_are_reported_with_surface_source
 
 
 def test_a_patch_is_longer_than_the_correlation_of_the_identified_spectrum(monkeypatch):
-    settings = small.settings_of(identification, jobs.identification(small.PLAN, "B2"))
+    settings = small.settings_of(identification, job_settings(small.PLAN, "identification/B2"))
     wide = Identification(CutoffSelfAffine(1e-30, 1e-38, 1e6, 138e6), 9, 4e-7, 7e13, 1e-9, 1e12)
     monkeypatch.setattr(identification, "identify", lambda *_: wide)
     with pytest.raises(
@@ -196,14 +196,14 @@ def test_misfits_are_the_deviations_from_the_measured_summits():
 
 def test_the_spectrum_of_a_job_is_checked_where_it_is_identified():
     plan = Plan(merged(small.PLAN.config, {"surfaces": {"B2": {"psd": "identified"}}, "sampling": {"margin_um": 0.2}}))
-    settings = small.settings_of(spectrum, jobs.spectrum(plan, "B2"))
+    settings = small.settings_of(spectrum, job_settings(plan, "spectrum/B2"))
     assert settings.identified == spectrum.Use("B2", 1.5e-6, pytest.approx(0.2e-6))
     with pytest.raises(ValueError, match=r"sampling.margin_um is 0.2, .* surface B2"):
         spectrum.compute(small.heights_of("B2"), identified(), settings)
 
 
 def test_identification_finds_what_the_surface_was_asked_for(through_a_file):
-    settings = small.settings_of(identification, jobs.identification(small.PLAN, "B2"))
+    settings = small.settings_of(identification, job_settings(small.PLAN, "identification/B2"))
     found = through_a_file(identification.compute(small.heights_of("B2"), "B2", settings))
     target = found.target_mean_radius, found.target_summit_density, found.target_rms
     assert tuple(map(float, target)) == (B2.mean_summit_radius, B2.summit_density, B2.rms)
@@ -217,7 +217,7 @@ def test_identification_searches_on_patches_with_streams_of_their_own(monkeypatc
     asked = []
     found = Identification(B2.published_psd, 7, 1.0, 2.0, 0.1, 0.2)
     monkeypatch.setattr(identification, "identify", lambda *asked_for: asked.extend(asked_for) or found)
-    settings = small.settings_of(identification, jobs.identification(small.PLAN, "B2"))
+    settings = small.settings_of(identification, job_settings(small.PLAN, "identification/B2"))
     dataset = identification.compute(small.heights_of("B2"), "B2", settings)
     target, translation, grid, *streams = asked
     assert target.spacing == pytest.approx(20e-9)
@@ -236,7 +236,7 @@ def test_identification_searches_on_patches_with_streams_of_their_own(monkeypatc
 
 @pytest.fixture(scope="module")
 def of_strips():
-    settings = small.settings_of(character, jobs.character(small.PLAN))
+    settings = small.settings_of(character, job_settings(small.PLAN, "character/B2_NG"))
     return character.compute(small.heights_of("B2"), small.spectrum_of("B2"), "B2", "NG", settings), settings
 
 
@@ -320,7 +320,7 @@ def test_chaos_reports_draws_of_its_own_addresses(monkeypatch):
     # Of so little energy that some draws have no law.
     samples = sampled_vectors(200) * [0.3, 1, 1, 1]
     limit = samples[:, 1].max()
-    settings = small.settings_of(chaos, jobs.chaos(small.PLAN))
+    settings = small.settings_of(chaos, job_settings(small.PLAN, "chaos/b_rh067_NG"))
     found = chaos.compute(forces.layout(samples, limit, np.zeros(1), np.zeros((1, 1))), small.CASE, "G", settings)
     model = chaos.chaos_model(found)
     statistics, correlations = fit_report(model, samples, 500, stream(small.SEED, "chaos", small.CASE, "G"))
@@ -336,7 +336,7 @@ def test_chaos_reports_draws_of_its_own_addresses(monkeypatch):
 
 
 def of_beams(model="NG"):
-    return small.settings_of(beams, jobs.beams(small.PLAN, small.CASE, model))
+    return small.settings_of(beams, job_settings(small.PLAN, f"beams/{small.CASE}_{model}"))
 
 
 def by_hand(k, settings):

@@ -7,7 +7,6 @@ import xarray as xr
 
 from stiction.run import atomic
 from stiction.stages import storage
-from stiction.stages.named import key_of, load_named
 
 
 def dataset():
@@ -110,48 +109,3 @@ def test_files_have_the_permissions_that_the_user_gives_all_files(tmp_path):
         os.umask(before)
     assert {path.stat().st_mode & 0o777 for path in tmp_path.iterdir()} == {0o640}
     assert (tmp_path / "x.txt").read_bytes() == b"\xce\x94"
-
-
-def test_datasets_are_keyed_by_the_names_of_their_files(tmp_path):
-    for name in ("b_rh067_NG", "a_rh060_G"):
-        storage.save(dataset(), tmp_path / f"{name}.nc", "forces", {})
-    paths = [tmp_path / "a_rh060_G.nc", tmp_path / "b_rh067_NG.nc"]
-    assert list(load_named(paths, "forces")) == ["a_rh060_G", "b_rh067_NG"]
-    assert list(load_named(paths, "forces", key_of)) == [("a", 0.6, "G"), ("b", 0.67, "NG")]
-    assert [found.attrs["name"] for found in storage.load_all(reversed(paths), "forces")] == ["b_rh067_NG", "a_rh060_G"]
-
-
-def test_surfaces_are_loaded_in_the_order_of_their_files_each_with_its_spectrum(tmp_path):
-    for stage in ("heights", "spectrum"):
-        for name in ("Sub1", "B2"):
-            storage.save(dataset(), tmp_path / stage / f"{name}.nc", stage, {})
-    heights, spectra = (
-        [tmp_path / stage / f"{name}.nc" for name in ("B2", "Sub1")] for stage in ("heights", "spectrum")
-    )
-    found = storage.load_surfaces(heights, spectra)
-    assert [tuple((d.attrs["stage"], d.attrs["name"]) for d in surface) for surface in found] == [
-        (("heights", "B2"), ("spectrum", "B2")),
-        (("heights", "Sub1"), ("spectrum", "Sub1")),
-    ]
-    with pytest.raises(ValueError, match="shorter"):
-        storage.load_surfaces(heights, spectra[:1])
-    with pytest.raises(ValueError, match="heights/B2.nc and .*spectrum/Sub1.nc are of different surfaces"):
-        storage.load_surfaces(heights, spectra[::-1])
-
-
-def test_files_are_refused_unless_their_names_end_in_the_expected_order():
-    paths = ["results/b_rms_less.nc", "results/b_rms_more.nc"]
-    assert storage.in_order(paths, ("less", "more")) == paths
-    with pytest.raises(ValueError, match="b_rms_more.nc is not the file of less"):
-        storage.in_order(paths[::-1], ("less", "more"))
-    with pytest.raises(ValueError, match="longer"):
-        storage.in_order(paths[:1], ("less", "more"))
-
-
-def test_a_file_is_replaced_and_never_overwritten_while_it_is_read(tmp_path):
-    path = tmp_path / "x.txt"
-    atomic.save_text("old", path)
-    with path.open() as reader:
-        atomic.save_text("new", path)
-        assert reader.read() == "old"
-    assert path.read_text() == "new"

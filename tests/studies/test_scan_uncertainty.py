@@ -10,11 +10,12 @@ import small
 import xarray as xr
 from drawn_scans import published
 from numpy.testing import assert_allclose
+from plans import job_settings
 from published import SURFACES
 
 from stiction.analysis.shifts import ORDERS
 from stiction.analysis.variants import relative_shift
-from stiction.config import jobs
+from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.measured import estimate as stage_estimate
 from stiction.measured import heights as measured_heights
@@ -49,7 +50,9 @@ ERRORS = Errors(
     spectrum=np.array([[1.9e-4, -1e-5], [-1e-5, 9e-6]]),
     scans=1,
 )
-WANTED = replace(small.settings_of(slopes, jobs.sensitivity(small.PLAN, "b")), humidities=HUMIDITIES)
+WANTED = replace(
+    small.settings_of(slopes, job_settings(small.PLAN, "studies/sensitivity/b_rms")), humidities=HUMIDITIES
+)
 
 
 def study(errors=ERRORS, values=SLOPES, choices=None):
@@ -171,17 +174,16 @@ def test_the_effect_of_the_form_of_the_heights_has_the_error_of_the_measured_for
 KNOWN, BY_SPECTRUM = np.array([0.129, 0.092, 0.029]), np.array([0.024, 0.012, 0.002])
 
 
-def wide(settings, samples):
+def wide(name, samples):
     """Settings of pair b with strips of 30 µm."""
-    plain = settings(Plan(small.PLAN.config | {"beam": small.PLAN.config["beam"] | {"width_um": 30}}), "b")
-    plain["contact"]["samples"] = samples
-    return plain
+    plan = Plan(small.PLAN.config | {"beam": small.PLAN.config["beam"] | {"width_um": 30}})
+    return merged(job_settings(plan, name), {"contact": {"samples": samples}})
 
 
 @cache
 def slopes_of_b2():
     """Slopes of ln ē of pair b to the quantities of B2."""
-    settings = small.settings_of(slope_contact, wide(jobs.slope_contact, 300))
+    settings = small.settings_of(slope_contact, wide("studies/slopes/contact/b_B2_rms_less", 300))
     (moments, spectrum), substrate = small.surfaces()
     form = measured_density(SURFACES["B2"].density.quantile_of_normal(SCORES), 2036)
     measured = stage_heights.layout(form, stage_heights.moments(moments))
@@ -241,7 +243,7 @@ def energies_of(beam, settings):
 
 @pytest.mark.slow
 def test_energies_from_single_scans_are_those_of_the_surface_within_the_known_error():
-    settings = small.settings_of(stage_contact, wide(jobs.contact, 200))
+    settings = small.settings_of(stage_contact, wide("contact/b_NG", 200))
     true, spectrum = small.surfaces()[0][0], SURFACES["B2"].spectrum
     use = measured_spectrum.Settings("fitted", "cut", 10e-9, Use("Etched", 1.5e-6, 1e-6))
     ratios, by_spectrum = [], []

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import small
 from numpy.testing import assert_allclose, assert_array_equal
+from plans import job_settings
 from published import SURFACES
 from vectors import sampled_vectors
 
@@ -15,7 +16,6 @@ from stiction.beam.foundation import ELEMENT, foundation_length
 from stiction.beam.montecarlo import Experiment, release_beam
 from stiction.beam.resolution import resolved
 from stiction.chaos.model import draw_laws, fit, resample_laws, truncated
-from stiction.config import jobs
 from stiction.config.cases import case_id
 from stiction.config.merging import merged
 from stiction.contact.asperity import reduced_modulus
@@ -64,7 +64,7 @@ def of_vectors(vectors, limit=None):
 @pytest.fixture(scope="module")
 def shifted():
     """Datasets of less and more skewness, and their settings."""
-    plain = jobs.sensitivity_contact(small.PLAN, "b") | {"moments": ["skewness"]}
+    plain = job_settings(small.PLAN, "studies/sensitivity/contact/b_rms_less") | {"moments": ["skewness"]}
     settings = small.settings_of(sensitivity_contact, plain)
     return sensitivity_contact.compute(small.surfaces(), "b", settings), settings
 
@@ -113,7 +113,7 @@ def test_a_step_of_nothing_is_the_contact_of_the_pair(shifted):
 
 
 def test_sensitivity_is_that_of_the_energies_at_both_values(shifted):
-    settings = small.settings_of(sensitivity, jobs.sensitivity(small.PLAN, "b"))
+    settings = small.settings_of(sensitivity, job_settings(small.PLAN, "studies/sensitivity/b_rms"))
     found = sensitivity.compute(shifted[0], settings)
     assert list(found.humidity) == [0.44, 0.55, 0.67, 0.80, 0.88, 0.92]
     assert list(found.moment) == [sensitivity_contact.moment(contact) for contact in shifted[0]]
@@ -133,7 +133,9 @@ def test_sensitivity_is_that_of_the_energies_at_both_values(shifted):
 
 
 def slope_settings(**changes):
-    return replace(small.settings_of(slope_contact, jobs.slope_contact(small.PLAN, "b")), **changes)
+    return replace(
+        small.settings_of(slope_contact, job_settings(small.PLAN, "studies/slopes/contact/b_B2_rms_less")), **changes
+    )
 
 
 @pytest.mark.parametrize(("surface", "changed"), [("B2", (True, False)), ("Sub1", (False, True))])
@@ -176,7 +178,7 @@ def test_slopes_and_their_errors_are_those_of_the_chosen_quantities():
 
 def test_slopes_are_those_of_the_energies_at_both_values_and_of_their_own_quantity():
     both = slope_contact.compute(small.surfaces(), "b", "B2", "rms", slope_settings())
-    wanted = small.settings_of(slopes, jobs.sensitivity(small.PLAN, "b"))
+    wanted = small.settings_of(slopes, job_settings(small.PLAN, "studies/sensitivity/b_rms"))
     found = slopes.compute({"rms": both, "kurtosis": both[::-1]}, wanted)
     for k, h in enumerate(wanted.humidities):
         less, more = (curves.energies(contact, h, WATER) for contact in both)
@@ -194,7 +196,7 @@ def test_slopes_are_those_of_the_energies_at_both_values_and_of_their_own_quanti
 
 
 def test_the_softer_of_two_materials_yields():
-    settings = small.settings_of(plasticity, jobs.plasticity(small.PLAN, "b"))
+    settings = small.settings_of(plasticity, job_settings(small.PLAN, "studies/plasticity/b"))
     soft = replace(settings, materials={"beam": Solid(hardness=1e9)})
     hard = replace(settings, materials={"beam": Solid(hardness=1e12)})
     found = {name: plasticity.compute(small.surfaces(), "b", one) for name, one in (("soft", soft), ("hard", hard))}
@@ -205,7 +207,7 @@ def test_the_softer_of_two_materials_yields():
 
 
 def test_stress_of_every_touching_summit_is_that_of_eq_14():
-    settings = small.settings_of(plasticity, jobs.plasticity(small.PLAN, "b"))
+    settings = small.settings_of(plasticity, job_settings(small.PLAN, "studies/plasticity/b"))
     found = plasticity.compute(small.surfaces(), "b", settings)
     modulus = reduced_modulus(164e9, 0.23)
     stress = 2 / np.pi * modulus * np.sqrt(found.interference / found.radius)
@@ -222,7 +224,7 @@ def test_stress_of_every_touching_summit_is_that_of_eq_14():
 
 @pytest.mark.parametrize("gigapascals", [400, 700])
 def test_the_plastic_share_is_that_of_the_area_above_the_onset(gigapascals):
-    settings = small.settings_of(plasticity, jobs.plasticity(small.PLAN, "b"))
+    settings = small.settings_of(plasticity, job_settings(small.PLAN, "studies/plasticity/b"))
     stiff = replace(settings, solid=replace(settings.solid, young_modulus=gigapascals * 1e9), distance=3e-9)
     found = plasticity.compute(small.surfaces(), "b", stiff)
     area = found.radius * found.interference
@@ -237,7 +239,7 @@ def test_the_plastic_share_is_that_of_the_area_above_the_onset(gigapascals):
 
 
 def test_fit_compares_every_curve_that_has_a_law_with_its_law():
-    settings = small.settings_of(study_fit, jobs.forces(small.PLAN, small.CASE))
+    settings = small.settings_of(study_fit, job_settings(small.PLAN, f"forces/{small.CASE}_NG"))
     found = study_fit.compute(small.contact_of_pair(), small.forces_of_case(), settings)
     vectors, limit = forces.vectors(small.forces_of_case())
     assert_array_equal(found.sample, np.flatnonzero(admissible(vectors, limit)))
@@ -253,7 +255,7 @@ def test_fit_compares_every_curve_that_has_a_law_with_its_law():
 
 
 def test_fit_leaves_out_samples_without_a_law():
-    settings = small.settings_of(study_fit, jobs.forces(small.PLAN, small.CASE))
+    settings = small.settings_of(study_fit, job_settings(small.PLAN, f"forces/{small.CASE}_NG"))
     lawless = small.forces_of_case().copy(deep=True)
     lawless.adhesion_energy[:5] = 1e-6
     found = study_fit.compute(small.contact_of_pair(), lawless, settings)
@@ -267,7 +269,7 @@ def test_fit_leaves_out_samples_without_a_law():
 
 
 def test_energies_along_the_humidity_are_those_at_each_humidity_and_grow_at_high_ones():
-    settings = small.settings_of(humidity, jobs.humidity(small.PLAN, "b"))
+    settings = small.settings_of(humidity, job_settings(small.PLAN, "humidity/b_NG"))
     found = humidity.compute(small.contact_of_pair(), settings)
     assert_allclose(found.humidity, np.linspace(0.44, 0.92, 25))
     for k in (0, 12, 24):
@@ -281,7 +283,7 @@ def test_energies_along_the_humidity_are_those_at_each_humidity_and_grow_at_high
 
 
 def test_iteration_corrects_each_spectrum_by_what_its_fields_show():
-    settings = small.settings_of(iteration, jobs.iteration(small.PLAN))
+    settings = small.settings_of(iteration, job_settings(small.PLAN, "iteration/B2"))
     found = iteration.compute(small.heights_of("B2"), small.spectrum_of("B2"), "B2", settings)
     assert dict(found.sizes)["iteration"] == dict(found.sizes)["field"] == 2
     target = SURFACES["B2"].published_psd
@@ -297,7 +299,7 @@ def test_iteration_corrects_each_spectrum_by_what_its_fields_show():
 
 
 def test_the_fields_of_an_iteration_are_drawn_from_the_stream_of_the_surface():
-    settings = small.settings_of(iteration, jobs.iteration(small.PLAN))
+    settings = small.settings_of(iteration, job_settings(small.PLAN, "iteration/B2"))
     one = replace(settings, iteration=iteration.Steps(1, 2))
     found = iteration.compute(small.heights_of("B2"), small.spectrum_of("B2"), "B2", one)
     steps = iteration.iterate(
@@ -332,7 +334,7 @@ def test_all_samples_are_at_no_distance_from_themselves_and_densities_hold_one()
 
 def test_marginals_of_every_order_are_drawn_from_the_model_cut_there():
     vectors = sampled_vectors(300)
-    settings = small.settings_of(orders, jobs.orders(small.PLAN))
+    settings = small.settings_of(orders, job_settings(small.PLAN, "studies/orders"))
     model = fit(vectors, 1.1 * vectors[:, 1].max(), 2, 0.2)
     assert model.dimension < 4
     dataset = chaos.layout(model, (np.zeros((3, 4, 4)), np.zeros((3, 4, 4))), 0.0)
@@ -366,7 +368,9 @@ def test_an_order_has_converged_if_its_marginals_are_near_the_kernels(monkeypatc
     vectors = sampled_vectors(300)
     model = fit(vectors, 1.1 * vectors[:, 1].max(), 2, 0.2)
     dataset = chaos.layout(model, (np.zeros((3, 4, 4)), np.zeros((3, 4, 4))), 0.0)
-    found = orders.compute(of_vectors(vectors), dataset, small.settings_of(orders, jobs.orders(small.PLAN)))
+    found = orders.compute(
+        of_vectors(vectors), dataset, small.settings_of(orders, job_settings(small.PLAN, "studies/orders"))
+    )
     assert_array_equal(found.converged_order, converged)
 
 
@@ -374,7 +378,7 @@ def test_an_order_has_converged_if_its_marginals_are_near_the_kernels(monkeypatc
 
 
 def test_fine_elements_find_the_energy_of_the_law_and_the_case_of_median_energy():
-    settings = small.settings_of(mesh, jobs.mesh(small.PLAN))
+    settings = small.settings_of(mesh, job_settings(small.PLAN, "studies/mesh"))
     fine = replace(settings, mesh=mesh.Meshes((7.5e-6, 3.75e-6), (1.5e-6, 0.75e-6)))
     found = mesh.compute(small.forces_of_case(), fine)
     pairs = list(zip(found.element_length.values, found.point_distance.values, strict=True))
@@ -401,7 +405,7 @@ def strong_forces(factor):
     ("factor", "length", "reason"), [(300, 150, "do not resolve a crack"), (3e5, 1.5, "equilibrium of the beam")]
 )
 def test_meshes_that_do_not_resolve_the_crack_are_left_out_and_none_is_an_error(factor, length, reason):
-    settings = small.settings_of(mesh, jobs.mesh(small.PLAN))
+    settings = small.settings_of(mesh, job_settings(small.PLAN, "studies/mesh"))
     coarse = replace(settings, mesh=mesh.Meshes((1e-6 * length,), (1.5e-6,)))
     samples, limit = forces.vectors(strong_forces(factor))
     laws = coefficients(samples, limit)
@@ -415,7 +419,9 @@ def test_meshes_that_do_not_resolve_the_crack_are_left_out_and_none_is_an_error(
 
 
 def test_the_meshes_that_resolve_the_crack_remain():
-    settings = replace(small.settings_of(mesh, jobs.mesh(small.PLAN)), mesh=mesh.Meshes((150e-6, 1.5e-6), (1.5e-6,)))
+    settings = replace(
+        small.settings_of(mesh, job_settings(small.PLAN, "studies/mesh")), mesh=mesh.Meshes((150e-6, 1.5e-6), (1.5e-6,))
+    )
     with pytest.warns(UserWarning, match="left out elements of 150 µm"):
         found = mesh.compute(strong_forces(30), settings)
     assert_allclose(found.element_length, [1.5e-6])
@@ -444,7 +450,7 @@ def test_autocorrelation_starts_at_one_and_ends_below_its_threshold():
 
 
 def test_resampled_beams_are_released_on_laws_of_the_samples_from_streams_of_their_own():
-    settings = small.settings_of(resampling, jobs.resampling(small.PLAN, small.CASE))
+    settings = small.settings_of(resampling, job_settings(small.PLAN, f"studies/resampling/{small.CASE}"))
     found = resampling.compute(small.forces_of_case(), small.CASE, settings)
     vectors, limit = forces.vectors(small.forces_of_case())
     experiment = Experiment(cantilever(settings, "b"), 1000, lambda n, rng: resample_laws(vectors, limit, n, rng))
@@ -457,7 +463,7 @@ def test_resampled_beams_are_released_on_laws_of_the_samples_from_streams_of_the
 @pytest.mark.parametrize("h", [0.55, 0.8])
 def test_a_variant_is_the_chain_behind_its_contact(h):
     case = case_id("b", h)
-    settings = small.settings_of(variant_beams, jobs.variant(small.PLAN, case, "base"))
+    settings = small.settings_of(variant_beams, job_settings(small.PLAN, f"studies/variants/{case}_base"))
     found = variant_beams.compute(small.contact_of_pair(), case, settings).isel(humidity=0)
     vectors, limit = curves.vectors(small.contact_of_pair(), h, WATER)
     assert found.humidity == h
@@ -472,7 +478,7 @@ def test_a_variant_is_the_chain_behind_its_contact(h):
 
 
 def test_a_variant_has_the_first_samples_of_a_larger_contact():
-    settings = small.settings_of(variant_beams, jobs.variant(small.PLAN, small.CASE, "base"))
+    settings = small.settings_of(variant_beams, job_settings(small.PLAN, f"studies/variants/{small.CASE}_base"))
     found = variant_beams.compute(small.contact_of_pair(), small.CASE, replace(settings, samples=18))
     first = variant_beams.compute(small.contact_of_pair().isel(sample=range(18)), small.CASE, settings)
     assert found.sizes["sample"] == 18
@@ -481,13 +487,13 @@ def test_a_variant_has_the_first_samples_of_a_larger_contact():
 
 
 def test_elements_of_a_variant_and_of_resampled_beams_follow_the_laws_if_asked():
-    settings = small.settings_of(variant_beams, jobs.variant(small.PLAN, "b_rh080", "base"))
+    settings = small.settings_of(variant_beams, job_settings(small.PLAN, "studies/variants/b_rh080_base"))
     base, finer = (
         variant_beams.compute(small.contact_of_pair(), "b_rh080", replace(settings, refined=refined))
         for refined in (False, True)
     )
     assert np.all(finer.crack_length != base.crack_length)
-    settings = small.settings_of(resampling, jobs.resampling(small.PLAN, small.CASE))
+    settings = small.settings_of(resampling, job_settings(small.PLAN, f"studies/resampling/{small.CASE}"))
     vectors, limit = forces.vectors(small.forces_of_case())
     laws = resample_laws(vectors, limit, 10_000, stream(small.SEED, "resampling", small.CASE, "mesh"))
     refined = resolved(cantilever(settings, "b"), 1000, laws)
@@ -543,7 +549,7 @@ def test_the_contact_of_the_base_variant_is_that_of_the_pair():
     ["van_der_waals_none", *(pytest.param(name, marks=pytest.mark.slow) for name in ("poisson_ratio_0.28", "every_2"))],
 )
 def test_the_contact_of_a_variant_is_that_of_pairs_of_its_settings(variant):
-    plain = merged(jobs.contact(small.PLAN, "b"), small.PLAN.variants[variant])
+    plain = merged(job_settings(small.PLAN, "contact/b_NG"), small.PLAN.variants[variant])
     settings = small.settings_of(stage_contact, merged(plain, {"contact": {"samples": 3}}))
     plain_way = stage_contact.compute(small.surfaces(), "b", "NG", settings)
     found = contact_under(variant)

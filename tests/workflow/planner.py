@@ -12,17 +12,19 @@ import gc, json, os, sys
 from pathlib import Path
 import jsonschema, netCDF4, numba, scipy.integrate, scipy.interpolate, scipy.optimize, scipy.stats, smart_open, xarray
 import snakemake.cli
-import stiction.config.jobs, stiction.config.validation, stiction.run.hooks, stiction.run.kept
+import stiction.config.validation, stiction.run.hooks, stiction.run.kept
 from snakemake.executors.touch import Executor
 from stiction.config.files import load
+from stiction.plan.graph import stages
 from stiction.run.fingerprint import fingerprint
 
 gc.disable()  # a plan is short, and its process ends with it
 load()  # what relations compute of the paper's numbers is kept
 Executor.SLEEPING_TIME = 0  # [s] for each job that is only touched; files touched in one tick count as up to date
 snakemake.cli.get_argument_parser()  # imports all plugins
-for script in Path("workflow", "scripts").resolve().glob("*.py"):  # kept for files that do not change
-    fingerprint(script)
+stages()
+for module in Path("src", "stiction").resolve().rglob("*.py"):  # kept for files that do not change
+    fingerprint(module)
 
 for line in sys.stdin:
     folder, arguments, path = json.loads(line)

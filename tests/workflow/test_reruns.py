@@ -1,7 +1,6 @@
 """Which rules a change reruns and which it must not: plans with placeholder files, in a copy of the source tree."""
 
 # ruff: noqa: E501
-import ast
 import base64
 import contextlib
 import json
@@ -19,6 +18,11 @@ import yaml
 from conftest import ROOT
 from planner import Planner
 
+from stiction.config.files import normalised, paper
+from stiction.config.measured import anchored
+from stiction.config.merging import merged
+from stiction.config.plan import Plan
+from stiction.plan.graph import Graph, stages
 from stiction.stages import storage
 
 #: Two pairs, one figure case, so that every rule has few jobs.
@@ -59,21 +63,24 @@ READ_BY = {
     "variant_contact": "variant",
     "chaos": "beams orders checks",
     "beams": "table_3 checks model_limits",
-    "plasticity": "model_limits table_safe_lengths table_chart device_limits",
+    "plasticity": "model_limits device_warnings",
+    "device_warnings": "table_safe_lengths table_chart device_limits",
     "device_contact": "cracks",
     "tip_contact": "safe_lengths chart",
     "cracks": "safe_lengths",
-    "safe_lengths": "table_safe_lengths device_limits",
-    "chart": "table_chart device_limits",
+    "safe_lengths": "table_safe_lengths device_warnings",
+    "chart": "table_chart device_warnings",
     "resampling": "checks",
     "checks": "verdict",
 }
 RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())
+#: Rules whose files are about all pairs, or about a device with all that it meets.
+SHARED = {"table_3", "device_warnings", "table_safe_lengths", "table_chart"}
 #: Rules of pair b only.
 OF_FIGURE = {"sensitivity_contact", "sensitivity", "sample_sizes", "orders", "mesh"}
 #: Rules of devices, which belong to pair b as well.
 OF_DEVICES = {"device_contact", "tip_contact", "cracks", "safe_lengths", "chart", "table_safe_lengths", "table_chart"}
-OF_DEVICES |= {"device_limits"}
+OF_DEVICES |= {"device_warnings", "device_limits"}
 OF_FIGURE |= OF_DEVICES
 
 #: Description of a change; overlay; rules that it affects directly, whose readers rerun as well; rules excepted because
@@ -178,6 +185,8 @@ class Tree:
             self.git(*command)
         self.small = scratch / "small.yaml"
         self.small.write_text(config)
+        named = yaml.safe_load(config)
+        self.graph = Graph(Plan(normalised(anchored(merged(paper(), named), named, scratch))))
         self.overlay = scratch / "overlay.yaml"
         self.planner = Planner(folder, scratch)
         for name in self.planner.outputs(*targets, config=[self.small]):
@@ -205,12 +214,11 @@ class Tree:
             ready = [name for name, record in datasets.items() if not set(record["input"]) & set(datasets)]
             for name in ready:
                 record = datasets.pop(name)
-                (settings,) = [text for text in record["params"] if ".py'" not in text]
-                stage = "contact" if "/contact/" in name else record["rule"]
+                job = self.graph.job(name.removeprefix("results/").removesuffix(".nc"))
                 with contextlib.chdir(self.folder):
                     content = xr.Dataset({"noise": ("byte", noise)} if name == LARGE else {})
                     before = [file for file in record["input"] if file.endswith(".nc")]
-                    storage.save(content, name, stage, ast.literal_eval(settings), before)
+                    storage.save(content, name, job.stage.stage, job.settings, before)
 
     def git(self, *command):
         """Run git in the copy."""
@@ -257,7 +265,7 @@ def test_an_unchanged_tree_reruns_nothing(tree):
 def test_a_setting_reruns_the_rules_it_affects_and_their_readers_and_no_others(tree, overlay, met, spared, stay):
     rerun = tree.rerun(overlay=overlay)
     assert known(rerun) == behind(met.split()) - set(spared)
-    assert not [name for name in rerun if stay and re.search(stay, name) and rerun[name] in RULES - {"table_3"}]
+    assert not [name for name in rerun if stay and re.search(stay, name) and rerun[name] in RULES - SHARED]
 
 
 @pytest.mark.slow
@@ -301,7 +309,7 @@ def test_comments_docstrings_and_touched_files_rerun_nothing(tree):
         tree.append(path, "\n\n# A remark.\n")
         if path.suffix == ".py" and path.read_text().startswith('"""'):
             path.write_text(path.read_text().replace('"""', '"""In other words: ', 1))
-    for path in tree.folder.glob("workflow/resources/*"):
+    for path in tree.folder.glob("src/stiction/report/resources/*"):
         path.touch()
     assert tree.rerun() == {}
 
@@ -326,7 +334,7 @@ def test_a_large_file_counts_as_changed_by_its_content_and_not_by_its_time(tree,
 def test_switching_to_another_branch_and_back_reruns_nothing(tree):
     tree.git("checkout", "-b", "other")
     tree.append("src/stiction/streams.py", "\nOTHER = 1\n")
-    tree.append("workflow/scripts/heights.py", "\nOTHER = 1\n")
+    tree.append("src/stiction/stages/heights.py", "\nOTHER = 1\n")
     tree.git("commit", "-am", "other")
     assert tree.rerun() != {}
     tree.git("checkout", "main")
@@ -368,16 +376,18 @@ SPOTS = [
     ("run/logs", "", " ".join(RULES)),
     ("config/relations", "", " ".join(RULES)),
     ("config/plan", "", " ".join(RULES)),
-    ("config/jobs", "", " ".join(RULES)),
+    ("plan/stage", "", " ".join(RULES)),
+    ("plan/graph", "", " ".join(RULES)),
     ("config/files", "", " ".join(RULES)),
     ("config/merging", "variant_summits", "heights spectrum contact_chunk forces beams"),
-    ("stages/named", "correlation table_1 table_2 table_3 checks", "heights spectrum contact_chunk forces chaos beams"),
+    ("plan/names", "", " ".join(RULES)),
+    ("designs/patch_settings", "", " ".join(RULES)),
     ("variants/summits", "variant_summits", "heights spectrum contact_chunk plasticity sensitivity_contact"),
     ("variants/contact", "variant_contact", "variant_summits contact_chunk plasticity sensitivity_contact"),
     ("study", "", " ".join(RULES)),
     ("designs/releases", "cracks chart", "heights spectrum contact_chunk tip_contact beams"),
     ("designs/sticking", "safe_lengths chart", "heights spectrum contact_chunk tip_contact beams cracks"),
-    ("scans/estimate", "table_1 table_3", " ".join(RULES - {"table_1", "table_3"})),
+    ("scans/estimate", "table_1 table_3", " ".join(RULES - {"table_1", "table_2", "table_3", "checks", "verdict"})),
 ]
 SPOT_ROWS = [
     pytest.param(*row, id=row[0], marks=[pytest.mark.slow] * (row[0] not in {"contact/meniscus", "config/plan"}))
@@ -470,19 +480,23 @@ def imported(path):
     return found
 
 
-def reached(script):
-    """Modules that a script imports, directly or through other modules."""
-    modules = imported(script)
-    while more := reduce(set.union, map(imported, modules), set()) - modules:
+#: Modules that affect no result, or only settings and names of inputs, which count themselves.
+SILENT = {
+    PACKAGE / f"{name}.py" for name in ("progress", "run/logs", "plan/stage", "plan/names", "designs/patch_settings")
+}
+
+
+def reached(file):
+    """Modules that a file imports, directly or through other modules, but not through those that affect no result."""
+    modules = imported(file)
+    while more := reduce(set.union, map(imported, modules - SILENT), set()) - modules:
         modules |= more
-    return modules - {PACKAGE / "progress.py", PACKAGE / "run" / "logs.py"}  # do not affect results
+    return modules - SILENT
 
 
-#: Scripts of rules that do not have their name.
-SCRIPTS = {"tip_contact": "device_contact"}
 CODE = sorted(
     path.relative_to(ROOT)
-    for path in [*PACKAGE.rglob("*.py"), *ROOT.glob("workflow/scripts/*.py")]
+    for path in [*PACKAGE.rglob("*.py"), ROOT / "workflow" / "scripts" / "stage.py"]
     if path.name != "__init__.py"
 )
 
@@ -491,11 +505,12 @@ CODE = sorted(
 @pytest.mark.parametrize("path", CODE, ids=[str(path.with_suffix("")).removeprefix("src/stiction/") for path in CODE])
 def test_every_module_and_script_reruns_its_rules_and_their_readers(tree, path):
     tree.append(path, "\nCHANGED = 1\n")
-    scripts = {rule: ROOT / "workflow" / "scripts" / f"{SCRIPTS.get(rule, rule)}.py" for rule in RULES}
+    script = ROOT / "workflow" / "scripts" / "stage.py"
+    modules = {name: ROOT / "src" / f"{module.replace('.', '/')}.py" for name, (_, module) in stages().items()}
     if path.parts[0] == "workflow":
-        met = {rule for rule, script in scripts.items() if script == ROOT / path}
+        met = set(RULES)
     else:
-        met = {rule for rule, script in scripts.items() if ROOT / path in reached(script)}
+        met = {name for name in RULES if ROOT / path in reached(modules[name]) | reached(script) | {modules[name]}}
     if "contact" in met:  # chunks are temporary and must be recomputed to be joined
         met |= {"contact_chunk"}
     assert known(tree.rerun()) == behind(met)

@@ -39,11 +39,12 @@ READ_BY = {
     "tip_solid_contact": "tip_budget",
     "device_choice_summits": "device_choice_contact",
     "device_choice_contact": "budget",
-    "plasticity": "table_safe_lengths figure_risk table_chart figure_chart table_stoppers figure_stoppers device_limits"
-    " device_page",
+    "plasticity": "device_warnings",
+    "device_warnings": "table_safe_lengths figure_risk table_chart figure_chart table_stoppers figure_stoppers"
+    " device_limits device_page",
     "cracks": "safe_lengths",
-    "safe_lengths": "table_safe_lengths figure_risk device_limits device_page",
-    "chart": "table_chart figure_chart device_limits device_page",
+    "safe_lengths": "table_safe_lengths figure_risk device_warnings device_page",
+    "chart": "table_chart figure_chart device_warnings device_page",
     "tip_slope_contact": "tip_budget",
     "tip_choice_contact": "tip_budget",
     "stoppers": "table_stoppers figure_stoppers device_page",
@@ -54,7 +55,9 @@ RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())
 COMPUTING = set(READ_BY)
 #: Rules of one kind of device.
 OF_STOPPERS = {"stoppers", "table_stoppers", "figure_stoppers"}
-OF_BEAMS = {"cracks", "safe_lengths", "table_safe_lengths", "figure_risk", "device_limits"}
+SHOWN = {"table_safe_lengths", "figure_risk"}
+OF_CHARTS = {"chart", "table_chart", "figure_chart"}
+OF_BEAMS = {"cracks", "safe_lengths"} | SHOWN | OF_CHARTS
 BODY = "surfaces: {B2: {material: Other}}\nmaterials: {Other: "
 
 #: Description of a change; overlay; rules that it affects directly, whose readers rerun as well; rules excepted because
@@ -74,16 +77,16 @@ MATRIX = [
      "S1|R1|modulus|hamaker|slopes|choices|heights|spectrum|contact/b|3000x3000|cracks|safe|chart"),
     ("uncertainty of a property of the solids", "devices: {C1: {uncertainty: {hamaker_constant_zJ: 15}}}",
      "budget tip_budget", (), "R1|S1|contact|chart"),
-    ("one humidity of a stopper", "devices: {S1: {humidities: [0.7, 0.9]}}", "stoppers budget", (),
+    ("one humidity of a stopper", "devices: {S1: {humidities: [0.7, 0.9]}}", "stoppers budget device_warnings", OF_BEAMS,
      "C1|R1|contact|S1_rh070"),
     ("area of a stopper", "devices: {S1: {contact_um: [3, 2]}}", "device_contact solid_contact device_choice_summits",
      OF_BEAMS, "C1|R1|1500x"),
     ("samples of slopes", "studies: {slopes: {samples: 200}}", "slope_contact solid_contact device_choice_summits", (),
      "stoppers|chart|cracks|tip"),
     ("beams of slopes", "design: {budget_beams: 100}", "budget", (), "S1|contact|chart|cracks|tip"),
-    ("beams, each with a tip", "design: {beams: 900}", "cracks tip_contact tip_slope_contact tip_solid_contact tip_choice_contact chart", (),
+    ("beams, each with a tip", "design: {beams: 900}", "cracks tip_contact tip_slope_contact tip_solid_contact tip_choice_contact chart", OF_STOPPERS,
      "S1|budget/C1_rh070.nc"),
-    ("range of the worst humidity", "design: {worst_humidities: [0.5, 0.9]}", "stoppers", (), "C1|R1|budget|contact"),
+    ("range of the worst humidity", "design: {worst_humidities: [0.5, 0.9]}", "stoppers device_warnings", OF_BEAMS, "C1|R1|budget|contact"),
     ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
      "device_choice_contact tip_choice_contact", (), "none|identified|slopes|modulus|stoppers|cracks"),
     ("water", "water: {temperature_K: 310}", "cracks safe_lengths chart stoppers budget tip_budget", (), "contact"),
@@ -93,18 +96,18 @@ MATRIX = [
     ("chunks", "contact: {chunks: 2}", "", (), ""),
     ("edge of tips", "design: {tip_edge: square}", "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact", (),
      "cracks|S1|contact/b|budget/C1_rh070.nc"),
-    ("shares", "design: {shares: [0.02]}", "safe_lengths chart tip_budget", (), "cracks|S1|contact|budget/C1_rh070.nc"),
-    ("points of charts", "design: {chart_points: 3}", "chart", (), "rh060|rh080|cracks|safe|S1|R1|contact"),
-    ("humidities of a chart", "devices: {C1: {chart: {humidities: [0.6, 0.9]}}}", "chart", (),
+    ("shares", "design: {shares: [0.02]}", "safe_lengths chart tip_budget", OF_STOPPERS, "cracks|S1|contact|budget/C1_rh070.nc"),
+    ("points of charts", "design: {chart_points: 3}", "chart", OF_STOPPERS, "rh060|rh080|cracks|safe|S1|R1|contact"),
+    ("humidities of a chart", "devices: {C1: {chart: {humidities: [0.6, 0.9]}}}", "chart", OF_STOPPERS,
      "rh060|cracks|safe|S1|R1|contact"),
-    ("gap of a beam", "devices: {C1: {gap_um: 19}}", "cracks safe_lengths chart budget tip_budget", (), "contact|S1|R1"),
+    ("gap of a beam", "devices: {C1: {gap_um: 19}}", "cracks safe_lengths chart budget tip_budget", OF_STOPPERS, "contact|S1|R1"),
     ("width of a beam", "devices: {C1: {width_um: 24}}",
      "device_contact tip_contact device_slope_contact solid_contact device_choice_summits tip_slope_contact"
      " tip_solid_contact tip_choice_contact",
      OF_STOPPERS, "S1|R1|b_NG"),
     ("strips of a beam", "devices: {C1: {strip_um: 1.2}}",
      "device_contact device_slope_contact solid_contact device_choice_summits chart tip_budget", OF_STOPPERS, "S1|R1|b_NG|tips"),
-    ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "cracks safe_lengths", (), "contact|C1|S1|chart"),
+    ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "cracks safe_lengths", OF_STOPPERS | OF_CHARTS, "contact|C1|S1|chart"),
     ("Hamaker constant of a body", BODY + "{hamaker_constant_zJ: {water: 20, dry: 200}}}",
      "contact_chunk device_contact tip_contact slope_contact solid_contact device_choice_contact plasticity"
      " tip_slope_contact tip_solid_contact tip_choice_contact", (), "heights|spectrum|summits"),

@@ -1,23 +1,13 @@
-"""Definitions shared by all rules: validated configuration and plan, code of a job, files of tables and figures."""
+"""Configuration and plan of a run, and what the rules of all stages share."""
 
+import atexit
 from functools import cache
 
 from snakemake.logging import logger
 
-from stiction.config import cases, files, jobs, measured, memory, messages
-from stiction.config.designs import KEYS_OF_SOLIDS, Designs
-from stiction.config.paths import Paths, one_of, titled
-from stiction.config.plan import Plan
-from stiction.models import (
-    ALTERNATIVES_OF_SCANS,
-    BEAM_MODELS,
-    OF_MEASURED,
-    OF_MOMENTS,
-    OF_SPECTRUM,
-    SHIFTED,
-    SURFACE_MODELS,
-    surface_model,
-)
+from stiction.config import files, measured, memory, messages
+from stiction.plan.planner import Planner
+from stiction.plan.stage import WILDCARDS
 from stiction.run import folder, hooks, kept, provenance
 from stiction.run.atomic import DataError
 from stiction.run.fingerprint import PACKAGE, fingerprint
@@ -25,21 +15,7 @@ from stiction.run.remembered import Remembered
 
 
 wildcard_constraints:
-    surface="[A-Za-z][A-Za-z0-9]*",
-    device="[A-Za-z][A-Za-z0-9]*",
-    pair="[A-Za-z][A-Za-z0-9]*",
-    model="|".join(BEAM_MODELS),
-    case=cases.CASE,
-    chunk="[0-9]+",
-    number="[0-9]+",
-    moment="|".join(OF_MOMENTS),
-    quantity="|".join({*OF_MOMENTS, *OF_MEASURED, *OF_SPECTRUM}),
-    side="|".join(SHIFTED),
-    solid_property="|".join(KEYS_OF_SOLIDS),
-    choice="|".join(ALTERNATIVES_OF_SCANS),
-    variant="base|[a-z_]+_[a-z0-9.-]+",
-    length="[0-9]+",
-    width="[0-9]+",
+    **WILDCARDS,
 
 
 try:
@@ -51,9 +27,9 @@ hooks.compare_without_pandas()
 remember = Remembered(".snakemake/planning.json")
 
 
-def code(script):
-    """Fingerprint of a script, or of a module of the package, and of all modules of the package that it imports."""
-    return fingerprint(BASE / "workflow" / "scripts" / script, remember)
+def code(file):
+    """Fingerprint of a file, and of all modules of the package that it imports."""
+    return fingerprint(file, remember)
 
 
 def validated():
@@ -84,73 +60,74 @@ except messages.ConfigError as error:
     raise WorkflowError(f"The configuration is invalid:\n{error}")
 
 config.update(files.normalised(config))
-plan = Plan(config, preliminary)
-if not scanned:  # finding out takes the solver of densities
-    shifted = ["shifted", config, code(PACKAGE / "config" / "plan.py")]
-    vars(plan)["shifted_moments"] = remember(shifted, lambda: plan.shifted_moments)
-designs = Designs(config)
-paths = Paths(plan)
-MEMORY = memory.of_job(config)  # of the jobs that draw surfaces [MB]
-VIEW = measured.view(config, preliminary)  # configuration with preliminary numbers of measured surfaces
-SAMPLES = memory.of_samples(VIEW)  # of the jobs that hold the contact of all samples [MB]
-STYLE = str(PACKAGE / "report" / "stiction.mplstyle")
-# Categories of the report.
-ON_SURFACES, ON_FORCES, ON_BEAMS = "Surfaces (Sec. II)", "Contact forces (Sec. III)", "Beams (Secs. IV and V)"
-ON_STUDIES = "Sensitivity, appendices, model choices"
-ON_DEVICES = "Devices"
+planner = Planner(config, preliminary, remember)
+
+if hooks.is_main(workflow):
+    atexit.register(remember.save)
+    atexit.register(planner.save)
 
 
-@cache
-def settings_of(path):
-    """Settings of the job that writes a dataset; ``None`` if this configuration has no such job."""
-    return kept.settings(path, hooks.rules_of(workflow))
+# Results of other runs
 
 
 def unlike_this_run():
     """Files in results/ that other settings gave, or that are damaged; what is read of them, the next plan knows."""
     read = Remembered(".snakemake/labels.json")
     found = dict(kept.damaged("results/logs", read))
-    found |= dict(kept.foreign(Path("results").rglob("*.nc"), settings_of, read))
+    found |= dict(kept.foreign(Path("results").rglob("*.nc"), planner.settings, read))
     read.save()
     return found
 
 
+#: Newer than any file that a run must not use; an input of the jobs that write these files anew.
+STALE = Path(".snakemake/stale")
+
+
 @cache
 def unusable():
-    """These files, which are named: to this run they are missing."""
+    """These files, which are named: this run writes them anew."""
+    if not hooks.is_main(workflow):
+        return {}
     found = unlike_this_run()
     for line in kept.summary(found):
         logger.warning(line)
+    if found:
+        STALE.parent.mkdir(exist_ok=True)
+        STALE.touch()
     return found
 
 
-def planned(wildcards):
-    """No input. Snakemake calls this while it plans a run, because every run begins with the heights of a surface."""
-    if hooks.is_main(workflow):
-        hooks.force(workflow, unusable())
-    return []
+# Rules of stages
+
+SCRIPT = code(BASE / "workflow" / "scripts" / "stage.py")
 
 
-def surfaces_of_pair(wildcards):
-    """Datasets of the surfaces of beam and substrate, in this order."""
-    return paths.surfaces(wildcards.pair)
+def inputs_of(rule):
+    """Input function of the rule of a stage."""
+
+    def inputs(wildcards):
+        files = planner.job(rule["name"], wildcards)["files"]
+        written = {file.format(**dict(wildcards)) for file in rule["files"].values()}
+        return files | ({"stale": STALE} if written & unusable().keys() else {})
+
+    return inputs
 
 
-def published(table):
-    """File of published values."""
-    return str(BASE / "workflow" / "resources" / f"{table}.csv")
+def outputs_of(rule):
+    """Files of a rule by key."""
+    marked = {key: temp(file) if rule["temporary"] else file for key, file in rule["files"].items()}
+    if shown := rule["shown"]:
+        caption = {"caption": f"../report/{shown['caption']}.rst"} if shown["caption"] else {}
+        labels = {"shows": shown["title"]}
+        marked[shown["file"]] = report(marked[shown["file"]], category=shown["category"], labels=labels, **caption)
+    return marked
 
 
-def table_files(name, shows):
-    """Outputs of a rule for a table; the HTML page is for the report."""
-    title = titled(name, shows)
-    page = report(f"results/tables/{name}.html", category="Tables", labels={"shows": title})
-    return {"csv": f"results/tables/{name}.csv", "markdown": f"results/tables/{name}.md", "html": page}
+def of_job(rule, key):
+    """Function of wildcards that gives the structure of the inputs or the settings of a job."""
+    return lambda wildcards: planner.job(rule["name"], wildcards)[key]
 
 
-def figure_files(name, category, shows, caption=None):
-    """Outputs of a rule for a figure; the PNG file is for the report."""
-    title = titled(name, shows)
-    text = f"../report/{caption or name}.rst"
-    picture = report(f"results/figures/{name}.png", caption=text, category=category, labels={"shows": title})
-    return {"pdf": f"results/figures/{name}.pdf", "png": picture}
+def memory_of_attempt(wildcards, attempt):
+    """Memory to reserve for a job [MB]."""
+    return memory.of_job(config, attempt)

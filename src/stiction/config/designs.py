@@ -171,8 +171,16 @@ class Designs:
         return patch(section["pair"], points * point / NM_PER_UM, section["width_um"])
 
     def tilt(self, tips: Patch) -> dict:
-        """Slopes, reach and edge of the strips that hold the tips of one or several devices."""
+        """Slopes, reach and edge of the strips that hold the tips of one or several devices.
+
+        Raises
+        ------
+        KeyError
+            If no tip of a device has these strips.
+        """
         devices = [name for name in self.of_kind("cantilever") if self.tips(name) == tips]
+        if not devices:
+            raise KeyError(f"no device has tips on strips {tips.name}")
         slopes = {float(slope) for name in devices for slope in self._slopes(name)}
         reach = max(map(self._reach, devices))
         return {"slopes": sorted(slopes), "reach_nm": reach, "edge": self.config["design"]["tip_edge"]}

@@ -5,20 +5,20 @@ they are needed, because a repeated plan takes what it needs of them from `stict
 """
 
 import math
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 from stiction.config.cases import case_id, humidity_of, pair_of
-from stiction.config.designs import hamaker_constant, hamaker_constants
+from stiction.config.designs import Designs, hamaker_constant, hamaker_constants
 from stiction.config.files import paper
-from stiction.config.measured import evaluated, is_measured, quantities
+from stiction.config.measured import digest, evaluated, evaluation, is_measured, quantities, source
 from stiction.config.merging import merged
-from stiction.models import BEAM_MODELS, OF_MEASURED, SIDES, SURFACE_MODELS
+from stiction.models import BEAM_MODELS, ELASTIC, OF_MEASURED, SIDES, SURFACE_MODELS
 
-#: Properties of a material on which contact depends.
-ELASTIC = ("young_modulus_GPa", "poisson_ratio", "hamaker_constant_zJ")
 #: Keys of the measured statistics of a surface: moments of the heights and summit statistics.
 MOMENTS = ("rms_nm", "skewness", "kurtosis")
 SUMMITS = ("mean_summit_radius_um", "summit_density_per_um2")
@@ -30,6 +30,20 @@ _SOLIDS = ("solid", "van_der_waals")
 _OF_BEAM = {"beam": ("length_um", "width_um", "thickness_um"), "solid": ("young_modulus_GPa",)}
 #: Keys that define the mesh of the paper and, with Young's modulus and the force laws, how fine it is; it has no width.
 _OF_MESH = {"beam": ("length_um", "thickness_um", "elements"), "sampling": ("strip_length_um",)}
+
+
+#: Names of the properties of a material in warnings.
+_PROPERTIES = {
+    "young_modulus_GPa": "Young's modulus",
+    "poisson_ratio": "Poisson's ratio",
+    "hardness_GPa": "hardness",
+    "hamaker_constant_zJ": "Hamaker constant",
+    "contact_angle_deg": "contact angle",
+}
+
+
+#: ASSUME: a solid is polysilicon if its Young's modulus differs from that of the paper by no more than this share.
+_POLYSILICON = 0.1
 
 
 def chosen(section: dict[str, Any], names: Iterable[str]) -> dict[str, Any]:
@@ -51,6 +65,11 @@ class Plan:
 
     config: dict  #: complete, valid and in normal form
     preliminary: dict[str, dict] = field(default_factory=dict)  #: numbers of measured surfaces, computed if missing
+
+    @cached_property
+    def designs(self) -> Designs:
+        """Plan of the devices."""
+        return Designs(self.config)
 
     @property
     def pairs(self) -> list[str]:
@@ -77,6 +96,15 @@ class Plan:
         others = solid or self.config["solid"]
         return {"materials": {side: others | material for side, material in zip(SIDES, stated, strict=True)}}
 
+    def stated_properties(self, pair: str) -> list:
+        """Names of the materials of a pair, each with its stated properties in words; section solid if it is one."""
+        named, solid = self.config.get("materials", {}), self.config["solid"]
+        if abs(solid["young_modulus_GPa"] / paper()["solid"]["young_modulus_GPa"] - 1) > _POLYSILICON:
+            named = named | {"the solid": solid}
+        surfaces = self.config["surfaces"]
+        used = dict.fromkeys(surfaces[surface].get("material", "the solid") for surface in self.sides(pair))
+        return [[name, [_PROPERTIES[key] for key in named[name]]] for name in used if name in named]
+
     def water(self, pair: str) -> dict:
         """Section ``water`` with the contact angles on both surfaces of a pair if one of them is not zero."""
         angles = [material.get("contact_angle_deg", 0) for material in self._stated(pair)]
@@ -102,6 +130,58 @@ class Plan:
         """Surfaces of the pairs that run, in the order of the configuration."""
         used = {name for pair in self.pairs for name in self.sides(pair)}
         return [name for name in self.config["surfaces"] if name in used]
+
+    # The configuration as the jobs of a pair see it
+
+    def seen_by(self, pair: str, properties: Sequence[str] = ELASTIC, **contact: Any) -> dict[str, Any]:
+        """Configuration with the surfaces, the water and some properties of the materials of a pair.
+
+        Keys of section ``contact`` may be given; those that are ``None`` are left out.
+        """
+        changed = {key: value for key, value in (self.config["contact"] | contact).items() if value is not None}
+        own = {"surfaces": self.sides(pair), "water": self.water(pair), "contact": changed}
+        others = {key: value for key, value in self.config.items() if key != "materials"}
+        return others | own | self.materials(pair, properties)
+
+    def at(self, case: str) -> dict[str, Any]:
+        """As `seen_by`, with the humidity of a case."""
+        return self.seen_by(pair_of(case)) | {"humidity": humidity_of(case)}
+
+    def over_humidities(self, pair: str) -> dict[str, Any]:
+        """As `seen_by`, with the humidities of a pair."""
+        return self.seen_by(pair) | {"humidities": self.config["pairs"][pair]["humidities"]}
+
+    @property
+    def samples_of_slopes(self) -> int:
+        """Number of samples of a contact that is compared with the first samples of the contact itself."""
+        return min(self.config["studies"]["slopes"]["samples"], self.config["contact"]["samples"])
+
+    # Surfaces described by scans
+
+    @property
+    def unscanned(self) -> list[str]:
+        """All surfaces of the configuration that are described by numbers."""
+        return [name for name in self.config["surfaces"] if name not in self.scanned]
+
+    def scan_path(self, surface: str, number: str) -> str:
+        """File of a scan, relative to the working directory, so that a moved folder changes nothing."""
+        return os.path.relpath(self.scan_files(surface)[number])
+
+    def scan(self, surface: str, number: str) -> dict[str, Any]:
+        """File of a scan by its content, and how it is read; the folder of the file does not affect the result."""
+        path = self.scan_files(surface)[number]
+        return {"file": Path(path).name, "sha256": digest(path), "source": source(self.config["surfaces"][surface])}
+
+    def estimate(self, surface: str) -> dict[str, Any]:
+        """How the scans of a surface are evaluated, with the names of the files."""
+        how = evaluation(self.config["surfaces"][surface], self.config["scans"])
+        files = [Path(path).name for path in self.scan_files(surface).values()]
+        return {
+            "seed": self.config["seed"],
+            "evaluation": how,
+            "model_scans": self.config["scans"]["model_scans"],
+            "files": files,
+        }
 
     @property
     def scanned(self) -> list[str]:

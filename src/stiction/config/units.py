@@ -56,6 +56,17 @@ def from_si(value: T, unit: str) -> T:
     return value * _FROM_SI[unit]
 
 
+def without_unit(key: str) -> str:
+    """Key of the configuration without its unit, the name of the field of a dataclass.
+
+    Examples
+    --------
+    >>> without_unit("gap_um"), without_unit("samples")
+    ('gap', 'samples')
+    """
+    return _UNIT.sub("", key)
+
+
 def typed(kind: type[T], section: dict[str, Any]) -> T:
     """Section of the configuration, or settings of a job, as a frozen dataclass in SI.
 

@@ -9,20 +9,25 @@ those of the samples.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
+from stiction.config.cases import humidity_of, pair_of
+from stiction.config.units import typed
 from stiction.contact import forcelaw
-from stiction.designs.inputs import FORCE, Input, Known, Settings, State, countable, uncertain
+from stiction.designs.inputs import FORCE, Input, Known, Settings, State, countable, covariances, uncertain
+from stiction.designs.patch_settings import contacts_of_budget, contacts_of_tip_budget
 from stiction.designs.patches import noted
-from stiction.designs.releases import addresses, arrests, resolved_part
+from stiction.designs.releases import addresses, arrests, resolved_part, section_of_beam
 from stiction.devices import arcs, bridges
 from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.stoppers import pull_off_force
 from stiction.devices.tail import fit_tail
+from stiction.plan.stage import Stage, chosen
 from stiction.progress import progress
 from stiction.stages import curves
 from stiction.stages.contact import first
@@ -263,3 +268,79 @@ def groups_of(dataset: xr.Dataset) -> dict[str, list[str]]:
 def response_of(dataset: xr.Dataset) -> tuple[str, float]:
     """What the inputs move, ``S_SHAPE``, ``ARC`` or ``FORCE``, and the share p of an arc [-]."""
     return dataset.centre.attrs["response"], float(dataset.centre.attrs["share"])
+
+
+def _inputs(plan, device):
+    """Datasets of the surfaces of a device with uncertain quantities, and estimates of those described by scans."""
+    names = dict.fromkeys(surface for surface, _ in plan.designs.quantities(device))
+    scanned = plan.scanned_sides(plan.config["devices"][device]["pair"])
+    described = {stage: {name: f"{stage}/{name}" for name in names} for stage in ("heights", "spectrum")}
+    return described | {"estimates": {name: f"estimate/{name}" for name in scanned}}
+
+
+def _settings(plan, at):
+    """Settings of a budget, the quantities of its surfaces and its variants of the model."""
+    name, designs = pair_of(at.case), plan.designs
+    section = plan.config["devices"][name]
+    pair = section["pair"]
+    own = {"uncertainty": section.get("uncertainty", {}), "humidity": humidity_of(at.case)}
+    own |= chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(pair)
+    if "hamaker_constant" in designs.uncertain_solids(name):
+        own |= {"hamaker_constant_zJ": plan.beam_hamaker_constant(pair)}
+    if section["kind"] == "stopper":
+        own |= chosen(section, ["contact_um"])
+    else:
+        own |= {"device": section_of_beam(plan, name), "beams": plan.config["design"]["budget_beams"]}
+    own |= {"seed": plan.config["seed"], "water": plan.water(pair), "surfaces": plan.sides(pair)}
+    quantities = list(map(list, designs.quantities(name)))
+    return {"budget": own, "quantities": quantities, "choices": plan.choices_of_device(name)}
+
+
+def _settings_of_tips(plan, at):
+    """As `_settings`, of the length that the tip of a cantilever holds, for the middle one of the shares."""
+    settings, shares = _settings(plan, at), plan.config["design"]["shares"]
+    own = {key: value for key, value in settings["budget"].items() if key != "beams"}
+    choices = plan.choices_of_solids(plan.config["devices"][pair_of(at.case)]["pair"])
+    return settings | {"budget": own | {"share": shares[len(shares) // 2]}, "choices": choices}
+
+
+def _computed(data, _at, settings):
+    """Budget from the contacts with less and with more of every input, and those under other choices of the model."""
+    wanted = typed(Settings, settings["budget"])
+    described = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
+    shifted = {key: (less, data["more"][key]) for key, less in data["less"].items()}
+    solids = {name: (less, data["solids_more"][name]) for name, less in data["solids_less"].items()}
+    known = covariances(described, data["estimates"], wanted)
+    return compute(data["contact"], shifted, solids, data["choices"], known, wanted)
+
+
+def budgets_of(plan: Any, *devices: str) -> dict[tuple, str]:
+    """Datasets of the budgets of devices by name and humidity, and ``tip`` if they are of tips."""
+    names = plan.designs.budgets(*devices) if devices else []
+    cases = {name: name.removesuffix("_tip") for name in names}
+    return {
+        (pair_of(case), humidity_of(case), *(["tip"] if name != case else [])): f"devices/budget/{name}"
+        for name, case in cases.items()
+    }
+
+
+BUDGET = Stage.writing(
+    "budget",
+    "devices/budget/{case}",
+    inputs=lambda plan, at: _inputs(plan, pair_of(at.case)) | contacts_of_budget(plan, pair_of(at.case)),
+    settings=_settings,
+    compute=_computed,
+    message="Budget of {case}.",
+    cluster=True,
+)
+STAGES = (
+    BUDGET.on("budget", "devices/budget/{case}"),
+    BUDGET.on(
+        "tip_budget",
+        "devices/budget/{case}_tip",
+        inputs=lambda plan, at: _inputs(plan, pair_of(at.case)) | contacts_of_tip_budget(plan, pair_of(at.case)),
+        settings=_settings_of_tips,
+        label="budget",
+        message="Budget of the tips of {case}.",
+    ),
+)

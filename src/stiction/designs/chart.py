@@ -8,18 +8,23 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
+from stiction.config.cases import pair_of
 from stiction.contact.meniscus import meniscus_height
 from stiction.designs import releases, sticking
+from stiction.designs.patch_settings import contact_of, tips_of
 from stiction.designs.patches import on_patch
-from stiction.designs.releases import DesignedBeam
+from stiction.designs.releases import DesignedBeam, settings_of_beam
 from stiction.devices import arcs
 from stiction.devices.chart import checked_power_law
+from stiction.plan.names import by_case
+from stiction.plan.stage import Stage, chosen, select
 from stiction.stages import curves
 from stiction.stages.contact import surface_rms
 
@@ -160,3 +165,31 @@ def layout(found: Filled, rms: float, settings: Settings) -> xr.Dataset:
             "share": list(settings.shares),
         },
     )
+
+
+def _settings(plan, at):
+    """As those of the cracks and the safe lengths, for all thicknesses and gaps of the chart of a device."""
+    section = plan.config["devices"][pair_of(at.case)]
+    sizes = {"gaps_um": [section["gap_um"]]} | chosen(section["chart"], ("thicknesses_um", "gaps_um"))
+    return select(Settings, settings_of_beam(plan, at.case) | sizes)
+
+
+def charts(plan: Any) -> dict[str, dict]:
+    """Datasets of all charts by device and humidity, as inputs of a stage."""
+    cases = [case for name in plan.designs.charted for case in plan.designs.chart_cases(name)]
+    return {"charts": by_case("devices/chart", cases)}
+
+
+STAGES = (
+    Stage.writing(
+        "chart",
+        "devices/chart/{case}",
+        inputs=lambda plan, at: {"contact": contact_of(plan, pair_of(at.case))} | tips_of(plan, pair_of(at.case)),
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["contact"], data.get("tips"), settings),
+        message="Chart of {case}.",
+        cluster=True,
+        minutes=120,
+    ),
+)

@@ -15,9 +15,12 @@ import xarray as xr
 from stiction.beam.cantilever import Beam
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
+from stiction.config.cases import pair_of
 from stiction.contact import forcelaw
+from stiction.designs.patch_settings import contact_of
 from stiction.designs.patches import on_patch
-from stiction.designs.releases import LAWS, DesignedBeam, addresses, arrests, fitted, resolved_part
+from stiction.designs.releases import LAWS, DesignedBeam, addresses, arrests, fitted, resolved_part, settings_of_beam
+from stiction.plan.stage import Stage, select
 from stiction.stages import curves
 from stiction.stages.contact import surface_rms
 
@@ -102,3 +105,18 @@ def lengths(cracks: xr.Dataset) -> tuple[np.ndarray, np.ndarray, float]:
     """Crack or held lengths with all samples (n,), with each group alone (g, n), and the foundation length [m]."""
     name = HELD if HELD in cracks else CRACK
     return cracks[name].values, cracks[f"{name}_of_group"].values, float(cracks.foundation_length)
+
+
+STAGES = (
+    Stage.writing(
+        "cracks",
+        "devices/cracks/{case}",
+        inputs=lambda plan, at: {"contact": contact_of(plan, pair_of(at.case))},
+        settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["contact"], settings),
+        message="Release long beams of {case}.",
+        cluster=True,
+        minutes=120,
+    ),
+)

@@ -11,7 +11,7 @@ compared with common random numbers.
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -21,9 +21,11 @@ from stiction.beam.montecarlo import Experiment, released_beams
 from stiction.beam.release import EndState
 from stiction.beam.resolution import resolved
 from stiction.chaos.model import ChaosModel, Truncation, fit
+from stiction.config.cases import humidity_of, pair_of
 from stiction.config.units import from_si
 from stiction.contact import forcelaw
 from stiction.devices.bridges import half_of_bridge, held_lengths, middle_zone
+from stiction.plan.stage import chosen, select
 from stiction.streams import stream
 
 #: Length of the long beams, in crack lengths that Eq. (13) predicts from the mean adhesion energy. Cracks stop where
@@ -134,3 +136,19 @@ def arrests(
         return held_lengths(*ground, draw, number, address)
     found = released_beams(Experiment(*ground, draw), number, address)
     return np.where(found["state"] == EndState.S_SHAPE, found["crack_length"], np.inf)
+
+
+def settings_of_beam(plan: Any, case: str) -> dict[str, Any]:
+    """A device at a humidity: force laws, dimensions and number of beams; more than any one stage needs."""
+    section = plan.config["devices"][pair_of(case)]
+    own = {"device": section_of_beam(plan, pair_of(case)), "humidity": humidity_of(case)}
+    return plan.seen_by(section["pair"]) | plan.config["design"] | own
+
+
+def section_of_beam(plan: Any, name: str) -> dict[str, Any]:
+    """Kind, pair and dimensions of a beam, and the length of its strips."""
+    section = plan.config["devices"][name]
+    modulus = chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(section["pair"])
+    is_bridge = section["kind"] == "bridge"
+    solids = {"hamaker_constant_zJ": plan.hamaker_constant(section["pair"])} if is_bridge else {}
+    return select(DesignedBeam, section | modulus | solids, strip_um=plan.designs.strip(name))

@@ -6,12 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.config.cases import pair_of
 from stiction.contact.meniscus import meniscus_height
 from stiction.designs import cracks as stage_cracks
-from stiction.designs.releases import DesignedBeam
+from stiction.designs.patch_settings import tips_of
+from stiction.designs.releases import DesignedBeam, settings_of_beam
 from stiction.designs.sticking import flooded_lengths, safe_lengths, sticking_lengths
 from stiction.devices import arcs, risk
 from stiction.devices.risk import SafeLength
+from stiction.plan.stage import Stage, select
 from stiction.stages import curves
 
 #: Points along the axis of the lengths.
@@ -104,3 +107,16 @@ def layout(
             "length": ("length", axis, metres),
         },
     )
+
+
+STAGES = (
+    Stage.writing(
+        "safe_lengths",
+        "devices/safe_lengths/{case}",
+        inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | tips_of(plan, pair_of(at.case)),
+        settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["cracks"], data.get("tips"), settings),
+        message="Safe lengths of {case}.",
+    ),
+)

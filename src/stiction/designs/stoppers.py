@@ -6,10 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.designs.patch_settings import contact_of
 from stiction.designs.patches import on_patch
 from stiction.devices.risk import samples_for
 from stiction.devices.stoppers import pull_off_force, safe_force, stuck_patches, worst_humidity
 from stiction.estimates import mean_with_error
+from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.curves import Water, pull_offs
 
@@ -124,3 +126,22 @@ def in_any_air(dataset: xr.Dataset) -> tuple[tuple[float, float, float], xr.Data
 def shares_stuck(dataset: xr.Dataset) -> Sequence[tuple[float, float, float, float]]:
     """Humidity, P(stuck) and the ends of its 95 % band, at every humidity of the device."""
     return [(float(h), *map(float, dataset.stuck.sel(humidity=h))) for h in dataset.humidity.values]
+
+
+def _settings(plan, at):
+    """Water, patch, restoring force and humidities of a stopper, and its fine axis of humidities."""
+    section = plan.config["devices"][at.device]
+    return select(Settings, plan.config["design"] | section | {"water": plan.water(section["pair"])})
+
+
+STAGES = (
+    Stage.writing(
+        "stoppers",
+        "devices/stoppers/{device}",
+        inputs=lambda plan, at: {"contact": contact_of(plan, at.device)},
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["contact"], settings),
+        message="Pull-off force of stopper {device}.",
+    ),
+)

@@ -94,8 +94,8 @@ def slopes_of_tips(*saturated: float) -> np.ndarray:
 
     Examples
     --------
-    >>> slopes_of_tips(0.128)[[0, -1]].round(4)
-    array([0.0313, 0.2102])
+    >>> slopes_of_tips(0.128)[[0, -1]].round(3)
+    array([0.031, 0.21 ])
     """
     first = np.floor(np.log(_FLATTEST * min(saturated)) / np.log(_RATIO))
     last = np.ceil(np.log(_STEEPEST * max(saturated)) / np.log(_RATIO))

@@ -10,9 +10,11 @@ from stiction.measured import estimate as stage_estimate
 from stiction.measured import heights as measured_heights
 from stiction.measured import spectrum as measured_spectrum
 from stiction.models import ALTERNATIVES_OF_SCANS
+from stiction.plan.stage import Stage, select
 from stiction.stages import contact as stage_contact
 from stiction.stages import pairs
 from stiction.stages.spectrum import Use
+from stiction.stages.surfaces import both, of_pair
 
 
 @dataclass(frozen=True)
@@ -83,3 +85,27 @@ def other(source: Source, choice: str) -> Source:
     """
     first, second = ALTERNATIVES_OF_SCANS[choice]
     return replace(source, **{choice: second if getattr(source, choice) == first else first})
+
+
+def _settings(plan, at):
+    """As those of the contact, with the samples of the slopes, at most its own, and sources of measured surfaces."""
+    entries = {name: plan.config["surfaces"][name] for name in plan.scanned_sides(at.pair)}
+    sources = {name: select(Source, entry) for name, entry in entries.items()}
+    return select(Settings, plan.seen_by(at.pair, samples=plan.samples_of_slopes) | {"sources": sources})
+
+
+STAGES = (
+    Stage.writing(
+        "choice_contact",
+        "studies/choices/{pair}_{choice}",
+        inputs=lambda plan, at: (
+            of_pair(plan, at.pair) | {"estimates": {name: f"estimate/{name}" for name in plan.scanned_sides(at.pair)}}
+        ),
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(both(data), data["estimates"], at.pair, at.choice, settings),
+        label="contact",
+        message="Contact of pair {pair} with the other value of {choice}.",
+        cluster=True,
+    ),
+)

@@ -11,6 +11,7 @@ from stiction.analysis.shifts import ORDERS
 from stiction.config.units import from_si
 from stiction.measured import scan as stage_scan
 from stiction.models import OF_MEASURED
+from stiction.plan.stage import Stage
 from stiction.scans import estimate as evaluation
 from stiction.scans import periodogram as spectra
 from stiction.scans import whittle
@@ -259,3 +260,18 @@ def statistics(estimate: xr.Dataset) -> dict[str, float]:
         "mean_summit_radius_um": from_si(float(radius), "um"),
         "summit_density_per_um2": from_si(float(number), "per_um2"),
     }
+
+
+STAGES = (
+    Stage.writing(
+        "estimate",
+        "estimate/{surface}",
+        surfaces=lambda plan: plan.scanned,
+        inputs=lambda plan, at: {"scans": [f"scan/{at.surface}_{number}" for number in plan.scan_files(at.surface)]},
+        settings=lambda plan, at: plan.estimate(at.surface),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["scans"], at.surface, settings),
+        message="Estimate surface {surface} from its scans.",
+        cluster=True,
+    ),
+)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import xarray as xr
 
 from stiction.measured import estimate as stage_estimate
+from stiction.plan.stage import Stage, select
 from stiction.scans.moments import moments_of
 from stiction.stages import heights as stage_heights
 from stiction.surface.feasible import Moments
@@ -37,3 +38,18 @@ def compute(estimate: xr.Dataset, settings: Settings) -> xr.Dataset:
         shape, distance = map(float, moments_of(Translation(density))[1:]), 0.0
     moments = stage_heights.Settings(stage_estimate.rms(estimate), *shape)
     return stage_heights.layout(density, moments, Moments(*stage_estimate.shape(estimate), distance))
+
+
+STAGES = (
+    Stage.writing(
+        "heights_of_scans",
+        "heights/{surface}",
+        surfaces=lambda plan: plan.scanned,
+        inputs=lambda plan, at: {"estimate": f"estimate/{at.surface}"},
+        settings=lambda plan, at: select(Settings, plan.config["surfaces"][at.surface], surface=at.surface),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["estimate"], settings),
+        label="heights",
+        message="Height density of measured surface {surface} (Sec. II-A).",
+    ),
+)

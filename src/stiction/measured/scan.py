@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from stiction.plan.stage import File, Stage
 from stiction.scans import reading
 from stiction.scans.reading import ScanFile, Source
 from stiction.scans.scan import Scan
@@ -67,3 +68,18 @@ def scan_of(dataset: xr.Dataset) -> Scan:
 def notes(dataset: xr.Dataset) -> tuple[str, ...]:
     """Sentences on the choice of the channel and on levelling by the instrument."""
     return tuple(str(dataset.notes.item()).splitlines())
+
+
+STAGES = (
+    Stage.writing(
+        "scan",
+        "scan/{surface}_{number}",
+        surfaces=lambda plan: plan.scanned,
+        # The content of the file is among the settings; the folder of the file does not affect the result.
+        inputs=lambda plan, at: {"file": File(plan.scan_path(at.surface, at.number))},
+        settings=lambda plan, at: plan.scan(at.surface, at.number),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["file"], settings),
+        message="Read scan {number} of surface {surface}.",
+    ),
+)

@@ -9,6 +9,7 @@ import xarray as xr
 from stiction.config.units import from_si
 from stiction.errors import NotConverged
 from stiction.measured import estimate as stage_estimate
+from stiction.plan.stage import Stage, select
 from stiction.stages import parameters
 from stiction.stages import spectrum as stage_spectrum
 from stiction.stages.spectrum import Use
@@ -76,3 +77,25 @@ def cutoff_and_clipping(end: float, settings: Settings) -> tuple[float, str]:
 def flags(spectrum: xr.Dataset) -> tuple[str, ...]:
     """Sentences on what the spectrum leaves out of the measured one."""
     return tuple(str(spectrum["flags"].item()).splitlines())
+
+
+def _settings(plan, at):
+    """Source of the spectrum of a measured surface, the strips it is used for, and the grid."""
+    entry, sampling = plan.config["surfaces"][at.surface], plan.config["sampling"]
+    use = select(Use, sampling, surface=at.surface)
+    return select(Settings, entry, spacing_nm=sampling["spacing_nm"], use=use)
+
+
+STAGES = (
+    Stage.writing(
+        "spectrum_of_scans",
+        "spectrum/{surface}",
+        surfaces=lambda plan: plan.scanned,
+        inputs=lambda plan, at: {stage: f"{stage}/{at.surface}" for stage in ("estimate", "heights")},
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["estimate"], data["heights"], settings),
+        label="spectrum",
+        message="Spectrum of measured surface {surface} and of the underlying Gaussian field (Sec. II-B).",
+    ),
+)

@@ -4,9 +4,10 @@ Inequalities must hold by more than 4 standard errors, targets must be met withi
 a study, this gives one false alarm in about a hundred seeds; for a given seed the outcome is always the same.
 """
 
+import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import chain, pairwise
 from os import PathLike
 
 import numpy as np
@@ -20,17 +21,22 @@ from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.beam.equilibrium import allowed_imbalance
 from stiction.beam.foundation import ACCURACY
 from stiction.config.cases import case_id
+from stiction.config.units import typed
 from stiction.contact.forcelaw import admissible, coefficients, energy
 from stiction.errors import NotConverged
 from stiction.estimates import jackknife, mean_with_error
-from stiction.models import SURFACE_MODELS, surface_model
+from stiction.models import MOMENT_KEYS, SURFACE_MODELS, surface_model
+from stiction.plan.names import Case, by_case, by_model, by_name, by_outcome
+from stiction.plan.stage import File, Stage, chosen, select
 from stiction.report.format import TO_MJ, TO_NM, TO_UM, number, with_error
 from stiction.report.tables_surfaces import surface_statistics
+from stiction.run.atomic import save_text
 from stiction.stages import forces as stage_forces
+from stiction.stages.cantilevers import Cantilevers, StripLength, cantilever, sections
 from stiction.stages.heights import measured_moments, substitution
-from stiction.stages.named import Case
 from stiction.stages.parameters import misfits
 from stiction.stages.releases import stuck_energies, stuck_lengths
+from stiction.stages.spectrum import defect
 from stiction.surface.feasible import LARGEST_DISTANCE_OF_SCANS
 
 #: Standard errors by which an inequality must hold and within which a target must be met.
@@ -421,3 +427,86 @@ def markdown(table: pd.DataFrame) -> str:
         lines = [f"- {'' if row.passed else '**FAILED** '}{row.case}: {row.message}" for row in rows.itertuples()]
         parts.append(f"## {name[0].upper()}{name[1:]}\n\n" + "\n".join(lines))
     return "\n\n".join(parts) + "\n"
+
+
+def _checked(data, _at, settings):
+    """All checks, whether passed or failed."""
+    nominal = typed(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
+    beams = {pair: cantilever(nominal, pair) for pair in settings["pairs"]}
+    strip = typed(StripLength, settings["sampling"]).strip_length
+    defects = {name: defect(spectrum) for name, spectrum in data["spectrum"].items()}
+    resampled = {(*case, "NG"): study for case, study in data["resampling"].items()}
+    return table(
+        chain(
+            of_surfaces(data["heights"], data["character"], settings["targets"], defects),
+            of_identifications(data["identification"]),
+            of_force_laws(data["forces"], data["chaos"]),
+            of_trends(data["forces"], settings["skewed"]),
+            of_beams(data["beams"], data["forces"], beams, strip, settings["on_mesh_of_paper"]),
+            of_resampling(data["beams"], resampled),
+        )
+    )
+
+
+def _save(checked, paths):
+    """Write all checks; they may have failed, because Snakemake would remove the files of a failed job."""
+    save_text(checked.to_csv(index=False), paths["csv"])
+    save_text(markdown(checked), paths["markdown"])
+
+
+def _skewed(plan):
+    """Pairs of the paper without a positively skewed surface and with a negatively skewed one.
+
+    The claim that negative skewness increases adhesion applies to the pairs of the paper only.
+    """
+    surfaces = plan.config["surfaces"]
+    skewness = {pair: [surfaces[name]["skewness"] for name in plan.sides(pair)] for pair in plan.paper_pairs}
+    return [pair for pair, values in skewness.items() if max(values) <= 0 > min(values)]
+
+
+def _verdict(data, _at, _settings):
+    """Sentence about the checks; ends the job with it if a check has failed."""
+    checked = read(data["checks"])
+    sentence = verdict(checked)
+    if not checked.passed.all():
+        sys.exit(f"{sentence} Every number is in results/checks.md.")
+    return sentence
+
+
+STAGES = (
+    Stage(
+        name="checks",
+        files={"csv": "checks.csv", "markdown": "checks.md"},
+        inputs=lambda plan, at: {
+            "heights": by_name("heights", plan.surfaces),
+            "spectrum": by_name("spectrum", plan.surfaces),
+            "identification": by_name("identification", plan.with_summits),
+            "character": by_model("character", plan.surfaces, SURFACE_MODELS[::-1]),
+            "forces": by_outcome("forces", plan.laws),
+            "chaos": by_outcome("chaos", plan.laws),
+            "beams": by_outcome("beams", plan.outcomes),
+            "resampling": by_case("studies/resampling", plan.cases),
+        },
+        settings=lambda plan, at: (
+            {
+                "targets": {name: chosen(plan.config["surfaces"][name], MOMENT_KEYS) for name in plan.described},
+                "skewed": _skewed(plan),
+                "sampling": select(StripLength, plan.config["sampling"]),
+                "on_mesh_of_paper": [case for case in plan.cases if plan.has_mesh_of_paper(case)],
+            }
+            | sections(plan, *plan.pairs)
+        ),
+        compute=_checked,
+        save=_save,
+        message="Check the results.",
+    ),
+    Stage(
+        name="verdict",
+        files={"text": "verdict.txt"},
+        inputs=lambda plan, at: {"checks": File("results/checks.csv")},
+        compute=_verdict,
+        save=lambda sentence, paths: save_text(f"{sentence}\n", paths["text"]),
+        message="Stop if a check has failed.",
+        targets=("all",),
+    ),
+)

@@ -10,7 +10,11 @@ from matplotlib.transforms import ScaledTranslation
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
+from stiction.config.units import typed
+from stiction.contact.meniscus import flooded_energy
 from stiction.models import SURFACE_MODELS
+from stiction.plan.names import by_model, by_outcome
+from stiction.report import published
 from stiction.report.format import TO_MJ, TO_UM, with_error
 from stiction.report.published import rows
 from stiction.report.style import (
@@ -18,12 +22,15 @@ from stiction.report.style import (
     MODELS,
     OUTLINED,
     PUBLISHED,
+    figure_stage,
     handles,
     humidity_axis,
     letter,
     panels,
     styled,
 )
+from stiction.stages.cantilevers import Cantilevers, cantilever, sections
+from stiction.stages.curves import Water
 from stiction.stages.releases import ended, stuck_energies, stuck_lengths
 
 # Figure 14
@@ -258,3 +265,48 @@ def _labels(panel, released, model, weakest):
 def _percent(share):
     """A share below one as text, of two digits."""
     return f"{100 * share:.2g} %" if share < 0.995 else "> 99 %"
+
+
+def _adhesion_energies(data, _at, settings):
+    """Energies of all pairs over the humidity, with the published and measured ones."""
+    nominal = typed(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
+    waters = {pair: typed(Water, water) for pair, water in settings["water"].items()}
+    flat = {pair: flooded_energy(water.temperature, water.contact_angles) for pair, water in waters.items()}
+    pairs = {}
+    for pair in settings["pairs"]:
+        released = {key[1:]: beams for key, beams in data["beams"].items() if key[0] == pair}
+        bands = {model: band for (name, model), band in data["humidity"].items() if name == pair}
+        pairs[pair] = cantilever(nominal, pair), released, bands
+    return adhesion_energies(pairs, published.compared(data, settings), flat)
+
+
+_CATEGORY = "Beams (Secs. IV and V)"
+STAGES = (
+    figure_stage(
+        "figure_14",
+        "figure_14",
+        "shapes and crack lengths of beams",
+        _CATEGORY,
+        inputs=lambda plan, at: {"beams": f"beams/{plan.figure_case}_NG"},
+        compute=lambda data, at, settings: beam_shapes(data["beams"]),
+        targets=("figures",),
+    ),
+    figure_stage(
+        "figure_15",
+        "figure_15",
+        "adhesion energy over the relative humidity",
+        _CATEGORY,
+        inputs=lambda plan, at: {
+            "beams": by_outcome("beams", plan.outcomes),
+            "humidity": by_model("humidity", plan.pairs, SURFACE_MODELS),
+            "published": published.file("table_3"),
+        },
+        settings=lambda plan, at: (
+            {"of_paper": plan.paper_pairs}
+            | {"water": {pair: plan.water(pair) for pair in plan.pairs}}
+            | sections(plan, *plan.pairs)
+        ),
+        compute=_adhesion_energies,
+        targets=("figures",),
+    ),
+)

@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 from stiction.contact import forcelaw
 from stiction.models import SURFACE_MODELS
 from stiction.report.format import TO_MJ, TO_MPA, TO_NM
-from stiction.report.style import DOUBLE, MODELS, SINGLE, letter, panels, styled
+from stiction.report.style import DOUBLE, MODELS, SINGLE, figure_stage, letter, panels, styled
 from stiction.stages import forces as stage_forces
+from stiction.stages.chaos import generated_laws
 
 #: Number of highlighted curves in Figure 12.
 _HIGHLIGHTED = 20
@@ -141,3 +142,40 @@ def _curves(panel, distance, curves, highest):
     panel.add_collection(LineCollection(lines, color="0.75", linewidth=0.3, rasterized=True))
     panel.add_collection(LineCollection(lines[:_HIGHLIGHTED], color=MODELS["NG"]["color"], linewidth=0.6))
     panel.axhline(0, color="black", linewidth=0.5)
+
+
+def _force_curves(data, _at, settings):
+    """Computed curves of every pair, and as many generated force laws as curves were kept."""
+    drawn = {}
+    for pair, case in settings["cases"].items():
+        count = data["other"][pair].sizes["curve"]
+        generated = generated_laws(data["chaos"][pair], count, case, settings["seed"])
+        drawn[pair] = data["gaussian"][pair], data["other"][pair], generated
+    return force_curves(drawn)
+
+
+_CATEGORY = "Contact forces (Sec. III)"
+STAGES = (
+    figure_stage(
+        "figure_05",
+        "figure_05",
+        "a force curve, its force law and its parameters",
+        _CATEGORY,
+        inputs=lambda plan, at: {stage: f"{stage}/{plan.figure_case}_NG" for stage in ("forces", "fit")},
+        compute=lambda data, at, settings: fitted_curve(data["forces"], data["fit"]),
+        targets=("figures",),
+    ),
+    figure_stage(
+        "figure_12",
+        "figure_12",
+        "computed and generated force curves",
+        _CATEGORY,
+        inputs=lambda plan, at: {
+            name: {pair: f"{stage}/{case}_{model}" for pair, case in plan.figure_cases.items()}
+            for name, stage, model in (("gaussian", "forces", "G"), ("other", "forces", "NG"), ("chaos", "chaos", "NG"))
+        },
+        settings=lambda plan, at: {"seed": plan.config["seed"], "cases": plan.figure_cases},
+        compute=_force_curves,
+        targets=("figures",),
+    ),
+)

@@ -9,9 +9,11 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from stiction.contact import forcelaw
+from stiction.plan.names import by_outcome
+from stiction.report import published
 from stiction.report.format import TO_MPA, TO_NM, TO_UM
 from stiction.report.published import rows
-from stiction.report.style import MODELS, PUBLISHED, humidity_axis, letter, panels, styled
+from stiction.report.style import MODELS, PUBLISHED, figure_stage, humidity_axis, letter, panels, styled
 from stiction.stages import forces as stage_forces
 from stiction.stages.releases import ended, stuck_lengths
 
@@ -135,3 +137,27 @@ def _lengths(panel, released, published):
         panel.set_ylim(low, high + 0.3 * (high - low))  # room for the legend
     humidity_axis(panel)
     panel.legend()
+
+
+STAGES = (
+    figure_stage(
+        "figure_overview",
+        "overview",
+        "from surfaces to crack lengths",
+        "Beams (Secs. IV and V)",
+        inputs=lambda plan, at: {
+            "character": f"character/{plan.figure_surface}_NG",
+            "forces": f"forces/{plan.figure_case}_NG",
+            "beams": f"beams/{plan.figure_case}_NG",
+            "released": {key[1:]: name for key, name in by_outcome("beams", plan.figure_outcomes).items()},
+            "published": published.file("table_3"),
+        },
+        settings=lambda plan, at: {"pair": plan.figure_pair, "of_paper": plan.paper_pairs},
+        compute=lambda data, at, settings: overview(
+            settings["pair"],
+            *(data[stage] for stage in ("character", "forces", "beams", "released")),
+            published.compared(data, settings),
+        ),
+        targets=("figures",),
+    ),
+)

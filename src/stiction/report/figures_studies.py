@@ -13,6 +13,8 @@ from stiction.analysis import convergence
 from stiction.analysis import variants as comparison
 from stiction.analysis.plasticity import ONSET
 from stiction.contact import forcelaw
+from stiction.plan.names import by_case, by_name, by_outcome
+from stiction.report import published
 from stiction.report.format import TO_GPA, TO_MJ, TO_MPA, TO_NM, TO_UM, with_error
 from stiction.report.published import rows
 from stiction.report.style import (
@@ -22,6 +24,7 @@ from stiction.report.style import (
     blocks_of_columns,
     columns_of_panels,
     dashes,
+    figure_stage,
     handles,
     humidity_axis,
     legends,
@@ -34,7 +37,8 @@ from stiction.report.style import (
     styled,
 )
 from stiction.report.tables_studies import variant_label
-from stiction.variants.beams import cases_of
+from stiction.stages.chaos import chaos_model
+from stiction.variants.beams import by_pair, cases_of
 
 _COLOURS = ("#0072B2", "#56B4E9", "#E69F00", "#D55E00", "#CC79A7", "#009E73", "#882255", "#7F7F00")
 _ZERO = {"color": "0.6", "linewidth": 0.6, "zorder": 0}
@@ -451,3 +455,89 @@ def _curve(panel, humidity, change, error, style):
     known = np.flatnonzero(np.isfinite(change))
     marked = known[:: max(1, -(-len(known) // _MARKED))].tolist()
     panel.errorbar(humidity, 100 * change, 100 * error, markevery=marked, errorevery=marked, **style)
+
+
+def _sensitivities(data, _at, settings):
+    """Sensitivities to the moments, and the published ones."""
+    stated = published.compared(data, settings)
+    stated = stated[(stated.pair == settings["pair"]) & stated.moment.isin(settings["moments"])]
+    slopes = dict(zip(zip(stated.moment, stated.relative_humidity, strict=True), stated.slope, strict=True))
+    return sensitivities(data["studies"], slopes)
+
+
+def _variants(data, _at, settings):
+    """All pairs and variants; a variant that changes nothing for a pair, which the plan leaves out, equals the base."""
+    known = by_pair(data["studies"])
+    pairs, names = (dict.fromkeys(parts) for parts in zip(*known, strict=True))
+    whole = {(pair, name): known.get((pair, name), known[pair, "base"]) for pair in pairs for name in names}
+    return variants(whole, published.compared(data, settings))
+
+
+def _study(name, shows, **declared):
+    """Figure of a study."""
+    return figure_stage(
+        name if name.startswith("figure") else f"figure_{name}",
+        name,
+        shows,
+        "Sensitivity, appendices, model choices",
+        targets=("figures", "study_figures"),
+        **declared,
+    )
+
+
+STAGES = (
+    _study(
+        "figure_13",
+        "sensitivity to the moments of a surface",
+        inputs=lambda plan, at: {
+            "studies": {name: f"studies/sensitivity/{plan.figure_pair}_{name}" for name in plan.shifted_moments},
+            "published": published.file("sensitivity"),
+        },
+        settings=lambda plan, at: {
+            "pair": plan.figure_pair,
+            "moments": plan.shifted_moments,
+            "of_paper": plan.paper_pairs,
+        },
+        compute=_sensitivities,
+    ),
+    _study(
+        "figure_16",
+        "stress of the touching summits",
+        inputs=lambda plan, at: {"studies": by_name("studies/plasticity", plan.pressed_pairs)},
+        compute=lambda data, at, settings: summit_stresses(data["studies"]),
+        jobs=lambda plan: [{}] if plan.pressed_pairs else [],
+    ),
+    _study(
+        "figure_17",
+        "convergence in samples and coordinates",
+        inputs=lambda plan, at: {"sizes": "studies/sample_sizes", "chaos": by_case("chaos", plan.cases, "_NG")},
+        settings=lambda plan, at: {"tolerance": plan.config["chaos"]["dimension_tolerance"]},
+        compute=lambda data, at, settings: sample_convergence(
+            data["sizes"],
+            {key: chaos_model(chaos).dimension_error for key, chaos in data["chaos"].items()},
+            settings["tolerance"],
+        ),
+    ),
+    _study(
+        "figure_18",
+        "convergence in the order of the polynomials",
+        inputs=lambda plan, at: {"orders": "studies/orders"},
+        compute=lambda data, at, settings: order_convergence(data["orders"]),
+    ),
+    _study(
+        "figure_19",
+        "convergence of the mesh, autocorrelation",
+        inputs=lambda plan, at: {"mesh": "studies/mesh", "correlation": "studies/correlation"},
+        compute=lambda data, at, settings: mesh_convergence(data["mesh"], data["correlation"]),
+    ),
+    _study(
+        "variants",
+        "Table III under other model choices",
+        inputs=lambda plan, at: {
+            "studies": by_outcome("studies/variants", plan.studied_cases),
+            "published": published.file("table_3"),
+        },
+        settings=lambda plan, at: {"of_paper": plan.paper_pairs},
+        compute=_variants,
+    ),
+)

@@ -10,6 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from stiction.estimates import mean_with_error
 from stiction.models import SURFACE_MODELS
+from stiction.plan.names import by_name
 from stiction.report.format import TO_NM, TO_UM
 from stiction.report.style import (
     DOUBLE,
@@ -17,6 +18,7 @@ from stiction.report.style import (
     OUTLINED,
     SINGLE,
     columns_of_panels,
+    figure_stage,
     handles,
     letter,
     letter_lines,
@@ -236,3 +238,84 @@ def _mean_radius(panel, radius):
     number = f"{radius:#.2g}".rstrip(".")
     place, style = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
     panel.annotate(f"{number} µm", (0.96, radius), (0, 3), place, "offset points", **style)
+
+
+def _of_surfaces(data):
+    """Datasets of several stages by surface."""
+    return {name: tuple(data[stage][name] for stage in data if stage != "style") for name in data["heights"]}
+
+
+def _figure_11(name, file, shows, surfaces):
+    """Figure 11 of some surfaces."""
+    return figure_stage(
+        name,
+        file,
+        shows,
+        _CATEGORY,
+        caption="figure_11",
+        inputs=lambda plan, at: {
+            "gaussian": by_name("character", surfaces(plan), "_G"),
+            "other": by_name("character", surfaces(plan), "_NG"),
+        },
+        compute=lambda data, at, settings: summits(
+            {name: {"G": gaussian, "NG": data["other"][name]} for name, gaussian in data["gaussian"].items()}
+        ),
+        jobs=lambda plan: [{}] if surfaces(plan) else [],
+        targets=("figures",),
+    )
+
+
+_CATEGORY = "Surfaces (Sec. II)"
+STAGES = (
+    figure_stage(
+        "figure_07",
+        "figure_07",
+        "densities of the heights",
+        _CATEGORY,
+        inputs=lambda plan, at: {"heights": by_name("heights", plan.surfaces)},
+        compute=lambda data, at, settings: height_densities(data["heights"]),
+        targets=("figures",),
+    ),
+    figure_stage(
+        "figure_08",
+        "figure_08",
+        "simulated surfaces",
+        _CATEGORY,
+        inputs=lambda plan, at: {"characters": by_name("character", plan.surfaces, "_NG")},
+        compute=lambda data, at, settings: elevation_maps(data["characters"]),
+        targets=("figures",),
+    ),
+    figure_stage(
+        "figure_09",
+        "figure_09",
+        "Gaussian and non-Gaussian profile",
+        _CATEGORY,
+        inputs=lambda plan, at: {
+            "characters": {model: f"character/{plan.figure_surface}_{model}" for model in SURFACE_MODELS}
+        },
+        settings=lambda plan, at: {"surface": plan.figure_surface},
+        compute=lambda data, at, settings: profiles(settings["surface"], data["characters"]),
+        targets=("figures",),
+    ),
+    figure_stage(
+        "figure_10",
+        "figure_10",
+        "spectra of simulated surfaces",
+        _CATEGORY,
+        inputs=lambda plan, at: {
+            "heights": by_name("heights", plan.surfaces),
+            "spectrum": by_name("spectrum", plan.surfaces),
+            "character": by_name("character", plan.surfaces, "_NG"),
+            "iteration": by_name("iteration", plan.surfaces),
+        },
+        compute=lambda data, at, settings: spectra(_of_surfaces(data)),
+        targets=("figures",),
+    ),
+    _figure_11("figure_11", "figure_11", "heights and radii of summits", lambda plan: [plan.figure_surface]),
+    _figure_11(
+        "figure_11_supplement",
+        "figure_11_supplement",
+        "heights and radii of summits, other surfaces",
+        lambda plan: plan.other_surfaces,
+    ),
+)

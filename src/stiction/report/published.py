@@ -1,14 +1,23 @@
-"""The published tables, with the measurements, as frames; the CSV files are in workflow/resources.
+"""The published tables, with the measurements, as frames; the CSV files are in the folder ``resources``.
 
 The first column identifies the surface or pair of a row. A user's own surface or pair may have a name of the paper.
 Tables and figures compare all rows that they receive, so that callers first select the rows with `of_paper`.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from os import PathLike
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
+
+from stiction.plan.stage import File
+
+
+def file(table: str) -> File:
+    """File of a published table."""
+    return File(Path(__file__).with_name("resources") / f"{table}.csv")
 
 
 def read(path: str | PathLike) -> pd.DataFrame:
@@ -25,6 +34,11 @@ def of_paper(published: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
     [1031]
     """
     return published[published.iloc[:, 0].isin(list(names))]
+
+
+def compared(data: Mapping[str, Any], settings: Mapping[str, Any]) -> pd.DataFrame:
+    """Published values of the surfaces or pairs that are as in the paper: settings ``of_paper`` of a stage."""
+    return of_paper(read(data["published"]), settings["of_paper"])
 
 
 def rows(published: pd.DataFrame, /, **key: str | float) -> pd.DataFrame:

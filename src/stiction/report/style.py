@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
 from string import ascii_lowercase
+from typing import Any
 
 import numpy as np
 from matplotlib import colormaps, rcParams, style
@@ -21,6 +22,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
+from stiction.plan.stage import File, Shown, Stage, titled
 from stiction.run.atomic import save_bytes
 
 STYLE = Path(__file__).with_name("stiction.mplstyle")
@@ -245,6 +247,21 @@ def save(figure: Figure, *paths: str | Path) -> None:
         _WRITERS[Path(path).suffix](figure, content)
         figure.dpi = resolution  # writing a PDF sets it to 72
         save_bytes(content.getvalue(), path)
+
+
+def figure_stage(
+    name: str, file: str, shows: str, category: str, inputs: Callable, caption: str | None = None, **declared: Any
+) -> Stage:
+    """Stage that draws a figure and writes it as PDF and PNG; ``shows`` ends its title in the report."""
+    return Stage(
+        name=name,
+        files={key: f"figures/{file}.{key}" for key in ("pdf", "png")},
+        inputs=lambda plan, at: {**inputs(plan, at), "style": File(STYLE)},
+        save=lambda figure, paths: save(figure, *paths.values()),
+        shown=Shown(file="png", title=titled(file, shows), category=category, caption=caption or file),
+        message=f"{titled(file, shows)}.",
+        **declared,
+    )
 
 
 @styled

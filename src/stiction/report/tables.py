@@ -1,11 +1,12 @@
 """Common to all tables: numbers for machines, text for reading, and the files of both."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from types import SimpleNamespace
+from typing import Any
 
 import pandas as pd
 
+from stiction.plan.stage import Shown, Stage, titled
 from stiction.run.atomic import save_text
 
 _PAGE = """<!DOCTYPE html>
@@ -57,8 +58,14 @@ def with_list(caption: str, sentences: Sequence[str]) -> str:
     return "\n".join([caption, *([""] if sentences else []), *(f"- {sentence}" for sentence in sentences)])
 
 
-def save(table: Table, paths: SimpleNamespace) -> None:
-    """Write a table as CSV, as Markdown for reading and as HTML for the report: ``paths`` has these three names."""
-    save_text(table.csv, paths.csv)
-    save_text(table.markdown, paths.markdown)
-    save_text(table.html, paths.html)
+def save(table: Table, paths: Mapping[str, str]) -> None:
+    """Write a table as CSV, as Markdown for reading and as HTML for the report: ``paths`` has these three keys."""
+    for key, path in paths.items():
+        save_text(getattr(table, key), path)
+
+
+def table_stage(name: str, file: str, shows: str, **declared: Any) -> Stage:
+    """Stage that makes a `Table` and writes it into files of a name; ``shows`` ends its title in the report."""
+    files = {key: f"tables/{file}.{end}" for key, end in (("csv", "csv"), ("markdown", "md"), ("html", "html"))}
+    shown = Shown(file="html", title=titled(file, shows), category="Tables")
+    return Stage(name=name, files=files, save=save, shown=shown, message=f"{titled(file, shows)}.", **declared)

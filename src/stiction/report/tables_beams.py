@@ -8,14 +8,17 @@ import xarray as xr
 
 from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.contact.forcelaw import admissible
+from stiction.designs import pair_warnings
 from stiction.estimates import mean_on_shared_samples, mean_with_error
 from stiction.models import surface_model
+from stiction.plan.names import Case, by_case, by_name, by_outcome
+from stiction.report import published
 from stiction.report.format import TO_MJ, UM, as_published, error_alone, number, percent, with_error
 from stiction.report.published import value
-from stiction.report.tables import Table, with_list
+from stiction.report.tables import Table, table_stage, with_list
 from stiction.stages import forces as stage_forces
-from stiction.stages.named import Case
 from stiction.stages.releases import STATES, ended, stuck_energies, stuck_lengths
+from stiction.studies.scan_uncertainty import pair_errors
 
 #: Columns of the published Table III: mean and standard deviation of each model.
 _PUBLISHED = {"NG": ("ng", "ng_std"), "GEO": ("geo", "geo_std")}
@@ -251,3 +254,51 @@ def _cells_resampling(row):
         "l_s, samples [µm]": with_error(row.samples_um, row.samples_se_um),
         "difference [%]": with_error(row.difference_percent, row.difference_se_percent, "+"),
     }
+
+
+def _table_3(data, _at, settings):
+    """Averages over the beams of every case, with published and measured lengths."""
+    scanned = ((pair, pair_errors(study)) for pair, study in data["by_scans"].items())
+    by_scans = {(pair, humidity): error for pair, errors in scanned for humidity, error in errors.items()}
+    warnings = pair_warnings.of_thin_films(data["beams"], settings["water"])
+    return table_3(data["beams"], data["forces"], published.compared(data, settings), by_scans, warnings)
+
+
+STAGES = (
+    table_stage(
+        "table_3",
+        "table_3",
+        "crack lengths and adhesion energies",
+        inputs=lambda plan, at: {
+            "beams": by_outcome("beams", plan.outcomes),
+            "forces": by_outcome("forces", plan.laws),
+            "by_scans": by_name("studies/scan_uncertainty", plan.scanned_pairs),
+            "published": published.file("table_3"),
+        },
+        settings=lambda plan, at: {
+            "of_paper": plan.paper_pairs,
+            "water": {pair: plan.water(pair) for pair in plan.pairs},
+        },
+        compute=_table_3,
+        targets=("tables", "measured"),
+    ),
+    table_stage(
+        "fit_quality",
+        "fit_quality",
+        "fit of the force curves by Eq. (12)",
+        inputs=lambda plan, at: {"fits": by_outcome("fit", plan.laws)},
+        compute=lambda data, at, settings: fit_quality(data["fits"]),
+        targets=("figures",),
+    ),
+    table_stage(
+        "table_resampling",
+        "resampling",
+        "effect of the chaos model on the crack length",
+        inputs=lambda plan, at: {
+            "beams": by_case("beams", plan.cases, "_NG"),
+            "resampled": by_case("studies/resampling", plan.cases),
+        },
+        compute=lambda data, at, settings: resampling(data["beams"], data["resampled"]),
+        targets=("figures", "study_figures"),
+    ),
+)

@@ -8,10 +8,12 @@ import xarray as xr
 
 from stiction.analysis import variants as comparison
 from stiction.estimates import mean_with_error
+from stiction.plan.names import by_outcome
+from stiction.report import published
 from stiction.report.format import MISSING, UM, percent, with_error
 from stiction.report.published import value
-from stiction.report.tables import Table
-from stiction.variants.beams import cases_of
+from stiction.report.tables import Table, table_stage
+from stiction.variants.beams import by_pair, cases_of
 
 _LABELS = {
     "van_der_waals": "vdW: {}",
@@ -184,3 +186,33 @@ def _rms_deviation(group, column):
         return None
     errors = known.crack_length_beams_se_um, known.crack_length_pairs_se_um
     return comparison.rms_deviation(known.crack_length_um, *errors, known[column])
+
+
+STAGES = (
+    table_stage(
+        "table_sensitivity",
+        "sensitivity",
+        "sensitivity to the moments of a surface",
+        inputs=lambda plan, at: {
+            "studies": {name: f"studies/sensitivity/{plan.figure_pair}_{name}" for name in plan.shifted_moments},
+            "published": published.file("sensitivity"),
+        },
+        settings=lambda plan, at: {"pair": plan.figure_pair, "of_paper": plan.paper_pairs},
+        compute=lambda data, at, settings: sensitivity(
+            data["studies"], settings["pair"], published.compared(data, settings)
+        ),
+        targets=("figures", "study_figures"),
+    ),
+    table_stage(
+        "table_variants",
+        "variants",
+        "Table III under other model choices",
+        inputs=lambda plan, at: {
+            "studies": by_outcome("studies/variants", plan.studied_cases),
+            "published": published.file("table_3"),
+        },
+        settings=lambda plan, at: {"of_paper": plan.paper_pairs},
+        compute=lambda data, at, settings: variants(by_pair(data["studies"]), published.compared(data, settings)),
+        targets=("figures", "study_figures"),
+    ),
+)

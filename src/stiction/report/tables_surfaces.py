@@ -7,10 +7,16 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from stiction.measured import estimate
+from stiction.models import MOMENT_KEYS, SUMMIT_KEYS, SURFACE_MODELS
+from stiction.plan.names import by_model, by_name
+from stiction.plan.stage import chosen
+from stiction.report import published
 from stiction.report.format import NM, PER_UM2, UM, number, percent, with_error
 from stiction.report.published import rows, value
-from stiction.report.tables import Table
+from stiction.report.tables import Table, table_stage
 from stiction.stages.character import statistics
+from stiction.stages.heights import substitution
 from stiction.stages.parameters import misfits, spectrum_of
 from stiction.surface.spectrum import CutoffSelfAffine
 
@@ -177,3 +183,53 @@ def _cells_2(row):
         **residuals,
         "defect [%]": number(row.gaussian_defect_percent, ".2g"),
     }
+
+
+def _table_1(data, _at, settings):
+    """Simulated, published and measured statistics."""
+    substitutions = {name: substitution(heights) for name, heights in data["heights"].items()}
+    measured = settings["measured"] | {name: estimate.statistics(one) for name, one in data["estimates"].items()}
+    return table_1(data["characters"], measured, published.compared(data, settings), substitutions)
+
+
+def _measured(plan):
+    """Measured statistics of all surfaces without scans."""
+    keys = (*MOMENT_KEYS, *SUMMIT_KEYS)
+    return {name: chosen(plan.config["surfaces"][name], keys) for name in plan.described}
+
+
+STAGES = (
+    table_stage(
+        "table_1",
+        "table_1",
+        "statistics of the surfaces",
+        inputs=lambda plan, at: {
+            "estimates": by_name("estimate", plan.estimated),
+            "heights": by_name("heights", plan.surfaces),
+            "characters": by_model("character", plan.surfaces, SURFACE_MODELS[::-1]),
+            "published": published.file("table_1"),
+        },
+        settings=lambda plan, at: {"measured": _measured(plan), "of_paper": plan.paper_surfaces},
+        compute=_table_1,
+        targets=("tables",),
+    ),
+    table_stage(
+        "table_2",
+        "table_2",
+        "spectra and their identification",
+        inputs=lambda plan, at: {
+            "identifications": by_name("identification", plan.with_summits),
+            "spectra": by_name("spectrum", plan.with_summits),
+            "published": published.file("table_2"),
+        },
+        settings=lambda plan, at: {
+            "sources": {name: plan.config["surfaces"][name]["psd"] for name in plan.with_summits},
+            "of_paper": plan.paper_surfaces,
+        },
+        compute=lambda data, at, settings: table_2(
+            data["identifications"], data["spectra"], published.compared(data, settings), settings["sources"]
+        ),
+        jobs=lambda plan: [{}] if plan.with_summits else [],
+        targets=("tables",),
+    ),
+)

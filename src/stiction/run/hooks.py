@@ -10,13 +10,11 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import snakemake.api  # noqa: F401  first, because its imports are circular
 from snakemake import persistence
-from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
 from snakemake.script import PythonScript
 
@@ -151,30 +149,3 @@ def files_of_configuration(workflow: Any) -> list[Path]:
     """
     names = [*reversed(getattr(workflow, "overwrite_configfiles", ())), *getattr(workflow, "configfiles", ())]
     return list(dict.fromkeys(map(Path, names)))
-
-
-def rules_of(workflow: Any) -> Iterable[Any]:
-    """Rules of a workflow.
-
-    If Snakemake no longer lists them there are none: then results of other studies are recognised only by Snakemake's
-    own records of files, and a line says so.
-    """
-    found = getattr(workflow, "rules", None)
-    if found is None:
-        logger.warning("This version of Snakemake does not list its rules: results/ is not searched for foreign files.")
-    return found or ()
-
-
-def force(workflow: Any, paths: Iterable[str]) -> None:
-    """Let a plan take files as missing.
-
-    Raises
-    ------
-    WorkflowError
-        If there are such files and this version of Snakemake cannot be told: they must not be used.
-    """
-    forced = getattr(getattr(workflow, "dag", None), "forcefiles", None)
-    if isinstance(forced, set):
-        forced.update(paths)
-    elif names := sorted(paths):
-        raise WorkflowError(f"These files cannot be used in this run: {', '.join(names)}. Delete them and try again.")

@@ -9,32 +9,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from itertools import groupby
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 from stiction.run import labels
 from stiction.run.atomic import DataError
 from stiction.run.logs import checksum, recorded
-
-
-def settings(path: str, rules: Iterable[Any]) -> dict[str, Any] | None:
-    """Settings of the job that writes a file; ``None`` if the configuration has no such job.
-
-    Parameters
-    ----------
-    path : str
-    rules : iterable
-        Rules of Snakemake. The parameter ``settings`` of a rule is a function if it depends on wildcards; it raises a
-        KeyError for a surface, pair or variant that the configuration does not contain.
-    """
-    for rule in rules:
-        if found := next(filter(None, (output.match(path) for output in rule.output)), None):
-            wanted = rule.params.settings
-            try:
-                return wanted(SimpleNamespace(**found.groupdict())) if callable(wanted) else wanted
-            except KeyError:
-                return None
-    return None
 
 
 def foreign(

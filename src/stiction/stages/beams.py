@@ -6,6 +6,8 @@ import numpy as np
 import xarray as xr
 
 from stiction.config.cases import pair_of
+from stiction.models import surface_model
+from stiction.plan.stage import Stage
 from stiction.stages import releases
 from stiction.stages.cantilevers import cantilever
 from stiction.stages.chaos import chaos_model
@@ -58,3 +60,24 @@ def layout(columns: dict[str, np.ndarray], nodes: np.ndarray) -> xr.Dataset:
         },
         coords={"sample": columns["sample"], "node": ("node", nodes, {"units": "m"})},
     )
+
+
+def _settings(plan, at):
+    """Nominal beam of a case, number of beams and scatter of their dimensions."""
+    section = plan.config["beam"]
+    number = {"samples": section["samples"], "scatter": section["scatter"] if at.model == "GEO" else 0}
+    return releases.sections(plan, at.case) | number
+
+
+STAGES = (
+    Stage.writing(
+        "beams",
+        "beams/{case}_{model}",
+        inputs=lambda plan, at: {"chaos": f"chaos/{at.case}_{surface_model(at.model)}"},
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["chaos"], at.case, settings),
+        message="Release the beams of {case}, {model} (Sec. III-C).",
+        cluster=True,
+    ),
+)

@@ -1,9 +1,10 @@
 """Nominal beams from the settings of a job."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 from stiction.beam.cantilever import Beam
+from stiction.plan.stage import select
 
 
 @dataclass(frozen=True)
@@ -72,3 +73,11 @@ def cantilever(settings: Settings, pair: str) -> Beam:
 def strips_along(beam: Dimensions, sampling: StripLength) -> int:
     """Number of force laws along a beam, N_p."""
     return round(beam.length / sampling.strip_length)
+
+
+def sections(plan: Any, *pairs: str) -> dict[str, Any]:
+    """Sections of the configuration from which `cantilever` builds the nominal beams of pairs."""
+    sizes = select(Dimensions, plan.config["beam"])
+    gaps = {pair: select(Gap, plan.config["pairs"][pair] | plan.beam_modulus(pair)) for pair in pairs}
+    del sizes["samples"]  # the number of beams does not affect a nominal beam
+    return {"solid": select(Stiffness, plan.config["solid"]), "beam": sizes, "pairs": gaps}

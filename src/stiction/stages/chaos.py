@@ -8,6 +8,7 @@ import xarray as xr
 from stiction.chaos import model as chaos
 from stiction.chaos.coordinates import PrincipalCoordinates
 from stiction.chaos.model import ChaosModel, Truncation
+from stiction.plan.stage import Stage, select
 from stiction.stages.forces import COMPONENTS, vectors
 from stiction.streams import stream
 
@@ -88,3 +89,16 @@ def chaos_model(dataset: xr.Dataset) -> ChaosModel:
 def generated_laws(dataset: xr.Dataset, number: int, case: str, seed: int) -> np.ndarray:
     """Force laws of a case drawn from its chaos model, Eq. (12), for Fig. 12; (number, 4) [SI]."""
     return chaos.draw_laws(chaos_model(dataset), number, stream(seed, "figure 12", case))
+
+
+STAGES = (
+    Stage.writing(
+        "chaos",
+        "chaos/{case}_{model}",
+        inputs=lambda plan, at: {"forces": f"forces/{at.case}_{at.model}"},
+        settings=lambda plan, at: select(Settings, plan.config),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["forces"], at.case, at.model, settings),
+        message="Chaos model of the force law of {case}, {model} (App. B).",
+    ),
+)

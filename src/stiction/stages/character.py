@@ -8,6 +8,7 @@ import xarray as xr
 
 from stiction.estimates import jackknife
 from stiction.models import FIELD
+from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.surfaces import Sampling, Width, rough_surface
 from stiction.streams import stream
@@ -145,3 +146,17 @@ def _strips(surface: RoughSurface, name: str, settings: Settings):
         statistics["mean_curvature"].append(curvature.mean() if len(curvature) else np.nan)
         summits.append((height, curvature))
     return statistics, summits
+
+
+STAGES = (
+    Stage.writing(
+        "character",
+        "character/{surface}_{model}",
+        inputs=lambda plan, at: {stage: f"{stage}/{at.surface}" for stage in ("heights", "spectrum")},
+        settings=lambda plan, at: select(Settings, plan.config),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["heights"], data["spectrum"], at.surface, at.model, settings),
+        message="Statistics of simulated {model} surfaces {surface} (Table I).",
+        cluster=True,
+    ),
+)

@@ -7,8 +7,10 @@ import xarray as xr
 
 from stiction.contact.pair import DistanceGrid, contacts_of_samples
 from stiction.contact.tilted import TiltedPair
+from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.pairs import Settings, streams_of_sides, surface_pairs
+from stiction.stages.surfaces import both, of_pair
 
 
 def compute(
@@ -137,3 +139,38 @@ def tables(contact: xr.Dataset) -> tuple[np.ndarray, np.ndarray, tuple[float, fl
     """Solid pressures (m, n_s) [Pa], bearing areas (m, n_b) [-], first distance of each and common step [m]."""
     starts = float(contact.distance[0]), float(contact.height[0])
     return contact.solid_pressure.values, contact.bearing_area.values, starts, float(contact.step)
+
+
+def _chunks(plan, at):
+    """Chunks of the samples of a pair in their order."""
+    number = plan.config["contact"]["chunks"]
+    return {"chunks": [f"contact/{at.pair}_{at.model}/{chunk}-of-{number}" for chunk in range(number)]}
+
+
+STAGES = (
+    Stage.writing(
+        "contact_chunk",
+        "contact/{pair}_{model}/{chunk}-of-{number}",
+        inputs=lambda plan, at: of_pair(plan, at.pair),
+        settings=lambda plan, at: select(Settings, plan.seen_by(at.pair)),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(
+            both(data), at.pair, at.model, settings, chunk(settings.contact.samples, int(at.chunk), int(at.number))
+        ),
+        label="contact",
+        message="Contact of {model} surfaces of pair {pair}, chunk {chunk} of {number}.",
+        temporary=True,
+        cluster=True,
+        minutes=30,
+    ),
+    Stage.writing(
+        "contact",
+        "contact/{pair}_{model}",
+        inputs=_chunks,
+        streamed=True,
+        settings=lambda plan, at: select(Settings, plan.seen_by(at.pair)),
+        kind=Settings,
+        compute=lambda data, at, settings: joined(data["chunks"], settings.contact.samples),
+        message="Join the contact of {model} surfaces of pair {pair} (Sec. III-A).",
+    ),
+)

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.config.cases import pair_of
 from stiction.contact.forcelaw import admissible, parametrise
+from stiction.plan.stage import Stage, select
 from stiction.stages.curves import Water, force_curves
 
 #: Components of v, Eq. (11), and their units.
@@ -86,3 +88,16 @@ def typical(forces: xr.Dataset) -> int:
 def curves(forces: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Distance (n_d,) [m] and the force curves of the first samples (k, n_d) [Pa]."""
     return forces.distance.values, forces.force.values
+
+
+STAGES = (
+    Stage.writing(
+        "forces",
+        "forces/{case}_{model}",
+        inputs=lambda plan, at: {"contact": f"contact/{pair_of(at.case)}_{at.model}"},
+        settings=lambda plan, at: select(Settings, plan.at(at.case)),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["contact"], settings),
+        message="Force curves of {case}, {model} (Sec. III-B1).",
+    ),
+)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
+from stiction.plan.stage import Stage, select
 from stiction.surface import maxent
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import Moments, nearest_feasible
@@ -126,3 +127,16 @@ def substitution(heights: xr.Dataset) -> str:
         f"have the nearest feasible ones, {float(heights.skewness):.4g} and {float(heights.kurtosis):.4g}, "
         f"{distance:.2g} standard errors away"
     )
+
+
+STAGES = (
+    Stage.writing(
+        "heights",
+        "heights/{surface}",
+        surfaces=lambda plan: plan.unscanned,
+        settings=lambda plan, at: select(Settings, plan.config["surfaces"][at.surface]),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(settings),
+        message="Maximum-entropy height density of {surface} (Sec. II-A).",
+    ),
+)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import xarray as xr
 
+from stiction.plan.stage import Stage, select
 from stiction.stages import parameters
 from stiction.stages.heights import density, moments
 from stiction.streams import stream
@@ -81,3 +82,23 @@ def layout(found: Identification, target: SummitTarget) -> xr.Dataset:
         target_rms=((), target.rms, {"units": "m"}),
         evaluations=((), found.evaluations),
     )
+
+
+STAGES = (
+    Stage.writing(
+        "identification",
+        "identification/{surface}",
+        inputs=lambda plan, at: {"heights": f"heights/{at.surface}"},
+        settings=lambda plan, at: select(
+            Settings,
+            plan.config,
+            spacing_nm=plan.config["sampling"]["spacing_nm"],
+            target_spacing_nm=plan.config["character"]["spacing_nm"],
+            target=select(Summits, plan.config["surfaces"][at.surface]),
+        ),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["heights"], at.surface, settings),
+        message="Identify the spectrum of {surface} from its summits (Sec. II-C).",
+        cluster=True,
+    ),
+)

@@ -6,6 +6,7 @@ Separate from `stiction.stages.beams`, so that a change of the dataset of that s
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,6 +16,8 @@ from stiction.beam.release import EndState
 from stiction.beam.resolution import resolved
 from stiction.chaos.model import ChaosModel, draw_laws
 from stiction.config.cases import pair_of
+from stiction.plan.stage import select
+from stiction.stages import cantilevers
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever, strips_along
 from stiction.streams import stream
 
@@ -83,3 +86,10 @@ def stuck_lengths(beams: xr.Dataset) -> np.ndarray:
 def stuck_energies(beams: xr.Dataset) -> np.ndarray:
     """Apparent adhesion energies Γ, Eq. (13), of the beams of stage beams that ended S-shaped (m,) [J m⁻²]."""
     return beams.adhesion_energy.values[ended(beams, "S-shape")]
+
+
+def sections(plan: Any, case: str) -> dict[str, Any]:
+    """Sections of the configuration on which the beams of a case depend, apart from their number."""
+    strips = select(StripLength, plan.config["sampling"])
+    nominal = {"seed": plan.config["seed"], "sampling": strips} | cantilevers.sections(plan, pair_of(case))
+    return nominal | ({} if plan.has_mesh_of_paper(case) else {"refined": True})

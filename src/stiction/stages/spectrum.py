@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.plan.stage import Stage, select
 from stiction.stages import parameters
 from stiction.stages.heights import density
 from stiction.surface.spectrum import CutoffSelfAffine, Spectrum, TabulatedSpectrum
@@ -123,3 +124,34 @@ def achieved(spectrum: xr.Dataset, wavenumber: np.ndarray) -> np.ndarray:
 def defect(spectrum: xr.Dataset) -> float:
     """Share of the variance that no Gaussian field provides [-]."""
     return float(spectrum.defect)
+
+
+def _settings(plan, at):
+    """Published spectrum of a surface, or ``identified`` with the strips it is used for, and the grid."""
+    entry, sampling = plan.config["surfaces"][at.surface], plan.config["sampling"]
+    if entry["psd"] == "published":
+        return {"spacing_nm": sampling["spacing_nm"], "psd": entry["published_psd"]}
+    use = select(Use, sampling, surface=at.surface)
+    return {"spacing_nm": sampling["spacing_nm"], "psd": "identified", "identified": use}
+
+
+def _inputs(plan, at):
+    """Heights of a surface, and its identification if its spectrum is identified."""
+    identified = plan.config["surfaces"][at.surface]["psd"] == "identified"
+    return {"heights": f"heights/{at.surface}"} | (
+        {"identification": f"identification/{at.surface}"} if identified else {}
+    )
+
+
+STAGES = (
+    Stage.writing(
+        "spectrum",
+        "spectrum/{surface}",
+        surfaces=lambda plan: plan.unscanned,
+        inputs=_inputs,
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["heights"], data.get("identification"), settings),
+        message="Spectrum of {surface} and of the underlying Gaussian field (Sec. II-B).",
+    ),
+)

@@ -1,6 +1,8 @@
 """Rough surfaces, from which samples are drawn, from the datasets of stages heights and spectrum."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import xarray as xr
 
@@ -33,3 +35,16 @@ class Width:
 def rough_surface(heights: xr.Dataset, spectrum: xr.Dataset, model: str, grid: StripGrid) -> RoughSurface:
     """Rough surface of model ``NG`` or ``G`` on a grid."""
     return RoughSurface(underlying(spectrum, model), Translation(density(heights, model)), moments(heights).rms, grid)
+
+
+def of_pair(plan: Any, pair: str) -> dict[str, list[str]]:
+    """Names of the datasets of both surfaces of a pair, by stage; `both` takes the datasets."""
+    return {stage: [f"{stage}/{name}" for name in plan.sides(pair)] for stage in ("heights", "spectrum")}
+
+
+def both(data: Mapping[str, Sequence[xr.Dataset]]) -> list[tuple[xr.Dataset, xr.Dataset]]:
+    """Datasets (heights, spectrum) of beam and substrate; a surface that is on both sides is one tuple."""
+    pairs = {
+        id(heights): (heights, spectrum) for heights, spectrum in zip(data["heights"], data["spectrum"], strict=True)
+    }
+    return [pairs[id(heights)] for heights in data["heights"]]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.plan.stage import Stage
 from stiction.stages import parameters
 from stiction.surface.spectrum import autocovariance, correlation_length
 
@@ -48,3 +49,16 @@ def layout(surfaces: Sequence[str], lag: np.ndarray, correlations: Sequence, len
         },
         coords={"surface": list(surfaces), "lag": ("lag", lag, {"units": "m"})},
     )
+
+
+STAGES = (
+    Stage.writing(
+        "correlation",
+        "studies/correlation",
+        inputs=lambda plan, at: {"spectra": {name: f"spectrum/{name}" for name in plan.surfaces}},
+        settings=lambda plan, at: {"surfaces": plan.surfaces},
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["spectra"], settings),
+        message="Autocorrelation of the surfaces (App. C).",
+    ),
+)

@@ -3,7 +3,9 @@
 import numpy as np
 import xarray as xr
 
+from stiction.config.cases import pair_of
 from stiction.contact.forcelaw import admissible, fit_errors
+from stiction.plan.stage import Stage, select
 from stiction.stages import forces as stage_forces
 from stiction.stages.curves import force_curves
 
@@ -41,3 +43,19 @@ def layout(samples: np.ndarray, errors: tuple[np.ndarray, np.ndarray], total: in
         },
         coords={"sample": samples},
     )
+
+
+STAGES = (
+    Stage.writing(
+        "fit",
+        "fit/{case}_{model}",
+        inputs=lambda plan, at: {
+            "contact": f"contact/{pair_of(at.case)}_{at.model}",
+            "forces": f"forces/{at.case}_{at.model}",
+        },
+        settings=lambda plan, at: select(Settings, plan.at(at.case)),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["contact"], data["forces"], settings),
+        message="Errors of Eq. (12) in {case}, {model} (Sec. III-B1).",
+    ),
+)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.curves import Water, energies
 
@@ -48,3 +49,23 @@ def layout(humidity: np.ndarray, probabilities: np.ndarray, energies: np.ndarray
             "probability": ("probability", probabilities, {"units": "1"}),
         },
     )
+
+
+def _settings(plan, at):
+    """Water and humidity axis of a pair."""
+    humidities = plan.config["pairs"][at.pair]["humidities"]
+    axis = {"points": plan.config["figures"]["humidity_points"], "range": [min(humidities), max(humidities)]}
+    return select(Settings, plan.seen_by(at.pair) | axis)
+
+
+STAGES = (
+    Stage.writing(
+        "humidity",
+        "humidity/{pair}_{model}",
+        inputs=lambda plan, at: {"contact": f"contact/{at.pair}_{at.model}"},
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["contact"], settings),
+        message="Adhesion energy of {model} surfaces of pair {pair} over the relative humidity.",
+    ),
+)

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.models import FIELD
+from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages import parameters
 from stiction.stages.heights import density
@@ -87,3 +88,22 @@ def layout(rings: tuple, steps: tuple, misfits: dict) -> xr.Dataset:
             "wavenumber": ("wavenumber", wavenumber, {"units": "rad m-1"}),
         },
     )
+
+
+STAGES = (
+    Stage.writing(
+        "iteration",
+        "iteration/{surface}",
+        inputs=lambda plan, at: {stage: f"{stage}/{at.surface}" for stage in ("heights", "spectrum")},
+        settings=lambda plan, at: select(
+            Settings,
+            plan.config,
+            iteration=plan.config["studies"]["iteration"],
+            spacing_nm=plan.config["sampling"]["spacing_nm"],
+        ),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["heights"], data["spectrum"], at.surface, settings),
+        message="Iterative spectrum of {surface}, for comparison with the closed form (Fig. 4).",
+        cluster=True,
+    ),
+)

@@ -12,9 +12,10 @@ from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
 from stiction.config.units import from_si
 from stiction.contact import forcelaw
 from stiction.errors import NotConverged
+from stiction.plan.stage import Stage
 from stiction.progress import progress
 from stiction.stages import forces as stage_forces
-from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, cantilever
+from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, cantilever, sections
 
 
 @dataclass(frozen=True)
@@ -98,3 +99,23 @@ def layout(
             "distance": ("distance", distance, {"units": "m"}),
         },
     )
+
+
+STAGES = (
+    Stage.writing(
+        "mesh",
+        "studies/mesh",
+        inputs=lambda plan, at: {"forces": f"forces/{plan.figure_case}_NG"},
+        settings=lambda plan, at: (
+            {
+                "mesh": plan.config["studies"]["mesh"],
+                "case": plan.figure_case,
+                "pair": plan.figure_pair,
+            }
+            | sections(plan, plan.figure_pair)
+        ),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["forces"], settings),
+        message="Convergence of the crack length in the mesh of the beam (App. C).",
+    ),
+)

@@ -10,6 +10,7 @@ import xarray as xr
 from stiction.analysis import convergence
 from stiction.chaos import density
 from stiction.chaos import model as chaos
+from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.chaos import chaos_model
 from stiction.stages.forces import vectors
@@ -103,3 +104,19 @@ def layout(
             "position": 0.5 * (edges[1:] + edges[:-1]),
         },
     )
+
+
+STAGES = (
+    Stage.writing(
+        "orders",
+        "studies/orders",
+        inputs=lambda plan, at: {stage: f"{stage}/{plan.figure_case}_NG" for stage in ("forces", "chaos")},
+        settings=lambda plan, at: select(
+            Settings, plan.config, draws=plan.config["studies"]["orders"]["draws"], case=plan.figure_case
+        ),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["forces"], data["chaos"], settings),
+        message="Convergence of the chaos model in the order of its polynomials (App. B).",
+        cluster=True,
+    ),
+)

@@ -10,9 +10,12 @@ from stiction.analysis import plasticity
 from stiction.constants import HARDNESS
 from stiction.contact import solids
 from stiction.contact.asperity import hertz_maximum_stress
+from stiction.models import ELASTIC
+from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages import pairs
 from stiction.stages.pairs import bodies, streams_of_sides, surface_pair
+from stiction.stages.surfaces import both, of_pair
 from stiction.surface.summits import find_summits
 
 
@@ -71,3 +74,24 @@ def layout(
             "hardness": ((), hardness, {"units": "Pa"}),
         }
     )
+
+
+def _settings(plan, at):
+    """As those of the contact, with the number of strips and the distance of App. A, and with the hardness."""
+    study = plan.config["studies"]["plasticity"]
+    size = {"strips": study["strips"], "distance_nm": study["distance_nm"][at.pair]}
+    return select(Settings, plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None) | size)
+
+
+STAGES = (
+    Stage.writing(
+        "plasticity",
+        "studies/plasticity/{pair}",
+        inputs=lambda plan, at: of_pair(plan, at.pair),
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(both(data), at.pair, settings),
+        message="Stress of the touching summits of pair {pair} (App. A).",
+        cluster=True,
+    ),
+)

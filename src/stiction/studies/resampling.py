@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.chaos.model import resample_laws
+from stiction.plan.stage import Stage
 from stiction.stages import releases
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength
 from stiction.stages.forces import vectors
@@ -44,3 +45,19 @@ def layout(columns: dict[str, np.ndarray]) -> xr.Dataset:
         },
         coords={"sample": columns["sample"]},
     )
+
+
+STAGES = (
+    Stage.writing(
+        "resampling",
+        "studies/resampling/{case}",
+        inputs=lambda plan, at: {"forces": f"forces/{at.case}_NG"},
+        settings=lambda plan, at: (
+            releases.sections(plan, at.case) | {"beams": plan.config["studies"]["resampling"]["beams"]}
+        ),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["forces"], at.case, settings),
+        message="Release the beams of {case} on force laws resampled from the contact samples (App. B).",
+        cluster=True,
+    ),
+)

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis import convergence
+from stiction.plan.stage import Stage
 from stiction.stages import forces as stage_forces
 
 #: Number of energies at which the density is given.
@@ -54,3 +55,16 @@ def layout(energy: np.ndarray, density: Sequence, sizes: Sequence[int], distance
         },
         coords={"size": list(sizes), "energy": ("energy", energy, {"units": "J m-2"})},
     )
+
+
+STAGES = (
+    Stage.writing(
+        "sample_sizes",
+        "studies/sample_sizes",
+        inputs=lambda plan, at: {"forces": f"forces/{plan.figure_case}_NG"},
+        settings=lambda plan, at: {"shares": plan.config["studies"]["sample_shares"], "case": plan.figure_case},
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["forces"], settings),
+        message="Convergence of the adhesion energy in the number of samples (App. B).",
+    ),
+)

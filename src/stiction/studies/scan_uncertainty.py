@@ -18,7 +18,8 @@ import xarray as xr
 from stiction.analysis.variants import relative_shift
 from stiction.devices.budget import Budget, joined
 from stiction.measured import estimate as stage_estimate
-from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
+from stiction.models import ALTERNATIVES_OF_SCANS, OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
+from stiction.plan.stage import Stage, select
 from stiction.stages.contact import first
 from stiction.stages.curves import energies
 from stiction.studies import slopes as study_slopes
@@ -215,3 +216,34 @@ def _fewest(variances):
 def pair_errors(dataset: xr.Dataset) -> dict[float, float]:
     """Relative standard error of ē by humidity, by the scans of both surfaces."""
     return dict(zip(dataset.humidity.values.tolist(), dataset.pair_error.values.tolist(), strict=True))
+
+
+def _inputs(plan, at):
+    """Slopes and estimates of the measured surfaces of a pair, its contact, and that under other evaluations."""
+    surfaces = plan.scanned_sides(at.pair)
+    return {
+        "slopes": {name: f"studies/slopes/{at.pair}_{name}" for name in surfaces},
+        "estimates": {name: f"estimate/{name}" for name in surfaces},
+        "base": f"contact/{at.pair}_NG",
+        "choices": {choice: f"studies/choices/{at.pair}_{choice}" for choice in ALTERNATIVES_OF_SCANS},
+    }
+
+
+def _computed(data, _at, settings):
+    """Uncertainty of a pair, with as many samples of the base as of the other evaluations."""
+    base = first(data["base"], max(choice.sizes["sample"] for choice in data["choices"].values()))
+    errors = errors_by_surface(data["slopes"], data["estimates"])
+    return compute(data["slopes"], errors, base, data["choices"], settings)
+
+
+STAGES = (
+    Stage.writing(
+        "scan_uncertainty",
+        "studies/scan_uncertainty/{pair}",
+        inputs=_inputs,
+        settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
+        kind=Settings,
+        compute=_computed,
+        message="Uncertainty of the adhesion of pair {pair} due to finite scans.",
+    ),
+)

@@ -7,6 +7,8 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis.sensitivity import energy_sensitivity
+from stiction.models import SHIFTED
+from stiction.plan.stage import Stage, select
 from stiction.stages.curves import Water, energies
 from stiction.studies.sensitivity_contact import moment
 
@@ -51,3 +53,18 @@ def layout(energies: np.ndarray, at: Sequence[float], estimate: tuple, humiditie
         },
         coords={"moment": list(at), "humidity": list(humidities), "statistic": list(_STATISTICS)},
     )
+
+
+STAGES = (
+    Stage.writing(
+        "sensitivity",
+        "studies/sensitivity/{pair}_{moment}",
+        inputs=lambda plan, at: {
+            "contacts": [f"studies/sensitivity/contact/{at.pair}_{at.moment}_{side}" for side in SHIFTED]
+        },
+        settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["contacts"], settings),
+        message="Sensitivity of the adhesion of pair {pair} to {moment} (Fig. 13).",
+    ),
+)

@@ -10,8 +10,10 @@ import xarray as xr
 
 from stiction.analysis.sensitivity import shifted
 from stiction.models import SHIFTED
+from stiction.plan.stage import Stage, select
 from stiction.stages import contact as stage_contact
 from stiction.stages import pairs
+from stiction.stages.surfaces import both, of_pair
 from stiction.studies.descriptions import description, drawn_as
 
 
@@ -51,3 +53,29 @@ def names(settings: Settings) -> list[str]:
 def moment(dataset: xr.Dataset) -> float:
     """Value of the shifted moment [SI]."""
     return float(dataset.moment)
+
+
+def _settings(plan, at):
+    """As those of the contact, with the number of samples, the moments and the step of Fig. 13."""
+    study = plan.config["studies"]["sensitivity"]
+    shifts = {"moments": plan.shifted_moments, "step": study["step"]}
+    return select(Settings, plan.seen_by(at.pair, samples=study["samples"]) | shifts)
+
+
+STAGES = (
+    Stage.writing(
+        "sensitivity_contact",
+        "studies/sensitivity/contact/{pair}_{each}",
+        each=lambda plan: [f"{moment}_{side}" for moment in plan.shifted_moments for side in SHIFTED],
+        inputs=lambda plan, at: of_pair(plan, at.pair),
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(both(data), at.pair, settings),
+        label="contact",
+        message="Contact of pair {pair} with less and more of each moment (Fig. 13).",
+        # The longest job; it begins early, so that no core waits for it at the end.
+        priority=1,
+        cluster=True,
+        minutes=30,
+    ),
+)

@@ -10,8 +10,11 @@ import xarray as xr
 
 from stiction.analysis.shifts import bracketed
 from stiction.measured import heights as measured_heights
+from stiction.models import OF_MEASURED, SHIFTED
+from stiction.plan.stage import Stage, select
 from stiction.stages import contact as stage_contact
 from stiction.stages.pairs import Settings
+from stiction.stages.surfaces import both, of_pair
 from stiction.studies.descriptions import description, drawn_as
 
 
@@ -56,3 +59,31 @@ def compute(
 def difference(contact: xr.Dataset) -> float:
     """Difference of the quantity between both sides, see `stiction.analysis.shifts.bracketed`."""
     return float(contact.difference)
+
+
+def _inputs(plan, at):
+    """The two surfaces, and the estimate of the surface if one of its modes is shifted.
+
+    Modes are those of the measured heights, which the surface may not have.
+    """
+    estimate = {"estimate": f"estimate/{at.surface}"} if at.quantity in OF_MEASURED[1:] else {}
+    return of_pair(plan, at.pair) | estimate
+
+
+SHIFTED_CONTACT = Stage.writing(
+    "slope_contact",
+    "studies/slopes/contact/{pair}_{surface}_{quantity}_{each}",
+    each=lambda plan: SHIFTED,
+    inputs=_inputs,
+    settings=lambda plan, at: select(
+        Settings, plan.seen_by(at.pair, samples=plan.config["studies"]["slopes"]["samples"])
+    ),
+    kind=Settings,
+    compute=lambda data, at, settings: compute(
+        both(data), at.pair, at.surface, at.quantity, settings, data.get("estimate")
+    ),
+    label="contact",
+    message="Contact of pair {pair} with less and more {quantity} of {surface}.",
+    cluster=True,
+)
+STAGES = (SHIFTED_CONTACT,)

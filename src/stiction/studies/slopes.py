@@ -7,6 +7,8 @@ import numpy as np
 import xarray as xr
 
 from stiction.devices.budget import log_slope
+from stiction.models import SHIFTED
+from stiction.plan.stage import Stage, select
 from stiction.stages.curves import Water, energies
 from stiction.studies.slope_contact import difference
 
@@ -64,3 +66,24 @@ def of(dataset: xr.Dataset, quantities: Sequence[str]) -> np.ndarray:
 def errors_of(dataset: xr.Dataset, quantities: Sequence[str]) -> np.ndarray:
     """Standard errors of these slopes, (n_rh, n_quantities) [-]."""
     return dataset.standard_error.sel(quantity=list(quantities)).values.T
+
+
+def _inputs(plan, at):
+    """Contacts of a pair with less and with more of every quantity of a surface."""
+    contact = f"studies/slopes/contact/{at.pair}_{at.surface}"
+    return {side: {name: f"{contact}_{name}_{side}" for name in plan.quantities(at.surface)} for side in SHIFTED}
+
+
+STAGES = (
+    Stage.writing(
+        "slopes",
+        "studies/slopes/{pair}_{surface}",
+        inputs=_inputs,
+        settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(
+            {name: [less, data["more"][name]] for name, less in data["less"].items()}, settings
+        ),
+        message="Slopes of the adhesion of pair {pair} to the quantities of {surface}.",
+    ),
+)

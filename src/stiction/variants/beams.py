@@ -8,7 +8,8 @@ import xarray as xr
 
 from stiction.analysis.variants import Variant
 from stiction.chaos.model import Truncation, fit
-from stiction.config.cases import humidity_of
+from stiction.config.cases import humidity_of, pair_of
+from stiction.plan.stage import Stage
 from stiction.stages import curves, releases
 from stiction.stages.cantilevers import Dimensions, Gap, Stiffness, StripLength
 from stiction.stages.contact import first
@@ -83,3 +84,37 @@ def cases_of(dataset: xr.Dataset) -> Iterator[tuple[float, Variant]]:
         chosen = dataset.isel(humidity=k)
         stuck = releases.ended(chosen, "S-shape")
         yield float(humidity), Variant(chosen.adhesion_energy.values, chosen.crack_length.values, stuck)
+
+
+def _inputs(plan, at):
+    """Contact of the pair of a case under a variant, which other variants may share.
+
+    That of the base is the contact of the main line, unless the variants have more samples.
+    """
+    pair, shared = pair_of(at.case), plan.contact_under(at.variant)
+    if shared == "base" and plan.has_samples_of_variants:
+        return {"contact": f"contact/{pair}_NG"}
+    return {"contact": f"studies/variants/contact/{pair}_{shared}"}
+
+
+def _settings(plan, at):
+    """Stages after contact under a variant: samples of the contact, water, force laws and beams without scatter."""
+    study = plan.config["studies"]["variants"]
+    laws = {"chaos": plan.config["chaos"], "water": plan.water(pair_of(at.case)), "samples": study["samples"]}
+    nominal = releases.sections(plan, at.case)
+    beam = nominal["beam"] | {"samples": study["beams"]} | plan.finer_beams.get(at.variant, {})
+    return nominal | laws | {"beam": beam}
+
+
+STAGES = (
+    Stage.writing(
+        "variant",
+        "studies/variants/{case}_{variant}",
+        inputs=_inputs,
+        settings=_settings,
+        kind=Settings,
+        first=lambda settings: {"sample": slice(settings.samples)},
+        compute=lambda data, at, settings: compute(data["contact"], at.case, settings),
+        message="Crack lengths of {case} under variant {variant}.",
+    ),
+)

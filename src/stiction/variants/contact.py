@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.contact.pair import solid_pressure
+from stiction.plan.stage import Stage
 from stiction.stages import contact as stage_contact
 from stiction.stages.pairs import Materials, Solid, asperity_of
 from stiction.variants import summits as variant_summits
@@ -26,3 +27,18 @@ def compute(summits: xr.Dataset, settings: Settings) -> xr.Dataset:
     pressures = [solid_pressure(model, sample, grid) for sample in variant_summits.samples_of(summits)]
     areas = summits.bearing_area.values
     return stage_contact.layout(np.array(pressures), areas, grid, range(len(areas)))
+
+
+CONTACT = Stage.writing(
+    "variant_contact",
+    "studies/variants/contact/{pair}_{variant}",
+    inputs=lambda plan, at: {
+        "summits": f"studies/variants/summits/{at.pair}_{plan.summits_under(at.pair, at.variant)}"
+    },
+    settings=lambda plan, at: plan.variant_contact(at.pair, at.variant),
+    kind=Settings,
+    compute=lambda data, at, settings: compute(data["summits"], settings),
+    label="contact",
+    message="Contact of pair {pair} under variant {variant}.",
+)
+STAGES = (CONTACT,)

@@ -9,7 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.config.merging import merged
+from stiction.config.units import typed
 from stiction.contact.pair import DistanceGrid, Summits
+from stiction.plan.stage import Stage
 from stiction.progress import progress
 from stiction.stages import heights as stage_heights
 from stiction.stages import spectrum as stage_spectrum
@@ -165,3 +168,32 @@ def distances(dataset: xr.Dataset) -> DistanceGrid:
     """Grid of the distances."""
     below = int(dataset.below)
     return DistanceGrid(float(dataset.step), below, dataset.sizes["height"] - below)
+
+
+def _inputs(plan, at):
+    """Identifications of the surfaces under a variant, and datasets of the measured surfaces of the pair."""
+    identified = plan.variant_summits(at.pair, at.variant)["identified"]
+    measured = plan.scanned_sides(at.pair)
+    return {"identifications": {name: f"identification/{name}" for name in identified}} | {
+        stage: {name: f"{stage}/{name}" for name in measured} for stage in ("heights", "spectrum")
+    }
+
+
+def _computed(data, at, settings):
+    """Summits of a pair under a variant, from plain settings: those without the variant and its changes."""
+    measured = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
+    wanted = (typed(Settings, plain) for plain in (settings["base"], merged(settings["base"], settings["changes"])))
+    return compute(data["identifications"], at.pair, *wanted, measured)
+
+
+SUMMITS = Stage.writing(
+    "variant_summits",
+    "studies/variants/summits/{pair}_{variant}",
+    inputs=_inputs,
+    settings=lambda plan, at: plan.variant_summits(at.pair, at.variant),
+    compute=_computed,
+    message="Summits of pair {pair} under variant {variant}.",
+    cluster=True,
+    minutes=30,
+)
+STAGES = (SUMMITS,)

@@ -1,0 +1,153 @@
+"""Jobs of a configuration: which stage writes a file, from which files and settings; and their results in memory."""
+
+import pkgutil
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache, cached_property
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from stiction.config.plan import Plan
+from stiction.plan.stage import FOLDERS, WILDCARDS, At, File, Names, Stage, declared, expression
+
+_PACKAGE = Path(__file__).parents[1]
+
+
+def modules() -> Iterator[str]:
+    """Names of all modules that may declare stages, sorted within their folders."""
+    for folder in FOLDERS:
+        found = pkgutil.walk_packages([str(_PACKAGE / folder)], f"stiction.{folder}.")
+        yield from sorted(module.name for module in found if not module.ispkg)
+
+
+@cache
+def stages() -> dict[str, tuple[Stage, str]]:
+    """All stages, each with its module, by the name of its rule.
+
+    Raises
+    ------
+    ValueError
+        If two stages have the same name.
+    """
+    found = {}
+    for module in modules():
+        for stage in declared(module):
+            if stage.name in found:
+                raise ValueError(f"{module} and {found[stage.name][1]} both declare stage {stage.name}")
+            found[stage.name] = stage, module
+    return found
+
+
+@dataclass(frozen=True)
+class Job:
+    """One job: a stage with the values of its wildcards."""
+
+    stage: Stage
+    at: At
+    plan: Plan
+
+    @cached_property
+    def inputs(self) -> Mapping[str, Names]:
+        """Names of the input files."""
+        return self.stage.inputs(self.plan, self.at)
+
+    @cached_property
+    def settings(self) -> dict:
+        """Plain numbers, strings, lists and dicts that determine the result."""
+        return self.stage.settings(self.plan, self.at)
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the files that the job writes."""
+        return [pattern.format(**vars(self.at)) for pattern in self.stage.patterns(self.plan).values()]
+
+    def compute(self, data: Mapping[str, Any]) -> Any:
+        """Result for the data of the inputs."""
+        return self.stage.compute(data, self.at, self.stage.converted(self.settings))
+
+
+@dataclass(frozen=True)
+class Graph:
+    """All jobs of a configuration."""
+
+    plan: Plan
+
+    @cached_property
+    def _expressions(self):
+        """Stage and regular expression of all names of files."""
+        return [
+            (stage, expression(pattern, constraints(stage, self.plan)))
+            for stage, _ in stages().values()
+            for pattern in stage.patterns(self.plan).values()
+        ]
+
+    def job(self, file: str) -> Job:
+        """Job that writes a file.
+
+        Raises
+        ------
+        KeyError
+            If the configuration has no such job.
+        """
+        for stage, matches in self._expressions:
+            if found := matches.fullmatch(file):
+                return Job(stage, At(**found.groupdict()), self.plan)
+        raise KeyError(f"no stage writes {file}")
+
+
+def constraints(stage: Stage, plan: Plan) -> dict[str, str]:
+    """Regular expressions of the wildcards of a stage."""
+    if stage.surfaces is None:
+        return WILDCARDS
+    return WILDCARDS | {"surface": "|".join(sorted(stage.surfaces(plan))) or "(?!)"}
+
+
+@dataclass(frozen=True)
+class Results:
+    """Datasets of a configuration by the name of their file, computed in memory when they are first needed.
+
+    Stages, settings and addresses of random numbers are those of the workflow, and so are the results.
+
+    Examples
+    --------
+    >>>     >>> results = Results.of(stiction.load())  # doctest: +SKIP
+    >>> results["forces/b_rh067_NG"].adhesion_energy  # doctest: +SKIP
+    """
+
+    graph: Graph
+    _known: dict[str, xr.Dataset] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def of(cls, config: dict) -> "Results":
+        """Results of a complete configuration, from `stiction.load`."""
+        return cls(Graph(Plan(config)))
+
+    def __getitem__(self, file: str) -> xr.Dataset:
+        """Dataset by the name of its file, such as ``contact/b_NG``; raises a KeyError if no stage writes it."""
+        if file in self._known:
+            return self._known[file]
+        job = self.graph.job(file)
+        result = job.compute(self.inputs(job))
+        datasets = dict(zip(job.names, result, strict=True)) if job.stage.each else {file: result}
+        if not job.stage.temporary:
+            self._known.update(datasets)
+        return datasets[file]
+
+    def inputs(self, job: Job) -> dict[str, Any]:
+        """Data of the inputs of a job."""
+        return {name: structured(files, self._read) for name, files in job.inputs.items()}
+
+    def _read(self, file):
+        """A dataset, or the name of a file that is none."""
+        return file if isinstance(file, File) else self[file]
+
+
+def structured(names: Names, read: Any) -> Any:
+    """Data with the structure of some names: of one name, of names in an order, or by key."""
+    if isinstance(names, str):
+        return read(names)
+    if isinstance(names, Mapping):
+        return {key: read(name) for key, name in names.items()}
+    return [read(name) for name in names]

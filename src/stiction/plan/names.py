@@ -1,0 +1,53 @@
+"""Names of datasets by key, as inputs of the stages that read many of them."""
+
+from collections.abc import Iterable
+
+from stiction.config.cases import humidity_of, pair_of
+
+#: A case: pair, relative humidity [-] and model.
+Case = tuple[str, float, str]
+
+
+def by_name(folder: str, names: Iterable[str], end: str = "") -> dict[str, str]:
+    """Datasets of a folder by surface, pair or device.
+
+    Examples
+    --------
+    >>> by_name("character", ["B2"], "_NG")
+    {'B2': 'character/B2_NG'}
+    """
+    return {name: f"{folder}/{name}{end}" for name in names}
+
+
+def by_case(folder: str, cases: Iterable[str], end: str = "") -> dict[tuple[str, float], str]:
+    """Datasets of a folder by pair, or device, and humidity.
+
+    Examples
+    --------
+    >>> by_case("chaos", ["b_rh067"], "_NG")
+    {('b', 0.67): 'chaos/b_rh067_NG'}
+    """
+    return {(pair_of(case), humidity_of(case)): f"{folder}/{case}{end}" for case in cases}
+
+
+def by_outcome(folder: str, outcomes: Iterable[tuple[str, str]]) -> dict[tuple[str, float, str], str]:
+    """Datasets of a folder by pair, humidity, and model or variant, from cases and models or variants.
+
+    Examples
+    --------
+    >>> by_outcome("beams", [("b_rh067", "GEO")])
+    {('b', 0.67, 'GEO'): 'beams/b_rh067_GEO'}
+    """
+    return {(pair_of(case), humidity_of(case), model): f"{folder}/{case}_{model}" for case, model in outcomes}
+
+
+def by_model(folder: str, names: Iterable[str], models: Iterable[str]) -> dict[tuple[str, str], str]:
+    """Datasets of a folder by surface or pair, and model.
+
+    Examples
+    --------
+    >>> by_model("humidity", ["b"], ["G"])
+    {('b', 'G'): 'humidity/b_G'}
+    """
+    models = list(models)
+    return {(name, model): f"{folder}/{name}_{model}" for name in names for model in models}

@@ -1,0 +1,200 @@
+"""What Snakemake needs of the declared stages: rules, and input files and settings of every job.
+
+Declarations are in the modules of the stages, whose libraries take longer to import than a plan takes. What follows
+from them is therefore kept between plans, as long as neither code nor configuration change.
+"""
+
+import hashlib
+import json
+import re
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from stiction.config.plan import Plan
+from stiction.plan.stage import FOLDERS, WILDCARDS, At, expression
+from stiction.run.atomic import DataError, save_text
+from stiction.run.fingerprint import PACKAGE, fingerprint
+
+#: Folder of all results, and ending of datasets.
+RESULTS, DATASET = "results/", ".nc"
+
+
+class Planner:
+    """Rules and jobs of one configuration.
+
+    Parameters
+    ----------
+    config : dict
+        Complete, valid and in normal form.
+    preliminary : dict
+        Numbers of measured surfaces, see `stiction.config.measured`.
+    remember : callable
+        Keeps fingerprints, see `stiction.run.remembered.Remembered`.
+    kept : str or Path
+        File in which jobs are kept between plans.
+    """
+
+    def __init__(
+        self,
+        config: dict,
+        preliminary: Mapping[str, Any],
+        remember: Callable,
+        kept: str | Path = ".snakemake/jobs.json",
+    ):
+        self.plan, self._remember, self._file = Plan(config, preliminary), remember, Path(kept)
+        self._codes = {}
+        self._kept = self._read()
+
+    def _read(self):
+        """What an earlier plan with the same code and configuration kept."""
+        try:
+            known = json.loads(self._file.read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            known = {}
+        return known if known.get("determined_by") == self._determined_by else {"determined_by": self._determined_by}
+
+    @cached_property
+    def _determined_by(self):
+        """Hash of everything that determines the jobs: code, configuration and files of scans."""
+        modules = [str(path) for folder in FOLDERS for path in sorted((PACKAGE / folder).rglob("*.py"))]
+        code = {name: self._code(name) for name in (*modules, str(PACKAGE / "plan" / "graph.py"))}
+        scans = [Path(file) for surface in self.plan.scanned for file in self.plan.scan_files(surface).values()]
+        states = [(str(file), file.stat().st_mtime_ns, file.stat().st_size) for file in scans]
+        text = json.dumps([code, self.plan.config, states, dict(self.plan.preliminary)], sort_keys=True, default=str)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def _code(self, file):
+        """Fingerprint of a module of the package."""
+        if file not in self._codes:
+            self._codes[file] = fingerprint(file, self._remember)
+        return self._codes[file]
+
+    def save(self) -> None:
+        """Keep the jobs for the next plan; nothing is lost but time if the file cannot be written."""
+        if self._kept != self._read():
+            try:
+                save_text(json.dumps(self._kept), self._file)
+            except (OSError, DataError):
+                return
+
+    def _known(self, key, compute):
+        """What is kept under a key, or computed now; plain numbers, strings, lists and dicts."""
+        if key not in self._kept:
+            self._kept[key] = json.loads(json.dumps(compute()))
+        return self._kept[key]
+
+    @cached_property
+    def _graph(self):
+        """All declarations, whose modules are imported here."""
+        from stiction.plan.graph import Graph
+
+        return Graph(self.plan)
+
+    # Rules
+
+    @cached_property
+    def rules(self) -> list[dict]:
+        """What every rule consists of apart from the inputs and settings of its jobs."""
+        return self._known("rules", self._rules)
+
+    def _rules(self):
+        """Rules of all declared stages."""
+        from stiction.plan.graph import constraints, stages
+
+        found = []
+        for stage, module in stages().values():
+            patterns = {key: path_of(stage, name) for key, name in stage.patterns(self.plan).items()}
+            if not patterns:
+                continue
+            restricted = constraints(stage, self.plan)["surface"]
+            found.append(
+                {
+                    "name": stage.name,
+                    "module": module,
+                    "files": patterns,
+                    "dataset": stage.save is None,
+                    "log": f"{RESULTS}logs/{stage.log}.log",
+                    "constraints": {} if stage.surfaces is None else {"surface": restricted},
+                    "message": re.sub(r"{(\w+)}", r"{wildcards.\1}", stage.message),
+                    "shown": vars(stage.shown) if stage.shown else None,
+                    "targets": stage.targets,
+                    "wanted": [
+                        path_of(stage, name.format(**at))
+                        for at in stage.jobs(self.plan)
+                        for name in stage.files.values()
+                    ]
+                    if stage.targets
+                    else [],
+                    **{key: getattr(stage, key) for key in ("temporary", "cluster", "minutes", "priority")},
+                }
+            )
+        return found
+
+    def wanted(self, target: str) -> list[str]:
+        """Files that a target of the workflow wants."""
+        return [file for rule in self.rules if target in rule["targets"] for file in rule["wanted"]]
+
+    def code(self, rule: Mapping[str, Any]) -> dict[str, str]:
+        """Fingerprint of the module that declares a stage, and of all modules that it imports."""
+        return self._code(str(PACKAGE.joinpath(*rule["module"].split(".")[1:]).with_suffix(".py")))
+
+    # Jobs
+
+    def job(self, rule: str, wildcards: Mapping[str, str]) -> dict:
+        """Files and structure of the inputs and settings of a job."""
+        return self._known(json.dumps([rule, dict(wildcards)], sort_keys=True), lambda: self._job(rule, wildcards))
+
+    def _job(self, rule, wildcards):
+        """As `job`, from the declaration."""
+        from stiction.plan.graph import Job, stages
+
+        job = Job(stages()[rule][0], At(**wildcards), self.plan)
+        inputs = {name: self._input(names) for name, names in job.inputs.items()}
+        return {
+            "files": {name: files for name, (files, _, _) in inputs.items()},
+            "inputs": {name: [label, keys] for name, (_, label, keys) in inputs.items()},
+            "settings": job.settings,
+        }
+
+    def _input(self, names):
+        """Files of an input, name of the stage of its datasets, and its structure."""
+        from stiction.plan.stage import File
+
+        if isinstance(names, str):
+            listed, keys = [names], None
+        elif isinstance(names, Mapping):
+            listed, keys = list(names.values()), list(names)
+        else:
+            listed, keys = list(names), True
+        if not listed or isinstance(listed[0], File):
+            return listed, None, keys
+        labels = {self._graph.job(name).stage.stage for name in listed}
+        (label,) = labels
+        return [f"{RESULTS}{name}{DATASET}" for name in listed], label, keys
+
+    def settings(self, path: str) -> dict | None:
+        """Settings of the job that writes a dataset; ``None`` if the configuration has no such job."""
+        for rule, matches in self._expressions:
+            if found := matches.fullmatch(path):
+                try:
+                    return self.job(rule["name"], found.groupdict())["settings"]
+                except KeyError:
+                    return None
+        return None
+
+    @cached_property
+    def _expressions(self):
+        """Rule and regular expression of the names of all datasets."""
+        return [
+            (rule, expression(file, WILDCARDS | rule["constraints"]))
+            for rule in self.rules
+            if rule["dataset"]
+            for file in rule["files"].values()
+        ]
+
+
+def path_of(stage: Any, name: str) -> str:
+    """Path of a file of a stage."""
+    return RESULTS + name + (DATASET if stage.save is None else "")

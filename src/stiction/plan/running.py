@@ -1,0 +1,42 @@
+"""Run one job of the workflow: load its inputs, compute, save."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from stiction.plan.stage import At, Stage, declared
+from stiction.stages import storage
+
+
+def run(job: Any) -> None:
+    """Run a job as Snakemake describes it to a script."""
+    (stage,) = (stage for stage in declared(job.params.module) if stage.name == job.rule)
+    plain = job.params.settings
+    settings = stage.converted(plain)
+    part = stage.first(settings) if stage.first else {}
+    data = {name: _loaded(job.input.get(name, []), *how, part, stage) for name, how in job.params.inputs.items()}
+    result = stage.compute(data, At(**job.wildcards), settings)
+    if stage.save is not None:
+        stage.save(result, dict(job.output.items()))
+        return
+    datasets = [path for name, (label, _) in job.params.inputs.items() if label for path in _listed(job.input[name])]
+    for dataset, path in zip(result if stage.each else [result], job.output, strict=True):
+        storage.save(dataset, path, stage.stage, plain, datasets)
+
+
+def _listed(paths) -> list[str]:
+    """Paths of an input, which Snakemake gives as a list or, if there is one, as text."""
+    return [paths] if isinstance(paths, str) else list(paths)
+
+
+def _loaded(paths: Any, label: str | None, keys: Any, part: dict, stage: Stage) -> Any:
+    """Data of an input, structured as it was declared; paths of files that are no datasets.
+
+    ``keys`` are those of a dict, ``True`` for an order, and ``None`` for one dataset.
+    """
+    paths = _listed(paths)
+    read: Iterator = (storage.load(path, label, **part) for path in paths) if label else iter(paths)
+    if keys is None:
+        return next(read)
+    if keys is True:
+        return read if stage.streamed else list(read)
+    return {tuple(key) if isinstance(key, list) else key: value for key, value in zip(keys, read, strict=True)}

@@ -1,0 +1,232 @@
+"""Declaration of a stage: the files that its jobs write and read, their settings, and what they compute.
+
+A stage is declared once, in its module. Snakemake, the Python interface and the search for stale results read the same
+declaration (`stiction.plan.graph`).
+
+Names of files are relative to ``results/`` and may contain wildcards in braces, see `WILDCARDS`. Those of datasets have
+no extension. Inputs that are no datasets, such as published tables, are a `File`.
+"""
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
+from importlib import import_module
+from types import SimpleNamespace
+from typing import Any, get_args, get_origin, get_type_hints
+
+from stiction.config.cases import CASE
+from stiction.config.units import typed, without_unit
+from stiction.models import (
+    ALTERNATIVES_OF_SCANS,
+    BEAM_MODELS,
+    OF_MEASURED,
+    OF_MOMENTS,
+    OF_SPECTRUM,
+    SHIFTED,
+)
+
+#: Folders whose modules may declare stages.
+FOLDERS = ("stages", "measured", "studies", "variants", "designs", "report")
+_NAME = "[A-Za-z][A-Za-z0-9]*"
+#: Wildcards in the names of files, and the regular expression that each matches.
+WILDCARDS = {
+    "surface": _NAME,
+    "device": _NAME,
+    "pair": _NAME,
+    "model": "|".join(BEAM_MODELS),
+    "case": CASE,
+    "chunk": "[0-9]+",
+    "number": "[0-9]+",
+    "moment": "|".join(OF_MOMENTS),
+    "quantity": "|".join(dict.fromkeys((*OF_MOMENTS, *OF_MEASURED, *OF_SPECTRUM))),
+    "side": "|".join(SHIFTED),
+    "solid_property": "modulus|poisson_ratio|hamaker_constant",
+    "choice": "|".join(ALTERNATIVES_OF_SCANS),
+    "variant": "base|[a-z_]+_[a-z0-9.-]+",
+    "length": "[0-9]+",
+    "width": "[0-9]+",
+}
+#: Values of the wildcards of one job.
+At = SimpleNamespace
+
+
+class File(str):
+    """Path of an input that is no dataset."""
+
+
+#: A name, or names in an order or by key.
+Names = str | Sequence[str] | Mapping[Any, str]
+
+
+def _nothing(_plan, _at) -> dict:
+    """No inputs and no settings."""
+    return {}
+
+
+def _once(_plan) -> list[dict]:
+    """The one job of a stage without wildcards."""
+    return [{}]
+
+
+def titled(name: str, shows: str) -> str:
+    """Title of a table or figure in the report.
+
+    Examples
+    --------
+    >>> titled("figure_05", "a force curve"), titled("fit_quality", "errors of Eq. (12)")
+    ('Figure 5: a force curve', 'Fit quality: errors of Eq. (12)')
+    """
+    return f"{name.replace('_0', ' ').replace('_', ' ').capitalize()}: {shows}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shown:
+    """How the report shows a file of a stage."""
+
+    file: str  #: key of the file
+    title: str  #: may contain wildcards
+    category: str
+    caption: str | None = None  #: name of the text, without extension
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stage:
+    """What the jobs of a stage write, read and compute.
+
+    ``inputs`` and ``settings`` are functions of the plan of a configuration (`stiction.config.plan.Plan`) and of the
+    wildcards of a job. ``compute`` takes the data of the inputs, structured as ``inputs`` structures their names, the
+    wildcards and the settings.
+    """
+
+    name: str  #: of the rule
+    files: Mapping[str, str]  #: names of the files by key; a dataset has the key ``dataset``
+    message: str  #: what a job does; may contain wildcards
+    compute: Callable[[dict, At, Any], Any]
+    inputs: Callable[[Any, At], Mapping[str, Names]] = _nothing
+    settings: Callable[[Any, At], dict] = _nothing
+    kind: type | None = None  #: dataclass to which the settings are converted
+    save: Callable[[Any, dict], None] | None = None  #: writes what ``compute`` returns to the files, if no dataset
+    label: str = ""  #: name in the label of a dataset, if it differs from that of the rule
+    each: Callable[[Any], Sequence[str]] | None = None  #: ends of the datasets that one job writes, by the plan
+    surfaces: Callable[[Any], Iterable[str]] | None = None  #: surfaces to which the stage is restricted, by the plan
+    jobs: Callable[[Any], list[dict]] = _once  #: wildcards of the jobs that its targets want, by the plan
+    targets: tuple[str, ...] = ()  #: targets of the workflow that want its files
+    shown: Shown | None = None  #: how the report shows one of the files
+    first: Callable[[Any], dict] | None = None  #: part of the inputs to read, by the settings, see `storage.load`
+    streamed: bool = False  #: whether inputs in an order are loaded one at a time
+    temporary: bool = False  #: whether the files are deleted once they have been read
+    cluster: bool = False  #: whether a job is worth a job of its own on a cluster
+    minutes: int = 10  #: longest run time of such a job
+    priority: int = 0  #: jobs of a higher priority start first
+
+    @property
+    def stage(self) -> str:
+        """Name of the stage in the labels of its datasets."""
+        return self.label or self.name
+
+    @classmethod
+    def writing(cls, name: str, file: str, **declared: Any) -> "Stage":
+        """Stage that writes a dataset; with ``each``, one for each end, which replaces ``{each}`` in the name."""
+        return cls(name=name, files={"dataset": file}, **declared)
+
+    def on(self, name: str, file: str, **changed: Any) -> "Stage":
+        """The same stage for another dataset, on a patch of a device, say."""
+        return replace(self, name=name, files={"dataset": file}, minutes=120, **changed)
+
+    @property
+    def log(self) -> str:
+        """Name of the log of a job, without extension."""
+        return (
+            next(iter(self.files.values())).rpartition(".")[0]
+            if self.save
+            else self.files["dataset"].removesuffix("_{each}")
+        )
+
+    def converted(self, settings: dict) -> Any:
+        """Plain settings of a job as ``compute`` takes them."""
+        return settings if self.kind is None else typed(self.kind, settings)
+
+    def patterns(self, plan: Any) -> dict[str, str]:
+        """Names of all files of a job by key, with wildcards."""
+        if self.each is None:
+            return dict(self.files)
+        return {end: self.files["dataset"].replace("{each}", end) for end in self.each(plan)}
+
+
+def declared(module: str) -> tuple[Stage, ...]:
+    """Stages that a module declares, by the name of the module."""
+    return getattr(import_module(module), "STAGES", ())
+
+
+def expression(pattern: str, constraints: Mapping[str, str]) -> re.Pattern:
+    """Regular expression of a name with wildcards.
+
+    Examples
+    --------
+    >>> expression("forces/{case}_{model}", WILDCARDS).fullmatch("forces/b_rh067_NG").groupdict()
+    {'case': 'b_rh067', 'model': 'NG'}
+    """
+    texts = re.split(r"\{(\w+)\}", pattern)
+    parts = [f"(?P<{text}>{constraints[text]})" if k % 2 else re.escape(text) for k, text in enumerate(texts)]
+    return re.compile("".join(parts))
+
+
+def filled(pattern: str, at: At) -> str:
+    """Name with the values of its wildcards."""
+    return pattern.format(**vars(at))
+
+
+def chosen(section: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
+    """Section reduced to the named keys, as far as it contains them."""
+    return {name: section[name] for name in names if name in section}
+
+
+def select(kind: type, section: Mapping[str, Any], **given: Any) -> dict[str, Any]:
+    """Settings that a dataclass takes from a section of the configuration: exactly its fields.
+
+    Nested sections are reduced to the fields of their dataclasses. Fields with a default are left out where the section
+    does not have them.
+
+    Parameters
+    ----------
+    kind : type
+        Dataclass whose fields are named like the keys, without units.
+    section : dict
+        Plain numbers, strings, lists and dicts.
+    **given
+        Settings that do not have the value of the section, by key.
+
+    Raises
+    ------
+    KeyError
+        If a field without default has no key.
+
+    Examples
+    --------
+    >>> from dataclasses import make_dataclass
+    >>> Water = make_dataclass("Water", [("temperature", float), ("samples", int)])
+    >>> select(Water, {"temperature_K": 300, "samples": 5, "more": 1}, samples=7)
+    {'temperature_K': 300, 'samples': 7}
+    """
+    keys = {without_unit(key): key for key in (*section, *given)}
+    kinds, selected = get_type_hints(kind), {}
+    for one in fields(kind):
+        key = keys.get(one.name)
+        if key in given:
+            selected[key] = given[key]
+        elif key is not None:
+            selected[key] = _part(kinds[one.name], section[key])
+        elif one.default is MISSING and one.default_factory is MISSING:
+            raise KeyError(f"no key for {kind.__qualname__}.{one.name}")
+    return selected
+
+
+def _part(kind, value):
+    """Value of one key, reduced to the fields of its dataclass if it has one."""
+    if not isinstance(value, dict):
+        return value
+    if get_origin(kind) is dict:
+        inner = get_args(kind)[1]
+        return {name: select(inner, entry) for name, entry in value.items()} if is_dataclass(inner) else value
+    kinds = [option for option in (kind, *get_args(kind)) if is_dataclass(option)]
+    return select(kinds[0], value) if kinds else value

@@ -1,0 +1,214 @@
+"""Figures of stoppers and of the uncertainty of devices."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from stiction.designs import device_warnings
+from stiction.designs.budget import budget_of, budgets_of, groups_of
+from stiction.devices.risk import stuck_share
+from stiction.plan.names import by_name
+from stiction.report.devices.figures_devices import below
+from stiction.report.devices.tables_budget import SCATTER, TOTAL, choice_label, response_text
+from stiction.report.format import TO_UN
+from stiction.report.style import (
+    DOUBLE,
+    OUTLINED,
+    SINGLE,
+    columns_of_panels,
+    dashes,
+    figure_stage,
+    handles,
+    humidity_axis,
+    legend_below,
+    letter,
+    letter_lines,
+    panels,
+    shades,
+    styled,
+)
+
+_COLOUR = "#0072B2"
+#: Heights of a row of a budget, of everything else in its panel, and of the legend [in]; share of a row with bars.
+_ROW, _AROUND, _LEGEND, _FILLED = 0.22, 0.62, 0.3, 0.8
+
+
+# Stoppers
+
+
+@styled
+def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence[str]]) -> Figure:
+    """Stoppers: P(stuck) over the restoring force, and pull-off force over the humidity; a column for each.
+
+    Parameters
+    ----------
+    datasets : dict
+        Device to the dataset of stage stoppers.
+    warnings : dict
+        Device to sentences, which are written below the figure.
+    """
+    figure, columns, lines = columns_of_panels(len(datasets), 2, lambda n: min(DOUBLE, SINGLE * n), 5.0)
+    for column, dataset in zip(columns, datasets.values(), strict=True):
+        _stuck_over_force(column[0], dataset)
+        shared = _force_over_humidity(column[1], dataset)
+    for line in lines:
+        line[0, 0].set_ylabel("P(stuck) [–]")
+        line[1, 0].set_ylabel("pull-off force [µN]")
+    letter_lines(lines, list(datasets))
+    figure.legend(handles=shared, loc="outside upper center", ncols=2)
+    below(figure, [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found], "stoppers")
+    return figure
+
+
+def _stuck_over_force(panel, dataset):
+    """Share of the patches that hold more than a force, at every humidity of the device, with its band."""
+    restoring = TO_UN * float(dataset.restoring_force)
+    for k, humidity in enumerate(dataset.humidity.values):
+        forces = TO_UN * dataset.pull_off.sel(humidity=humidity).values
+        at = np.sort(forces)
+        share, low, high = stuck_share(-at, -forces)
+        panel.plot(at, share, color=f"C{k}", linestyle=dashes(k), label=f"RH {humidity:g}")
+        panel.fill_between(at, low, high, color=f"C{k}", alpha=0.2, linewidth=0)
+    panel.axvline(restoring, color="0.4", linestyle=":", linewidth=0.8)
+    panel.annotate(
+        "restoring force",
+        (restoring, 0.03),
+        (2, 0),
+        panel.get_xaxis_transform(),
+        "offset points",
+        fontsize=7,
+        path_effects=OUTLINED,
+    )
+    panel.set(xlabel="restoring force [µN]", yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
+    legend_below(panel, handles(panel)[0])
+
+
+def _force_over_humidity(panel, dataset):
+    """Mean and 5 to 95 % of the pull-off force along the fine axis, and the worst humidity.
+
+    Returns the entries of the legend that are the same for all stoppers.
+    """
+    low, high = (TO_UN * dataset.quantile_along.sel(probability=p) for p in dataset.probability.values[[0, -1]])
+    light = {"color": _COLOUR, "alpha": 0.2, "linewidth": 0}
+    band = panel.fill_between(dataset.axis, low, high, **light, label="5 to 95 % of the patches")
+    (mean,) = panel.plot(dataset.axis, TO_UN * dataset.mean_along, color=_COLOUR, label="mean")
+    panel.axhline(TO_UN * float(dataset.restoring_force), color="0.4", linestyle=":", linewidth=0.8)
+    worst = float(dataset.worst_humidity)
+    top = TO_UN * float(dataset.mean_along.max())
+    (mark,) = panel.plot([worst], [top], "v", color="black", label=f"worst humidity {worst:.2f}")
+    panel.set(xlabel="relative humidity [–]", ylim=(0, None))
+    humidity_axis(panel)
+    legend_below(panel, [mark])
+    return [mean, band]
+
+
+# Budget
+
+
+@styled
+def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
+    """Tornado of a device: effect of each measurement and their total; beside it, choices of the model.
+
+    Parameters
+    ----------
+    datasets : dict
+        Device, humidity and, for tips, more to the dataset of stage budget.
+    """
+    parts = {}
+    for (_, humidity, *_), dataset in datasets.items():
+        parts.setdefault(response_text(dataset), {})[humidity] = dataset
+    bars = [(_measurements(cases), _choices(cases)) for cases in parts.values()]
+    heights = [_ROW * max(map(len, both)) + _AROUND for both in bars]
+    size = DOUBLE, sum(heights) + _LEGEND
+    figure, axes = panels(len(bars), 2, size, height_ratios=heights, width_ratios=(3, 2))
+    for line, both, cases in zip(axes, bars, parts.values(), strict=True):
+        for panel, rows in zip(line, both, strict=True):
+            _tornado(panel, rows)
+        scatter = ", ".join(f"{100 * float(dataset.scatter):.2g}" for dataset in cases.values())
+        line[0].set_xlabel(f"standard uncertainty [%]; {SCATTER}: {scatter} %")
+        line[1].set_xlabel("change [%]")
+    letter(axes, [title for text in parts for title in (text, "choices of the model")])
+    humidities = list(next(iter(parts.values())))
+    marks = [
+        Patch(color=shade, label=f"RH {h:g}") for h, shade in zip(humidities, shades(len(humidities)), strict=True)
+    ]
+    figure.legend(handles=marks, loc="outside lower center", ncols=8)
+    return figure
+
+
+def _measurements(cases):
+    """Rows of all measurements, the largest first, and of the total: name to bars [%] by humidity."""
+    found = {humidity: budget_of(dataset) for humidity, dataset in cases.items()}
+    groups = groups_of(next(iter(cases.values())))
+    largest = sorted(groups, key=lambda name: -max(one.effect(groups[name]) for one in found.values()))
+    rows = {name: groups[name] for name in largest} | {TOTAL: next(iter(found.values())).names}
+    errors = [dataset.slope_error.values for dataset in cases.values()]
+    return {
+        name: [
+            _both_sides(one.effect(inputs), one.error_of_effect(inputs, error))
+            for one, error in zip(found.values(), errors, strict=True)
+        ]
+        for name, inputs in rows.items()
+    }
+
+
+def _both_sides(effect, error):
+    """Bar of an effect in both directions, and its error [%]."""
+    return -100 * effect, 100 * effect, 100 * error
+
+
+def _choices(cases):
+    """Rows of all choices of the model: name to bars from zero, with errors [%], by humidity."""
+    rows = {}
+    for choice in next(iter(cases.values())).choice.values:
+        chosen = [dataset.sel(choice=choice) for dataset in cases.values()]
+        rows[choice_label(str(choice))] = [
+            (*sorted((0.0, 100 * float(one.effect))), 100 * float(one.effect_error)) for one in chosen
+        ]
+    return rows
+
+
+def _tornado(panel, rows: Mapping[str, Sequence[tuple]]):
+    """Draw rows of bars (low, high, error) from top to bottom; the bars of a row are those of the humidities."""
+    for place, bars in enumerate(rows.values()):
+        height = _FILLED / len(bars)
+        for k, ((low, high, error), shade) in enumerate(zip(bars, shades(len(bars)), strict=True)):
+            at = place + (k - (len(bars) - 1) / 2) * height
+            panel.barh(at, high - low, height, left=low, color=shade, linewidth=0)
+            panel.errorbar(high if high > -low else low, at, xerr=error, color="black", linewidth=0.6, capsize=1)
+    widest = max((max(-low, high) + error for bars in rows.values() for low, high, error in bars), default=1.0)
+    panel.axvline(0, color="black", linewidth=0.6)
+    panel.set_yticks(range(len(rows)), list(rows))
+    panel.tick_params(axis="y", length=0)
+    panel.set(ylim=(len(rows) - 0.4, -0.6), xlim=(-1.1 * widest, 1.1 * widest))
+
+
+STAGES = (
+    figure_stage(
+        "figure_stoppers",
+        "stoppers",
+        "pull-off force of stoppers",
+        "Devices",
+        inputs=lambda plan, at: {
+            "stoppers": by_name("devices/stoppers", plan.designs.stoppers),
+            "warnings": device_warnings.files_of(*plan.designs.stoppers),
+        },
+        compute=lambda data, at, settings: stoppers(data["stoppers"], device_warnings.read(data["warnings"]).patches),
+        jobs=lambda plan: [{}] if plan.designs.stoppers else [],
+        targets=("devices",),
+    ),
+    figure_stage(
+        "figure_budget",
+        "budget_{device}",
+        "uncertainty of {device}",
+        "Devices",
+        caption="budget",
+        inputs=lambda plan, at: {"budgets": budgets_of(plan, at.device)},
+        compute=lambda data, at, settings: budget(data["budgets"]),
+        jobs=lambda plan: [{"device": name} for name in plan.designs.budgeted],
+        targets=("devices",),
+    ),
+)

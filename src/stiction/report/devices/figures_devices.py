@@ -1,0 +1,227 @@
+"""Figures of devices: share of stuck beams over their length, safe length over the relative humidity."""
+
+import textwrap
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from stiction.designs import device_warnings
+from stiction.designs.chart import charts
+from stiction.designs.pair_warnings import numbered
+from stiction.plan.names import by_case
+from stiction.report.format import TO_UM
+from stiction.report.style import (
+    DOUBLE,
+    SINGLE,
+    columns_of_panels,
+    figure_stage,
+    handles,
+    humidity_axis,
+    legend_below,
+    letter_lines,
+    shades,
+    styled,
+)
+
+#: Line style of each shape in which a beam sticks, and what holds it.
+_SHAPES = {
+    "S-shape": ("--", "held by the beam"),
+    "S-shape or arc": ("-", "held by beam or tip"),
+    "middle": ("-", "held by the middle"),
+}
+#: Line style of their bounds by flooded flats, and what these are.
+_BOUNDS = {
+    "S-shape": (":", "saturated air"),
+    "S-shape or arc": ("-.", "saturated air"),
+    "middle": (":", "flooded flats"),
+}
+#: Marker of each basis of a safe length.
+_BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x"}
+#: Characters in a line of warnings, and most lines below a figure: more would take the place of its panels.
+_LINE, _MOST_LINES = 130, 12
+#: Height of a line of panels, and of an entry of the legends below them [in].
+_PANEL, _ENTRY = 3.3, 0.12
+#: Lightest colour of a curve.
+_LIGHTEST = 0.25
+#: Space above the longest curve of a chart, in units of the range of its lengths.
+_ROOM = 0.05
+
+
+def _width(columns):
+    """Width of a figure with this number of columns [in]."""
+    return min(DOUBLE, 1.5 * SINGLE * columns)
+
+
+def below(figure: Figure, sentences: Sequence[str], table: str) -> None:
+    """Write numbered sentences below a figure, or the name of the table whose caption has them if they are many."""
+    lines = "\n".join(textwrap.fill(f"({k}) {sentence}", _LINE) for k, sentence in enumerate(sentences, 1))
+    if lines.count("\n") >= _MOST_LINES:
+        lines = f"(1) to ({len(sentences)}): warnings, written out with results/tables/{table}.md"
+    if lines:
+        figure.supxlabel(lines, fontsize=6, ha="left", x=0.01)
+
+
+@styled
+def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, str], list]) -> Figure:
+    """Share of stuck beams over their length, with bands of 95 % and safe lengths, one panel for each device.
+
+    Parameters
+    ----------
+    found : dict
+        Name and humidity to the dataset of stage safe_lengths.
+    warnings : dict
+        Name, humidity and shape to sentences, which are written below the figure.
+    """
+    names = list(dict.fromkeys(name for name, _ in found))
+    sentences, numbers = numbered(warnings)
+    most = max(sum(device == name for device, _ in found) for name in names)
+    figure, columns, lines = columns_of_panels(len(names), 1, _width, _PANEL + _ENTRY * most)
+    for panel, name in zip(columns[:, 0], names, strict=True):
+        cases = {humidity: dataset for (device, humidity), dataset in found.items() if device == name}
+        named = []
+        for (humidity, dataset), shade in zip(cases.items(), shades(len(cases), _LIGHTEST), strict=True):
+            _shares(panel, dataset, shade)
+            label = f"RH {humidity:g}{_marks(numbers, name, humidity)}"
+            named.append(Line2D([], [], color=shade, linewidth=3, label=label))
+        legend_below(panel, named)
+        shares = np.concatenate([dataset.share.values for dataset in cases.values()])
+        panel.set(yscale="log", ylim=(shares.min() / 2, 1.3), xlabel="length of the device [µm]")
+    for line in lines:
+        line[0, 0].set_ylabel("P(stuck) [–]")
+    letter_lines(lines, names)
+    _explain(columns[0, 0], found)
+    figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=5)
+    below(figure, sentences, "safe_lengths")
+    return figure
+
+
+def _marks(numbers: Mapping[tuple, Iterable[int]], *subject) -> str:
+    """Numbers of the warnings about all shapes of a subject."""
+    return _listed({k for (*about, _), marks in numbers.items() if tuple(about) == subject for k in marks})
+
+
+def _listed(numbers):
+    """Numbers of warnings as marks in a label."""
+    return "".join(f" ({k})" for k in sorted(numbers))
+
+
+def _shares(panel: Axes, dataset, colour):
+    """P(stuck) of a device at one humidity, its band and its safe lengths."""
+    length = TO_UM * dataset.length.values
+    for shape in dataset["shape"].values:
+        one = dataset.sel(shape=shape)
+        known = one.stuck.values > 0
+        panel.plot(length[known], one.stuck.values[known], _SHAPES[shape][0], color=colour)
+        panel.fill_between(length[known], *one.stuck_band.values[:, known], color=colour, alpha=0.2, linewidth=0)
+        for share in one.share.values:
+            safe = one.sel(share=share)
+            panel.plot(TO_UM * float(safe.safe_length), share, _BASES[str(safe.basis.values)], color=colour)
+
+
+def _explain(panel, found):
+    """Add line styles and markers that occur to the legend of a panel."""
+    for shape, (line, text) in _SHAPES.items():
+        if any(shape in dataset["shape"].values for dataset in found.values()):
+            panel.plot([], [], line, color="0.3", label=text)
+    for basis, mark in _BASES.items():
+        if any(basis in dataset.basis.values for dataset in found.values()):
+            panel.plot([], [], mark, color="0.3", label=f"safe length, {basis}")
+
+
+@styled
+def chart(
+    found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, float, str], list]
+) -> Figure:
+    """Safe length over the relative humidity for the middle one of the shares.
+
+    Each device, gap and shape has a panel: a tip holds beams that are so much shorter that one axis would hide them.
+
+    Parameters
+    ----------
+    found : dict
+        Name and humidity to the dataset of stage chart.
+    warnings : dict
+        Name, thickness [m], gap [m] and shape to sentences, which are written below the figure; may be empty.
+    """
+    sentences, numbers = numbered(warnings)
+    devices = {}
+    for (name, humidity), dataset in sorted(found.items()):
+        devices.setdefault(name, []).append(dataset.expand_dims(relative_humidity=[humidity]))
+    joint = {"data_vars": "minimal", "coords": "minimal", "compat": "equals", "join": "exact"}
+    axes = {name: xr.concat(parts, "relative_humidity", **joint) for name, parts in devices.items()}
+    subjects = [(name, *one) for name, whole in axes.items() for one in product(whole.gap.values, _shapes_of(whole))]
+    most = max(whole.sizes["thickness"] for whole in axes.values()) + 1
+    figure, columns, lines = columns_of_panels(len(subjects), 1, _width, _PANEL + _ENTRY * most)
+    for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
+        whole = axes[name].sel(gap=gap, shape=shape)
+        marks = [_listed(numbers.get((name, thickness, gap, shape), ())) for thickness in whole.thickness.values]
+        legend_below(panel, _thicknesses(panel, whole, shape, marks))
+        low, high = panel.dataLim.intervaly
+        panel.set(xlabel="relative humidity [–]", ylim=(0.95 * low, high + _ROOM * (high - low)))
+        humidity_axis(panel)
+    for line in lines:
+        line[0, 0].set_ylabel("safe length [µm]")
+    letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm, {_SHAPES[shape][1]}" for name, gap, shape in subjects])
+    figure.legend(*handles(*columns[:, 0]), loc="outside upper center", ncols=2)
+    below(figure, sentences, "chart")
+    return figure
+
+
+def _shapes_of(dataset):
+    """Names of the shapes of a dataset."""
+    return map(str, dataset["shape"].values)
+
+
+def _thicknesses(panel, whole, shape, marks):
+    """Curves of all thicknesses of one device, gap and shape, their bounds, and what a power law gave.
+
+    Returns the entries of a legend of the thicknesses.
+    """
+    share, named = whole.share.values[len(whole.share) // 2], []
+    (line, text), (dotted, bound) = _SHAPES[shape], _BOUNDS[shape]
+    for thickness, shade, mark in zip(whole.thickness.values, shades(len(marks), _LIGHTEST), marks, strict=True):
+        one = whole.sel(thickness=thickness, share=share)
+        between, lengths = one.by_elements.values == 0, TO_UM * one.safe_length
+        panel.plot(one.relative_humidity, lengths, line, color=shade)
+        panel.plot(one.relative_humidity[between], lengths[between], "o", color=shade, fillstyle="none")
+        panel.plot(one.relative_humidity, TO_UM * one.flooded_length, dotted, color=shade, linewidth=0.8)
+        label = f"thickness {TO_UM * thickness:g} µm{mark}"
+        named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=label))
+    panel.plot([], [], line, color="0.3", label=f"{text}, p = {share:g}")
+    panel.plot([], [], dotted, color="0.3", label=f"{text}, {bound}")
+    if not whole.by_elements.all():
+        label = f"by a power law, ± {100 * float(whole.power_law_error.max()):.2g} %"
+        named.append(Line2D([], [], color="0.3", marker="o", fillstyle="none", linestyle="", label=label))
+    return named
+
+
+STAGES = (
+    figure_stage(
+        "figure_risk",
+        "risk",
+        "share of stuck beams over their length",
+        "Devices",
+        inputs=lambda plan, at: {
+            "lengths": by_case("devices/safe_lengths", plan.designs.cases),
+            "warnings": device_warnings.files_of(*plan.designs.beams),
+        },
+        compute=lambda data, at, settings: risk(data["lengths"], device_warnings.read(data["warnings"]).lengths),
+        jobs=lambda plan: [{}] if plan.designs.cases else [],
+        targets=("devices",),
+    ),
+    figure_stage(
+        "figure_chart",
+        "chart",
+        "safe length over the relative humidity",
+        "Devices",
+        inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.designs.charted)},
+        compute=lambda data, at, settings: chart(data["charts"], device_warnings.read(data["warnings"]).curves),
+        jobs=lambda plan: [{}] if plan.designs.charted else [],
+        targets=("devices",),
+    ),
+)

@@ -1,0 +1,363 @@
+"""Pages of single devices for the report: the answer in words, tables, figures, warnings and terms."""
+
+import base64
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from html import escape
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.figure import Figure
+
+from stiction.config.cases import case_id
+from stiction.designs import device_warnings, pair_warnings
+from stiction.designs.budget import budgets_of
+from stiction.designs.stoppers import in_any_air, is_at_an_end, shares_stuck
+from stiction.devices.limits import NOT_MODELLED
+from stiction.plan.names import by_case
+from stiction.plan.stage import File, Shown, Stage
+from stiction.report.devices import figures_budget, figures_devices, tables_budget, tables_devices
+from stiction.report.format import UM, UN
+from stiction.report.style import STYLE, png
+from stiction.run.atomic import save_text
+
+_PAGE = """<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8">
+<title>{title}</title>
+<style>
+body {{ font: 15px/1.45 sans-serif; max-width: 62em; margin: 1.5em auto; padding: 0 1em }}
+h1 {{ font-size: 1.5em }} h2 {{ font-size: 1.15em; margin-top: 1.6em }}
+table {{ border-collapse: collapse; margin: .6em 0 }}
+td, th {{ padding: 2px 12px; text-align: right; border-bottom: 1px solid #ddd }}
+td:first-child, th:first-child {{ text-align: left }}
+td {{ white-space: nowrap }} img {{ max-width: 100% }} .table {{ overflow-x: auto }}
+.answer {{ font-size: 1.1em; border-left: 4px solid #0072B2; padding: .2em 1em }}
+.warning {{ border-left: 4px solid #D55E00; padding: .2em 1em }}
+dt {{ font-weight: bold }} dd {{ margin: 0 0 .5em 1.5em }}
+</style>
+<h1>{title}</h1>
+{body}
+</html>
+"""
+#: Pixels of a page for one inch of a figure, and most rows of a table that is not folded.
+_PIXELS, _ROWS = 120, 30
+
+
+@dataclass(frozen=True)
+class Section:
+    """Part of a page: paragraphs, a table and a figure, each of which may be missing."""
+
+    title: str
+    paragraphs: Sequence[str] = ()
+    cells: pd.DataFrame | None = None
+    figure: Figure | None = None
+
+
+@dataclass(frozen=True)
+class Page:
+    """Everything that the page of a device shows."""
+
+    title: str
+    facts: Mapping[str, str]  #: dimensions and conditions, by name
+    answer: Sequence[str]  #: sentences at the top
+    sections: Sequence[Section] = ()
+    warnings: Sequence[str] = ()  #: where the model ends for this device
+    words: Mapping[str, str] = field(default_factory=dict)  #: terms and what they mean
+
+    @property
+    def html(self) -> str:
+        """The page as one file: figures are part of it."""
+        parts = [_block("answer", self.answer), _facts(self.facts), *map(_section, self.sections)]
+        parts += ["<h2>Limits of this prediction</h2>", _block("warning", [*self.warnings, NOT_MODELLED])]
+        parts += ["<h2>Terms</h2>", _words(self.words)]
+        return _PAGE.format(title=escape(self.title), body="\n".join(parts))
+
+
+def _block(kind, sentences):
+    return f'<div class="{kind}">{_paragraphs(sentences)}</div>'
+
+
+def _paragraphs(sentences):
+    return "\n".join(f"<p>{escape(sentence)}</p>" for sentence in sentences)
+
+
+def _facts(facts):
+    rows = "".join(f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in facts.items())
+    return f"<table>{rows}</table>"
+
+
+def _section(section):
+    parts = [f"<h2>{escape(section.title)}</h2>", _paragraphs(section.paragraphs)]
+    if section.cells is not None:
+        table = f'<div class="table">{section.cells.to_html(index=False, border=0)}</div>'
+        folded = f"<details><summary>Table of {len(section.cells)} rows</summary>{table}</details>"
+        parts.append(table if len(section.cells) <= _ROWS else folded)
+    if section.figure is not None:
+        picture, width = base64.b64encode(png(section.figure)).decode(), round(_PIXELS * section.figure.get_figwidth())
+        parts.append(f'<img alt="{escape(section.title)}" width="{width}" src="data:image/png;base64,{picture}">')
+    return "\n".join(parts)
+
+
+def _words(words):
+    return "<dl>" + "".join(f"<dt>{escape(term)}</dt><dd>{escape(text)}</dd>" for term, text in words.items()) + "</dl>"
+
+
+# Devices
+
+
+_KINDS = {"cantilever": "beam clamped at one end", "bridge": "beam clamped at both ends", "stopper": "stopper"}
+#: Keys of a device, what they are called and their unit.
+_FACTS = {
+    "thickness_um": ("thickness", "µm"),
+    "gap_um": ("gap below the beam", "µm"),
+    "width_um": ("width", "µm"),
+    "residual_stress_MPa": ("tensile stress", "MPa"),
+    "contact_um": ("sides of the area in contact", "µm"),
+    "restoring_force_uN": ("restoring force", "µN"),
+}
+_OF_BEAMS = {
+    "Safe length": (
+        "Largest length at which at most the stated share sticks, with a confidence of 95 %. The confidence is that of "
+        "the simulated beams, given the drawn surfaces. The error due to the number of drawn surfaces is next to the "
+        "estimate (se, surfaces), the uncertainty due to the measurements further below."
+    ),
+    "Estimate": "Length at which exactly the stated share sticks, as well as it is known; it is no bound.",
+    "Held by the beam": "The beam touches down behind an open crack and stays flat there (S-shape).",
+    "Held by the middle": (
+        "Both cracks of a bridge have met, and a few micrometres of its middle hold it, where it has no slope. Bridges "
+        "much shorter than two cracks are held in this way."
+    ),
+    "Held by the tip": "Only the free end touches and holds the beam (arc). Shorter beams can be held in this way.",
+    "Sampled, fitted, extrapolated": (
+        "What a length rests on: simulated beams alone; a line through the shortest 5 % of them, within what many more "
+        "beams, tips and bridges on the surfaces of the paper's pair b confirmed; or that line beyond it."
+    ),
+    "Bound": (
+        "Of a cantilever: the length that sticks where water fills all gaps. Of a bridge: the length below which no "
+        "surfaces hold it at this humidity, not even flooded flats in contact."
+    ),
+}
+_OF_CHARTS = {
+    "Finite elements, power law": (
+        "Lengths of simulated beams, or a power of thickness and gap between them, with its largest error at simulated "
+        "beams that it had to predict."
+    ),
+}
+_OF_STOPPERS = {
+    "Pull-off force": (
+        "Largest force with which the two surfaces hold each other while they are separated: pressure times area, for "
+        "an area that moves as a whole. One that tilts, or is so large that it bends, comes off part by part and holds "
+        "less: for it, this force is an upper bound."
+    ),
+    "P(stuck)": "Share of equal stoppers whose pull-off force exceeds the restoring force.",
+    "Safe force": (
+        "Restoring force that is exceeded by the pull-off force of at most the stated share of stoppers, with a "
+        "confidence of 95 %."
+    ),
+    "Worst humidity": "Humidity of the largest mean pull-off force. Wetter air wets more area, but pulls less.",
+}
+_OF_BUDGETS = {
+    "Effect": "Standard uncertainty of the result due to one measurement, if all others were exact.",
+    "Remaining": "Standard uncertainty of the result if this measurement were exact.",
+    "Scatter between devices": "How much equal devices differ. A better measurement does not reduce it.",
+    "Choice of the model": "What another assumption of the theory would change. It has no distribution.",
+    "Van der Waals in dry gaps, or none": "The force between the solids as through air instead of water, or left out.",
+    "Spectrum from summits": "Spectrum chosen for the measured summits, instead of the published one.",
+    "Grid": "Distance of the points at which the surfaces are drawn; summits are found on these points.",
+}
+
+
+def of_beam(
+    name: str,
+    section: Mapping,
+    found: Mapping[float, xr.Dataset],
+    charts: Mapping[float, xr.Dataset],
+    budgets: Mapping[tuple, xr.Dataset],
+    warnings: Mapping[tuple, Sequence[str]],
+) -> Page:
+    """Page of a cantilever or bridge.
+
+    Parameters
+    ----------
+    name : str
+    section : dict
+        Its section of the configuration.
+    found, charts : dict
+        Humidity to the datasets of the stages safe_lengths and chart; the latter may be empty.
+    budgets : dict
+        Humidity and, for tips, more to the dataset of stage budget; may be empty.
+    warnings : dict
+        Where the model ends: ``lengths`` and ``curves`` of `stiction.designs.device_warnings.OfDevices`.
+    """
+    cases = {(name, humidity): dataset for humidity, dataset in found.items()}
+    table = tables_devices.safe_lengths(cases, warnings).cells.drop(columns="device")
+    sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, {}))]
+    if charts:
+        axis = {(name, humidity): dataset for humidity, dataset in charts.items()}
+        table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
+        sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
+    sections += _sure(name, budgets)
+    answer = [safe_sentence(humidity, dataset) for humidity, dataset in found.items()]
+    listed = [f"({k}) {sentence}" for k, sentence in enumerate(pair_warnings.numbered(warnings)[0], 1)]
+    words = _OF_BEAMS | (_OF_CHARTS if charts else {}) | (_OF_BUDGETS if budgets else {})
+    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
+
+
+def of_stopper(
+    name: str,
+    section: Mapping,
+    found: xr.Dataset,
+    budgets: Mapping[tuple, xr.Dataset],
+    warnings: Sequence[str],
+) -> Page:
+    """Page of a stopper; parameters as in `of_beam`, with one dataset of stage stoppers and a list of warnings."""
+    table = tables_budget.stoppers({name: found}, {name: []}).cells.drop(columns=["device"])
+    sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: found}, {}))]
+    sections += _sure(name, budgets)
+    answer = [*(stuck_sentence(*row, force=float(found.restoring_force)) for row in shares_stuck(found))]
+    answer += [*safe_force_sentences(found), worst_sentence(found)]
+    words = _OF_STOPPERS | (_OF_BUDGETS if budgets else {})
+    return Page(_title(name, section), _facts_of(section), answer, sections, warnings, words)
+
+
+def _title(name, section):
+    return f"{name}: {_KINDS[section['kind']]}"
+
+
+def _facts_of(section):
+    """Dimensions and conditions of a device, by name."""
+    found = {"surfaces": f"pair {section['pair']}"}
+    for key, (name, unit) in _FACTS.items():
+        if key in section:
+            values = section[key] if isinstance(section[key], list) else [section[key]]
+            found[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
+    return found | {"relative humidities": ", ".join(f"{humidity:g}" for humidity in section["humidities"])}
+
+
+def safe_sentence(humidity: float, found: xr.Dataset) -> str:
+    """The safe lengths of a device at one humidity in words, for the middle one of the shares."""
+    share = float(found.share[found.sizes["share"] // 2])
+    lengths = found.safe_length.sel(share=share) / UM
+    shortest, longest = float(lengths.min()), float(lengths.max())
+    air, but = f"At a relative humidity of {humidity:g}", f"at most 1 in {1 / share:g}"
+    sentence = (
+        f"{air}, devices of up to {shortest:.0f} µm come free after they were pressed down, except for {but} (95 % "
+        "confidence, given the drawn surfaces)."
+    )
+    if longest == shortest:
+        return sentence
+    return f"{sentence} If the tip cannot hold them, this is true of up to {longest:.0f} µm."
+
+
+def stuck_sentence(humidity: float, stuck: float, low: float, high: float, force: float) -> str:
+    """P(stuck) of a stopper at one humidity in words; restoring force [N].
+
+    Examples
+    --------
+    >>> stuck_sentence(0.67, 0.012, 0.01, 0.015, 20e-6)
+    'At a relative humidity of 0.67, 1.2 % of the stoppers (1 to 1.5 %) hold more than the restoring force of 20 µN.'
+    """
+    share, ends = f"{100 * stuck:.3g} %", f"{100 * low:.3g} to {100 * high:.3g} %"
+    return (
+        f"At a relative humidity of {humidity:g}, {share} of the stoppers ({ends}) hold more than the restoring force "
+        f"of {force / UN:g} µN."
+    )
+
+
+def safe_force_sentences(found: xr.Dataset) -> list[str]:
+    """Restoring forces that would suffice at the humidities of a stopper, and in any air of its fine axis.
+
+    For the shares that its patches can bound.
+    """
+    stated, (low, high) = found.safe_force.sel(part="safe").max("humidity"), _ends(found)
+    return [
+        f"At all these humidities, a restoring force of {float(force) / UN:.3g} µN leaves at most 1 in "
+        f"{1 / float(force.share):g} stuck (95 % confidence); at any humidity from {low} to {high}, "
+        f"{float(more) / UN:.3g} µN are needed."
+        for force, more in zip(stated, in_any_air(found)[1], strict=True)
+        if np.isfinite(force)
+    ]
+
+
+def worst_sentence(found: xr.Dataset) -> str:
+    """The worst humidity of a stopper in words."""
+    worst, (low, high) = float(found.worst_humidity), _ends(found)
+    share, least, most = (100 * share for share in in_any_air(found)[0])
+    stuck = f" In no air of this range do more than {share:.3g} % ({least:.3g} to {most:.3g} %) stick."
+    stuck = "" if f"{share:.3g}" == "100" else stuck
+    if is_at_an_end(found):
+        return f"Between relative humidities of {low} and {high}, the stopper holds most at {worst:g}.{stuck}"
+    return (
+        f"The stopper holds most at a relative humidity of {worst:.2f}; drier and wetter air, from {low} to {high}, "
+        f"are less critical.{stuck}"
+    )
+
+
+def _ends(found):
+    """Ends of the axis of humidities along which the worst was sought."""
+    return [f"{float(found.axis[end]):g}" for end in (0, -1)]
+
+
+def _sure(name, budgets):
+    """Section on the uncertainty of the result and what to measure better; none if no input is uncertain."""
+    if not budgets:
+        return []
+    cases = {(name, *key): dataset for key, dataset in budgets.items()}
+    sentences = [
+        f"Relative humidity {humidity:g}: {tables_budget.advised(one)}" for (humidity, *_), one in budgets.items()
+    ]
+    sentences += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
+    cells, drawn = _side_by_side(tables_budget.budget(cases).cells), figures_budget.budget(cases)
+    return [Section("Uncertainty, and what should be measured better", sentences, cells, drawn)]
+
+
+def _side_by_side(cells):
+    """Cells of the budget of one device with a pair of columns for every humidity."""
+    shown = [
+        part.set_index(["held by", "what"])[["effect [%]", "remaining [%]"]].add_prefix(f"RH {humidity}: ")
+        for humidity, part in cells.groupby("RH", sort=False)
+    ]
+    return pd.concat(shown, axis=1).reset_index()
+
+
+def _inputs(plan, at):
+    """Everything that the page of a device shows."""
+    designs, section = plan.designs, plan.config["devices"][at.device]
+    cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
+    budgets = budgets_of(plan, at.device) if at.device in designs.budgeted else {}
+    own = {"budgets": {key[1:]: name for key, name in budgets.items()}, "warnings": device_warnings.files_of(at.device)}
+    if section["kind"] == "stopper":
+        return own | {"stopper": f"devices/stoppers/{at.device}", "style": File(STYLE)}
+    charts = designs.chart_cases(at.device) if at.device in designs.charted else []
+    return own | {
+        "safe_lengths": {key[1]: name for key, name in by_case("devices/safe_lengths", cases).items()},
+        "charts": {key[1]: name for key, name in by_case("devices/chart", charts).items()},
+        "style": File(STYLE),
+    }
+
+
+def _page(data, at, settings):
+    """Page of a device."""
+    warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
+    if "stopper" in data:
+        return of_stopper(at.device, settings, data["stopper"], budgets, warnings.patches[at.device])
+    lengths, charts = data["safe_lengths"], data["charts"]
+    return of_beam(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves)
+
+
+STAGES = (
+    Stage(
+        name="device_page",
+        files={"html": "devices/{device}.html"},
+        inputs=_inputs,
+        settings=lambda plan, at: plan.config["devices"][at.device],
+        compute=_page,
+        save=lambda page, paths: save_text(page.html, paths["html"]),
+        shown=Shown(file="html", title="{device}: what to build", category="Devices"),
+        message="Page of device {device}.",
+        jobs=lambda plan: [{"device": name} for name in plan.designs.devices],
+        targets=("devices",),
+    ),
+)

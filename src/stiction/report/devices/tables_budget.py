@@ -1,0 +1,252 @@
+"""Tables of stoppers and of the uncertainty of devices: P(stuck) of patches, and what to measure better."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from stiction.designs import device_warnings
+from stiction.designs.budget import budget_of, budgets_of, groups_of, response_of
+from stiction.designs.inputs import ARC, FORCE, MIDDLE, S_SHAPE
+from stiction.designs.stoppers import in_any_air, is_at_an_end, shares_stuck
+from stiction.devices.budget import advice
+from stiction.devices.limits import NOT_MODELLED
+from stiction.estimates import mean_with_error
+from stiction.plan.names import by_name
+from stiction.report.format import MISSING, UN, number, with_error
+from stiction.report.tables import Table, table_stage, with_list
+
+#: Rows of a budget below those of its measurements.
+TOTAL, INDEPENDENT, SCATTER = "total", "total, if all errors were independent", "scatter between devices"
+#: What the inputs of a budget move, and what holds the device.
+_RESPONSES = {
+    S_SHAPE: "mean length at which beams stick (S-shape)",
+    MIDDLE: "mean length at which the middle of bridges holds",
+    FORCE: "mean pull-off force",
+}
+_HELD_BY = {S_SHAPE: "beam", ARC: "tip", MIDDLE: "middle", FORCE: "whole area"}
+#: Other choices of the model in words for those who design.
+_CHOICES = {
+    "van_der_waals_dry": "van der Waals in dry gaps",
+    "van_der_waals_water": "van der Waals in water",
+    "van_der_waals_none": "no van der Waals",
+    "psd_identified": "spectrum from summits",
+    "psd_published": "published spectrum",
+    "every": "1 in {} grid points",
+    "spacing_nm": "grid of {} nm",
+    "poisson_ratio": "Poisson's ratio {}",
+}
+
+
+def choice_label(name: str) -> str:
+    """Another choice of the model in words.
+
+    Examples
+    --------
+    >>> choice_label("van_der_waals_none"), choice_label("poisson_ratio_0.18")
+    ('no van der Waals', "Poisson's ratio 0.18")
+    """
+    key, _, chosen = name.rpartition("_")
+    return _CHOICES[name] if name in _CHOICES else _CHOICES[key].format(chosen)
+
+
+# Stoppers
+
+
+def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence[str]]) -> Table:
+    """Stoppers: pull-off force, P(stuck), restoring force needed, worst humidity.
+
+    Parameters
+    ----------
+    datasets : dict
+        Device to the dataset of stage stoppers.
+    warnings : dict
+        Device to sentences.
+    """
+    rows = [row for device, dataset in datasets.items() for row in _of_stopper(device, dataset)]
+    frame = pd.DataFrame([row | {"warnings": " ".join(warnings[row["device"]])} for row in rows])
+    caption = (
+        "Stoppers: force that pulls a patch off, an upper bound if it tilts or bends, mean ± standard error and "
+        "standard deviation over the patches; "
+        "P(stuck): share of the patches that hold more than the restoring force, with its 95 % band; safe force: "
+        "restoring force that is exceeded by the pull-off force of at most this share of all patches, with 95 % "
+        "confidence; – where there are too few patches. The last row of a stopper has the largest values along a fine "
+        "axis of humidities. Worst RH: humidity of the largest mean pull-off force along this axis."
+    )
+    listed = [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found]
+    caption = with_list(" ".join([caption, NOT_MODELLED, *(["Warnings:"] if listed else [])]), listed)
+    return Table(frame, caption, pd.DataFrame([_stopper_as_text(row) for _, row in frame.iterrows()]))
+
+
+def _of_stopper(device, dataset):
+    """Numbers of one stopper at each of its humidities."""
+    for humidity, *stuck in shares_stuck(dataset):
+        forces = dataset.pull_off.sel(humidity=humidity).values / UN
+        pull = *mean_with_error(forces), forces.std(ddof=1)
+        safe = dataset.safe_force.sel(humidity=humidity, part="safe")
+        yield {"device": device, "relative_humidity": humidity} | _stopper(dataset, pull, stuck, safe)
+    worst = dataset.isel(axis=int(dataset.mean_along.argmax("axis")))
+    pull = float(worst.mean_along) / UN, float(worst.mean_along_error) / UN, np.nan
+    yield {"device": device, "relative_humidity": np.nan} | _stopper(dataset, pull, *in_any_air(dataset))
+
+
+def _stopper(dataset, pull, stuck, safe):
+    """Numbers of a row: pull-off force with its error and standard deviation, P(stuck) with its band, safe forces."""
+    row = dict(zip(("pull_off_uN", "pull_off_se_uN", "pull_off_std_uN"), pull, strict=True))
+    row |= {"restoring_force_uN": float(dataset.restoring_force) / UN}
+    row |= dict(zip(("share_stuck", "share_stuck_low", "share_stuck_high"), stuck, strict=True))
+    row |= {f"safe_force_uN_{float(force.share):g}": float(force) / UN for force in safe}
+    row |= {"lowest_humidity": float(dataset.axis[0]), "highest_humidity": float(dataset.axis[-1])}
+    row |= {"worst_humidity": float(dataset.worst_humidity)}
+    return row | {"worst_humidity_se": float(dataset.worst_humidity_error), "worst_is_an_end": is_at_an_end(dataset)}
+
+
+def _stopper_as_text(row):
+    """One row as text."""
+    safe = {name: force for name, force in row.items() if name.startswith("safe_force")}
+    any_air = f"{row.lowest_humidity:g} to {row.highest_humidity:g}"
+    return {
+        "device": row.device,
+        "RH": any_air if np.isnan(row.relative_humidity) else f"{row.relative_humidity:g}",
+        "pull-off force [µN]": with_error(row.pull_off_uN, row.pull_off_se_uN),
+        "std [µN]": number(row.pull_off_std_uN, ".3g"),
+        "restoring force [µN]": number(row.restoring_force_uN, "g"),
+        "P(stuck) [%]": percentage(row.share_stuck, row.share_stuck_low, row.share_stuck_high),
+        **{f"safe force, {name.rpartition('_')[2]} [µN]": number(force, ".3g") for name, force in safe.items()},
+        "worst RH": worst_humidity(row.worst_humidity, row.worst_humidity_se, row.worst_is_an_end),
+    }
+
+
+def percentage(share: float, low: float, high: float) -> str:
+    """A share and its band, in percent.
+
+    Examples
+    --------
+    >>> percentage(0.0123, 0.0101, 0.0149)
+    '1.23 (1.01 to 1.49)'
+    """
+    return f"{100 * share:.3g} ({100 * low:.3g} to {100 * high:.3g})"
+
+
+def worst_humidity(humidity: float, error: float, is_an_end: bool) -> str:
+    """Worst humidity as text, also if it is an end of the humidities that were computed.
+
+    Examples
+    --------
+    >>> worst_humidity(0.901, 0.0021, False), worst_humidity(0.98, 0.0, True)
+    ('0.9010 ± 0.0021', '0.98 or beyond')
+    """
+    return f"{humidity:g} or beyond" if is_an_end else with_error(humidity, error)
+
+
+# Budget
+
+
+def budget(datasets: Mapping[tuple, xr.Dataset]) -> Table:
+    """Uncertainty of every device: effect of each measurement, total, scatter, choices of the model.
+
+    The numbers hold every input with its slope; the text is by measurement, with a sentence on what to measure better.
+
+    Parameters
+    ----------
+    datasets : dict
+        Device, humidity and, for tips, more to the dataset of stage budget.
+    """
+    frame = pd.DataFrame([row for (device, rh, *_), one in datasets.items() for row in _of_budget(device, rh, one)])
+    sentences = [f"{device}, RH {humidity:g}: {advised(one)}" for (device, humidity, *_), one in datasets.items()]
+    omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in datasets.items()}
+    caption = with_list(
+        "Relative standard uncertainty of the mean length at which beams stick as S-shapes, of the length at which "
+        "few are held by their tip, of the mean length at which bridges are held by their middle, and of the mean "
+        "pull-off force of stoppers, due to every measurement, the others being exact, ± standard error of the "
+        "simulation. Remaining: what would be left if the measurement were exact. Scatter between devices and other "
+        "choices of the model, with the sign of their effect, are no part of the total.",
+        [*sentences, *omitted],
+    )
+    shown = frame[frame.part != "input"]
+    return Table(frame, caption, pd.DataFrame([_budget_as_text(row) for _, row in shown.iterrows()]))
+
+
+def advised(dataset: xr.Dataset) -> str:
+    """Sentence on what to measure better."""
+    found = budget_of(dataset)
+    if found.total == 0:
+        return "No uncertainty of an input is stated."
+    return advice(found, groups_of(dataset), response_text(dataset))
+
+
+def response_text(dataset: xr.Dataset) -> str:
+    """What the inputs move, in words."""
+    response, share = response_of(dataset)
+    return f"length that 1 in {1 / share:g} tips hold (arc)" if response == ARC else _RESPONSES[response]
+
+
+def counted_as_exact(dataset: xr.Dataset) -> str:
+    """Sentence on what has no stated uncertainty."""
+    return f"Counted as exact: {', '.join(map(str, dataset.exact.values))}."
+
+
+def _of_budget(device, humidity, dataset):
+    """Numbers of one device at one humidity: inputs, measurements, totals, scatter, choices."""
+    found, errors = budget_of(dataset), dataset.slope_error.values
+    head = {"device": device, "relative_humidity": humidity, "held_by": _HELD_BY[response_of(dataset)[0]]}
+    deviations = np.sqrt(np.diag(found.covariance))
+    for name, slope, error, deviation in zip(found.names, found.slopes, errors, deviations, strict=True):
+        numbers = {"slope": slope, "slope_se": error, "standard_uncertainty": deviation}
+        yield head | {"part": "input", "name": name} | numbers | _effect(found, [name], errors)
+    for name, inputs in groups_of(dataset).items():
+        left = {"remaining_percent": 100 * found.remaining(inputs)}
+        yield head | {"part": "measurement", "name": name} | _effect(found, inputs, errors) | left
+    for name, whole in ((TOTAL, found), (INDEPENDENT, found.uncorrelated)):
+        yield head | {"part": "total", "name": name} | _effect(whole, found.names, errors)
+    yield head | {"part": "scatter", "name": SCATTER, "effect_percent": 100 * float(dataset.scatter)}
+    for name in dataset.choice.values:
+        effect, error = (100 * float(dataset[key].sel(choice=name)) for key in ("effect", "effect_error"))
+        yield head | {"part": "choice", "name": str(name), "effect_percent": effect, "effect_se_percent": error}
+
+
+def _effect(budget, inputs, slope_errors):
+    """Effect of some inputs and its standard error [%]."""
+    error = budget.error_of_effect(inputs, slope_errors)
+    return {"effect_percent": 100 * budget.effect(inputs), "effect_se_percent": 100 * error}
+
+
+def _budget_as_text(row):
+    """One row as text."""
+    effect = number(row.effect_percent, ".2g")
+    if row.effect_se_percent > 0:
+        effect = with_error(row.effect_percent, row.effect_se_percent, "+" if row.part == "choice" else "")
+    return {
+        "device": row.device,
+        "RH": f"{row.relative_humidity:g}",
+        "held by": row.held_by,
+        "what": f"choice: {choice_label(row['name'])}" if row.part == "choice" else row["name"],
+        "effect [%]": effect,
+        "remaining [%]": MISSING if np.isnan(row.remaining_percent) else number(row.remaining_percent, ".2g"),
+    }
+
+
+STAGES = (
+    table_stage(
+        "table_stoppers",
+        "stoppers",
+        "P(stuck) of stoppers",
+        inputs=lambda plan, at: {
+            "stoppers": by_name("devices/stoppers", plan.designs.stoppers),
+            "warnings": device_warnings.files_of(*plan.designs.stoppers),
+        },
+        compute=lambda data, at, settings: stoppers(data["stoppers"], device_warnings.read(data["warnings"]).patches),
+        jobs=lambda plan: [{}] if plan.designs.stoppers else [],
+        targets=("devices",),
+    ),
+    table_stage(
+        "table_budget",
+        "budget",
+        "uncertainty of devices, and what to measure better",
+        inputs=lambda plan, at: {"budgets": budgets_of(plan, *plan.designs.budgeted)},
+        compute=lambda data, at, settings: budget(data["budgets"]),
+        jobs=lambda plan: [{}] if plan.designs.budgeted else [],
+        targets=("devices",),
+    ),
+)

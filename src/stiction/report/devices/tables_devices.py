@@ -1,0 +1,184 @@
+"""Tables of devices: lengths of beams that come free, at their humidities and along the axes of charts."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from stiction.designs import device_warnings
+from stiction.designs.chart import charts
+from stiction.designs.device_warnings import HELD_BY, curves
+from stiction.designs.pair_warnings import numbered
+from stiction.devices.limits import NOT_MODELLED
+from stiction.plan.names import by_case
+from stiction.report.format import UM, error_alone, number
+from stiction.report.tables import Table, table_stage, with_list
+
+_SAFE_LENGTHS = (
+    "Safe length: the largest length at which, with a confidence of 95 % given the drawn surfaces, at most a share p "
+    "of the devices sticks. A cantilever is held by its beam (S-shape) or by its tip alone (arc), a bridge by its "
+    "middle. Estimate: length at "
+    "which a share p sticks, with its standard errors due to the number of beams and to that of sampled surfaces. "
+    "Every beam has its own tip, whose scatter is part of the first. Basis: sampled, by order statistics; fitted, by "
+    "a line through the shortest 5 %; extrapolated, beyond what was verified. Bound: for a cantilever, the length that "
+    "sticks in saturated air, where water fills all gaps; for a bridge, the length below which even flooded flats in "
+    "contact do not hold its middle at this humidity, on which this bound depends."
+)
+_CHART = (
+    "Safe length of beams of the thicknesses and gaps of a chart over the relative humidity: the largest length at "
+    "which, with a confidence of 95 % given the drawn surfaces, at most a share p sticks. From: finite elements, or a "
+    "power law between them, with its largest error at beams to which it was not fitted. Bound: for a cantilever, the "
+    "length that sticks where water fills all gaps; for a bridge, that below which even flooded flats do not hold its "
+    "middle at this humidity. The warnings are about the shortest length of each thickness and gap."
+)
+
+
+def safe_lengths(
+    found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, str], list]
+) -> Table:
+    """Safe lengths of all beams, one row per device, humidity, shape and share.
+
+    Parameters
+    ----------
+    found : dict
+        Name and humidity to the dataset of stage safe_lengths.
+    warnings : dict
+        Name, humidity and shape to sentences.
+    """
+    rows, cells = [], []
+    numbers = numbered(warnings)[1]
+    for (device, humidity), dataset in found.items():
+        for shape in map(str, dataset["shape"].values):
+            head = {"device": device, "relative_humidity": humidity, "held_by": HELD_BY[shape]}
+            last = {"warnings": " ".join(warnings[device, humidity, shape])}
+            marks = ", ".join(map(str, numbers[device, humidity, shape]))
+            of_shape = [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
+            rows += of_shape
+            cells += [_safe_length_as_text(row, marks) for row in of_shape]
+    return Table(pd.DataFrame(rows), _caption(_SAFE_LENGTHS, warnings), pd.DataFrame(cells))
+
+
+def _caption(text, warnings):
+    """Caption with what is not modelled and, below each other, numbered warnings."""
+    listed = [f"({k}) {sentence}" for k, sentence in enumerate(numbered(warnings)[0], 1)]
+    return with_list(" ".join([text, NOT_MODELLED, *(["Warnings:"] if listed else [])]), listed)
+
+
+def _safe_length(one):
+    """One safe length with its errors."""
+    return {
+        "share": float(one.share),
+        "safe_length_um": float(one.safe_length) / UM,
+        "estimate_um": float(one.estimate) / UM,
+        "estimate_se_beams_um": float(one.beams_error) / UM,
+        "estimate_se_surfaces_um": float(one.surfaces_error) / UM,
+        "basis": str(one.basis.values),
+        "bound_um": _bound(one),
+    }
+
+
+def _bound(one):
+    """Bound of the length by flooded flats [µm]."""
+    return float(one.flooded_length) / UM
+
+
+def _safe_length_as_text(row, marks):
+    """One safe length as text, with the numbers of its warnings."""
+    return {
+        "device": row["device"],
+        "RH": f"{row['relative_humidity']:g}",
+        "held by": row["held_by"],
+        "p": f"{row['share']:g}",
+        "safe length [µm]": number(row["safe_length_um"], ".1f"),
+        "estimate [µm]": number(row["estimate_um"], ".1f"),
+        "se, beams": error_alone(row["estimate_se_beams_um"]),
+        "se, surfaces": error_alone(row["estimate_se_surfaces_um"]),
+        "basis": row["basis"],
+        "bound [µm]": number(row["bound_um"], ".1f"),
+        "warnings": marks,
+    }
+
+
+# Charts
+
+
+def chart(
+    found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, float, str], list]
+) -> Table:
+    """Safe lengths along the axes of all charts, curve by curve; a line of text has the lengths of all shares.
+
+    Parameters
+    ----------
+    found : dict
+        Name and humidity to the dataset of stage chart.
+    warnings : dict
+        Name, thickness [m], gap [m] and shape to sentences.
+    """
+    numbers = numbered(warnings)[1]
+    rows, cells = [], []
+    for device, curve in dict.fromkeys((name, curve) for (name, _), one in found.items() for curve in curves(one)):
+        last = {"warnings": " ".join(warnings[device, *curve])}
+        marks = {"warnings": ", ".join(map(str, numbers[device, *curve]))}
+        for humidity in sorted(humidity for name, humidity in found if name == device):
+            one = found[device, humidity].sel(dict(zip(("thickness", "gap", "shape"), curve, strict=True)))
+            beam = {"device": device, "relative_humidity": humidity} | _beam(one)
+            lengths = dict(zip(one.share.values.tolist(), one.safe_length.values / UM, strict=True))
+            rows += [beam | {"share": share, "safe_length_um": length} | last for share, length in lengths.items()]
+            cells.append(_beam_as_text(beam, lengths) | marks)
+    return Table(pd.DataFrame(rows), _caption(_CHART, warnings), pd.DataFrame(cells))
+
+
+def _beam(one):
+    """Size of a beam of a chart, what its lengths come from, and its limit."""
+    computed = bool(one.by_elements)
+    return {
+        "thickness_um": round(float(one.thickness) / UM, 9),  # as in the configuration
+        "gap_um": round(float(one.gap) / UM, 9),
+        "held_by": HELD_BY[str(one["shape"].values)],
+        "from": "finite elements" if computed else "power law",
+        "power_law_error_percent": np.nan if computed else 100 * float(one.power_law_error),
+        "bound_um": _bound(one),
+    }
+
+
+def _beam_as_text(beam, lengths):
+    """Safe lengths of a beam of a chart as text."""
+    error = beam["power_law_error_percent"]
+    return {
+        "device": beam["device"],
+        "thickness [µm]": f"{beam['thickness_um']:g}",
+        "gap [µm]": f"{beam['gap_um']:g}",
+        "held by": beam["held_by"],
+        "RH": f"{beam['relative_humidity']:g}",
+        **{f"p = {share:g} [µm]": number(length, ".1f") for share, length in lengths.items()},
+        "from": beam["from"] + ("" if np.isnan(error) else f", ± {error:.2g} %"),
+        "bound [µm]": number(beam["bound_um"], ".1f"),
+    }
+
+
+STAGES = (
+    table_stage(
+        "table_safe_lengths",
+        "safe_lengths",
+        "lengths of beams that come free",
+        inputs=lambda plan, at: {
+            "lengths": by_case("devices/safe_lengths", plan.designs.cases),
+            "warnings": device_warnings.files_of(*plan.designs.beams),
+        },
+        compute=lambda data, at, settings: safe_lengths(
+            data["lengths"], device_warnings.read(data["warnings"]).lengths
+        ),
+        jobs=lambda plan: [{}] if plan.designs.cases else [],
+        targets=("devices",),
+    ),
+    table_stage(
+        "table_chart",
+        "chart",
+        "safe length over the relative humidity",
+        inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.designs.charted)},
+        compute=lambda data, at, settings: chart(data["charts"], device_warnings.read(data["warnings"]).curves),
+        jobs=lambda plan: [{}] if plan.designs.charted else [],
+        targets=("devices",),
+    ),
+)

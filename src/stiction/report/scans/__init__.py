@@ -1,0 +1,1 @@
+"""Tables and figures of surfaces described by scans."""

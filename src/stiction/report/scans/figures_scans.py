@@ -1,0 +1,179 @@
+"""Sheet of a measured surface: map, height density, spectrum and summits with their errors, and what limits them."""
+
+import re
+import textwrap
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from stiction.measured import estimate as stage_estimate
+from stiction.measured import spectrum as stage_spectrum
+from stiction.report.format import PER_UM2, TO_NM, TO_UM, UM, with_error
+from stiction.report.style import DOUBLE, MODELS, OUTLINED, figure_stage, letter, panels, styled
+
+_MEASURED, _MODEL = {"color": "black"}, {"color": MODELS["NG"]["color"]}
+_BAND, _BEYOND = {"color": "0.75", "linewidth": 0}, {"color": "0.92", "linewidth": 0, "zorder": 0}
+_CORNER = {"fontsize": 7, "path_effects": OUTLINED}
+_SLOW = {"color": "0.5", "linewidth": 0.5}
+#: Colours of the map saturate at this number of rms; decades of densities below their largest value, factor above it.
+_SATURATED, _DECADES, _HEADROOM = 3, 6, 60
+#: Characters of a line of sentences, height of a line and of the panels with their title [in].
+_LINE, _LINE_HEIGHT, _PANELS = 150, 0.125, 5.8
+
+
+@styled
+def surface_sheet(name: str, estimate: xr.Dataset, spectrum: xr.Dataset) -> Figure:
+    """Sheet of one measured surface: the measured quantities, their errors, and the model drawn from them.
+
+    Parameters
+    ----------
+    name : str
+        Of the surface.
+    estimate, spectrum : Dataset
+        Of stages estimate and spectrum.
+    """
+    lines = _lines([*stage_estimate.flags(estimate), *stage_spectrum.flags(spectrum)])
+    figure, axes = panels(2, 2, (DOUBLE, _PANELS + _LINE_HEIGHT * len(lines)))
+    _map(figure, axes[0, 0], estimate)
+    _density(axes[0, 1], estimate)
+    _spectrum(axes[1, 0], estimate)
+    _summits(axes[1, 1], estimate)
+    letter(axes, ["levelled heights", "density of the heights", "spectrum", "summits at the pixels of the scans"])
+    figure.suptitle(_title(name, estimate), x=0.01, ha="left", fontsize=8)
+    figure.supxlabel("\n".join(lines), x=0.01, ha="left", fontsize=7)
+    return figure
+
+
+def _lines(sentences: Sequence[str]):
+    """Sentences as lines of text, each with a mark; no character has a special meaning in them."""
+    if not sentences:
+        return ["No flags."]
+    wrapped = {"width": _LINE, "initial_indent": "– ", "subsequent_indent": "   "}
+    return [line.replace("$", r"\$") for sentence in sentences for line in textwrap.wrap(sentence, **wrapped)]
+
+
+def _title(name, estimate):
+    """Scans and numbers with their errors."""
+    frame, files = stage_estimate.frame(estimate), len(stage_estimate.files(estimate))
+    size, points = " × ".join(f"{TO_UM * length:.4g}" for length in frame.size), " × ".join(map(str, frame.shape))
+    rms, errors = TO_NM * stage_estimate.rms(estimate), np.sqrt(np.diag(estimate.covariance))
+    skewness, kurtosis = stage_estimate.shape(estimate)
+    tiles = np.max(estimate.tile_errors.values / estimate.closed_form_errors.values)
+    sectors = float(estimate.sectors.max() / estimate.sectors.min())
+    sector_error = np.sqrt(2) * sectors * float(estimate.sector_errors.max())
+    numbers = (
+        f"rms {with_error(rms, rms * errors[0])} nm, skewness {with_error(skewness, errors[1])}, "
+        f"kurtosis {with_error(kurtosis, errors[2])}; "
+        f"errors by tiles over closed form {tiles:.2g}, "
+        f"largest over smallest sector {with_error(sectors, sector_error)}"
+    )
+    scans = f"{files} scan{'s' * (files > 1)} of {size} µm, {points} points"
+    return f"{name}: {scans}\n{_minus(numbers)}"
+
+
+def _minus(text):
+    """Text with minus signs in place of hyphens before numbers."""
+    return re.sub(r"-(?=\d)", "\N{MINUS SIGN}", text)
+
+
+def _map(figure: Figure, panel: Axes, estimate):
+    """Levelled heights of the first scan: blue below and red above the mean, undefined points grey."""
+    z = TO_NM * estimate.elevation.values
+    limit = _SATURATED * np.nanstd(z)
+    length, width = stage_estimate.frame(estimate).size
+    extent = [0, TO_UM * length, 0, TO_UM * width]
+    colours = colormaps["RdBu_r"].with_extremes(bad="0.6")
+    shades = {"cmap": colours, "vmin": -limit, "vmax": limit}
+    image = panel.imshow(np.ma.masked_invalid(z.T), origin="lower", extent=extent, interpolation="nearest", **shades)
+    figure.colorbar(image, ax=panel, label="height $z$ [nm]", shrink=0.9, extend="both")
+    panel.set(xlabel="fast axis $x_1$ [µm]", ylabel="slow axis $x_2$ [µm]")
+
+
+def _density(panel, estimate):
+    """Histogram with its errors, maximum entropy and Gaussian density."""
+    rms, z = TO_NM * stage_estimate.rms(estimate), np.linspace(-6, 6, 601)
+    edges, found, error = (estimate[name].values for name in ("edge", "histogram", "histogram_error"))
+    largest = found.max() / rms
+    panel.stairs((found + error) / rms, rms * edges, baseline=np.maximum(found - error, 0) / rms, fill=True, **_BAND)
+    panel.stairs(found / rms, rms * edges, baseline=None, label="measured, ± 1 standard error", **_MEASURED)
+    panel.plot(rms * z, np.exp(-(z**2) / 2) / np.sqrt(2 * np.pi) / rms, **MODELS["G"])
+    if not np.isnan(stage_estimate.distance(estimate)):
+        entropy = stage_estimate.density(estimate, "moments")(z) / rms
+        panel.plot(rms * z, entropy, **_MODEL, label="maximum entropy")
+        text = rf"$T^2$ = {float(estimate.goodness_chi2):.3g}, p = {float(estimate.goodness_p):.2g}"
+        panel.text(0.5, 0.04, text, transform=panel.transAxes, ha="center", **_CORNER)
+    panel.set(yscale="log", ylim=(largest / 10**_DECADES, _HEADROOM * largest), xlim=(-6 * rms, 6 * rms))
+    panel.set(xlabel="height $z$ [nm]", ylabel="density $p_Z$ [nm$^{-1}$]")
+    panel.legend(loc="upper right")
+
+
+def _spectrum(panel, estimate):
+    """Rings with their errors, the band near the slow axis and Eq. (7); grey beyond the reach of the microscope."""
+    rings, reach = stage_estimate.rings(estimate), stage_estimate.reach(estimate)
+    inside = rings.wavenumber > 0
+    zeta, density = rings.wavenumber[inside] / TO_UM, TO_NM**4 * rings.density[inside]
+    error = density / np.sqrt(rings.modes[inside])
+    panel.fill_between(zeta, np.maximum(density - error, density / 10), density + error, **_BAND)
+    panel.plot(zeta, density, **_MEASURED, label="measured, ± 1 standard error")
+    slow = estimate.isel(slow_ring=slice(1, None))
+    panel.plot(slow.slow_wavenumber / TO_UM, TO_NM**4 * slow.slow_density, **_SLOW, label="near the slow axis")
+    fit = stage_estimate.fit(estimate)
+    fitted = TO_NM**4 * fit.spectrum(2 * TO_UM * zeta[-1])(TO_UM * zeta)
+    panel.plot(zeta, fitted, **_MODEL, label="Eq. (7)")
+    low, high = reach.low / TO_UM, reach.high / TO_UM
+    ends = low / 2, zeta[-1]
+    panel.axvspan(ends[0], low, **_BEYOND)
+    panel.axvspan(high, ends[1], **_BEYOND, label="beyond the reach")
+    limits = fitted[-1] / _HEADROOM, 10 * _HEADROOM * fitted[0]
+    panel.set(xscale="log", yscale="log", xlim=ends, ylim=limits)
+    panel.set(xlabel=r"wave number $\zeta$ [rad/µm]", ylabel="spectrum $s_Z$ [nm$^4$]")
+    panel.text(0.04, 0.04, _minus(_fit(fit)), transform=panel.transAxes, linespacing=1.4, **_CORNER)
+    panel.legend(loc="upper right")
+
+
+def _fit(fit):
+    """Parameters of Eq. (7) with their errors."""
+    corner, (_, corner_error, slope_error) = fit.corner / TO_UM, np.sqrt(np.diag(fit.covariance))
+    return (
+        rf"corner {with_error(corner, corner * corner_error)} rad/µm" + "\n"
+        rf"slope {with_error(fit.slope, slope_error)}" + "\n"
+        rf"$\chi^2$/dof = {fit.chi2 / fit.freedom:.2g}"
+    )
+
+
+def _summits(panel, estimate):
+    """Radius and density of the summits of the scans, and of scans drawn from the model."""
+    panel.set(xlabel="summit radius [µm]", ylabel="summit density [µm$^{-2}$]")
+    if np.isnan(estimate.summits).any():
+        reason = "too few summits" if stage_estimate.frame(estimate).square else "pixels are not square:\nno summits"
+        panel.text(0.5, 0.5, reason, transform=panel.transAxes, ha="center", va="center")
+        return
+    for kind, style, mark, label in (
+        ("summit", _MEASURED, "o", "measured, ± 1 standard error"),
+        ("model_summit", _MODEL, "s", "drawn from the model, ± scatter"),
+    ):
+        units = np.array([UM, PER_UM2])
+        values, errors = estimate[f"{kind}s"].values / units, estimate[f"{kind}_errors"].values / units
+        bars = {"marker": mark, "linestyle": "", "label": label} | style
+        panel.errorbar(values[0], values[1], errors[1], errors[0], **bars)
+    panel.margins(0.4)
+    panel.legend(loc="best")
+
+
+STAGES = (
+    figure_stage(
+        "surface_sheet",
+        "surface_sheet_{surface}",
+        "scans of {surface}",
+        "Surfaces (Sec. II)",
+        caption="surface_sheet",
+        inputs=lambda plan, at: {stage: f"{stage}/{at.surface}" for stage in ("estimate", "spectrum")},
+        compute=lambda data, at, settings: surface_sheet(at.surface, data["estimate"], data["spectrum"]),
+        jobs=lambda plan: [{"surface": name} for name in plan.scanned],
+        targets=("figures", "measured"),
+    ),
+)

@@ -1,0 +1,178 @@
+"""Tables of measured surfaces: their scans, and the uncertainty of the prediction due to finite scans."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from stiction.beam.energy import CRACK_LENGTH_POWER
+from stiction.measured import estimate as stage_estimate
+from stiction.measured import scan as stage_scan
+from stiction.measured import spectrum as stage_spectrum
+from stiction.models import ALTERNATIVES_OF_SCANS
+from stiction.plan.names import by_name
+from stiction.report.format import NM, UM, number, with_error
+from stiction.report.tables import Table, table_stage, with_list
+from stiction.studies.scan_uncertainty import GOAL
+
+#: Parts of an estimate as columns.
+_PARTS = {"rms": "rms", "shape": "skewness and kurtosis", "spectrum": "spectrum", "total": "total"}
+
+
+def scans(
+    estimates: Mapping[str, xr.Dataset],
+    spectra: Mapping[str, xr.Dataset],
+    maps: Mapping[str, Sequence[xr.Dataset]],
+) -> Table:
+    """Scans of the measured surfaces, one row per file.
+
+    Parameters
+    ----------
+    estimates, spectra : dict
+        Surface to its datasets of stages estimate and spectrum.
+    maps : dict
+        Surface to the datasets of stage scan of its files, in the order of the configuration.
+    """
+    limits = {
+        name: [*stage_estimate.flags(estimate), *stage_spectrum.flags(spectra[name])]
+        for name, estimate in estimates.items()
+    }
+    frame = pd.DataFrame(
+        [
+            row | {"flags": "; ".join(limits[name])}
+            for name, estimate in estimates.items()
+            for row in _scans(name, estimate, maps[name])
+        ]
+    )
+    caption = (
+        "Scans of the measured surfaces: moments of the levelled heights of each file, ± standard error of one scan of "
+        "its size. The moments of the surface, without the bias of levelling, are in the title of its sheet."
+    )
+    flags = [f"{name}: {flag}" for name, found in limits.items() for flag in found]
+    return Table(
+        frame,
+        with_list(caption, flags),
+        pd.DataFrame(map(_cells_scan, frame.to_dict("records"))),
+    )
+
+
+def _scans(name, estimate, maps):
+    """Rows of one surface."""
+    errors = np.sqrt(np.diag(estimate.covariance) * len(maps))
+    for dataset, moments in zip(maps, estimate.scan_moments.values, strict=True):
+        scan = stage_scan.scan_of(dataset)
+        rms = np.exp(moments[0]) / NM
+        row = {"surface": name, "file": scan.name, "channel": str(dataset.channel.item())}
+        row |= {f"size_{axis}_um": length / UM for axis, length in zip(("fast", "slow"), scan.size, strict=True)}
+        row |= {f"points_{axis}": n for axis, n in zip(("fast", "slow"), scan.heights.shape, strict=True)}
+        row |= {"undefined_percent": 100 * scan.undefined_share, "rms_nm": rms, "rms_se_nm": rms * errors[0]}
+        row |= {"skewness": moments[1], "skewness_se": errors[1], "kurtosis": moments[2], "kurtosis_se": errors[2]}
+        yield row
+
+
+def _cells_scan(row):
+    """One scan as text."""
+    return {
+        "surface": row["surface"],
+        "file": row["file"],
+        "channel": row["channel"],
+        "size [µm]": f"{row['size_fast_um']:.4g} × {row['size_slow_um']:.4g}",
+        "points": f"{row['points_fast']} × {row['points_slow']}",
+        "rms [nm]": with_error(row["rms_nm"], row["rms_se_nm"]),
+        "skewness": with_error(row["skewness"], row["skewness_se"]),
+        "kurtosis": with_error(row["kurtosis"], row["kurtosis_se"]),
+    }
+
+
+def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
+    """Standard errors due to finite scans: a row per pair, humidity and surface, and one for all surfaces.
+
+    Parameters
+    ----------
+    studies : dict
+        Pair to the dataset of study scan_uncertainty.
+    """
+    rows = [
+        row for pair, study in studies.items() for k in range(study.sizes["humidity"]) for row in _rows(pair, study, k)
+    ]
+    frame = pd.DataFrame(rows)
+    caption = (
+        "Relative standard error of the mean adhesion energy ē due to the finite scans of measured surfaces, by what "
+        "the scans measure (skewness and kurtosis with their correlation), and of the mean crack length l_s; the total "
+        "± its standard error due to sampling. Needed: scans of each surface, the fewest in all, with which the error "
+        f"of ē is below {100 * GOAL:g} %. Last columns: change of ē if the measured surfaces had the other value of "
+        "that key, ± standard error due to sampling and, for heights, to the scans, which measure the shape of the "
+        "height density less precisely than the moments."
+    )
+    return Table(frame, caption, pd.DataFrame([_cells(row) for row in frame.to_dict("records")]))
+
+
+def _rows(pair, study, k):
+    """Rows of one pair at its humidity number ``k``."""
+    case = study.isel(humidity=k)
+    key = {"pair": pair, "relative_humidity": float(case.humidity)}
+    for name in study.surface.values:
+        one = case.sel(surface=name)
+        parts = {f"{part}_percent": 100 * float(one.error.sel(part=part)) for part in _PARTS}
+        parts |= {"total_se_percent": 100 * float(one.error_sampling)}
+        number_of = {"scans": int(one.scans), "scans_needed": int(one.scans_needed)}
+        yield key | {"surface": str(name)} | parts | _crack_length(float(one.error.sel(part="total"))) | number_of
+    changes = {}
+    for choice in study.choice.values:
+        one = case.sel(choice=choice)
+        errors = float(one.change_error), float(one.change_error_scans)
+        changes |= {f"{choice}_percent": 100 * float(one.change), f"{choice}_se_percent": 100 * np.hypot(*errors)}
+    total = float(case.pair_error)
+    parts = {"total_percent": 100 * total, "total_se_percent": 100 * float(case.pair_error_sampling)}
+    number_of = {"scans": int(case.scans.sum()), "scans_needed": int(case.scans_needed.sum())}
+    yield key | {"surface": "all"} | parts | _crack_length(total) | number_of | changes
+
+
+def _crack_length(error):
+    """Relative error of the mean crack length by that of ē."""
+    return {"crack_length_percent": 100 * abs(CRACK_LENGTH_POWER) * error}
+
+
+def _cells(row):
+    """One row as text."""
+    cells = {"pair": row["pair"], "RH": f"{row['relative_humidity']:g}", "surface": row["surface"]}
+    cells |= {f"ē: {title} [%]": number(row[f"{part}_percent"], ".2g") for part, title in _PARTS.items()}
+    cells |= {f"ē: {_PARTS['total']} [%]": with_error(row["total_percent"], row["total_se_percent"])}
+    cells |= {"l_s [%]": number(row["crack_length_percent"], ".2g")}
+    cells |= {title: number(row[name], ".0f") for name, title in (("scans", "scans"), ("scans_needed", "needed"))}
+    choices = [name for name in ALTERNATIVES_OF_SCANS if f"{name}_percent" in row]
+    return cells | {
+        f"other {choice} [%]": with_error(row[f"{choice}_percent"], row[f"{choice}_se_percent"], "+")
+        for choice in choices
+    }
+
+
+STAGES = (
+    table_stage(
+        "table_scans",
+        "scans",
+        "scans of the measured surfaces",
+        inputs=lambda plan, at: {
+            "estimates": by_name("estimate", plan.scanned),
+            "spectra": by_name("spectrum", plan.scanned),
+            "scans": {(name, k): f"scan/{name}_{k}" for name in plan.scanned for k in plan.scan_files(name)},
+        },
+        compute=lambda data, at, settings: scans(
+            data["estimates"],
+            data["spectra"],
+            {name: [scan for key, scan in data["scans"].items() if key[0] == name] for name in data["estimates"]},
+        ),
+        jobs=lambda plan: [{}] if plan.scanned else [],
+        targets=("tables", "measured"),
+    ),
+    table_stage(
+        "table_scan_uncertainty",
+        "scan_uncertainty",
+        "uncertainty due to finite scans",
+        inputs=lambda plan, at: {"studies": by_name("studies/scan_uncertainty", plan.scanned_pairs)},
+        compute=lambda data, at, settings: scan_uncertainty(data["studies"]),
+        jobs=lambda plan: [{}] if plan.scanned_pairs else [],
+        targets=("tables", "measured"),
+    ),
+)

@@ -1,0 +1,104 @@
+"""One job of the workflow: its inputs have the structure of the declaration, and its dataset names them."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from stiction.plan import running
+from stiction.plan.stage import Stage
+from stiction.run import labels
+from stiction.run.atomic import DataError
+from stiction.stages import storage
+
+
+def dataset(value):
+    return xr.Dataset({"x": ("sample", np.full(3, float(value)))})
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Two datasets of stage forces and one of stage heights."""
+    made = {}
+    for name, stage, value in (("a", "forces", 1), ("b", "forces", 2), ("B2", "heights", 3)):
+        made[name] = str(tmp_path / f"{name}.nc")
+        storage.save(dataset(value), made[name], stage, {"value": value})
+    return made
+
+
+def job(stage, inputs, structure, output, **more):
+    """A job as Snakemake describes it to a script."""
+
+    class Named(dict):
+        def __iter__(self):
+            return iter(self.values())
+
+    params = SimpleNamespace(module="declared here", inputs=structure, settings={"factor": 10})
+    return SimpleNamespace(
+        rule=stage.name, input=inputs, output=Named(output), params=params, wildcards=Named(), **more
+    )
+
+
+def run(monkeypatch, stage, *described):
+    monkeypatch.setattr(running, "declared", lambda module: (stage,))
+    running.run(job(stage, *described))
+
+
+def test_inputs_come_by_key_in_an_order_or_alone(files, tmp_path, monkeypatch):
+    def compute(data, _at, settings):
+        seen.update(data)
+        return dataset(settings["factor"] * data["all"]["b", 0.5].x[0])
+
+    seen, stage = {}, Stage.writing("sums", "sums", message="", compute=compute)
+    inputs = {"all": [files["a"], files["b"]], "row": [files["b"], files["a"]], "one": files["B2"], "text": "plain.csv"}
+    structure = {
+        "all": ["forces", [["a", 0.4], ["b", 0.5]]],
+        "row": ["forces", True],
+        "one": ["heights", None],
+        "text": [None, None],
+        "none": [None, []],
+    }
+    run(monkeypatch, stage, inputs, structure, {"dataset": str(tmp_path / "sums.nc")})
+    assert {key: float(one.x[0]) for key, one in seen["all"].items()} == {("a", 0.4): 1, ("b", 0.5): 2}
+    assert [float(one.x[0]) for one in seen["row"]] == [2, 1]
+    assert (float(seen["one"].x[0]), seen["text"], seen["none"]) == (3, "plain.csv", {})
+    assert float(storage.load(tmp_path / "sums.nc", "sums").x[0]) == 20
+
+
+def test_the_label_names_the_settings_of_the_job_and_of_every_dataset_that_it_read(files, tmp_path, monkeypatch):
+    stage = Stage.writing("sums", "sums", message="", compute=lambda data, at, settings: data["one"], label="forces")
+    inputs = {"one": files["B2"], "text": "plain.csv"}
+    structure = {"one": ["heights", None], "text": [None, None]}
+    run(monkeypatch, stage, inputs, structure, {"dataset": str(tmp_path / "sums.nc")})
+    label = labels.read(tmp_path / "sums.nc")
+    assert (label.stage, label.settings) == ("forces", {"factor": 10})
+    assert label.before == {files["B2"]: {"value": 3}}
+
+
+def test_a_dataset_of_another_stage_is_refused(files, tmp_path, monkeypatch):
+    stage = Stage.writing("sums", "sums", message="", compute=lambda data, at, settings: data["one"])
+    with pytest.raises(DataError, match="not spectrum of B2"):
+        run(monkeypatch, stage, {"one": files["B2"]}, {"one": ["spectrum", None]}, {"dataset": str(tmp_path / "s.nc")})
+
+
+def test_a_stage_with_ends_writes_its_datasets_in_their_order(files, tmp_path, monkeypatch):
+    stage = Stage.writing(
+        "two", "two_{each}", message="", each=lambda plan: plan, compute=lambda data, at, s: [dataset(4), dataset(5)]
+    )
+    outputs = {end: str(tmp_path / f"two_{end}.nc") for end in ("less", "more")}
+    run(monkeypatch, stage, {"one": files["B2"]}, {"one": ["heights", None]}, outputs)
+    assert [float(storage.load(path, "two").x[0]) for path in outputs.values()] == [4, 5]
+
+
+def test_what_is_no_dataset_is_written_by_the_stage_itself(files, monkeypatch):
+    written = {}
+    stage = Stage(
+        name="page",
+        files={"text": "page.txt"},
+        message="",
+        compute=lambda data, at, settings: "text",
+        save=lambda result, paths: written.update({paths["text"]: result}),
+    )
+    run(monkeypatch, stage, {"one": files["B2"]}, {"one": ["heights", None]}, {"text": "page.txt"})
+    assert written == {"page.txt": "text"}

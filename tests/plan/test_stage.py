@@ -1,0 +1,80 @@
+"""Declarations: names of files, settings that follow from the fields of a dataclass."""
+
+from dataclasses import dataclass, field
+
+import pytest
+
+from stiction.plan.stage import WILDCARDS, At, Stage, chosen, expression, select
+
+
+@dataclass(frozen=True)
+class Beam:
+    thickness: float
+    samples: int | None = None
+
+
+@dataclass(frozen=True)
+class Settings:
+    seed: int
+    beam: Beam
+    pairs: dict[str, Beam]
+    scatter: float = 0.0
+    other: Beam | None = None
+    more: dict = field(default_factory=dict)
+
+
+CONFIG = {
+    "seed": 1,
+    "beam": {"thickness_um": 2.6, "width_um": 30},
+    "pairs": {"a": {"thickness_um": 1, "gap_um": 20}, "b": {"thickness_um": 2, "samples": 3}},
+    "water": {"temperature_K": 300},
+}
+
+
+def test_settings_are_exactly_the_fields_of_their_class_at_every_level():
+    assert select(Settings, CONFIG) == {
+        "seed": 1,
+        "beam": {"thickness_um": 2.6},
+        "pairs": {"a": {"thickness_um": 1}, "b": {"thickness_um": 2, "samples": 3}},
+    }
+
+
+def test_what_is_given_replaces_the_section_and_may_have_fields_that_it_lacks():
+    settings = select(Settings, CONFIG | {"other": {"thickness_um": 5, "width_um": 1}}, seed=2, scatter=0.1)
+    assert (settings["seed"], settings["scatter"], settings["other"]) == (2, 0.1, {"thickness_um": 5})
+
+
+def test_a_missing_key_is_reported_by_the_field_that_needs_it():
+    with pytest.raises(KeyError, match="Settings.seed"):
+        select(Settings, chosen(CONFIG, ["beam", "pairs"]))
+
+
+def test_settings_are_converted_to_the_class_and_stay_plain_without_one():
+    stage = Stage.writing("one", "one", message="", compute=lambda data, at, settings: settings, kind=Beam)
+    assert stage.converted({"thickness_um": 2}).thickness == pytest.approx(2e-6)
+    plain = Stage.writing("one", "one", message="", compute=lambda data, at, settings: settings)
+    assert plain.converted({"thickness_um": 2}) == {"thickness_um": 2}
+
+
+@pytest.mark.parametrize(
+    ("pattern", "name", "values"),
+    [
+        ("beams/{case}_{model}", "beams/b_rh067_GEO", {"case": "b_rh067", "model": "GEO"}),
+        ("studies/variants/{case}_{variant}", "studies/variants/b_rh067_poisson_ratio_0.28", None),
+        ("beams/{case}_{model}", "beams/b_rh67_GEO", {}),
+        ("scan/{surface}_{number}", "scan/A.B_0", {}),
+    ],
+)
+def test_a_name_matches_its_pattern_alone(pattern, name, values):
+    found = expression(pattern, WILDCARDS).fullmatch(name)
+    assert (found.groupdict() if found else {}) == (values if values is not None else found.groupdict())
+    if found:
+        assert pattern.format(**vars(At(**found.groupdict()))) == name
+
+
+def test_a_stage_with_ends_writes_one_dataset_for_each():
+    stage = Stage.writing(
+        "two", "two/{pair}_{each}", message="", compute=lambda data, at, settings: [], each=lambda plan: plan
+    )
+    assert stage.patterns(["less", "more"]) == {"less": "two/{pair}_less", "more": "two/{pair}_more"}
+    assert stage.log == "two/{pair}"
