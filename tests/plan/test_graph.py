@@ -119,6 +119,13 @@ def test_a_repeated_plan_needs_no_declaration_and_a_change_of_the_configuration_
         other.rules  # noqa: B018
 
 
+def test_what_is_kept_depends_on_declarations_and_plans_although_fingerprints_leave_them_out(planner):
+    reached = {name for code in planner._codes.values() for name in code}
+    assert {
+        f"stiction.{name}" for name in ("plan.stage", "plan.names", "designs.patch_settings", "config.plan")
+    } <= reached
+
+
 def test_a_dataset_of_no_job_has_no_settings(planner):
     assert planner.settings("results/beams/nope_rh067_NG.nc") is None
     assert planner.settings("results/other/file.nc") is None

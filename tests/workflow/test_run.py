@@ -75,6 +75,12 @@ def test_the_next_plan_knows_the_labels_of_all_datasets(smoke):
     assert {"heights", "contact", "beams"} <= stages
 
 
+def test_the_next_plan_knows_the_rules_and_jobs_of_this_one(smoke):
+    kept = json.loads((smoke / ".snakemake" / "jobs.json").read_text())
+    assert {"heights", "figure_15", "verdict"} <= {rule["name"] for rule in kept["rules"]}
+    assert len(kept) > 90
+
+
 def test_log_of_a_long_job_shows_its_progress(smoke):
     log = next((smoke / "results" / "logs" / "contact").glob("b_NG/*.log"))
     assert "surface pairs: 100%" in log.read_text()

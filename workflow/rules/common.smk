@@ -63,7 +63,6 @@ config.update(files.normalised(config))
 planner = Planner(config, preliminary, remember)
 
 if hooks.is_main(workflow):
-    atexit.register(remember.save)
     atexit.register(planner.save)
 
 

@@ -43,7 +43,8 @@ class Planner:
         remember: Callable,
         kept: str | Path = ".snakemake/jobs.json",
     ):
-        self.plan, self._remember, self._file = Plan(config, preliminary), remember, Path(kept)
+        self.plan, self._remember = Plan(config, preliminary), remember
+        self._file = Path(kept).absolute()  # Snakemake leaves its working directory before it ends
         self._codes = {}
         self._kept = self._read()
 
@@ -58,8 +59,8 @@ class Planner:
     @cached_property
     def _determined_by(self):
         """Hash of everything that determines the jobs: code, configuration and files of scans."""
-        modules = [str(path) for folder in FOLDERS for path in sorted((PACKAGE / folder).rglob("*.py"))]
-        code = {name: self._code(name) for name in (*modules, str(PACKAGE / "plan" / "graph.py"))}
+        folders = (*FOLDERS, "plan")  # fingerprints leave out declarations, which decide here
+        code = {str(path): self._code(str(path)) for name in folders for path in sorted((PACKAGE / name).rglob("*.py"))}
         scans = [Path(file) for surface in self.plan.scanned for file in self.plan.scan_files(surface).values()]
         states = [(str(file), file.stat().st_mtime_ns, file.stat().st_size) for file in scans]
         text = json.dumps([code, self.plan.config, states, dict(self.plan.preliminary)], sort_keys=True, default=str)
