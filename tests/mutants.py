@@ -272,15 +272,6 @@ def imported(path):
     return frozenset(found)
 
 
-def users(module):
-    """A module, those that import it, those that import these, and so on."""
-    found, new = set(), {module}
-    while new:
-        found |= new
-        new = {name for name in modules() if imported(path_of(name)) & new} - found
-    return found
-
-
 def rounds(module):
     """Tests of a module and their marks, one after the other: each for the mutants that those before have missed."""
     *folder, name = module.split(".")
@@ -323,11 +314,6 @@ class Copy:
         text, times = path.read_bytes(), path.stat()
         shutil.rmtree(self.cache, ignore_errors=True)
         shutil.copytree(self.warm, self.cache)
-        # Numba compiles a kernel again if its own file changes, but not if that of a kernel that it calls does.
-        changed = {name.rpartition(".")[2] for name in users(mutant.module)}
-        for kernel in self.cache.rglob("*.nb?"):
-            if kernel.name.partition(".")[0] in changed:
-                kernel.unlink()
         try:
             path.write_bytes(mutated(text, mutant))
             return self.failure(mutant.module, self.cache, which, limit)

@@ -11,7 +11,7 @@ from stiction.run.fingerprint import SILENT
 PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 #: Folders and their modules, in the order in which they may import: from modules above or to the left.
 ORDER = """
-constants errors streams estimates numbers models progress
+constants errors streams estimates numbers models progress kernels
 surface: maxent spectrum translation empirical feasible normals field iteration summits identify
 scans: scan levelling holes remainder moments periodogram whittle quantiles model_scans histogram estimate
 contact: meniscus vanderwaals asperity solids estimate pair forcelaw tilted bounds
@@ -45,7 +45,7 @@ MODULES = [
     for folder, _, names in (line.rpartition(":") for line in ORDER.strip().splitlines())
     for name in names.split()
 ]
-PHYSICS = MODULES[: MODULES.index("run.fingerprint")]
+PHYSICS = [name for name in MODULES[: MODULES.index("run.fingerprint")] if name != "kernels"]
 #: Libraries for files, labelled data, workflows and figures.
 BORDER = {"xarray", "netCDF4", "snakemake", "yaml", "jsonschema", "matplotlib", "json", "csv", "pathlib", "os"}
 BORDER |= {MICROSCOPES := "SurfaceTopography"}
@@ -204,7 +204,7 @@ def public_functions(path):
         for function in inside:
             if isinstance(function, ast.FunctionDef) and not function.name.startswith("_"):
                 decorators = " ".join(map(ast.unparse, function.decorator_list))
-                if "njit" not in decorators and "relation(" not in decorators:
+                if "kernel" not in decorators and "relation(" not in decorators:
                     yield function
 
 

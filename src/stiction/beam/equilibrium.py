@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.tension import SLACK, add_open_part_in_tension, add_tension, fill_open_part_in_tension
 from stiction.errors import NotConverged
+from stiction.kernels import kernel
 
 #: Largest unbalanced force of an equilibrium, in units of a point's mean pull-off force f_max w l_quad (about 1e-4 N).
 TOLERANCE = 1e-6
@@ -69,7 +69,7 @@ def hermite(s: float | np.ndarray) -> np.ndarray:
     return np.stack([1 - 3 * s**2 + 2 * s**3, s - 2 * s**2 + s**3, 3 * s**2 - 2 * s**3, s**3 - s**2], -1)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def add_element(u, system, mesh, element):
     """Add bending force, stiffness and load of one element."""
     i, k, load = 2 * element, mesh.stiffness, mesh.load
@@ -92,7 +92,7 @@ def add_element(u, system, mesh, element):
     force[i + 3] -= load / 12 + rise + k * (2 * u[i + 1] + 4 * u[i + 3])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _add_open_part(u, system, mesh, first):
     """Add the beam from the clamp to node ``first``: without contact, a single long element is exact."""
     i, k, load = 2 * first, mesh.stiffness, mesh.load
@@ -103,7 +103,7 @@ def _add_open_part(u, system, mesh, first):
     system.force[i + 1] += -load * first**2 / 12 + 6 * k / first**2 * u[i] - 4 * k / first * u[i + 1]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _hold(system, node):
     """Fix a node in the assembled system, before its solution."""
     for i in range(2 * node, 2 * node + 2):
@@ -115,7 +115,7 @@ def _hold(system, node):
         system.force[i] = 0.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def add_points(u, laws, system, mesh, element, viscosity):
     """Add force and tangent of the contact points of one element, Eq. (12), with a dashpot at each within reach."""
     i, points = 2 * element, mesh.points_per_element
@@ -136,7 +136,7 @@ def add_points(u, laws, system, mesh, element, viscosity):
                     system.band[i + row, column - row] += k * n[row] * n[column]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _assemble(u, laws, system, mesh, window, viscosity):
     """Assemble the elements ``window`` = (first, last); returns the largest unbalanced force [N]."""
     first, last = window
@@ -163,7 +163,7 @@ def _assemble(u, laws, system, mesh, window, viscosity):
     return np.abs(system.force[rows]).max()
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def solve(band, x, start, stop):
     """Solve rows [start, stop) of a symmetric system by LDLᵀ, in place; returns False if it is not positive definite.
 
@@ -183,7 +183,7 @@ def solve(band, x, start, stop):
     return True
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def largest_move(laws, system, mesh, window):
     """Largest change of distance in the solved step, relative to the allowed change [-]."""
     points, step, move = mesh.points_per_element, system.force, 0.0
@@ -200,7 +200,7 @@ def largest_move(laws, system, mesh, window):
     return move / STEP
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def newton_step(u, laws, system, mesh, window):
     """Solve and take the step unless it is too long; returns its relative length (`largest_move`) [-], or infinity."""
     rows = slice(2 * window[0], 2 * window[1] + 2)
@@ -212,7 +212,7 @@ def newton_step(u, laws, system, mesh, window):
     return move
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _open(u, laws, mesh, first):
     """First element, from ``first`` on, with a point within reach of its law."""
     points, elements = mesh.points_per_element, u.size // 2 - 1
@@ -225,7 +225,7 @@ def _open(u, laws, mesh, first):
     return first
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _front(stretch, points, element, elements):
     """First element, from ``element`` on, with a point closer than d_max."""
     while element < elements:
@@ -236,7 +236,7 @@ def _front(stretch, points, element, elements):
     return element
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _fill_open_part(u, mesh, first):
     """Deflect the nodes between the clamp and ``first``: the cubic to that node and the deflection by the load."""
     if first * mesh.decay > SLACK:
@@ -251,7 +251,7 @@ def _fill_open_part(u, mesh, first):
         u[2 * node + 1] = rate / first
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _relax(u, laws, mesh, tolerance, max_iterations):
     """Relax the beam to its next equilibrium, in place; returns the largest unbalanced force [N] and the Newton steps.
 

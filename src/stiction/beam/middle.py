@@ -6,7 +6,6 @@ stiffness under tension. From a bridge that is held, the arms are shortened unti
 """
 
 import numpy as np
-from numba import njit
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.equilibrium import (
@@ -20,6 +19,7 @@ from stiction.beam.equilibrium import (
 )
 from stiction.beam.tension import add_tension, end_stiffness
 from stiction.errors import NotConverged
+from stiction.kernels import kernel
 
 #: First step by which a bridge is shortened, and the step at which the search ends, as shares of its length.
 FIRST, LAST = 0.1, 0.001
@@ -40,7 +40,7 @@ def outwards(number: int) -> np.ndarray:
     return np.concatenate([np.arange(number - 1, 0, -2), np.arange(0, number, 2)])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _add_arms(u, system, mesh, arm):
     """Add both open arms, each from its clamp to the next end of the zone, as exact elements; ``arm`` in elements."""
     band, force, k, i = system.band, system.force, mesh.stiffness, u.size - 2
@@ -58,7 +58,7 @@ def _add_arms(u, system, mesh, arm):
     force[i + 1] -= c * u[i] + m * u[i + 1]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _assemble(u, laws, system, mesh, arm, viscosity):
     """Assemble zone and arms; returns the largest unbalanced force [N]."""
     system.band[:] = 0.0
@@ -73,7 +73,7 @@ def _assemble(u, laws, system, mesh, arm, viscosity):
     return np.abs(system.force).max()
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _relax(u, laws, mesh, arm, tolerance, system):
     """Relax a bridge in place: creep downhill, as `stiction.beam.equilibrium.equilibrate`; returns how it ends.
 
@@ -92,7 +92,7 @@ def _relax(u, laws, mesh, arm, tolerance, system):
     return _OPEN
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _shorten(u, laws, mesh, arm, tolerance):
     """Shorten a bridge until it comes free; returns the last arm that is held [elements] and how the search ends."""
     system = System(np.zeros((u.size + 3, 4)), np.zeros(u.size + 3), np.zeros(laws.shape[0]))

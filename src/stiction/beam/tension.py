@@ -11,9 +11,9 @@ node.
 """
 
 import numpy as np
-from numba import njit
 
 from stiction.beam.cantilever import Beam
+from stiction.kernels import kernel
 
 #: Below this kL, differences of hyperbolic functions lose digits to rounding. The forces then use their series, and the
 #: deflection of the open part, to 1e-5 of the gap, that without tension.
@@ -22,7 +22,7 @@ SLACK = 0.03
 _HALVINGS = 60
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def end_stiffness(kl: float) -> tuple[float, float, float, float]:
     """Stiffness of a beam of length L at its end: force by u, by u', moment by u', and moment at the other end by u'.
 
@@ -39,7 +39,7 @@ def end_stiffness(kl: float) -> tuple[float, float, float, float]:
     return force, coupling, coupling / 2 + 1 / mean, coupling / 2 - 1 / mean
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def add_tension(u: np.ndarray, band: np.ndarray, force: np.ndarray, pull: float, i: int) -> None:
     """Add tension to force and stiffness of the element whose unknowns start at row ``i``; ``pull`` is N/l_e [N/m]."""
     n = pull / 30
@@ -61,7 +61,7 @@ def add_tension(u: np.ndarray, band: np.ndarray, force: np.ndarray, pull: float,
     force[i + 3] -= n * (3 * fall - u[i + 1] + 4 * u[i + 3])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def add_open_part_in_tension(
     u: np.ndarray, band: np.ndarray, force: np.ndarray, first: int, kl: float, stiffness: float, load: float
 ) -> None:
@@ -80,7 +80,7 @@ def add_open_part_in_tension(
     force[i + 1] += -clamping + c * u[i] - m * u[i + 1]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def fill_open_part_in_tension(u: np.ndarray, first: int, kl: float, stiffness: float, load: float) -> None:
     """Deflect the nodes between the clamp and node ``first``; parameters as in `add_open_part_in_tension`, kL >= 0.03.
 

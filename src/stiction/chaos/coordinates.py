@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
+
+from stiction.kernels import kernel
 
 
 def unconstrained(vectors: np.ndarray) -> np.ndarray:
@@ -23,7 +24,7 @@ def dimension_error(variances: np.ndarray) -> np.ndarray:
     return np.append(np.cumsum(variances[:0:-1])[::-1], 0.0) / np.sum(variances)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _shift_and_scale(eta, steps, mean, scale, free):
     """Write (mean + Σ steps · η) · scale, (4, m), from coordinates (N_g, m)."""
     # A sum over coordinates: the rounding of a matrix product would depend on the number of vectors.

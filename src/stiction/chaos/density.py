@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from scipy.special import ndtr
+
+from stiction.kernels import kernel
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ def kernel_density(eta: np.ndarray) -> KernelDensity:
     return KernelDensity(np.ascontiguousarray(eta.T * shrink), float(bandwidth * shrink))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _add_squares(value, centres, bandwidth, before, squares):
     """Squared distances (m,) of the kernels in the coordinates ``before``, plus those in one more, in bandwidths."""
     for i in range(centres.size):
@@ -50,7 +51,7 @@ def _add_squares(value, centres, bandwidth, before, squares):
         squares[i] = before[i] + distance * distance
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _kernel_weights(squares, weights):
     """Weight of each kernel (m,) at these squared distances from the preceding coordinates."""
     nearest = squares.min()
@@ -58,7 +59,7 @@ def _kernel_weights(squares, weights):
         weights[i] = np.exp(0.5 * (nearest - squares[i]))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _locate(points, start, step, cells, parts):
     """Cells of points (m,) on a grid, and their positions within the cells."""
     for i in range(points.size):
@@ -67,7 +68,7 @@ def _locate(points, start, step, cells, parts):
         parts[i] = position - cells[i]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _bin_linearly(cells, parts, weights, bins):
     """Split each weight between the two nearest nodes of a grid."""
     bins.fill(0.0)
@@ -77,7 +78,7 @@ def _bin_linearly(cells, parts, weights, bins):
         bins[cells[i] + 1] += upper
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _smooth(bins, taps, masses):
     """Probability of each cell (n + taps - 1,): convolution of ``bins`` (n,) with the taps."""
     masses.fill(0.0)
@@ -89,7 +90,7 @@ def _smooth(bins, taps, masses):
         masses[i] /= total
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _invert(masses, start, step, probabilities, quantiles):
     """Quantiles at increasing probabilities of a density that is linear within each cell, sloped as its neighbours."""
     cell, below = 1, masses[0]
@@ -106,7 +107,7 @@ def _invert(masses, start, step, probabilities, quantiles):
         quantiles[i] = start + (cell + part) * step
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _quantile_rows(given, centres, bandwidth, grid, taps, probabilities, rows):
     """Fill ``rows`` (r, n) of `conditional_quantiles`; ``grid`` is (first node, step, number of nodes)."""
     start, step, count = grid

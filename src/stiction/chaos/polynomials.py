@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
-from numba import njit
+
+from stiction.kernels import kernel
 
 #: Points per dimension of the quadrature that projects the conditional quantiles: polynomials up to MAX_ORDER are
 #: orthonormal on them to 1e-12, and the coefficients of a normal quantile are accurate to 1e-5.
@@ -31,7 +32,7 @@ def multi_indices(order: int, dimension: int) -> np.ndarray:
     return np.array([alpha for alpha in product(range(order + 1), repeat=dimension) if sum(alpha) <= order])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def legendre(points: np.ndarray, values: np.ndarray) -> None:
     """Write the orthonormal Legendre polynomials on [0, 1] at ``points`` (n,) to ``values`` (order + 1, n)."""
     for i in range(points.size):
@@ -104,14 +105,14 @@ def expand(xi: np.ndarray, indices: np.ndarray, coefficients: np.ndarray) -> np.
 # Inlined: passing an array to a compiled function counts its references, which takes longer than these loops.
 
 
-@njit(inline="always")
+@kernel(inline="always")
 def _multiply(left, values, a, out):
     """Write left · values[a]."""
     for i in range(_BLOCK):
         out[i] = left[i] * values[a, i]
 
 
-@njit(inline="always")
+@kernel(inline="always")
 def _add_products(factors, left, values, out):
     """Add Σ factors[a] · left · values[a], in the order of a."""
     # Two terms in one loop: half as many loads and stores of the sum.
@@ -124,7 +125,7 @@ def _add_products(factors, left, values, out):
             out[i] += factors[a] * (left[i] * values[a, i])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _expand_block(xi, indices, coefficients, values, partial, eta):
     """Sum Eq. (19) over a block; ``xi`` and ``eta`` are (N_g, _BLOCK), ``values`` and ``partial`` workspace.
 
@@ -153,7 +154,7 @@ def _expand_block(xi, indices, coefficients, values, partial, eta):
         run = end
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _expand(xi, indices, coefficients, order, eta):
     """Sum Eq. (19) at points (N_g, n), block by block; the last block is filled up with points that are not used."""
     dimension, n = xi.shape

@@ -14,8 +14,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
-import numba
 import numpy as np
+
+from stiction.kernels import kernel
 
 
 class Attraction(Protocol):
@@ -114,7 +115,7 @@ def maugis_branch(transition: float, points: int = 6000) -> tuple[np.ndarray, np
     return load[fold::-1], interference[fold::-1]
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def deep_load(interference: float, transition: float) -> float:
     r"""Load P̄ of a sphere in deep contact, at an interference δ̄ and a λ [-]: the limit m → 1 of Maugis' theory.
 
@@ -140,7 +141,7 @@ def deep_load(interference: float, transition: float) -> float:
     return a * (a**2 - 2 * transition * width)
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def weak_load(interference: float, transition: float) -> float:
     r"""Load P̄ of a sphere at an interference δ̄ and a small λ [-]: the limit λ → 0 of Maugis' theory, DMT.
 
@@ -275,7 +276,7 @@ def asperity(modulus: float, attraction: Attraction | None) -> Asperity:
     return HertzAsperity(modulus) if attraction is None else MaugisTable(modulus, attraction)
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _add_hertz(tops, curvatures, step, modulus, force):
     """Add the Hertz force of every summit at the distances ``step * arange(n)`` [N]."""
     for n in range(tops.size):
@@ -286,7 +287,7 @@ def _add_hertz(tops, curvatures, step, modulus, force):
                 force[k] += factor * overlap * np.sqrt(overlap)
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _add_maugis(tops, curvatures, step, scales, snap_off, load, force):
     """Add the Maugis force of every summit, by interpolation in the table."""
     roots = np.empty(force.size)
@@ -295,7 +296,7 @@ def _add_maugis(tops, curvatures, step, scales, snap_off, load, force):
             _add_sphere((tops[n], 1 / curvatures[n]), step, scales, snap_off, load, roots, force)
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _add_sphere(sphere, step, scales, snap_off, load, roots, force):
     """Add the force of one sphere (top, radius). ``roots``: workspace."""
     top, radius = sphere
@@ -326,7 +327,7 @@ def _add_sphere(sphere, step, scales, snap_off, load, roots, force):
 # Two loops, because only one without a look-up computes several distances at a time.
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _roots(top, step, inverse, deepest, root_step, roots):
     """Places √(δ̄ - δ̄_min) of a sphere in the table at the distances ``step * arange(n)``, in steps of the table."""
     for k in range(roots.size):
@@ -334,7 +335,7 @@ def _roots(top, step, inverse, deepest, root_step, roots):
         roots[k] = np.sqrt(max(beyond, 0.0)) / root_step
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _add_loads(roots, low, high, share, weight, force):
     """Add ``weight`` times the load between two rows of the table, at these places of their columns."""
     for k in range(roots.size):

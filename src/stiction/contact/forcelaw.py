@@ -12,7 +12,8 @@ The threshold ``f_limit`` that defines ``d_limit`` is one number for all samples
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numba import njit
+
+from stiction.kernels import kernel
 
 #: A curve has decayed where it is below this share of its depth; the energy neglected beyond is a similar share of e.
 DECAYED = 1e-4
@@ -21,7 +22,7 @@ DECAYED = 1e-4
 # Sec. III-A: the curve of one sample
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _node(values, index, left):
     """Value at a node of a uniform grid: ``left`` before its first node, 0 beyond its last."""
     if index < 0:
@@ -29,7 +30,7 @@ def _node(values, index, left):
     return values[index] if index < values.size else 0.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _add_interpolated(values, offset, left, factor, out):
     """Add ``factor`` times a curve, linear between nodes, to ``out``, which starts ``offset`` steps into the curve."""
     first = int(np.floor(offset))
@@ -39,7 +40,7 @@ def _add_interpolated(values, offset, left, factor, out):
         out[i] += factor * ((1 - weight) * here + weight * ahead)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def apparent_force(
     solid: np.ndarray,
     bearing: np.ndarray,
@@ -120,14 +121,14 @@ def humid_curves(
 # Sec. III-B1: parameters of a curve
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _crossing(distance, force, index, level):
     """Distance at which the line between nodes ``index`` and ``index + 1`` takes the value ``level`` [m]."""
     part = (level - force[index]) / (force[index + 1] - force[index])
     return distance[index] + part * (distance[index + 1] - distance[index])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _reach(force, start, level):
     """Last node before ``start`` where the force is at least ``level``."""
     for i in range(start - 1, -1, -1):
@@ -140,7 +141,7 @@ def _reach(force, start, level):
     )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def extremum(distance: np.ndarray, force: np.ndarray) -> tuple[float, float]:
     """Distance d_max [m] and size f_max [Pa] of the largest attraction, by a parabola through the lowest three nodes.
 
@@ -165,7 +166,7 @@ def extremum(distance: np.ndarray, force: np.ndarray) -> tuple[float, float]:
     return distance[i] + offset * (distance[i + 1] - distance[i]), -(force[i] + 0.5 * slope * offset)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _mean_attraction(left, right):
     """Mean of max(-f, 0) over a step in which f is linear [Pa]."""
     if left * right < 0:
@@ -173,7 +174,7 @@ def _mean_attraction(left, right):
     return max(-0.5 * (left + right), 0.0)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def adhesion_energy(distance: np.ndarray, force: np.ndarray) -> float:
     """Adhesion energy e (work of separation): integral of the attraction beyond the zero crossing [J m⁻²].
 
@@ -196,7 +197,7 @@ def adhesion_energy(distance: np.ndarray, force: np.ndarray) -> float:
     return energy
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def limit_distance(distance: np.ndarray, force: np.ndarray, limit: float) -> float:
     """Distance d_limit left of the minimum at which the force first reaches ``limit`` [m]; parameters as in `extremum`.
 

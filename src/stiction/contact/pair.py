@@ -13,10 +13,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from stiction.contact.asperity import Asperity
+from stiction.kernels import kernel
 from stiction.surface.field import RoughSurface
 from stiction.surface.summits import find_summits
 
@@ -131,7 +131,7 @@ def solid_pressure(asperity: Asperity, summits: Summits, distances: DistanceGrid
     return force / summits.area
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def bearing_area(heights: np.ndarray, step: float, below: int, above: int) -> np.ndarray:
     """Share of the points that are higher than each distance, ``step * arange(-below, above)`` [-]."""
     cells = np.empty(heights.shape[1], np.int32)
@@ -148,7 +148,7 @@ def bearing_area(heights: np.ndarray, step: float, below: int, above: int) -> np
     return area
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _cells_below(heights, step, below, above, cells):
     """Number of distances ``step * arange(-below, above)`` that are not above each point of a row."""
     inverse = np.float32(1 / step)

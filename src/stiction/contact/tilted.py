@@ -12,11 +12,11 @@ are the maxima of the tilted surface, and those on its edge are spheres of the c
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-import numba
 import numpy as np
 
 from stiction.contact.forcelaw import apparent_force
 from stiction.contact.pair import DistanceGrid, Summits, SurfacePair, solid_pressure
+from stiction.kernels import kernel
 from stiction.surface.summits import mark_summits, mean_curvature
 
 #: Largest radius of a maximum of a square edge [m]. ASSUME: flatter ones, whose curvature the grid does not resolve,
@@ -110,7 +110,7 @@ def first_weight(edge: Edge) -> float:
     return 0.5 if edge == Edge.SQUARE else 0.0
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _lowered(heights, i, rise, out):
     """Write rows i - 1, i and i + 1 of a strip that falls by ``rise`` per row, seen from row i, to ``out`` (3, n2)."""
     for k in range(3):
@@ -118,7 +118,7 @@ def _lowered(heights, i, rise, out):
             out[k, j] = heights[i + k - 1, j] - (k - 1) * rise
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _collect(heights, spacing, rise, rows, tops, curvatures):
     count, marks, near = 0, np.empty(heights.shape[1], np.bool_), np.empty((3, heights.shape[1]))
     for i in range(1, heights.shape[0] - 1):
@@ -157,7 +157,7 @@ def edge_maxima(heights: np.ndarray, spacing: float, rise: float) -> tuple[np.nd
     return middle[maxima], np.maximum(curvatures[maxima], 1 / LARGEST_RADIUS)
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def tilted_bearing_area(
     heights: np.ndarray, level: tuple[float, float], first: float, step: float, numbers: tuple[int, int]
 ) -> np.ndarray:
@@ -183,7 +183,7 @@ def tilted_bearing_area(
     return area
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def largest_attractions(
     solid: np.ndarray, bearing: np.ndarray, starts: tuple[float, float], step: float, film: tuple[float, float]
 ) -> np.ndarray:
@@ -212,7 +212,7 @@ def largest_attractions(
     return found
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _largest(force):
     """Largest attraction of a curve, by a parabola through its lowest three nodes; that of a node at its ends."""
     i = np.argmin(force)

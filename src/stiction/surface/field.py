@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from functools import cached_property
 
-import numba
 import numpy as np
 from scipy import fft
 
+from stiction.kernels import kernel
 from stiction.surface.normals import standard_normal
 from stiction.surface.spectrum import Spectrum, radial_spectrum
 from stiction.surface.translation import LARGEST_SCORE, TranslationMap
@@ -126,7 +126,7 @@ class RoughSurface:
         return across
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _place(normals, amplitude, position, parts):
     """Write the waves to their places: real and imaginary parts (2 n,), from normal numbers (2 n,) and amplitudes."""
     for k in range(position.size):
@@ -135,7 +135,7 @@ def _place(normals, amplitude, position, parts):
         parts[real + np.uint64(1)] = normals[2 * k + 1] * amplitude[k]
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def add_heights(scores: np.ndarray, table: np.ndarray, heights: np.ndarray) -> None:
     """Add the heights of normal scores, by interpolation in a table over ±``LARGEST_SCORE``.
 
@@ -150,7 +150,7 @@ def add_heights(scores: np.ndarray, table: np.ndarray, heights: np.ndarray) -> N
 # Two loops, because only one without a look-up computes several points at a time.
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _locate(scores, points, cells, fractions):
     """Cells of normal scores in a table of this number of points, and their positions within the cells."""
     scale, offset = np.float32((points - 1) / (2 * LARGEST_SCORE)), np.float32((points - 1) / 2)
@@ -161,7 +161,7 @@ def _locate(scores, points, cells, fractions):
         fractions[j] = place - np.float32(cells[j])
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _add_row(cells, fractions, table, heights):
     """Add the heights at these places of a table."""
     for j in range(heights.size):

@@ -8,7 +8,9 @@ generator SFC64 (C. Doty-Humphrey, PractRand) that `stiction.streams` uses.
 from math import erfc
 
 import numpy as np
-from numba import float32, njit, uint32, uint64
+from numba import float32, uint32, uint64
+
+from stiction.kernels import kernel
 
 #: Start of the tail of the normal density that lies in the lowest layer [-].
 _TAIL = 3.6541528853610088
@@ -51,7 +53,7 @@ def standard_normal(rng: np.random.Generator, n: int) -> np.ndarray:
 # number is still to be used. As a tuple it stays in registers.
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _bits(source):
     """Next 32 random bits, and the source after them: lower half of a number of SFC64, then its upper half."""
     a, b, c, counter, held, half = source
@@ -62,14 +64,14 @@ def _bits(source):
     return uint32(number & uint64(0xFFFFFFFF)), (a, b, c, counter + uint64(1), True, number >> uint64(32))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _uniform(source):
     """Uniform number in [0, 1) of 24 bits, and the source after it."""
     bits, source = _bits(source)
     return float32(bits >> uint32(8)) * float32(2**-24), source
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _beyond(source):
     """Magnitude of a normal number in the tail, and the source after it."""
     while True:
@@ -80,7 +82,7 @@ def _beyond(source):
             return float32(_TAIL) + excess, source
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _at_the_edge(source, layer, steps, x):
     """Whether a number in the part of a layer that the density crosses is accepted, the number, and the source."""
     if layer == 0:
@@ -91,7 +93,7 @@ def _at_the_edge(source, layer, steps, x):
     return height < np.exp(-0.5 * np.float64(x) * np.float64(x)), x, source
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _fill(numbers, held, half, normals):
     """Fill ``normals`` (n,); advances ``numbers`` (4,), the state of SFC64, and returns the rest of the source."""
     source = (numbers[0], numbers[1], numbers[2], numbers[3], held, uint64(half))

@@ -1,10 +1,11 @@
 """Summits of a sampled surface: the asperities in contact and the statistics of Table I."""
 
-import numba
 import numpy as np
 
+from stiction.kernels import kernel
 
-@numba.njit(cache=True, nogil=True)
+
+@kernel
 def mark_summits(z: np.ndarray, i: int, marks: np.ndarray) -> None:
     """Mark in ``marks`` (n2,) the points of the inner row i of z (n1, n2) that are higher than their eight neighbours.
 
@@ -19,14 +20,14 @@ def mark_summits(z: np.ndarray, i: int, marks: np.ndarray) -> None:
         marks[j] = sides & corners
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def mean_curvature(z: np.ndarray, i: int, j: int, spacing: float) -> float:
     """Mean of the two three-point second differences, positive on a summit [m⁻¹]."""
     h = np.float64(z[i, j])
     return (4 * h - z[i, j - 1] - z[i, j + 1] - z[i - 1, j] - z[i + 1, j]) / (2 * spacing * spacing)
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _collect(z, spacing, height, curvature):
     count, summits = 0, np.empty(z.shape[1], np.bool_)
     for i in range(1, z.shape[0] - 1):

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
-import numba
 import numpy as np
 from scipy import fft
 
 from stiction.errors import NotConverged
+from stiction.kernels import kernel
 from stiction.surface.spectrum import Spectrum, TabulatedSpectrum, ring_means
 
 #: Largest normal score considered; the probability of a larger one is 1e-15.
@@ -110,7 +110,7 @@ def _polynomial(x, coefficients):
     return _horner(np.ravel(np.asarray(x, float)), coefficients).reshape(np.shape(x))[()]
 
 
-@numba.njit(cache=True, nogil=True)
+@kernel
 def _horner(x, coefficients):
     """Horner's rule for many x, (n,), in parts that remain in the cache of the processor."""
     result = np.full(len(x), coefficients[-1])

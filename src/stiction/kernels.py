@@ -1,0 +1,81 @@
+"""Decorator of compiled functions, which keeps their machine code on disk as long as it belongs to the sources.
+
+Machine code contains the kernels that a kernel calls and the constants that it uses. Numba compiles a kernel again if
+its own file has changed, but not if one of these has changed in another file. Here the names of its files have a digest
+of all sources on which it depends, so that no process can load obsolete code, whatever folder Numba uses and however
+many processes start at once. A stamp inside the files, such as Numba's, would not be enough: they cannot be read if
+they name a type that the sources no longer define.
+"""
+
+import re
+from collections.abc import Callable
+from functools import cache, partial
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from numba import njit
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
+
+_PACKAGE = Path(__file__).parent
+#: Module, and names in it. A syntax tree takes 30 times as long, at every start.
+_IMPORT = re.compile(r"^\s*(?:from|import)\s+stiction\.?([\w.]*)(?:\s+import\s+(\([^)]*\)|.*))?", re.MULTILINE)
+
+
+def kernel(function: Callable | None = None, **options: Any) -> Callable:
+    """Compile a function of this package with Numba, without the lock of the interpreter; keep the result on disk.
+
+    Parameters
+    ----------
+    function : callable
+    **options
+        Further options of ``numba.njit``, as in ``@kernel(inline="always")``.
+    """
+    if function is None:
+        return partial(kernel, **options)
+    compiled = njit(nogil=True, **options)(function)
+    compiled._cache = _Cache(function)  # as with njit(cache=True), which has no choice of the class
+    return compiled
+
+
+class _Names(CompileResultCacheImpl):
+    """Names of the files of a kernel, with the digest of its sources."""
+
+    def __init__(self, function):
+        super().__init__(function)
+        self._filename_base += f".{_digest(Path(function.__code__.co_filename))}"
+
+
+class _Cache(FunctionCache):
+    """Files of a kernel; those of other sources are removed when it is saved."""
+
+    _impl_class = _Names
+
+    def save_overload(self, sig, data):
+        super().save_overload(sig, data)
+        current = self._impl.filename_base  # module.function-line.py311.digest
+        function, python = re.fullmatch(r"(.*)-\d+(\.py\w+)\.\w+", current).groups()
+        for path in Path(self.cache_path).glob(f"{function}-*{python}.*nb[ic]"):
+            if not path.name.startswith(f"{current}."):
+                path.unlink(missing_ok=True)
+
+
+def _digest(path):
+    """Digest of a source file and of all files of the package that it imports, directly or through others."""
+    reached, unread = {}, {path}
+    while unread:
+        reached |= {path: _read(path) for path in unread}
+        unread = {other for path in unread for other in reached[path][1]} - reached.keys()
+    return sha256("".join(sorted(digest for digest, _ in reached.values())).encode()).hexdigest()[:16]
+
+
+@cache  # a file that changes later does not change the code that this process has imported
+def _read(path):
+    """Digest of the name and the text of a source file, and the files of the package that it imports."""
+    text = path.read_text(encoding="utf-8")
+    digest = sha256(f"{path.relative_to(_PACKAGE)}\n{text}".encode()).hexdigest()
+    places = [
+        f"{module}.{name}" for module, names in _IMPORT.findall(text) for name in ["", *re.findall(r"\w+", names)]
+    ]
+    files = {_PACKAGE.joinpath(*place.strip(".").split(".")).with_suffix(".py") for place in places}
+    return digest, {file for file in files if file.is_file()}

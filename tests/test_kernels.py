@@ -1,0 +1,162 @@
+"""Machine code on disk belongs to the sources: a toy package with a kernel that calls the kernel of another module."""
+
+import ast
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from stiction import kernels
+from stiction.run import fingerprint
+
+PACKAGE = Path(kernels.__file__).parent
+SOURCES = {
+    "__init__": "",
+    "constants": "FACTOR = 2.0\n",
+    "other": "TERM = 1.0\n",
+    "called": """
+from typing import NamedTuple
+from stiction.constants import FACTOR
+from stiction.kernels import kernel
+
+class _Mesh(NamedTuple):
+    x: float
+
+@kernel
+def mesh(x):
+    return _Mesh(FACTOR * x)
+""",
+    "calling": """
+from stiction.called import (
+    mesh,
+)
+from stiction.kernels import kernel
+
+@kernel
+def position(found):
+    return found.x + 1.0
+
+@kernel
+def place(x):
+    return position(mesh(x))
+""",
+}
+#: Prints a value by the kernels and how many passes of the compiler ran.
+PROGRAM = """
+from numba.core.event import RecordingListener, install_listener
+import stiction.other
+from stiction.calling import place, position
+from stiction.called import mesh
+passes = RecordingListener()
+with install_listener("numba:run_pass", passes):
+    print(position(mesh(10.0)), place(10.0), len(passes.buffer) > 0)
+"""
+NUMBA = "import numba\nkernel = numba.njit(cache=True, nogil=True)\n"
+
+
+@pytest.fixture
+def toy(tmp_path):
+    """Folder of a toy package called stiction, without machine code."""
+    folder = tmp_path / "stiction"
+    folder.mkdir()
+    for name, text in SOURCES.items():
+        (folder / f"{name}.py").write_text(text)
+    shutil.copy(kernels.__file__, folder)
+    return folder
+
+
+def start(toy, **variables):
+    """New process that calls the kernels; its bytecode is not kept, which Python compares by whole seconds."""
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA")}
+    environment |= {"PYTHONPATH": str(toy.parent), "XDG_CACHE_HOME": str(toy.parent / "home"), **variables}
+    command = [sys.executable, "-B", "-c", PROGRAM]
+    return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def called(toy, **variables):
+    """What a new process prints: the two values, which must be equal, and whether anything was compiled."""
+    output, errors = start(toy, **variables).communicate()
+    assert output, errors
+    value, same, compiled = output.split()
+    assert value == same
+    return float(value), compiled == "True"
+
+
+def edit(toy, module, old, new):
+    """Replace a text in a module; the time of the file remains, as its size does if the texts are equally long."""
+    path = toy / f"{module}.py"
+    times, text = path.stat(), path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+    os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+
+
+def stored(folder):
+    """Names and times of the files with machine code."""
+    return {path.name: path.stat().st_mtime_ns for path in folder.rglob("*.nb[ic]")}
+
+
+@pytest.mark.parametrize("place", ["next to the sources", "folder of the user", "chosen folder"])
+def test_a_change_of_a_called_kernel_changes_the_results_of_the_next_process(toy, place):
+    chosen = {"NUMBA_CACHE_DIR": str(toy.parent / "chosen")} if place == "chosen folder" else {}
+    if place == "folder of the user":
+        (toy / "__pycache__").touch()  # no folder, so that nothing can be written there, not even by root
+    folder = {"next to the sources": toy, "chosen folder": toy.parent / "chosen"}.get(place, toy.parent / "home")
+    assert called(toy, **chosen) == (21, True)
+    before = stored(folder)
+    assert len(before) == 6
+    assert called(toy, **chosen) == (21, False)
+    edit(toy, "called", "FACTOR * x", "FACTOR + x")
+    assert called(toy, **chosen) == (13, True)
+    after = stored(folder)
+    assert len(after) == 6, "obsolete files remain"
+    assert not after.keys() & before.keys()
+
+
+def test_numba_alone_returns_old_results_after_such_a_change(toy):
+    (toy / "kernels.py").write_text(NUMBA)
+    assert called(toy) == (21, True)
+    edit(toy, "called", "FACTOR * x", "FACTOR + x")
+    process = start(toy)
+    assert process.communicate()[0].split()[1] == "21.0"
+
+
+def test_a_change_of_a_constant_and_of_the_name_of_a_type_compile_again(toy):
+    assert called(toy) == (21, True)
+    edit(toy, "constants", "2.0", "3.0")
+    assert called(toy) == (31, True)
+    edit(toy, "called", "_Mesh", "_Grid")
+    assert called(toy) == (31, True)
+
+
+def test_a_module_that_a_kernel_does_not_import_compiles_nothing(toy):
+    called(toy)
+    before = stored(toy)
+    edit(toy, "other", "1.0", "7.0")
+    assert called(toy) == (21, False)
+    assert stored(toy) == before
+
+
+def test_processes_that_start_at_once_after_a_change_have_the_new_results(toy):
+    called(toy)
+    edit(toy, "constants", "2.0", "3.0")
+    processes = [start(toy) for _ in range(3)]
+    assert [process.communicate()[0].split()[:2] for process in processes] == [["31.0", "31.0"]] * 3
+    assert called(toy) == (31, False)
+
+
+def test_sources_of_a_kernel_are_the_imports_in_its_syntax_tree():
+    for path in PACKAGE.rglob("*.py"):
+        names = [name for node in ast.walk(ast.parse(path.read_bytes())) for name in fingerprint.imported(node)]
+        assert kernels._read(path)[1] >= {file for name in names for file in fingerprint.files_of(name)}, path
+
+
+def test_every_kernel_of_the_package_has_the_decorator():
+    for path in PACKAGE.rglob("*.py"):
+        if path != Path(kernels.__file__):
+            text = path.read_text(encoding="utf-8")
+            assert "njit" not in text, path
+            assert "numba.jit" not in text, path
