@@ -12,12 +12,14 @@ import numpy as np
 from numba.core.event import Listener, install_listener
 
 from stiction.beam.cantilever import Beam
+from stiction.beam.middle import shortest_held
 from stiction.beam.release import release
 from stiction.beam.tension import end_stiffness
 from stiction.chaos import model as chaos
 from stiction.contact import forcelaw
 from stiction.contact.asperity import asperity, reduced_modulus
 from stiction.contact.pair import SurfacePair
+from stiction.contact.tilted import Tilt, TiltedPair, largest_attractions
 from stiction.contact.vanderwaals import attraction
 from stiction.streams import stream
 from stiction.surface import maxent
@@ -41,6 +43,10 @@ def contact_kernels() -> None:
     stored = [values[None].astype(np.float32) for values in (solid, bearing)]
     distance, curve = forcelaw.humid_curves(*stored, starts, 1e-10, (1e-9, 1e6))
     forcelaw.parametrise(distance, curve, 1)
+    tip = TiltedPair(surface, surface, 1e-10, asperity=model, tilt=Tilt((0.01, 0.1), 1e-8))
+    starts = tip.distances.solid[0], tip.distances.bearing[0]
+    stored = [values[None].astype(np.float32) for values in tip.contact(tip.draw(rng, rng))]
+    largest_attractions(*stored, starts, 1e-10, (1e-9, 1e6))
 
 
 def chaos_kernels() -> None:
@@ -52,6 +58,7 @@ def chaos_kernels() -> None:
 def beam_kernels() -> None:
     """Run the kernels of the beams on a small problem."""
     release(Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200), np.tile([2e6, 8e-9, 6e8, 5e8], (200, 1)), 300e-6)
+    shortest_held(Beam(10e-6, 30e-6, 2.6e-6, 164e9, 2e-6, 20), np.tile([2e6, 8e-9, 6e8, 5e8], (20, 1)), 300e-6)
     end_stiffness(1.0)
 
 
