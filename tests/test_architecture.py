@@ -14,7 +14,7 @@ ORDER = """
 constants errors streams estimates numbers models progress kernels
 surface: maxent spectrum translation empirical feasible normals field iteration summits identify
 scans: scan levelling holes remainder moments periodogram whittle quantiles model_scans histogram estimate
-contact: meniscus vanderwaals asperity solids estimate pair forcelaw tilted bounds
+contact: meniscus vanderwaals asperity solids estimate pair tilted forcelaw bounds
 chaos: coordinates density polynomials model
 beam: cantilever tension energy foundation equilibrium release resolution middle montecarlo
 analysis: plasticity sensitivity shifts convergence mesh variants

@@ -36,7 +36,7 @@ def forces(found, heights, humidity=0.67):
     """Largest attraction per width at every slope [N/m]."""
     solid, bearing = (curve[None] for curve in found.contact(heights))
     starts = found.distances.solid[0], found.distances.bearing[0]
-    return tilted.largest_attractions(solid, bearing, starts, STEP, film(humidity, 300.0))[0] * found.length
+    return forcelaw.largest_attractions(solid, bearing, starts, STEP, film(humidity, 300.0))[0] * found.length
 
 
 @EDGES

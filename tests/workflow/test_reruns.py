@@ -142,12 +142,14 @@ MATRIX = [
     ("study: a Poisson's ratio added", "studies: {variants: {poisson_ratio: [0.18, 0.28, 0.3]}}", "variant_contact",
      (), "variants/summits|_base|0.18|0.28"),
     ("study: finer elements", "studies: {variants: {strips_per_element: [2, 1]}}", "variant", (), "_base|_element_2"),
-    ("one humidity of a device", "devices: {C1: {humidities: [0.7, 0.9]}}", "cracks table_safe_lengths device_limits",
-     (), "contact|C1_rh070|R1|chart/"),
+    # A wetter air reaches further: the strips of the tips are stored at more distances.
+    ("one humidity of a device", "devices: {C1: {humidities: [0.7, 0.9]}}",
+     "tip_contact cracks table_safe_lengths device_limits", (), "contact/b|cracks/C1_rh070|R1"),
     ("a device added", "devices: {C2: {kind: cantilever, pair: a, thickness_um: 3, gap_um: 20, width_um: 30, "
      "humidities: [0.6]}}", "tip_contact cracks table_safe_lengths device_limits", {"chart", "table_chart"}, "contact/[ab]_|tips/b_|C1|R1|beams"),
     ("thickness of a device", "devices: {C1: {thickness_um: 3}}", "cracks safe_lengths chart", (), "contact|R1"),
-    ("thicknesses of a chart", "devices: {C1: {chart: {thicknesses_um: [2.6]}}}", "chart", (), "contact|R1|safe"),
+    ("thicknesses of a chart", "devices: {C1: {chart: {thicknesses_um: [2.6]}}}", "tip_contact chart", (),
+     "contact/b|R1|cracks"),
     ("uncertainty of a device", "devices: {C1: {uncertainty: {gap_um: 1}}}", "", (), ""),
     ("beams of devices", "design: {beams: 300}", "tip_contact cracks chart", (), "results/contact"),
     ("contact angle of a body", "materials: {Wet: {contact_angle_deg: 20}}\nsurfaces: {B2: {material: Wet}}",

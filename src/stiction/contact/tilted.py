@@ -14,7 +14,6 @@ from enum import StrEnum
 
 import numpy as np
 
-from stiction.contact.forcelaw import apparent_force
 from stiction.contact.pair import DistanceGrid, Summits, SurfacePair, solid_pressure
 from stiction.kernels import kernel
 from stiction.surface.summits import mark_summits, mean_curvature
@@ -181,43 +180,3 @@ def tilted_bearing_area(
         higher += count[k]
         area[k - 1] = higher / ((heights.shape[0] - 1 + first) * heights.shape[1])
     return area
-
-
-@kernel
-def largest_attractions(
-    solid: np.ndarray, bearing: np.ndarray, starts: tuple[float, float], step: float, film: tuple[float, float]
-) -> np.ndarray:
-    """Largest attraction of every strip at every slope under one water film, per area of the strip (m, n_slopes) [Pa].
-
-    Parameters
-    ----------
-    solid, bearing : (m, n_slopes, n_s) and (m, n_slopes, n_b) arrays
-        Pressure of the solids p_s [Pa] and bearing area [-].
-    starts : tuple of 2 floats
-        Distance at the first node of ``solid`` and of ``bearing`` [m].
-    step : float
-        Common spacing of the grids [m].
-    film : tuple of 2 floats
-        Height h_C and tension of the water [m], [Pa].
-
-    Where a curve attracts most at its first node, because too few summits stop the tip, it is the force there.
-    """
-    samples, slopes, points = solid.shape
-    found, force = np.empty((samples, slopes)), np.empty(points)
-    for k in range(samples):
-        for i in range(slopes):
-            ends = (starts[0], starts[1], starts[0])
-            apparent_force(solid[k, i], bearing[k, i], ends, step, film[0], film[1], force)
-            found[k, i] = _largest(force)
-    return found
-
-
-@kernel
-def _largest(force):
-    """Largest attraction of a curve, by a parabola through its lowest three nodes; that of a node at its ends."""
-    i = np.argmin(force)
-    if i == 0 or i == force.size - 1:
-        return -force[i]
-    slope = 0.5 * (force[i + 1] - force[i - 1])
-    bend = force[i + 1] - 2 * force[i] + force[i - 1]
-    return -force[i] + 0.5 * slope * slope / bend if bend > 0 else -force[i]

@@ -80,6 +80,7 @@ STAGES = (
         settings=lambda plan, at: plan.scan(at.surface, at.number),
         kind=Settings,
         compute=lambda data, at, settings: compute(data["file"], settings),
+        libraries=("SurfaceTopography",),
         message="Read scan {number} of surface {surface}.",
     ),
 )

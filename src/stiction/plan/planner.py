@@ -16,6 +16,7 @@ from stiction.config.plan import Plan
 from stiction.plan.stage import FOLDERS, WILDCARDS, At, expression
 from stiction.run.atomic import DataError, save_text
 from stiction.run.fingerprint import PACKAGE, fingerprint
+from stiction.run.provenance import version_of
 
 #: Folder of all results, and ending of datasets.
 RESULTS, DATASET = "results/", ".nc"
@@ -101,45 +102,36 @@ class Planner:
         return self._known("rules", self._rules)
 
     def _rules(self):
-        """Rules of all declared stages."""
-        from stiction.plan.graph import constraints, stages
+        """Rules of all declared stages that write a file under this configuration."""
+        from stiction.plan.graph import stages
 
-        found = []
-        for stage, module in stages().values():
-            patterns = {key: path_of(stage, name) for key, name in stage.patterns(self.plan).items()}
-            if not patterns:
-                continue
-            restricted = constraints(stage, self.plan)["surface"]
-            found.append(
-                {
-                    "name": stage.name,
-                    "module": module,
-                    "files": patterns,
-                    "dataset": stage.save is None,
-                    "log": f"{RESULTS}logs/{stage.log}.log",
-                    "constraints": {} if stage.surfaces is None else {"surface": restricted},
-                    "message": re.sub(r"{(\w+)}", r"{wildcards.\1}", stage.message),
-                    "shown": vars(stage.shown) if stage.shown else None,
-                    "targets": stage.targets,
-                    "wanted": [
-                        path_of(stage, name.format(**at))
-                        for at in stage.jobs(self.plan)
-                        for name in stage.files.values()
-                    ]
-                    if stage.targets
-                    else [],
-                    **{key: getattr(stage, key) for key in ("temporary", "cluster", "minutes", "priority")},
-                }
-            )
-        return found
+        return [self._rule(stage, module) for stage, module in stages().values() if stage.patterns(self.plan)]
+
+    def _rule(self, stage, module):
+        """Rule of one stage."""
+        from stiction.plan.graph import constraints
+
+        taken = ("name", "targets", "temporary", "cluster", "minutes", "priority", "libraries")
+        wanted = [at for at in stage.jobs(self.plan) if stage.targets]
+        return {key: getattr(stage, key) for key in taken} | {
+            "module": module,
+            "dataset": stage.save is None,
+            "files": {key: path_of(stage, name) for key, name in stage.patterns(self.plan).items()},
+            "wanted": [path_of(stage, name.format(**at)) for at in wanted for name in stage.files.values()],
+            "log": f"{RESULTS}logs/{stage.log}.log",
+            "constraints": {"surface": constraints(stage, self.plan)["surface"]} if stage.surfaces else {},
+            "message": re.sub(r"{(\w+)}", r"{wildcards.\1}", stage.message),
+            "shown": vars(stage.shown) if stage.shown else None,
+        }
 
     def wanted(self, target: str) -> list[str]:
         """Files that a target of the workflow wants."""
         return [file for rule in self.rules if target in rule["targets"] for file in rule["wanted"]]
 
-    def code(self, rule: Mapping[str, Any]) -> dict[str, str]:
-        """Fingerprint of the module that declares a stage, and of all modules that it imports."""
-        return self._code(str(PACKAGE.joinpath(*rule["module"].split(".")[1:]).with_suffix(".py")))
+    def code(self, rule: Mapping[str, Any]) -> dict[str, str | None]:
+        """Fingerprint of the module that declares a stage and of all modules that it imports; versions of libraries."""
+        file = PACKAGE.joinpath(*rule["module"].split(".")[1:]).with_suffix(".py")
+        return self._code(str(file)) | {name: version_of(name) for name in rule["libraries"]}
 
     # Jobs
 

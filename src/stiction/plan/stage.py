@@ -114,6 +114,7 @@ class Stage:
     shown: Shown | None = None  #: how the report shows one of the files
     first: Callable[[Any], dict] | None = None  #: part of the inputs to read, by the settings, see `storage.load`
     streamed: bool = False  #: whether inputs in an order are loaded one at a time
+    libraries: tuple[str, ...] = ()  #: those whose versions count as code of the stage
     temporary: bool = False  #: whether the files are deleted once they have been read
     cluster: bool = False  #: whether a job is worth a job of its own on a cluster
     minutes: int = 10  #: longest run time of such a job

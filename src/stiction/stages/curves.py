@@ -9,7 +9,6 @@ import xarray as xr
 from stiction.config.units import from_si
 from stiction.contact import forcelaw
 from stiction.contact.meniscus import film
-from stiction.contact.tilted import largest_attractions
 from stiction.stages.contact import tables
 
 
@@ -45,7 +44,7 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
             f"the contact of the tips is for films of up to {from_si(reach, 'nm'):.3g} nm, and that at a relative "
             f"humidity of {humidity:g} is {from_si(layer[0], 'nm'):.3g} nm high: state this humidity with the device"
         )
-    return contact.slope.values, largest_attractions(*tables(contact), layer) * float(contact.length)
+    return contact.slope.values, forcelaw.largest_attractions(*tables(contact), layer) * float(contact.length)
 
 
 def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
