@@ -19,7 +19,7 @@ from stiction.chaos import model as chaos
 from stiction.contact import forcelaw
 from stiction.contact.asperity import asperity, reduced_modulus
 from stiction.contact.pair import SurfacePair
-from stiction.contact.tilted import Tilt, TiltedPair, largest_attractions
+from stiction.contact.tilted import Tilt, TiltedPair
 from stiction.contact.vanderwaals import attraction
 from stiction.streams import stream
 from stiction.surface import maxent
@@ -46,7 +46,7 @@ def contact_kernels() -> None:
     tip = TiltedPair(surface, surface, 1e-10, asperity=model, tilt=Tilt((0.01, 0.1), 1e-8))
     starts = tip.distances.solid[0], tip.distances.bearing[0]
     stored = [values[None].astype(np.float32) for values in tip.contact(tip.draw(rng, rng))]
-    largest_attractions(*stored, starts, 1e-10, (1e-9, 1e6))
+    forcelaw.largest_attractions(*stored, starts, 1e-10, (1e-9, 1e6))
 
 
 def chaos_kernels() -> None:
