@@ -12,7 +12,8 @@
 #   make test       format, lint and tests                   make test-all   the slow tests as well
 #   make format     format the code                          make mutants    break the code, name undetected errors
 #   make bench      time the stages                          make times      time the commands (half an hour)
-#   make docs       the documentation                        make jobs       time and memory of the jobs of the last run
+#   make docs       build the documentation                  make numbers    take its numbers and pictures from results/
+#   make jobs       time and memory of the jobs of the last run
 #   make cluster    test with SLURM on this machine          make lock       update requirements.lock
 #   make clean      delete .venv, keep results
 #
@@ -38,7 +39,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example devices figures run report test test-all lint format cluster mutants bench times jobs docs lock clean
+.PHONY: help paper smoke example devices figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -116,9 +117,12 @@ times: $(VENV)/ready
 jobs: $(VENV)/ready
 	$(BIN)/python tests/benchmarks/jobs.py
 
-# Update numbers, tables and pictures if the run of the paper has finished; then build HTML, without network access.
-docs: $(VENV)/ready
+# Updates tracked files: numbers, tables and pictures of the docs, from finished runs.
+numbers: $(VENV)/ready
 	$(BIN)/python docs/update.py results
+
+# Builds HTML, without network access, and changes no tracked file.
+docs: $(VENV)/ready
 	$(BIN)/python -m sphinx -W --keep-going -n -q docs docs/_build/html
 	@echo "open docs/_build/html/index.html"
 

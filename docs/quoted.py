@@ -1,4 +1,4 @@
-"""The numbers that README and docs quote, as text, from the tables in ``docs/tables``.
+"""The numbers that the docs quote, as text, from the tables in ``docs/tables``.
 
 Each number has one name, defined here; ``{{ name }}`` in ``docs/templates`` inserts it. Each function takes frames and
 returns ``{name: text}``, without reading or writing a file (except `frame`).
@@ -62,7 +62,7 @@ def crack_length(row):
     return f"{row.crack_length_um:.0f} ± {row.crack_length_std_um:.0f}{share}"
 
 
-def readme_table(table_3, pair="b"):
+def compared_lengths(table_3, pair="b"):
     """Crack lengths of one pair over the humidity: measured, published, computed. Markdown."""
     lines = [
         "| RH | measured | published, GEO | computed, G | computed, NG | computed, GEO |",

@@ -1,11 +1,10 @@
-"""Bring README and docs up to date with a run: ``python docs/update.py results``, part of ``make docs``.
+"""Bring the docs up to date with a run: ``python docs/update.py results``, the command ``make numbers``.
 
 1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
    and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``
    and ``make devices`` in ``runs/example`` and ``runs/devices`` beside the folder.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
-3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted, and the block between
-   the markers in ``README.md`` is rewritten.
+3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted.
 
 Steps 2 and 3 depend on ``docs`` alone: ``tests/test_docs.py`` repeats them and compares.
 """
@@ -70,7 +69,7 @@ DEVICE_TABLES = ("safe_lengths", "stoppers", "budget")
 DEVICE_PICTURES = {"risk": 1000, "chart": 1200, "stoppers": 700, "budget_C1": 1000}
 #: Largest picture [bytes].
 LARGEST = 150_000
-NOTE = "<!-- Written by docs/update.py from docs/templates/{name}: edit that file, then run make docs. -->"
+NOTE = "<!-- Written by docs/update.py from docs/templates/{name}: edit that file, then run make numbers. -->"
 
 
 def main(results):
@@ -138,6 +137,8 @@ def collect(results):
     found = scalars(results / "studies") | meshes(results) | timing(results)
     pd.DataFrame(found.items(), columns=["name", "text"]).to_csv(DOCS / "tables" / "studies.csv", index=False)
     (DOCS / "tables" / "jobs.md").write_text(jobs.table(results), encoding="utf-8")
+    compared = quoted.compared_lengths(quoted.frame(DOCS / "tables" / "table_3.csv"))
+    (DOCS / "tables" / "crack_lengths.md").write_text(compared + "\n", encoding="utf-8")
     for name, width in PICTURES.items():
         if (picture := results / "figures" / f"{name}.png").exists():
             shrink(picture, DOCS / "pictures" / f"{name}.png", width)
@@ -218,20 +219,20 @@ def timing(results):
 
 
 def shrink(picture, smaller, width):
-    """Copy of a picture with few colours and at most ``width`` pixels across, small enough for a repository."""
+    """Copy of a picture in its own colours and at most ``width`` pixels across, small enough for a repository."""
     with Image.open(picture) as image:
         flat = Image.new("RGB", image.size, "white")
         flat.paste(image, mask=image.convert("RGBA").getchannel("A"))
     for scale in (1, 0.85, 0.7, 0.6, 0.5):
         across = min(flat.width, round(scale * width))
         resized = flat.resize((across, round(flat.height * across / flat.width)), Image.Resampling.LANCZOS)
-        resized.quantize(64, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(smaller, optimize=True)
+        resized.save(smaller, optimize=True)
         if smaller.stat().st_size <= LARGEST:
             return
     raise ValueError(f"{picture} stays above {LARGEST} bytes")
 
 
-# 2. and 3. From docs/tables to results.json, the pages and the README
+# 2. and 3. From docs/tables to results.json and the pages
 
 
 def pages():
@@ -241,9 +242,7 @@ def pages():
     for template in sorted((DOCS / "templates").glob("*.md")):
         body = filled(template.read_text(encoding="utf-8"), numbers)
         texts[DOCS / template.name] = NOTE.format(name=template.name) + "\n\n" + body
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    block = quoted.readme_table(quoted.frame(DOCS / "tables" / "table_3.csv"))
-    return texts | {ROOT / "README.md": replaced(readme, "crack lengths", block)}
+    return texts
 
 
 def quoted_numbers():
@@ -279,21 +278,6 @@ def filled(template, numbers):
 def shown(path):
     """Markdown table in which values and errors stay on one line."""
     return path.read_text(encoding="utf-8").strip().replace(" ± ", "\N{NO-BREAK SPACE}±\N{NO-BREAK SPACE}")
-
-
-def replaced(text, name, block):
-    """Text with everything between the markers of a block replaced.
-
-    Raises
-    ------
-    ValueError
-        If the text does not have both markers once.
-    """
-    begin, end = f"<!-- begin: {name} -->", f"<!-- end: {name} -->"
-    if (text.count(begin), text.count(end)) != (1, 1):
-        raise ValueError(f"need {begin} and {end} once each")
-    head, rest = text.split(begin)
-    return f"{head}{begin}\n{block}\n{end}{rest.split(end)[1]}"
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""README and docs agree with the results they quote; links are valid; the pages build without warnings."""
+"""The docs agree with the results they quote; links are valid; the pages build without warnings."""
 
 import importlib
 import importlib.util
@@ -8,6 +8,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 import yaml
@@ -44,37 +45,33 @@ update, quoted = (module(DOCS / f"{name}.py") for name in ("update", "quoted"))
 
 @pytest.fixture(scope="module")
 def written():
-    """Path to text of every file that ``make docs`` writes."""
+    """Path to text of every file that ``make numbers`` writes."""
     return update.pages()
 
 
 WRITTEN = [
     DOCS / "results.json",
     *(DOCS / path.name for path in sorted((DOCS / "templates").glob("*.md"))),
-    ROOT / "README.md",
 ]
 
 
 @pytest.mark.parametrize("path", WRITTEN, ids=lambda path: path.name)
 def test_numbers_and_tables_are_those_of_the_results_that_the_docs_name(written, path):
-    assert path.read_text(encoding="utf-8") == written[path], f"{path.name} is out of date: run make docs"
+    assert path.read_text(encoding="utf-8") == written[path], f"{path.name} is out of date: run make numbers"
 
 
 def test_every_file_that_is_written_is_compared(written):
     assert list(written) == WRITTEN
 
 
-def test_another_result_changes_the_table_of_the_readme():
+def test_compared_crack_lengths_are_those_of_table_3():
     table = quoted.frame(DOCS / "tables" / "table_3.csv")
-    assert quoted.readme_table(table.assign(crack_length_um=table.crack_length_um + 1)) != quoted.readme_table(table)
-
-
-def test_the_readme_table_shows_what_table_3_holds():
-    table = quoted.frame(DOCS / "tables" / "table_3.csv").set_index(["pair", "relative_humidity", "model"])
-    row = table.loc["b", 0.67, "NG"]
-    cell = f"{row.crack_length_um:.0f} ± {row.crack_length_std_um:.0f}"
-    line = next(line for line in (ROOT / "README.md").read_text(encoding="utf-8").splitlines() if line[:6] == "| 0.67")
-    assert line.split(" | ")[4] == cell
+    shown = (DOCS / "tables" / "crack_lengths.md").read_text(encoding="utf-8")
+    assert shown == quoted.compared_lengths(table) + "\n"
+    assert shown != quoted.compared_lengths(table.assign(crack_length_um=table.crack_length_um + 1)) + "\n"
+    row = table.set_index(["pair", "relative_humidity", "model"]).loc["b", 0.67, "NG"]
+    line = next(line for line in shown.splitlines() if line[:6] == "| 0.67")
+    assert line.split(" | ")[4] == f"{row.crack_length_um:.0f} ± {row.crack_length_std_um:.0f}"
 
 
 @pytest.mark.slow
@@ -145,14 +142,17 @@ def test_nearest_feasible_moments_are_those_that_the_heights_get():
         )
 
 
-def test_markers_are_needed_once_each():
-    text = "a <!-- begin: x -->old<!-- end: x --> b"
-    assert update.replaced(text, "x", "new") == "a <!-- begin: x -->\nnew\n<!-- end: x --> b"
-    with pytest.raises(ValueError, match="once each"):
-        update.replaced(text + text, "x", "new")
-
-
 # Pictures and links
+
+
+def test_pictures_keep_their_colours(tmp_path):
+    # More colours than a palette holds, in equal squares: the middle of each keeps its colour at half the width.
+    colours = np.random.default_rng(1).integers(0, 256, (30, 30, 3), dtype=np.uint8)
+    Image.fromarray(colours.repeat(20, 0).repeat(20, 1)).save(tmp_path / "large.png")
+    update.shrink(tmp_path / "large.png", tmp_path / "small.png", 300)
+    with Image.open(tmp_path / "small.png") as small:
+        assert small.size == (300, 300)
+        np.testing.assert_array_equal(np.asarray(small.convert("RGB"))[5::10, 5::10], colours)
 
 
 def test_pictures_are_small_and_all_are_shown():
