@@ -52,6 +52,17 @@ def with_error(value: float, error: float, sign: str = "") -> str:
     return f"{number(value, f'{sign}.{digits}f')} ± {error:.{digits}f}"
 
 
+def signed(value: float, error: float) -> str:
+    """Change or deviation ± standard error as text, also with the sign +.
+
+    Examples
+    --------
+    >>> signed(4.9, 0.042), signed(-4.9, 0.042)
+    ('+4.900 ± 0.042', '-4.900 ± 0.042')
+    """
+    return with_error(value, error, "+")
+
+
 def as_published(value: float, deviation: float) -> str:
     """Published value ± standard deviation as text, with the digits of the publication; – for NaN.
 

@@ -1,12 +1,13 @@
 """Common to all tables: numbers for machines, text for reading, and the files of both."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import pandas as pd
 
 from stiction.plan.stage import Shown, Stage, titled
+from stiction.report.format import number
 from stiction.run.atomic import save_text
 
 _PAGE = """<!DOCTYPE html>
@@ -18,6 +19,13 @@ body {{ font: 13px sans-serif }} p {{ white-space: pre-line }} td, th {{ padding
 {cells}
 """
 
+#: Columns for reading by title: a format or a function, and the keys of the numbers that it shows as text.
+Columns = Mapping[str, tuple[str | Callable[..., str], *tuple[str, ...]]]
+#: The first columns of most tables.
+HUMIDITY = {"RH": ("g", "relative_humidity")}
+PAIR = {"pair": (str, "pair")} | HUMIDITY
+DEVICE = {"device": (str, "device")} | HUMIDITY
+
 
 @dataclass(frozen=True)
 class Table:
@@ -26,6 +34,12 @@ class Table:
     frame: pd.DataFrame  #: every number with its error, in the units of the names of the columns
     caption: str  #: what the table shows
     cells: pd.DataFrame  #: the same for reading, as text
+
+    @classmethod
+    def of(cls, rows: Iterable[Mapping[str, Any]], caption: str, columns: Columns) -> "Table":
+        """Table of rows of numbers, with their text in some columns."""
+        frame = pd.DataFrame(rows)
+        return cls(frame, caption, as_text(frame, columns))
 
     @property
     def csv(self) -> str:
@@ -42,6 +56,25 @@ class Table:
     def html(self) -> str:
         """Page of caption and cells."""
         return _PAGE.format(caption=self.caption, cells=self.cells.to_html(index=False, border=0))
+
+
+def as_text(frame: pd.DataFrame, columns: Columns) -> pd.DataFrame:
+    """Rows of numbers for reading.
+
+    Examples
+    --------
+    >>> print(as_text(pd.DataFrame({"x": [0.123]}), {"x [%]": ("{:.0%}".format, "x"), "x": (".1f", "x")}))
+      x [%]    x
+    0   12%  0.1
+    """
+    rows = frame.to_dict("records")
+    return pd.DataFrame([{title: _cell(row, *shown) for title, shown in columns.items()} for row in rows])
+
+
+def _cell(row, show, *keys):
+    """Text of the values of a row by their keys; a format shows a single number."""
+    values = [row[key] for key in keys]
+    return show(*values) if callable(show) else number(*values, show)
 
 
 def with_list(caption: str, sentences: Sequence[str]) -> str:

@@ -13,9 +13,9 @@ from stiction.estimates import mean_on_shared_samples, mean_with_error
 from stiction.models import surface_model
 from stiction.plan.names import Case, by_case, by_name, by_outcome
 from stiction.report import published
-from stiction.report.format import TO_MJ, UM, as_published, error_alone, number, percent, with_error
+from stiction.report.format import TO_MJ, UM, as_published, error_alone, number, percent, signed, with_error
 from stiction.report.published import value
-from stiction.report.tables import Table, table_stage, with_list
+from stiction.report.tables import PAIR, Table, table_stage, with_list
 from stiction.stages import forces as stage_forces
 from stiction.stages.releases import STATES, ended, stuck_energies, stuck_lengths
 from stiction.studies.scan_uncertainty import pair_errors
@@ -50,7 +50,6 @@ def table_3(
     rows = [_row_3(key, beams[key], forces[*key[:2], surface_model(key[2])], published) for key in beams]
     if by_scans:
         rows = [row | _by_scans(row, by_scans) for row in rows]
-    frame = pd.DataFrame(rows)
     caption = (
         "Table III: crack length of the S-shaped beams, mean ± standard deviation over the beams; se: standard error of"
         " the mean, over beams and samples; deviations from the published and from the measured length. Published "
@@ -64,7 +63,7 @@ def table_3(
         caption += " Scans: standard error of the mean due to the finite scans of measured surfaces."
     if warnings:
         caption = with_list(f"{caption} Warnings:", warnings)
-    return Table(frame, caption, pd.DataFrame([_cells_3(row) for _, row in frame.iterrows()]))
+    return Table.of(rows, caption, {title: of for title, of in _TABLE_3.items() if by_scans or "scans" not in title})
 
 
 def _row_3(key, beams, forces, published):
@@ -125,29 +124,27 @@ def _share(state):
     return f"share_{state.lower().replace('-', '_')}"
 
 
-def _cells_3(row):
-    """One case as text; without measured surfaces it has no errors by scans."""
-    by_scans = row.get("crack_length_scans_se_um", np.nan), row.get("meso_energy_scans_se_J_per_m2", np.nan)
-    cells = {
-        "pair": row.pair,
-        "RH": f"{row.relative_humidity:g}",
-        "model": row.model,
-        "l_s [µm]": with_error(row.crack_length_um, row.crack_length_std_um),
-        "se": error_alone(row.crack_length_se_um),
-        "se, scans": error_alone(by_scans[0]),
-        "published": as_published(row.published_um, row.published_std_um),
-        "dev. published [%]": number(row.deviation_percent, "+.1f"),
-        "measured": as_published(row.experiment_um, row.experiment_std_um),
-        "dev. measured [%]": number(row.experiment_deviation_percent, "+.0f"),
-        "published bias [%]": number(row.published_bias_error_percent, "g"),
-        "Γ [mJ/m²]": number(TO_MJ * row.adhesion_energy_J_per_m2, ".3g"),
-        "ē [mJ/m²]": number(TO_MJ * row.meso_energy_J_per_m2, ".3g"),
-        "se of ē, scans": error_alone(TO_MJ * by_scans[1]),
-        "cv(ē)": number(row.meso_energy_cv, ".3f"),
-        "S/arc/free [%]": "/".join(f"{100 * row[_share(state)]:.3g}" for state in STATES),
-    }
-    scanned = "crack_length_scans_se_um" in row
-    return {name: text for name, text in cells.items() if scanned or "scans" not in name}
+def _in_mJ(energy):
+    """Energy per area as text [mJ m⁻²]."""
+    return number(TO_MJ * energy, ".3g")
+
+
+_TABLE_3 = PAIR | {
+    "model": (str, "model"),
+    "l_s [µm]": (with_error, "crack_length_um", "crack_length_std_um"),
+    "se": (error_alone, "crack_length_se_um"),
+    "se, scans": (error_alone, "crack_length_scans_se_um"),
+    "published": (as_published, "published_um", "published_std_um"),
+    "dev. published [%]": ("+.1f", "deviation_percent"),
+    "measured": (as_published, "experiment_um", "experiment_std_um"),
+    "dev. measured [%]": ("+.0f", "experiment_deviation_percent"),
+    "published bias [%]": ("g", "published_bias_error_percent"),
+    "Γ [mJ/m²]": (_in_mJ, "adhesion_energy_J_per_m2"),
+    "ē [mJ/m²]": (_in_mJ, "meso_energy_J_per_m2"),
+    "se of ē, scans": (lambda error: error_alone(TO_MJ * error), "meso_energy_scans_se_J_per_m2"),
+    "cv(ē)": (".3f", "meso_energy_cv"),
+    "S/arc/free [%]": (lambda *shares: "/".join(f"{100 * share:.3g}" for share in shares), *map(_share, STATES)),
+}
 
 
 # Fit by Eq. (12), Fig. 5
@@ -161,11 +158,10 @@ def fit_quality(fits: Mapping[Case, xr.Dataset]) -> Table:
     fits : dict
         (pair, humidity, model) to the dataset of stage fit.
     """
-    frame = pd.DataFrame([_row_fit(key, fit) for key, fit in fits.items()])
     caption = (
         "Fit by Eq. (12): relative error of the curve for d ≥ d_limit, mean ± standard error, and of the energy ē."
     )
-    return Table(frame, caption, pd.DataFrame([_cells_fit(row) for row in frame.itertuples()]))
+    return Table.of((_row_fit(key, fit) for key, fit in fits.items()), caption, _FIT)
 
 
 def _row_fit(key, fit):
@@ -187,18 +183,14 @@ def _row_fit(key, fit):
     }
 
 
-def _cells_fit(row):
-    """One case as text."""
-    return {
-        "pair": row.pair,
-        "RH": f"{row.relative_humidity:g}",
-        "model": row.model,
-        "curve [%]": with_error(row.curve_error_percent, row.curve_error_se_percent),
-        "median [%]": number(row.curve_error_median_percent, ".2f"),
-        "95 % of samples below [%]": number(row.curve_error_95_percent, ".1f"),
-        "ē at most [%]": number(row.energy_error_max_percent, ".0e"),
-        "without law [%]": number(100 * row.share_without_law, ".2g"),
-    }
+_FIT = PAIR | {
+    "model": (str, "model"),
+    "curve [%]": (with_error, "curve_error_percent", "curve_error_se_percent"),
+    "median [%]": (".2f", "curve_error_median_percent"),
+    "95 % of samples below [%]": (".1f", "curve_error_95_percent"),
+    "ē at most [%]": (".0e", "energy_error_max_percent"),
+    "without law [%]": (lambda share: number(100 * share, ".2g"), "share_without_law"),
+}
 
 
 # Chaos model, App. B
@@ -216,12 +208,11 @@ def resampling(
     beams, resampled : dict
         (pair, humidity) to the datasets of stage beams and of study resampling.
     """
-    frame = pd.DataFrame([_row_resampling(key, beams[key], resampled[key]) for key in beams])
     caption = (
         "Effect of the chaos model on the crack length, model NG: mean under laws drawn from it, and under laws of the "
         "samples themselves, drawn with replacement; ± standard error over beams."
     )
-    return Table(frame, caption, pd.DataFrame([_cells_resampling(row) for row in frame.itertuples()]))
+    return Table.of((_row_resampling(key, beams[key], resampled[key]) for key in beams), caption, _RESAMPLING)
 
 
 def _row_resampling(key, beams, resampled):
@@ -245,15 +236,11 @@ def _crack_length(beams):
     return mean_with_error(stuck) if len(stuck) >= 2 else (np.nan, np.nan)
 
 
-def _cells_resampling(row):
-    """One case as text."""
-    return {
-        "pair": row.pair,
-        "RH": f"{row.relative_humidity:g}",
-        "l_s, chaos model [µm]": with_error(row.chaos_um, row.chaos_se_um),
-        "l_s, samples [µm]": with_error(row.samples_um, row.samples_se_um),
-        "difference [%]": with_error(row.difference_percent, row.difference_se_percent, "+"),
-    }
+_RESAMPLING = PAIR | {
+    "l_s, chaos model [µm]": (with_error, "chaos_um", "chaos_se_um"),
+    "l_s, samples [µm]": (with_error, "samples_um", "samples_se_um"),
+    "difference [%]": (signed, "difference_percent", "difference_se_percent"),
+}
 
 
 def _table_3(data, _at, settings):

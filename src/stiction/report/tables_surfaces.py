@@ -12,7 +12,7 @@ from stiction.models import MOMENT_KEYS, SUMMIT_KEYS, SURFACE_MODELS
 from stiction.plan.names import by_model, by_name
 from stiction.plan.stage import chosen
 from stiction.report import published
-from stiction.report.format import NM, PER_UM2, UM, number, percent, with_error
+from stiction.report.format import NM, PER_UM2, UM, percent, signed, with_error
 from stiction.report.published import rows, value
 from stiction.report.tables import Table, table_stage
 from stiction.stages.character import statistics
@@ -66,15 +66,13 @@ def table_1(
     substitutions : dict
         Surface to the sentence of `stiction.stages.heights.substitution`.
     """
-    frame = pd.DataFrame([_row_1(*key, characters[key], measured[key[0]], published) for key in characters])
-    titles = {"surface": "surface", "column": "model"} | _STATISTICS
-    cells = [[row.surface, row.column, *(_cell_1(row, name) for name in _STATISTICS)] for _, row in frame.iterrows()]
+    rows = [_row_1(*key, characters[key], measured[key[0]], published) for key in characters]
     notes = (f" {surface}: {sentence}." for surface, sentence in substitutions.items() if sentence)
     caption = (
         "Table I: simulated value ± standard error (value simulated in the paper). The measured values (AFM) are in "
         "the columns _afm of the CSV file."
     ) + "".join(notes)
-    return Table(frame, caption, pd.DataFrame(cells, columns=list(titles.values())))
+    return Table.of(rows, caption, _TABLE_1)
 
 
 def _row_1(surface, model, character, measured, published):
@@ -93,10 +91,14 @@ def _row_1(surface, model, character, measured, published):
     return row
 
 
-def _cell_1(row, name):
+def _beside_published(value, error, known):
     """Value ± standard error (published value) as text."""
-    known = row[f"{name}_published"]
-    return with_error(row[name], row[f"{name}_se"]) + (f" ({known:g})" if np.isfinite(known) else "")
+    return with_error(value, error) + (f" ({known:g})" if np.isfinite(known) else "")
+
+
+_TABLE_1 = {"surface": (str, "surface"), "model": (str, "column")} | {
+    title: (_beside_published, name, f"{name}_se", f"{name}_published") for name, title in _STATISTICS.items()
+}
 
 
 # Table II
@@ -125,13 +127,12 @@ def table_2(
     """
     defects = {surface: {source: 100 * float(spectra[surface].defect)} for surface, source in sources.items()}
     rows_of = (_rows_2(surface, found, published, defects[surface]) for surface, found in identifications.items())
-    frame = pd.DataFrame(chain.from_iterable(rows_of))
     caption = (
         "Table II: parameters of Eq. (7), as published (with corrected plateaus) and as identified from the summits; "
         "deviations from the measured (AFM) rms, summit radius and density, on surfaces not used to identify; defect: "
         "share of the variance that no Gaussian field provides, of the spectrum in use."
     )
-    return Table(frame, caption, pd.DataFrame([_cells_2(row) for _, row in frame.iterrows()]))
+    return Table.of(chain.from_iterable(rows_of), caption, _TABLE_2)
 
 
 def _rows_2(surface, found, published, defects):
@@ -166,23 +167,18 @@ def _residuals(found):
     return row
 
 
-def _cells_2(row):
-    """One spectrum as text."""
-    residuals = {
-        f"{name} off by [%]": with_error(row[f"{name}_residual_percent"], row[f"{name}_residual_se_percent"], "+")
-        for name in ("radius", "density")
-    }
-    return {
-        "surface": row.surface,
-        "psd": row.psd,
-        "s⁰ [nm⁴]": f"{row.plateau_nm4:.4g}",
-        "s¹ [nm⁴]": f"{row.floor_nm4:.3g}",
-        "ζ₀ [rad/µm]": f"{row.corner_rad_per_um:.3g}",
-        "ζ_max [rad/µm]": f"{row.cutoff_rad_per_um:.3g}",
-        "rms off by [%]": number(row.rms_residual_percent, "+.2f"),
-        **residuals,
-        "defect [%]": number(row.gaussian_defect_percent, ".2g"),
-    }
+_TABLE_2 = {
+    "surface": (str, "surface"),
+    "psd": (str, "psd"),
+    "s⁰ [nm⁴]": (".4g", "plateau_nm4"),
+    "s¹ [nm⁴]": (".3g", "floor_nm4"),
+    "ζ₀ [rad/µm]": (".3g", "corner_rad_per_um"),
+    "ζ_max [rad/µm]": (".3g", "cutoff_rad_per_um"),
+    "rms off by [%]": ("+.2f", "rms_residual_percent"),
+    "radius off by [%]": (signed, "radius_residual_percent", "radius_residual_se_percent"),
+    "density off by [%]": (signed, "density_residual_percent", "density_residual_se_percent"),
+    "defect [%]": (".2g", "gaussian_defect_percent"),
+}
 
 
 def _table_1(data, _at, settings):

@@ -14,8 +14,8 @@ from stiction.devices.budget import advice
 from stiction.devices.limits import NOT_MODELLED
 from stiction.estimates import mean_with_error
 from stiction.plan.names import by_name
-from stiction.report.format import MISSING, UN, number, with_error
-from stiction.report.tables import Table, table_stage, with_list
+from stiction.report.format import UN, number, signed, with_error
+from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_list
 
 #: Rows of a budget below those of its measurements.
 TOTAL, INDEPENDENT, SCATTER = "total", "total, if all errors were independent", "scatter between devices"
@@ -65,7 +65,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
         Device to sentences.
     """
     rows = [row for device, dataset in datasets.items() for row in _of_stopper(device, dataset)]
-    frame = pd.DataFrame([row | {"warnings": " ".join(warnings[row["device"]])} for row in rows])
+    rows = [row | {"warnings": " ".join(warnings[row["device"]])} for row in rows]
     caption = (
         "Stoppers: force that pulls a patch off, an upper bound if it tilts or bends, mean ± standard error and "
         "standard deviation over the patches; "
@@ -76,7 +76,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
     )
     listed = [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found]
     caption = with_list(" ".join([caption, NOT_MODELLED, *(["Warnings:"] if listed else [])]), listed)
-    return Table(frame, caption, pd.DataFrame([_stopper_as_text(row) for _, row in frame.iterrows()]))
+    return Table.of(rows, caption, _columns_of_stoppers(rows))
 
 
 def _of_stopper(device, dataset):
@@ -102,20 +102,23 @@ def _stopper(dataset, pull, stuck, safe):
     return row | {"worst_humidity_se": float(dataset.worst_humidity_error), "worst_is_an_end": is_at_an_end(dataset)}
 
 
-def _stopper_as_text(row):
-    """One row as text."""
-    safe = {name: force for name, force in row.items() if name.startswith("safe_force")}
-    any_air = f"{row.lowest_humidity:g} to {row.highest_humidity:g}"
-    return {
-        "device": row.device,
-        "RH": any_air if np.isnan(row.relative_humidity) else f"{row.relative_humidity:g}",
-        "pull-off force [µN]": with_error(row.pull_off_uN, row.pull_off_se_uN),
-        "std [µN]": number(row.pull_off_std_uN, ".3g"),
-        "restoring force [µN]": number(row.restoring_force_uN, "g"),
-        "P(stuck) [%]": percentage(row.share_stuck, row.share_stuck_low, row.share_stuck_high),
-        **{f"safe force, {name.rpartition('_')[2]} [µN]": number(force, ".3g") for name, force in safe.items()},
-        "worst RH": worst_humidity(row.worst_humidity, row.worst_humidity_se, row.worst_is_an_end),
+def _columns_of_stoppers(rows):
+    """Columns for reading; those of the safe forces depend on the shares."""
+    names = dict.fromkeys(name for row in rows for name in row if name.startswith("safe_force"))
+    return DEVICE | {
+        "RH": (_humidities, "relative_humidity", "lowest_humidity", "highest_humidity"),
+        "pull-off force [µN]": (with_error, "pull_off_uN", "pull_off_se_uN"),
+        "std [µN]": (".3g", "pull_off_std_uN"),
+        "restoring force [µN]": ("g", "restoring_force_uN"),
+        "P(stuck) [%]": (percentage, "share_stuck", "share_stuck_low", "share_stuck_high"),
+        **{f"safe force, {name.rpartition('_')[2]} [µN]": (".3g", name) for name in names},
+        "worst RH": (worst_humidity, "worst_humidity", "worst_humidity_se", "worst_is_an_end"),
     }
+
+
+def _humidities(humidity, lowest, highest):
+    """Humidity of a row, or the range of all."""
+    return f"{lowest:g} to {highest:g}" if np.isnan(humidity) else f"{humidity:g}"
 
 
 def percentage(share: float, low: float, high: float) -> str:
@@ -164,8 +167,7 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Table:
         "choices of the model, with the sign of their effect, are no part of the total.",
         [*sentences, *omitted],
     )
-    shown = frame[frame.part != "input"]
-    return Table(frame, caption, pd.DataFrame([_budget_as_text(row) for _, row in shown.iterrows()]))
+    return Table(frame, caption, as_text(frame[frame.part != "input"], _BUDGET))
 
 
 def advised(dataset: xr.Dataset) -> str:
@@ -212,19 +214,24 @@ def _effect(budget, inputs, slope_errors):
     return {"effect_percent": 100 * budget.effect(inputs), "effect_se_percent": 100 * error}
 
 
-def _budget_as_text(row):
-    """One row as text."""
-    effect = number(row.effect_percent, ".2g")
-    if row.effect_se_percent > 0:
-        effect = with_error(row.effect_percent, row.effect_se_percent, "+" if row.part == "choice" else "")
-    return {
-        "device": row.device,
-        "RH": f"{row.relative_humidity:g}",
-        "held by": row.held_by,
-        "what": f"choice: {choice_label(row['name'])}" if row.part == "choice" else row["name"],
-        "effect [%]": effect,
-        "remaining [%]": MISSING if np.isnan(row.remaining_percent) else number(row.remaining_percent, ".2g"),
-    }
+def _part(part, name):
+    """What a row is about."""
+    return f"choice: {choice_label(name)}" if part == "choice" else name
+
+
+def _effect_as_text(part, effect, error):
+    """Effect with its standard error, if it has one; that of a choice has a sign."""
+    if not error > 0:
+        return number(effect, ".2g")
+    return (signed if part == "choice" else with_error)(effect, error)
+
+
+_BUDGET = DEVICE | {
+    "held by": (str, "held_by"),
+    "what": (_part, "part", "name"),
+    "effect [%]": (_effect_as_text, "part", "effect_percent", "effect_se_percent"),
+    "remaining [%]": (".2g", "remaining_percent"),
+}
 
 
 STAGES = (

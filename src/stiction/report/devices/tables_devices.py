@@ -13,7 +13,7 @@ from stiction.designs.pair_warnings import numbered
 from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.names import by_case
 from stiction.report.format import UM, error_alone, number
-from stiction.report.tables import Table, table_stage, with_list
+from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_list
 
 _SAFE_LENGTHS = (
     "Safe length: the largest length at which, with a confidence of 95 % given the drawn surfaces, at most a share p "
@@ -46,17 +46,16 @@ def safe_lengths(
     warnings : dict
         Name, humidity and shape to sentences.
     """
-    rows, cells = [], []
+    rows, marks = [], []
     numbers = numbered(warnings)[1]
     for (device, humidity), dataset in found.items():
         for shape in map(str, dataset["shape"].values):
             head = {"device": device, "relative_humidity": humidity, "held_by": HELD_BY[shape]}
             last = {"warnings": " ".join(warnings[device, humidity, shape])}
-            marks = ", ".join(map(str, numbers[device, humidity, shape]))
-            of_shape = [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
-            rows += of_shape
-            cells += [_safe_length_as_text(row, marks) for row in of_shape]
-    return Table(pd.DataFrame(rows), _caption(_SAFE_LENGTHS, warnings), pd.DataFrame(cells))
+            rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
+            marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
+    frame = pd.DataFrame(rows)
+    return Table(frame, _caption(_SAFE_LENGTHS, warnings), as_text(frame, _LENGTHS).assign(warnings=marks))
 
 
 def _caption(text, warnings):
@@ -83,21 +82,16 @@ def _bound(one):
     return float(one.flooded_length) / UM
 
 
-def _safe_length_as_text(row, marks):
-    """One safe length as text, with the numbers of its warnings."""
-    return {
-        "device": row["device"],
-        "RH": f"{row['relative_humidity']:g}",
-        "held by": row["held_by"],
-        "p": f"{row['share']:g}",
-        "safe length [µm]": number(row["safe_length_um"], ".1f"),
-        "estimate [µm]": number(row["estimate_um"], ".1f"),
-        "se, beams": error_alone(row["estimate_se_beams_um"]),
-        "se, surfaces": error_alone(row["estimate_se_surfaces_um"]),
-        "basis": row["basis"],
-        "bound [µm]": number(row["bound_um"], ".1f"),
-        "warnings": marks,
-    }
+_LENGTHS = DEVICE | {
+    "held by": (str, "held_by"),
+    "p": ("g", "share"),
+    "safe length [µm]": (".1f", "safe_length_um"),
+    "estimate [µm]": (".1f", "estimate_um"),
+    "se, beams": (error_alone, "estimate_se_beams_um"),
+    "se, surfaces": (error_alone, "estimate_se_surfaces_um"),
+    "basis": (str, "basis"),
+    "bound [µm]": (".1f", "bound_um"),
+}
 
 
 # Charts

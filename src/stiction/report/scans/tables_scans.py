@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 
 from stiction.beam.energy import CRACK_LENGTH_POWER
@@ -12,8 +11,8 @@ from stiction.measured import scan as stage_scan
 from stiction.measured import spectrum as stage_spectrum
 from stiction.models import ALTERNATIVES_OF_SCANS
 from stiction.plan.names import by_name
-from stiction.report.format import NM, UM, number, with_error
-from stiction.report.tables import Table, table_stage, with_list
+from stiction.report.format import NM, UM, signed, with_error
+from stiction.report.tables import PAIR, Table, table_stage, with_list
 from stiction.studies.scan_uncertainty import GOAL
 
 #: Parts of an estimate as columns.
@@ -38,23 +37,17 @@ def scans(
         name: [*stage_estimate.flags(estimate), *stage_spectrum.flags(spectra[name])]
         for name, estimate in estimates.items()
     }
-    frame = pd.DataFrame(
-        [
-            row | {"flags": "; ".join(limits[name])}
-            for name, estimate in estimates.items()
-            for row in _scans(name, estimate, maps[name])
-        ]
-    )
+    rows = [
+        row | {"flags": "; ".join(limits[name])}
+        for name, estimate in estimates.items()
+        for row in _scans(name, estimate, maps[name])
+    ]
     caption = (
         "Scans of the measured surfaces: moments of the levelled heights of each file, ± standard error of one scan of "
         "its size. The moments of the surface, without the bias of levelling, are in the title of its sheet."
     )
     flags = [f"{name}: {flag}" for name, found in limits.items() for flag in found]
-    return Table(
-        frame,
-        with_list(caption, flags),
-        pd.DataFrame(map(_cells_scan, frame.to_dict("records"))),
-    )
+    return Table.of(rows, with_list(caption, flags), _SCANS)
 
 
 def _scans(name, estimate, maps):
@@ -71,18 +64,13 @@ def _scans(name, estimate, maps):
         yield row
 
 
-def _cells_scan(row):
-    """One scan as text."""
-    return {
-        "surface": row["surface"],
-        "file": row["file"],
-        "channel": row["channel"],
-        "size [µm]": f"{row['size_fast_um']:.4g} × {row['size_slow_um']:.4g}",
-        "points": f"{row['points_fast']} × {row['points_slow']}",
-        "rms [nm]": with_error(row["rms_nm"], row["rms_se_nm"]),
-        "skewness": with_error(row["skewness"], row["skewness_se"]),
-        "kurtosis": with_error(row["kurtosis"], row["kurtosis_se"]),
-    }
+_SCANS = {name: (str, name) for name in ("surface", "file", "channel")} | {
+    "size [µm]": ("{:.4g} × {:.4g}".format, "size_fast_um", "size_slow_um"),
+    "points": ("{} × {}".format, "points_fast", "points_slow"),
+    "rms [nm]": (with_error, "rms_nm", "rms_se_nm"),
+    "skewness": (with_error, "skewness", "skewness_se"),
+    "kurtosis": (with_error, "kurtosis", "kurtosis_se"),
+}
 
 
 def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
@@ -96,7 +84,6 @@ def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
     rows = [
         row for pair, study in studies.items() for k in range(study.sizes["humidity"]) for row in _rows(pair, study, k)
     ]
-    frame = pd.DataFrame(rows)
     caption = (
         "Relative standard error of the mean adhesion energy ē due to the finite scans of measured surfaces, by what "
         "the scans measure (skewness and kurtosis with their correlation), and of the mean crack length l_s; the total "
@@ -105,7 +92,7 @@ def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
         "that key, ± standard error due to sampling and, for heights, to the scans, which measure the shape of the "
         "height density less precisely than the moments."
     )
-    return Table(frame, caption, pd.DataFrame([_cells(row) for row in frame.to_dict("records")]))
+    return Table.of(rows, caption, _UNCERTAINTY | _of_choices(rows))
 
 
 def _rows(pair, study, k):
@@ -134,18 +121,19 @@ def _crack_length(error):
     return {"crack_length_percent": 100 * abs(CRACK_LENGTH_POWER) * error}
 
 
-def _cells(row):
-    """One row as text."""
-    cells = {"pair": row["pair"], "RH": f"{row['relative_humidity']:g}", "surface": row["surface"]}
-    cells |= {f"ē: {title} [%]": number(row[f"{part}_percent"], ".2g") for part, title in _PARTS.items()}
-    cells |= {f"ē: {_PARTS['total']} [%]": with_error(row["total_percent"], row["total_se_percent"])}
-    cells |= {"l_s [%]": number(row["crack_length_percent"], ".2g")}
-    cells |= {title: number(row[name], ".0f") for name, title in (("scans", "scans"), ("scans_needed", "needed"))}
-    choices = [name for name in ALTERNATIVES_OF_SCANS if f"{name}_percent" in row]
-    return cells | {
-        f"other {choice} [%]": with_error(row[f"{choice}_percent"], row[f"{choice}_se_percent"], "+")
-        for choice in choices
-    }
+_UNCERTAINTY = (
+    PAIR
+    | {"surface": (str, "surface")}
+    | {f"ē: {title} [%]": (".2g", f"{part}_percent") for part, title in _PARTS.items()}
+    | {"ē: total [%]": (with_error, "total_percent", "total_se_percent"), "l_s [%]": (".2g", "crack_length_percent")}
+    | {"scans": (".0f", "scans"), "needed": (".0f", "scans_needed")}
+)
+
+
+def _of_choices(rows):
+    """Columns of the changes by other choices, as far as any row has them."""
+    chosen = [name for name in ALTERNATIVES_OF_SCANS if any(f"{name}_percent" in row for row in rows)]
+    return {f"other {name} [%]": (signed, f"{name}_percent", f"{name}_se_percent") for name in chosen}
 
 
 STAGES = (
