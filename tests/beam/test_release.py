@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from beams import E_BAR, PAPER, scattered_laws, uniform_laws
+from beams import E_BAR, PAPER, lognormal, scattered_laws, uniform_laws
 from numpy.testing import assert_allclose
 
 from stiction.beam.energy import apparent_adhesion_energy, arrest_length
@@ -162,6 +162,29 @@ def test_weak_adhesion_leaves_the_beam_free_and_straight():
     assert end_state(PAPER, laws, end.deflection) is EndState.FREE
     assert crack_length(PAPER, laws, end.deflection) == PAPER.length
     assert_allclose(end.deflection[:, 0], 0, atol=1e-6 * PAPER.gap)
+
+
+def rough_laws(seed, strength=1.0):
+    """Laws on surfaces with an rms of 40 nm: places d_max that differ by tens of lengths 1/a_left, and weak forces."""
+    rng = np.random.default_rng(seed)
+    f_max, d_max = lognormal(rng, 3e3 * strength, 0.4, 1000), 110e-9 + 7.5e-9 * rng.standard_normal(1000)
+    return np.column_stack([f_max, d_max, np.full(1000, 1.5e9), np.full(1000, 1.9e9)])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_beam_on_very_rough_ground_ends_free_or_on_its_tip(seed):
+    end = released_beam(PAPER, rough_laws(seed), 4e-6)
+    assert end.state in (EndState.FREE, EndState.ARC)
+    assert end.equilibrium.iterations < 2000
+    assert end.crack_length > 0.99 * PAPER.length
+
+
+def test_strong_adhesion_holds_a_beam_on_very_rough_ground():
+    laws = rough_laws(0, strength=1e4)
+    end = released_beam(PAPER, laws, forcelaw.energy(laws).mean())
+    assert end.state is EndState.S_SHAPE
+    starts = [released_crack(PAPER, laws, start) for start in (100e-6, 150e-6)]
+    assert_allclose(starts, end.crack_length, rtol=1e-6)
 
 
 def test_end_states_have_names():

@@ -12,6 +12,9 @@ from stiction.beam.equilibrium import Equilibrium, distances, equilibrate
 
 #: Crack length under the artificial load, relative to the one that Eq. (13) predicts from the mean adhesion energy.
 START = 1 / 3
+#: Deepest start of any point below its d_max, in lengths 1/a_left. There a law is stiffer by e² per length, and beyond 18
+#: the linear system loses all other stiffness to rounding. Points on the surfaces of the paper start within 14.
+PRESSED = -np.log(np.finfo(float).eps) / 2
 
 
 class EndState(IntEnum):
@@ -56,10 +59,18 @@ def s_shape(beam: Beam, depth: float, crack: float) -> np.ndarray:
     return depth * np.stack([s**2 * (6 - 8 * s + 3 * s**2), 12 * s * (1 - s) ** 2 / crack], axis=-1)
 
 
+def _touching(laws):
+    """Distance at which a flat beam starts [m]: f = 0 for the mean law, or farther where that presses some law too far.
+
+    Laws of rough surfaces differ in d_max by many lengths 1/a, over each of which the repulsion grows by e².
+    """
+    _, d_max, a_left, _ = laws.T
+    return max(np.mean(d_max - np.log(2) / a_left), np.max(d_max - PRESSED / a_left))
+
+
 def _release_from(beam, laws, crack):
     """Press a beam down to a crack length [m], then remove the load; returns the equilibrium."""
-    rest = np.mean(laws[:, 1] - np.log(2) / laws[:, 2])  # f(rest) = 0 for the mean law
-    start = s_shape(beam, beam.gap - rest, crack)
+    start = s_shape(beam, beam.gap - _touching(laws), crack)
     held = equilibrate(beam, laws, start, holding_load(beam, crack))
     return equilibrate(beam, laws, held.deflection)
 
