@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -263,6 +264,24 @@ def test_moments_without_a_density_are_refused_unless_the_heights_are_measured(t
     assert line.startswith("surfaces.Etched.heights is 'moments', but no maximum-entropy density has moments near the")
     assert line.endswith("of dirt.gwy, must be measured")
     assert problems(configured(path, heights="measured")) == ()
+
+
+@pytest.mark.filterwarnings("ignore:surface Etched")
+@pytest.mark.parametrize("share", [0.5, 0.9])
+def test_scans_of_two_heights_are_refused_before_a_run_and_never_in_it(tmp_path, share):
+    (drawn,) = published("B2", SIDE, 1)
+    steps = np.sign(drawn.heights - np.quantile(drawn.heights, share))
+    refused = []
+    for k, roughness in enumerate((0, 0.1, 0.3)):
+        z = 5e-9 * (steps + roughness * drawn.heights / drawn.heights.std())
+        path = write(tmp_path / f"{k}.gwy", z, drawn.size)
+        found = problems(configured(path))
+        refused.append(any("are those of two heights, which no maximum-entropy density describes" in f for f in found))
+        if not refused[-1]:
+            read = scan.layout(ScanFile(replace(drawn, heights=z), "Height", "nm", ()))
+            estimated = stage_estimate.compute([read], "Etched", stage_estimate.Settings(1, estimate.Settings(), 8))
+            heights.compute(estimated, heights.Settings("Etched", "moments"))
+    assert refused == [True, True, False]
 
 
 #: Wrong keys of measured surfaces: keys, section of the surface, beginning of the only line.

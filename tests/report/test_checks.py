@@ -5,12 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from numpy.testing import assert_allclose
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.equilibrium import ROUNDING, TOLERANCE
+from stiction.contact.meniscus import flooded_energy
+from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.report import checks
 from stiction.stages import forces as stage_forces
 from stiction.stages import heights
+from stiction.stages.curves import Water
 from stiction.streams import stream
 
 BEAM = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200)
@@ -119,6 +123,19 @@ def test_one_impossible_sample_fails(wrong):
     found = checks.vectors_are_possible("b", forces(9, **wrong))
     assert not found.passed
     assert "1 of 400 samples" in found.message
+
+
+@pytest.mark.parametrize(("hamaker_constant", "solids"), [(0.0, 0.0), (10e-21, 10e-21 / (16 * np.pi))])
+def test_no_sample_may_have_more_energy_than_flooded_flats_and_solids_in_contact(hamaker_constant, solids):
+    flooded = checks.Flooded(Water(300.0, (0.0, 0.0)), hamaker_constant)
+    spacing = DugdaleAttraction(1e-20).equilibrium_distance
+    bound = flooded_energy(300.0) + solids / spacing**2
+    assert_allclose([flooded.energy(0.44), flooded.energy(0.9)], bound, rtol=1e-9)
+    below, above = (forces(1e3 * bound * factor, scatter=0) for factor in (0.99, 1.01))
+    assert checks.energies_are_bounded("b", below, flooded.energy(0.44)).passed
+    assert not checks.energies_are_bounded("b", above, flooded.energy(0.44)).passed
+    one = forces(6.0, adhesion_energy=1.01 * bound)  # a single sample among 400
+    assert not checks.energies_are_bounded("b", one, flooded.energy(0.44)).passed
 
 
 def test_chaos_model_may_deviate_by_its_tolerance_and_no_more():

@@ -12,8 +12,8 @@ from stiction.beam.equilibrium import Equilibrium, distances, equilibrate
 
 #: Crack length under the artificial load, relative to the one that Eq. (13) predicts from the mean adhesion energy.
 START = 1 / 3
-#: Deepest start of any point below its d_max, in lengths 1/a_left. There a law is stiffer by e² per length, and beyond 18
-#: the linear system loses all other stiffness to rounding. Points on the surfaces of the paper start within 14.
+#: Deepest start of any point below its d_max, in lengths 1/a_left. Each makes a law stiffer by e², and beyond 18 the
+#: linear system loses all other stiffness to rounding. Points on the surfaces of the paper start within 14.
 PRESSED = -np.log(np.finfo(float).eps) / 2
 
 

@@ -22,7 +22,9 @@ from stiction.beam.equilibrium import allowed_imbalance
 from stiction.beam.foundation import ACCURACY
 from stiction.config.cases import case_id
 from stiction.config.units import typed
+from stiction.contact.bounds import flooded_law
 from stiction.contact.forcelaw import admissible, coefficients, energy
+from stiction.contact.meniscus import film
 from stiction.errors import NotConverged
 from stiction.estimates import jackknife, mean_with_error
 from stiction.models import MOMENT_KEYS, SURFACE_MODELS, surface_model
@@ -33,6 +35,7 @@ from stiction.report.tables_surfaces import surface_statistics
 from stiction.run.atomic import save_text
 from stiction.stages import forces as stage_forces
 from stiction.stages.cantilevers import Cantilevers, StripLength, cantilever, sections
+from stiction.stages.curves import Water
 from stiction.stages.heights import measured_moments, substitution
 from stiction.stages.parameters import misfits
 from stiction.stages.releases import stuck_energies, stuck_lengths
@@ -70,6 +73,19 @@ class Check:
     case: str  #: surface, or pair with model and humidity
     passed: bool
     message: str  #: sentence with the numbers
+
+
+@dataclass(frozen=True)
+class Flooded:
+    """Flats of the solids of a pair, in contact under water."""
+
+    water: Water
+    hamaker_constant: float  #: of both solids, 0 without van der Waals forces [J]
+
+    def energy(self, humidity: float) -> float:
+        """Their adhesion energy, which no surfaces exceed [J m⁻²]."""
+        layer = film(humidity, self.water.temperature, self.water.contact_angles)
+        return flooded_law(layer, self.hamaker_constant)[0]
 
 
 def _energy(forces):
@@ -156,6 +172,13 @@ def vectors_are_possible(case: str, forces: xr.Dataset) -> Check:
     good = (e > 0) & (f_max > 0) & (f_max <= limit) & (d_limit < d_max)
     message = f"{np.sum(~good)} of {len(good)} samples violate a constraint"
     return Check("v obeys its constraints", case, bool(good.all()), message)
+
+
+def energies_are_bounded(case: str, forces: xr.Dataset, bound: float) -> Check:
+    """No sample has more energy than flooded flats in contact, ``bound`` [J m⁻²] of `stiction.contact.bounds`."""
+    largest = float(_energy(forces).max())
+    message = f"the largest adhesion energy is {largest:.3g} mJ/m², flooded flats have {TO_MJ * bound:.3g} mJ/m²"
+    return Check("energies are below those of flooded flats", case, bool(largest <= TO_MJ * bound), message)
 
 
 def chaos_reproduces_input(case: str, chaos: xr.Dataset, samples: int) -> Check:
@@ -319,11 +342,22 @@ def of_identifications(identifications: Mapping[str, xr.Dataset]) -> Iterator[Ch
         yield from identification_meets_targets(surface, identification)
 
 
-def of_force_laws(forces: Mapping[Case, xr.Dataset], chaoses: Mapping[Case, xr.Dataset]) -> Iterator[Check]:
-    """All checks of single cases: samples, chaos model and rejection; dicts of datasets by (pair, humidity, model)."""
+def of_force_laws(
+    forces: Mapping[Case, xr.Dataset], chaoses: Mapping[Case, xr.Dataset], flooded: Mapping[str, Flooded]
+) -> Iterator[Check]:
+    """All checks of single cases: samples, chaos model and rejection.
+
+    Parameters
+    ----------
+    forces, chaoses : dict
+        (pair, humidity, model) to the datasets of stages forces and chaos.
+    flooded : dict
+        Pair to what bounds its energies.
+    """
     for key, samples in forces.items():
         case, chaos = _case(*key), chaoses[key]
         yield vectors_are_possible(case, samples)
+        yield energies_are_bounded(case, samples, flooded[key[0]].energy(key[1]))
         yield chaos_reproduces_input(case, chaos, samples.sizes["sample"])
         yield few_draws_rejected(case, chaos, samples, REJECTED if key[2] == "NG" else 1.0)
 
@@ -435,12 +469,13 @@ def _checked(data, _at, settings):
     beams = {pair: cantilever(nominal, pair) for pair in settings["pairs"]}
     strip = typed(StripLength, settings["sampling"]).strip_length
     defects = {name: defect(spectrum) for name, spectrum in data["spectrum"].items()}
+    flooded = {pair: typed(Flooded, solids) for pair, solids in settings["flooded"].items()}
     resampled = {(*case, "NG"): study for case, study in data["resampling"].items()}
     return table(
         chain(
             of_surfaces(data["heights"], data["character"], settings["targets"], defects),
             of_identifications(data["identification"]),
-            of_force_laws(data["forces"], data["chaos"]),
+            of_force_laws(data["forces"], data["chaos"], flooded),
             of_trends(data["forces"], settings["skewed"]),
             of_beams(data["beams"], data["forces"], beams, strip, settings["on_mesh_of_paper"]),
             of_resampling(data["beams"], resampled),
@@ -491,6 +526,10 @@ STAGES = (
             {
                 "targets": {name: chosen(plan.config["surfaces"][name], MOMENT_KEYS) for name in plan.described},
                 "skewed": _skewed(plan),
+                "flooded": {
+                    pair: {"water": plan.water(pair), "hamaker_constant_zJ": plan.hamaker_constant(pair)}
+                    for pair in plan.pairs
+                },
                 "sampling": select(StripLength, plan.config["sampling"]),
                 "on_mesh_of_paper": [case for case in plan.cases if plan.has_mesh_of_paper(case)],
             }
