@@ -94,6 +94,72 @@ def test_the_page_of_a_beam_says_which_lengths_come_free():
     assert "tip" not in pages.safe_sentence(0.67, safe("bridge"))
 
 
+def length_to_build(page):
+    """Length in the verdict of a page, or in a sentence of this form [µm]."""
+    return int(re.search(r"Build it no longer than (\d+) µm", page)[1])
+
+
+def test_the_length_to_build_is_the_least_less_twice_the_uncertainty():
+    found = {0.44: safe(longest=500e-6), 0.67: safe(longest=600e-6)}
+    least = 1e6 * min(float(dataset.safe_length.sel(share=1e-3).min()) for dataset in found.values())
+    assert length_to_build(pages.build_sentence(found, {})) == int(least)
+    assert "because none is stated" in pages.build_sentence(found, {})
+    budgets = {(0.44,): budget_dataset(3.0), (0.44, "tip"): budget_dataset(0.5, TIPS)}
+    budgets[0.67, "tip"] = budget_dataset(2.0, TIPS)
+    inputs = budget_dataset(2.0, TIPS)
+    total = np.sqrt(inputs.slope.values @ inputs.covariance.values @ inputs.slope.values)
+    sentence = pages.build_sentence(found, budgets)
+    assert length_to_build(sentence) == int(least * (1 - 2 * total))
+    assert "at most 1 in 1000 sticks at relative humidities of 0.44, 0.67 (95 % confidence" in sentence
+    assert f"is reduced by {200 * total:.2g} %" in sentence
+
+
+def test_budgets_of_bridges_are_not_those_of_tips():
+    found = {0.67: safe("bridge")}
+    budgets = {(0.67,): budget_dataset(1.0), (0.67, "tip"): budget_dataset(5.0, TIPS)}
+    assert pages.build_sentence(found, budgets) == pages.build_sentence(found, {(0.67,): budget_dataset(1.0)})
+    assert length_to_build(pages.build_sentence(found, budgets)) < length_to_build(pages.build_sentence(found, {}))
+
+
+def test_no_length_is_stated_if_it_is_too_uncertain():
+    assert pages.build_sentence({0.67: safe("bridge")}, {(0.67,): budget_dataset(20.0)}).startswith("No length")
+
+
+def test_the_verdict_compares_the_restoring_force_with_what_is_needed():
+    found = STOPPERS["S1"]
+    weaker = found.safe_force.sel(part="safe", share=1e-2).max()
+    steeper = found.assign(safe_force_along=found.safe_force_along * 100)
+    strong = {"restoring_force": weaker * 1.001}
+    assert pages.verdict(found).startswith("The restoring force of 18.99 µN does not suffice")
+    assert "suffices at all relative humidities from 0.4 to 0.9" in pages.verdict(found.assign(strong))
+    assert "suffices at relative humidities of 0.44, 0.67, but" in pages.verdict(steeper.assign(strong))
+    assert "at most 1 in 100 sticks" in pages.verdict(found)
+    few = found.assign(safe_force=found.safe_force * np.nan)
+    assert pages.verdict(few).startswith("There are too few patches")
+
+
+def test_a_page_explains_the_terms_that_it_uses_and_no_others():
+    silent = {("R1", 0.67, "middle"): []}
+    bridge = pages.of_beam("R1", CANTILEVER | {"kind": "bridge"}, {0.67: safe("bridge")}, {}, {}, silent).html
+    assert "<dt>Held by the middle</dt>" in bridge
+    assert "Held by the tip" not in bridge
+    assert "Choice of the model" not in bridge
+    silent = {("C1", 0.67, shape): [] for shape in SHAPES}
+    budgets = {(0.67,): budget_dataset()}
+    beam = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, budgets, silent).html
+    assert "<dt>Held by the tip</dt>" in beam
+    assert "Held by the middle" not in beam
+    assert "<dt>Van der Waals in dry gaps, or none</dt>" in beam
+    assert "<dt>Grid</dt>" not in beam
+
+
+def test_surfaces_are_described_by_their_numbers_or_their_scans():
+    assert pages.described({"rms_nm": 2, "psd": "identified", "summit_density_per_um2": 40}) == (
+        "rms 2 nm, density of summits 40 per µm²"
+    )
+    assert pages.described({"scans": {"files": ["a.gwy", "b.gwy"]}}) == "described by 2 scans"
+
+
 def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():
     silent = {("C1", 0.67, shape): [] for shape in SHAPES}
     assert "<dt>Bound</dt>" in pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).html
@@ -139,8 +205,8 @@ def test_a_long_table_is_folded():
 
 
 def test_text_is_escaped():
-    html = Page("A < B", {"x & y": "<1"}, ["a < b"], [Section("s > t", ["p & q"])], words={"<w>": "&"}).html
+    html = Page("A < B", {"x & y": "<1"}, ["a < b", "c < d"], [Section("s > t", ["p & q"])], words={"<w>": "&"}).html
     assert "<title>A &lt; B</title>" in html
     assert "x &amp; y" in html
-    assert "<p>a &lt; b</p>" in html
+    assert "<p><strong>a &lt; b</strong></p>\n<p>c &lt; d</p>" in html
     assert "<w>" not in html

@@ -52,6 +52,7 @@ SHEETS = {
     "without density": {"feasible": np.full(3, np.nan), "goodness_chi2": np.nan, "goodness_p": np.nan},
     "not square": {name: np.full(2, np.nan) for name in ("summits", "summit_errors", "model_summits")}
     | {"points": np.array([250, 125]), "pixel": np.array([20e-9, 40e-9])},
+    "many digits": {"covariance": 1e-10 * np.eye(3)},
     "too few summits": {"summits": np.full(2, np.nan)},
 }
 #: Flag of stage spectrum.
@@ -74,7 +75,7 @@ def panel(figure, title):
 
 
 #: Sheets with most text; the others are slow tests.
-FULL = {"long flags", "not square"}
+FULL = {"long flags", "not square", "many digits"}
 ROWS = [pytest.param(name, marks=[pytest.mark.slow] * (name not in FULL)) for name in SHEETS]
 
 

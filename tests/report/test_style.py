@@ -430,6 +430,14 @@ def test_share_of_s_shapes_is_shown_if_below_one(drawn):
     assert not right.texts
 
 
+def test_beams_without_an_s_shape_get_a_marker_on_the_line_of_the_longest_crack(drawn):
+    left = drawn["15"].axes[0]
+    none = next(text for text in left.texts if text.get_text() == "0 %")
+    at_label = [line for line in left.lines if line.get_marker() == "s" and list(line.get_xdata()) == [none.xy[0]]]
+    (longest,) = {line.get_ydata()[0] for line in left.lines if line.get_label() == "crack as long as the beam"}
+    assert [line.get_ydata()[0] for line in at_label] == [longest]
+
+
 def test_band_is_that_of_the_fine_humidity_axis(drawn, pairs):
     left, right = drawn["15"].axes[:2]
     for axes, model, place in ((left, "G", 0), (left, "NG", 1), (right, "NG", 0)):

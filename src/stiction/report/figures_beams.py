@@ -130,7 +130,7 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
             for model in models:
                 _released(panel, released, model)
                 if below is None:
-                    _labels(panel, released, model, weakest)
+                    _labels(panel, released, model, TO_MJ * weakest)
         row[0].margins(x=0.06)
         humidity_axis(row[0])
         if below is not None:
@@ -253,12 +253,19 @@ def _energies(beams):
 
 
 def _labels(panel, released, model, weakest):
-    """Annotate shares of S-shaped beams below 100 %; a share of 0 %, at the energy of the longest crack."""
+    """Annotate shares of S-shaped beams below 100 %.
+
+    Beams of which none is S-shaped get a smaller marker at the energy of the longest crack [mJ m⁻²].
+    """
     style = {"fontsize": 6, "ha": "center", "path_effects": OUTLINED, "zorder": 6}
     for humidity, share in _shares(released, model):
         if share < 1:
             energies = _energies(released[humidity, model])
-            height = energies.mean() if len(energies) else TO_MJ * weakest
+            height = energies.mean() if len(energies) else weakest
+            if not len(energies):
+                marker, colour = _MARKERS[model]
+                small = {"markersize": 3, "color": colour, "zorder": 3, "transform": _aside(panel, -_ASIDE)}
+                panel.plot(humidity, height, marker, **small)
             panel.annotate(_percent(share), (humidity, height), (-_ASIDE, 4), textcoords="offset points", **style)
 
 

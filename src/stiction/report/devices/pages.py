@@ -10,9 +10,11 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
+from stiction import __version__
 from stiction.config.cases import case_id
 from stiction.designs import device_warnings, pair_warnings
-from stiction.designs.budget import budgets_of
+from stiction.designs.budget import budget_of, budgets_of
+from stiction.designs.sticking import EITHER, MIDDLE, S_SHAPE
 from stiction.designs.stoppers import in_any_air, is_at_an_end, shares_stuck
 from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.names import by_case
@@ -25,6 +27,7 @@ from stiction.run.atomic import save_text
 _PAGE = """<!DOCTYPE html>
 <html lang="en">
 <meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title>
 <style>
 body {{ font: 15px/1.45 sans-serif; max-width: 62em; margin: 1.5em auto; padding: 0 1em }}
@@ -34,11 +37,14 @@ td, th {{ padding: 2px 12px; text-align: right; border-bottom: 1px solid #ddd }}
 td:first-child, th:first-child {{ text-align: left }}
 td {{ white-space: nowrap }} img {{ max-width: 100% }} .table {{ overflow-x: auto }}
 .answer {{ font-size: 1.1em; border-left: 4px solid #0072B2; padding: .2em 1em }}
+.made {{ font-size: .85em; color: #555; margin-top: 2em }}
 .warning {{ border-left: 4px solid #D55E00; padding: .2em 1em }}
 dt {{ font-weight: bold }} dd {{ margin: 0 0 .5em 1.5em }}
 </style>
 <h1>{title}</h1>
 {body}
+<p class="made">stiction {version}. Date, commit, libraries and configuration of every run are in
+<code>results/provenance.json</code>; this page has no date, so that equal results give equal pages.</p>
 </html>
 """
 #: Pixels of a page for one inch of a figure, and most rows of a table that is not folded.
@@ -61,7 +67,7 @@ class Page:
 
     title: str
     facts: Mapping[str, str]  #: dimensions and conditions, by name
-    answer: Sequence[str]  #: sentences at the top
+    answer: Sequence[str]  #: sentences at the top, the first of which is the verdict
     sections: Sequence[Section] = ()
     warnings: Sequence[str] = ()  #: where the model ends for this device
     words: Mapping[str, str] = field(default_factory=dict)  #: terms and what they mean
@@ -69,10 +75,16 @@ class Page:
     @property
     def html(self) -> str:
         """The page as one file: figures are part of it."""
-        parts = [_block("answer", self.answer), _facts(self.facts), *map(_section, self.sections)]
+        parts = [_answer(self.answer), _facts(self.facts), *map(_section, self.sections)]
         parts += ["<h2>Limits of this prediction</h2>", _block("warning", [*self.warnings, NOT_MODELLED])]
         parts += ["<h2>Terms</h2>", _words(self.words)]
-        return _PAGE.format(title=escape(self.title), body="\n".join(parts))
+        return _PAGE.format(title=escape(self.title), body="\n".join(parts), version=__version__)
+
+
+def _answer(sentences):
+    """The verdict in bold, and what it rests on."""
+    verdict, *reasons = sentences
+    return f'<div class="answer"><p><strong>{escape(verdict)}</strong></p>\n{_paragraphs(reasons)}</div>'
 
 
 def _block(kind, sentences):
@@ -117,6 +129,14 @@ _FACTS = {
     "contact_um": ("sides of the area in contact", "µm"),
     "restoring_force_uN": ("restoring force", "µN"),
 }
+#: Keys of a surface, what they are called and their unit.
+_OF_SURFACES = {
+    "rms_nm": ("rms", " nm"),
+    "skewness": ("skewness", ""),
+    "kurtosis": ("kurtosis", ""),
+    "mean_summit_radius_um": ("mean radius of summits", " µm"),
+    "summit_density_per_um2": ("density of summits", " per µm²"),
+}
 _OF_BEAMS = {
     "Safe length": (
         "Largest length at which at most the stated share sticks, with a confidence of 95 %. The confidence is that of "
@@ -124,12 +144,6 @@ _OF_BEAMS = {
         "estimate (se, surfaces), the uncertainty due to the measurements further below."
     ),
     "Estimate": "Length at which exactly the stated share sticks, as well as it is known; it is no bound.",
-    "Held by the beam": "The beam touches down behind an open crack and stays flat there (S-shape).",
-    "Held by the middle": (
-        "Both cracks of a bridge have met, and a few micrometres of its middle hold it, where it has no slope. Bridges "
-        "much shorter than two cracks are held in this way."
-    ),
-    "Held by the tip": "Only the free end touches and holds the beam (arc). Shorter beams can be held in this way.",
     "Sampled, fitted, extrapolated": (
         "What a length rests on: simulated beams alone; a line through the shortest 5 % of them, within what many more "
         "beams, tips and bridges on the surfaces of the paper's pair b confirmed; or that line beyond it."
@@ -138,6 +152,23 @@ _OF_BEAMS = {
         "Of a cantilever: the length that sticks where water fills all gaps. Of a bridge: the length below which no "
         "surfaces hold it at this humidity, not even flooded flats in contact."
     ),
+}
+#: The same for every shape in which a device sticks.
+_OF_SHAPES = {
+    S_SHAPE: {
+        "Held by the beam": "The beam touches down behind an open crack and stays flat there (S-shape).",
+    },
+    MIDDLE: {
+        "Held by the middle": (
+            "Both cracks of a bridge have met, and a few micrometres of its middle hold it, where it has no slope. "
+            "Bridges much shorter than two cracks are held in this way."
+        ),
+    },
+    EITHER: {
+        "Held by the tip": (
+            "Only the free end touches and holds the beam (arc). Shorter beams can be held in this way."
+        ),
+    },
 }
 _OF_CHARTS = {
     "Finite elements, power law": (
@@ -162,10 +193,17 @@ _OF_BUDGETS = {
     "Effect": "Standard uncertainty of the result due to one measurement, if all others were exact.",
     "Remaining": "Standard uncertainty of the result if this measurement were exact.",
     "Scatter between devices": "How much equal devices differ. A better measurement does not reduce it.",
-    "Choice of the model": "What another assumption of the theory would change. It has no distribution.",
-    "Van der Waals in dry gaps, or none": "The force between the solids as through air instead of water, or left out.",
-    "Spectrum from summits": "Spectrum chosen for the measured summits, instead of the published one.",
-    "Grid": "Distance of the points at which the surfaces are drawn; summits are found on these points.",
+}
+#: Terms of other choices of the model, by the start of their names; all have the first.
+_OF_CHOICES = {
+    "": ("Choice of the model", "What another assumption of the theory would change. It has no distribution."),
+    "van_der_waals": (
+        "Van der Waals in dry gaps, or none",
+        "The force between the solids as through air instead of water, or left out.",
+    ),
+    "psd": ("Spectrum from summits", "Spectrum chosen for the measured summits, instead of the published one."),
+    "spacing": ("Grid", "Distance of the points at which the surfaces are drawn; summits are found on these points."),
+    "every": ("Grid", "Distance of the points at which the surfaces are drawn; summits are found on these points."),
 }
 
 
@@ -199,9 +237,12 @@ def of_beam(
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets)
-    answer = [safe_sentence(humidity, dataset) for humidity, dataset in found.items()]
+    answer = [build_sentence(found, budgets)]
+    answer += [safe_sentence(humidity, dataset) for humidity, dataset in found.items()]
     listed = [f"({k}) {sentence}" for k, sentence in enumerate(pair_warnings.numbered(warnings)[0], 1)]
-    words = _OF_BEAMS | (_OF_CHARTS if charts else {}) | (_OF_BUDGETS if budgets else {})
+    shapes = next(iter(found.values()))["shape"].values
+    held = {term: text for shape in shapes for term, text in _OF_SHAPES[str(shape)].items()}
+    words = held | _OF_BEAMS | (_OF_CHARTS if charts else {}) | _words_of_budgets(budgets)
     return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
 
 
@@ -216,10 +257,18 @@ def of_stopper(
     table = tables_budget.stoppers({name: found}, {name: []}).cells.drop(columns=["device"])
     sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: found}, {}))]
     sections += _sure(name, budgets)
-    answer = [*(stuck_sentence(*row, force=float(found.restoring_force)) for row in shares_stuck(found))]
+    answer = [verdict(found)]
+    answer += [stuck_sentence(*row, force=float(found.restoring_force)) for row in shares_stuck(found)]
     answer += [*safe_force_sentences(found), worst_sentence(found)]
-    words = _OF_STOPPERS | (_OF_BUDGETS if budgets else {})
+    words = _OF_STOPPERS | _words_of_budgets(budgets)
     return Page(_title(name, section), _facts_of(section), answer, sections, warnings, words)
+
+
+def _words_of_budgets(budgets):
+    """Terms that the budgets use."""
+    choices = [str(name) for budget in budgets.values() for name in budget.choice.values]
+    used = dict(words for start, words in _OF_CHOICES.items() if any(name.startswith(start) for name in choices))
+    return _OF_BUDGETS | used if budgets else {}
 
 
 def _title(name, section):
@@ -228,7 +277,7 @@ def _title(name, section):
 
 def _facts_of(section):
     """Dimensions and conditions of a device, by name."""
-    found = {"surfaces": f"pair {section['pair']}"}
+    found = {"surfaces": f"pair {section['pair']}"} | section.get("surfaces", {})
     for key, (name, unit) in _FACTS.items():
         if key in section:
             values = section[key] if isinstance(section[key], list) else [section[key]]
@@ -236,9 +285,92 @@ def _facts_of(section):
     return found | {"relative humidities": ", ".join(f"{humidity:g}" for humidity in section["humidities"])}
 
 
+def described(surface: Mapping) -> str:
+    """A surface of the configuration by its numbers, or by its scans.
+
+    Examples
+    --------
+    >>> described({"rms_nm": 3.4, "skewness": -0.76, "kurtosis": 3.9})
+    'rms 3.4 nm, skewness -0.76, kurtosis 3.9'
+    """
+    stated = [f"{name} {surface[key]:g}{unit}" for key, (name, unit) in _OF_SURFACES.items() if key in surface]
+    if "scans" in surface:
+        files = len(surface["scans"]["files"])
+        stated.append(f"described by {files} {'scan' if files == 1 else 'scans'}")
+    return ", ".join(stated)
+
+
+def build_sentence(found: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> str:
+    """The length to build for all humidities of a device, for the middle one of the shares.
+
+    It is the least safe length, less twice the largest uncertainty of what holds the shortest devices, if any is known.
+
+    Parameters
+    ----------
+    found, budgets : dict
+        As in `of_beam`.
+    """
+    least = min(_safe(dataset).item() for dataset in found.values())
+    total = max((budget_of(budget).total for key, budget in _of_shortest(found, budgets).items()), default=0.0)
+    length = (1 - 2 * total) * least / UM
+    if length <= 0:
+        return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
+    sentence = (
+        f"Build it no longer than {np.floor(length):.0f} µm: then at most 1 in {1 / _chosen(_any(found)):g} sticks at "
+        f"relative humidities of {', '.join(f'{humidity:g}' for humidity in found)} (95 % confidence, given the drawn "
+        "surfaces)."
+    )
+    if total == 0:
+        return f"{sentence} No uncertainty of the measurements is subtracted, because none is stated."
+    return (
+        f"{sentence} The shortest safe length, {least / UM:.0f} µm, is reduced by {200 * total:.2g} %, twice the "
+        "uncertainty due to the measurements."
+    )
+
+
+def _any(found):
+    """One of the datasets of a device, which have the same shares and shapes."""
+    return next(iter(found.values()))
+
+
+def _safe(found):
+    """Safe length for the chosen share, however the device is held [m]."""
+    return found.safe_length.sel(share=_chosen(found)).min()
+
+
+def _chosen(found):
+    """The share of stuck devices for which sentences state lengths: the middle one [-]."""
+    return float(found.share[found.sizes["share"] // 2])
+
+
+def _of_shortest(found, budgets):
+    """Budgets of what holds the shortest devices: of tips, if there are tips."""
+    of_tips = EITHER in _any(found)["shape"].values
+    return {key: budget for key, budget in budgets.items() if ("tip" in key) == of_tips}
+
+
+def verdict(found: xr.Dataset) -> str:
+    """Whether the restoring force of a stopper suffices, for the smallest share that its patches can bound."""
+    force, (low, high) = float(found.restoring_force), _ends(found)
+    stated, any_air = found.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(found)[1]
+    known = [float(share) for share in found.share if np.isfinite(stated.sel(share=share))]
+    if not known:
+        return "There are too few patches to say whether the restoring force suffices."
+    share = min(known)
+    at_these, anywhere = (float(needed.sel(share=share)) for needed in (stated, any_air))
+    head = f"The restoring force of {force / UN:g} µN"
+    tail = f"at most 1 in {1 / share:g} sticks (95 % confidence, given the drawn surfaces)."
+    humidities = ", ".join(f"{humidity:g}" for humidity in found.humidity.values)
+    if force < at_these:
+        return f"{head} does not suffice at relative humidities of {humidities}: a larger one is needed if {tail}"
+    if force < anywhere:
+        return f"{head} suffices at relative humidities of {humidities}, but not at all from {low} to {high}: {tail}"
+    return f"{head} suffices at all relative humidities from {low} to {high}: {tail}"
+
+
 def safe_sentence(humidity: float, found: xr.Dataset) -> str:
     """The safe lengths of a device at one humidity in words, for the middle one of the shares."""
-    share = float(found.share[found.sizes["share"] // 2])
+    share = _chosen(found)
     lengths = found.safe_length.sel(share=share) / UM
     shortest, longest = float(lengths.min()), float(lengths.max())
     air, but = f"At a relative humidity of {humidity:g}", f"at most 1 in {1 / share:g}"
@@ -338,6 +470,15 @@ def _inputs(plan, at):
     }
 
 
+def _settings(plan, at):
+    """Section of a device, and its surfaces in words."""
+    section = plan.config["devices"][at.device]
+    pair = plan.config["pairs"][section["pair"]]
+    names = {f"surface of the {part}": pair[part] for part in ("beam", "substrate")}
+    surfaces = {part: f"{name}: {described(plan.config['surfaces'][name])}" for part, name in names.items()}
+    return section | {"surfaces": surfaces}
+
+
 def _page(data, at, settings):
     """Page of a device."""
     warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
@@ -352,7 +493,7 @@ STAGES = (
         name="device_page",
         files={"html": "devices/{device}.html"},
         inputs=_inputs,
-        settings=lambda plan, at: plan.config["devices"][at.device],
+        settings=_settings,
         compute=_page,
         save=lambda page, paths: save_text(page.html, paths["html"]),
         shown=Shown(file="html", title="{device}: what to build", category="Devices"),

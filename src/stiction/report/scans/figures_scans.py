@@ -22,7 +22,7 @@ _SLOW = {"color": "0.5", "linewidth": 0.5}
 #: Colours of the map saturate at this number of rms; decades of densities below their largest value, factor above it.
 _SATURATED, _DECADES, _HEADROOM = 3, 6, 60
 #: Characters of a line of sentences, height of a line and of the panels with their title [in].
-_LINE, _LINE_HEIGHT, _PANELS = 150, 0.125, 5.8
+_LINE, _LINE_HEIGHT, _PANELS = 150, 0.125, 5.92
 
 
 @styled
@@ -67,7 +67,7 @@ def _title(name, estimate):
     sector_error = np.sqrt(2) * sectors * float(estimate.sector_errors.max())
     numbers = (
         f"rms {with_error(rms, rms * errors[0])} nm, skewness {with_error(skewness, errors[1])}, "
-        f"kurtosis {with_error(kurtosis, errors[2])}; "
+        f"kurtosis {with_error(kurtosis, errors[2])}\n"
         f"errors by tiles over closed form {tiles:.2g}, "
         f"largest over smallest sector {with_error(sectors, sector_error)}"
     )
