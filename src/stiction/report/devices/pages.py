@@ -10,7 +10,6 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from stiction import __version__
 from stiction.config.cases import case_id
 from stiction.designs import device_warnings, pair_warnings
 from stiction.designs.budget import budget_of, budgets_of
@@ -43,7 +42,7 @@ dt {{ font-weight: bold }} dd {{ margin: 0 0 .5em 1.5em }}
 </style>
 <h1>{title}</h1>
 {body}
-<p class="made">stiction {version}. Date, commit, libraries and configuration of every run are in
+<p class="made">Date, commit, libraries and configuration of every run are in
 <code>results/provenance.json</code>; this page has no date, so that equal results give equal pages.</p>
 </html>
 """
@@ -78,7 +77,7 @@ class Page:
         parts = [_answer(self.answer), _facts(self.facts), *map(_section, self.sections)]
         parts += ["<h2>Limits of this prediction</h2>", _block("warning", [*self.warnings, NOT_MODELLED])]
         parts += ["<h2>Terms</h2>", _words(self.words)]
-        return _PAGE.format(title=escape(self.title), body="\n".join(parts), version=__version__)
+        return _PAGE.format(title=escape(self.title), body="\n".join(parts))
 
 
 def _answer(sentences):
