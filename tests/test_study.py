@@ -12,7 +12,7 @@ from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
-from stiction.stages import chaos, heights, identification, pairs, spectrum
+from stiction.stages import chaos, heights, identification, pairs, releases, spectrum
 from stiction.stages.parameters import spectrum_of
 from stiction.study import PairStudy
 from stiction.variants import beams as variant_beams
@@ -122,6 +122,15 @@ def test_what_a_valid_configuration_allows_can_be_computed(extreme):
     assert np.all(found.energies(HUMIDITY) > 0)
     lengths = found.beams(HUMIDITY)["crack_length"]
     assert np.all((lengths > 0) & (lengths <= found.beam.length))
+
+
+@pytest.mark.parametrize("rms", [10, 40])
+def test_surfaces_on_which_no_adhesion_is_left_are_accepted_and_do_not_hold_a_beam(rms):
+    few = {"run": {"pairs": ["b"]}, "figures": {"humidity": 0.67}, "contact": {"samples": 200}, "chaos": {"order": 4}}
+    config = load(few, {"surfaces": {"B2": {"rms_nm": rms}}, "beam": {"samples": 5}})
+    beams = PairStudy.of(config, "b").beams(0.67)
+    assert not releases.ended(beams, "S-shape").any()
+    assert np.all(beams.crack_length > 0.99 * config["beam"]["length_um"] * 1e-6)
 
 
 def test_an_undefined_pair_is_reported_by_name():

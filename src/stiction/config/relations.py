@@ -509,6 +509,11 @@ def beam_is_slender(size, length):
 _SAFE = 3
 
 
+def _resist(repulsion, pull):
+    """Whether summits resist the adhesion; an estimate without attraction is of surfaces that do not stick."""
+    return repulsion > 0 and repulsion >= _SAFE * pull
+
+
 @relation(
     "run.pairs.*",
     "pairs",
@@ -540,9 +545,7 @@ def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature
         forces = _estimated(tuple(map(_summit_source, both)), asperity_between(*bodies, medium), films)
     except (ValueError, ArithmeticError):
         return "must have surfaces and a solid for which the adhesion can be estimated; some value is far out of range"
-    stuck = [
-        (at, *force) for at, force in zip(humidities, forces, strict=True) if not force[0] >= _SAFE * force[1] >= 0
-    ]
+    stuck = [(at, *force) for at, force in zip(humidities, forces, strict=True) if not _resist(*force)]
     if not stuck:
         return None
     humidity, repulsion, pull = stuck[0]
