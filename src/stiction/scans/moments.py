@@ -30,15 +30,17 @@ def powers(heights: np.ndarray) -> np.ndarray:
     return np.array([np.mean(values) for values in (z, square, square * z, square * square)])
 
 
+def central_moments(m1: np.ndarray, p2: np.ndarray, p3: np.ndarray, p4: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Central moments of orders 2, 3 and 4 from the means of z, z², z³ and z⁴ [m², m³, m⁴]."""
+    return p2 - m1**2, p3 - 3 * m1 * p2 + 2 * m1**3, p4 - 4 * m1 * p3 + 6 * m1**2 * p2 - 3 * m1**4
+
+
 def moments(powers: np.ndarray) -> np.ndarray:
     """Moments (ln rms, skewness, kurtosis) from the means of the powers of the heights, (..., 4) -> (..., 3) [-].
 
     The rms is in metres.
     """
-    m1, p2, p3, p4 = np.moveaxis(np.asarray(powers, float), -1, 0)
-    m2 = p2 - m1**2
-    m3 = p3 - 3 * m1 * p2 + 2 * m1**3
-    m4 = p4 - 4 * m1 * p3 + 6 * m1**2 * p2 - 3 * m1**4
+    m2, m3, m4 = central_moments(*np.moveaxis(np.asarray(powers, float), -1, 0))
     return np.stack([np.log(m2) / 2, m3 / m2**1.5, m4 / m2**2], axis=-1)
 
 

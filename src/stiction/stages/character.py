@@ -10,6 +10,7 @@ from stiction.estimates import jackknife
 from stiction.models import FIELD
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
+from stiction.scans.moments import central_moments
 from stiction.stages.surfaces import Sampling, Width, rough_surface
 from stiction.streams import stream
 from stiction.surface.field import RoughSurface, StripGrid, radial_periodogram
@@ -118,10 +119,8 @@ def statistics(character: xr.Dataset, units: Sequence[float] = (1, 1, 1, 1, 1)) 
     """
 
     def estimate(mean):
-        m1, m2, m3, m4, density, curvature, with_summit = mean
-        variance = m2 - m1**2
-        third = m3 - 3 * m1 * m2 + 2 * m1**3
-        fourth = m4 - 4 * m1 * m3 + 6 * m1**2 * m2 - 3 * m1**4
+        *powers, density, curvature, with_summit = mean
+        variance, third, fourth = central_moments(*powers)
         rms = np.sqrt(variance)
         radius = with_summit / curvature if with_summit else np.nan
         return np.array([rms, third / rms**3, fourth / rms**4, radius, density]) / units
