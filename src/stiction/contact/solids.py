@@ -50,33 +50,14 @@ def softer_hardness(first: Solid, second: Solid) -> float:
     return min(first.hardness, second.hardness)
 
 
-def hamaker_through(vacuum: float, medium: float) -> float:
-    r"""Hamaker constant of two equal bodies through a medium, from those of body and medium in vacuum [J].
-
-    .. math:: A_{131} = \bigl(\sqrt{A_{11}} - \sqrt{A_{33}}\bigr)^2
-
-    Source: J. N. Israelachvili, Intermolecular and Surface Forces, combining relations.
-
-    Raises
-    ------
-    ValueError
-        If the body has the smaller constant: two different bodies may then repel each other.
-
-    Examples
-    --------
-    >>> round(hamaker_through(6.5e-20, 3.7e-20) * 1e20, 2)  # silica through water [1e-20 J]
-    0.39
-    """
-    if not vacuum > medium >= 0:
-        raise ValueError(f"need a Hamaker constant above that of the medium, {medium:.3g} J, got {vacuum:.3g} J")
-    return float((np.sqrt(vacuum) - np.sqrt(medium)) ** 2)
-
-
 def hamaker_constant(first: Solid, second: Solid, medium: str) -> float:
     r"""Hamaker constant of two bodies through a medium, :math:`A_{132} = \sqrt{A_{131} A_{232}}` [J].
 
-    ASSUME: both bodies have a larger constant than the medium (`hamaker_through`); the combination is then exact in the
-    approximation of Berthelot.
+    Bodies and medium have :math:`A_{131} = \bigl(\sqrt{A_{11}} - \sqrt{A_{33}}\bigr)^2` by their constants in vacuum
+    (J. N. Israelachvili, Intermolecular and Surface Forces, combining relations).
+
+    ASSUME: both bodies have a larger constant in vacuum than the medium; otherwise they may repel each other. The
+    combination is then exact in the approximation of Berthelot.
 
     Raises
     ------
