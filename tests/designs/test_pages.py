@@ -102,14 +102,14 @@ def length_to_build(page):
 def test_the_length_to_build_is_the_least_less_twice_the_uncertainty():
     found = {0.44: safe(longest=500e-6), 0.67: safe(longest=600e-6)}
     least = 1e6 * min(float(dataset.safe_length.sel(share=1e-3).min()) for dataset in found.values())
-    assert length_to_build(pages.build_sentence(found, {})) == int(least)
+    assert length_to_build(pages.build_sentence(found, {})) == round(least)
     assert "because none is stated" in pages.build_sentence(found, {})
     budgets = {(0.44,): budget_dataset(3.0), (0.44, "tip"): budget_dataset(0.5, TIPS)}
     budgets[0.67, "tip"] = budget_dataset(2.0, TIPS)
     inputs = budget_dataset(2.0, TIPS)
     total = np.sqrt(inputs.slope.values @ inputs.covariance.values @ inputs.slope.values)
     sentence = pages.build_sentence(found, budgets)
-    assert length_to_build(sentence) == int(least * (1 - 2 * total))
+    assert length_to_build(sentence) == round(least * (1 - 2 * total))
     assert "at most 1 in 1000 sticks at relative humidities of 0.44, 0.67 (95 % confidence" in sentence
     assert f"is reduced by {200 * total:.2g} %" in sentence
 

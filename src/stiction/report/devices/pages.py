@@ -315,7 +315,7 @@ def build_sentence(found: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr
     if length <= 0:
         return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
     sentence = (
-        f"Build it no longer than {np.floor(length):.0f} µm: then at most 1 in {1 / _chosen(_any(found)):g} sticks at "
+        f"Build it no longer than {length:.0f} µm: then at most 1 in {1 / _chosen(_any(found)):g} sticks at "
         f"relative humidities of {', '.join(f'{humidity:g}' for humidity in found)} (95 % confidence, given the drawn "
         "surfaces)."
     )
