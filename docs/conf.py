@@ -31,9 +31,11 @@ autodoc_typehints = "none"
 napoleon_google_docstring = False
 napoleon_use_param = False
 napoleon_use_rtype = False
+# Attributes of dataclasses are described once, with their docstring.
+napoleon_use_ivar = True
 default_role = "py:obj"
-nitpick_ignore = [("py:class", "enum.IntEnum"), ("py:obj", "ast.dump")]
-nitpick_ignore += [("py:class", f"collections.abc.{name}") for name in ("Callable", "Sequence")]
+nitpick_ignore = [("py:class", "enum.IntEnum"), ("py:class", "callable"), ("py:obj", "ast.dump")]
+nitpick_ignore += [("py:class", f"collections.abc.{name}") for name in ("Callable", "Mapping", "Sequence")]
 # Public names are described where they are defined.
 nitpick_ignore += [("py:obj", f"stiction.{name}") for name in stiction.__all__]
 
