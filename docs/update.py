@@ -29,9 +29,9 @@ from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.contact import forcelaw
 from stiction.report.format import TO_UM, with_error
+from stiction.run.storage import load
 from stiction.stages.cantilevers import Cantilevers, StripLength, cantilever, sections
 from stiction.stages.forces import vectors
-from stiction.stages.storage import load
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "tests")]
 import quoted  # noqa: E402

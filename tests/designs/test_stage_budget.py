@@ -19,7 +19,8 @@ from stiction.devices.arcs import arc_length
 from stiction.devices.bridges import least_length, middle_zone
 from stiction.devices.budget import log_slope
 from stiction.devices.tail import fit_tail
-from stiction.stages import curves, storage
+from stiction.run import storage
+from stiction.stages import curves
 from stiction.streams import stream
 
 WATER = curves.Water(300.0)

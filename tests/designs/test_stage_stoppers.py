@@ -9,7 +9,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.designs import stoppers
 from stiction.devices.risk import samples_for
-from stiction.stages import curves, storage
+from stiction.run import storage
+from stiction.stages import curves
 
 WATER = curves.Water(300.0)
 AREA = 1.5e-6 * 6e-6

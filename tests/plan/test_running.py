@@ -8,9 +8,8 @@ import xarray as xr
 
 from stiction.plan import running
 from stiction.plan.stage import Stage
-from stiction.run import labels
+from stiction.run import labels, storage
 from stiction.run.atomic import DataError
-from stiction.stages import storage
 
 
 def dataset(value):

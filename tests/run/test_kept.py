@@ -11,11 +11,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from stiction.run import kept, labels
+from stiction.run import kept, labels, storage
 from stiction.run.atomic import DataError
 from stiction.run.logs import checksum, logged, recorded
 from stiction.run.remembered import Remembered
-from stiction.stages import storage
 
 HEIGHTS, SPECTRUM = {"rms_nm": 3.4, "kurtosis": 3.9}, {"spacing_nm": 7.5, "psd": {"floor_nm4": 0.8}}
 

@@ -14,13 +14,14 @@ from written_scans import SIDE, scans_of, write
 from stiction.analysis.shifts import ORDERS
 from stiction.errors import ScanError
 from stiction.measured import estimate, heights, scan, spectrum
+from stiction.run import storage
 from stiction.scans import estimate as evaluation
 from stiction.scans.histogram import histogram, histogram_errors
 from stiction.scans.moments import mode_covariance
 from stiction.scans.quantiles import Feasible
 from stiction.scans.reading import ScanFile, Source
 from stiction.stages import heights as stage_heights
-from stiction.stages import parameters, storage
+from stiction.stages import parameters
 from stiction.stages import spectrum as stage_spectrum
 from stiction.stages.spectrum import Use
 from stiction.streams import stream

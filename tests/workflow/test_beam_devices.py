@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.config.files import load
 from stiction.device import Device
-from stiction.stages import storage
+from stiction.run import storage
 
 MINE = """
 design: {beams: 200, chart_points: 2, shares: [1.0e-2, 1.0e-3]}

@@ -11,7 +11,7 @@ from written_scans import BAD, bad_files, etched, scans_of
 
 from stiction.config.files import load
 from stiction.measured import estimate
-from stiction.stages.storage import load as dataset
+from stiction.run.storage import load as dataset
 from stiction.study import PairStudy
 
 #: Results that depend on the stages of measured surfaces in different ways.

@@ -23,7 +23,7 @@ from stiction.config.measured import anchored
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.plan.graph import Graph, stages
-from stiction.stages import storage
+from stiction.run import storage
 
 #: Two pairs, one figure case, so that every rule has few jobs.
 SMALL = """

@@ -8,7 +8,7 @@ from benchmarks import jobs
 from conftest import SMOKE, copied, snakemake
 
 from stiction.config import files
-from stiction.stages import storage
+from stiction.run import storage
 from stiction.study import PairStudy
 
 MINE = """

@@ -19,10 +19,10 @@ from stiction.config.messages import Problem
 from stiction.config.units import NM_PER_UM, from_si, typed
 from stiction.errors import ScanError
 from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM, SIDES
+from stiction.regular import require_regular
 from stiction.run.atomic import DataError, save_text
 from stiction.run.fingerprint import fingerprint
 from stiction.run.provenance import version_of
-from stiction.run.regular import require_regular
 
 #: Values of the keys of a measured surface that are not given.
 _DEFAULTS = {"heights": "moments", "psd": "fitted", "beyond": "cut"}

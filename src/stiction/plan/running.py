@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from stiction.plan.stage import At, Stage, declared
-from stiction.stages import storage
+from stiction.run import storage
 
 
 def run(job: Any) -> None:

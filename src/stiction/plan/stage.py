@@ -112,9 +112,7 @@ class Stage:
     jobs: Callable[[Any], list[dict]] = _once  #: wildcards of the jobs that its targets want, by the plan
     targets: tuple[str, ...] = ()  #: targets of the workflow that want its files
     shown: Shown | None = None  #: how the report shows one of the files
-    first: Callable[[Any], dict] | None = (
-        None  #: part of the inputs to read, by the settings, see ``stages.storage.load``
-    )
+    first: Callable[[Any], dict] | None = None  #: part of the inputs to read, by the settings
     streamed: bool = False  #: whether inputs in an order are loaded one at a time
     libraries: tuple[str, ...] = ()  #: those whose versions count as code of the stage
     temporary: bool = False  #: whether the files are deleted once they have been read

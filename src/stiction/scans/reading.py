@@ -17,7 +17,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from stiction.errors import ScanError
-from stiction.run.regular import require_regular
+from stiction.regular import require_regular
 from stiction.scans.scan import Scan
 
 #: Units of length [m], and those of them that files have: an A in a file may be an ampere.

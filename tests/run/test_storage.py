@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from stiction.run import atomic
-from stiction.stages import storage
+from stiction.run import atomic, storage
 
 
 def dataset():
