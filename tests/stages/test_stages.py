@@ -17,6 +17,7 @@ from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.contact.forcelaw import parametrise
 from stiction.models import FIELD
+from stiction.run import storage
 from stiction.stages import (
     beams,
     chaos,
@@ -28,7 +29,6 @@ from stiction.stages import (
     parameters,
     releases,
     spectrum,
-    storage,
 )
 from stiction.stages.cantilevers import cantilever, strips_along
 from stiction.stages.surfaces import Sampling, rough_surface
