@@ -18,7 +18,7 @@ from stiction.devices.chart import flooded_energy
 from stiction.devices.limits import FILMS
 from stiction.report.checks import MESH_OFF_OF_PAPER, RESOLVED
 from stiction.report.format import MISSING, TO_MJ, TO_UM, number, with_error
-from stiction.stages.cantilevers import Cantilevers, cantilever, sections
+from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.surface import feasible
 
 #: Measured skewness and kurtosis of nearly Gaussian surfaces, as examples.

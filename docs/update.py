@@ -30,8 +30,8 @@ from stiction.config.units import typed
 from stiction.contact import forcelaw
 from stiction.report.format import TO_UM, with_error
 from stiction.run.storage import load
-from stiction.stages.cantilevers import Cantilevers, StripLength, cantilever, sections
-from stiction.stages.forces import vectors
+from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
+from stiction.stages.laws.forces import vectors
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "tests")]
 import quoted  # noqa: E402

@@ -370,8 +370,8 @@ def main():
     parser.add_argument("--seed", type=int, default=0, help="another seed gives other errors")
     parser.add_argument("--list", action="store_true", help="only print the errors")
     options = parser.parse_args()
-    wanted = options.modules or [""]
-    names = [name for name in modules() if any(part in ("", name, name.partition(".")[0]) for part in wanted)]
+    wanted = options.modules
+    names = [name for name in modules() if not wanted or any(f"{name}.".startswith(f"{part}.") for part in wanted)]
     mutants = sample(names, options.number, options.seed) or parser.error(f"no code in {' '.join(wanted)}")
     if options.list:
         sys.exit("\n".join(map(str, mutants)))

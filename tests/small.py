@@ -7,7 +7,9 @@ from plans import job_settings
 from stiction.config.files import load
 from stiction.config.plan import Plan
 from stiction.config.units import typed
-from stiction.stages import chaos, contact, forces, heights, spectrum
+from stiction.stages.contact import contact
+from stiction.stages.laws import chaos, forces
+from stiction.stages.surfaces import heights, spectrum
 
 PLAN = Plan(
     load(

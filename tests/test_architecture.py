@@ -13,14 +13,16 @@ PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 ORDER = [
     *("constants", "errors", "streams", "estimates", "numbers", "models", "progress", "regular", "kernels"),
     *("surface", "scans", "contact", "chaos", "beam", "analysis", "devices"),
-    *("run", "config", "plan", "stages", "measured", "studies", "variants", "designs"),
+    *("run", "config", "plan"),
+    *("stages.surfaces", "stages.contact", "stages.laws", "stages.beams", "stages.devices"),
     *("study", "device", "report", "command"),
 ]
 
 
 def room(name):
-    """Folder of a module, or the module itself if it is in none."""
-    return name.partition(".")[0]
+    """Folder of a module, with its parent in ``stages``; or the module itself if it is in none."""
+    folders = name.split(".")
+    return ".".join(folders[: 2 if folders[0] == "stages" else 1])
 
 
 #: Libraries for files, labelled data, workflows and figures.
@@ -152,17 +154,13 @@ def test_other_numbers_are_no_factors_between_units(tmp_path, line):
     assert not list(factors_of_units(path))
 
 
-#: Modules of designs that are stages; the others contain what these share, and tables, figures and pages.
-STAGES_OF_DESIGNS = {"designs.cracks", "designs.safe_lengths", "designs.chart", "designs.stoppers", "designs.budget"}
 #: Names that build datasets and arrays with labels; ``netCDF4.Dataset`` opens a file.
 LABELLED = {f"{library}{kind}" for library in ("xr.", "xarray.", "") for kind in ("Dataset", "DataArray")}
 
 
 def is_stage(name):
     """Whether a module may build the dataset of a stage."""
-    if name.startswith("measured."):
-        return not name.startswith(("measured.tables_", "measured.figures_"))
-    return name.startswith(("stages.", "studies.", "variants.")) or name in STAGES_OF_DESIGNS
+    return name.startswith("stages.")
 
 
 def datasets_built(path):

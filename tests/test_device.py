@@ -9,7 +9,7 @@ from stiction.config.plan import Plan
 from stiction.devices import limits
 from stiction.models import OF_MOMENTS
 from stiction.plan.graph import Graph, Results
-from stiction.stages import curves
+from stiction.stages.contact import curves
 
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 10, "width_um": 20, "humidities": [0.88]}
 C1 |= {"chart": {"thicknesses_um": [2.6], "humidities": [0.8, 0.9]}}

@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 from vectors import sampled_vectors
 
 import stiction
-from stiction.stages import forces
+from stiction.stages.laws import forces
 
 ROOT = Path(__file__).parents[1]
 PLACES = {name: place.rpartition(".")[::2] for name, place in stiction._PLACES.items()}

@@ -12,12 +12,12 @@ from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
-from stiction.stages import chaos, heights, identification, pairs, releases, spectrum
-from stiction.stages.parameters import spectrum_of
+from stiction.stages.beams import releases, variant_beams
+from stiction.stages.contact import pairs, variant_contact, variant_summits
+from stiction.stages.laws import chaos
+from stiction.stages.surfaces import heights, identification, spectrum
+from stiction.stages.surfaces.parameters import spectrum_of
 from stiction.study import PairStudy
-from stiction.variants import beams as variant_beams
-from stiction.variants import contact as variant_contact
-from stiction.variants import summits as variant_summits
 
 CONFIG = load({"contact": {"samples": 40}, "beam": {"samples": 3, "width_um": 6}, "chaos": {"order": 3}})
 HUMIDITY = 0.8

@@ -12,7 +12,7 @@ import numpy as np
 
 import stiction
 from stiction.config.units import typed
-from stiction.stages.heights import Settings as Moments
+from stiction.stages.surfaces.heights import Settings as Moments
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore", ImportWarning)  # of NuMPI, without mpi4py

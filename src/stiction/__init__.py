@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from stiction.scans.estimate import estimate as estimate_surface
     from stiction.scans.reading import read as read_scan
     from stiction.scans.scan import Scan
-    from stiction.stages.chaos import chaos_model
-    from stiction.stages.forces import vectors as force_vectors
+    from stiction.stages.laws.chaos import chaos_model
+    from stiction.stages.laws.forces import vectors as force_vectors
     from stiction.streams import stream
     from stiction.study import PairStudy
     from stiction.surface.field import RoughSurface, StripGrid
@@ -74,13 +74,13 @@ _PLACES = {
     "MaugisTable": "contact.asperity.MaugisTable",
     "HertzAsperity": "contact.asperity.HertzAsperity",
     "SurfacePair": "contact.pair.SurfacePair",
-    "force_vectors": "stages.forces.vectors",
+    "force_vectors": "stages.laws.forces.vectors",
     "force_laws": "contact.forcelaw.coefficients",
     "law_pressure": "contact.forcelaw.pressure",
     "law_energy": "contact.forcelaw.energy",
     "ChaosModel": "chaos.model.ChaosModel",
     "fit_chaos": "chaos.model.fit",
-    "chaos_model": "stages.chaos.chaos_model",
+    "chaos_model": "stages.laws.chaos.chaos_model",
     "draw_laws": "chaos.model.draw_laws",
     # beams
     "Beam": "beam.cantilever.Beam",

@@ -10,9 +10,9 @@ import xarray as xr
 from stiction.config.cases import case_id
 from stiction.config.designs import BEAMS, Designs
 from stiction.config.units import typed
-from stiction.designs import device_warnings, pair_warnings
-from stiction.designs.patch_settings import contact_of, tips_of
 from stiction.plan.graph import Results
+from stiction.stages.devices import device_warnings, pair_warnings
+from stiction.stages.devices.patch_settings import contact_of, tips_of
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Device:
         return next((self.results[name] for name in tips_of(self._plan, self.name).values()), None)
 
     def cracks(self, humidity: float) -> xr.Dataset:
-        """Crack lengths of long beams, or lengths of held bridges; dataset of `stiction.designs.cracks`.
+        """Crack lengths of long beams, or lengths of held bridges; dataset of `stiction.stages.devices.cracks`.
 
         The first call takes half a minute, for a bridge a minute.
         """
@@ -75,23 +75,23 @@ class Device:
         return self._result("cracks", humidity)
 
     def safe_lengths(self, humidity: float) -> xr.Dataset:
-        """P(stuck) over the length, and safe lengths; dataset of `stiction.designs.safe_lengths`."""
+        """P(stuck) over the length, and safe lengths; dataset of `stiction.stages.devices.safe_lengths`."""
         self._must_be(*BEAMS)
         return self._result("safe_lengths", humidity)
 
     def chart(self, humidity: float) -> xr.Dataset:
-        """Safe lengths of the thicknesses and gaps of its chart; dataset of `stiction.designs.chart`."""
+        """Safe lengths of the thicknesses and gaps of its chart; dataset of `stiction.stages.devices.chart`."""
         self._must_be(*BEAMS)
         self._must_state("chart", self._section.get("chart"))
         return self._result("chart", humidity)
 
     def forces(self) -> xr.Dataset:
-        """Pull-off forces of a stopper, P(stuck) and the worst humidity; dataset of `stiction.designs.stoppers`."""
+        """Pull-off forces of a stopper, P(stuck) and the worst humidity: dataset of stage stoppers."""
         self._must_be("stopper")
         return self.results[f"devices/stoppers/{self.name}"]
 
     def budget(self, humidity: float) -> xr.Dataset:
-        """Uncertainty of the mean length or force; dataset of `stiction.designs.budget`.
+        """Uncertainty of the mean length or force; dataset of `stiction.stages.devices.budget`.
 
         The first call draws the surfaces with every uncertain input changed, a few minutes.
         """

@@ -14,9 +14,10 @@ from stiction.config.units import typed
 from stiction.contact.pair import SurfacePair
 from stiction.models import SURFACE_MODELS
 from stiction.plan.graph import Results
-from stiction.stages import beams, curves, pairs
-from stiction.stages.cantilevers import Cantilevers, cantilever, sections
-from stiction.stages.surfaces import both
+from stiction.stages.beams import beams
+from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
+from stiction.stages.contact import curves, pairs
+from stiction.stages.surfaces.rough_surfaces import both
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ class PairStudy:
     def chaos(self, humidity: float) -> xr.Dataset:
         """Chaos model of the force laws at a relative humidity (App. B); dataset of stage chaos.
 
-        `stiction.stages.chaos.chaos_model` returns the model itself, which draws force laws.
+        `stiction.stages.laws.chaos.chaos_model` returns the model itself, which draws force laws.
         """
         return self.results[f"chaos/{case_id(self.name, humidity)}_{self.model}"]
 

@@ -44,8 +44,8 @@ import json, sys, time
 from stiction.config import files, jobs
 from stiction.plan.graph import Results
 from stiction.run.logs import peak_memory
-from stiction.stages import contact
-from stiction.stages.surfaces import both
+from stiction.stages.contact import contact
+from stiction.stages.surfaces.rough_surfaces import both
 
 results = Results.of(files.load(json.loads(sys.argv[1])))
 job = results.graph.job("contact/b_NG/0-of-1")

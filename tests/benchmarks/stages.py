@@ -28,8 +28,9 @@ from stiction.scans.estimate import estimate  # noqa: E402
 from stiction.scans.levelling import Levelling  # noqa: E402
 from stiction.scans.model_scans import draw_model_scans  # noqa: E402
 from stiction.scans.scan import Scan  # noqa: E402
-from stiction.stages import curves, forces  # noqa: E402
-from stiction.stages.contact import tables  # noqa: E402
+from stiction.stages.contact import curves  # noqa: E402
+from stiction.stages.contact.contact import tables  # noqa: E402
+from stiction.stages.laws import forces  # noqa: E402
 from stiction.streams import stream  # noqa: E402
 from stiction.study import PairStudy  # noqa: E402
 from stiction.surface.field import StripGrid  # noqa: E402

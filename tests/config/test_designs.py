@@ -12,13 +12,13 @@ from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
-from stiction.designs import inputs, stoppers
 from stiction.devices.budget import OF_SOLIDS
 from stiction.models import OF_MOMENTS, OF_SPECTRUM
 from stiction.plan.graph import Graph
-from stiction.stages import contact
-from stiction.studies import slope_contact
-from stiction.variants import summits
+from stiction.stages.contact import contact, slope_contact
+from stiction.stages.contact import variant_summits as summits
+from stiction.stages.devices import stoppers
+from stiction.stages.devices import uncertain_inputs as inputs
 
 SIZES = {"thickness_um": 2.6, "gap_um": 20, "width_um": 30}
 C1 = {"kind": "cantilever", "pair": "b", "humidities": [0.67]} | SIZES

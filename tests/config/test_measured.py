@@ -22,15 +22,16 @@ from stiction.config.plan import Plan
 from stiction.config.units import typed
 from stiction.config.validation import validate
 from stiction.errors import ScanError
-from stiction.measured import estimate as stage_estimate
-from stiction.measured import heights, scan, spectrum
 from stiction.scans import estimate
 from stiction.scans.levelling import LEVELS, LINES, Levelling
 from stiction.scans.quantiles import measured_density, quantiles
 from stiction.scans.reading import UNITS, ScanFile, Source
 from stiction.scans.reading import read as read_scan
-from stiction.stages import parameters
-from stiction.stages.heights import measured_moments
+from stiction.stages.surfaces import estimate as stage_estimate
+from stiction.stages.surfaces import measured_heights as heights
+from stiction.stages.surfaces import measured_spectrum as spectrum
+from stiction.stages.surfaces import parameters, scan
+from stiction.stages.surfaces.heights import measured_moments
 
 B2 = SURFACES["B2"]
 

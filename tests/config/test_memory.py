@@ -71,7 +71,8 @@ def test_the_largest_field_of_a_configuration_counts(overlay, size):
 JOINING = """
 import sys
 from stiction.run.logs import peak_memory
-from stiction.stages import contact, curves
+from stiction.stages.contact import contact
+from stiction.stages.contact import curves
 from stiction.run import storage
 
 before, samples, paths = peak_memory(), int(sys.argv[1]), sys.argv[2:]

@@ -17,7 +17,7 @@ from stiction.contact.estimate import ProfileMoments, force_law, repulsion_and_a
 from stiction.contact.meniscus import film
 from stiction.contact.pair import SurfacePair, contacts_of_samples
 from stiction.contact.vanderwaals import attraction
-from stiction.stages import curves
+from stiction.stages.contact import curves
 from stiction.streams import stream
 from stiction.surface.field import StripGrid
 from stiction.surface.spectrum import NayakSummits

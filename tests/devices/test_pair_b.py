@@ -11,10 +11,11 @@ from stiction.chaos.model import resample_laws
 from stiction.config.merging import merged
 from stiction.config.units import typed
 from stiction.constants import WATER_SURFACE_ENERGY
-from stiction.designs import cracks
 from stiction.devices import risk
 from stiction.devices.stoppers import worst_humidity
-from stiction.stages import contact, curves, forces
+from stiction.stages.contact import contact, curves
+from stiction.stages.devices import cracks
+from stiction.stages.laws import forces
 from stiction.streams import stream
 
 #: Lengths [m] that one beam in a thousand and one in ten thousand fall short of, with the ends of their 95 % interval:

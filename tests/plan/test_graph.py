@@ -122,7 +122,7 @@ def test_a_repeated_plan_needs_no_declaration_and_a_change_of_the_configuration_
 def test_what_is_kept_depends_on_declarations_and_plans_although_fingerprints_leave_them_out(planner):
     reached = {name for code in planner._codes.values() for name in code}
     assert {
-        f"stiction.{name}" for name in ("plan.stage", "plan.names", "designs.patch_settings", "config.plan")
+        f"stiction.{name}" for name in ("plan.stage", "plan.names", "stages.devices.patch_settings", "config.plan")
     } <= reached
 
 

@@ -8,8 +8,8 @@ from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import typed
-from stiction.stages import contact
-from stiction.stages.cantilevers import Cantilevers, sections
+from stiction.stages.beams.cantilevers import Cantilevers, sections
+from stiction.stages.contact import contact
 
 PLAN = Plan(load())
 

@@ -12,9 +12,9 @@ from stiction.beam.equilibrium import ROUNDING, TOLERANCE
 from stiction.contact.meniscus import flooded_energy
 from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.report import checks
-from stiction.stages import forces as stage_forces
-from stiction.stages import heights
-from stiction.stages.curves import Water
+from stiction.stages.contact.curves import Water
+from stiction.stages.laws import forces as stage_forces
+from stiction.stages.surfaces import heights
 from stiction.streams import stream
 
 BEAM = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200)

@@ -9,13 +9,13 @@ from stiction.analysis.convergence import KOLMOGOROV_MEAN, sampling_distance
 from stiction.analysis.mesh import Arrest
 from stiction.report import figures_studies, tables_studies
 from stiction.report.style import save
-from stiction.studies import correlation as study_correlation
-from stiction.studies import mesh as study_mesh
-from stiction.studies import orders as study_orders
-from stiction.studies import plasticity as study_plasticity
-from stiction.studies import sample_sizes as study_sample_sizes
-from stiction.studies import sensitivity as study_sensitivity
-from stiction.variants import beams as study_variant
+from stiction.stages.beams import mesh as study_mesh
+from stiction.stages.beams import variant_beams as study_variant
+from stiction.stages.contact import plasticity as study_plasticity
+from stiction.stages.laws import orders as study_orders
+from stiction.stages.laws import sample_sizes as study_sample_sizes
+from stiction.stages.laws import sensitivity as study_sensitivity
+from stiction.stages.surfaces import correlation as study_correlation
 
 HUMIDITIES = (0.5, 0.8)
 RNG = np.random.default_rng(0)

@@ -20,16 +20,16 @@ from stiction.report.figures_beams import adhesion_energies
 from stiction.report.figures_forces import force_curves
 from stiction.report.figures_overview import overview
 from stiction.report.style import styled
-from stiction.stages import beams as stage_beams
-from stiction.stages import forces as stage_forces
+from stiction.stages.beams import beams as stage_beams
+from stiction.stages.beams import mesh as study_mesh
+from stiction.stages.beams import variant_beams as study_variant
+from stiction.stages.contact import plasticity as study_plasticity
+from stiction.stages.laws import forces as stage_forces
+from stiction.stages.laws import humidity as study_humidity
+from stiction.stages.laws import sample_sizes as study_sample_sizes
+from stiction.stages.laws import sensitivity as study_sensitivity
+from stiction.stages.surfaces import correlation as study_correlation
 from stiction.streams import stream
-from stiction.studies import correlation as study_correlation
-from stiction.studies import humidity as study_humidity
-from stiction.studies import mesh as study_mesh
-from stiction.studies import plasticity as study_plasticity
-from stiction.studies import sample_sizes as study_sample_sizes
-from stiction.studies import sensitivity as study_sensitivity
-from stiction.variants import beams as study_variant
 
 RNG = stream(11)
 START = RNG.bit_generator.state

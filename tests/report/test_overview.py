@@ -9,7 +9,7 @@ from matplotlib.container import ErrorbarContainer
 from stiction.contact import forcelaw
 from stiction.report.figures_overview import overview
 from stiction.report.style import save
-from stiction.stages import forces as stage_forces
+from stiction.stages.laws import forces as stage_forces
 from stiction.streams import stream
 
 HUMIDITIES = (0.5, 0.7)

@@ -9,14 +9,14 @@ import xarray as xr
 from drawn_scans import published
 from numpy.testing import assert_allclose
 
-from stiction.measured import estimate as stage_estimate
-from stiction.measured import scan as stage_scan
 from stiction.report.scans.figures_scans import surface_sheet
 from stiction.report.scans.tables_scans import scan_uncertainty, scans
 from stiction.report.style import save
 from stiction.scans.estimate import Settings
 from stiction.scans.reading import ScanFile
-from stiction.studies import scan_uncertainty as study
+from stiction.stages.laws import scan_uncertainty as study
+from stiction.stages.surfaces import estimate as stage_estimate
+from stiction.stages.surfaces import scan as stage_scan
 from stiction.surface import maxent
 
 SIDE = 5e-6

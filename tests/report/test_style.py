@@ -18,15 +18,15 @@ from stiction.report.figures_beams import adhesion_energies, beam_shapes, conver
 from stiction.report.figures_forces import fitted_curve, force_curves, typical
 from stiction.report.figures_surfaces import elevation_maps, height_densities, profiles, spectra, summits
 from stiction.report.style import humidity_axis, letter, panels, save
-from stiction.stages import beams as stage_beams
-from stiction.stages import character as stage_character
-from stiction.stages import forces as stage_forces
-from stiction.stages import heights as stage_heights
-from stiction.stages import spectrum as stage_spectrum
+from stiction.stages.beams import beams as stage_beams
+from stiction.stages.laws import fit as study_fit
+from stiction.stages.laws import forces as stage_forces
+from stiction.stages.laws import humidity as study_humidity
+from stiction.stages.surfaces import character as stage_character
+from stiction.stages.surfaces import heights as stage_heights
+from stiction.stages.surfaces import iteration as study_iteration
+from stiction.stages.surfaces import spectrum as stage_spectrum
 from stiction.streams import stream
-from stiction.studies import fit as study_fit
-from stiction.studies import humidity as study_humidity
-from stiction.studies import iteration as study_iteration
 
 BEAM = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200)
 HUMIDITIES = (0.5, 0.7)

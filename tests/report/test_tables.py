@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from stiction.models import surface_model
 from stiction.report import published, tables, tables_beams, tables_studies, tables_surfaces
-from stiction.stages import forces as stage_forces
+from stiction.stages.laws import forces as stage_forces
 
 RESOURCES = Path(published.__file__).with_name("resources")
 PUBLISHED = published.read(RESOURCES / "table_3.csv")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from stiction.report.tables_beams import fit_quality
-from stiction.studies import fit as study_fit
+from stiction.stages.laws import fit as study_fit
 
 
 @pytest.fixture

@@ -136,7 +136,7 @@ def test_a_script_finds_the_surroundings_of_a_new_interpreter(server, tmp_path):
 
 PRELOADED = """
     import gc, json
-    wanted = ("scipy.fft", "matplotlib.figure", "netCDF4", "stiction.stages.beams")
+    wanted = ("scipy.fft", "matplotlib.figure", "netCDF4", "stiction.stages.beams.beams")
     libraries = [name for name in wanted if name in sys.modules]
     unwanted = [name for name in ("snakemake.api", "scipy.stats") if name in sys.modules]
     from numba.core.dispatcher import Dispatcher

@@ -18,20 +18,12 @@ from stiction.config.plan import Plan
 from stiction.contact.forcelaw import parametrise
 from stiction.models import FIELD
 from stiction.run import storage
-from stiction.stages import (
-    beams,
-    chaos,
-    character,
-    curves,
-    forces,
-    heights,
-    identification,
-    parameters,
-    releases,
-    spectrum,
-)
-from stiction.stages.cantilevers import cantilever, strips_along
-from stiction.stages.surfaces import Sampling, rough_surface
+from stiction.stages.beams import beams, releases
+from stiction.stages.beams.cantilevers import cantilever, strips_along
+from stiction.stages.contact import curves
+from stiction.stages.laws import chaos, forces
+from stiction.stages.surfaces import character, heights, identification, parameters, spectrum
+from stiction.stages.surfaces.rough_surfaces import Sampling, rough_surface
 from stiction.streams import stream
 from stiction.surface.feasible import nearest_feasible
 from stiction.surface.field import StripGrid, radial_periodogram

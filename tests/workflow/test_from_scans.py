@@ -10,8 +10,8 @@ from planner import Planner
 from written_scans import BAD, bad_files, etched, scans_of
 
 from stiction.config.files import load
-from stiction.measured import estimate
 from stiction.run.storage import load as dataset
+from stiction.stages.surfaces import estimate
 from stiction.study import PairStudy
 
 #: Results that depend on the stages of measured surfaces in different ways.

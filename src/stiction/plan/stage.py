@@ -26,7 +26,7 @@ from stiction.models import (
 )
 
 #: Folders whose modules may declare stages.
-FOLDERS = ("stages", "measured", "studies", "variants", "designs", "report")
+FOLDERS = ("stages", "report")
 _NAME = "[A-Za-z][A-Za-z0-9]*"
 #: Wildcards in the names of files, and the regular expression that each matches.
 WILDCARDS = {

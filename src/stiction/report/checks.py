@@ -33,13 +33,13 @@ from stiction.plan.stage import File, Stage, chosen, select
 from stiction.report.format import TO_MJ, TO_NM, TO_UM, number, with_error
 from stiction.report.tables_surfaces import surface_statistics
 from stiction.run.atomic import save_text
-from stiction.stages import forces as stage_forces
-from stiction.stages.cantilevers import Cantilevers, StripLength, cantilever, sections
-from stiction.stages.curves import Water
-from stiction.stages.heights import measured_moments, substitution
-from stiction.stages.parameters import misfits
-from stiction.stages.releases import stuck_energies, stuck_lengths
-from stiction.stages.spectrum import defect
+from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
+from stiction.stages.beams.releases import stuck_energies, stuck_lengths
+from stiction.stages.contact.curves import Water
+from stiction.stages.laws import forces as stage_forces
+from stiction.stages.surfaces.heights import measured_moments, substitution
+from stiction.stages.surfaces.parameters import misfits
+from stiction.stages.surfaces.spectrum import defect
 from stiction.surface.feasible import LARGEST_DISTANCE_OF_SCANS
 
 #: Standard errors by which an inequality must hold and within which a target must be met.

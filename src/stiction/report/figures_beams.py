@@ -29,9 +29,9 @@ from stiction.report.style import (
     panels,
     styled,
 )
-from stiction.stages.cantilevers import Cantilevers, cantilever, sections
-from stiction.stages.curves import Water
-from stiction.stages.releases import ended, stuck_energies, stuck_lengths
+from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
+from stiction.stages.beams.releases import ended, stuck_energies, stuck_lengths
+from stiction.stages.contact.curves import Water
 
 # Figure 14
 

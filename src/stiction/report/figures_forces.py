@@ -11,8 +11,8 @@ from stiction.contact import forcelaw
 from stiction.models import SURFACE_MODELS
 from stiction.report.format import TO_MJ, TO_MPA, TO_NM
 from stiction.report.style import DOUBLE, MODELS, SINGLE, figure_stage, letter, panels, styled
-from stiction.stages import forces as stage_forces
-from stiction.stages.chaos import generated_laws
+from stiction.stages.laws import forces as stage_forces
+from stiction.stages.laws.chaos import generated_laws
 
 #: Number of highlighted curves in Figure 12.
 _HIGHLIGHTED = 20

@@ -14,8 +14,8 @@ from stiction.report import published
 from stiction.report.format import TO_MPA, TO_NM, TO_UM
 from stiction.report.published import rows
 from stiction.report.style import MODELS, PUBLISHED, figure_stage, humidity_axis, letter, panels, styled
-from stiction.stages import forces as stage_forces
-from stiction.stages.releases import ended, stuck_lengths
+from stiction.stages.beams.releases import ended, stuck_lengths
+from stiction.stages.laws import forces as stage_forces
 
 _SIZE = 7.2, 2.2
 _COLOUR = MODELS["NG"]["color"]

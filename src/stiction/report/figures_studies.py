@@ -37,8 +37,8 @@ from stiction.report.style import (
     styled,
 )
 from stiction.report.tables_studies import variant_label
-from stiction.stages.chaos import chaos_model
-from stiction.variants.beams import by_pair, cases_of
+from stiction.stages.beams.variant_beams import by_pair, cases_of
+from stiction.stages.laws.chaos import chaos_model
 
 _COLOURS = ("#0072B2", "#56B4E9", "#E69F00", "#D55E00", "#CC79A7", "#009E73", "#882255", "#7F7F00")
 _ZERO = {"color": "0.6", "linewidth": 0.6, "zorder": 0}

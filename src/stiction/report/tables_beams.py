@@ -8,7 +8,6 @@ import xarray as xr
 
 from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.contact.forcelaw import admissible
-from stiction.designs import pair_warnings
 from stiction.estimates import mean_on_shared_samples, mean_with_error
 from stiction.models import surface_model
 from stiction.plan.names import Case, by_case, by_name, by_outcome
@@ -16,9 +15,10 @@ from stiction.report import published
 from stiction.report.format import TO_MJ, UM, as_published, error_alone, number, percent, signed, with_error
 from stiction.report.published import value
 from stiction.report.tables import PAIR, Table, table_stage, with_list
-from stiction.stages import forces as stage_forces
-from stiction.stages.releases import STATES, ended, stuck_energies, stuck_lengths
-from stiction.studies.scan_uncertainty import pair_errors
+from stiction.stages.beams.releases import STATES, ended, stuck_energies, stuck_lengths
+from stiction.stages.devices import pair_warnings
+from stiction.stages.laws import forces as stage_forces
+from stiction.stages.laws.scan_uncertainty import pair_errors
 
 #: Columns of the published Table III: mean and standard deviation of each model.
 _PUBLISHED = {"NG": ("ng", "ng_std"), "GEO": ("geo", "geo_std")}

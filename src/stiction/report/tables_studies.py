@@ -13,7 +13,7 @@ from stiction.report import published
 from stiction.report.format import MISSING, UM, percent, with_error
 from stiction.report.published import value
 from stiction.report.tables import Table, table_stage
-from stiction.variants.beams import by_pair, cases_of
+from stiction.stages.beams.variant_beams import by_pair, cases_of
 
 _LABELS = {
     "van_der_waals": "vdW: {}",

@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.measured import estimate
 from stiction.models import MOMENT_KEYS, SUMMIT_KEYS, SURFACE_MODELS
 from stiction.plan.names import by_model, by_name
 from stiction.plan.stage import chosen
@@ -15,9 +14,10 @@ from stiction.report import published
 from stiction.report.format import NM, PER_UM2, UM, percent, signed, with_error
 from stiction.report.published import rows, value
 from stiction.report.tables import Table, table_stage
-from stiction.stages.character import statistics
-from stiction.stages.heights import substitution
-from stiction.stages.parameters import misfits, spectrum_of
+from stiction.stages.surfaces import estimate
+from stiction.stages.surfaces.character import statistics
+from stiction.stages.surfaces.heights import substitution
+from stiction.stages.surfaces.parameters import misfits, spectrum_of
 from stiction.surface.spectrum import CutoffSelfAffine
 
 #: Statistics of Table I and their titles for reading.
@@ -64,7 +64,7 @@ def table_1(
     published : pandas.DataFrame
         The published table, rows of the paper's own surfaces.
     substitutions : dict
-        Surface to the sentence of `stiction.stages.heights.substitution`.
+        Surface to the sentence of `stiction.stages.surfaces.heights.substitution`.
     """
     rows = [_row_1(*key, characters[key], measured[key[0]], published) for key in characters]
     notes = (f" {surface}: {sentence}." for surface, sentence in substitutions.items() if sentence)

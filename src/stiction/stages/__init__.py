@@ -1,1 +1,1 @@
-"""One module per dataset of the main line: compute, layout, reader (Secs. II to IV)."""
+"""One module per dataset: settings, compute, layout, readers, declaration. Folders follow the paper."""

@@ -7,8 +7,6 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from stiction.designs import device_warnings
-from stiction.designs.budget import budget_of, budgets_of, groups_of
 from stiction.devices.risk import stuck_share
 from stiction.plan.names import by_name
 from stiction.report.devices.figures_devices import below
@@ -30,6 +28,8 @@ from stiction.report.style import (
     shades,
     styled,
 )
+from stiction.stages.devices import device_warnings
+from stiction.stages.devices.budget import budget_of, budgets_of, groups_of
 
 _COLOUR = "#0072B2"
 #: Heights of a row of a budget, of everything else in its panel, and of the legend [in]; share of a row with bars.

@@ -10,9 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from stiction.designs import device_warnings
-from stiction.designs.chart import charts
-from stiction.designs.pair_warnings import numbered
 from stiction.plan.names import by_case
 from stiction.report.format import TO_UM
 from stiction.report.style import (
@@ -27,6 +24,9 @@ from stiction.report.style import (
     shades,
     styled,
 )
+from stiction.stages.devices import device_warnings
+from stiction.stages.devices.chart import charts
+from stiction.stages.devices.pair_warnings import numbered
 
 #: Line style of each shape in which a beam sticks, and what holds it.
 _SHAPES = {

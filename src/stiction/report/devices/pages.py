@@ -11,10 +11,6 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.config.cases import case_id
-from stiction.designs import device_warnings, pair_warnings
-from stiction.designs.budget import budget_of, budgets_of
-from stiction.designs.sticking import EITHER, MIDDLE, S_SHAPE
-from stiction.designs.stoppers import in_any_air, is_at_an_end, shares_stuck
 from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
@@ -22,6 +18,10 @@ from stiction.report.devices import figures_budget, figures_devices, tables_budg
 from stiction.report.format import UM, UN
 from stiction.report.style import STYLE, png
 from stiction.run.atomic import save_text
+from stiction.stages.devices import device_warnings, pair_warnings
+from stiction.stages.devices.budget import budget_of, budgets_of
+from stiction.stages.devices.sticking import EITHER, MIDDLE, S_SHAPE
+from stiction.stages.devices.stoppers import in_any_air, is_at_an_end, shares_stuck
 
 _PAGE = """<!DOCTYPE html>
 <html lang="en">
@@ -226,7 +226,7 @@ def of_beam(
     budgets : dict
         Humidity and, for tips, more to the dataset of stage budget; may be empty.
     warnings : dict
-        Where the model ends: ``lengths`` and ``curves`` of `stiction.designs.device_warnings.OfDevices`.
+        Where the model ends: ``lengths`` and ``curves`` of `stiction.stages.devices.device_warnings.OfDevices`.
     """
     cases = {(name, humidity): dataset for humidity, dataset in found.items()}
     table = tables_devices.safe_lengths(cases, warnings).cells.drop(columns="device")

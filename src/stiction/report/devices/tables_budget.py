@@ -6,16 +6,16 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.designs import device_warnings
-from stiction.designs.budget import budget_of, budgets_of, groups_of, response_of
-from stiction.designs.inputs import ARC, FORCE, MIDDLE, S_SHAPE
-from stiction.designs.stoppers import in_any_air, is_at_an_end, shares_stuck
 from stiction.devices.budget import advice
 from stiction.devices.limits import NOT_MODELLED
 from stiction.estimates import mean_with_error
 from stiction.plan.names import by_name
 from stiction.report.format import UN, number, signed, with_error
 from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_list
+from stiction.stages.devices import device_warnings
+from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, response_of
+from stiction.stages.devices.stoppers import in_any_air, is_at_an_end, shares_stuck
+from stiction.stages.devices.uncertain_inputs import ARC, FORCE, MIDDLE, S_SHAPE
 
 #: Rows of a budget below those of its measurements.
 TOTAL, INDEPENDENT, SCATTER = "total", "total, if all errors were independent", "scatter between devices"

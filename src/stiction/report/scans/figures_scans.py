@@ -10,10 +10,10 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stiction.measured import estimate as stage_estimate
-from stiction.measured import spectrum as stage_spectrum
 from stiction.report.format import PER_UM2, TO_NM, TO_UM, UM, with_error
 from stiction.report.style import DOUBLE, MODELS, OUTLINED, figure_stage, letter, panels, styled
+from stiction.stages.surfaces import estimate as stage_estimate
+from stiction.stages.surfaces import measured_spectrum
 
 _MEASURED, _MODEL = {"color": "black"}, {"color": MODELS["NG"]["color"]}
 _BAND, _BEYOND = {"color": "0.75", "linewidth": 0}, {"color": "0.92", "linewidth": 0, "zorder": 0}
@@ -36,7 +36,7 @@ def surface_sheet(name: str, estimate: xr.Dataset, spectrum: xr.Dataset) -> Figu
     estimate, spectrum : Dataset
         Of stages estimate and spectrum.
     """
-    lines = _lines([*stage_estimate.flags(estimate), *stage_spectrum.flags(spectrum)])
+    lines = _lines([*stage_estimate.flags(estimate), *measured_spectrum.flags(spectrum)])
     figure, axes = panels(2, 2, (DOUBLE, _PANELS + _LINE_HEIGHT * len(lines)))
     _map(figure, axes[0, 0], estimate)
     _density(axes[0, 1], estimate)

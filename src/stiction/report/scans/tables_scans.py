@@ -6,14 +6,14 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.energy import CRACK_LENGTH_POWER
-from stiction.measured import estimate as stage_estimate
-from stiction.measured import scan as stage_scan
-from stiction.measured import spectrum as stage_spectrum
 from stiction.models import ALTERNATIVES_OF_SCANS
 from stiction.plan.names import by_name
 from stiction.report.format import NM, UM, signed, with_error
 from stiction.report.tables import PAIR, Table, table_stage, with_list
-from stiction.studies.scan_uncertainty import GOAL
+from stiction.stages.laws.scan_uncertainty import GOAL
+from stiction.stages.surfaces import estimate as stage_estimate
+from stiction.stages.surfaces import measured_spectrum
+from stiction.stages.surfaces import scan as stage_scan
 
 #: Parts of an estimate as columns.
 _PARTS = {"rms": "rms", "shape": "skewness and kurtosis", "spectrum": "spectrum", "total": "total"}
@@ -34,7 +34,7 @@ def scans(
         Surface to the datasets of stage scan of its files, in the order of the configuration.
     """
     limits = {
-        name: [*stage_estimate.flags(estimate), *stage_spectrum.flags(spectra[name])]
+        name: [*stage_estimate.flags(estimate), *measured_spectrum.flags(spectra[name])]
         for name, estimate in estimates.items()
     }
     rows = [

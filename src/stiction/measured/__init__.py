@@ -1,1 +1,0 @@
-"""Stages of measured surfaces: from the files of a microscope to heights and spectrum."""

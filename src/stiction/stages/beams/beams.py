@@ -1,0 +1,83 @@
+"""Stage beams (Secs. III-C and IV): press beams down, release them and find where their cracks arrest."""
+
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from stiction.config.cases import pair_of
+from stiction.models import surface_model
+from stiction.plan.stage import Stage
+from stiction.stages.beams import releases
+from stiction.stages.beams.cantilevers import cantilever
+from stiction.stages.laws.chaos import chaos_model
+
+#: Number of beam shapes stored for Fig. 14.
+_KEPT = 100
+
+#: Everything that the beams of a case depend on apart from the force laws.
+Settings = releases.Settings
+
+
+def compute(chaos: xr.Dataset, case: str, settings: Settings, threads: int = 1) -> xr.Dataset:
+    """Release all beams of a case; models NG and GEO have the same force laws.
+
+    Parameters
+    ----------
+    chaos : Dataset
+        Dataset of stage chaos.
+    case : str
+        Name of the case, part of the addresses of random numbers.
+    settings : Settings
+    threads : int
+        Number of beams computed in parallel; it does not affect the results.
+    """
+    columns = releases.released(chaos_model(chaos), case, settings, threads, shapes=_KEPT)
+    elements = columns["deflection"].shape[1] - 1
+    return layout(columns, replace(cantilever(settings, pair_of(case)), elements=elements).nodes)
+
+
+def layout(columns: dict[str, np.ndarray], nodes: np.ndarray) -> xr.Dataset:
+    """Dataset of the end state of every beam of a case and of the shapes of the first beams.
+
+    Parameters
+    ----------
+    columns : dict
+        Arrays of `stiction.beam.montecarlo.columns`.
+    nodes : (n,) array
+        Nominal positions of the nodes [m].
+    """
+    flags = {"flag_values": np.arange(3, dtype=np.int8), "flag_meanings": " ".join(releases.STATES)}
+    energy = {"units": "J m-2", "long_name": "apparent adhesion energy of a beam, Eq. (13), S-shape only"}
+    return xr.Dataset(
+        {
+            "state": ("sample", np.asarray(columns["state"], np.int8), flags),
+            "crack_length": ("sample", columns["crack_length"], {"units": "m"}),
+            "adhesion_energy": ("sample", columns["energy"], energy),
+            "imbalance": ("sample", columns["imbalance"], {"units": "N"}),
+            "iterations": ("sample", columns["iterations"]),
+            "deflection": (("beam", "node"), np.asarray(columns["deflection"], np.float32), {"units": "m"}),
+        },
+        coords={"sample": columns["sample"], "node": ("node", nodes, {"units": "m"})},
+    )
+
+
+def _settings(plan, at):
+    """Nominal beam of a case, number of beams and scatter of their dimensions."""
+    section = plan.config["beam"]
+    number = {"samples": section["samples"], "scatter": section["scatter"] if at.model == "GEO" else 0}
+    return releases.sections(plan, at.case) | number
+
+
+STAGES = (
+    Stage.writing(
+        "beams",
+        "beams/{case}_{model}",
+        inputs=lambda plan, at: {"chaos": f"chaos/{at.case}_{surface_model(at.model)}"},
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["chaos"], at.case, settings),
+        message="Release the beams of {case}, {model} (Sec. III-C).",
+        cluster=True,
+    ),
+)

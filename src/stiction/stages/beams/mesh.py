@@ -1,0 +1,121 @@
+"""Study mesh (App. C, Fig. 19): crack length on one force law for meshes of increasing fineness."""
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis.mesh import Arrest, arrest_on_uniform_ground, whole_meshes
+from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
+from stiction.config.units import from_si
+from stiction.contact import forcelaw
+from stiction.errors import NotConverged
+from stiction.plan.stage import Stage
+from stiction.progress import progress
+from stiction.stages.beams.cantilevers import Dimensions, Gap, Stiffness, cantilever, sections
+from stiction.stages.laws import forces as stage_forces
+
+
+@dataclass(frozen=True)
+class Meshes:
+    """Meshes of the study; combinations that do not fill each other and the beam are left out."""
+
+    elements: tuple[float, ...]  #: lengths of the elements [m]
+    strips: tuple[float, ...]  #: distances of the contact points [m]
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the study depends on apart from the forces."""
+
+    mesh: Meshes
+    case: str
+    pair: str
+    solid: Stiffness
+    beam: Dimensions
+    pairs: dict[str, Gap]
+
+
+def compute(forces: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Release beams on uniform ground with increasingly fine meshes.
+
+    Raises
+    ------
+    ValueError
+        If no mesh resolves the crack; the message contains the lengths that would.
+    """
+    distance, curves = stage_forces.curves(forces)
+    # ASSUME: the single realisation of the paper is a typical one: of the stored curves, that with the median energy.
+    sample = stage_forces.typical(forces)
+    samples, limit = stage_forces.vectors(forces)
+    law = forcelaw.coefficients(samples[[sample]], limit)[0]
+    beam = cantilever(settings, settings.pair)
+    arrests = {}
+    for element, point in progress(whole_meshes(beam.length, settings.mesh.elements, settings.mesh.strips), "meshes"):
+        ground = replace(beam, elements=round(beam.length / element)), law, round(beam.length / point)
+        try:
+            arrests[element, point] = arrest_on_uniform_ground(*ground)
+        except (ValueError, NotConverged) as reason:  # the elements are too long for the crack or for the law
+            warnings.warn(f"left out elements of {from_si(element, 'um'):.3g} µm: {reason}", stacklevel=2)
+    if not arrests:
+        length = from_si(foundation_length(beam, law[None]), "um")
+        raise ValueError(
+            f"no mesh of studies.mesh resolves the crack: take elements of at most {ELEMENT * length:.3g} µm and "
+            f"strips of at most {STRIP * length:.3g} µm"
+        )
+    return layout([*arrests], [*arrests.values()], law, (distance, curves[sample]))
+
+
+def layout(
+    meshes: Sequence, arrests: Sequence[Arrest], law: np.ndarray, curve: tuple[np.ndarray, np.ndarray]
+) -> xr.Dataset:
+    """Crack length and energy on uniform ground for meshes of increasing fineness.
+
+    Parameters
+    ----------
+    meshes : sequence of pairs
+        Length of the elements and distance of the contact points [m].
+    arrests : sequence of Arrest
+    law : (4,) array
+        Force law of the ground, Eq. (12) [SI].
+    curve : tuple
+        Distance (n_d,) [m] and force (n_d,) [Pa] of the sample that the force law approximates.
+    """
+    elements, points = np.transpose(meshes)
+    distance, force = curve
+    return xr.Dataset(
+        {
+            "element_length": ("mesh", elements, {"units": "m"}),
+            "point_distance": ("mesh", points, {"units": "m", "long_name": "l_meso"}),
+            "crack_length": ("mesh", [a.crack_length for a in arrests], {"units": "m"}),
+            "energy": ("mesh", [a.energy for a in arrests], {"units": "J m-2", "long_name": "Eq. (13)"}),
+            "law": ("coefficient", law, {"units": "SI"}),
+            "force": ("distance", force, {"units": "Pa"}),
+        },
+        coords={
+            "coefficient": ["f_max", "d_max", "a_left", "a_right"],
+            "distance": ("distance", distance, {"units": "m"}),
+        },
+    )
+
+
+STAGES = (
+    Stage.writing(
+        "mesh",
+        "studies/mesh",
+        inputs=lambda plan, at: {"forces": f"forces/{plan.figure_case}_NG"},
+        settings=lambda plan, at: (
+            {
+                "mesh": plan.config["studies"]["mesh"],
+                "case": plan.figure_case,
+                "pair": plan.figure_pair,
+            }
+            | sections(plan, plan.figure_pair)
+        ),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["forces"], settings),
+        message="Convergence of the crack length in the mesh of the beam (App. C).",
+    ),
+)

@@ -1,0 +1,95 @@
+"""Release of the beams of a case, shared by stage beams and the studies that release beams.
+
+Separate from `stiction.stages.beams.beams`, so that a change of the dataset of that stage does not rerun the studies.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stiction.beam.montecarlo import Experiment, released_beams
+from stiction.beam.release import EndState
+from stiction.beam.resolution import resolved
+from stiction.chaos.model import ChaosModel, draw_laws
+from stiction.config.cases import pair_of
+from stiction.plan.stage import select
+from stiction.stages.beams import cantilevers
+from stiction.stages.beams.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever, strips_along
+from stiction.streams import stream
+
+#: Number of force laws from which the elements of the beams of a case are chosen.
+_LAWS = 10_000
+#: End states of a beam, in the order of their numbers in datasets.
+STATES = tuple(state.label for state in EndState)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the beams of a case depend on apart from the force laws."""
+
+    seed: int
+    solid: Stiffness
+    beam: Dimensions
+    pairs: dict[str, Gap]
+    sampling: StripLength
+    samples: int  #: number of beams
+    scatter: float  #: relative standard deviation of each dimension [-]
+    refined: bool = False  #: whether the elements follow the force laws, as in `stiction.beam.resolution.resolved`
+
+
+def released(model: ChaosModel, case: str, settings: Settings, threads: int = 1, shapes: int = 0) -> dict:
+    """Release beams of a case on force laws drawn from a chaos model; arrays of `stiction.beam.montecarlo.columns`."""
+    address = partial(stream, settings.seed, "beams", case)
+    return released_on(partial(draw_laws, model), case, settings, address, threads, shapes)
+
+
+def released_on(
+    draw: Callable, case: str, settings: Settings, address: Callable, threads: int = 1, shapes: int = 0
+) -> dict:
+    """Release beams of a case on force laws drawn by ``draw(n, rng)``; ``address(k)`` returns the stream of beam k.
+
+    Raises
+    ------
+    ValueError
+        If the strips are too long for the force laws.
+    """
+    beam, strips = cantilever(settings, pair_of(case)), strips_along(settings.beam, settings.sampling)
+    if settings.refined:
+        beam = _resolved(beam, strips, draw(_LAWS, address("mesh")), case)
+    experiment = Experiment(beam, strips, draw, settings.scatter)
+    return released_beams(experiment, settings.samples, address, threads, shapes)
+
+
+def _resolved(beam, strips, laws, case):
+    """`resolved`, with the name of the case added to an error."""
+    try:
+        return resolved(beam, strips, laws)
+    except ValueError as error:
+        error.add_note(f"in case {case}")
+        raise
+
+
+def ended(beams: xr.Dataset, state: str) -> np.ndarray:
+    """Whether each beam of a dataset ended in the given state, ``S-shape``, ``arc`` or ``free``; (n,) bool."""
+    return beams.state.values == STATES.index(state)
+
+
+def stuck_lengths(beams: xr.Dataset) -> np.ndarray:
+    """Crack lengths of the beams of a dataset that ended S-shaped (m,) [m]; those of others have no meaning."""
+    return beams.crack_length.values[ended(beams, "S-shape")]
+
+
+def stuck_energies(beams: xr.Dataset) -> np.ndarray:
+    """Apparent adhesion energies Γ, Eq. (13), of the beams of stage beams that ended S-shaped (m,) [J m⁻²]."""
+    return beams.adhesion_energy.values[ended(beams, "S-shape")]
+
+
+def sections(plan: Any, case: str) -> dict[str, Any]:
+    """Sections of the configuration on which the beams of a case depend, apart from their number."""
+    strips = select(StripLength, plan.config["sampling"])
+    nominal = {"seed": plan.config["seed"], "sampling": strips} | cantilevers.sections(plan, pair_of(case))
+    return nominal | ({} if plan.has_mesh_of_paper(case) else {"refined": True})

@@ -1,0 +1,63 @@
+"""Study resampling (App. B): beams on force laws resampled from the contact samples, to assess the chaos model."""
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from stiction.chaos.model import resample_laws
+from stiction.plan.stage import Stage
+from stiction.stages.beams import releases
+from stiction.stages.beams.cantilevers import Dimensions, Gap, Stiffness, StripLength
+from stiction.stages.laws.forces import vectors
+from stiction.streams import stream
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the beams depend on apart from the forces."""
+
+    seed: int
+    solid: Stiffness
+    beam: Dimensions
+    pairs: dict[str, Gap]
+    sampling: StripLength
+    beams: int  #: number of beams
+    refined: bool = False  #: as in `stiction.stages.beams.releases.Settings`
+
+
+def compute(forces: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
+    """Draw the force laws of every beam from the samples, with replacement, and release the beam."""
+    draw = partial(resample_laws, *vectors(forces))
+    sections = settings.solid, settings.beam, settings.pairs, settings.sampling
+    beams = releases.Settings(settings.seed, *sections, samples=settings.beams, scatter=0, refined=settings.refined)
+    address = partial(stream, settings.seed, "resampling", case)
+    return layout(releases.released_on(draw, case, beams, address))
+
+
+def layout(columns: dict[str, np.ndarray]) -> xr.Dataset:
+    """Dataset of the end state of every beam on resampled force laws; as `stiction.stages.beams.beams.layout`."""
+    return xr.Dataset(
+        {
+            "state": ("sample", np.asarray(columns["state"], np.int8)),
+            "crack_length": ("sample", columns["crack_length"], {"units": "m"}),
+        },
+        coords={"sample": columns["sample"]},
+    )
+
+
+STAGES = (
+    Stage.writing(
+        "resampling",
+        "studies/resampling/{case}",
+        inputs=lambda plan, at: {"forces": f"forces/{at.case}_NG"},
+        settings=lambda plan, at: (
+            releases.sections(plan, at.case) | {"beams": plan.config["studies"]["resampling"]["beams"]}
+        ),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["forces"], at.case, settings),
+        message="Release the beams of {case} on force laws resampled from the contact samples (App. B).",
+        cluster=True,
+    ),
+)

@@ -1,0 +1,121 @@
+"""Beams of a case under one variant, i.e. one model choice changed: the stages after its contact."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis.variants import Variant
+from stiction.chaos.model import Truncation, fit
+from stiction.config.cases import humidity_of, pair_of
+from stiction.plan.stage import Stage
+from stiction.stages.beams import releases
+from stiction.stages.beams.cantilevers import Dimensions, Gap, Stiffness, StripLength
+from stiction.stages.contact import curves
+from stiction.stages.contact.contact import first
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Settings of the stages after contact: samples of it, water, force laws and beams without scatter."""
+
+    seed: int
+    samples: int  #: number of pairs of surfaces, the first of the contact
+    water: curves.Water
+    chaos: Truncation
+    solid: Stiffness
+    beam: Dimensions
+    pairs: dict[str, Gap]
+    sampling: StripLength
+    refined: bool = False  #: whether the elements follow the force laws, as in `stiction.beam.resolution.resolved`
+
+
+def compute(contact: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
+    """Run the stages after contact at the humidity of a case; model NG, nominal dimensions."""
+    humidity = humidity_of(case)
+    vectors, limit = curves.vectors(first(contact, settings.samples), humidity, settings.water)
+    model = fit(vectors, limit, settings.chaos.order, settings.chaos.dimension_tolerance)
+    beams = releases.Settings(
+        settings.seed,
+        settings.solid,
+        settings.beam,
+        settings.pairs,
+        settings.sampling,
+        samples=settings.beam.samples,
+        scatter=0,
+        refined=settings.refined,
+    )
+    return layout([humidity], [vectors[:, 0]], [releases.released(model, case, beams)])
+
+
+def layout(humidities: Sequence[float], energies: Sequence, beams: Sequence[dict]) -> xr.Dataset:
+    """Dataset of the crack lengths of a pair under one variant, at some humidities.
+
+    Parameters
+    ----------
+    humidities : sequence
+        Relative humidities RH [-].
+    energies : (n_rh, m) array
+        Adhesion energies of the sampled pairs [J m⁻²].
+    beams : sequence of n_rh dicts
+        Arrays of :func:`stiction.beam.montecarlo.columns`.
+    """
+    return xr.Dataset(
+        {
+            "adhesion_energy": (("humidity", "sample"), energies, {"units": "J m-2"}),
+            "crack_length": (("humidity", "beam"), [b["crack_length"] for b in beams], {"units": "m"}),
+            "state": (("humidity", "beam"), np.array([b["state"] for b in beams], np.int8)),
+        },
+        coords={"humidity": list(humidities)},
+    )
+
+
+def by_pair(cases: Mapping[tuple[str, float, str], xr.Dataset]) -> dict[tuple[str, str], xr.Dataset]:
+    """Datasets of all humidities by pair and variant, from those by pair, humidity and variant."""
+    found = {}
+    for (pair, _, variant), dataset in sorted(cases.items(), key=lambda item: item[0][1]):
+        found.setdefault((pair, variant), []).append(dataset)
+    return {key: xr.concat(found[key], "humidity") for key in dict.fromkeys((pair, name) for pair, _, name in cases)}
+
+
+def cases_of(dataset: xr.Dataset) -> Iterator[tuple[float, Variant]]:
+    """Every case of the dataset: relative humidity [-] and the results under the variant."""
+    for k, humidity in enumerate(dataset.humidity.values):
+        chosen = dataset.isel(humidity=k)
+        stuck = releases.ended(chosen, "S-shape")
+        yield float(humidity), Variant(chosen.adhesion_energy.values, chosen.crack_length.values, stuck)
+
+
+def _inputs(plan, at):
+    """Contact of the pair of a case under a variant, which other variants may share.
+
+    That of the base is the contact of the main line, unless the variants have more samples.
+    """
+    pair, shared = pair_of(at.case), plan.contact_under(at.variant)
+    if shared == "base" and plan.has_samples_of_variants:
+        return {"contact": f"contact/{pair}_NG"}
+    return {"contact": f"studies/variants/contact/{pair}_{shared}"}
+
+
+def _settings(plan, at):
+    """Stages after contact under a variant: samples of the contact, water, force laws and beams without scatter."""
+    study = plan.config["studies"]["variants"]
+    laws = {"chaos": plan.config["chaos"], "water": plan.water(pair_of(at.case)), "samples": study["samples"]}
+    nominal = releases.sections(plan, at.case)
+    beam = nominal["beam"] | {"samples": study["beams"]} | plan.finer_beams.get(at.variant, {})
+    return nominal | laws | {"beam": beam}
+
+
+STAGES = (
+    Stage.writing(
+        "variant",
+        "studies/variants/{case}_{variant}",
+        inputs=_inputs,
+        settings=_settings,
+        kind=Settings,
+        first=lambda settings: {"sample": slice(settings.samples)},
+        compute=lambda data, at, settings: compute(data["contact"], at.case, settings),
+        message="Crack lengths of {case} under variant {variant}.",
+    ),
+)

@@ -1,0 +1,176 @@
+"""Stage contact (Sec. III-A): solid pressure and bearing area of the sampled pairs, independent of humidity."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import xarray as xr
+
+from stiction.contact.pair import DistanceGrid, contacts_of_samples
+from stiction.contact.tilted import TiltedPair
+from stiction.plan.stage import Stage, select
+from stiction.progress import progress
+from stiction.stages.contact.pairs import Settings, streams_of_sides, surface_pairs
+from stiction.stages.surfaces.rough_surfaces import both, of_pair
+
+
+def compute(
+    surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]],
+    pair: str,
+    model: str,
+    settings: Settings,
+    samples: range | None = None,
+) -> xr.Dataset:
+    """Draw surface pairs and compute p_s(sample, distance) and A(sample, height), in single precision.
+
+    Parameters
+    ----------
+    surfaces : sequence
+        Datasets (heights, spectrum) of the surfaces of beam and substrate.
+    pair : str
+        Name of the pair, part of the addresses of random numbers.
+    model : str
+        ``NG``, or ``G`` for surfaces with Gaussian heights.
+    settings : Settings
+    samples : range, optional
+        Indices of the samples; all by default.
+    """
+    return compute_each([surfaces], pair, model, settings, samples)[0]
+
+
+def compute_each(
+    alternatives: Sequence[Sequence[tuple[xr.Dataset, xr.Dataset]]],
+    pair: str,
+    model: str,
+    settings: Settings,
+    samples: range | None = None,
+) -> list[xr.Dataset]:
+    """As `compute`, for several choices of the two surfaces with the same random numbers.
+
+    A surface with the same tuple of datasets in several choices is drawn once for all of them.
+    """
+    pairs = surface_pairs(alternatives, model, settings)
+    samples = range(settings.contact.samples) if samples is None else samples
+    streams = streams_of_sides(settings.seed, pair)
+    found = contacts_of_samples(pairs, streams, progress(samples, "surface pairs"))
+    datasets = [layout(*curves, one.distances, samples) for curves, one in zip(found, pairs, strict=True)]
+    return [of_tips(*each) for each in zip(datasets, pairs, strict=True)] if settings.tilt else datasets
+
+
+def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceGrid, samples: range) -> xr.Dataset:
+    """Dataset of p_s(sample, distance) and A(sample, height), independent of humidity; float32.
+
+    Parameters
+    ----------
+    solid_pressure, bearing_area : (n, n_solid), (n, n_bearing) arrays
+        Solid pressure p_s [Pa] and bearing area A [-]; of tips (n, n_slopes, n_solid) and so on.
+    grid : DistanceGrid
+    samples : range
+        Indices of the samples within the study.
+    """
+    over = ("sample", "slope") if np.ndim(solid_pressure) == 3 else ("sample",)
+    return xr.Dataset(
+        {
+            "solid_pressure": ((*over, "distance"), np.asarray(solid_pressure, np.float32), {"units": "Pa"}),
+            "bearing_area": ((*over, "height"), np.asarray(bearing_area, np.float32), {"units": "1"}),
+            "step": ((), grid.step, {"units": "m"}),
+        },
+        coords={
+            "sample": np.asarray(samples, np.int32),
+            "distance": ("distance", grid.solid, {"units": "m"}),
+            "height": ("height", grid.bearing, {"units": "m"}),
+        },
+    )
+
+
+def of_tips(contact: xr.Dataset, pair: TiltedPair) -> xr.Dataset:
+    """Dataset of tips: with their slopes, and the length of the strip to which pressures and areas refer."""
+    slopes = ("slope", list(pair.tilt.slopes), {"units": "1"})
+    return contact.assign(length=((), pair.length, {"units": "m"})).assign_coords(slope=slopes)
+
+
+def chunk(samples: int, number: int, chunks: int) -> range:
+    """Indices of the samples in one of several chunks of nearly equal size."""
+    return range(samples * number // chunks, samples * (number + 1) // chunks)
+
+
+def joined(chunks: Iterable[xr.Dataset], samples: int) -> xr.Dataset:
+    """Contact of all samples, joined from the chunks in their order; of an iterator, one chunk is held at a time.
+
+    Raises
+    ------
+    ValueError
+        If a chunk has other distances than those before it, or if samples are missing or repeated.
+    """
+    pressures = areas = grid = None
+    found = 0
+    for chunk in chunks:
+        if grid is None:
+            grid = _grid(chunk)
+            pressures, areas = (np.empty((samples, n), np.float32) for n in (grid.above, grid.below + grid.above))
+        here = slice(found, found + chunk.sizes["sample"])
+        if _grid(chunk) != grid or not np.array_equal(chunk.sample, np.arange(samples)[here]):
+            raise ValueError(f"the chunk after {found} of {samples} samples does not continue the contact")
+        pressures[here], areas[here] = chunk.solid_pressure, chunk.bearing_area
+        found = here.stop
+    if found != samples:
+        raise ValueError(f"the chunks contain {found} of {samples} samples")
+    return layout(pressures, areas, grid, range(samples))
+
+
+def _grid(contact):
+    """Grid of the distances."""
+    above = contact.sizes["distance"]
+    return DistanceGrid(float(contact.step), contact.sizes["height"] - above, above)
+
+
+def first(contact: xr.Dataset, samples: int) -> xr.Dataset:
+    """Contact of the first samples alone."""
+    return contact.isel(sample=slice(samples))
+
+
+def surface_rms(contact: xr.Dataset) -> float:
+    r"""Root mean square of z₁ + z₂ from the mean bearing area, :math:`m_2 = 2 \int z (A(z) - [z < 0]) dz` [m]."""
+    height = contact.height.values
+    area = contact.bearing_area.values.mean(axis=0, dtype=float)
+    return float(np.sqrt(2 * float(contact.step) * np.sum(height * (area - (height < 0)))))
+
+
+def tables(contact: xr.Dataset) -> tuple[np.ndarray, np.ndarray, tuple[float, float], float]:
+    """Solid pressures (m, n_s) [Pa], bearing areas (m, n_b) [-], first distance of each and common step [m]."""
+    starts = float(contact.distance[0]), float(contact.height[0])
+    return contact.solid_pressure.values, contact.bearing_area.values, starts, float(contact.step)
+
+
+def _chunks(plan, at):
+    """Chunks of the samples of a pair in their order."""
+    number = plan.config["contact"]["chunks"]
+    return {"chunks": [f"contact/{at.pair}_{at.model}/{chunk}-of-{number}" for chunk in range(number)]}
+
+
+STAGES = (
+    Stage.writing(
+        "contact_chunk",
+        "contact/{pair}_{model}/{chunk}-of-{number}",
+        inputs=lambda plan, at: of_pair(plan, at.pair),
+        settings=lambda plan, at: select(Settings, plan.seen_by(at.pair)),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(
+            both(data), at.pair, at.model, settings, chunk(settings.contact.samples, int(at.chunk), int(at.number))
+        ),
+        label="contact",
+        message="Contact of {model} surfaces of pair {pair}, chunk {chunk} of {number}.",
+        temporary=True,
+        cluster=True,
+        minutes=30,
+    ),
+    Stage.writing(
+        "contact",
+        "contact/{pair}_{model}",
+        inputs=_chunks,
+        streamed=True,
+        settings=lambda plan, at: select(Settings, plan.seen_by(at.pair)),
+        kind=Settings,
+        compute=lambda data, at, settings: joined(data["chunks"], settings.contact.samples),
+        message="Join the contact of {model} surfaces of pair {pair} (Sec. III-A).",
+    ),
+)

@@ -1,0 +1,115 @@
+"""Pairs of rough surfaces in contact, from the datasets of stages heights and spectrum.
+
+Separate from `stiction.stages.contact.contact`, because studies use the same pairs for other purposes.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Protocol
+
+import numpy as np
+import xarray as xr
+
+from stiction.contact import solids
+from stiction.contact.asperity import Asperity
+from stiction.contact.pair import EquivalentSurface, SurfacePair
+from stiction.contact.tilted import Tilt, TiltedPair
+from stiction.models import SIDES
+from stiction.stages.surfaces.rough_surfaces import Sampling, Width, rough_surface
+from stiction.streams import stream
+
+#: Materials of beam and substrate by side, where section ``solid`` does not hold for both.
+Materials = dict[str, solids.Solid]
+
+
+@dataclass(frozen=True)
+class Solid:
+    """Elastic constants of both bodies."""
+
+    young_modulus: float  #: E [Pa]
+    poisson_ratio: float  #: ν [-]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Discretisation of the contact (Sec. III-A)."""
+
+    distance_step: float  #: step of the distance between the mean planes [m]
+    every: int  #: n: contact is computed on every n-th point of the grid
+    samples: int | None = None  #: number of surface pairs
+
+
+class Surfaces(Protocol):
+    """Sections of the settings of any job that draws pairs of surfaces."""
+
+    sampling: Sampling
+    contact: Contact
+    beam: Width
+
+
+class Solids(Protocol):
+    """Sections of the settings of any job that computes the forces of summits."""
+
+    solid: Solid
+    van_der_waals: str
+    materials: Materials
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the contact of a pair depends on apart from its surfaces; independent of humidity."""
+
+    seed: int
+    sampling: Sampling
+    solid: Solid
+    van_der_waals: str
+    contact: Contact
+    beam: Width
+    surfaces: tuple[str, ...] = ()  #: names of the two surfaces; they do not affect the results
+    materials: Materials = field(default_factory=dict)
+    tilt: Tilt | None = None  #: of the tips of beams, with the step of their distances; none for surfaces without slope
+
+
+def bodies(settings: Solids) -> tuple[solids.Solid, solids.Solid]:
+    """Materials of beam and substrate: as stated by side, otherwise section ``solid`` and polysilicon."""
+    both = solids.Solid(settings.solid.young_modulus, settings.solid.poisson_ratio)
+    return tuple(settings.materials.get(side, both) for side in SIDES)
+
+
+def asperity_of(settings: Solids) -> Asperity:
+    """Model of one summit of the two bodies."""
+    return solids.asperity_between(*bodies(settings), settings.van_der_waals)
+
+
+def equivalent_surface(
+    surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], model: str, settings: Surfaces
+) -> EquivalentSurface:
+    """Sum of two surfaces from their (heights, spectrum) datasets, that of the beam first."""
+    grid = settings.sampling.strips(settings.beam.width)
+    beam, substrate = (rough_surface(heights, spectrum, model, grid) for heights, spectrum in surfaces)
+    return EquivalentSurface(beam, substrate, settings.contact.distance_step, settings.contact.every)
+
+
+def surface_pair(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], model: str, settings: Settings) -> SurfacePair:
+    """Pair of surfaces from their (heights, spectrum) datasets, that of the beam first."""
+    return surface_pairs([surfaces], model, settings)[0]
+
+
+def surface_pairs(
+    alternatives: Sequence[Sequence[tuple[xr.Dataset, xr.Dataset]]], model: str, settings: Settings
+) -> list[SurfacePair]:
+    """As `surface_pair`, for several pairs; equal tuples of datasets give the same object."""
+    grid, solid = settings.sampling.strips(settings.beam.width), asperity_of(settings)
+    distinct = {id(datasets): datasets for surfaces in alternatives for datasets in surfaces}
+    built = {key: rough_surface(*datasets, model, grid) for key, datasets in distinct.items()}
+    step, every = settings.contact.distance_step, settings.contact.every
+    build = partial(SurfacePair, asperity=solid)
+    if settings.tilt:
+        build = partial(TiltedPair, asperity=solid, tilt=settings.tilt)
+    return [build(*(built[id(one)] for one in surfaces), step, every) for surfaces in alternatives]
+
+
+def streams_of_sides(seed: int, pair: str) -> Callable[[int], tuple[np.random.Generator, ...]]:
+    """Streams of the two surfaces of one sample of a pair: ``(sample) -> (beam, substrate)``."""
+    return lambda sample: tuple(stream(seed, "contact", pair, side, sample) for side in SIDES)

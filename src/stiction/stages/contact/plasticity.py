@@ -1,0 +1,97 @@
+"""Study plasticity (App. A, Fig. 16): stress of every touching summit of a pair at a small distance."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis import plasticity
+from stiction.constants import HARDNESS
+from stiction.contact import solids
+from stiction.contact.asperity import hertz_maximum_stress
+from stiction.models import ELASTIC
+from stiction.plan.stage import Stage, select
+from stiction.progress import progress
+from stiction.stages.contact import pairs
+from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
+from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.surface.summits import find_summits
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings(pairs.Settings):
+    """Settings of the contact, number of strips and distance."""
+
+    strips: int  #: number of pairs of strips
+    distance: float  #: between the mean planes [m]
+
+
+def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
+    """Find the touching summits of all strips and the share of their contact area that yields."""
+    both = surface_pair(surfaces, "NG", settings)
+    streams = streams_of_sides(settings.seed, pair)
+    found = []
+    for k in progress(range(settings.strips), "strips"):
+        height, curvature, _ = find_summits(both.draw(*streams(k)), both.beam.grid.spacing * both.every)
+        interference, radius = plasticity.touching(height, curvature, settings.distance)
+        found.append((interference, radius, np.full(len(radius), k)))
+    interference, radius, strip = np.hstack(found)
+    materials = bodies(settings)
+    stress = hertz_maximum_stress(interference, radius, solids.composite_modulus(*materials))
+    area = plasticity.contact_area(interference, radius)
+    hardness = solids.softer_hardness(*materials)
+    share = plasticity.plastic_share(area, stress, strip.astype(int), settings.strips, hardness)
+    summits = {"interference": interference, "radius": radius, "stress": stress, "strip": strip.astype(int)}
+    return layout(summits, share, settings.distance, hardness)
+
+
+def layout(
+    summits: dict[str, np.ndarray], share: tuple[float, float], distance: float, hardness: float = HARDNESS
+) -> xr.Dataset:
+    """Stress of every touching summit and the share of the contact area that yields.
+
+    Parameters
+    ----------
+    summits : dict
+        interference [m], radius [m], stress [Pa], strip, (n,) each.
+    share : tuple
+        A_P / A and its standard error [-].
+    distance : float
+        Between the mean planes [m].
+    hardness : float
+        Of the softer body [Pa].
+    """
+    units = {"interference": "m", "radius": "m", "stress": "Pa"}
+    columns = {name: ("summit", np.asarray(summits[name], np.float32), {"units": unit}) for name, unit in units.items()}
+    return xr.Dataset(
+        columns
+        | {
+            "strip": ("summit", np.asarray(summits["strip"], np.int32)),
+            "plastic_share": ((), share[0], {"units": "1", "long_name": "A_P / A"}),
+            "plastic_share_error": ((), share[1], {"units": "1"}),
+            "separation": ((), distance, {"units": "m"}),
+            "hardness": ((), hardness, {"units": "Pa"}),
+        }
+    )
+
+
+def _settings(plan, at):
+    """As those of the contact, with the number of strips and the distance of App. A, and with the hardness."""
+    study = plan.config["studies"]["plasticity"]
+    size = {"strips": study["strips"], "distance_nm": study["distance_nm"][at.pair]}
+    return select(Settings, plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None) | size)
+
+
+STAGES = (
+    Stage.writing(
+        "plasticity",
+        "studies/plasticity/{pair}",
+        inputs=lambda plan, at: of_pair(plan, at.pair),
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(both(data), at.pair, settings),
+        message="Stress of the touching summits of pair {pair} (App. A).",
+        cluster=True,
+    ),
+)

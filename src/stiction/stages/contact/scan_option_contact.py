@@ -1,0 +1,110 @@
+"""Contact of a pair whose measured surfaces are evaluated by the other choice of ``beyond`` or of ``heights``."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from stiction.models import ALTERNATIVES_OF_SCANS
+from stiction.plan.stage import Stage, select
+from stiction.stages.contact import contact as stage_contact
+from stiction.stages.contact import pairs
+from stiction.stages.surfaces import estimate as stage_estimate
+from stiction.stages.surfaces import measured_heights, measured_spectrum
+from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.spectrum import Use
+
+
+@dataclass(frozen=True)
+class Source:
+    """What is taken of an estimate."""
+
+    heights: str  #: ``moments`` or ``measured``
+    psd: str  #: ``fitted`` or ``tabulated``
+    beyond: str  #: ``cut`` or ``continued``
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings(pairs.Settings):
+    """Settings of the contact, and the sources of the measured surfaces."""
+
+    sources: dict[str, Source]  #: of the measured surfaces, by name
+
+
+def compute(
+    surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]],
+    estimates: Mapping[str, xr.Dataset],
+    pair: str,
+    choice: str,
+    settings: Settings,
+) -> xr.Dataset:
+    """Contact with the other value of a choice, for all measured surfaces of the pair.
+
+    Samples have the random numbers of the base; another cut-off gives another surface nevertheless.
+
+    Parameters
+    ----------
+    surfaces : sequence
+        Datasets (heights, spectrum) of the surfaces of beam and substrate.
+    estimates : dict
+        Measured surface to its dataset of stage estimate.
+    pair : str
+        Name of the pair, part of the addresses of random numbers.
+    choice : str
+        Key of `stiction.models.ALTERNATIVES_OF_SCANS`.
+    settings : Settings
+    """
+    both = [
+        as_is if name not in estimates else _otherwise(name, estimates[name], choice, settings)
+        for name, as_is in zip(settings.surfaces, surfaces, strict=True)
+    ]
+    return stage_contact.compute(both, pair, "NG", settings)
+
+
+def _otherwise(name, estimate, choice, settings):
+    """Datasets of stages heights and spectrum of a measured surface with the other value of a choice."""
+    source = other(settings.sources[name], choice)
+    if source.heights == "moments" and np.isnan(stage_estimate.distance(estimate)):
+        source = replace(source, heights="measured")  # the only one that exists
+    heights = measured_heights.compute(estimate, measured_heights.Settings(name, source.heights))
+    sampling = settings.sampling
+    use = Use(name, sampling.strip_length, sampling.margin)
+    wanted = measured_spectrum.Settings(source.psd, source.beyond, sampling.spacing, use)
+    return heights, measured_spectrum.compute(estimate, heights, wanted)
+
+
+def other(source: Source, choice: str) -> Source:
+    """Source with the other value of a choice.
+
+    Examples
+    --------
+    >>> other(Source("moments", "fitted", "cut"), "beyond")
+    Source(heights='moments', psd='fitted', beyond='continued')
+    """
+    first, second = ALTERNATIVES_OF_SCANS[choice]
+    return replace(source, **{choice: second if getattr(source, choice) == first else first})
+
+
+def _settings(plan, at):
+    """As those of the contact, with the samples of the slopes, at most its own, and sources of measured surfaces."""
+    entries = {name: plan.config["surfaces"][name] for name in plan.scanned_sides(at.pair)}
+    sources = {name: select(Source, entry) for name, entry in entries.items()}
+    return select(Settings, plan.seen_by(at.pair, samples=plan.samples_of_slopes) | {"sources": sources})
+
+
+STAGES = (
+    Stage.writing(
+        "choice_contact",
+        "studies/choices/{pair}_{choice}",
+        inputs=lambda plan, at: (
+            of_pair(plan, at.pair) | {"estimates": {name: f"estimate/{name}" for name in plan.scanned_sides(at.pair)}}
+        ),
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(both(data), data["estimates"], at.pair, at.choice, settings),
+        label="contact",
+        message="Contact of pair {pair} with the other value of {choice}.",
+        cluster=True,
+    ),
+)

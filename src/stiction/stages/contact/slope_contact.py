@@ -1,0 +1,89 @@
+"""Contact of a pair with one quantity of one surface slightly decreased and increased.
+
+The datasets are those of stage contact with an additional variable, the difference of the quantity between both sides.
+Every slope with common random numbers uses them: of energies in `stiction.stages.laws.slopes`, of results of the laws.
+"""
+
+from collections.abc import Sequence
+
+import xarray as xr
+
+from stiction.analysis.shifts import bracketed
+from stiction.models import OF_MEASURED, SHIFTED
+from stiction.plan.stage import Stage, select
+from stiction.stages.contact import contact as stage_contact
+from stiction.stages.contact.pairs import Settings
+from stiction.stages.surfaces import measured_heights
+from stiction.stages.surfaces.descriptions import description, drawn_as
+from stiction.stages.surfaces.rough_surfaces import both, of_pair
+
+
+def compute(
+    surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]],
+    pair: str,
+    surface: str,
+    quantity: str,
+    settings: Settings,
+    estimate: xr.Dataset | None = None,
+) -> list[xr.Dataset]:
+    """Contact with less and with more of a quantity, in this order; the samples have the same random numbers.
+
+    Parameters
+    ----------
+    surfaces : sequence
+        Datasets (heights, spectrum) of the surfaces of beam and substrate.
+    pair : str
+        Name of the pair, part of the addresses of random numbers.
+    surface : str
+        Name of the surface whose quantity is shifted; on both sides of the pair if both have this surface.
+    quantity : str
+        Key of `stiction.analysis.shifts.STEPS`.
+    settings : Settings
+    estimate : Dataset, optional
+        Of stage estimate: the heights of the surface are the measured ones, around which their modes are shifted.
+    """
+    heights, spectrum = surfaces[settings.surfaces.index(surface)]
+    if estimate is not None:
+        heights = measured_heights.compute(estimate, measured_heights.Settings(surface, "measured"))
+    both, difference = bracketed(description(heights, spectrum), quantity)
+    alternatives = []
+    for changed in both:
+        drawn = drawn_as(changed, settings.sampling.spacing)
+        alternatives.append(
+            [drawn if name == surface else same for name, same in zip(settings.surfaces, surfaces, strict=True)]
+        )
+    contacts = stage_contact.compute_each(alternatives, pair, "NG", settings)
+    return [contact.assign(difference=((), difference, {"units": "1"})) for contact in contacts]
+
+
+def difference(contact: xr.Dataset) -> float:
+    """Difference of the quantity between both sides, see `stiction.analysis.shifts.bracketed`."""
+    return float(contact.difference)
+
+
+def _inputs(plan, at):
+    """The two surfaces, and the estimate of the surface if one of its modes is shifted.
+
+    Modes are those of the measured heights, which the surface may not have.
+    """
+    estimate = {"estimate": f"estimate/{at.surface}"} if at.quantity in OF_MEASURED[1:] else {}
+    return of_pair(plan, at.pair) | estimate
+
+
+SHIFTED_CONTACT = Stage.writing(
+    "slope_contact",
+    "studies/slopes/contact/{pair}_{surface}_{quantity}_{each}",
+    each=lambda plan: SHIFTED,
+    inputs=_inputs,
+    settings=lambda plan, at: select(
+        Settings, plan.seen_by(at.pair, samples=plan.config["studies"]["slopes"]["samples"])
+    ),
+    kind=Settings,
+    compute=lambda data, at, settings: compute(
+        both(data), at.pair, at.surface, at.quantity, settings, data.get("estimate")
+    ),
+    label="contact",
+    message="Contact of pair {pair} with less and more {quantity} of {surface}.",
+    cluster=True,
+)
+STAGES = (SHIFTED_CONTACT,)

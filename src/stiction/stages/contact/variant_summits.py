@@ -1,0 +1,199 @@
+"""Summits of a pair under a variant: all that its contact depends on besides the solids, whose variants share them.
+
+The dataset depends neither on the elasticity of the solids nor on their attraction.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.config.merging import merged
+from stiction.config.units import typed
+from stiction.contact.pair import DistanceGrid, Summits
+from stiction.plan.stage import Stage
+from stiction.progress import progress
+from stiction.stages.contact.pairs import Contact, equivalent_surface, streams_of_sides
+from stiction.stages.surfaces import heights as stage_heights
+from stiction.stages.surfaces import spectrum as stage_spectrum
+from stiction.stages.surfaces.rough_surfaces import Sampling, Width
+from stiction.surface.spectrum import CutoffSelfAffine
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Description of one surface from which it is drawn."""
+
+    rms: float  #: [m]
+    skewness: float  #: [-]
+    kurtosis: float  #: [-]
+    psd: str  #: source of the spectrum, ``published`` or ``identified``
+    published_psd: CutoffSelfAffine | None = None  #: Eq. (7)
+
+
+@dataclass(frozen=True)
+class Sides:
+    """Names of the two surfaces of a pair."""
+
+    beam: str
+    substrate: str
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the summits of a pair depend on, including its surfaces."""
+
+    seed: int
+    sampling: Sampling
+    contact: Contact
+    beam: Width
+    pairs: dict[str, Sides]
+    surfaces: dict[str, Surface]
+
+
+def compute(
+    identifications: Mapping[str, xr.Dataset],
+    pair: str,
+    base: Settings,
+    changed: Settings,
+    measured: Mapping[str, tuple[xr.Dataset, xr.Dataset]] | None = None,
+) -> xr.Dataset:
+    """Summits under the changed settings, of the same surfaces as the base, even if drawn on a different grid.
+
+    Parameters
+    ----------
+    identifications : dict
+        Datasets of stage identification by name, of the surfaces whose spectrum is identified.
+    pair : str
+    base, changed : Settings
+        Settings without and with the change of the variant.
+    measured : dict, optional
+        Datasets (heights, spectrum) of the surfaces described by scans, by name.
+
+    Raises
+    ------
+    ValueError
+        If an identified spectrum must not be used, see `stiction.stages.surfaces.spectrum.refuse_misuse`.
+    """
+    for name, identification in identifications.items():
+        stage_spectrum.refuse_misuse(
+            identification, stage_spectrum.Use(name, changed.sampling.strip_length, changed.sampling.margin)
+        )
+    surfaces = surfaces_of(base.pairs[pair], base.surfaces, base.sampling.spacing, identifications, measured)
+    equivalent = equivalent_surface(surfaces, "NG", changed)
+    streams = streams_of_sides(changed.seed, pair)
+    summits, areas = [], []
+    for k in progress(range(changed.contact.samples), "surface pairs"):
+        drawn = equivalent.draw(*streams(k))
+        summits.append(equivalent.summits(drawn))
+        areas.append(equivalent.bearing_area(drawn))
+    return layout(summits, areas, equivalent.distances)
+
+
+def surfaces_of(
+    sides: Sides,
+    surfaces: Mapping[str, Surface],
+    spacing: float,
+    identifications: Mapping[str, xr.Dataset],
+    measured: Mapping[str, tuple[xr.Dataset, xr.Dataset]] | None = None,
+) -> list[tuple[xr.Dataset, xr.Dataset]]:
+    """Datasets (heights, spectrum) of the surfaces of beam and substrate, computed by their stages.
+
+    Parameters
+    ----------
+    sides : Sides
+    surfaces : dict
+        Descriptions of the surfaces without scans by name.
+    spacing : float
+        Of the grid of the surfaces [m].
+    identifications : dict
+        Datasets of stage identification by name, of the surfaces whose spectrum is identified.
+    measured : dict, optional
+        Datasets (heights, spectrum) of the surfaces described by scans, by name.
+    """
+    known = measured or {}
+    return [
+        known[name] if name in known else _datasets(surfaces[name], spacing, identifications.get(name))
+        for name in (sides.beam, sides.substrate)
+    ]
+
+
+def _datasets(surface, spacing, identification):
+    """Datasets of stages heights and spectrum of one surface."""
+    heights = stage_heights.compute(stage_heights.Settings(surface.rms, surface.skewness, surface.kurtosis))
+    psd = surface.published_psd if surface.psd == "published" else "identified"
+    return heights, stage_spectrum.compute(heights, identification, stage_spectrum.Settings(spacing, psd))
+
+
+def layout(summits: Sequence[Summits], bearing_areas: Sequence[np.ndarray], grid: DistanceGrid) -> xr.Dataset:
+    """Dataset of the summits above the mean plane and of the bearing areas of all samples.
+
+    Parameters
+    ----------
+    summits : sequence
+        Of each sample, found in equal areas.
+    bearing_areas : sequence of (n_bearing,) arrays
+        A at ``grid.bearing`` [-].
+    grid : DistanceGrid
+    """
+    above = [one.tops > 0 for one in summits]
+    tops, curvatures = (
+        np.concatenate([values[kept] for values, kept in zip(column, above, strict=True)])
+        for column in ([one.tops for one in summits], [one.curvatures for one in summits])
+    )
+    return xr.Dataset(
+        {
+            "top": ("summit", tops.astype(np.float32), {"units": "m"}),  # drawn in single precision
+            "curvature": ("summit", curvatures, {"units": "m-1"}),
+            "count": ("sample", np.array([kept.sum() for kept in above]), {"units": "1"}),
+            "area": ((), summits[0].area, {"units": "m2", "long_name": "area in which a point can be a summit"}),
+            "bearing_area": (("sample", "height"), np.array(bearing_areas, np.float32), {"units": "1"}),
+            "step": ((), grid.step, {"units": "m"}),
+            "below": ((), grid.below, {"units": "1", "long_name": "number of grid points with negative distance"}),
+        },
+        coords={"height": ("height", grid.bearing, {"units": "m"})},
+    )
+
+
+def samples_of(dataset: xr.Dataset) -> Iterator[Summits]:
+    """Summits of each sample."""
+    ends = np.cumsum(dataset["count"].values)[:-1]
+    tops, curvatures = (np.split(dataset[name].values.astype(float), ends) for name in ("top", "curvature"))
+    for sample in zip(tops, curvatures, strict=True):
+        yield Summits(*sample, float(dataset.area))
+
+
+def distances(dataset: xr.Dataset) -> DistanceGrid:
+    """Grid of the distances."""
+    below = int(dataset.below)
+    return DistanceGrid(float(dataset.step), below, dataset.sizes["height"] - below)
+
+
+def _inputs(plan, at):
+    """Identifications of the surfaces under a variant, and datasets of the measured surfaces of the pair."""
+    identified = plan.variant_summits(at.pair, at.variant)["identified"]
+    measured = plan.scanned_sides(at.pair)
+    return {"identifications": {name: f"identification/{name}" for name in identified}} | {
+        stage: {name: f"{stage}/{name}" for name in measured} for stage in ("heights", "spectrum")
+    }
+
+
+def _computed(data, at, settings):
+    """Summits of a pair under a variant, from plain settings: those without the variant and its changes."""
+    measured = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
+    wanted = (typed(Settings, plain) for plain in (settings["base"], merged(settings["base"], settings["changes"])))
+    return compute(data["identifications"], at.pair, *wanted, measured)
+
+
+SUMMITS = Stage.writing(
+    "variant_summits",
+    "studies/variants/summits/{pair}_{variant}",
+    inputs=_inputs,
+    settings=lambda plan, at: plan.variant_summits(at.pair, at.variant),
+    compute=_computed,
+    message="Summits of pair {pair} under variant {variant}.",
+    cluster=True,
+    minutes=30,
+)
+STAGES = (SUMMITS,)

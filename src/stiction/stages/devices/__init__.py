@@ -1,0 +1,1 @@
+"""Stages of devices: cracks of long beams, safe lengths, charts, stoppers, budgets, warnings."""

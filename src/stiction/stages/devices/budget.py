@@ -1,0 +1,355 @@
+"""Stage budget: which input of a device moves its length, or the pull-off force of a stopper, by how much.
+
+A cantilever has a budget of its sticking length as an S-shape, and another one of the length that its tip holds:
+its contact is that of the tips. Slopes are central differences with common random numbers: sample k of two contacts has
+the same random numbers, and device j meets the same samples on both sides. The chaos model is left out: force laws are
+those of the samples.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stiction.beam.cantilever import Beam
+from stiction.beam.energy import arrest_length
+from stiction.config.cases import humidity_of, pair_of
+from stiction.config.units import typed
+from stiction.contact import forcelaw
+from stiction.devices import arcs, bridges
+from stiction.devices.budget import Budget, choice_effect, log_slope
+from stiction.devices.stoppers import pull_off_force
+from stiction.devices.tail import fit_tail
+from stiction.plan.stage import Stage, chosen
+from stiction.progress import progress
+from stiction.stages.contact import curves
+from stiction.stages.contact.contact import first
+from stiction.stages.devices.error_notes import noted
+from stiction.stages.devices.patch_settings import contacts_of_budget, contacts_of_tip_budget
+from stiction.stages.devices.releases import addresses, arrests, resolved_part, section_of_beam
+from stiction.stages.devices.uncertain_inputs import (
+    FORCE,
+    Input,
+    Known,
+    Settings,
+    State,
+    countable,
+    covariances,
+    uncertain,
+)
+
+
+@dataclass(frozen=True)
+class Responses:
+    """Lengths [m] or forces [N] of the same devices at several states, and what they share."""
+
+    values: np.ndarray  #: (states, devices); infinite where a beam has no S-shaped crack
+    centre: Callable[[np.ndarray], float]  #: the number that stands for all devices of a state
+    shared: np.ndarray | None = None  #: of the samples that all beams share (states, m, ...): energies, for example
+    length: Callable[[np.ndarray], float] | None = None  #: length on the mean of the samples (m, ...) [m]
+
+
+#: Devices at several states.
+Respond = Callable[[Sequence[State]], Responses]
+
+
+def compute(
+    contact: xr.Dataset,
+    shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
+    solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
+    choices: Mapping[str, xr.Dataset],
+    known: Mapping[str, Known],
+    settings: Settings,
+) -> xr.Dataset:
+    """Slopes of all uncertain inputs of a device at a humidity, their covariance, scatter, and other model choices.
+
+    Parameters
+    ----------
+    contact : Dataset
+        Contact of the device, or of its tips.
+    shifted : dict
+        (surface, quantity) to the contact with less and with more of it.
+    solids : dict
+        Uncertain property of the solids to the contact with less and with more of it, by the step of
+        `stiction.devices.budget.OF_SOLIDS`.
+    choices : dict
+        Name of the choice to the contact under it; with fewer samples than ``contact``, that of the first ones.
+    known : dict
+        Surface to what is known of its quantities, those of ``shifted``.
+    settings : Settings
+    """
+    state = nominal(contact, settings)
+    respond = responder(state, settings)
+    inputs, covariance = uncertain(state, shifted, solids, known, settings)
+    found = slopes(inputs, respond)
+    changes = {}
+    for name, changed in choices.items():
+        base = replace(state, contact=first(contact, changed.sizes["sample"]))
+        with noted(f"This is the contact under the choice {name}."):
+            changes[name] = effect(base, replace(state, contact=changed), respond)
+    return layout(inputs, found, covariance, respond([state]), changes, settings)
+
+
+def nominal(contact: xr.Dataset, settings: Settings) -> State:
+    """State of a device with the stated inputs."""
+    area = settings.contact[0] * settings.contact[1]
+    return State(contact, settings.humidity, settings.water, settings.device, area)
+
+
+def responder(state: State, settings: Settings) -> Respond:
+    """How the devices respond: pull-off forces of all patches of a stopper, arcs of all tips, cracks of long beams."""
+    if settings.device is None:
+        return of_stoppers
+    if settings.share:
+        return partial(of_tips, share=settings.share)
+    laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water)])[0]
+    part, strips = resolved_part(settings.device, laws)
+    return partial(of_beams, mesh=part, strips=strips, number=settings.beams, address=addresses(settings))
+
+
+def of_stoppers(states: Sequence[State]) -> Responses:
+    """Pull-off forces of all sampled patches at several states."""
+    forces = [
+        pull_off_force(curves.pull_offs(state.contact, state.humidity, state.water), state.area) for state in states
+    ]
+    return Responses(np.array(forces), np.mean)
+
+
+def of_tips(states: Sequence[State], share: float) -> Responses:
+    """Longest arcs that come free of all sampled tips at several states; a share p of them stands for all.
+
+    ASSUME: no crack stops on beams that are so short that only a share p of the tips hold them.
+    """
+    found = [(curves.tip_forces(state.contact, state.humidity, state.water), state.device.beam) for state in states]
+    lengths = [arcs.longest_free(*forces, beam) for forces, beam in found]
+    return Responses(np.array(lengths), lambda lengths: fit_tail(lengths).length(share))
+
+
+def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, address: Callable) -> Responses:
+    """Crack lengths, or lengths of held bridges, of the same beams at several states, on resampled force laws.
+
+    ASSUME: for a cantilever, the two foundation lengths that hold its crack are left out, 1 % of the length.
+
+    Parameters
+    ----------
+    states : sequence of State
+    mesh : Beam
+        Length and elements of the part of all beams that finite elements resolve.
+    strips : int
+        Number of force laws along a beam.
+    number : int
+        Number of beams.
+    address : callable
+        ``address(k)`` is the stream of beam k.
+    """
+    laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water) for state in states])
+
+    def lengths(state, laws):
+        part = replace(state.device.beam, length=mesh.length, elements=mesh.elements)
+        return arrests(state.device, (part, strips), partial(_picked, laws), number, address)
+
+    values = np.array([lengths(state, of_state) for state, of_state in zip(states, laws, strict=True)])
+    # Some lengths may not be known.
+    centre = np.mean if np.isfinite(values).all() else np.median
+    return Responses(values, centre, *_of_samples(states[0].device, np.array(laws)))
+
+
+def _of_samples(device, laws):
+    """What the samples contribute to the length of a device at several states, and the length on their mean.
+
+    ASSUME: lengths follow the mean energy of the samples as in Eq. (13), and those of bridges their mean energy and
+    pull-off force as in `stiction.devices.bridges.least_length`, as far as the error of the samples is concerned.
+    """
+    energies, beam = forcelaw.energy(laws), device.beam
+    if device.is_bridge:
+        both = np.stack([energies, laws[..., 0]], axis=-1)
+        return both, lambda sample: bridges.least_length(*sample.mean(axis=0), beam)
+    return energies, lambda sample: arrest_length(sample.mean(), beam)
+
+
+def shared_laws(found: Sequence[tuple[np.ndarray, float]]) -> list[np.ndarray]:
+    """Force laws of the samples that have one at every state, from vectors and f_limit of each; (m, 4) each."""
+    lawful = np.logical_and.reduce([forcelaw.admissible(vectors, limit) for vectors, limit in found])
+    return [forcelaw.coefficients(vectors[lawful], limit) for vectors, limit in found]
+
+
+def _picked(laws, number, rng):
+    """Laws drawn with replacement."""
+    return laws[rng.integers(len(laws), size=number)]
+
+
+# Slopes
+
+
+def slopes(inputs: Sequence[Input], respond: Respond) -> np.ndarray:
+    """Slopes of the logarithm of the response and their standard errors, (inputs, 2)."""
+    found = []
+    for entry in progress(inputs, "inputs"):
+        with noted(f"This is the contact with less or more of the input {entry.name}."):
+            found.append(_slope(respond(entry.states), entry.step))
+    return np.array(found).reshape(len(inputs), 2)
+
+
+def _slope(found, step):
+    """Slope between two states and its standard error, of the devices and of the samples that they share."""
+    value, own = log_slope(found.centre, *found.values, step)
+    if found.shared is None:
+        return value, own
+    return value, np.hypot(own, log_slope(found.length, *found.shared, step)[1])
+
+
+def effect(base: State, changed: State, respond: Respond) -> tuple[float, float]:
+    """Relative change of the response by another choice of the model, with its standard error [-]."""
+    found = respond([base, changed])
+    return choice_effect(*map(found.centre, found.values)), _slope(found, 1.0)[1]
+
+
+# Dataset
+
+
+def layout(
+    inputs: Sequence[Input],
+    slopes: np.ndarray,
+    covariance: np.ndarray,
+    devices: Responses,
+    effects: Mapping[str, tuple[float, float]],
+    settings: Settings,
+) -> xr.Dataset:
+    """Dataset of the budget of a device at one humidity.
+
+    Parameters
+    ----------
+    inputs : sequence of k Input
+    slopes : (k, 2) array
+        d ln y / dx and standard error.
+    covariance : (k, k) array
+        Of the errors of the inputs.
+    devices : Responses
+        Lengths or forces of n devices at the stated inputs.
+    effects : dict
+        Choice of the model to its relative effect and standard error [-].
+    settings : Settings
+    """
+    names = [entry.name for entry in inputs]
+    groups = [entry.group for entry in inputs]
+    (values,) = devices.values
+    known = values[np.isfinite(values)]
+    changes = np.array(list(effects.values())).reshape(len(effects), 2)
+    unit = "N" if settings.response == FORCE else "m"
+    response = {"units": unit, "response": settings.response, "share": settings.share}
+    return xr.Dataset(
+        {
+            "slope": ("input", slopes[:, 0]),
+            "slope_error": ("input", slopes[:, 1]),
+            "covariance": (("input", "other"), covariance),
+            "group": ("input", groups),
+            "centre": ((), devices.centre(values), response),
+            "scatter": ((), known.std(ddof=1) / known.mean(), {"units": "1"}),
+            "effect": ("choice", changes[:, 0], {"units": "1"}),
+            "effect_error": ("choice", changes[:, 1], {"units": "1"}),
+        },
+        coords={
+            "input": names,
+            "other": names,
+            "choice": list(effects),
+            "exact": [name for name in countable(settings) if name not in groups],
+        },
+    )
+
+
+def budget_of(dataset: xr.Dataset) -> Budget:
+    """Budget from its dataset."""
+    names = tuple(map(str, dataset.input.values))
+    return Budget(names, dataset.slope.values, dataset.covariance.values)
+
+
+def groups_of(dataset: xr.Dataset) -> dict[str, list[str]]:
+    """Inputs by the measurement that determines them."""
+    found = {}
+    for name, group in zip(dataset.input.values, dataset.group.values, strict=True):
+        found.setdefault(str(group), []).append(str(name))
+    return found
+
+
+def response_of(dataset: xr.Dataset) -> tuple[str, float]:
+    """What the inputs move, ``S_SHAPE``, ``ARC`` or ``FORCE``, and the share p of an arc [-]."""
+    return dataset.centre.attrs["response"], float(dataset.centre.attrs["share"])
+
+
+def _inputs(plan, device):
+    """Datasets of the surfaces of a device with uncertain quantities, and estimates of those described by scans."""
+    names = dict.fromkeys(surface for surface, _ in plan.designs.quantities(device))
+    scanned = plan.scanned_sides(plan.config["devices"][device]["pair"])
+    described = {stage: {name: f"{stage}/{name}" for name in names} for stage in ("heights", "spectrum")}
+    return described | {"estimates": {name: f"estimate/{name}" for name in scanned}}
+
+
+def _settings(plan, at):
+    """Settings of a budget, the quantities of its surfaces and its variants of the model."""
+    name, designs = pair_of(at.case), plan.designs
+    section = plan.config["devices"][name]
+    pair = section["pair"]
+    own = {"uncertainty": section.get("uncertainty", {}), "humidity": humidity_of(at.case)}
+    own |= chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(pair)
+    if "hamaker_constant" in designs.uncertain_solids(name):
+        own |= {"hamaker_constant_zJ": plan.beam_hamaker_constant(pair)}
+    if section["kind"] == "stopper":
+        own |= chosen(section, ["contact_um"])
+    else:
+        own |= {"device": section_of_beam(plan, name), "beams": plan.config["design"]["budget_beams"]}
+    own |= {"seed": plan.config["seed"], "water": plan.water(pair), "surfaces": plan.sides(pair)}
+    quantities = list(map(list, designs.quantities(name)))
+    return {"budget": own, "quantities": quantities, "choices": plan.choices_of_device(name)}
+
+
+def _settings_of_tips(plan, at):
+    """As `_settings`, of the length that the tip of a cantilever holds, for the middle one of the shares."""
+    settings, shares = _settings(plan, at), plan.config["design"]["shares"]
+    own = {key: value for key, value in settings["budget"].items() if key != "beams"}
+    choices = plan.choices_of_solids(plan.config["devices"][pair_of(at.case)]["pair"])
+    return settings | {"budget": own | {"share": shares[len(shares) // 2]}, "choices": choices}
+
+
+def _computed(data, _at, settings):
+    """Budget from the contacts with less and with more of every input, and those under other choices of the model."""
+    wanted = typed(Settings, settings["budget"])
+    described = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
+    shifted = {key: (less, data["more"][key]) for key, less in data["less"].items()}
+    solids = {name: (less, data["solids_more"][name]) for name, less in data["solids_less"].items()}
+    known = covariances(described, data["estimates"], wanted)
+    return compute(data["contact"], shifted, solids, data["choices"], known, wanted)
+
+
+def budgets_of(plan: Any, *devices: str) -> dict[tuple, str]:
+    """Datasets of the budgets of devices by name and humidity, and ``tip`` if they are of tips."""
+    names = plan.designs.budgets(*devices) if devices else []
+    cases = {name: name.removesuffix("_tip") for name in names}
+    return {
+        (pair_of(case), humidity_of(case), *(["tip"] if name != case else [])): f"devices/budget/{name}"
+        for name, case in cases.items()
+    }
+
+
+BUDGET = Stage.writing(
+    "budget",
+    "devices/budget/{case}",
+    inputs=lambda plan, at: _inputs(plan, pair_of(at.case)) | contacts_of_budget(plan, pair_of(at.case)),
+    settings=_settings,
+    compute=_computed,
+    message="Budget of {case}.",
+    cluster=True,
+)
+STAGES = (
+    BUDGET.on("budget", "devices/budget/{case}"),
+    BUDGET.on(
+        "tip_budget",
+        "devices/budget/{case}_tip",
+        inputs=lambda plan, at: _inputs(plan, pair_of(at.case)) | contacts_of_tip_budget(plan, pair_of(at.case)),
+        settings=_settings_of_tips,
+        label="budget",
+        message="Budget of the tips of {case}.",
+    ),
+)

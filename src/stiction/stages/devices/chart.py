@@ -1,0 +1,195 @@
+"""Stage chart: safe lengths of beams of other thicknesses and gaps than those of a device, at one humidity of an axis.
+
+Beams are computed by finite elements. Between the smallest and the largest thickness and gap, a power law is used if it
+predicts beams in the middle, to which it was not fitted, within 1 %.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import product
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stiction.beam.foundation import foundation_length
+from stiction.chaos.model import Truncation, draw_laws
+from stiction.config.cases import pair_of
+from stiction.contact.meniscus import meniscus_height
+from stiction.devices import arcs
+from stiction.devices.chart import checked_power_law
+from stiction.plan.names import by_case
+from stiction.plan.stage import Stage, chosen, select
+from stiction.stages.contact import curves
+from stiction.stages.contact.contact import surface_rms
+from stiction.stages.devices import releases, sticking
+from stiction.stages.devices.error_notes import on_patch
+from stiction.stages.devices.patch_settings import contact_of, tips_of
+from stiction.stages.devices.releases import DesignedBeam, settings_of_beam
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that a chart depends on at one humidity apart from the contact of strips and tips."""
+
+    seed: int
+    chaos: Truncation
+    water: curves.Water
+    humidity: float  #: [-]
+    device: DesignedBeam
+    beams: int
+    shares: tuple[float, ...]  #: [-]
+    thicknesses: tuple[float, ...]  #: increasing [m]
+    gaps: tuple[float, ...]  #: increasing [m]
+
+
+@dataclass(frozen=True)
+class Filled:
+    """Lengths of beams of all sizes, and where they come from."""
+
+    lengths: np.ndarray  #: (sizes, ...) [m]
+    by_elements: np.ndarray  #: whether each size was computed by finite elements (sizes,) bool
+    error: float  #: largest error of the power laws at the sizes in the middle [-]; 0 if none is used
+
+
+def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
+    """Safe lengths of all thicknesses and gaps; inputs as in the stages cracks and safe_lengths."""
+    with on_patch(settings.device.strip, settings.device.width):
+        model = releases.fitted(*curves.vectors(contact, settings.humidity, settings.water), settings.chaos)
+    laws = draw_laws(model, releases.LAWS, releases.addresses(settings)("mesh"))
+    held = None if tips is None else curves.tip_forces(tips, settings.humidity, settings.water)
+
+    def by_elements(thickness, gap):
+        """Safe lengths of beams of one size (shapes, shares) [m]."""
+        return _safe_lengths(_of_size(settings, thickness, gap), model, laws, held, settings)
+
+    found = filled(settings.thicknesses, settings.gaps, by_elements)
+    return layout(found, surface_rms(contact), settings)
+
+
+def _of_size(settings, thickness, gap):
+    """The designed beam with another thickness and gap [m]."""
+    return replace(settings.device, thickness=float(thickness), gap=float(gap))
+
+
+def _safe_lengths(device, model, laws, tips, settings):
+    """Safe lengths of a device, (shapes, shares) [m]; slopes and forces of its tips, or none."""
+    ground = releases.resolved_part(device, laws)
+    address, draw = releases.addresses(settings), partial(draw_laws, model)
+    cracks = releases.arrests(device, ground, draw, settings.beams, address)
+    held = None if tips is None else arcs.longest_free(*tips, device.beam)
+    lengths = sticking.sticking_lengths(cracks, foundation_length(device.beam, laws), device, held)
+    return np.array([[one.length for one in sticking.safe_lengths(values, settings)] for values in lengths.values()])
+
+
+def filled(
+    thicknesses: Sequence[float], gaps: Sequence[float], by_elements: Callable[[float, float], np.ndarray]
+) -> Filled:
+    """Lengths of beams of all sizes: computed by finite elements where a power law is not good enough.
+
+    Parameters
+    ----------
+    thicknesses, gaps : sequences
+        Increasing [m]; the sizes are their products, in this order.
+    by_elements : callable
+        Lengths of beams of a thickness and a gap by finite elements, array of any shape [m].
+    """
+    sizes = np.array(list(product(thicknesses, gaps)))
+    corner, test = corners_and_tests(len(thicknesses), len(gaps))
+    found = {k: by_elements(*sizes[k]) for k in np.flatnonzero(corner | test)}
+    if laws := _power_laws(sizes, found, test):
+        between = np.array([law(*sizes.T) for law, _ in laws]).T.reshape(-1, *found[0].shape)
+        lengths = [found.get(k, length) for k, length in enumerate(between)]
+        return Filled(np.array(lengths), corner | test, max(error for _, error in laws))
+    lengths = [found[k] if k in found else by_elements(*size) for k, size in enumerate(sizes)]
+    return Filled(np.array(lengths), np.full(len(sizes), True), 0.0)
+
+
+def corners_and_tests(thicknesses: int, gaps: int) -> tuple[np.ndarray, np.ndarray]:
+    """Sizes to which a power law is fitted and those that test it, (thicknesses * gaps,) bool each.
+
+    It is tested in the middle of both axes, and in the middle of each along the least value of the other: departures
+    along the two axes may cancel where both are met. No corner tests it.
+    """
+    corner, test = np.zeros((2, thicknesses, gaps), bool)
+    corner[np.ix_([0, -1], [0, -1])] = True
+    middle = thicknesses // 2, gaps // 2
+    test[middle] = test[middle[0], 0] = test[0, middle[1]] = True
+    return corner.ravel(), (test & ~corner).ravel()
+
+
+def _power_laws(sizes, found, test):
+    """Power law of each shape and share with its error; none if no size is left or one of them errs too much."""
+    known = list(found)
+    if len(known) == len(sizes):
+        return []
+    columns = np.reshape([found[k] for k in known], (len(known), -1)).T
+    try:
+        return [checked_power_law(*sizes[known].T, column, test[known]) for column in columns]
+    except ValueError:
+        return []
+
+
+def layout(found: Filled, rms: float, settings: Settings) -> xr.Dataset:
+    """Dataset of safe lengths over thickness and gap at one humidity.
+
+    Parameters
+    ----------
+    found : Filled
+        Lengths (sizes, shapes, shares) [m].
+    rms : float
+        Of the sum of both surfaces [m].
+    settings : Settings
+    """
+    grid, size = (len(settings.thicknesses), len(settings.gaps)), ("thickness", "gap")
+    shapes = sticking.shapes(settings.device)
+    film = meniscus_height(settings.humidity, settings.water.temperature, settings.water.contact_angles)
+    designed = (_of_size(settings, *one) for one in product(settings.thicknesses, settings.gaps))
+    limits = [sticking.flooded_lengths(device, settings.water, settings.humidity) for device in designed]
+    metres, none = {"units": "m"}, {"units": "1"}
+    return xr.Dataset(
+        {
+            "safe_length": ((*size, "shape", "share"), found.lengths.reshape(*grid, len(shapes), -1), metres),
+            "flooded_length": ((*size, "shape"), np.reshape(limits, (*grid, -1)), metres),
+            "by_elements": (size, found.by_elements.reshape(grid).astype(np.int8), none),
+            "power_law_error": ((), found.error, none),
+            "film": ((), float(film), metres),
+            "rms": ((), rms, metres),
+            "humidity": ((), settings.humidity, none),
+        },
+        coords={
+            "thickness": ("thickness", list(settings.thicknesses), metres),
+            "gap": ("gap", list(settings.gaps), metres),
+            "shape": shapes,
+            "share": list(settings.shares),
+        },
+    )
+
+
+def _settings(plan, at):
+    """As those of the cracks and the safe lengths, for all thicknesses and gaps of the chart of a device."""
+    section = plan.config["devices"][pair_of(at.case)]
+    sizes = {"gaps_um": [section["gap_um"]]} | chosen(section["chart"], ("thicknesses_um", "gaps_um"))
+    return select(Settings, settings_of_beam(plan, at.case) | sizes)
+
+
+def charts(plan: Any) -> dict[str, dict]:
+    """Datasets of all charts by device and humidity, as inputs of a stage."""
+    cases = [case for name in plan.designs.charted for case in plan.designs.chart_cases(name)]
+    return {"charts": by_case("devices/chart", cases)}
+
+
+STAGES = (
+    Stage.writing(
+        "chart",
+        "devices/chart/{case}",
+        inputs=lambda plan, at: {"contact": contact_of(plan, pair_of(at.case))} | tips_of(plan, pair_of(at.case)),
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["contact"], data.get("tips"), settings),
+        message="Chart of {case}.",
+        cluster=True,
+        minutes=120,
+    ),
+)

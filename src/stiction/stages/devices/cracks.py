@@ -1,0 +1,130 @@
+"""Stage cracks: where the cracks of long beams of a device stop at a humidity, and the error of few sampled surfaces.
+
+Of a bridge, the stage finds the shortest length that its middle holds instead.
+A simulation of long beams gives P(stuck) at every length (`stiction.devices.risk`). For the error due to the number of
+sampled surfaces, force laws are fitted to each of some groups of the samples alone, and the beams are released again
+with the same random numbers.
+"""
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from stiction.beam.cantilever import Beam
+from stiction.beam.foundation import foundation_length
+from stiction.chaos.model import Truncation, draw_laws
+from stiction.config.cases import pair_of
+from stiction.contact import forcelaw
+from stiction.plan.stage import Stage, select
+from stiction.stages.contact import curves
+from stiction.stages.contact.contact import surface_rms
+from stiction.stages.devices.error_notes import on_patch
+from stiction.stages.devices.patch_settings import contact_of
+from stiction.stages.devices.releases import (
+    LAWS,
+    DesignedBeam,
+    addresses,
+    arrests,
+    fitted,
+    resolved_part,
+    settings_of_beam,
+)
+
+#: Most groups of the samples of contact, and the least number of samples in each, but always two groups.
+GROUPS, PER_GROUP = 10, 50
+#: Names of the lengths of cantilevers and of bridges, and what they are.
+CRACK, HELD = "crack_length", "held_length"
+_WORDS = {CRACK: "infinite if not S-shaped", HELD: "of the shortest bridge that its middle holds"}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the cracks depend on apart from the contact."""
+
+    seed: int
+    chaos: Truncation
+    water: curves.Water
+    humidity: float  #: [-]
+    device: DesignedBeam
+    beams: int  #: number of beams
+
+
+def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Fit the force laws and release long beams, with all samples and with each group of them alone.
+
+    Raises
+    ------
+    ValueError
+        If the strips of the device do not resolve its cracks.
+    """
+    with on_patch(settings.device.strip, settings.device.width):
+        vectors, limit = curves.vectors(contact, settings.humidity, settings.water)
+    model = fitted(vectors, limit, settings.chaos)
+    address = addresses(settings)
+    laws = draw_laws(model, LAWS, address("mesh"))
+    device, ground = settings.device, resolved_part(settings.device, laws)
+    groups = max(2, min(GROUPS, len(vectors) // PER_GROUP))
+    models = [model, *(fitted(vectors[k::groups], limit, settings.chaos) for k in range(groups))]
+    released = [arrests(device, ground, partial(draw_laws, one), settings.beams, address) for one in models]
+    name = HELD if device.is_bridge else CRACK
+    return layout(name, released[0], released[1:], ground[0], laws, surface_rms(contact))
+
+
+def layout(
+    name: str, arrested: np.ndarray, of_group: list[np.ndarray], beam: Beam, laws: np.ndarray, rms: float
+) -> xr.Dataset:
+    """Dataset of the lengths at which the cracks of a device stop at a humidity.
+
+    Parameters
+    ----------
+    name : str
+        What they are, ``CRACK`` or ``HELD``.
+    arrested : (n,) array
+        Lengths with all samples of contact, as from `stiction.stages.devices.releases.arrests` [m].
+    of_group : sequence of (n,) arrays
+        The same with each group of the samples alone.
+    beam : Beam
+        The part that finite elements resolve.
+    laws : (k, 4) array
+        Sample of the force laws [SI].
+    rms : float
+        Of the sum of both surfaces [m].
+    """
+    note = {"units": "m", "long_name": _WORDS[name]}
+    lengths = {
+        "foundation_length": foundation_length(beam, laws),
+        "beam_length": beam.length,
+        "element_length": beam.element_length,
+        "rms": rms,
+    }
+    return xr.Dataset(
+        {
+            name: ("device", arrested, note),
+            f"{name}_of_group": (("group", "device"), np.array(of_group), note),
+            "mean_energy": ((), float(forcelaw.energy(laws).mean()), {"units": "J m-2"}),
+        }
+        | {name: ((), value, {"units": "m"}) for name, value in lengths.items()}
+    )
+
+
+def lengths(cracks: xr.Dataset) -> tuple[np.ndarray, np.ndarray, float]:
+    """Crack or held lengths with all samples (n,), with each group alone (g, n), and the foundation length [m]."""
+    name = HELD if HELD in cracks else CRACK
+    return cracks[name].values, cracks[f"{name}_of_group"].values, float(cracks.foundation_length)
+
+
+STAGES = (
+    Stage.writing(
+        "cracks",
+        "devices/cracks/{case}",
+        inputs=lambda plan, at: {"contact": contact_of(plan, pair_of(at.case))},
+        settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["contact"], settings),
+        message="Release long beams of {case}.",
+        cluster=True,
+        minutes=120,
+    ),
+)

@@ -1,0 +1,226 @@
+"""Where results of devices are beyond the limits of the model, in sentences of `stiction.devices.limits`."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from stiction.config.cases import case_id
+from stiction.config.units import from_si, typed
+from stiction.devices import limits
+from stiction.plan.names import by_case, by_name
+from stiction.plan.stage import File, Stage, select
+from stiction.run.atomic import save_text
+from stiction.stages.contact.curves import Water
+from stiction.stages.devices.pair_warnings import (
+    Materials,
+    Warnings,
+    as_markdown,
+    contact_warnings,
+    height,
+    plastic_share,
+)
+from stiction.stages.devices.releases import DesignedBeam, section_of_beam
+from stiction.stages.devices.sticking import EITHER, MIDDLE, S_SHAPE
+
+#: Shapes in words: what holds a device that sticks.
+HELD_BY = {S_SHAPE: "beam", EITHER: "beam or tip", MIDDLE: "middle"}
+
+
+@dataclass(frozen=True)
+class OfDevice:
+    """A device and its pair."""
+
+    device: DesignedBeam
+    materials: Materials = ()  #: of its pair
+
+
+@dataclass(frozen=True)
+class OfStopper:
+    """A stopper and its pair."""
+
+    pair: str
+    water: Water
+    contact: tuple[float, float]  #: sides of the patch [m]
+    humidities: tuple[float, ...]  #: of the stopper [-]
+    worst_humidities: tuple[float, float]  #: ends of the axis along which the worst humidity is sought [-]
+    materials: Materials = ()  #: of its pair
+
+
+def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan) -> dict[str, list[str]]:
+    """Warnings about a device at a humidity, by the shape in which it sticks.
+
+    Each shape is checked at the shortest of its lengths, where slopes are largest.
+
+    Parameters
+    ----------
+    found : Dataset
+        Of stage safe_lengths.
+    of : OfDevice
+    plastic : float
+        Plastic share of the contact area; NaN if it was not studied [-].
+    """
+    shortest = found.safe_length.min("share")
+    return {
+        shape: _of_length(float(shortest.sel(shape=shape)), found, of, plastic)
+        for shape in map(str, found["shape"].values)
+    }
+
+
+def of_chart(
+    found: Sequence[xr.Dataset], of: OfDevice, plastic: float = np.nan
+) -> dict[tuple[float, float, str], list[str]]:
+    """Warnings about the chart of a device by thickness [m], gap [m] and shape.
+
+    Each curve is checked at its shortest length.
+
+    Parameters
+    ----------
+    found : sequence
+        Datasets of stage chart, one for each humidity.
+    of, plastic
+        As in `of_device`.
+    """
+    warnings = {}
+    for thickness, gap, shape in curves(found[0]):
+        along = [one.sel(thickness=thickness, gap=gap, shape=shape) for one in found]
+        shortest = min(along, key=lambda one: float(one.safe_length.min()))
+        of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
+        length = float(shortest.safe_length.min())
+        warnings[thickness, gap, shape] = _of_length(
+            length, shortest, of_size, plastic, min(float(one.film) for one in along)
+        )
+    return warnings
+
+
+def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
+    """Thickness [m], gap [m] and shape of every curve of a dataset of stage chart."""
+    return list(product(*(chart[name].values.tolist() for name in ("thickness", "gap", "shape"))))
+
+
+def _of_length(length, found, of, plastic, thinnest=None):
+    """Warnings about a device of a length [m]; film and rms from a dataset.
+
+    The thinnest film [m] is that of the dataset, or along the axis of a chart.
+    """
+    device = of.device
+    sizes = device.gap, device.width, device.thickness, length / device.arms
+    return limits.of_beam(*sizes, float(found.film), float(found.rms)) + limits.given(
+        limits.thin_film(thinnest or float(found.film)),
+        limits.stretched_bridge(device.gap, device.thickness) if device.is_bridge else None,
+        *contact_warnings(plastic, of.materials),
+    )
+
+
+def _of_water(of):
+    """Warnings, or None, about the thinnest and the thickest film on the patch of a stopper."""
+    films = [height(humidity, of.water) for humidity in (*of.humidities, *of.worst_humidities)]
+    return limits.thin_film(min(films)), limits.wide_meniscus(max(films), of.contact)
+
+
+class OfDevices(NamedTuple):
+    """Warnings about devices."""
+
+    lengths: dict[tuple[str, float, str], list[str]]  #: by name, humidity and shape
+    curves: dict[tuple[str, float, float, str], list[str]]  #: of charts, by name, thickness [m], gap [m] and shape
+    patches: dict[str, list[str]]  #: of stoppers, by name
+
+
+def of_stopper(of: OfStopper, plastic: float = np.nan) -> list[str]:
+    """Warnings about a stopper; the plastic share of its contact area is NaN if it was not studied [-]."""
+    return limits.given(*_of_water(of), *contact_warnings(plastic, of.materials, limits.STRONGER))
+
+
+def read(files: Mapping[str, str]) -> OfDevices:
+    """Warnings about devices from their files, by name."""
+    found = OfDevices({}, {}, {})
+    for name, path in files.items():
+        for known, stored in zip(found, json.loads(Path(path).read_text(encoding="utf-8")), strict=True):
+            known.update({(name, *key) if key else name: sentences for key, sentences in stored})
+    return found
+
+
+def subjects(warnings: OfDevices) -> Warnings:
+    """Warnings about devices by their subjects in words."""
+    found = {
+        f"{name}, RH {humidity:g}, held by the {HELD_BY[shape]}": sentences
+        for (name, humidity, shape), sentences in warnings.lengths.items()
+    }
+    for (name, thickness, gap, shape), sentences in warnings.curves.items():
+        size = f"{from_si(thickness, 'um'):g} µm thick, gap {from_si(gap, 'um'):g} µm"
+        found[f"{name}, chart, {size}, held by the {HELD_BY[shape]}"] = sentences
+    return found | warnings.patches
+
+
+# Stages
+
+
+def _inputs(plan, at):
+    """Everything that the warnings about a device are about."""
+    designs, humidities = plan.designs, plan.config["devices"][at.device]["humidities"]
+    cases = [case_id(at.device, humidity) for humidity in humidities] if at.device in designs.beams else []
+    charts = designs.chart_cases(at.device) if at.device in designs.charted else []
+    return {
+        "lengths": by_case("devices/safe_lengths", cases),
+        "charts": by_case("devices/chart", charts),
+        "plasticity": by_name("studies/plasticity", designs.pressed(at.device)),
+    }
+
+
+def _settings(plan, at):
+    """A device, its pair and the stated properties of its materials."""
+    section = plan.config["devices"][at.device]
+    own = {"materials": plan.stated_properties(section["pair"])} | plan.config["design"]
+    if section["kind"] == "stopper":
+        return {"stopper": select(OfStopper, section | own | {"water": plan.water(section["pair"])})}
+    return {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}
+
+
+def _of_one_device(data, _at, settings):
+    """Warnings about a device: about its lengths, its curves and its patch, each with what follows its name."""
+    if "stopper" in settings:
+        of = typed(OfStopper, settings["stopper"])
+        return [], [], [[[], of_stopper(of, plastic_share(data["plasticity"], of.pair))]]
+    of = typed(OfDevice, settings["beam"])
+    share = plastic_share(data["plasticity"], of.device.pair)
+    lengths = [
+        [[humidity, shape], sentences]
+        for (_, humidity), dataset in data["lengths"].items()
+        for shape, sentences in of_device(dataset, of, share).items()
+    ]
+    charts = list(data["charts"].values())
+    curves = [[curve, sentences] for curve, sentences in of_chart(charts, of, share).items()] if charts else []
+    return lengths, curves, []
+
+
+def files_of(*devices: str) -> dict[str, File]:
+    """Files of the warnings about devices, for `read`."""
+    return {name: File(f"results/devices/warnings/{name}.json") for name in devices}
+
+
+STAGES = (
+    Stage(
+        name="device_warnings",
+        files={"json": "devices/warnings/{device}.json"},
+        inputs=_inputs,
+        settings=_settings,
+        compute=_of_one_device,
+        save=lambda warnings, paths: save_text(json.dumps(warnings, ensure_ascii=False, indent=1), paths["json"]),
+        message="Where the results of device {device} are beyond the model.",
+    ),
+    Stage(
+        name="device_limits",
+        files={"markdown": "devices/warnings.md"},
+        inputs=lambda plan, at: {"warnings": files_of(*plan.designs.devices)},
+        compute=lambda data, at, settings: as_markdown(subjects(read(data["warnings"]))),
+        save=lambda page, paths: save_text(page, paths["markdown"]),
+        message="Where the results of devices are beyond the model.",
+        jobs=lambda plan: [{}] if plan.designs.devices else [],
+        targets=("devices",),
+    ),
+)

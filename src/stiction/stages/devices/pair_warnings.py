@@ -1,0 +1,164 @@
+"""Where results of pairs are beyond the limits of the model, in sentences of `stiction.devices.limits`."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stiction.beam.cantilever import Beam
+from stiction.config.units import typed
+from stiction.contact.meniscus import meniscus_height
+from stiction.devices import limits
+from stiction.plan.names import by_name, by_outcome
+from stiction.plan.stage import Stage, select
+from stiction.run.atomic import save_text
+from stiction.stages.beams.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever, sections
+from stiction.stages.beams.releases import ended, stuck_lengths
+from stiction.stages.contact.curves import Water
+
+#: Warnings by their subject, such as ``pair b, RH 0.67, G``.
+Warnings = dict[str, list[str]]
+#: Names of materials, each with the properties that are stated.
+Materials = Sequence[tuple[str, Sequence[str]]]
+
+
+@dataclass(frozen=True)
+class OfPairs:
+    """Nominal beams of all pairs, and their strips."""
+
+    solid: Stiffness
+    beam: Dimensions
+    pairs: dict[str, Gap]
+    sampling: StripLength
+    water: dict[str, Water]  #: by pair
+
+
+def height(humidity: float, water: Water) -> float:
+    """Height h_C of the film at a relative humidity [m]."""
+    return float(meniscus_height(humidity, water.temperature, water.contact_angles))
+
+
+def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
+    """Warnings about the beams of a case of the main line: dataset of stage beams, length of the strips [m]."""
+    s_shaped = ended(beams, "S-shape")
+    warnings = [limits.arcs_of_elements(float(ended(beams, "arc").mean()), strip)]
+    if s_shaped.any():
+        mean = float(stuck_lengths(beams).mean())
+        warnings += [
+            limits.cut_off_mean(float(s_shaped.mean()), mean, nominal.length),
+            limits.large_rotation(nominal.gap, mean),
+            limits.stubby_beam(mean, nominal.thickness),
+            limits.wide_beam(nominal.gap, nominal.width, nominal.thickness, mean),
+        ]
+    return limits.given(*warnings)
+
+
+def contact_warnings(plastic: float, materials: Materials, effect: str = limits.SHORTER) -> list[str | None]:
+    """Warnings, or None, about the contact of a pair."""
+    defaults = (limits.default_material(name, stated) for name, stated in materials)
+    return [limits.plastic_contact(plastic, effect), *defaults]
+
+
+def plastic_share(plasticity: Mapping[str, xr.Dataset], pair: str) -> float:
+    """Plastic share of the contact area of a pair from the datasets of study plasticity; NaN if there is none."""
+    return float(plasticity[pair].plastic_share) if pair in plasticity else np.nan
+
+
+def of_pairs(
+    beams: Mapping[tuple[str, float, str], xr.Dataset],
+    plasticity: Mapping[str, xr.Dataset],
+    materials: Mapping[str, Materials],
+    plain: dict[str, Any],
+) -> Warnings:
+    """Warnings about the main line.
+
+    Parameters
+    ----------
+    beams : dict
+        Pair, humidity and model to the dataset of stage beams.
+    plasticity : dict
+        Pair to the dataset of study plasticity, as far as it was studied.
+    materials : dict
+        Pair to the names of its materials, each with the properties that are stated.
+    plain : dict
+        Settings of a job, `OfPairs` in units of the configuration.
+    """
+    settings = typed(OfPairs, plain)
+    found = {
+        f"pair {pair}": limits.given(*contact_warnings(plastic_share(plasticity, pair), materials[pair]))
+        for pair in settings.pairs
+    }
+    for (pair, humidity, model), dataset in beams.items():
+        nominal = cantilever(settings, pair)
+        film = limits.given(limits.thin_film(height(humidity, settings.water[pair])))
+        found[f"pair {pair}, RH {humidity:g}, {model}"] = film + of_beams(
+            dataset, nominal, settings.sampling.strip_length
+        )
+    return found
+
+
+def of_thin_films(cases: Iterable[tuple[str, float, str]], plain: Mapping[str, dict[str, Any]]) -> list[str]:
+    """Warnings about films that are hardly a liquid, one for each pair and humidity of some cases.
+
+    Parameters
+    ----------
+    cases : iterable of tuple
+        Pair, humidity and model.
+    plain : dict
+        Water by pair in units of the configuration.
+    """
+    films = {(pair, humidity): height(humidity, typed(Water, plain[pair])) for pair, humidity, _ in cases}
+    found = {case: limits.thin_film(film) for case, film in films.items()}
+    return [f"Pair {pair}, RH {humidity:g}: {sentence}" for (pair, humidity), sentence in found.items() if sentence]
+
+
+def numbered(warnings: Mapping[Any, list[str]]) -> tuple[list[str], dict[Any, list[int]]]:
+    """Different sentences in their order, and the numbers, from 1, of those of each subject.
+
+    Examples
+    --------
+    >>> numbered({"a": ["x.", "y."], "b": ["y."]})
+    (['x.', 'y.'], {'a': [1, 2], 'b': [2]})
+    """
+    sentences = list(dict.fromkeys(sentence for found in warnings.values() for sentence in found))
+    return sentences, {key: [sentences.index(one) + 1 for one in found] for key, found in warnings.items()}
+
+
+def as_markdown(warnings: Warnings) -> str:
+    """Warnings as a page, each sentence with all its subjects."""
+    sentences, _ = numbered(warnings)
+    about = [[subject for subject, found in warnings.items() if sentence in found] for sentence in sentences]
+    lines = [f"- {'; '.join(names)}: {sentence}" for names, sentence in zip(about, sentences, strict=True)]
+    none = ["No result is beyond the limits of the model that are checked."]
+    return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", limits.NOT_MODELLED, ""])
+
+
+def _of_pairs(data, _at, settings):
+    """Warnings about all pairs as a page."""
+    return as_markdown(of_pairs(data["beams"], data["plasticity"], settings["materials"], settings["pairs"]))
+
+
+STAGES = (
+    Stage(
+        name="model_limits",
+        files={"markdown": "warnings.md"},
+        inputs=lambda plan, at: {
+            "beams": by_outcome("beams", plan.outcomes),
+            "plasticity": by_name("studies/plasticity", plan.pressed_pairs),
+        },
+        settings=lambda plan, at: {
+            "pairs": {
+                "sampling": select(StripLength, plan.config["sampling"]),
+                "water": {pair: plan.water(pair) for pair in plan.pairs},
+            }
+            | sections(plan, *plan.pairs),
+            "materials": {pair: plan.stated_properties(pair) for pair in plan.pairs},
+        },
+        compute=_of_pairs,
+        save=lambda page, paths: save_text(page, paths["markdown"]),
+        message="Where the results of pairs are beyond the model.",
+        targets=("all",),
+    ),
+)

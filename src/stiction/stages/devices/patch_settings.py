@@ -1,0 +1,119 @@
+"""Contacts of devices: names of their datasets, and settings on patches of any size.
+
+Separate from the stages that compute these contacts, so that no other stage depends on their code.
+"""
+
+from typing import Any
+
+from stiction.config.designs import KEYS_OF_SOLIDS, OF_TIPS, Patch, hamaker_constants
+from stiction.config.merging import merged
+from stiction.config.units import NM_PER_UM
+from stiction.devices.budget import OF_SOLIDS
+from stiction.models import SHIFTED, SIDES
+from stiction.plan.stage import At, select
+from stiction.stages.contact.pairs import Settings
+
+#: Folder of the contacts of devices.
+FOLDER = "devices/contact"
+
+
+def contact_of(plan: Any, device: str) -> str:
+    """Contact of the patch on which a device sticks: that of its pair in the main line if both are equal."""
+    designs = plan.designs
+    if designs.has_strips_of_pair(device):
+        return f"contact/{plan.config['devices'][device]['pair']}_NG"
+    return f"{FOLDER}/{designs.ground(device).name}"
+
+
+def tips_of(plan: Any, device: str) -> dict[str, str]:
+    """Contact of the strips that hold the tips of a cantilever; none for a bridge."""
+    if plan.config["devices"][device]["kind"] != "cantilever":
+        return {}
+    return {"tips": f"{FOLDER}/tips/{plan.designs.tips(device).name}"}
+
+
+def contacts_of_budget(plan: Any, device: str) -> dict[str, Any]:
+    """Contact of the patch of a device, with less and more of every uncertain input, and under other choices."""
+    designs = plan.designs
+    patch = designs.ground(device)
+    shared = f"studies/slopes/contact/{patch.pair}"
+    slopes = shared if designs.has_strips_of_pair(device) else f"{FOLDER}/slopes/{patch.name}"
+    contacts = {"contact": contact_of(plan, device)}
+    return contacts | _changed(plan, device, slopes, f"{FOLDER}/{{}}/{patch.name}", plan.choices_of_device(device))
+
+
+def contacts_of_tip_budget(plan: Any, device: str) -> dict[str, Any]:
+    """As `contacts_of_budget`, of the tips of a cantilever."""
+    tips = plan.designs.tips(device)
+    folder, choices = f"{FOLDER}/tips", plan.choices_of_solids(tips.pair)
+    contacts = {"contact": f"{folder}/{tips.name}"}
+    return contacts | _changed(plan, device, f"{folder}/slopes/{tips.name}", f"{folder}/{{}}/{tips.name}", choices)
+
+
+def _changed(plan, device, slopes, changed, choices):
+    """Contacts of a patch with less and more of every uncertain input of a device, and under choices of the model.
+
+    ``slopes`` begins the names of those with a shifted quantity of a surface, ``changed`` those of all others.
+    """
+    designs = plan.designs
+    quantities, solids = designs.quantities(device), designs.uncertain_solids(device)
+    shifted = {side: {key: f"{slopes}_{key[0]}_{key[1]}_{side}" for key in quantities} for side in SHIFTED}
+    uncertain = {f"solids_{side}": {name: f"{changed.format(name)}_{side}" for name in solids} for side in SHIFTED}
+    return shifted | uncertain | {"choices": {name: f"{changed.format('choices')}_{name}" for name in choices}}
+
+
+# Settings
+
+
+def on_patch(plan: Any, at: At, samples: int) -> dict[str, Any]:
+    """As those of the contact of a pair, on a patch of another size."""
+    size = {"strip_length_um": int(at.length) / NM_PER_UM}
+    settings = select(Settings, plan.seen_by(at.pair, samples=samples))
+    return settings | {
+        "sampling": settings["sampling"] | size,
+        "beam": {"width_um": int(at.width) / NM_PER_UM},
+    }
+
+
+def of_patch(plan: Any, at: At) -> dict[str, Any]:
+    """Contact of the patch of a device."""
+    return on_patch(plan, at, plan.config["contact"]["samples"])
+
+
+def of_tips(plan: Any, at: At) -> dict[str, Any]:
+    """Contact of the tilted strips that hold the tips of beams; every beam has its own."""
+    settings = on_patch(plan, at, plan.config["design"]["beams"])
+    step = {"distance_step_nm": OF_TIPS * settings["contact"]["distance_step_nm"]}
+    tips = Patch(at.pair, int(at.length), int(at.width))
+    return settings | {"contact": settings["contact"] | step, "tilt": plan.designs.tilt(tips)}
+
+
+def of_slopes(plan: Any, at: At) -> dict[str, Any]:
+    """Contact with a shifted quantity of a surface."""
+    return on_patch(plan, at, plan.config["studies"]["slopes"]["samples"])
+
+
+def with_property(settings: dict[str, Any], name: str, side: str) -> dict[str, Any]:
+    """Settings of a contact with less or more of a property of the beam's material, in both bodies of it."""
+    key, solid = KEYS_OF_SOLIDS[name], settings["solid"]
+    if "materials" not in settings and key in solid:
+        return settings | {"solid": _with_less_or_more(solid, name, side)}
+    bodies = settings.get("materials", dict.fromkeys(SIDES, solid))
+    of_beam = _with_less_or_more(bodies["beam"], name, side)
+    changed = {body: of_beam if material == bodies["beam"] else material for body, material in bodies.items()}
+    return settings | {"materials": changed}
+
+
+def _with_less_or_more(material, name, side):
+    """Material with less or more of a property; of its Hamaker constants through all media by the same factor."""
+    key, end = KEYS_OF_SOLIDS[name], SHIFTED.index(side)
+    if name == "hamaker_constant":
+        constants = hamaker_constants(material).items()
+        return material | {key: {medium: OF_SOLIDS[name].ends(constant)[end] for medium, constant in constants}}
+    return material | {key: OF_SOLIDS[name].ends(material[key])[end]}
+
+
+def of_choice_summits(plan: Any, at: At) -> dict[str, Any]:
+    """Summits of the patch of a device under a variant of the model."""
+    settings, size = plan.variant_summits(at.pair, at.variant), on_patch(plan, at, plan.samples_of_slopes)
+    return settings | {"base": merged(settings["base"], {key: size[key] for key in ("sampling", "beam", "contact")})}

@@ -1,0 +1,154 @@
+"""Release of the beams of a device at a humidity, shared by stage cracks, charts and budgets.
+
+Cantilevers are longer than their cracks; bridges are shortened until their middle comes free.
+
+Separate from stage cracks, so that a change of the dataset of that stage reruns no chart and no budget.
+
+Random numbers have the address of the pair, not of the device, its dimensions or the humidity, so that devices are
+compared with common random numbers.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Protocol
+
+import numpy as np
+
+from stiction.beam.cantilever import Beam
+from stiction.beam.energy import arrest_length
+from stiction.beam.montecarlo import Experiment, released_beams
+from stiction.beam.release import EndState
+from stiction.beam.resolution import resolved
+from stiction.chaos.model import ChaosModel, Truncation, fit
+from stiction.config.cases import humidity_of, pair_of
+from stiction.config.units import from_si
+from stiction.contact import forcelaw
+from stiction.devices.bridges import half_of_bridge, held_lengths, middle_zone
+from stiction.plan.stage import chosen, select
+from stiction.streams import stream
+
+#: Length of the long beams, in crack lengths that Eq. (13) predicts from the mean adhesion energy. Cracks stop where
+#: adhesion is strongest, so that they are shorter than this prediction.
+LONG = 1.3
+#: Strips of one part of a beam, which can be divided into elements of 5, 4, 3, 2 and 1 strips.
+PART = 60
+#: Strips per element where the force laws allow it, as in the paper.
+PER_ELEMENT = 5
+#: Number of force laws from which length and elements of the beams are chosen.
+LAWS = 10_000
+
+
+@dataclass(frozen=True)
+class DesignedBeam:
+    """Dimensions of a beam that must come free, and its ground."""
+
+    kind: str  #: ``cantilever`` or ``bridge``
+    pair: str  #: part of the addresses of random numbers
+    thickness: float  #: t [m]
+    gap: float  #: h [m]
+    width: float  #: w [m]
+    young_modulus: float  #: E [Pa]
+    strip: float  #: length of a strip along the beam [m]
+    residual_stress: float = 0.0  #: σ_R [Pa]
+    hamaker_constant: float = 0.0  #: of the two solids, for the bound of a bridge [J]; 0 without van der Waals forces
+
+    @property
+    def is_bridge(self) -> bool:
+        """Whether both ends are clamped."""
+        return self.kind == "bridge"
+
+    @property
+    def arms(self) -> int:
+        """Number of clamped ends, from each of which a crack opens."""
+        return 2 if self.is_bridge else 1
+
+    @property
+    def beam(self) -> Beam:
+        """One part of the beam in one element, under the tension of a bridge."""
+        beam = Beam(PART * self.strip, self.width, self.thickness, self.young_modulus, self.gap, elements=1)
+        return half_of_bridge(beam, self.residual_stress)
+
+
+class Seeded(Protocol):
+    """Settings of any job that releases beams of a device."""
+
+    seed: int
+    device: DesignedBeam
+
+
+def fitted(vectors: np.ndarray, limit: float, chaos: Truncation) -> ChaosModel:
+    """Chaos model of the force laws of some samples (m, 4)."""
+    return fit(vectors, limit, chaos.order, chaos.dimension_tolerance)
+
+
+def addresses(settings: Seeded) -> Callable:
+    """Streams of the beams of a device: ``(number) -> numpy.random.Generator``."""
+    return partial(stream, settings.seed, "devices", settings.device.pair)
+
+
+def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
+    """Beam of a device that is longer than its cracks, with elements that resolve them, and its number of strips.
+
+    Raises
+    ------
+    ValueError
+        If the strips are too long for the force laws (n, 4).
+    """
+    part = device.beam
+    parts = int(np.ceil(LONG * arrest_length(forcelaw.energy(laws).mean(), part) / part.length))
+    points = parts * PART
+    beam = replace(part, length=parts * part.length, elements=points // PER_ELEMENT)
+    try:
+        return resolved(beam, points, laws), points
+    except ValueError as error:
+        strip = from_si(device.strip, "um")
+        error.add_note(f"The length of the strips of a device is its strip_um, here {strip:g} µm.")
+        raise
+
+
+def resolved_part(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
+    """Part of a device that finite elements resolve, and its number of strips: a long beam, or the middle of a bridge.
+
+    Parameters and errors as in `long_beam`.
+    """
+    return middle_zone(device.beam, device.strip, laws) if device.is_bridge else long_beam(device, laws)
+
+
+def arrests(
+    device: DesignedBeam, ground: tuple[Beam, int], draw: Callable, number: int, address: Callable
+) -> np.ndarray:
+    """Crack lengths of cantilevers, infinite if not S-shaped, or of the shortest bridges that are held (n,) [m].
+
+    Parameters
+    ----------
+    device : DesignedBeam
+    ground : tuple
+        Part of the device and number of its strips, from `resolved_part`.
+    draw : callable
+        ``draw(n, rng)`` gives n force laws (n, 4) [SI].
+    number : int
+        Number n of devices.
+    address : callable
+        ``address(k)`` is the stream of device k.
+    """
+    if device.is_bridge:
+        return held_lengths(*ground, draw, number, address)
+    found = released_beams(Experiment(*ground, draw), number, address)
+    return np.where(found["state"] == EndState.S_SHAPE, found["crack_length"], np.inf)
+
+
+def settings_of_beam(plan: Any, case: str) -> dict[str, Any]:
+    """A device at a humidity: force laws, dimensions and number of beams; more than any one stage needs."""
+    section = plan.config["devices"][pair_of(case)]
+    own = {"device": section_of_beam(plan, pair_of(case)), "humidity": humidity_of(case)}
+    return plan.seen_by(section["pair"]) | plan.config["design"] | own
+
+
+def section_of_beam(plan: Any, name: str) -> dict[str, Any]:
+    """Kind, pair and dimensions of a beam, and the length of its strips."""
+    section = plan.config["devices"][name]
+    modulus = chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(section["pair"])
+    is_bridge = section["kind"] == "bridge"
+    solids = {"hamaker_constant_zJ": plan.hamaker_constant(section["pair"])} if is_bridge else {}
+    return select(DesignedBeam, section | modulus | solids, strip_um=plan.designs.strip(name))

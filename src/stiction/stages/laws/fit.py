@@ -1,0 +1,61 @@
+"""Study fit (Sec. III-B1, Fig. 5): relative errors of Eq. (12) with respect to the computed force curves."""
+
+import numpy as np
+import xarray as xr
+
+from stiction.config.cases import pair_of
+from stiction.contact.forcelaw import admissible, fit_errors
+from stiction.plan.stage import Stage, select
+from stiction.stages.contact.curves import force_curves
+from stiction.stages.laws import forces as stage_forces
+
+#: Everything that the fit depends on apart from the contact and the forces.
+Settings = stage_forces.Settings
+
+
+def compute(contact: xr.Dataset, forces: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Compare every curve whose vector v has a force law with this force law."""
+    vectors, limit = stage_forces.vectors(forces)
+    samples = np.flatnonzero(admissible(vectors, limit))
+    distance, curve = force_curves(contact, settings.humidity, settings.water)
+    errors = fit_errors(distance, curve, samples, vectors[samples], limit)
+    return layout(samples, errors, len(vectors))
+
+
+def layout(samples: np.ndarray, errors: tuple[np.ndarray, np.ndarray], total: int) -> xr.Dataset:
+    """Dataset of the relative errors of Eq. (12) with respect to the curves of the samples that have a force law.
+
+    Parameters
+    ----------
+    samples : (n,) array
+        Indices of the samples with a force law, out of ``total``.
+    errors : tuple
+        Errors of the curve and of the adhesion energy, (n,) each [-].
+    total : int
+        Number of all samples.
+    """
+    names = {"curve_error": "of the curve for d >= d_limit, root mean square", "energy_error": "of the adhesion energy"}
+    columns = zip(names.items(), errors, strict=True)
+    return xr.Dataset(
+        {name: ("sample", error, {"units": "1", "long_name": f"relative error {of}"}) for (name, of), error in columns}
+        | {
+            "without_law": ((), 1 - len(samples) / total, {"units": "1", "long_name": "share of samples without a law"})
+        },
+        coords={"sample": samples},
+    )
+
+
+STAGES = (
+    Stage.writing(
+        "fit",
+        "fit/{case}_{model}",
+        inputs=lambda plan, at: {
+            "contact": f"contact/{pair_of(at.case)}_{at.model}",
+            "forces": f"forces/{at.case}_{at.model}",
+        },
+        settings=lambda plan, at: select(Settings, plan.at(at.case)),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["contact"], data["forces"], settings),
+        message="Errors of Eq. (12) in {case}, {model} (Sec. III-B1).",
+    ),
+)

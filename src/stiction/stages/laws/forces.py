@@ -1,0 +1,103 @@
+"""Stage forces (Sec. III-B1): the force curves at one humidity and the vectors of their parameters."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.config.cases import pair_of
+from stiction.contact.forcelaw import admissible, parametrise
+from stiction.plan.stage import Stage, select
+from stiction.stages.contact.curves import Water, force_curves
+
+#: Components of v, Eq. (11), and their units.
+COMPONENTS = ("adhesion_energy", "pull_off", "pull_off_distance", "limit_distance")
+_UNITS = ("J m-2", "Pa", "m", "m")
+#: Number of curves stored for Fig. 12.
+_KEPT = 200
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the forces depend on apart from the contact."""
+
+    water: Water
+    humidity: float  #: [-]
+
+
+def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Add the water to the solid contact of every sample and compute e, f_max, d_max and d_limit.
+
+    Returns
+    -------
+    Dataset
+        Components of v(sample), Eq. (11), f_limit, and the first few curves.
+    """
+    distance, curve = force_curves(contact, settings.humidity, settings.water)
+    vectors, limit = parametrise(distance, curve, contact.sizes["sample"])
+    kept = [curve(k).copy() for k in range(min(_KEPT, contact.sizes["sample"]))]
+    return layout(vectors, limit, distance, kept)
+
+
+def layout(vectors: np.ndarray, limit: float, distance: np.ndarray, curves: Sequence[np.ndarray]) -> xr.Dataset:
+    """Dataset of the vectors v(sample, component) of Eq. (11), f_limit, and the first few curves.
+
+    Parameters
+    ----------
+    vectors : (n, 4) array
+        Vectors v [SI].
+    limit : float
+        Pressure f_limit [Pa].
+    distance : (n_d,) array
+        Distance d [m].
+    curves : (k, n_d) array
+        Forces of the first k samples [Pa].
+    """
+    named = {
+        name: ("sample", vectors[:, i], {"units": unit, "long_name": f"{name.replace('_', ' ')} of a sample, Eq. (11)"})
+        for i, (name, unit) in enumerate(zip(COMPONENTS, _UNITS, strict=True))
+    }
+    return xr.Dataset(
+        named
+        | {
+            "limit": ((), limit, {"units": "Pa"}),
+            "force": (("curve", "distance"), np.asarray(curves, np.float32), {"units": "Pa"}),
+        },
+        coords={"distance": ("distance", distance, {"units": "m"})},
+    )
+
+
+def vectors(forces: xr.Dataset) -> tuple[np.ndarray, float]:
+    """Vectors v (m, 4) [SI] and f_limit [Pa]."""
+    return np.column_stack([forces[name].values for name in COMPONENTS]), float(forces.limit)
+
+
+def energies(forces: xr.Dataset) -> np.ndarray:
+    """Adhesion energies e of all samples (m,) [J m⁻²]."""
+    return forces.adhesion_energy.values
+
+
+def typical(forces: xr.Dataset) -> int:
+    """Number of the sample of median energy e among those with a stored curve and a force law of Eq. (12)."""
+    samples, limit = vectors(forces)
+    lawful = np.flatnonzero(admissible(samples[: forces.sizes["curve"]], limit))
+    return int(lawful[np.argsort(samples[lawful, 0])[len(lawful) // 2]])
+
+
+def curves(forces: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Distance (n_d,) [m] and the force curves of the first samples (k, n_d) [Pa]."""
+    return forces.distance.values, forces.force.values
+
+
+STAGES = (
+    Stage.writing(
+        "forces",
+        "forces/{case}_{model}",
+        inputs=lambda plan, at: {"contact": f"contact/{pair_of(at.case)}_{at.model}"},
+        settings=lambda plan, at: select(Settings, plan.at(at.case)),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["contact"], settings),
+        message="Force curves of {case}, {model} (Sec. III-B1).",
+    ),
+)

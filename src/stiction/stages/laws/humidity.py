@@ -1,0 +1,71 @@
+"""Study humidity (Fig. 15): distribution of the adhesion energy of a strip along a fine axis of humidities."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.plan.stage import Stage, select
+from stiction.progress import progress
+from stiction.stages.contact.curves import Water, energies
+
+#: Median and bounds of the band.
+_PROBABILITIES = np.array([0.05, 0.5, 0.95])
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the energies depend on apart from the contact."""
+
+    water: Water
+    points: int  #: number of humidities
+    range: tuple[float, float]  #: lowest and highest humidity [-]
+
+
+def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Compute the energy of every sample at every humidity; store the quantiles."""
+    humidities = np.linspace(*settings.range, settings.points)
+    found = np.array([energies(contact, float(h), settings.water) for h in progress(humidities, "humidities")])
+    return layout(humidities, _PROBABILITIES, found)
+
+
+def layout(humidity: np.ndarray, probabilities: np.ndarray, energies: np.ndarray) -> xr.Dataset:
+    """Dataset of the distribution of the adhesion energy e over the samples, along the relative humidity.
+
+    Parameters
+    ----------
+    humidity : (n,) array
+        Relative humidity RH [-].
+    probabilities : (k,) array
+        Probabilities of the stored quantiles [-].
+    energies : (n, m) array
+        Adhesion energies e of all samples [J m⁻²].
+    """
+    unit = {"units": "J m-2"}
+    return xr.Dataset(
+        {"energy_quantile": (("probability", "humidity"), np.quantile(energies, probabilities, axis=1), unit)},
+        coords={
+            "humidity": ("humidity", humidity, {"units": "1"}),
+            "probability": ("probability", probabilities, {"units": "1"}),
+        },
+    )
+
+
+def _settings(plan, at):
+    """Water and humidity axis of a pair."""
+    humidities = plan.config["pairs"][at.pair]["humidities"]
+    axis = {"points": plan.config["figures"]["humidity_points"], "range": [min(humidities), max(humidities)]}
+    return select(Settings, plan.seen_by(at.pair) | axis)
+
+
+STAGES = (
+    Stage.writing(
+        "humidity",
+        "humidity/{pair}_{model}",
+        inputs=lambda plan, at: {"contact": f"contact/{at.pair}_{at.model}"},
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["contact"], settings),
+        message="Adhesion energy of {model} surfaces of pair {pair} over the relative humidity.",
+    ),
+)

@@ -1,0 +1,122 @@
+"""Study orders (App. B, Fig. 18): the order of the polynomials at which the chaos model has converged."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis import convergence
+from stiction.chaos import density
+from stiction.chaos import model as chaos
+from stiction.plan.stage import Stage, select
+from stiction.progress import progress
+from stiction.stages.laws.chaos import chaos_model
+from stiction.stages.laws.forces import vectors
+from stiction.streams import stream
+
+#: Bins of the marginal densities.
+_EDGES = np.linspace(-4, 4, 65)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the study depends on apart from forces and chaos model."""
+
+    seed: int
+    draws: int
+    case: str
+
+
+def compute(forces: xr.Dataset, model: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Draw from the model truncated at each order; compare the marginals with the kernel density and the samples.
+
+    Parameters
+    ----------
+    forces, model : Dataset
+        Datasets of stages forces and chaos of one case.
+    settings : Settings
+
+    Returns
+    -------
+    Dataset
+        Marginals of η drawn with orders 1 ... N_d, and their Kolmogorov distances.
+    """
+    fitted = chaos_model(model)
+    eta = fitted.coordinates.reduce(vectors(forces)[0])[:, : fitted.dimension]
+    kernels = density.kernel_density(eta)
+    targets = [convergence.kernel_distribution(centres, kernels.bandwidth) for centres in kernels.centres]
+    histogram = partial(np.histogram, bins=_EDGES, density=True)
+    orders, densities, distances = range(1, fitted.order + 1), [], []
+    for order in progress(orders, "orders"):
+        xi = stream(settings.seed, "orders", settings.case).random((settings.draws, fitted.dimension))
+        drawn = chaos.truncated(fitted, order)(xi)
+        densities.append([histogram(column)[0] for column in drawn.T])
+        to_kernels = [convergence.distance_to(column, target) for column, target in zip(drawn.T, targets, strict=True)]
+        distances.append((to_kernels, list(map(convergence.distance_between, drawn.T, eta.T))))
+    distances = np.swapaxes(distances, 0, 1)
+    sizes = len(eta), settings.draws
+    converged = [convergence.converged_order(orders, column, *sizes) for column in distances[0].T]
+    of_input = [histogram(column)[0] for column in eta.T]
+    return layout(_EDGES, of_input, densities, distances, sizes, converged)
+
+
+def layout(
+    edges: np.ndarray,
+    input_density: Sequence,
+    densities: Sequence,
+    distances: np.ndarray,
+    sizes: tuple[int, int],
+    converged: Sequence[int],
+) -> xr.Dataset:
+    """Marginals of η drawn from polynomials of increasing order.
+
+    Parameters
+    ----------
+    edges : (n + 1,) array
+        Edges of the bins of η [-].
+    input_density : (N_g, n) array
+        Marginal densities of the samples [-].
+    densities : (N_d, N_g, n) array
+        Marginal densities of the draws, for total orders 1 ... N_d [-].
+    distances : (2, N_d, N_g) array
+        Kolmogorov distance of the draws to the kernel density and to the samples [-].
+    sizes : tuple of int
+        Number m of samples, and number of draws.
+    converged : (N_g,) sequence
+        Lowest order from which on a marginal is indistinguishable from the kernel density with m draws; 0 if none.
+    """
+    count = len(densities)
+    return xr.Dataset(
+        {
+            "density": (("order", "eta", "position"), densities),
+            "input_density": (("eta", "position"), input_density),
+            "distance": (("target", "order", "eta"), distances, {"long_name": "Kolmogorov's distance"}),
+            "samples": ((), sizes[0]),
+            "draws": ((), sizes[1]),
+            "converged_order": ("eta", list(converged), {"long_name": "0 if not converged"}),
+        },
+        coords={
+            "order": np.arange(1, count + 1),
+            "eta": np.arange(1, len(input_density) + 1),
+            "target": ["kernels", "input"],
+            "position": 0.5 * (edges[1:] + edges[:-1]),
+        },
+    )
+
+
+STAGES = (
+    Stage.writing(
+        "orders",
+        "studies/orders",
+        inputs=lambda plan, at: {stage: f"{stage}/{plan.figure_case}_NG" for stage in ("forces", "chaos")},
+        settings=lambda plan, at: select(
+            Settings, plan.config, draws=plan.config["studies"]["orders"]["draws"], case=plan.figure_case
+        ),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["forces"], data["chaos"], settings),
+        message="Convergence of the chaos model in the order of its polynomials (App. B).",
+        cluster=True,
+    ),
+)

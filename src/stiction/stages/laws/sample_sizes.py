@@ -1,0 +1,70 @@
+"""Study sample_sizes (App. B, Fig. 17a): convergence of the density of the adhesion energy in the number of samples."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis import convergence
+from stiction.plan.stage import Stage
+from stiction.stages.laws import forces as stage_forces
+
+#: Number of energies at which the density is given.
+_POINTS = 200
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the study depends on apart from the forces."""
+
+    shares: tuple[float, ...]  #: shares of the samples that are compared with all samples [-]
+    case: str
+
+
+def compute(forces: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Compare the first samples with all samples: densities of ē and Kolmogorov distances."""
+    energies = stage_forces.energies(forces)
+    at = np.linspace(0, 1.2 * energies.max(), _POINTS)
+    sizes = sorted({max(2, round(share * len(energies))) for share in settings.shares} | {len(energies)})
+    density = [convergence.kernel_estimate(energies[:size], at) for size in sizes]
+    distances = [convergence.distance_of_parts(energies, size) for size in sizes]
+    return layout(at, density, sizes, distances)
+
+
+def layout(energy: np.ndarray, density: Sequence, sizes: Sequence[int], distances: Sequence) -> xr.Dataset:
+    """Convergence of the density of ē in the number of samples.
+
+    Parameters
+    ----------
+    energy : (n_e,) array
+        Energies at which the density is given [J m⁻²].
+    density : (n_m, n_e) array
+        Densities of ē [m² J⁻¹].
+    sizes : (n_m,) sequence
+        Numbers of samples.
+    distances : (n_m, 2) array
+        Kolmogorov distance to all samples and its standard error [-].
+    """
+    values, errors = np.transpose(distances)
+    return xr.Dataset(
+        {
+            "density": (("size", "energy"), density, {"units": "m2 J-1"}),
+            "distance": ("size", values, {"units": "1", "long_name": "Kolmogorov's distance to all samples"}),
+            "distance_error": ("size", errors, {"units": "1"}),
+        },
+        coords={"size": list(sizes), "energy": ("energy", energy, {"units": "J m-2"})},
+    )
+
+
+STAGES = (
+    Stage.writing(
+        "sample_sizes",
+        "studies/sample_sizes",
+        inputs=lambda plan, at: {"forces": f"forces/{plan.figure_case}_NG"},
+        settings=lambda plan, at: {"shares": plan.config["studies"]["sample_shares"], "case": plan.figure_case},
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["forces"], settings),
+        message="Convergence of the adhesion energy in the number of samples (App. B).",
+    ),
+)

@@ -1,0 +1,70 @@
+"""Study sensitivity (Fig. 13): adhesion energies of a pair at two values of one moment of the beam's surface."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis.sensitivity import energy_sensitivity
+from stiction.models import SHIFTED
+from stiction.plan.stage import Stage, select
+from stiction.stages.contact.curves import Water, energies
+from stiction.stages.contact.sensitivity_contact import moment
+
+_STATISTICS = ("mean", "standard deviation")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the sensitivity depends on apart from the contact."""
+
+    water: Water
+    humidities: tuple[float, ...]  #: [-]
+
+
+def compute(contacts: Sequence[xr.Dataset], settings: Settings) -> xr.Dataset:
+    """Compare samples drawn with the same random numbers at the two values of the moment."""
+    at = [moment(contact) for contact in contacts]
+    found = np.array([[energies(contact, h, settings.water) for h in settings.humidities] for contact in contacts])
+    return layout(found, at, energy_sensitivity(found.swapaxes(1, 2), at), settings.humidities)
+
+
+def layout(energies: np.ndarray, at: Sequence[float], estimate: tuple, humidities: Sequence[float]) -> xr.Dataset:
+    """Adhesion energies at two values of one moment, and sensitivities of their mean and standard deviation.
+
+    Parameters
+    ----------
+    energies : (2, n_rh, m) array
+        Adhesion energies e [J m⁻²].
+    at : (2,) array
+        Values of the moment [SI].
+    estimate : tuple
+        Normalised slopes and standard errors, (2, n_rh) each [-].
+    humidities : sequence
+        Relative humidities RH [-].
+    """
+    slopes, errors = estimate
+    return xr.Dataset(
+        {
+            "adhesion_energy": (("moment", "humidity", "sample"), energies, {"units": "J m-2"}),
+            "slope": (("statistic", "humidity"), slopes, {"units": "1", "long_name": "(|x|/y) dy/dx"}),
+            "standard_error": (("statistic", "humidity"), errors, {"units": "1"}),
+        },
+        coords={"moment": list(at), "humidity": list(humidities), "statistic": list(_STATISTICS)},
+    )
+
+
+STAGES = (
+    Stage.writing(
+        "sensitivity",
+        "studies/sensitivity/{pair}_{moment}",
+        inputs=lambda plan, at: {
+            "contacts": [f"studies/sensitivity/contact/{at.pair}_{at.moment}_{side}" for side in SHIFTED]
+        },
+        settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["contacts"], settings),
+        message="Sensitivity of the adhesion of pair {pair} to {moment} (Fig. 13).",
+    ),
+)

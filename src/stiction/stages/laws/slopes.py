@@ -1,0 +1,89 @@
+"""Study slopes: effect of the measured quantities of one surface on the mean adhesion energy of a pair."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.devices.budget import log_slope
+from stiction.models import SHIFTED
+from stiction.plan.stage import Stage, select
+from stiction.stages.contact.curves import Water, energies
+from stiction.stages.contact.slope_contact import difference
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the slopes depend on apart from the contact."""
+
+    water: Water
+    humidities: tuple[float, ...]  #: [-]
+
+
+def compute(contacts: Mapping[str, Sequence[xr.Dataset]], settings: Settings) -> xr.Dataset:
+    """Slopes of ln ē by central differences.
+
+    Parameters
+    ----------
+    contacts : dict
+        Quantity, key of `stiction.analysis.shifts.STEPS`, to the contact with less and with more of it.
+    settings : Settings
+    """
+    found = np.array([[_slope(*both, h, settings.water) for h in settings.humidities] for both in contacts.values()])
+    return layout(list(contacts), settings.humidities, *np.moveaxis(found, -1, 0))
+
+
+def _slope(less, more, humidity, water):
+    """Slope of ln ē and its standard error at a humidity."""
+    samples = (energies(contact, humidity, water) for contact in (less, more))
+    return log_slope(np.mean, *samples, difference(less))
+
+
+def layout(
+    quantities: Sequence[str], humidities: Sequence[float], slopes: np.ndarray, errors: np.ndarray
+) -> xr.Dataset:
+    """Dataset of the slopes of ln ē and their standard errors, (n_quantities, n_rh) [-]."""
+    return xr.Dataset(
+        {
+            "slope": (("quantity", "humidity"), slopes, {"units": "1", "long_name": "d ln e / dx"}),
+            "standard_error": (("quantity", "humidity"), errors, {"units": "1"}),
+        },
+        coords={"quantity": list(quantities), "humidity": list(humidities)},
+    )
+
+
+def quantities(dataset: xr.Dataset) -> tuple[str, ...]:
+    """Quantities whose slopes the dataset has, keys of `stiction.analysis.shifts.STEPS`."""
+    return tuple(dataset["quantity"].values.tolist())
+
+
+def of(dataset: xr.Dataset, quantities: Sequence[str]) -> np.ndarray:
+    """Slopes of ln ē with respect to some quantities at every humidity, (n_rh, n_quantities) [-]."""
+    return dataset.slope.sel(quantity=list(quantities)).values.T
+
+
+def errors_of(dataset: xr.Dataset, quantities: Sequence[str]) -> np.ndarray:
+    """Standard errors of these slopes, (n_rh, n_quantities) [-]."""
+    return dataset.standard_error.sel(quantity=list(quantities)).values.T
+
+
+def _inputs(plan, at):
+    """Contacts of a pair with less and with more of every quantity of a surface."""
+    contact = f"studies/slopes/contact/{at.pair}_{at.surface}"
+    return {side: {name: f"{contact}_{name}_{side}" for name in plan.quantities(at.surface)} for side in SHIFTED}
+
+
+STAGES = (
+    Stage.writing(
+        "slopes",
+        "studies/slopes/{pair}_{surface}",
+        inputs=_inputs,
+        settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(
+            {name: [less, data["more"][name]] for name, less in data["less"].items()}, settings
+        ),
+        message="Slopes of the adhesion of pair {pair} to the quantities of {surface}.",
+    ),
+)

@@ -1,0 +1,1 @@
+"""Stages of surfaces: heights, spectra and measured surfaces (Sec. II)."""

@@ -1,0 +1,64 @@
+"""Study correlation (App. C, Fig. 19c): autocorrelation of the surfaces and their correlation lengths."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.plan.stage import Stage
+from stiction.stages.surfaces import parameters
+from stiction.surface.spectrum import autocovariance, correlation_length
+
+#: Distances of the autocorrelation [m].
+_LAG = np.linspace(0, 1e-6, 401)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the study depends on apart from the spectra."""
+
+    surfaces: tuple[str, ...]  #: names
+
+
+def compute(spectra: Mapping[str, xr.Dataset], settings: Settings) -> xr.Dataset:
+    """Transform the spectra of all surfaces, Eq. (7)."""
+    targets = [parameters.spectrum_of(spectra[name]) for name in settings.surfaces]
+    covariances = [autocovariance(target, _LAG) for target in targets]
+    lengths = [correlation_length(target) for target in targets]
+    return layout(settings.surfaces, _LAG, [c / c[0] for c in covariances], lengths)
+
+
+def layout(surfaces: Sequence[str], lag: np.ndarray, correlations: Sequence, lengths: Sequence[float]) -> xr.Dataset:
+    """Normalised autocorrelation of surfaces and their correlation lengths.
+
+    Parameters
+    ----------
+    surfaces : sequence of str
+    lag : (n,) array
+        Distance [m].
+    correlations : (n_s, n) array
+        Normalised autocorrelation [-].
+    lengths : (n_s,) array
+        Correlation lengths [m].
+    """
+    return xr.Dataset(
+        {
+            "autocorrelation": (("surface", "lag"), correlations, {"units": "1"}),
+            "correlation_length": ("surface", lengths, {"units": "m", "long_name": "r_Z < 0.01 m₂ beyond"}),
+        },
+        coords={"surface": list(surfaces), "lag": ("lag", lag, {"units": "m"})},
+    )
+
+
+STAGES = (
+    Stage.writing(
+        "correlation",
+        "studies/correlation",
+        inputs=lambda plan, at: {"spectra": {name: f"spectrum/{name}" for name in plan.surfaces}},
+        settings=lambda plan, at: {"surfaces": plan.surfaces},
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["spectra"], settings),
+        message="Autocorrelation of the surfaces (App. C).",
+    ),
+)

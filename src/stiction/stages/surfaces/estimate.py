@@ -1,0 +1,277 @@
+"""Stage estimate: a measured surface with errors, from its scans."""
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis.shifts import ORDERS
+from stiction.config.units import from_si
+from stiction.models import OF_MEASURED
+from stiction.plan.stage import Stage
+from stiction.scans import estimate as evaluation
+from stiction.scans import periodogram as spectra
+from stiction.scans import whittle
+from stiction.scans.estimate import SurfaceEstimate
+from stiction.scans.histogram import EDGES, histogram, histogram_errors
+from stiction.scans.moments import mode_covariance, moments
+from stiction.scans.periodogram import Rings
+from stiction.scans.quantiles import SCORES, measured_density
+from stiction.scans.scan import Frame
+from stiction.scans.whittle import Reach, WhittleFit
+from stiction.stages.surfaces import scan as stage_scan
+from stiction.surface import maxent
+from stiction.surface.empirical import MeasuredDensity
+from stiction.surface.maxent import HeightDensity
+from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
+
+MOMENTS = ("ln_rms", "skewness", "kurtosis")
+PARAMETERS = ("ln_plateau", "ln_corner", "slope")
+_MOMENT, _SUMMITS = {"long_name": "ln of the rms in metres, skewness, kurtosis"}, {"units": "m, m-2"}
+_CHI2, _P = {"units": "1", "long_name": "chi squared"}, {"units": "1", "long_name": "probability of a larger chi²"}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that an estimate depends on apart from the scans."""
+
+    seed: int
+    evaluation: evaluation.Settings
+    model_scans: int  #: number of model scans, more if there are more scans
+    files: tuple[str, ...] = ()  #: names of the files; they do not affect the numbers
+
+
+def compute(scans: Sequence[xr.Dataset], surface: str, settings: Settings) -> xr.Dataset:
+    """Estimate a surface from its scans; a warning states each limit of the estimate.
+
+    Parameters
+    ----------
+    scans : sequence of Dataset
+        Datasets of stage scan.
+    surface : str
+        Name of the surface, part of the addresses of random numbers.
+    settings : Settings
+
+    Raises
+    ------
+    ScanError
+        If the scans cannot be used, or no surface has their heights and spectrum.
+    """
+    maps = [stage_scan.scan_of(dataset) for dataset in scans]
+    found = evaluation.estimate(maps, settings.seed, settings.evaluation, surface, settings.model_scans)
+    for sentence in found.flags:
+        warnings.warn(f"surface {surface}: {sentence}", stacklevel=2)
+    return layout(found, [note for dataset in scans for note in stage_scan.notes(dataset)])
+
+
+def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
+    """Dataset of an estimate.
+
+    Parameters
+    ----------
+    found : SurfaceEstimate
+    notes : sequence of str
+        Sentences on the files, stored after those on the estimate.
+    """
+    inspection = found.inspection
+    frame, rings, within, fit = inspection.frame, inspection.rings, inspection.reach, inspection.fit
+    nearest = found.feasible
+    near = (np.nan,) * 3 if nearest is None else (nearest.skewness, nearest.kurtosis, nearest.distance)
+    slow = spectra.rings(inspection.periodogram, inspection.periodogram.near_slow_axis)
+    wave = {"units": "rad m-1"}
+    return xr.Dataset(
+        {
+            "moments": ("moment", found.moments, _MOMENT),
+            "covariance": (("moment", "other_moment"), found.covariance, {"long_name": "of the moments"}),
+            "raw_moments": ("moment", inspection.moments, {"long_name": "of the levelled scans, with their bias"}),
+            "scan_moments": (("scan", "moment"), moments(inspection.powers), {"long_name": "of every scan"}),
+            "closed_form_errors": (
+                "moment",
+                found.closed_form_errors,
+                {"long_name": "standard errors if the heights have the density of the model"},
+            ),
+            "tile_errors": ("moment", found.tile_errors, {"long_name": "standard errors from the scatter of tiles"}),
+            "homogeneity_chi2": ("moment", found.homogeneity[0], _CHI2),
+            "homogeneity_p": ("moment", found.homogeneity[1], _P),
+            "feasible": ("shape", list(near), {"long_name": "moments of the maximum-entropy density; distance"}),
+            "wavenumber": ("ring", rings.wavenumber, wave),
+            "density": ("ring", rings.density, {"units": "m4"}),
+            "modes": ("ring", rings.modes, {"units": "1", "long_name": "independent values of a ring"}),
+            "weight": ("ring", rings.weight, {"units": "1", "long_name": "independent values of a ring among many"}),
+            "slow_wavenumber": ("slow_ring", slow.wavenumber, wave),
+            "slow_density": ("slow_ring", slow.density, {"units": "m4", "long_name": "near the slow axis"}),
+            "plateau": ((), fit.plateau, {"units": "m4"}),
+            "corner": ((), fit.corner, wave),
+            "slope": ((), fit.slope, {"units": "1"}),
+            "fit_covariance": (
+                ("parameter", "other_parameter"),
+                fit.covariance,
+                {"long_name": "of the fit of Eq. (7)"},
+            ),
+            "fit_chi2": ((), fit.chi2, _CHI2),
+            "fit_freedom": ((), fit.freedom, {"long_name": "rings less parameters"}),
+            "lowest": ((), within.low, wave | {"long_name": "smallest wave number of the fit"}),
+            "highest": ((), within.high, wave | {"long_name": "largest wave number of the fit"}),
+            "nyquist": ((), within.nyquist, wave),
+            "tip": ((), within.tip, wave | {"long_name": "wave number beyond which the tip rounds the surface"}),
+            "end": ((), within.end, wave | {"long_name": "wave number beyond which the scans show no roughness"}),
+            "wavelengths": ((), inspection.wavelengths, {"units": "1", "long_name": "of the corner along a scan"}),
+            "areas": ((), inspection.areas, {"units": "1", "long_name": "correlation areas of all scans"}),
+            "sectors": ("sector", found.sectors, {"units": "1", "long_name": "spectrum relative to its mean"}),
+            "sector_errors": ("sector", found.sector_errors, {"units": "1"}),
+            "quantile": ("score", found.quantiles, {"units": "1", "long_name": "standardised height"}),
+            "quantile_error": ("score", found.quantile_errors, {"units": "1"}),
+            "goodness_chi2": ((), found.goodness[0], _CHI2),
+            "goodness_p": ((), found.goodness[1], _P),
+            "histogram": (
+                "bin",
+                histogram(inspection.levelled, inspection.quantiles, found.quantiles),
+                {"units": "1", "long_name": "density of z / rms"},
+            ),
+            "histogram_error": ("bin", histogram_errors(found.model) / np.sqrt(len(inspection.names)), {"units": "1"}),
+            "edge": ("edges", EDGES, {"units": "1", "long_name": "edges of the bins of z / rms"}),
+            "mode_covariance": (("mode", "other_mode"), _mode_covariance(found), {"long_name": "of ln rms and modes"}),
+            "elevation": (
+                ("fast", "slow"),
+                inspection.levelled[0].astype(np.float32),
+                {"units": "m", "long_name": "first scan, levelled"},
+            ),
+            "summits": ("summit", found.summits, _SUMMITS),
+            "summit_errors": ("summit", found.summit_errors, _SUMMITS),
+            "model_summits": ("summit", found.model_summits, _SUMMITS),
+            "model_summit_errors": ("summit", found.model_summit_errors, _SUMMITS),
+            "line_jump": ("axis", list(found.line_jump[::-1]), {"units": "m", "long_name": "typical step"}),
+            "pixel": ("axis", list(frame.pixel), {"units": "m"}),
+            "points": ("axis", list(frame.shape)),
+            "files": ((), "\n".join(inspection.names)),
+            "flags": ((), "\n".join([*found.flags, *notes]), {"long_name": "limits of the estimate, one per line"}),
+        },
+        coords={
+            "moment": list(MOMENTS),
+            "other_moment": list(MOMENTS),
+            "shape": ["skewness", "kurtosis", "distance"],
+            "parameter": list(PARAMETERS),
+            "other_parameter": list(PARAMETERS),
+            "score": ("score", SCORES, {"units": "1"}),
+            "summit": ["radius", "density"],
+            "axis": ["fast", "slow"],
+            "mode": list(OF_MEASURED),
+            "other_mode": list(OF_MEASURED),
+        },
+    )
+
+
+def _mode_covariance(found):
+    """Covariance of the quantities of a measured density, `stiction.models.OF_MEASURED`."""
+    model = found.model
+    covariance = mode_covariance(model.translation, model.overlaps, ORDERS) / len(found.inspection.names)
+    covariance[0, 0] = found.covariance[0, 0]
+    return covariance
+
+
+def files(estimate: xr.Dataset) -> tuple[str, ...]:
+    """Names of the files."""
+    return tuple(str(estimate.files.item()).splitlines())
+
+
+def flags(estimate: xr.Dataset) -> tuple[str, ...]:
+    """Sentences on everything that limits the estimate, and on the files."""
+    return tuple(str(estimate.flags.item()).splitlines())
+
+
+def rms(estimate: xr.Dataset) -> float:
+    """Root mean square of the heights [m]."""
+    return float(np.exp(estimate.moments.sel(moment="ln_rms")))
+
+
+def shape(estimate: xr.Dataset) -> tuple[float, float]:
+    """Measured skewness and kurtosis [-]."""
+    return tuple(float(estimate.moments.sel(moment=name)) for name in MOMENTS[1:])
+
+
+def fit(estimate: xr.Dataset) -> WhittleFit:
+    """Fit of Eq. (7)."""
+    plateau, corner, slope, chi2 = (float(estimate[name]) for name in ("plateau", "corner", "slope", "fit_chi2"))
+    return WhittleFit(plateau, corner, slope, estimate.fit_covariance.values, chi2, int(estimate.fit_freedom))
+
+
+def rings(estimate: xr.Dataset) -> Rings:
+    """Measured spectrum."""
+    return Rings(*(estimate[name].values for name in ("wavenumber", "density", "modes", "weight")))
+
+
+def frame(estimate: xr.Dataset) -> Frame:
+    """Points and size of the scans."""
+    points, pixel = estimate.points.values, estimate.pixel.values
+    return Frame(tuple(map(int, points)), tuple(map(float, points * pixel)))
+
+
+def reach(estimate: xr.Dataset) -> Reach:
+    """Wave numbers that the scans resolve."""
+    return Reach(*(float(estimate[name]) for name in ("lowest", "highest", "nyquist", "tip", "end")))
+
+
+def distance(estimate: xr.Dataset) -> float:
+    """Distance of the moments of the maximum-entropy density from the measured ones; NaN without it [errors]."""
+    return float(estimate.feasible.sel(shape="distance"))
+
+
+def feasible(estimate: xr.Dataset) -> tuple[float, float]:
+    """Skewness and kurtosis of the maximum-entropy density; NaN without it [-]."""
+    return tuple(float(estimate.feasible.sel(shape=name)) for name in MOMENTS[1:])
+
+
+def density(estimate: xr.Dataset, heights: str) -> HeightDensity | MeasuredDensity:
+    """Height density of ``moments`` (maximum entropy) or ``measured``.
+
+    Raises
+    ------
+    ValueError
+        If the measured moments, and none near them, have a maximum-entropy density.
+    """
+    if heights == "measured":
+        return measured_density(estimate["quantile"].values, float(estimate.areas))
+    if np.isnan(distance(estimate)):
+        skewness, kurtosis = shape(estimate)
+        raise ValueError(
+            f"no maximum-entropy density has moments near the skewness {skewness:.3g} and kurtosis {kurtosis:.3g} of "
+            f"{', '.join(files(estimate))}; heights: measured does not need one"
+        )
+    return maxent.solve(*feasible(estimate))
+
+
+def spectrum(estimate: xr.Dataset, psd: str, cutoff: float) -> CutoffSelfAffine | TabulatedSpectrum:
+    """Spectrum ``fitted`` or ``tabulated`` up to a cut-off [rad m⁻¹]."""
+    if psd == "fitted":
+        return fit(estimate).spectrum(cutoff)
+    return whittle.tabulated(rings(estimate), reach(estimate), fit(estimate).slope, cutoff)
+
+
+def statistics(estimate: xr.Dataset) -> dict[str, float]:
+    """Measured statistics of the surface, by the keys of the configuration."""
+    skewness, kurtosis = shape(estimate)
+    radius, number = estimate.summits.values
+    return {
+        "rms_nm": from_si(rms(estimate), "nm"),
+        "skewness": skewness,
+        "kurtosis": kurtosis,
+        "mean_summit_radius_um": from_si(float(radius), "um"),
+        "summit_density_per_um2": from_si(float(number), "per_um2"),
+    }
+
+
+STAGES = (
+    Stage.writing(
+        "estimate",
+        "estimate/{surface}",
+        surfaces=lambda plan: plan.scanned,
+        inputs=lambda plan, at: {"scans": [f"scan/{at.surface}_{number}" for number in plan.scan_files(at.surface)]},
+        settings=lambda plan, at: plan.estimate(at.surface),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["scans"], at.surface, settings),
+        message="Estimate surface {surface} from its scans.",
+        cluster=True,
+    ),
+)

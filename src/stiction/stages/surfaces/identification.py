@@ -1,0 +1,104 @@
+"""Stage identification (Sec. II-C): Eq. (7) fitted to the radius and density of the summits of a surface."""
+
+from dataclasses import dataclass
+
+import xarray as xr
+
+from stiction.plan.stage import Stage, select
+from stiction.stages.surfaces import parameters
+from stiction.stages.surfaces.heights import density, moments
+from stiction.streams import stream
+from stiction.surface.field import StripGrid
+from stiction.surface.identify import Identification, SummitTarget, identify
+from stiction.surface.translation import Translation
+
+
+@dataclass(frozen=True)
+class Patches:
+    """Square patches of surface on which a trial spectrum is evaluated."""
+
+    patches: int  #: number of patches
+    patch: float  #: side [m]
+
+
+@dataclass(frozen=True)
+class Summits:
+    """Measured summit statistics."""
+
+    mean_summit_radius: float  #: [m]
+    summit_density: float  #: [m⁻²]
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that an identification depends on apart from the height density."""
+
+    seed: int
+    identification: Patches
+    target: Summits
+    spacing: float  #: of the patches [m]
+    target_spacing: float  #: at which the summits were measured [m]
+
+
+def compute(heights: xr.Dataset, surface: str, settings: Settings) -> xr.Dataset:
+    """Parameters of Eq. (7), simulated summit statistics and their targets.
+
+    Parameters
+    ----------
+    heights : Dataset
+        Dataset of stage heights.
+    surface : str
+        Name of the surface, part of the addresses of random numbers.
+    settings : Settings
+
+    Raises
+    ------
+    ValueError
+        If a patch is no longer than the correlation length of the identified spectrum.
+    """
+    patch, summits = settings.identification.patch, settings.target
+    wanted = summits.mean_summit_radius, summits.summit_density
+    target = SummitTarget(moments(heights).rms, *wanted, settings.target_spacing)
+    grid = StripGrid(patch, patch, settings.spacing, margin=0.0)
+
+    def patches(*part):
+        numbers = range(settings.identification.patches)
+        return lambda: (stream(settings.seed, "identification", surface, *part, k) for k in numbers)
+
+    found = identify(target, Translation(density(heights, "NG")), grid, patches(), patches("control"))
+    parameters.refuse_long_correlation(surface, found.spectrum, {"identification.patch_um": patch})
+    return layout(found, target)
+
+
+def layout(found: Identification, target: SummitTarget) -> xr.Dataset:
+    """Dataset of the parameters of Eq. (7), simulated summit statistics and those asked for."""
+    return parameters.variables(found.spectrum).assign(
+        mean_radius=((), found.mean_radius, {"units": "m"}),
+        mean_radius_error=((), found.mean_radius_error, {"units": "m"}),
+        summit_density=((), found.density, {"units": "m-2"}),
+        summit_density_error=((), found.density_error, {"units": "m-2"}),
+        target_mean_radius=((), target.mean_radius, {"units": "m"}),
+        target_summit_density=((), target.density, {"units": "m-2"}),
+        target_rms=((), target.rms, {"units": "m"}),
+        evaluations=((), found.evaluations),
+    )
+
+
+STAGES = (
+    Stage.writing(
+        "identification",
+        "identification/{surface}",
+        inputs=lambda plan, at: {"heights": f"heights/{at.surface}"},
+        settings=lambda plan, at: select(
+            Settings,
+            plan.config,
+            spacing_nm=plan.config["sampling"]["spacing_nm"],
+            target_spacing_nm=plan.config["character"]["spacing_nm"],
+            target=select(Summits, plan.config["surfaces"][at.surface]),
+        ),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["heights"], at.surface, settings),
+        message="Identify the spectrum of {surface} from its summits (Sec. II-C).",
+        cluster=True,
+    ),
+)

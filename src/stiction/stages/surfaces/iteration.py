@@ -1,0 +1,109 @@
+"""Study iteration (Sec. II-B2, Figs. 4 and 10): the iterative algorithm, for comparison with the closed form."""
+
+from dataclasses import dataclass
+from itertools import islice
+
+import numpy as np
+import xarray as xr
+
+from stiction.models import FIELD
+from stiction.plan.stage import Stage, select
+from stiction.progress import progress
+from stiction.stages.surfaces import parameters
+from stiction.stages.surfaces.heights import density
+from stiction.stages.surfaces.spectrum import achieved
+from stiction.streams import stream
+from stiction.surface.field import StripGrid
+from stiction.surface.iteration import iterate, misfit, sampling_misfit, target_rings
+from stiction.surface.translation import Translation
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Size of the study."""
+
+    iterations: int  #: number of iterations
+    fields: int  #: periodic fields on which each spectrum is estimated
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the study depends on apart from the surface."""
+
+    seed: int
+    iteration: Steps
+    spacing: float  #: of the fields [m]
+
+
+def compute(heights: xr.Dataset, spectrum: xr.Dataset, surface: str, settings: Settings) -> xr.Dataset:
+    """Run the number of iterations of the settings; store all spectra, of unit variance, and their misfits.
+
+    Parameters
+    ----------
+    heights, spectrum : Dataset
+        Datasets of the stages of these names.
+    surface : str
+        Name of the surface, part of the address of random numbers.
+    settings : Settings
+    """
+    target, wanted = parameters.spectrum_of(spectrum), settings.iteration
+    translation = Translation(density(heights, "NG"))
+    grid = StripGrid.periodic(FIELD, settings.spacing)
+    steps = iterate(target, translation, grid, wanted.fields, stream(settings.seed, "iteration", surface))
+    kept = list(progress(islice(steps, wanted.iterations), "iterations", total=wanted.iterations))
+    underlying, periodograms = (np.array(column) for column in zip(*kept, strict=True))
+    zeta, rings = target_rings(target, grid)
+    misfits = {
+        "misfit": misfit(periodograms.mean(axis=1), rings),
+        "sampling_misfit": sampling_misfit(periodograms),
+        "closed_form_misfit": misfit(achieved(spectrum, zeta), rings),
+    }
+    return layout((zeta, rings), (underlying, periodograms), misfits)
+
+
+def layout(rings: tuple, steps: tuple, misfits: dict) -> xr.Dataset:
+    """Dataset of the spectra of the algorithm of Fig. 4, of unit variance, and of their misfits to the target.
+
+    Parameters
+    ----------
+    rings : tuple
+        Wave numbers (n,) [rad m⁻¹] and the target on them (n,) [m²].
+    steps : tuple
+        Per iteration: Gaussian spectra (k, n) and periodograms of translated fields (k, fields, n) [m²].
+    misfits : dict
+        Mean error |ln(s / s_Z)| of a ring: misfit of the estimated spectra (k,), sampling_misfit of exact spectra
+        (k,), closed_form_misfit [-].
+    """
+    (wavenumber, target), (underlying, periodogram) = rings, steps
+    unit, mean = {"units": "m2"}, {"units": "1", "long_name": "mean error |ln(s / s_Z)| of a ring"}
+    return xr.Dataset(
+        {
+            "target": ("wavenumber", target, unit),
+            "underlying": (("iteration", "wavenumber"), underlying, unit),
+            "periodogram": (("iteration", "field", "wavenumber"), periodogram, unit),
+        }
+        | {name: (("iteration",)[: np.ndim(values)], values, mean) for name, values in misfits.items()},
+        coords={
+            "iteration": np.arange(1, len(underlying) + 1),
+            "wavenumber": ("wavenumber", wavenumber, {"units": "rad m-1"}),
+        },
+    )
+
+
+STAGES = (
+    Stage.writing(
+        "iteration",
+        "iteration/{surface}",
+        inputs=lambda plan, at: {stage: f"{stage}/{at.surface}" for stage in ("heights", "spectrum")},
+        settings=lambda plan, at: select(
+            Settings,
+            plan.config,
+            iteration=plan.config["studies"]["iteration"],
+            spacing_nm=plan.config["sampling"]["spacing_nm"],
+        ),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["heights"], data["spectrum"], at.surface, settings),
+        message="Iterative spectrum of {surface}, for comparison with the closed form (Fig. 4).",
+        cluster=True,
+    ),
+)

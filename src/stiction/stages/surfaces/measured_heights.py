@@ -1,0 +1,55 @@
+"""Heights of a measured surface (Sec. II-A): the dataset of stage heights from that of stage estimate."""
+
+from dataclasses import dataclass
+
+import xarray as xr
+
+from stiction.plan.stage import Stage, select
+from stiction.scans.moments import moments_of
+from stiction.stages.surfaces import estimate as stage_estimate
+from stiction.stages.surfaces import heights as stage_heights
+from stiction.surface.feasible import Moments
+from stiction.surface.translation import Translation
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Source of the height density."""
+
+    surface: str  #: its name, for messages
+    heights: str  #: ``moments`` (maximum entropy) or ``measured``
+
+
+def compute(estimate: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Density of the measured moments, of the nearest ones that have one, or of the measured quantiles.
+
+    Raises
+    ------
+    ValueError
+        If the density of the moments is asked for, and neither these nor any near them have one.
+    """
+    try:
+        density = stage_estimate.density(estimate, settings.heights)
+    except ValueError as reason:
+        raise ValueError(f"surfaces.{settings.surface}.heights is {settings.heights}, but {reason}") from None
+    if settings.heights == "moments":
+        shape, distance = stage_estimate.feasible(estimate), stage_estimate.distance(estimate)
+    else:
+        shape, distance = map(float, moments_of(Translation(density))[1:]), 0.0
+    moments = stage_heights.Settings(stage_estimate.rms(estimate), *shape)
+    return stage_heights.layout(density, moments, Moments(*stage_estimate.shape(estimate), distance))
+
+
+STAGES = (
+    Stage.writing(
+        "heights_of_scans",
+        "heights/{surface}",
+        surfaces=lambda plan: plan.scanned,
+        inputs=lambda plan, at: {"estimate": f"estimate/{at.surface}"},
+        settings=lambda plan, at: select(Settings, plan.config["surfaces"][at.surface], surface=at.surface),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["estimate"], settings),
+        label="heights",
+        message="Height density of measured surface {surface} (Sec. II-A).",
+    ),
+)

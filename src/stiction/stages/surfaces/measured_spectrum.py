@@ -1,0 +1,101 @@
+"""Spectrum of a measured surface (Sec. II-B): the dataset of stage spectrum from that of stage estimate."""
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.config.units import from_si
+from stiction.errors import NotConverged
+from stiction.plan.stage import Stage, select
+from stiction.stages.surfaces import estimate as stage_estimate
+from stiction.stages.surfaces import parameters
+from stiction.stages.surfaces import spectrum as stage_spectrum
+from stiction.stages.surfaces.spectrum import Use
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Source of the spectrum, its cut-off, and what it is used for."""
+
+    psd: str  #: ``fitted`` (Eq. (7)) or ``tabulated``
+    beyond: str  #: ``cut`` at the end of the measured spectrum, or ``continued`` to the Nyquist wave number of the grid
+    spacing: float  #: of the grid on which the surface will be drawn [m]
+    use: Use
+
+
+def compute(estimate: xr.Dataset, heights: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Fit or table of the measured spectrum up to its cut-off, and the spectrum of the Gaussian field.
+
+    ASSUME: with ``cut`` there is no roughness that the scans do not show, as in the identification from summits.
+
+    Parameters
+    ----------
+    estimate, heights : Dataset
+        Datasets of stages estimate and heights.
+    settings : Settings
+
+    Raises
+    ------
+    ValueError
+        If strips are not longer than the correlation length, or no Gaussian field has these heights and this spectrum.
+    """
+    use, source = settings.use, f"from {', '.join(stage_estimate.files(estimate))}"
+    cutoff, clipped = cutoff_and_clipping(stage_estimate.reach(estimate).end, settings)
+    if clipped:
+        warnings.warn(f"surface {use.surface}: {clipped}", stacklevel=2)
+    try:
+        target = stage_estimate.spectrum(estimate, settings.psd, cutoff)
+        found = stage_spectrum.on_grid(target, heights, settings.spacing)
+    except (ValueError, NotConverged) as reason:
+        raise ValueError(f"surface {use.surface} {source} cannot be drawn: {reason}") from None
+    lengths = {"sampling.strip_length_um": use.strip_length, "sampling.margin_um": use.margin}
+    parameters.refuse_long_correlation(use.surface, target, lengths, source)
+    return found.assign(flags=((), clipped))
+
+
+def cutoff_and_clipping(end: float, settings: Settings) -> tuple[float, str]:
+    """Cut-off [rad m⁻¹], and a sentence if the grid cuts the measured spectrum off; empty if it does not.
+
+    Parameters
+    ----------
+    end : float
+        Of the measured spectrum, the Nyquist wave number of the scans at most [rad m⁻¹].
+    settings : Settings
+    """
+    grid = np.pi / settings.spacing
+    if end <= grid:
+        return (end if settings.beyond == "cut" else grid), ""
+    ends, measured = (f"{from_si(wavenumber, 'rad_per_um'):.4g} rad/µm" for wavenumber in (grid, end))
+    return grid, (
+        f"the spectrum ends at the Nyquist wave number of the grid, {ends}, before that of the scans, {measured}; "
+        "a finer sampling.spacing_nm keeps more"
+    )
+
+
+def flags(spectrum: xr.Dataset) -> tuple[str, ...]:
+    """Sentences on what the spectrum leaves out of the measured one."""
+    return tuple(str(spectrum["flags"].item()).splitlines())
+
+
+def _settings(plan, at):
+    """Source of the spectrum of a measured surface, the strips it is used for, and the grid."""
+    entry, sampling = plan.config["surfaces"][at.surface], plan.config["sampling"]
+    use = select(Use, sampling, surface=at.surface)
+    return select(Settings, entry, spacing_nm=sampling["spacing_nm"], use=use)
+
+
+STAGES = (
+    Stage.writing(
+        "spectrum_of_scans",
+        "spectrum/{surface}",
+        surfaces=lambda plan: plan.scanned,
+        inputs=lambda plan, at: {stage: f"{stage}/{at.surface}" for stage in ("estimate", "heights")},
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["estimate"], data["heights"], settings),
+        label="spectrum",
+        message="Spectrum of measured surface {surface} and of the underlying Gaussian field (Sec. II-B).",
+    ),
+)

@@ -1,0 +1,81 @@
+"""A device on synthetic force laws of the size of pair b: its settings, and datasets of its stages."""
+
+from unittest.mock import patch
+
+import numpy as np
+import xarray as xr
+from scipy.stats import norm
+from vectors import sampled_vectors
+
+from stiction.beam.cantilever import Beam
+from stiction.chaos.model import Truncation
+from stiction.contact import forcelaw
+from stiction.stages.contact import curves
+from stiction.stages.devices import cracks, safe_lengths
+from stiction.stages.devices.releases import DesignedBeam
+from stiction.streams import stream
+
+UM = 1e-6
+WATER = curves.Water(300.0)
+C1 = DesignedBeam("cantilever", "b", 2.6 * UM, 20 * UM, 30 * UM, 164e9, 1.5 * UM)
+R1 = DesignedBeam(
+    "bridge", "b", 2 * UM, 2 * UM, 30 * UM, 164e9, 0.5 * UM, residual_stress=50e6, hamaker_constant=9.75e-20
+)
+#: Slopes of the tips.
+SLOPES = np.geomspace(0.005, 2, 40)
+#: Root mean square of the heights of both surfaces [m].
+RMS = 3.4e-9
+
+
+def settings(device=C1, beams=200):
+    return cracks.Settings(2021, Truncation(3, 0.001), WATER, 0.67, device, beams)
+
+
+def contact():
+    """Dataset of stage contact as far as the stages of devices look into it: bearing areas of normal heights."""
+    height = 0.05e-9 * np.arange(-500, 501)
+    area = np.tile(norm.sf(height, scale=RMS), (3, 1))
+    return xr.Dataset({"bearing_area": (("sample", "height"), area), "step": 0.05e-9}, coords={"height": height})
+
+
+def computed(wanted, vectors, groups=2):
+    """Dataset of stage cracks on given vectors, with fewer groups."""
+    limit = 1.2 * vectors[:, 1].max()
+    with patch.object(curves, "vectors", lambda *_: (vectors, limit)), patch.object(cracks, "GROUPS", groups):
+        return cracks.compute(contact(), wanted)
+
+
+VECTORS = sampled_vectors(400, 0.24)
+
+
+def lognormal_cracks(number=400, groups=4, spread=0.025, seed=1, name=cracks.CRACK):
+    """Dataset of stage cracks with lognormal lengths around 700 µm."""
+    rng = np.random.default_rng(seed)
+    found = 700 * UM * np.exp(spread * rng.standard_normal((groups + 1, number)))
+    laws = forcelaw.coefficients(VECTORS[:50], 1.2 * VECTORS[:, 1].max())
+    beam = Beam(1500 * UM, 30 * UM, 2.6 * UM, 164e9, 20 * UM, 200)
+    return cracks.layout(name, found[0], list(found[1:]), beam, laws, RMS)
+
+
+def wanted(device=C1, shares=(1e-2, 1e-3)):
+    return safe_lengths.Settings(2021, WATER, 0.67, device, shares)
+
+
+def safe_without_tips(device=R1, **more):
+    """Dataset of stage safe_lengths of a bridge."""
+    return safe_lengths.compute(lognormal_cracks(name=cracks.HELD, **more), None, wanted(device))
+
+
+def smooth_tips(energies):
+    """Slopes and forces of smooth tips that have given adhesion energies (n,) [J m⁻²]."""
+    return SLOPES, energies[:, None] / SLOPES
+
+
+def safe_with_tips(energies, **more):
+    """Dataset of stage safe_lengths of a cantilever whose tips have given adhesion energies (n,) [J m⁻²]."""
+    with patch.object(curves, "tip_forces", lambda *_: smooth_tips(energies)):
+        return safe_lengths.compute(lognormal_cracks(len(energies), **more), xr.Dataset(), wanted())
+
+
+def rng(*address):
+    return stream(7, *address)

@@ -1,0 +1,171 @@
+from dataclasses import replace
+from functools import partial
+from itertools import product
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+import xarray as xr
+from beams import E_BAR, PAPER
+from ground import C1, R1, RMS, UM, VECTORS, WATER, contact, settings, smooth_tips
+from numpy.testing import assert_allclose
+
+from stiction.beam.energy import apparent_adhesion_energy, arrest_length
+from stiction.beam.foundation import foundation_length
+from stiction.chaos.model import Truncation, draw_laws
+from stiction.constants import WATER_SURFACE_ENERGY
+from stiction.contact.meniscus import meniscus_height
+from stiction.devices import arcs
+from stiction.devices.chart import ALLOWED
+from stiction.stages.contact import curves
+from stiction.stages.devices import chart, releases, sticking
+
+THICKNESSES, GAPS = (2e-6, 2.6e-6, 3e-6, 4e-6), (10e-6, 20e-6, 30e-6, 40e-6)
+#: Numbers of thicknesses and of gaps.
+GRIDS = [(2, 3), (3, 2), (3, 3), (4, 3), (3, 4), (4, 4), (1, 4), (4, 1)]
+
+
+def axes(count):
+    """Axes with these numbers of thicknesses and gaps."""
+    return THICKNESSES[: count[0]], GAPS[: count[1]]
+
+
+def eq_13(thickness, gap):
+    return np.array([[arrest_length(E_BAR, replace(PAPER, thickness=thickness, gap=gap))]])
+
+
+def filled(count, lengths):
+    """Sizes, those that were asked for, and what `chart.filled` made of them."""
+    asked = []
+    sizes = list(product(*axes(count)))
+    found = chart.filled(*axes(count), lambda *size: asked.append(size) or lengths(*size))
+    assert len(asked) == len(set(asked))
+    return sizes, asked, found
+
+
+@pytest.mark.parametrize("count", GRIDS)
+def test_where_lengths_are_a_power_law_only_corners_and_middles_are_computed(count):
+    sizes, asked, found = filled(count, eq_13)
+    assert len(asked) == found.by_elements.sum() <= 7
+    assert_allclose(found.lengths, [eq_13(*size) for size in sizes], rtol=1e-9)
+    assert found.lengths.shape == (len(sizes), 1, 1)
+    assert found.error < 1e-9
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("count", GRIDS)
+def test_where_a_power_law_errs_along_an_axis_all_beams_are_computed(count, axis):
+    ends = axes(count)[axis][0], axes(count)[axis][-1]
+
+    def bent(*size):
+        return eq_13(*size) * (1 + 0.04 * (ends[0] < size[axis] < ends[1]))
+
+    sizes, _, found = filled(count, bent)
+    assert_allclose(found.lengths, [bent(*size) for size in sizes], rtol=1e-9)
+    assert found.by_elements.all() or count[axis] < 3
+    assert found.error < 1e-9
+
+
+def test_bends_along_both_axes_that_cancel_in_the_middle_are_seen():
+    def bent(thickness, gap):
+        return eq_13(thickness, gap) * (1 + 0.04 * (2e-6 < thickness < 4e-6)) * (1 - 0.04 * (10e-6 < gap < 40e-6))
+
+    sizes, _, found = filled((4, 4), bent)
+    assert found.by_elements.all()
+    assert_allclose(found.lengths, [bent(*size) for size in sizes], rtol=1e-12)
+
+
+@pytest.mark.parametrize("count", [(1, 1), (2, 1), (1, 2), (2, 2), (1, 3), (3, 1), *GRIDS])
+def test_no_corner_tests_a_power_law_and_all_corners_determine_it(count):
+    corner, test = (mask.reshape(count) for mask in chart.corners_and_tests(*count))
+    assert (
+        corner.sum()
+        == min(count[0], 2) * min(count[1], 2)
+        == corner[:: max(count[0] - 1, 1), :: max(count[1] - 1, 1)].sum()
+    )
+    assert not np.any(corner & test)
+    for axis, number in enumerate(count):
+        inside = np.flatnonzero(test.any(axis=1 - axis))
+        assert np.any((inside > 0) & (inside < number - 1)) == (number > 2)
+
+
+def test_a_power_law_that_is_used_errs_by_the_largest_of_all_shapes_and_shares():
+    def nearly(thickness, gap):
+        off = 2e-6 < thickness < 4e-6
+        return np.hstack([eq_13(thickness, gap), eq_13(thickness, gap) * (1 + 0.005 * off)])
+
+    sizes, asked, found = filled((4, 3), nearly)
+    assert len(asked) == found.by_elements.sum() == 7
+    assert found.error == pytest.approx(0.005, rel=0.02)
+    assert found.error <= ALLOWED
+    known = [nearly(*size) for size, computed in zip(sizes, found.by_elements, strict=True) if computed]
+    assert_allclose(found.lengths[found.by_elements], known, rtol=1e-12)
+
+
+@pytest.mark.parametrize("count", [(1, 1), (2, 1), (3, 1), (2, 2)])
+def test_few_sizes_are_all_computed(count):
+    sizes, asked, found = filled(count, eq_13)
+    assert found.by_elements.all()
+    assert sorted(asked) == sizes
+    assert_allclose(found.lengths, [eq_13(*size) for size in sizes], rtol=1e-12)
+
+
+# Stage
+
+
+def computed(device, thicknesses, gaps, tips=None, shares=(1e-2,)):
+    wanted = chart.Settings(2021, Truncation(3, 0.001), WATER, 0.67, device, 200, shares, thicknesses, gaps)
+    with (
+        patch.object(curves, "vectors", lambda *_: (VECTORS, 1.2 * VECTORS[:, 1].max())),
+        patch.object(curves, "tip_forces", lambda *_: smooth_tips(tips)),
+    ):
+        return chart.compute(contact(), None if tips is None else xr.Dataset(), wanted), wanted
+
+
+def alone(device, number, tips=None):
+    """Sticking lengths of a device by shape, as in the stages cracks and safe_lengths."""
+    model = releases.fitted(VECTORS, 1.2 * VECTORS[:, 1].max(), Truncation(3, 0.001))
+    address = releases.addresses(settings())
+    laws = draw_laws(model, releases.LAWS, address("mesh"))
+    ground = releases.resolved_part(device, laws)
+    held = None if tips is None else arcs.arc_length(tips, device.beam)
+    lengths = releases.arrests(device, ground, partial(draw_laws, model), number, address)
+    return sticking.sticking_lengths(lengths, foundation_length(ground[0], laws), device, held)
+
+
+@pytest.mark.slow
+def test_a_chart_has_the_safe_lengths_of_its_device_and_longer_ones_for_thicker_beams():
+    found, wanted = computed(R1, (1.6 * UM, 2 * UM), (2 * UM,))
+    (expected,) = sticking.safe_lengths(alone(R1, 200)[sticking.MIDDLE], wanted)
+    thin, thick = found.safe_length.values[:, 0, 0, 0]
+    assert thick == expected.length
+    assert thin < thick
+    assert list(found["shape"]) == [sticking.MIDDLE]
+    assert found.by_elements.values.tolist() == [[1], [1]]
+    assert float(found.power_law_error) == 0
+
+
+def test_tips_of_a_chart_hold_as_those_of_the_device():
+    tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(200))
+    found, wanted = computed(C1, (2 * UM, C1.thickness), (C1.gap,), tips, (1e-2, 1e-3))
+    expected = [sticking.safe_lengths(values, wanted) for values in alone(C1, 200, tips).values()]
+    assert_allclose(found.safe_length[1, 0], [[one.length for one in row] for row in expected], rtol=1e-12)
+
+
+def test_limits_of_saturated_air_are_those_of_flooded_flats_by_shape():
+    tips = np.full(200, 2e-3)
+    found, _ = computed(replace(C1, gap=10 * UM), (2 * UM,), (10 * UM, 20 * UM), tips)
+    beam = replace(C1.beam, thickness=2 * UM)
+    flat = apparent_adhesion_energy(float(found.flooded_length.sel(gap=20 * UM, shape=sticking.S_SHAPE)[0]), beam)
+    assert_allclose(flat, 2 * WATER_SURFACE_ENERGY, rtol=1e-12)
+    tip, whole = (found.flooded_length.sel(shape=shape) for shape in (sticking.EITHER, sticking.S_SHAPE))
+    assert_allclose(tip / whole, np.sqrt(0.5), rtol=1e-12)  # the peel number
+    bridge, _ = computed(R1, (2 * UM,), (2 * UM,))
+    assert_allclose(bridge.flooded_length[0, 0], sticking.flooded_lengths(R1, WATER, 0.67), rtol=1e-12)
+
+
+def test_a_chart_states_its_humidity_film_and_roughness():
+    found, _ = computed(R1, (2 * UM,), (2 * UM,))
+    assert float(found.humidity) == 0.67
+    assert_allclose(found.film, meniscus_height(0.67, 300.0), rtol=1e-12)
+    assert_allclose(found.rms, RMS, rtol=1e-3)

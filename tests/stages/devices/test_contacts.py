@@ -1,0 +1,53 @@
+"""Contacts of devices: every declared one has the patch, the solids and the samples that its name states."""
+
+import pytest
+from plans import job_settings
+
+from stiction.config.files import load
+from stiction.config.plan import Plan
+from stiction.models import SIDES
+from stiction.plan.graph import Graph
+from stiction.stages.devices import choice_contacts, contacts, patch_settings, slope_contacts
+
+BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 20, "humidities": [0.67]}
+BEAM |= {"uncertainty": {"scan_um": 10, "young_modulus_GPa": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20}}
+PLAN = Plan(load({"devices": {"C1": BEAM}, "design": {"beams": 700}, "studies": {"slopes": {"samples": 300}}}))
+GRAPH = Graph(PLAN)
+
+
+def of_budget(contacts_of):
+    """Names of all contacts of a budget."""
+    groups = contacts_of(PLAN, "C1").values()
+    return [name for group in groups for name in ([group] if isinstance(group, str) else group.values())]
+
+
+@pytest.mark.parametrize("contacts_of", [patch_settings.contacts_of_budget, patch_settings.contacts_of_tip_budget])
+def test_all_contacts_of_a_budget_are_declared_by_stages_of_contacts_of_devices(contacts_of):
+    declared = {stage.name for module in (contacts, slope_contacts, choice_contacts) for stage in module.STAGES}
+    named = of_budget(contacts_of)
+    assert len(named) == len(set(named)) > 12
+    assert {GRAPH.job(name).stage.name for name in named} <= declared
+
+
+def test_the_contacts_of_tips_have_as_many_samples_as_beams_and_a_tilt_and_those_of_strips_do_not():
+    for name in of_budget(patch_settings.contacts_of_tip_budget):
+        settings = job_settings(PLAN, name)
+        assert settings["contact"]["samples"] == 700
+        assert settings["tilt"]["slopes"]
+    for name in patch_settings.contacts_of_budget(PLAN, "C1")["less"].values():
+        settings = job_settings(PLAN, name)
+        assert settings["contact"]["samples"] == 300
+        assert "tilt" not in settings
+        assert settings["beam"] == {"width_um": 20}
+
+
+def test_less_and_more_of_a_property_change_it_in_both_bodies_of_polysilicon_by_opposite_steps():
+    solid = PLAN.config["solid"]["young_modulus_GPa"]
+    less, more = (
+        job_settings(PLAN, patch_settings.contacts_of_budget(PLAN, "C1")[f"solids_{side}"]["modulus"])
+        for side in ("less", "more")
+    )
+    assert less["solid"]["young_modulus_GPa"] + more["solid"]["young_modulus_GPa"] == pytest.approx(2 * solid)
+    assert less["solid"]["young_modulus_GPa"] < solid
+    hamaker = patch_settings.contacts_of_budget(PLAN, "C1")["solids_less"]["hamaker_constant"]
+    assert job_settings(PLAN, hamaker)["materials"].keys() == set(SIDES)

@@ -1,0 +1,238 @@
+"""Tables and figures of devices show the numbers of their datasets; equal data give equal files."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+import xarray as xr
+from ground import safe_with_tips, safe_without_tips
+from legends import covering
+
+from stiction.report.devices import figures_devices, tables_devices
+from stiction.report.style import save
+
+
+S_SHAPE, EITHER = "S-shape", "S-shape or arc"
+WARNINGS = {("C1", 0.44, S_SHAPE): ["Too wet."], ("C1", 0.44, EITHER): ["Too wet.", "Too thin."]}
+WARNINGS |= {("C1", 0.67, S_SHAPE): [], ("C1", 0.67, EITHER): ["Too thin."], ("R1", 0.67, "middle"): []}
+
+
+@pytest.fixture(scope="module")
+def found():
+    tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(400))
+    return {
+        ("C1", 0.44): safe_with_tips(tips),
+        ("C1", 0.67): safe_with_tips(1.5 * tips),
+        ("R1", 0.67): safe_without_tips(),
+    }
+
+
+def charted(humidity, factor=1.0, error=0.004):
+    """Dataset of stage chart, in which a power law gave the thinner beam at the wider gap."""
+    lengths = factor * 1e-6 * np.arange(100, 116).reshape(2, 2, 2, 2)
+    limits = 1e-6 * np.arange(50, 58).reshape(2, 2, 2)
+    return xr.Dataset(
+        {
+            "safe_length": (("thickness", "gap", "shape", "share"), lengths),
+            "flooded_length": (("thickness", "gap", "shape"), limits),
+            "by_elements": (("thickness", "gap"), [[1, 0], [1, 1]]),
+            "power_law_error": error,
+            "humidity": humidity,
+        },
+        coords={"thickness": [2e-6, 3e-6], "gap": [10e-6, 20e-6], "shape": [S_SHAPE, EITHER], "share": [1e-2, 1e-3]},
+    )
+
+
+CHARTS = {("C1", humidity): charted(humidity, factor) for humidity, factor in ((0.5, 1.0), (0.4, 2.0), (0.6, 0.5))}
+CURVES = list(product(("C1",), (2e-6, 3e-6), (10e-6, 20e-6), (S_SHAPE, EITHER)))
+STEEP = dict.fromkeys(CURVES, []) | {CURVES[2]: ["Too steep."], CURVES[3]: ["Too steep.", "Too short."]}
+
+
+def test_the_table_has_a_row_per_shape_and_share_with_the_numbers_of_the_dataset(found):
+    table = tables_devices.safe_lengths(found, WARNINGS)
+    assert len(table.frame) == 2 * 4 + 2 == len(table.cells)
+    row = table.frame[(table.frame.device == "C1") & (table.frame.relative_humidity == 0.67)].iloc[3]
+    one = found["C1", 0.67].isel(shape=1, share=1)
+    assert (row.held_by, row.share, row.basis) == ("beam or tip", 1e-3, "fitted")
+    stated = row.safe_length_um, row.estimate_um, row.estimate_se_beams_um, row.estimate_se_surfaces_um
+    held = one.safe_length, one.estimate, one.beams_error, one.surfaces_error
+    assert stated == pytest.approx([1e6 * float(value) for value in held], rel=1e-12, nan_ok=True)
+    assert row.bound_um == pytest.approx(1e6 * float(one.flooded_length), rel=1e-12)
+    assert table.cells["bound [µm]"].iloc[7] == f"{row.bound_um:.1f}"
+
+
+def test_arcs_have_no_error_of_surfaces_of_their_own(found):
+    cells = tables_devices.safe_lengths(found, WARNINGS).cells
+    assert set(cells["se, surfaces"][cells["held by"] == "beam or tip"]) == {"–"}
+    assert "–" not in set(cells["se, surfaces"][cells["held by"] == "beam"])
+
+
+def test_warnings_are_numbered_in_the_cells_and_written_out_in_caption_and_csv(found):
+    table = tables_devices.safe_lengths(found, WARNINGS)
+    assert table.caption.endswith("Warnings:\n\n- (1) Too wet.\n- (2) Too thin.")
+    assert list(table.cells.warnings) == ["1"] * 2 + ["1, 2"] * 2 + [""] * 2 + ["2"] * 2 + [""] * 2
+    assert "Too wet. Too thin." in table.csv
+    assert "curl" in table.caption
+
+
+def test_a_table_without_warnings_does_not_speak_of_them(found):
+    table = tables_devices.safe_lengths(found, dict.fromkeys(WARNINGS, []))
+    assert "Warnings" not in table.caption
+
+
+def test_the_risk_shows_shares_bands_and_safe_lengths_of_every_device(found):
+    figure = figures_devices.risk(found, WARNINGS)
+    first, second = figure.axes
+    lines = [line for line in first.lines if len(line.get_xdata()) > 1]
+    one = found["C1", 0.44].isel(shape=0)
+    known = one.stuck.values > 0
+    np.testing.assert_allclose(lines[0].get_ydata(), one.stuck.values[known])
+    np.testing.assert_allclose(lines[0].get_xdata(), 1e6 * one.length.values[known])
+    points = {
+        (round(float(line.get_xdata()[0]), 6), float(line.get_ydata()[0]))
+        for line in first.lines
+        if len(line.get_xdata()) == 1
+    }
+    for dataset in (found["C1", 0.44], found["C1", 0.67]):
+        for shape in dataset["shape"].values:
+            for share in dataset.share.values:
+                assert (round(1e6 * float(dataset.safe_length.sel(shape=shape, share=share)), 6), share) in points
+    assert first.get_ylabel() == "P(stuck) [–]"
+    assert len(first.collections) == 4
+    assert len(second.collections) == 1
+    assert [text.get_text() for text in first.get_legend().get_texts()] == ["RH 0.44 (1) (2)", "RH 0.67 (2)"]
+    assert "(1) Too wet." in figure._supxlabel.get_text()
+    # A humidity is a line, so that it cannot be taken for a safe length.
+    assert {(line.get_linestyle(), line.get_marker()) for line in first.get_legend().get_lines()} == {("-", "None")}
+
+
+def test_the_table_of_charts_has_every_length_and_where_it_is_from():
+    table = tables_devices.chart(CHARTS, STEEP)
+    assert len(table.frame) == 3 * 16
+    assert len(table.cells) == 3 * 8
+    chosen = (table.frame.thickness_um == 2) & (table.frame.gap_um == 20) & (table.frame.held_by == "beam or tip")
+    rows = table.frame[chosen & (table.frame.share == 1e-3)]
+    assert list(rows.relative_humidity) == [0.4, 0.5, 0.6]
+    np.testing.assert_allclose(rows.safe_length_um, [214, 107, 53.5])
+    assert list(rows["from"].unique()) == ["power law"]
+    np.testing.assert_allclose(rows.power_law_error_percent, 0.4)
+    np.testing.assert_allclose(rows.bound_um, 53)
+    computed = table.frame[table.frame.thickness_um == 3]
+    assert list(computed["from"].unique()) == ["finite elements"]
+    assert computed.power_law_error_percent.isna().all()
+
+
+def test_a_line_of_a_chart_has_all_shares_and_its_warnings():
+    table = tables_devices.chart(CHARTS, STEEP)
+    line = table.cells.iloc[3 * 3 + 1]  # fourth curve, second humidity
+    assert dict(line) == {
+        "device": "C1",
+        "thickness [µm]": "2",
+        "gap [µm]": "20",
+        "held by": "beam or tip",
+        "RH": "0.5",
+        "p = 0.01 [µm]": "106.0",
+        "p = 0.001 [µm]": "107.0",
+        "from": "power law, ± 0.4 %",
+        "bound [µm]": "53.0",
+        "warnings": "1, 2",
+    }
+    assert table.caption.endswith("Warnings:\n\n- (1) Too steep.\n- (2) Too short.")
+    assert "Too steep. Too short." in table.csv
+    assert table.cells["from"].iloc[0] == "finite elements"
+
+
+def charts():
+    """Figure of the charts and its panels by gap [µm] and shape."""
+    figure = figures_devices.chart(CHARTS, STEEP)
+    return figure, dict(zip(product((10, 20), (S_SHAPE, EITHER)), figure.axes, strict=True))
+
+
+def test_the_chart_shows_the_middle_share_of_every_thickness_gap_and_shape():
+    figure, panels = charts()
+    assert [axes.get_title(loc="left") for axes in figure.axes] == [
+        "(a) C1, gap 10 µm, held by the beam",
+        "(b) C1, gap 10 µm, held by beam or tip",
+        "(c) C1, gap 20 µm, held by the beam",
+        "(d) C1, gap 20 µm, held by beam or tip",
+    ]
+    for shape, length in ((S_SHAPE, 105), (EITHER, 107)):  # p = 0.001, thin, wide gap
+        curve = next(line for line in panels[20, shape].lines if len(line.get_xdata()) == 3)
+        np.testing.assert_allclose(curve.get_xdata(), [0.4, 0.5, 0.6])
+        np.testing.assert_allclose(curve.get_ydata(), np.array([2, 1, 0.5]) * length)
+
+
+def test_the_axis_of_a_chart_is_that_of_its_own_lengths():
+    found = {("C1", 0.5): charted(0.5).assign_coords(shape=[S_SHAPE, EITHER])}
+    found["C1", 0.5]["safe_length"] = found["C1", 0.5].safe_length * xr.DataArray([10, 1], dims="shape")
+    alone, tip, *_ = figures_devices.chart(found, STEEP).axes
+    for panel, low, high in ((alone, 50, 1090), (tip, 51, 111)):  # limits of saturated air and longest curves
+        bottom, top = panel.get_ylim()
+        assert 0.9 * low < bottom < low
+        assert high < top < 1.1 * high
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_no_legend_covers_a_panel_a_text_or_another_legend(found, count, tmp_path):
+    cases = {(f"C{k}", rh): found["C1", 0.44 if rh == 0.44 else 0.67] for k in range(count) for rh in (0.44, 0.67, 0.9)}
+    warned = dict.fromkeys(product(*map(dict.fromkeys, zip(*cases, strict=True)), (S_SHAPE, EITHER)), ["Too wet."])
+    assert covering(figures_devices.risk(cases, warned), tmp_path) == []
+    axes = {(f"C{k}", rh): charted(rh) for k in range(count) for rh in (0.4, 0.5)}
+    assert covering(figures_devices.chart(axes, {}), tmp_path) == []
+
+
+def test_many_warnings_leave_the_panels_their_place_and_keep_their_numbers(found, tmp_path):
+    cases = {(f"C{k}", rh): found["C1", 0.44] for k in range(20) for rh in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)}
+    warned = {(*case, shape): [f"{case} is too wet."] for case in cases for shape in (S_SHAPE, EITHER)}
+    figure = figures_devices.risk(cases, warned)
+    assert figure._supxlabel.get_text() == "(1) to (120): warnings, written out with results/tables/safe_lengths.md"
+    assert named(figure.axes[0])[1] == "RH 0.5 (2)"
+    assert "(2) ('C0', 0.5) is too wet." in tables_devices.safe_lengths(cases, warned).caption
+    assert figure.get_figheight() <= 24
+    assert covering(figure, tmp_path) == []
+    assert sum(panel.get_position().height for panel in figure.axes[::4]) > 0.5
+
+
+def test_a_legend_within_a_panel_is_found(found, tmp_path):
+    figure = figures_devices.risk(found, WARNINGS)
+    panel = figure.axes[0]
+    panel.legend(handles=panel.get_legend().legend_handles, labels=["first", "second"], loc="lower right")
+    assert covering(figure, tmp_path) == ["first"]
+
+
+def named(panel):
+    """Entries of the legend of a panel."""
+    return [text.get_text() for text in panel.get_legend().get_texts()]
+
+
+def test_the_chart_shows_the_limit_of_saturated_air_of_its_shape():
+    for shape, limits in ((S_SHAPE, [52, 56]), (EITHER, [53, 57])):
+        panel = charts()[1][20, shape]
+        dotted = (line for line in panel.lines if line.get_linestyle() in (":", "-.") and len(line.get_xdata()))
+        shown = [float(line.get_ydata()[0]) for line in dotted]
+        np.testing.assert_allclose(shown, limits)
+
+
+def test_the_chart_marks_what_a_power_law_gave_and_how_far_it_errs():
+    for (gap, shape), panel in charts()[1].items():
+        marked = [line for line in panel.lines if line.get_marker() == "o" and len(line.get_xdata())]
+        assert len(marked) == (gap == 20)
+        assert ("by a power law, ± 0.4 %" in named(panel)) == (gap == 20)
+        if marked:
+            length = {S_SHAPE: 105, EITHER: 107}[shape]
+            np.testing.assert_allclose(marked[0].get_ydata(), np.array([2, 1, 0.5]) * length)
+
+
+def test_the_chart_has_its_warnings_below_and_their_numbers_beside_the_thickness():
+    figure, panels = charts()
+    assert named(panels[20, S_SHAPE])[:2] == ["thickness 2 µm (1)", "thickness 3 µm"]
+    assert named(panels[20, EITHER])[:2] == ["thickness 2 µm (1) (2)", "thickness 3 µm"]
+    assert named(panels[10, EITHER])[:2] == ["thickness 2 µm", "thickness 3 µm"]
+    assert figure._supxlabel.get_text() == "(1) Too steep.\n(2) Too short."
+
+
+def test_equal_data_give_equal_files(found, tmp_path):
+    for name in ("one", "two"):
+        save(figures_devices.risk(found, WARNINGS), tmp_path / f"{name}.png", tmp_path / f"{name}.pdf")
+    for kind in ("png", "pdf"):
+        assert (tmp_path / f"one.{kind}").read_bytes() == (tmp_path / f"two.{kind}").read_bytes()

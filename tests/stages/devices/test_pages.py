@@ -1,0 +1,212 @@
+"""Pages of devices show the answer, the numbers of the datasets, figures and warnings."""
+
+import base64
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+from test_device_outputs import charted
+from test_tables_budget import BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_dataset
+
+from stiction.devices.limits import NOT_MODELLED
+from stiction.report.devices import pages
+from stiction.report.devices.pages import Page, Section
+from stiction.stages.contact.curves import Water
+from stiction.stages.devices import device_warnings, safe_lengths, sticking
+from stiction.stages.devices.releases import DesignedBeam
+
+CANTILEVER = {
+    "kind": "cantilever",
+    "pair": "b",
+    "thickness_um": 2.6,
+    "gap_um": 20,
+    "width_um": 30,
+    "humidities": [0.67],
+}
+STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.44, 0.67]}
+
+
+def safe(kind="cantilever", longest=600e-6):
+    """Safe lengths of 400 devices that stick between two thirds of a length and this length."""
+    device = DesignedBeam(kind, "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
+    settings = safe_lengths.Settings(1, Water(300.0), 0.67, device, (1e-2, 1e-3, 1e-4))
+    shapes = {sticking.shapes(device)[0]: np.linspace(2 / 3, 1, 400) * longest}
+    if kind == "cantilever":
+        shapes[sticking.EITHER] = 0.7 * shapes[sticking.S_SHAPE]
+    bounds = {shape: sticking.safe_lengths(values, settings) for shape, values in shapes.items()}
+    errors = {shape: np.full(3, 1e-6) for shape in shapes}
+    return safe_lengths.layout(shapes, bounds, errors, 3e-9, settings)
+
+
+@pytest.fixture(scope="module")
+def stopper():
+    budgets = {(0.67,): BUDGETS["S1", 0.67]}
+    return pages.of_stopper("S1", STOPPER, STOPPERS["S1"], budgets, ["Too hot."]).html
+
+
+def test_a_page_is_one_file_with_its_figures(stopper):
+    assert stopper.startswith("<!DOCTYPE html>")
+    pictures = re.findall(r'src="data:image/png;base64,([^"]+)"', stopper)
+    assert [base64.b64decode(picture)[:4] for picture in pictures] == [b"\x89PNG"] * 2
+    assert not re.findall(r'(?:src|href)="(?!data:)', stopper)
+
+
+def test_the_page_of_a_stopper_says_how_many_stick_and_in_which_air(stopper):
+    assert "0.67, 0 % of the stoppers (0 to 0.918 %) hold more than the restoring force of 18.99 µN" in stopper
+    assert "holds most at a relative humidity of 0.70; drier and wetter air, from 0.4 to 0.9" in stopper
+    assert "In no air of this range do more than 0 % (0 to 0.918 %) stick." in stopper
+    found = STOPPERS["S1"].sel(share=1e-2)
+    stated, any_air = (
+        1e6 * float(force.max()) for force in (found.safe_force.sel(part="safe"), found.safe_force_along)
+    )
+    assert f"a restoring force of {stated:.3g} µN leaves at most 1 in 100 stuck (95 % confidence)" in stopper
+    assert f"; at any humidity from 0.4 to 0.9, {any_air:.3g} µN are needed." in stopper
+    assert "1 in 1000" not in stopper
+    assert "<td>3 x 3 µm</td>" in stopper
+
+
+def test_a_worst_humidity_at_the_end_is_stated_as_one():
+    assert pages.worst_sentence(stopper_dataset(peak=1.0)) == (
+        "Between relative humidities of 0.4 and 0.9, the stopper holds most at 0.9. "
+        "In no air of this range do more than 0 % (0 to 0.918 %) stick."
+    )
+
+
+def test_a_bound_of_all_stoppers_is_no_statement():
+    all_stuck = stopper_dataset().assign(stuck_along=xr.ones_like(STOPPERS["S1"].stuck_along))
+    assert pages.worst_sentence(all_stuck).endswith("from 0.4 to 0.9, are less critical.")
+
+
+def test_advice_warnings_and_what_is_not_modelled_are_shown(stopper):
+    assert "Relative humidity 0.67: Measure heights of B2 better" in stopper
+    assert "<p>Too hot.</p>" in stopper
+    assert NOT_MODELLED in stopper
+
+
+def test_the_page_of_a_beam_says_which_lengths_come_free():
+    found = safe()
+    sentence = pages.safe_sentence(0.67, found)
+    lengths = [1e6 * float(found.safe_length.sel(shape=shape, share=1e-3)) for shape in found["shape"].values]
+    assert f"up to {lengths[1]:.0f} µm come free" in sentence
+    assert "at most 1 in 1000 (95 % confidence, given the drawn surfaces)" in sentence
+    assert sentence.endswith(f"this is true of up to {lengths[0]:.0f} µm.")
+    assert "tip" not in pages.safe_sentence(0.67, safe("bridge"))
+
+
+def length_to_build(page):
+    """Length in the verdict of a page, or in a sentence of this form [µm]."""
+    return int(re.search(r"Build it no longer than (\d+) µm", page)[1])
+
+
+def test_the_length_to_build_is_the_least_less_twice_the_uncertainty():
+    found = {0.44: safe(longest=500e-6), 0.67: safe(longest=600e-6)}
+    least = 1e6 * min(float(dataset.safe_length.sel(share=1e-3).min()) for dataset in found.values())
+    assert length_to_build(pages.build_sentence(found, {})) == round(least)
+    assert "because none is stated" in pages.build_sentence(found, {})
+    budgets = {(0.44,): budget_dataset(3.0), (0.44, "tip"): budget_dataset(0.5, TIPS)}
+    budgets[0.67, "tip"] = budget_dataset(2.0, TIPS)
+    inputs = budget_dataset(2.0, TIPS)
+    total = np.sqrt(inputs.slope.values @ inputs.covariance.values @ inputs.slope.values)
+    sentence = pages.build_sentence(found, budgets)
+    assert length_to_build(sentence) == round(least * (1 - 2 * total))
+    assert "at most 1 in 1000 sticks at relative humidities of 0.44, 0.67 (95 % confidence" in sentence
+    assert f"is reduced by {200 * total:.2g} %" in sentence
+
+
+def test_budgets_of_bridges_are_not_those_of_tips():
+    found = {0.67: safe("bridge")}
+    budgets = {(0.67,): budget_dataset(1.0), (0.67, "tip"): budget_dataset(5.0, TIPS)}
+    assert pages.build_sentence(found, budgets) == pages.build_sentence(found, {(0.67,): budget_dataset(1.0)})
+    assert length_to_build(pages.build_sentence(found, budgets)) < length_to_build(pages.build_sentence(found, {}))
+
+
+def test_no_length_is_stated_if_it_is_too_uncertain():
+    assert pages.build_sentence({0.67: safe("bridge")}, {(0.67,): budget_dataset(20.0)}).startswith("No length")
+
+
+def test_the_verdict_compares_the_restoring_force_with_what_is_needed():
+    found = STOPPERS["S1"]
+    weaker = found.safe_force.sel(part="safe", share=1e-2).max()
+    steeper = found.assign(safe_force_along=found.safe_force_along * 100)
+    strong = {"restoring_force": weaker * 1.001}
+    assert pages.verdict(found).startswith("The restoring force of 18.99 µN does not suffice")
+    assert "suffices at all relative humidities from 0.4 to 0.9" in pages.verdict(found.assign(strong))
+    assert "suffices at relative humidities of 0.44, 0.67, but" in pages.verdict(steeper.assign(strong))
+    assert "at most 1 in 100 sticks" in pages.verdict(found)
+    few = found.assign(safe_force=found.safe_force * np.nan)
+    assert pages.verdict(few).startswith("There are too few patches")
+
+
+def test_a_page_explains_the_terms_that_it_uses_and_no_others():
+    silent = {("R1", 0.67, "middle"): []}
+    bridge = pages.of_beam("R1", CANTILEVER | {"kind": "bridge"}, {0.67: safe("bridge")}, {}, {}, silent).html
+    assert "<dt>Held by the middle</dt>" in bridge
+    assert "Held by the tip" not in bridge
+    assert "Choice of the model" not in bridge
+    silent = {("C1", 0.67, shape): [] for shape in SHAPES}
+    budgets = {(0.67,): budget_dataset()}
+    beam = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, budgets, silent).html
+    assert "<dt>Held by the tip</dt>" in beam
+    assert "Held by the middle" not in beam
+    assert "<dt>Van der Waals in dry gaps, or none</dt>" in beam
+    assert "<dt>Grid</dt>" not in beam
+
+
+def test_surfaces_are_described_by_their_numbers_or_their_scans():
+    assert pages.described({"rms_nm": 2, "psd": "identified", "summit_density_per_um2": 40}) == (
+        "rms 2 nm, density of summits 40 per µm²"
+    )
+    assert pages.described({"scans": {"files": ["a.gwy", "b.gwy"]}}) == "described by 2 scans"
+
+
+def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():
+    silent = {("C1", 0.67, shape): [] for shape in SHAPES}
+    assert "<dt>Bound</dt>" in pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).html
+
+
+SHAPES = sticking.S_SHAPE, sticking.EITHER
+
+
+def test_a_beam_without_chart_and_budget_has_neither():
+    silent = {("C1", 0.67, shape): [] for shape in SHAPES}
+    plain = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).html
+    assert "Uncertainty, and" not in plain
+    assert "Other thicknesses" not in plain
+    assert plain.count("<img") == 1
+    budgets = {(0.44,): budget_dataset(2.0), (0.67,): budget_dataset(), (0.67, "tip"): budget_dataset(0.5, TIPS)}
+    both = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, budgets, silent).html
+    assert both.count("<img") == 2
+    assert all(f"RH {humidity}: effect [%]" in both for humidity in (0.44, 0.67))
+    assert both.count("Counted as exact: ") == 1
+    assert "1 in 1000 tips hold (arc) would fall" in both
+    rows = re.findall(r"<td>(beam|tip)</td>\s*<td>thickness</td>", both)
+    assert rows == ["beam", "tip"]
+
+
+def test_warnings_of_a_beam_have_the_numbers_of_its_tables():
+    warned = {("C1", 0.67, shape): ["Too steep."] * (shape == sticking.EITHER) for shape in SHAPES}
+    curves = [("C1", *curve) for curve in device_warnings.curves(charted(0.5))]
+    warned |= dict.fromkeys(curves, []) | {curves[0]: ["Too thin.", "Too steep."]}
+    page = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {0.5: charted(0.5)}, {}, warned).html
+    assert "<p>(1) Too steep.</p>\n<p>(2) Too thin.</p>" in page
+    rows = re.findall(r"<td>([^<]*)</td>\s*</tr>", page.partition("How long")[2])  # last cells
+    assert rows == [""] * 3 + ["1"] * 3 + ["2, 1"] + [""] * 7
+    assert page.count("<img") == 2
+    assert "<details>" not in page
+
+
+def test_a_long_table_is_folded():
+    charts = {humidity: charted(humidity) for humidity in np.linspace(0.4, 0.9, 9).round(3)}
+    silent = {("C1", 0.67, shape): [] for shape in SHAPES}
+    silent |= {("C1", *curve): [] for curve in device_warnings.curves(charted(0.5))}
+    page = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, charts, {}, silent).html
+    assert page.count("<details><summary>Table of 72 rows</summary>") == 1
+
+
+def test_text_is_escaped():
+    html = Page("A < B", {"x & y": "<1"}, ["a < b", "c < d"], [Section("s > t", ["p & q"])], words={"<w>": "&"}).html
+    assert "<title>A &lt; B</title>" in html
+    assert "x &amp; y" in html
+    assert "<p><strong>a &lt; b</strong></p>\n<p>c &lt; d</p>" in html
+    assert "<w>" not in html

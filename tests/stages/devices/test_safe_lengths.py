@@ -1,0 +1,100 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from ground import C1, R1, lognormal_cracks, safe_with_tips, safe_without_tips, wanted
+from numpy.testing import assert_allclose, assert_array_equal
+
+from stiction.beam.energy import apparent_adhesion_energy
+from stiction.devices import arcs, risk
+from stiction.stages.contact import curves
+from stiction.stages.devices import cracks, safe_lengths, sticking
+from stiction.streams import stream
+
+EITHER, S_SHAPE = sticking.EITHER, sticking.S_SHAPE
+
+
+def energies(mean, number=400):
+    return mean * np.exp(0.4 * np.random.default_rng(9).standard_normal(number))
+
+
+@pytest.fixture(scope="module")
+def cantilever():
+    """Safe lengths of cantilevers whose tips hold at about the lengths of their cracks."""
+    return safe_with_tips(energies(2e-3))
+
+
+def test_shares_are_those_of_the_sticking_lengths(cantilever):
+    found, _, foundation = cracks.lengths(lognormal_cracks())
+    alone = found + 2 * foundation
+    either = np.minimum(alone, arcs.arc_length(energies(2e-3), C1.beam))
+    for shape, lengths in ((S_SHAPE, alone), (EITHER, either)):
+        one = cantilever.sel(shape=shape)
+        stuck, low, high = risk.stuck_share(one.length.values, lengths)
+        assert_array_equal(one.stuck, stuck)
+        assert_array_equal(one.stuck_band, [low, high])
+    assert np.any(cantilever.stuck[1] > cantilever.stuck[0])
+    assert cantilever.stuck.values[:, 0].tolist() == [0, 0]
+    assert cantilever.stuck.values[:, -1].tolist() == [1, 1]
+
+
+def test_safe_lengths_are_those_of_the_sticking_lengths_with_their_basis_and_error(cantilever):
+    found, _, foundation = cracks.lengths(lognormal_cracks())
+    for share in (1e-2, 1e-3):
+        expected = risk.safe_length(found + 2 * foundation, share, stream(2021, "safe length"))
+        one = cantilever.sel(shape=S_SHAPE, share=share)
+        stated = one.safe_length, one.estimate, one.beams_error
+        assert_allclose(list(map(float, stated)), [expected.length, expected.estimate, expected.error], rtol=1e-12)
+        assert str(one.basis.values) == expected.basis
+
+
+def test_the_error_of_the_surfaces_is_the_scatter_between_groups(cantilever):
+    _, of_group, foundation = cracks.lengths(lognormal_cracks())
+    for k, share in enumerate((1e-2, 1e-3)):
+        rng = [stream(2021, "safe length") for _ in of_group]
+        estimates = [
+            risk.safe_length(one + 2 * foundation, share, r).estimate for one, r in zip(of_group, rng, strict=True)
+        ]
+        assert_allclose(cantilever.surfaces_error[0, k], risk.error_of_surfaces(estimates), rtol=1e-9)
+
+
+def test_tips_that_hardly_adhere_hold_no_beam_and_strong_ones_hold_all():
+    weak, strong = safe_with_tips(energies(1e-6)), safe_with_tips(energies(1.0))
+    assert_array_equal(weak.stuck.sel(shape=EITHER), weak.stuck.sel(shape=S_SHAPE))
+    tips = arcs.arc_length(energies(1.0), C1.beam)
+    expected = risk.safe_length(tips, 1e-2, stream(2021, "safe length"))
+    assert_allclose(float(strong.safe_length.sel(shape=EITHER, share=1e-2)), expected.length, rtol=1e-12)
+    assert np.all(np.isnan(strong.surfaces_error.sel(shape=EITHER)))  # the samples of strips do not matter
+
+
+def test_a_bridge_sticks_if_it_is_longer_than_the_shortest_that_its_middle_holds():
+    found = safe_without_tips()
+    assert list(found["shape"]) == [sticking.MIDDLE]
+    lengths, *_ = cracks.lengths(lognormal_cracks(name=cracks.HELD))
+    assert_array_equal(found.stuck[0], risk.stuck_share(found.length.values, lengths)[0])
+
+
+def test_the_axis_of_lengths_is_finite_although_some_beams_never_stick():
+    dataset = lognormal_cracks(name=cracks.HELD)
+    dataset["held_length"][:20] = np.inf
+    found = safe_lengths.compute(dataset, None, wanted(R1))
+    assert np.isfinite(found.length).all()
+    assert float(found.stuck[0, -1]) == pytest.approx(0.95)
+
+
+def test_limits_of_the_model_are_stated(cantilever):
+    assert float(cantilever.film) == pytest.approx(2 * 0.072 * 1.8e-5 / (8.314462618 * 300 * -np.log(0.67)))
+
+
+def test_lengths_in_saturated_air_are_those_of_flooded_flats(cantilever):
+    alone, tip = cantilever.flooded_length.values
+    energy = 2 * 0.072  # tension times two perfectly wetting sides [J/m²]
+    assert_allclose(apparent_adhesion_energy(alone, C1.beam), energy, rtol=1e-9)
+    assert_allclose(tip, arcs.arc_length(energy, C1.beam), rtol=1e-9)
+    assert safe_without_tips().flooded_length.shape == (1,)
+
+
+def test_contact_angles_reduce_the_film():
+    tilted = replace(wanted(R1), water=curves.Water(300.0, (np.radians(60), 0.0)))
+    found = safe_lengths.compute(lognormal_cracks(name=cracks.HELD), None, tilted)
+    assert_allclose(float(found.film / safe_without_tips().film), 0.75, rtol=1e-12)

@@ -1,0 +1,96 @@
+"""Stoppers on the contact of a small study."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import small
+from numpy.testing import assert_allclose, assert_array_equal
+
+from stiction.devices.risk import samples_for
+from stiction.run import storage
+from stiction.stages.contact import curves
+from stiction.stages.devices import stoppers
+
+WATER = curves.Water(300.0)
+AREA = 1.5e-6 * 6e-6
+SETTINGS = stoppers.Settings(WATER, (1.5e-6, 6e-6), 18e-6, (0.67, 0.88), (0.85, 0.9))
+
+
+@pytest.fixture(scope="module")
+def found():
+    return stoppers.compute(small.contact_of_pair(), SETTINGS)
+
+
+def synthetic(samples, restoring=1.0, peak=0.7):
+    """Dataset of patches whose forces are the numbers 1, 2, ... over 100, largest at a humidity."""
+    forces = np.arange(1, samples + 1) / 100
+    axis = np.linspace(0.5, 0.9, 21)
+    along = (1 - (axis[:, None] - peak) ** 2) * forces
+    return stoppers.layout(replace(SETTINGS, restoring_force=restoring), np.stack([forces, 2 * forces]), axis, along)
+
+
+def test_the_pull_off_force_is_the_f_max_of_the_force_laws_times_the_area(found):
+    for humidity in SETTINGS.humidities:
+        vectors, _ = curves.vectors(small.contact_of_pair(), humidity, WATER)
+        assert_allclose(found.pull_off.sel(humidity=humidity), vectors[:, 1] * AREA, rtol=1e-12)
+
+
+def test_a_device_humidity_and_the_same_point_of_the_axis_have_the_same_forces():
+    both = stoppers.compute(small.contact_of_pair(), replace(SETTINGS, humidities=(0.9,)))
+    assert_allclose(both.mean_along[-1], both.pull_off.sel(humidity=0.9).mean(), rtol=1e-14)
+    assert_allclose(both.quantile_along[:, -1], np.quantile(both.pull_off, [0.05, 0.5, 0.95]), rtol=1e-14)
+
+
+def test_the_fine_axis_has_its_ends_and_a_point_at_every_percent():
+    assert_allclose(stoppers.fine_axis(0.4, 0.98), np.arange(40, 99) / 100)
+    assert_allclose(stoppers.fine_axis(0.9, 0.905), [0.9, 0.9025, 0.905])
+
+
+def test_the_share_stuck_is_that_of_patches_that_hold_more_than_the_restoring_force():
+    at = synthetic(400, restoring=1.005)
+    ((_, one, low, high), (_, two, _, _)) = stoppers.shares_stuck(at)
+    assert_allclose([one, two], [0.75, 350 / 400], rtol=1e-12)
+    assert low < one < high
+    assert_allclose(at.stuck_along.sel(bound="estimate")[10], one, rtol=1e-12)
+
+
+def test_safe_forces_are_stated_for_shares_that_the_patches_can_bound():
+    at = synthetic(400)
+    safe = at.safe_force.sel(humidity=0.67, part="safe")
+    assert samples_for(1e-2) <= 400 < samples_for(1e-3)
+    assert 3.9 < float(safe.sel(share=1e-2)) <= 4.0
+    assert_allclose(at.safe_force.sel(humidity=0.88), 2 * at.safe_force.sel(humidity=0.67), rtol=1e-12)
+    assert np.isnan(safe.sel(share=[1e-3, 1e-4])).all()
+
+
+def test_the_worst_humidity_is_that_of_the_largest_mean_force_unless_it_is_an_end():
+    inside, beyond = synthetic(100, peak=0.7123), synthetic(100, peak=0.95)
+    assert_allclose(inside.worst_humidity, 0.7123, atol=1e-9)
+    assert not stoppers.is_at_an_end(inside)
+    assert float(beyond.worst_humidity) == 0.9
+    assert stoppers.is_at_an_end(beyond)
+
+
+def test_safe_forces_along_the_axis_are_those_at_its_humidities():
+    axis = np.linspace(0.5, 0.9, 3)
+    forces = np.arange(1, 401) / 100
+    weak = replace(SETTINGS, restoring_force=1.0)
+    at = stoppers.layout(weak, np.stack([forces, 2 * forces]), axis, np.stack([forces, 3 * forces, 2 * forces]))
+    assert_array_equal(at.safe_force_along[[0, 2]], at.safe_force.sel(part="safe"))
+    stuck, safe = stoppers.in_any_air(at)
+    assert_allclose(safe[0], 3 * at.safe_force_along[0, 0], rtol=1e-12)
+    assert np.isnan(safe[1:]).all()
+    assert stuck == tuple(map(float, at.stuck_along[:, 1]))
+
+
+def test_the_error_of_the_worst_humidity_contains_the_step_of_the_axis():
+    found = synthetic(100, peak=0.7123)  # without scatter: all patches have their peak there
+    assert_allclose(found.worst_humidity_error, 0.02 / np.sqrt(12), rtol=1e-9)
+
+
+def test_a_stopper_comes_back_from_its_file(found, tmp_path):
+    storage.save(found, tmp_path / "S1.nc", "stoppers", {})
+    again = storage.load(tmp_path / "S1.nc", "stoppers")
+    assert stoppers.shares_stuck(again) == stoppers.shares_stuck(found)
+    assert_array_equal(again.mean_along, found.mean_along)

@@ -1,0 +1,50 @@
+from dataclasses import replace
+
+import numpy as np
+from ground import C1, R1, WATER, wanted
+from numpy.testing import assert_allclose, assert_array_equal
+
+from stiction.beam.energy import apparent_adhesion_energy
+from stiction.devices import risk
+from stiction.devices.arcs import arc_length
+from stiction.devices.bridges import least_length
+from stiction.stages.contact import curves
+from stiction.stages.devices import sticking
+from stiction.streams import stream
+
+EITHER, S_SHAPE = sticking.EITHER, sticking.S_SHAPE
+
+
+def test_beams_without_a_crack_stick_at_no_known_length():
+    found = sticking.sticking_lengths(np.array([7e-4, np.inf]), 3e-6, C1, np.array([1e-3, 1e-3]))
+    assert_array_equal(found[S_SHAPE], [7e-4 + 6e-6, np.inf])
+    assert_array_equal(found[EITHER], [7e-4 + 6e-6, 1e-3])
+
+
+def test_a_bridge_is_held_by_its_middle_and_has_no_tip():
+    found = sticking.sticking_lengths(np.array([2e-4, 2.1e-4]), 3e-6, R1, None)
+    assert list(found) == sticking.shapes(R1) == [sticking.MIDDLE]
+    assert_array_equal(found[sticking.MIDDLE], [2e-4, 2.1e-4])
+    assert sticking.shapes(C1) == [S_SHAPE, EITHER]
+
+
+def test_lengths_in_saturated_air_are_those_of_flooded_flats_by_shape():
+    energy = 0.072 * (1 + np.cos(1.0))
+    alone, tip = sticking.flooded_lengths(C1, curves.Water(300.0, (1.0, 0.0)), 0.67)
+    assert_allclose(apparent_adhesion_energy(alone, C1.beam), energy, rtol=1e-9)
+    assert_allclose(tip, arc_length(energy, C1.beam), rtol=1e-9)
+
+
+def test_the_bound_of_a_bridge_is_that_of_flooded_flats_in_contact_at_its_humidity():
+    tension = 8.314462618 * 300 * -np.log(0.67) / 1.8e-5
+    (water,) = sticking.flooded_lengths(replace(R1, hamaker_constant=0.0), WATER, 0.67)
+    assert_allclose(water, least_length(2 * 0.072, tension, R1.beam), rtol=1e-9)
+    dry, wet = (sticking.flooded_lengths(R1, WATER, humidity)[0] for humidity in (0.3, 0.99))
+    assert dry < wet < water  # solids in contact pull as well, and drier water harder
+
+
+def test_there_is_one_safe_length_for_every_share():
+    lengths = 7e-4 * np.exp(0.02 * np.random.default_rng(3).standard_normal(400))
+    shares = (1e-2, 1e-3, 1e-4)
+    found = sticking.safe_lengths(lengths, replace(wanted(), shares=shares))
+    assert found == [risk.safe_length(lengths, share, stream(2021, "safe length")) for share in shares]

@@ -1,0 +1,250 @@
+"""Tables and figures of stoppers and budgets show the numbers of their datasets."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from legends import covering
+from matplotlib.lines import Line2D
+from numpy.testing import assert_allclose
+
+from stiction.config.files import load
+from stiction.config.plan import Plan
+from stiction.report.devices import figures_budget, tables_budget
+from stiction.report.style import DOUBLE, legend_below, panels, save, styled
+from stiction.stages.contact.curves import Water
+from stiction.stages.devices import budget as study_budget
+from stiction.stages.devices import stoppers as study_stoppers
+from stiction.stages.devices.budget import Responses
+from stiction.stages.devices.releases import DesignedBeam
+from stiction.stages.devices.uncertain_inputs import Input, Settings, State, Uncertainty
+
+STATE = State(None, 0.5, Water(300.0))
+NAMES = {"rms of B2": "heights of B2", "skewness of B2": "heights of B2", "thickness": "thickness"}
+COVARIANCE = np.array([[4e-4, -1e-4, 0], [-1e-4, 4e-4, 0], [0, 0, 1e-4]])
+
+
+C1 = DesignedBeam("cantilever", "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
+#: Settings of the budgets of a beam, of its tips and of a stopper.
+BEAM = Settings(1, Water(300.0), 0.5, Uncertainty(), ("B2", "Sub1"), 164e9, C1)
+TIPS, PATCH = replace(BEAM, share=1e-3), replace(BEAM, device=None)
+
+
+def budget_dataset(factor=1.0, settings=BEAM):
+    """Budget of three inputs, two of them correlated, and one choice."""
+    inputs = [Input(name, group, (STATE, STATE), 0.1) for name, group in NAMES.items()]
+    slopes = np.array([[1.0, 0.02], [1.0, 0.03], [0.8, 0.01]]) * [factor, 1]
+    devices = Responses(np.array([[690e-6, 700e-6, 710e-6]]), np.mean)
+    return study_budget.layout(inputs, slopes, COVARIANCE, devices, {"van_der_waals_dry": (-0.042, 0.003)}, settings)
+
+
+def stopper_dataset(peak=0.7):
+    """400 patches that hold 0.05, 0.1, ..., 20 µN."""
+    settings = study_stoppers.Settings(Water(300.0), (3e-6, 3e-6), 18.99e-6, (0.44, 0.67), (0.4, 0.9))
+    forces, axis = 5e-8 * np.arange(1, 401), np.linspace(0.4, 0.9, 11)
+    peaks = peak + 0.04 * np.where(np.arange(400) % 2, 1, -1)
+    along = (1 - (axis[:, None] - peaks) ** 2) * 5e-6
+    return study_stoppers.layout(settings, np.stack([forces, 0.5 * forces]), axis, along)
+
+
+BEAMS = {("C1", 0.44): budget_dataset(2.0), ("C1", 0.67): budget_dataset()}
+BUDGETS = BEAMS | {("C1", 0.67, "tip"): budget_dataset(0.5, TIPS), ("S1", 0.67): budget_dataset(1, PATCH)}
+WARNINGS = {"S1": [], "S2": ["Beware."]}
+STOPPERS = {"S1": stopper_dataset(), "S2": stopper_dataset(peak=1.0)}
+
+
+def part(frame, name, humidity=0.67, device="C1", held_by="beam"):
+    case = (frame.relative_humidity == humidity) & (frame.device == device) & (frame.held_by == held_by)
+    return frame[(frame.part == name) & case].set_index("name")
+
+
+def test_effects_are_those_of_the_covariance():
+    frame = tables_budget.budget(BUDGETS).frame
+    effects = part(frame, "measurement").effect_percent
+    assert_allclose(effects["heights of B2"], 100 * np.sqrt(6e-4), rtol=1e-12)
+    assert_allclose(effects["thickness"], 0.8, rtol=1e-12)
+    assert_allclose(part(frame, "measurement", 0.44).effect_percent, 2 * effects, rtol=1e-12)
+    assert_allclose(part(frame, "measurement", held_by="tip").effect_percent, effects / 2, rtol=1e-12)
+    assert_allclose(part(frame, "measurement", device="S1", held_by="whole area").effect_percent, effects, rtol=1e-12)
+    inputs = part(frame, "input")
+    assert_allclose(inputs.standard_uncertainty, [0.02, 0.02, 0.01], rtol=1e-12)
+    assert_allclose(inputs.effect_percent, np.abs(inputs.slope) * 100 * inputs.standard_uncertainty, rtol=1e-12)
+
+
+def test_the_total_has_the_correlations_and_leaves_out_scatter_and_choices():
+    frame = tables_budget.budget(BUDGETS).frame
+    totals = part(frame, "total").effect_percent
+    assert_allclose(totals[tables_budget.TOTAL], 100 * np.sqrt(6e-4 + 0.64e-4), rtol=1e-12)
+    assert_allclose(totals[tables_budget.INDEPENDENT], 100 * np.sqrt(8e-4 + 0.64e-4), rtol=1e-12)
+    assert_allclose(part(frame, "scatter").effect_percent.iloc[0], 100 * 10 / 700, rtol=1e-9)
+    assert_allclose(part(frame, "choice").effect_percent["van_der_waals_dry"], -4.2, rtol=1e-12)
+
+
+def test_what_remains_is_the_rest_of_the_total():
+    frame = tables_budget.budget(BUDGETS).frame
+    left = part(frame, "measurement").remaining_percent
+    assert_allclose([left["heights of B2"], left["thickness"]], [0.8, 100 * np.sqrt(6e-4)], rtol=1e-9)
+
+
+def test_the_text_names_what_to_measure_better():
+    table = tables_budget.budget(BUDGETS)
+    assert "\n- C1, RH 0.67: Measure heights of B2 better" in table.caption
+    assert "uncertainty of the mean pull-off force would fall from 2.6 to 0.8 %" in table.caption
+    assert "uncertainty of the mean length at which beams stick (S-shape) would fall from 2.6 to 0.8 %" in table.caption
+    assert "uncertainty of the length that 1 in 1000 tips hold (arc) would fall from 1.3 to 0.4 %" in table.caption
+    assert "rms of B2" not in set(table.cells.what)
+    assert "choice: van der Waals in dry gaps" in set(table.cells.what)
+    row = table.cells[(table.cells.what == "choice: van der Waals in dry gaps") & (table.cells.device == "C1")].iloc[0]
+    assert row["effect [%]"] == "-4.20 ± 0.30"
+
+
+@pytest.mark.parametrize("medium", ["water", "dry"])
+def test_every_choice_of_the_model_has_a_label_in_words(medium):
+    config = {"van_der_waals": medium, "studies": {"variants": {"van_der_waals": ["water", "dry", "none"]}}}
+    choices = Plan(load(config)).choices("b")
+    labels = [tables_budget.choice_label(name) for name in choices]
+    assert len(set(labels)) == len(choices) > 5
+    assert {"spectrum from summits", "1 in 2 grid points", "grid of 5 nm", "Poisson's ratio 0.18"} < set(labels)
+
+
+def test_the_text_lists_once_for_each_device_what_counts_as_exact():
+    caption = tables_budget.budget(BUDGETS).caption
+    assert caption.count("C1: Counted as exact: the heights of B2, ") == 1
+    assert "S1: Counted as exact: " in caption
+    assert tables_budget.counted_as_exact(BEAMS["C1", 0.67]).endswith(", the temperature, the contact angles.")
+
+
+def test_an_exact_slope_is_shown_without_an_error():
+    exact = BEAMS["C1", 0.67].assign(slope_error=("input", [0.02, 0.03, 0.0]))
+    cells = tables_budget.budget({("C1", 0.67): exact}).cells.set_index("what")["effect [%]"]
+    assert cells["thickness"] == "0.8"
+    assert "±" in cells["heights of B2"]
+
+
+def test_without_uncertainties_no_advice_is_given():
+    exact = BUDGETS["C1", 0.67].assign(covariance=0 * BUDGETS["C1", 0.67].covariance)
+    assert tables_budget.advised(exact) == "No uncertainty of an input is stated."
+
+
+def test_numbers_of_stoppers_are_those_of_the_dataset():
+    frame = tables_budget.stoppers(STOPPERS, WARNINGS).frame.set_index(["device", "relative_humidity"])
+    row = frame.loc["S1", 0.44]
+    assert_allclose(
+        [row.pull_off_uN, row.pull_off_std_uN], [0.05 * 200.5, 0.05 * np.arange(400).std(ddof=1)], rtol=1e-9
+    )
+    assert_allclose(row.share_stuck, 21 / 400, rtol=1e-12)  # 19 µN and more
+    assert row.share_stuck_low < row.share_stuck < row.share_stuck_high
+    assert frame.loc["S1", 0.67].share_stuck == 0
+    assert 19.5 < row["safe_force_uN_0.01"] <= 20
+    assert np.isnan(row["safe_force_uN_0.001"])
+
+
+def test_the_last_row_of_a_stopper_bounds_all_humidities_of_the_axis():
+    dataset = STOPPERS["S1"].assign(stuck_along=STOPPERS["S1"].stuck_along + 0.01 * np.arange(11))
+    table = tables_budget.stoppers({"S1": dataset}, WARNINGS)
+    row = table.frame.iloc[2]
+    assert np.isnan(row.relative_humidity)
+    assert table.cells.RH[2] == "0.4 to 0.9"
+    assert_allclose(row.share_stuck, 0.1, rtol=1e-12)
+    assert_allclose(row.pull_off_uN, 1e6 * dataset.mean_along.max(), rtol=1e-12)
+    assert_allclose(row["safe_force_uN_0.01"], 1e6 * dataset.safe_force_along.sel(share=1e-2).max(), rtol=1e-12)
+    assert np.isnan(row["safe_force_uN_0.001"])
+
+
+def test_a_worst_humidity_at_the_end_of_the_axis_may_lie_beyond_it():
+    cells = tables_budget.stoppers(STOPPERS, WARNINGS).cells
+    assert list(cells["worst RH"]) == ["0.700 ± 0.015"] * 3 + ["0.9 or beyond"] * 3
+    assert set(cells["safe force, 0.001 [µN]"]) == {"–"}
+
+
+def drawn(panel):
+    """Names of the rows of a panel from top to bottom, and the bars [%]."""
+    return [text.get_text() for text in panel.get_yticklabels()], panel.patches
+
+
+def test_bars_of_a_tornado_are_the_effects_the_largest_first():
+    figure = figures_budget.budget(BEAMS)
+    measured, chosen = figure.axes
+    names, bars = drawn(measured)
+    assert names == ["heights of B2", "thickness", tables_budget.TOTAL]
+    assert_allclose([bar.get_width() for bar in bars[:2]], 100 * np.sqrt(6e-4) * np.array([4, 2]), rtol=1e-9)
+    assert_allclose([bar.get_x() for bar in bars], [-bar.get_width() / 2 for bar in bars])
+    assert_allclose(bars[4].get_width(), 2 * 2 * 100 * np.sqrt(6e-4 + 0.64e-4), rtol=1e-9)
+    names, bars = drawn(chosen)
+    assert names == ["van der Waals in dry gaps"]
+    assert_allclose([bars[0].get_x(), bars[0].get_x() + bars[0].get_width()], [-4.2, 0], atol=1e-12)
+    assert "mean length at which beams stick" in measured.get_title(loc="left")
+    assert measured.get_xlabel().endswith("scatter between devices: 1.4, 1.4 %")
+
+
+def test_beam_and_tip_have_panels_of_their_own():
+    figure = figures_budget.budget(BEAMS | {("C1", rh, "tip"): budget_dataset(0.5, TIPS) for rh in (0.44, 0.67)})
+    titles = [panel.get_title(loc="left") for panel in figure.axes]
+    assert titles[::2] == [
+        "(a) mean length at which beams stick (S-shape)",
+        "(c) length that 1 in 1000 tips hold (arc)",
+    ]
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["RH 0.44", "RH 0.67"]
+
+
+def test_six_humidities_fit_a_screen_with_bars_that_darken_and_do_not_meet():
+    humidities = np.linspace(0.4, 0.9, 6)
+    cases = {("C1", h): budget_dataset(1 + h) for h in humidities}
+    cases |= {("C1", h, "tip"): budget_dataset(h, TIPS) for h in humidities}
+    figure = figures_budget.budget(cases)
+    assert figure.get_figheight() < 8
+    bars = figure.axes[0].patches
+    places = [bar.get_y() for bar in bars]
+    assert_allclose(places, np.sort(places))
+    assert np.all(np.diff(places) > 0.99 * bars[0].get_height())
+    light = [sum(bar.get_facecolor()[:3]) for bar in bars[:6]]
+    assert np.all(np.diff(light) < 0)
+    (legend,) = figure.legends
+    assert [patch.get_facecolor() for patch in legend.get_patches()] == [bar.get_facecolor() for bar in bars[:6]]
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_no_legend_of_stoppers_covers_a_panel_or_a_text(count, tmp_path):
+    datasets = {f"S{k}": stopper_dataset() for k in range(count)}
+    assert covering(figures_budget.stoppers(datasets, {"S0": ["Beware."]}), tmp_path) == []
+
+
+@pytest.mark.parametrize("count", [2, 6, 30])
+def test_every_panel_has_the_name_of_its_stopper_in_a_figure_that_is_not_too_tall(count):
+    datasets = {f"S{k}": stopper_dataset(peak=1 + k) for k in range(count)}
+    figure = figures_budget.stoppers(datasets, {name: ["Beware."] for name in datasets})
+    forces = [panel for panel in figure.axes if panel.get_xlabel().startswith("relative humidity")]
+    tops = {panel.get_title("left").split()[1]: max(panel.lines[0].get_ydata()) for panel in forces}
+    expected = {name: 1e6 * float(dataset.mean_along.max()) for name, dataset in datasets.items()}
+    assert tops == pytest.approx(expected)
+    assert figure.get_figheight() <= 24
+    below = figure._supxlabel.get_text()
+    assert below.count("\n") < 12
+    assert ("results/tables/stoppers.md" in below) == (count == 30)
+
+
+def test_a_shorter_label_leaves_room_for_more_columns():
+    _, axes = styled(panels)(1, 2, (DOUBLE, 3))
+    for panel, label in zip(axes.flat, ("mean", "5 to 95 % of the patches"), strict=True):
+        styled(legend_below)(panel, [Line2D([], [], label=label) for _ in range(6)])
+    short, long = (panel.get_legend()._ncols for panel in axes.flat)
+    assert short > long > 1
+
+
+def test_a_stopper_shows_the_share_of_patches_over_the_restoring_force():
+    figure = figures_budget.stoppers(STOPPERS, WARNINGS)
+    line = figure.axes[0].lines[0]
+    assert figure._supxlabel.get_text() == "(1) S2: Beware."
+    force, share = line.get_data()
+    assert_allclose(share, 1 - np.arange(1, 401) / 400, atol=1e-12)
+    assert_allclose(force, 0.05 * np.arange(1, 401), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "draw", [lambda: figures_budget.budget(BEAMS), lambda: figures_budget.stoppers(STOPPERS, WARNINGS)]
+)
+def test_equal_data_give_equal_files(draw, tmp_path):
+    for name in ("one", "two"):
+        save(draw(), tmp_path / f"{name}.png")
+    assert (tmp_path / "one.png").read_bytes() == (tmp_path / "two.png").read_bytes()

@@ -1,0 +1,374 @@
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from beams import PAPER
+from ground import C1, R1, UM, safe_with_tips, safe_without_tips
+from plans import job_settings
+
+from stiction.config.files import load
+from stiction.config.plan import Plan
+from stiction.contact.meniscus import film, surface_energy
+from stiction.devices import limits
+from stiction.devices.limits import NOT_MODELLED
+from stiction.plan.graph import Graph
+from stiction.stages.devices import device_warnings, pair_warnings
+from stiction.stages.devices.sticking import EITHER, MIDDLE, S_SHAPE
+
+PLAN = Plan(load())
+
+
+def beams(s_shaped, arc, crack=700 * UM):
+    """Dataset of stage beams with numbers of S-shaped beams and of arcs."""
+    state = np.repeat([0, 1], [s_shaped, arc])
+    return xr.Dataset({"state": ("sample", state), "crack_length": ("sample", np.where(state, 1500 * UM, crack))})
+
+
+def device(energy=2e-3, of=C1):
+    tips = energy * np.exp(0.4 * np.random.default_rng(9).standard_normal(400))
+    return safe_with_tips(tips), device_warnings.OfDevice(of)
+
+
+# Main line
+
+
+def test_s_shaped_beams_of_the_paper_have_no_warning():
+    assert pair_warnings.of_beams(beams(50, 0), PAPER, 1.5 * UM) == []
+
+
+def test_arcs_and_what_their_mean_lacks_are_each_said_once():
+    arcs, mean = pair_warnings.of_beams(beams(58, 42, 1400 * UM), PAPER, 1.5 * UM)
+    assert "42 % of the beams end as arcs" in arcs
+    assert "1.5 µm" in arcs
+    assert "1400 µm" in mean
+    assert "1500 µm" in mean
+
+
+def test_beams_that_all_end_as_arcs_have_no_mean_to_warn_about():
+    (sentence,) = pair_warnings.of_beams(beams(0, 10), PAPER, 1.5 * UM)
+    assert "100 % of the beams end as arcs" in sentence
+
+
+@pytest.mark.parametrize(
+    ("beam", "words"),
+    [
+        (replace(PAPER, gap=60 * UM), "700 µm the beam reaches a slope of 0.129"),
+        (replace(PAPER, thickness=50 * UM), "14 times as long"),
+        (replace(PAPER, width=700 * UM), "bends as a plate"),
+    ],
+)
+def test_each_dimension_beyond_the_model_is_said_once(beam, words):
+    (sentence,) = pair_warnings.of_beams(beams(9, 0), beam, 1.5 * UM)
+    assert words in sentence
+
+
+def about_pairs(cases, plasticity, plan=PLAN):
+    settings = job_settings(plan, "warnings.md")
+    return pair_warnings.of_pairs(cases, plasticity, settings["materials"], settings["pairs"])
+
+
+PLASTIC = {pair: xr.Dataset({"plastic_share": share}) for pair, share in {"a": 0.0, "b": 0.02, "c": 0.58}.items()}
+
+
+def test_only_pairs_with_plastic_contact_are_said_to_be_plastic():
+    cases = {("b", 0.67, "NG"): beams(20, 0), ("b", 0.67, "G"): beams(10, 10)}
+    found = about_pairs(cases, PLASTIC)
+    assert {subject for subject, sentences in found.items() if sentences} == {"pair c", "pair b, RH 0.67, G"}
+    assert found["pair c"][0].startswith("58 % of the contact area is plastic")
+
+
+def test_pairs_whose_plasticity_was_not_studied_are_said_to_be_unchecked():
+    found = about_pairs({}, {"a": PLASTIC["a"], "c": PLASTIC["c"]})
+    assert found["pair a"] == []
+    (sentence,) = found["pair b"]
+    assert "was not checked" in sentence
+
+
+@pytest.mark.parametrize(("modulus", "missing"), [(164, False), (150, False), (180, False), (70, True), (200, True)])
+def test_a_solid_far_from_polysilicon_is_said_to_keep_its_other_properties(modulus, missing):
+    found = about_pairs({}, PLASTIC, Plan(load({"solid": {"young_modulus_GPa": modulus}})))
+    words = "3 properties of the solid are not stated", "hardness, Hamaker constant, contact angle."
+    assert all(word in " ".join(found["pair a"]) for word in words) == missing
+    assert len(found["pair a"]) == missing
+
+
+def test_a_pair_of_stated_materials_does_not_have_the_solid():
+    gold = dict.fromkeys(("young_modulus_GPa", "hardness_GPa"), 80) | {"poisson_ratio": 0.4, "contact_angle_deg": 0}
+    of_gold = {"materials": {"Gold": gold | {"hamaker_constant_zJ": {"water": 250, "dry": 400}}}}
+    of_gold |= {"solid": {"young_modulus_GPa": 70}, "surfaces": {"B2": {"material": "Gold"}}}
+    one = about_pairs({}, PLASTIC, Plan(load(of_gold)))["pair b"]
+    assert [sentence.split(" are not")[0] for sentence in one] == ["3 properties of the solid"]
+    both = Plan(load(of_gold, {"surfaces": {"Sub1": {"material": "Gold"}}}))
+    assert about_pairs({}, PLASTIC, both)["pair b"] == []
+
+
+#: Table III of the last run in the documentation.
+TABLE = Path(__file__).parents[3] / "docs" / "tables" / "table_3.csv"
+
+
+def test_beams_of_pairs_a_and_b_at_the_humidities_of_the_paper_have_the_warnings_that_are_true_of_them():
+    with TABLE.open() as file:
+        rows = [row for row in csv.DictReader(file) if row["pair"] in "ab"]
+    assert len(rows) == 36
+    arcs = []
+    for row in rows:
+        shares = [float(row[f"share_{state}"]) for state in ("s_shape", "arc", "free")]
+        mean = float(row["crack_length_um"] or "nan") * UM
+        ended = xr.Dataset({"state": ("sample", np.repeat([0, 1, 2], np.round(np.multiply(shares, 1000)).astype(int)))})
+        ended["crack_length"] = "sample", np.where(ended.state == 0, mean, 1500 * UM)
+        found = pair_warnings.of_beams(ended, PAPER, 1.5 * UM)
+        # Gaussian surfaces and all in the driest air adhere so little that some end as arcs: two sentences, else none.
+        assert len(found) == (shares[1] > 0) + (0 < shares[0] < 1)
+        assert all("end as arcs" in sentence or "end S-shaped" in sentence for sentence in found)
+        arcs += [row["model"]] * (shares[1] > 0)
+    assert 0 < len(arcs) < len(rows) / 2
+
+
+# Devices
+
+
+def only(found, of, shape=EITHER, **more):
+    """Warnings about a device in one shape."""
+    return device_warnings.of_device(found, of, **{"plastic": 0.0} | more)[shape]
+
+
+def test_a_device_within_the_limits_has_no_warning():
+    found, of = device()
+    assert device_warnings.of_device(found, of, plastic=0.02) == {S_SHAPE: [], EITHER: []}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"device": replace(C1, gap=100 * UM)}, "reaches a slope of"),
+        ({"device": replace(C1, thickness=50 * UM)}, "times as long as the beam is thick"),
+        ({"device": replace(C1, width=700 * UM)}, "bends as a plate"),
+        ({"materials": (("Gold", ("hardness",)),)}, "4 properties of Gold are not stated"),
+    ],
+)
+def test_each_limit_of_a_device_is_said_once(changes, words):
+    found, of = device()
+    (sentence,) = only(found, replace(of, **changes))
+    assert words in sentence
+
+
+def test_a_shape_has_the_warnings_of_its_own_length():
+    found, of = device(energy=20e-3)
+    alone, tip = (1e6 * float(found.safe_length.sel(shape=shape).min()) for shape in (S_SHAPE, EITHER))
+    assert tip < 0.7 * alone
+    steep = replace(of, device=replace(C1, gap=0.08 / 1.5 * alone * UM))
+    assert only(found, steep, S_SHAPE) == []
+    (sentence,) = only(found, steep, EITHER)
+    assert sentence.startswith(f"At a length of {tip:.0f} µm the beam reaches a slope of {0.08 * alone / tip:.3g}")
+
+
+def test_a_device_is_checked_at_its_safe_length_not_at_the_longer_estimate():
+    found, of = device()
+    assert only(found.assign(estimate=0.1 * found.estimate), of) == []
+    (sentence,) = only(found.assign(safe_length=0.5 * found.safe_length), of)
+    assert "reaches a slope of" in sentence
+
+
+def test_plastic_contact_of_a_device_is_said_and_so_is_that_it_was_not_studied():
+    found, of = device()
+    (sentence,) = only(found, of, plastic=0.58)
+    assert "58 %" in sentence
+    assert "beams stick at shorter lengths than the elastic model predicts" in sentence
+    assert ["was not checked" in sentence for sentence in device_warnings.of_device(found, of)[S_SHAPE]] == [True]
+
+
+def test_a_gap_that_the_film_fills_is_said():
+    found, of = device()
+    (sentence,) = only(found.assign(film=2e-6), of)
+    assert "less than 20 times the sum of film height and roughness" in sentence
+
+
+def test_a_bridge_that_stretches_is_said_and_has_half_its_length_as_crack():
+    wide = safe_without_tips()
+    crack = float(wide.safe_length.min()) / 2
+    assert only(wide, device_warnings.OfDevice(replace(R1, thickness=5 * UM)), MIDDLE) == []
+    (sentence,) = only(wide, device_warnings.OfDevice(R1), MIDDLE)
+    assert "equal to the thickness of the bridge" in sentence
+    steep = device_warnings.OfDevice(replace(R1, gap=0.11 / 1.5 * crack, thickness=80 * UM))
+    assert any("slope of 0.11" in sentence for sentence in only(wide, steep, MIDDLE))
+
+
+BEYOND = {"device": {"kind": "cantilever", "pair": "c", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}}
+BEYOND["device"] |= {"young_modulus_GPa": 164, "strip_um": 1.5}
+BEYOND |= {"materials": []}
+
+
+@pytest.fixture
+def warned(tmp_path):
+    """Warnings about devices as the workflow writes and reads them, from their settings and datasets."""
+    stage = next(stage for stage in device_warnings.STAGES if stage.name == "device_warnings")
+
+    def read(sections, lengths=(), charts=()):
+        files = {}
+        for name, section in sections.items():
+            own = [
+                {key: found for key, found in dict(datasets).items() if key[0] == name}
+                for datasets in (lengths, charts)
+            ]
+            data = {"lengths": own[0], "charts": own[1], "plasticity": PLASTIC}
+            files[name] = tmp_path / f"{name}.json"
+            stage.save(stage.compute(data, None, section), {"json": files[name]})
+        return device_warnings.read(files)
+
+    return read
+
+
+def test_warnings_about_all_devices_have_their_names(warned):
+    found, _ = device()
+    warnings = warned({"C1": {"beam": BEYOND}}, {("C1", 0.67): found}).lengths
+    assert list(warnings) == [("C1", 0.67, S_SHAPE), ("C1", 0.67, EITHER)]
+    assert all(len(sentences) == 1 for sentences in warnings.values())
+
+
+def test_settings_of_jobs_are_those_of_the_warnings():
+    sizes = {"thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
+    c1 = {"kind": "cantilever", "pair": "c"} | sizes
+    plan = Plan(load({"devices": {"C1": c1 | {"chart": {"thicknesses_um": [2, 3], "humidities": [0.5, 0.9]}}}}))
+    job = Graph(plan).job("devices/warnings/C1.json")
+    assert job.settings == {"beam": BEYOND}
+    assert len(job.inputs["charts"]) == plan.config["design"]["chart_points"]
+    assert job.inputs["plasticity"] == {"c": "studies/plasticity/c"}
+
+
+def test_a_film_that_is_hardly_a_liquid_is_said_of_a_device():
+    found, of = device()
+    (sentence,) = only(found.assign(film=film(0.39, 300.0)[0]), of)
+    assert sentence.startswith("The film of water is 1.1 nm high, thinner than 4 molecules")
+    assert only(found.assign(film=film(0.4, 300.0)[0]), of) == []
+
+
+def test_cases_of_the_main_line_in_air_that_is_hardly_humid_enough_are_said():
+    cases = {("b", 0.39, "NG"): beams(9, 0), ("b", 0.39, "G"): beams(9, 0), ("b", 0.4, "NG"): beams(9, 0)}
+    said = {subject for subject, sentences in about_pairs(cases, PLASTIC).items() if "thinner" in " ".join(sentences)}
+    assert said == {"pair b, RH 0.39, NG", "pair b, RH 0.39, G"}
+    (sentence,) = pair_warnings.of_thin_films(cases, {"b": {"temperature_K": 300}})
+    assert sentence.startswith("Pair b, RH 0.39: The film of water is 1.1 nm high")
+
+
+# Charts
+
+
+def charted(longest, film=3e-9):
+    """Dataset of stage chart of two thicknesses and two shapes, whose arcs are half as long as beams alone."""
+    lengths = longest * np.array([[[[1.0, 0.9], [0.5, 0.45]]], [[[1.5, 1.4], [0.75, 0.7]]]])
+    return xr.Dataset(
+        {
+            "safe_length": (("thickness", "gap", "shape", "share"), lengths),
+            "flooded_length": (("thickness", "gap", "shape"), UM * np.array([[[300, 200]], [[400, 210]]])),
+            "film": film,
+            "rms": 3e-9,
+        },
+        coords={"thickness": [2 * UM, 3 * UM], "gap": [20 * UM], "shape": [S_SHAPE, EITHER], "share": [1e-2, 1e-3]},
+    )
+
+
+def test_a_curve_of_a_chart_has_the_warnings_of_its_shortest_length(warned):
+    found = {("C1", 0.5): charted(700 * UM), ("C1", 0.9): charted(500 * UM), ("C2", 0.9): charted(900 * UM)}
+    section = {"beam": BEYOND | {"device": BEYOND["device"] | {"pair": "b"}}}
+    warnings = warned(dict.fromkeys(("C1", "C2"), section), charts=found).curves
+    given = {curve: sentences for curve, sentences in warnings.items() if sentences}
+    assert list(given) == [("C1", 2 * UM, 20 * UM, EITHER)]
+    assert given["C1", 2 * UM, 20 * UM, EITHER][0].startswith("At a length of 225 µm the beam reaches a slope of 0.13")
+    assert len(warnings) == 8
+
+
+def test_the_air_of_the_shortest_length_of_a_curve_counts():
+    along = [charted(700 * UM), charted(600 * UM, film=2 * UM)]
+    of = device_warnings.OfDevice(C1)
+    assert "sum of film height and roughness" in device_warnings.of_chart(along, of, 0.0)[3 * UM, 20 * UM, S_SHAPE][0]
+    assert device_warnings.of_chart(along[:1], of, 0.0)[3 * UM, 20 * UM, S_SHAPE] == []
+
+
+def test_the_thinnest_film_of_a_curve_counts_whatever_the_air_of_its_shortest_length():
+    along = [charted(800 * UM, film=1e-9), charted(700 * UM)]
+    found = device_warnings.of_chart(along, device_warnings.OfDevice(C1), 0.0)
+    assert all("The film of water is 1 nm high" in " ".join(sentences) for sentences in found.values())
+
+
+def test_the_thickness_of_a_curve_counts():
+    found = device_warnings.of_chart([charted(50 * UM)], device_warnings.OfDevice(C1), 0.0)
+    thin, thick = ([text for text in found[t * UM, 20 * UM, EITHER] if "thick" in text] for t in (2, 3))
+    assert thin[0].startswith("A crack of 22 µm is only 11.2 times as long as the beam is thick")
+    assert thick[0].startswith("A crack of 35 µm is only 11.7 times as long as the beam is thick")
+
+
+# Stoppers
+
+
+def stopper(humidities=(0.44, 0.9), worst=(0.4, 0.98), side=3, angle=0, **more):
+    """Settings of the warnings about a stopper."""
+    water = {"temperature_K": 300, "contact_angles_deg": [angle, angle]}
+    plain = {"pair": "b", "materials": [], "water": water, "contact_um": [side, side]}
+    return {"stopper": plain | {"humidities": list(humidities), "worst_humidities": list(worst)} | more}
+
+
+@pytest.mark.parametrize("humid", [{"humidities": [0.9999]}, {"worst": [0.4, 0.9999]}])
+def test_a_film_that_is_not_small_against_a_stopper_is_said(humid, warned):
+    wet = warned({"S1": stopper(**humid), "S2": stopper(side=300, **humid)}).patches
+    (sentence,) = wet["S1"]
+    assert "The film of water is up to 10.4 µm high, not small against the area in contact" in sentence
+    assert "adds up to 693 % of the force of the film, more than 10 %" in sentence
+    assert "unsafe side" in sentence
+    assert wet["S2"] == []
+
+
+def test_the_rim_of_a_film_adds_its_share_to_the_force_of_the_film():
+    # Surface energy times the length of the rim, over tension times area.
+    height, tension = film(0.995, 300.0)
+    share = surface_energy(300.0) * (2 * 3e-6 + 2 * 5e-6) / (tension * 3e-6 * 5e-6)
+    assert f"adds up to {100 * share:.3g} %" in limits.wide_meniscus(height, (3e-6, 5e-6))
+
+
+@pytest.mark.parametrize(
+    "dry", [{"humidities": [0.39, 0.9]}, {"worst": [0.3, 0.9]}, {"humidities": [0.6], "angle": 60}]
+)
+def test_a_stopper_in_air_that_is_hardly_humid_enough_for_a_liquid_is_said(dry, warned):
+    (sentence,) = warned({"S1": stopper(**dry)}).patches["S1"]
+    assert sentence.startswith("The film of water is ")
+    assert "thinner than 4 molecules, 1.12 nm: the air is drier than the range in which" in sentence
+
+
+def test_a_stopper_has_the_warnings_of_its_contact(warned):
+    plain = {"S1": stopper(pair="c", materials=[["Gold", ["hardness"]]]), "S2": stopper(pair="d")}
+    found = warned(plain).patches
+    assert [sentence.split()[0] for sentence in found["S1"]] == ["58", "4"]
+    assert "stoppers hold more than the elastic model predicts, which is the unsafe side." in found["S1"][0]
+    assert "was not checked" in found["S2"][0]
+
+
+# Page
+
+
+def test_the_page_has_each_sentence_once_with_its_subjects_and_what_is_not_modelled():
+    page = pair_warnings.as_markdown({"pair a": [], "pair b": ["One.", "Two."], "pair c": ["Two."]})
+    assert [line for line in page.splitlines() if line.startswith("-")] == ["- pair b: One.", "- pair b; pair c: Two."]
+    assert NOT_MODELLED in page
+
+
+def test_subjects_are_named_in_words():
+    devices = {("C1", 0.67, S_SHAPE): ["One."], ("C1", 0.67, EITHER): ["Two."]}
+    curves = {("C1", 2.6 * UM, 20 * UM, EITHER): ["Three."]}
+    assert device_warnings.subjects(device_warnings.OfDevices(devices, curves, {"S1": ["Four."]})) == {
+        "C1, RH 0.67, held by the beam": ["One."],
+        "C1, RH 0.67, held by the beam or tip": ["Two."],
+        "C1, chart, 2.6 µm thick, gap 20 µm, held by the beam or tip": ["Three."],
+        "S1": ["Four."],
+    }
+
+
+def test_a_page_without_warnings_says_so():
+    assert "No result is beyond the limits" in pair_warnings.as_markdown({"pair a": []})
+
+
+def test_sentences_have_the_number_of_their_first_use():
+    sentences, numbers = pair_warnings.numbered({"a": ["x.", "y."], "b": ["z.", "x."]})
+    assert sentences == ["x.", "y.", "z."]
+    assert numbers == {"a": [1, 2], "b": [3, 1]}
