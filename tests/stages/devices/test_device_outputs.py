@@ -11,7 +11,6 @@ from legends import covering
 from stiction.report.devices import figures_devices, tables_devices
 from stiction.report.style import save
 
-
 S_SHAPE, EITHER = "S-shape", "S-shape or arc"
 WARNINGS = {("C1", 0.44, S_SHAPE): ["Too wet."], ("C1", 0.44, EITHER): ["Too wet.", "Too thin."]}
 WARNINGS |= {("C1", 0.67, S_SHAPE): [], ("C1", 0.67, EITHER): ["Too thin."], ("R1", 0.67, "middle"): []}
