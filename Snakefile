@@ -30,7 +30,7 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/stages.smk"
 
 
-if hooks.is_main(workflow):
+if snakemake_patches.is_main(workflow):
     remember.save()
 
 
@@ -82,17 +82,17 @@ onstart:
     if callable(handler := signal.getsignal(signal.SIGTERM)):
         signal.signal(signal.SIGTERM, lambda *received: threading.Thread(target=handler, args=received).start())
     try:
-        HELD.append(folder.reserved(".snakemake/running"))
+        HELD.append(run_lock.reserved(".snakemake/running"))
         provenance.record("results/provenance.json", BASE, config)
     except (OSError, DataError) as error:
         reason = error.__cause__ or error
         raise WorkflowError(f"results/ cannot be used: {reason}. Make it writable or choose another --directory.")
     except (RuntimeError, ValueError) as error:
         raise WorkflowError(str(error))
-    hooks.limit_timers(workflow)
+    snakemake_patches.limit_timers(workflow)
     # Kernels are compiled and cached before jobs run in parallel, because two jobs could corrupt a shared cache entry.
     # The server of local jobs does it; the jobs of a cluster run on other machines.
-    if not (hooks.runs_here(workflow) and hooks.fork_jobs()):
+    if not (snakemake_patches.runs_here(workflow) and snakemake_patches.fork_jobs()):
         shell("{sys.executable:q} -m stiction.run.warmup")
 
 

@@ -12,7 +12,7 @@ import pandas as pd
 from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP
 from stiction.config.files import paper
 from stiction.config.plan import Plan
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.devices.arcs import arc_length
 from stiction.devices.chart import flooded_energy
 from stiction.devices.limits import FILMS
@@ -282,7 +282,7 @@ def drawn_lengths(safe, budget):
     ``saturated_C1``: in saturated air; ``least_C1``: the least over its humidities; ``drawn_C1``: that less twice the
     largest total of the budgets of the tip.
     """
-    beam = cantilever(typed(Cantilevers, sections(Plan(paper()), "b")), "b")
+    beam = cantilever(in_si(Cantilevers, sections(Plan(paper()), "b")), "b")
     saturated = TO_UM * arc_length(flooded_energy(paper()["water"]["temperature_K"]), beam)
     totals = budget[(budget.device == "C1") & (budget.held_by == "tip") & (budget["name"] == "total")].effect_percent
     of_tip = safe[(safe.device == "C1") & (safe.held_by == "beam or tip") & (safe.share == 1e-3)]

@@ -26,7 +26,7 @@ from stiction.beam.foundation import foundation_length
 from stiction.config.cases import pair_of
 from stiction.config.files import paper
 from stiction.config.plan import Plan
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.report.format import TO_UM, with_error
 from stiction.run.storage import load
@@ -190,10 +190,10 @@ def meshes(results):
     plan, lengths = Plan(paper()), []
     for case, model in plan.laws:
         pair, (samples, limit) = pair_of(case), vectors(load(results / "forces" / f"{case}_{model}.nc", "forces"))
-        beam = cantilever(typed(Cantilevers, sections(plan, pair)), pair)
+        beam = cantilever(in_si(Cantilevers, sections(plan, pair)), pair)
         laws = forcelaw.coefficients(samples[forcelaw.admissible(samples, limit)], limit)
         lengths.append(foundation_length(beam, laws))
-    strip = typed(StripLength, {"strip_length_um": plan.config["sampling"]["strip_length_um"]}).strip_length
+    strip = in_si(StripLength, {"strip_length_um": plan.config["sampling"]["strip_length_um"]}).strip_length
     found = {}
     for name, size in (("elements", beam.element_length), ("strips", strip)):
         found |= {f"{name}_least": f"{size / max(lengths):.2g}", f"{name}_most": f"{size / min(lengths):.2g}"}

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import yaml
 
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.surface import maxent
 from stiction.surface.field import RoughSurface
 from stiction.surface.spectrum import CutoffSelfAffine
@@ -62,6 +62,6 @@ class PublishedSurface:
 
 IDENTITY = Translation(maxent.GAUSSIAN)
 SURFACES = {
-    name: typed(PublishedSurface, entry)
+    name: in_si(PublishedSurface, entry)
     for name, entry in yaml.safe_load(CONFIG.read_text(encoding="utf-8"))["surfaces"].items()
 }

@@ -6,7 +6,7 @@ from plans import job_settings
 
 from stiction.config.files import load
 from stiction.config.plan import Plan
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.stages.contact import contact
 from stiction.stages.laws import chaos, forces
 from stiction.stages.surfaces import heights, spectrum
@@ -39,7 +39,7 @@ CASE, HUMIDITY = "b_rh067", 0.67
 
 def settings_of(module, plain):
     """The settings of a stage or study from those of its job."""
-    return typed(module.Settings, plain)
+    return in_si(module.Settings, plain)
 
 
 @cache

@@ -7,7 +7,7 @@ import xarray as xr
 import stiction
 from stiction.config.plan import Plan
 from stiction.devices import limits
-from stiction.models import OF_MOMENTS
+from stiction.models import MOMENT_QUANTITIES
 from stiction.plan.graph import Graph, Results
 from stiction.stages.contact import curves
 
@@ -94,7 +94,7 @@ def uncertain():
 def test_a_budget_has_every_uncertain_input_and_none_of_the_exact_ones(uncertain):
     found = stiction.Device.of(uncertain, "C1").budget(0.88)
     solids = ["Young's modulus", "Poisson's ratio", "Hamaker constant"]
-    assert list(found.input.values) == [*(f"{name} of B2" for name in OF_MOMENTS), "gap", *solids]
+    assert list(found.input.values) == [*(f"{name} of B2" for name in MOMENT_QUANTITIES), "gap", *solids]
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from stiction.config.cases import case_id
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.stages.beams import releases, variant_beams
 from stiction.stages.contact import pairs, variant_contact, variant_summits
 from stiction.stages.laws import chaos
@@ -33,12 +33,12 @@ def under(config, name):
     sizes = {"variants": {"samples": 40, "beams": 3}}
     plan = Plan(merged(config, {"pairs": {"b": {"humidities": [HUMIDITY]}}, "studies": sizes}))
     plain = plan.variant_summits("b", name)
-    settings = [typed(variant_summits.Settings, merged(plain["base"], changes)) for changes in ({}, plain["changes"])]
+    settings = [in_si(variant_summits.Settings, merged(plain["base"], changes)) for changes in ({}, plain["changes"])]
     summits = variant_summits.compute({}, "b", *settings)
-    found = variant_contact.compute(summits, typed(variant_contact.Settings, plan.variant_contact("b", name)))
+    found = variant_contact.compute(summits, in_si(variant_contact.Settings, plan.variant_contact("b", name)))
     case = case_id("b", HUMIDITY)
     return variant_beams.compute(
-        found, case, typed(variant_beams.Settings, job_settings(plan, f"studies/variants/{case}_{name}"))
+        found, case, in_si(variant_beams.Settings, job_settings(plan, f"studies/variants/{case}_{name}"))
     ).isel(humidity=0)
 
 
@@ -53,9 +53,9 @@ def test_crack_length_of_the_mean_energy_is_the_published_one(study, humidity, p
 def test_a_finer_grid_gives_the_same_surfaces():
     plan = Plan(CONFIG)
     plain = plan.variant_summits("b", "base")["base"]
-    base = typed(variant_summits.Settings, plain)
+    base = in_si(variant_summits.Settings, plain)
     surfaces = variant_summits.surfaces_of(base.pairs["b"], base.surfaces, base.sampling.spacing, {})
-    finer = typed(variant_summits.Settings, merged(plain, {"sampling": {"spacing_nm": 5}}))
+    finer = in_si(variant_summits.Settings, merged(plain, {"sampling": {"spacing_nm": 5}}))
     coarse, fine = (
         pairs.equivalent_surface(surfaces, "NG", s).draw(*map(np.random.default_rng, (1, 2))) for s in (base, finer)
     )
@@ -102,13 +102,13 @@ def test_beams_do_not_depend_on_threads_and_scatter_with_their_dimensions(study)
 def test_a_spectrum_that_is_to_be_identified_is_identified_first():
     changes = {"surfaces": {"B2": {"psd": "identified"}}, "identification": {"patches": 2, "patch_um": 2}}
     plan = Plan(merged(CONFIG, changes | {"contact": {"samples": 5}}))
-    density = heights.compute(typed(heights.Settings, job_settings(plan, "heights/B2")))
+    density = heights.compute(in_si(heights.Settings, job_settings(plan, "heights/B2")))
     found = identification.compute(
-        density, "B2", typed(identification.Settings, job_settings(plan, "identification/B2"))
+        density, "B2", in_si(identification.Settings, job_settings(plan, "identification/B2"))
     )
     pair = PairStudy.of(plan.config, "b").surfaces
     assert pair.beam.underlying.cutoff == spectrum_of(found).cutoff != pair.substrate.underlying.cutoff
-    expected = spectrum.compute(density, found, typed(spectrum.Settings, job_settings(plan, "spectrum/B2")))
+    expected = spectrum.compute(density, found, in_si(spectrum.Settings, job_settings(plan, "spectrum/B2")))
     assert_array_equal(pair.beam.underlying.density, expected.underlying)
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import stiction
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.stages.surfaces.heights import Settings as Moments
 
 with warnings.catch_warnings():
@@ -56,8 +56,8 @@ def main(folder, scans=SCANS):
 
 def rough_surface(entry, side):
     """Square of a surface from its section of the configuration."""
-    spectrum = typed(stiction.CutoffSelfAffine, entry["published_psd"])
-    moments = typed(Moments, {key: entry[key] for key in ("rms_nm", "skewness", "kurtosis")})
+    spectrum = in_si(stiction.CutoffSelfAffine, entry["published_psd"])
+    moments = in_si(Moments, {key: entry[key] for key in ("rms_nm", "skewness", "kurtosis")})
     translation = stiction.Translation(stiction.maximum_entropy(moments.skewness, moments.kurtosis))
     underlying, _ = stiction.underlying_spectrum(spectrum, translation, SPACING)
     grid = stiction.StripGrid(side, side, SPACING, margin=1e-6)

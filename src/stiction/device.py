@@ -9,7 +9,7 @@ import xarray as xr
 
 from stiction.config.cases import case_id
 from stiction.config.designs import BEAMS, Designs
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.plan.graph import Results
 from stiction.stages.devices import device_warnings, pair_warnings
 from stiction.stages.devices.patch_settings import contact_of, tips_of
@@ -111,9 +111,9 @@ class Device:
         """
         settings = self.results.graph.job(f"devices/warnings/{self.name}.json").settings
         if "stopper" in settings:
-            return device_warnings.of_stopper(typed(device_warnings.OfStopper, settings["stopper"]))
+            return device_warnings.of_stopper(in_si(device_warnings.OfStopper, settings["stopper"]))
         return pair_warnings.numbered(
-            device_warnings.of_device(found, typed(device_warnings.OfDevice, settings["beam"]))
+            device_warnings.of_device(found, in_si(device_warnings.OfDevice, settings["beam"]))
         )[0]
 
     def _result(self, stage, humidity, end=""):

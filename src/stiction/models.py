@@ -7,10 +7,10 @@ BEAM_MODELS = (*SURFACE_MODELS, "GEO")
 #: The two surfaces of a pair, in the order in which all sequences contain them.
 SIDES = ("beam", "substrate")
 #: Quantities of maximum-entropy heights, of measured heights and of spectra, see `stiction.analysis.shifts`.
-OF_MOMENTS, OF_SPECTRUM = ("rms", "skewness", "kurtosis"), ("corner", "slope")
-OF_MEASURED = ("rms", *(f"mode{k}" for k in range(2, 9)))
+MOMENT_QUANTITIES, SPECTRUM_QUANTITIES = ("rms", "skewness", "kurtosis"), ("corner", "slope")
+MODE_QUANTITIES = ("rms", *(f"mode{k}" for k in range(2, 9)))
 #: Sides of a shift, as in names of files: a quantity decreased, and increased.
-SHIFTED = ("less", "more")
+SHIFTS = ("less", "more")
 #: Keys of a surface described by scans that choose how these are evaluated, and the two values of each.
 ALTERNATIVES_OF_SCANS = {"beyond": ("cut", "continued"), "heights": ("moments", "measured")}
 #: Keys of the measured statistics of a surface: moments of the heights and summit statistics.

@@ -10,7 +10,7 @@ import xarray as xr
 
 from stiction.beam.cantilever import Beam
 from stiction.config.cases import case_id
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.contact.pair import SurfacePair
 from stiction.models import SURFACE_MODELS
 from stiction.plan.graph import Results
@@ -73,12 +73,12 @@ class PairStudy:
     def surfaces(self) -> SurfacePair:
         """The two surfaces, from which samples can be drawn."""
         job = self.results.graph.job(f"contact/{self.name}_{self.model}/0-of-1")
-        settings = typed(pairs.Settings, job.settings)
+        settings = in_si(pairs.Settings, job.settings)
         return pairs.surface_pair(both(self.results.inputs(job)), self.model, settings)
 
     def energies(self, humidity: float) -> np.ndarray:
         """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
-        return curves.energies(self.contact, humidity, typed(curves.Water, self._plan.water(self.name)))
+        return curves.energies(self.contact, humidity, in_si(curves.Water, self._plan.water(self.name)))
 
     def forces(self, humidity: float) -> xr.Dataset:
         """Vectors v of Eq. (11) and f_limit at a relative humidity (Sec. III-B1); dataset of stage forces."""
@@ -105,12 +105,12 @@ class PairStudy:
         """
         case = case_id(self.name, humidity)
         settings = self.results.graph.job(f"beams/{case}_{self.model}").settings | {"scatter": scatter}
-        return beams.compute(self.chaos(humidity), case, typed(beams.Settings, settings), threads)
+        return beams.compute(self.chaos(humidity), case, in_si(beams.Settings, settings), threads)
 
     @property
     def beam(self) -> Beam:
         """Nominal cantilever of the pair."""
-        return cantilever(typed(Cantilevers, sections(self._plan, self.name)), self.name)
+        return cantilever(in_si(Cantilevers, sections(self._plan, self.name)), self.name)
 
     @property
     def _plan(self):

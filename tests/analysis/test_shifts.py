@@ -9,7 +9,7 @@ from published import SURFACES
 from scipy.special import ndtr
 
 from stiction.analysis.shifts import ORDERS, STEPS, Description, bracketed
-from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
+from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.scans.quantiles import SCORES
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import is_feasible
@@ -30,7 +30,7 @@ def quantities(surface):
     }
 
 
-@pytest.mark.parametrize("quantity", OF_MOMENTS + OF_SPECTRUM)
+@pytest.mark.parametrize("quantity", MOMENT_QUANTITIES + SPECTRUM_QUANTITIES)
 @pytest.mark.parametrize("surface", [B2, GAUSSIAN], ids=["skewed", "Gaussian"])
 def test_one_quantity_differs_by_the_stated_difference_and_no_other(surface, quantity):
     (less, more), difference = bracketed(surface, quantity)
@@ -41,14 +41,14 @@ def test_one_quantity_differs_by_the_stated_difference_and_no_other(surface, qua
     assert more.spectrum.cutoff == less.spectrum.cutoff == surface.spectrum.cutoff
 
 
-@pytest.mark.parametrize("quantity", OF_MOMENTS + OF_SPECTRUM)
+@pytest.mark.parametrize("quantity", MOMENT_QUANTITIES + SPECTRUM_QUANTITIES)
 def test_both_values_are_around_that_of_the_surface(quantity):
     both, _ = bracketed(B2, quantity)
     assert_allclose(np.mean([quantities(one)[quantity] for one in both]), quantities(B2)[quantity], rtol=1e-9)
 
 
 @pytest.mark.parametrize("surface", [GAUSSIAN, replace(B2, skewness=0.3, kurtosis=3.24)], ids=["Gaussian", "skewed"])
-@pytest.mark.parametrize("quantity", OF_MOMENTS)
+@pytest.mark.parametrize("quantity", MOMENT_QUANTITIES)
 def test_at_the_border_of_the_feasible_moments_both_values_have_a_density(surface, quantity):
     both, _ = bracketed(surface, quantity)
     assert all(is_feasible(one.skewness, one.kurtosis) for one in both)
@@ -56,7 +56,7 @@ def test_at_the_border_of_the_feasible_moments_both_values_have_a_density(surfac
     assert not is_feasible(surface.skewness, surface.kurtosis + STEPS["kurtosis"])
 
 
-@pytest.mark.parametrize("quantity", OF_SPECTRUM)
+@pytest.mark.parametrize("quantity", SPECTRUM_QUANTITIES)
 def test_at_the_limits_of_eq_7_both_values_have_a_spectrum(quantity):
     steep = CutoffSelfAffine(1.0, 0.999, 0.99e8, 1e8)
     flat = CutoffSelfAffine(1.0, 1.0, 0.5e8, 1e8)
@@ -73,8 +73,8 @@ MEASURED = replace(B2, form=FORM)
 
 
 def test_quantities_are_those_of_the_density_and_of_the_spectrum():
-    assert B2.quantities == OF_MOMENTS + OF_SPECTRUM
-    assert MEASURED.quantities == OF_MEASURED + OF_SPECTRUM
+    assert B2.quantities == MOMENT_QUANTITIES + SPECTRUM_QUANTITIES
+    assert MEASURED.quantities == MODE_QUANTITIES + SPECTRUM_QUANTITIES
     assert {*B2.quantities, *MEASURED.quantities} == set(STEPS)
 
 
@@ -86,7 +86,7 @@ def hermite(order, u):
     return current
 
 
-@pytest.mark.parametrize(("quantity", "order"), list(zip(OF_MEASURED[1:], ORDERS, strict=True)))
+@pytest.mark.parametrize(("quantity", "order"), list(zip(MODE_QUANTITIES[1:], ORDERS, strict=True)))
 def test_a_mode_is_a_mean_of_its_hermite_polynomial(quantity, order):
     # Scores of the density phi (1 + x h_k) have the mean x of h_k, and of no other polynomial.
     mean = STEPS[quantity]
@@ -103,7 +103,7 @@ def test_a_mode_is_a_mean_of_its_hermite_polynomial(quantity, order):
     assert np.abs(found - expected).max() < 0.1 * np.abs(expected).max() + 2 * mean**2  # second order
 
 
-@pytest.mark.parametrize("quantity", OF_MEASURED[1:])
+@pytest.mark.parametrize("quantity", MODE_QUANTITIES[1:])
 def test_a_mode_changes_the_form_alone_and_is_around_it(quantity):
     (less, more), difference = bracketed(MEASURED, quantity)
     assert difference == 2 * STEPS[quantity]
@@ -114,7 +114,7 @@ def test_a_mode_changes_the_form_alone_and_is_around_it(quantity):
     assert np.abs(middle - FORM.quantile_of_normal(INNER)).max() < 0.05 * apart
 
 
-@pytest.mark.parametrize("quantity", OF_SPECTRUM)
+@pytest.mark.parametrize("quantity", SPECTRUM_QUANTITIES)
 def test_a_table_is_bent_like_eq_7(quantity):
     known = np.linspace(0, B2.spectrum.cutoff, 2000)
     table = TabulatedSpectrum(known, B2.spectrum(known), B2.spectrum.cutoff)

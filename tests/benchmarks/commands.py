@@ -24,11 +24,11 @@ CONFIG = ROOT / "config.yaml"
 ADDED = "pairs: {b: {humidities: [0.44, 0.5, 0.55, 0.67, 0.80, 0.88, 0.92]}}\n"
 #: Workflow of jobs that do nothing, started as those of the project.
 EMPTY_JOBS = """
-from stiction.run import hooks
+from stiction.run import snakemake_patches
 
 onstart:
-    hooks.limit_timers(workflow)
-    hooks.fork_jobs()
+    snakemake_patches.limit_timers(workflow)
+    snakemake_patches.fork_jobs()
 
 rule all:
     input: expand("{{number}}.txt", number=range({jobs}))

@@ -11,9 +11,9 @@ from stiction.config.designs import Designs, patch
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.devices.budget import OF_SOLIDS
-from stiction.models import OF_MOMENTS, OF_SPECTRUM
+from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.plan.graph import Graph
 from stiction.stages.contact import contact, slope_contact
 from stiction.stages.contact import variant_summits as summits
@@ -60,7 +60,7 @@ JOBS = [
 
 @pytest.mark.parametrize(("stage", "settings"), JOBS)
 def test_a_stage_takes_exactly_the_settings_of_its_jobs(stage, settings):
-    found = typed(stage.Settings, settings)
+    found = in_si(stage.Settings, settings)
     optional = {field.name for field in fields(found) if not field.default is field.default_factory is MISSING}
     assert set(vars(found)) - optional <= {key.rpartition("_um")[0] or key.removesuffix("_GPa") for key in settings} | {
         key.removesuffix("_uN").removesuffix("_GPa") for key in settings
@@ -90,16 +90,16 @@ def test_a_device_on_scans_has_a_budget_without_a_stated_uncertainty():
     scanned = {"scans": {"files": ["a.npy"]}, "heights": "moments", "psd": "fitted"}
     found = Designs(merged(PLAN.config, {"surfaces": {"B2": scanned}}))
     assert found.budgeted == ["C1", "C2", "S1"]
-    assert found.quantities("C2") == [("B2", quantity) for quantity in OF_MOMENTS + OF_SPECTRUM]
+    assert found.quantities("C2") == [("B2", quantity) for quantity in MOMENT_QUANTITIES + SPECTRUM_QUANTITIES]
     assert (
-        typed(inputs.Settings, job_settings(PLAN, "devices/budget/C2_rh067")["budget"]).uncertainty
+        in_si(inputs.Settings, job_settings(PLAN, "devices/budget/C2_rh067")["budget"]).uncertainty
         == inputs.Uncertainty()
     )
 
 
 def test_heights_are_uncertain_if_a_scan_is_stated():
     found = designs()
-    assert found.quantities("C1") == [(name, quantity) for name in ("B2", "Sub1") for quantity in OF_MOMENTS]
+    assert found.quantities("C1") == [(name, quantity) for name in ("B2", "Sub1") for quantity in MOMENT_QUANTITIES]
     assert found.quantities("S1") == []
     same = designs(pairs={"b": {"substrate": "B2"}})
     assert {name for name, _ in same.quantities("C1")} == {"B2"}
@@ -187,7 +187,7 @@ def test_a_budget_has_the_hamaker_constant_through_the_medium_if_it_is_uncertain
     stated = {"devices": {"S1": {"uncertainty": {"hamaker_constant_zJ": 3}}}, "van_der_waals": medium}
     found = job_settings(plan(**stated), "devices/budget/S1_rh090")["budget"]
     assert found["hamaker_constant_zJ"] == pytest.approx(expected)
-    assert typed(inputs.Settings, found).uncertainty.hamaker_constant == pytest.approx(3e-21)
+    assert in_si(inputs.Settings, found).uncertainty.hamaker_constant == pytest.approx(3e-21)
     assert "hamaker_constant_zJ" not in job_settings(PLAN, "devices/budget/S1_rh090")["budget"]
     constants = {"hamaker_constant_zJ": {"water": 5, "dry": 65}}
     of_glass = {"materials": {"Glass": GLASS | constants}, "surfaces": {"B2": {"material": "Glass"}}}

@@ -19,7 +19,7 @@ from written_scans import BAD, SIDE, bad_files, etched, scans_of, write
 from stiction.config import files, measured
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.config.validation import validate
 from stiction.errors import ScanError
 from stiction.scans import estimate
@@ -71,12 +71,12 @@ def test_keys_that_are_not_given_have_their_defaults(folder):
         "level": "plane",
         "lines": "none",
     }
-    assert typed(Source, measured.source(entry)) == Source()
-    assert typed(estimate.Settings, measured.evaluation(entry, PAPER["scans"])) == estimate.Settings()
+    assert in_si(Source, measured.source(entry)) == Source()
+    assert in_si(estimate.Settings, measured.evaluation(entry, PAPER["scans"])) == estimate.Settings()
     given = configured(*both(folder), level="quadratic", lines="bow", fast_axis="y", heights="measured")
     again = files.normalised(given)["surfaces"]["Etched"]
     assert (again["scans"]["level"], again["heights"]) == ("quadratic", "measured")
-    assert typed(estimate.Settings, measured.evaluation(again, PAPER["scans"])).levelling == Levelling(
+    assert in_si(estimate.Settings, measured.evaluation(again, PAPER["scans"])).levelling == Levelling(
         "quadratic", "bow"
     )
 
@@ -84,8 +84,8 @@ def test_keys_that_are_not_given_have_their_defaults(folder):
 def test_values_have_units():
     entry = measured.complete({"scans": {"files": ["a"], "size_um": [5, 10], "tip_radius_nm": 8, "shortest_nm": 60,
                                          "channel": "Height", "height_unit": "nm"}})  # fmt: skip
-    assert typed(Source, measured.source(entry)) == Source("Height", "x", pytest.approx((5e-6, 10e-6)), "nm")
-    settings = typed(estimate.Settings, measured.evaluation(entry, PAPER["scans"]))
+    assert in_si(Source, measured.source(entry)) == Source("Height", "x", pytest.approx((5e-6, 10e-6)), "nm")
+    settings = in_si(estimate.Settings, measured.evaluation(entry, PAPER["scans"]))
     assert (settings.tip_radius, settings.shortest) == pytest.approx((8e-9, 60e-9))
     assert (settings.tiles, settings.undefined_share) == (4, 0.01)
 
@@ -94,10 +94,10 @@ def test_files_are_relative_to_the_folder_of_the_configuration_file_that_names_t
     overlay = folder / "mine.yaml"
     overlay.write_text(json.dumps(etched("B2-0.gwy", "B2-1.gwy")))
     assert files.load(overlay)["surfaces"]["Etched"]["scans"]["files"] == [str(path) for path in both(folder)]
-    other = measured.anchored(etched("x.gwy"), etched("y.gwy"), tmp_path)
+    other = measured.resolve_scan_paths(etched("x.gwy"), etched("y.gwy"), tmp_path)
     assert other == etched("x.gwy")
     for broken in ({}, {"surfaces": 5}, {"surfaces": {"X": 1}}, {"surfaces": {"X": {"scans": {"files": 7}}}}):
-        assert measured.anchored(broken, broken, tmp_path) == broken
+        assert measured.resolve_scan_paths(broken, broken, tmp_path) == broken
 
 
 # Preliminary numbers and laws
@@ -113,17 +113,21 @@ def test_preliminary_numbers_are_those_of_the_scans(folder):
     form = measured_density(quantiles(pooled.levelled), pooled.areas)
     np.testing.assert_allclose(found["form"], [form.scores, form.heights], rtol=1e-9)
     assert abs(found["measured"][0] - truth("B2")[1]) < 0.3
-    entry = measured.view(configured(*both(folder)), {"Etched": found})["surfaces"]["Etched"]
+    entry = measured.with_preliminary_estimates(configured(*both(folder)), {"Etched": found})["surfaces"]["Etched"]
     psd = entry["published_psd"]
     assert psd["cutoff_rad_per_um"] == pytest.approx(125, rel=0.02)  # where the spectrum of B2 ends
     assert (entry["skewness"], entry["kurtosis"]) == tuple(found["feasible"])
-    entry = measured.view(configured(*both(folder), heights="measured"), {"Etched": found})["surfaces"]["Etched"]
+    entry = measured.with_preliminary_estimates(configured(*both(folder), heights="measured"), {"Etched": found})[
+        "surfaces"
+    ]["Etched"]
     assert {"skewness", "kurtosis"}.isdisjoint(entry)
     np.testing.assert_array_equal(entry["form"], found["form"])
     end = pooled.reach.end
     assert psd["floor_nm4"] == pytest.approx(1e36 * float(pooled.fit.spectrum(end)(end)), rel=1e-6)
     continued = configured(*both(folder), beyond="continued")
-    grid = measured.view(continued, {"Etched": found})["surfaces"]["Etched"]["published_psd"]["cutoff_rad_per_um"]
+    grid = measured.with_preliminary_estimates(continued, {"Etched": found})["surfaces"]["Etched"]["published_psd"][
+        "cutoff_rad_per_um"
+    ]
     assert grid == pytest.approx(np.pi / 0.01)
 
 
@@ -135,11 +139,11 @@ def test_measured_surfaces_keep_their_material_and_make_devices_uncertain():
     pairs = {"a": {"beam": "Etched"}, "b": {"beam": "B2", "substrate": "Etched"}}
     config = merged(configured("any.gwy"), {"devices": devices, "pairs": pairs})
     config["surfaces"]["Etched"]["material"] = "Gold"
-    seen = measured.view(config, {"Etched": found})
+    seen = measured.with_preliminary_estimates(config, {"Etched": found})
     assert seen["surfaces"]["Etched"]["material"] == "Gold"
     stated = {name: device.get("uncertainty") for name, device in seen["devices"].items()}
     assert stated == {"a": {}, "b": {}, "c": None, "lost": None, "uncertain": {"humidity": 0.01}}
-    assert "devices" not in measured.view(configured("any.gwy"), {"Etched": found})
+    assert "devices" not in measured.with_preliminary_estimates(configured("any.gwy"), {"Etched": found})
 
 
 def test_a_configuration_with_good_scans_is_valid_and_its_surfaces_are_shifted_like_others(folder):
@@ -180,10 +184,10 @@ def test_stages_take_exactly_the_settings_of_their_jobs(folder):
     }
     for stage, plain in settings.items():
         assert json.loads(json.dumps(plain)) == plain
-        assert {key.removesuffix("_nm") for key in plain} == set(vars(typed(stage.Settings, plain)))
-    use = typed(spectrum.Settings, settings[spectrum]).use
+        assert {key.removesuffix("_nm") for key in plain} == set(vars(in_si(stage.Settings, plain)))
+    use = in_si(spectrum.Settings, settings[spectrum]).use
     assert (use.surface, use.strip_length, use.margin) == ("Etched", pytest.approx(1.5e-6), pytest.approx(1e-6))
-    evaluation = typed(stage_estimate.Settings, settings[stage_estimate]).evaluation
+    evaluation = in_si(stage_estimate.Settings, settings[stage_estimate]).evaluation
     assert evaluation == estimate.Settings(tip_radius=pytest.approx(10e-9))
     assert settings[stage_estimate]["files"] == ["B2-0.gwy", "B2-1.gwy"]
 
@@ -447,12 +451,12 @@ def test_a_real_file_gives_heights_and_a_spectrum_or_is_refused_in_sentences_tha
         assert all(path.name in line and line.count("\n") == 0 and len(line) < 400 for line in lines)
     else:
         plan = Plan(files.normalised(config))
-        read = scan.compute(path, typed(scan.Settings, job_settings(plan, "scan/Etched_0")))
+        read = scan.compute(path, in_si(scan.Settings, job_settings(plan, "scan/Etched_0")))
         found = stage_estimate.compute(
-            [read], "Etched", typed(stage_estimate.Settings, job_settings(plan, "estimate/Etched"))
+            [read], "Etched", in_si(stage_estimate.Settings, job_settings(plan, "estimate/Etched"))
         )
-        used = heights.compute(found, typed(heights.Settings, job_settings(plan, "heights/Etched")))
-        drawn = spectrum.compute(found, used, typed(spectrum.Settings, job_settings(plan, "spectrum/Etched")))
+        used = heights.compute(found, in_si(heights.Settings, job_settings(plan, "heights/Etched")))
+        drawn = spectrum.compute(found, used, in_si(spectrum.Settings, job_settings(plan, "spectrum/Etched")))
         assert np.isfinite(stage_estimate.rms(found))
         assert np.all(np.isfinite(found.covariance))
         assert parameters.spectrum_of(drawn).variance > 0

@@ -17,7 +17,7 @@ from stiction.config.designs import KEYS, Designs
 from stiction.config.files import load, normalised
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.contact.meniscus import meniscus_height
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.contact import contact, curves
@@ -347,32 +347,32 @@ JOBS = {
 @pytest.mark.parametrize("stage", JOBS, ids=lambda stage: stage.__name__)
 def test_a_stage_takes_exactly_the_settings_of_its_jobs(stage):
     settings = JOBS[stage]
-    found = typed(stage.Settings, settings)
+    found = in_si(stage.Settings, settings)
     optional = {field.name for field in fields(found) if not field.default is field.default_factory is MISSING}
     assert set(vars(found)) - optional <= {key.removesuffix("_um") for key in settings}
     assert json.loads(json.dumps(settings)) == settings
 
 
 def test_settings_in_si_are_those_of_the_device():
-    found = typed(cracks.Settings, JOBS[cracks])
+    found = in_si(cracks.Settings, JOBS[cracks])
     assert found.device.beam.young_modulus == pytest.approx(79e9)
     assert (found.device.thickness, found.device.strip) == pytest.approx((2.6e-6, 1.2e-6))
     assert found.water == curves.Water(300, pytest.approx((1.0471975512, 0.0)))
-    bridge = typed(safe_lengths.Settings, JOBS[safe_lengths])
+    bridge = in_si(safe_lengths.Settings, JOBS[safe_lengths])
     assert bridge.device.beam.tension == pytest.approx(50e6 * 60e-12)
-    assert typed(chart.Settings, JOBS[chart]).gaps == pytest.approx((10e-6, 20e-6))
+    assert in_si(chart.Settings, JOBS[chart]).gaps == pytest.approx((10e-6, 20e-6))
     assert job_settings(
         plan(devices={"C1": {"chart": {"thicknesses_um": [2], "humidities": [0.4, 0.5]}}}), "devices/chart/C1_rh045"
     )["gaps_um"] == [20]
 
 
 def test_materials_reach_contact_forces_and_beams_and_nothing_changes_without_them():
-    found = typed(contact.Settings, JOBS[contact])
+    found = in_si(contact.Settings, JOBS[contact])
     assert found.sampling.strip_length == pytest.approx(1e-9 * Designs(PLAN.config).tips("C1").length)
     assert found.contact.samples == PAPER["design"]["beams"]
     assert found.materials["beam"].hamaker_constant == pytest.approx({"water": 2.5e-19, "dry": 4e-19})
     assert found.materials["substrate"].young_modulus == pytest.approx(164e9)
-    assert cantilever(typed(Cantilevers, sections(PLAN, "b")), "b").young_modulus == pytest.approx(79e9)
+    assert cantilever(in_si(Cantilevers, sections(PLAN, "b")), "b").young_modulus == pytest.approx(79e9)
     paper = Plan(load())
     assert "materials" not in job_settings(paper, "contact/b_NG")
     assert job_settings(paper, "forces/b_rh067_NG") == {"water": {"temperature_K": 300}, "humidity": 0.67}
@@ -403,10 +403,10 @@ def test_the_uncertainty_of_a_device_is_no_setting_of_its_cracks():
 
 
 def test_warnings_know_what_is_stated_of_a_material():
-    found = typed(device_warnings.OfDevice, job_settings(PLAN, "devices/warnings/C1.json")["beam"])
+    found = in_si(device_warnings.OfDevice, job_settings(PLAN, "devices/warnings/C1.json")["beam"])
     assert [name for name, _ in found.materials] == ["Gold"]
     assert len(found.materials[0][1]) == 5
-    assert typed(
+    assert in_si(
         pair_warnings.OfPairs, job_settings(PLAN, "warnings.md")["pairs"]
     ).sampling.strip_length == pytest.approx(1.5e-6)
 

@@ -4,7 +4,7 @@ from dataclasses import FrozenInstanceError, dataclass
 import numpy as np
 import pytest
 
-from stiction.config.units import from_si, to_si, typed
+from stiction.config.units import from_si, in_si, to_si
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Outer:
     ],
 )
 def test_a_value_is_converted_by_the_unit_of_its_key(key, value, name, expected):
-    assert getattr(typed(Anything, {key: value}), name) == pytest.approx(expected, rel=1e-15)
+    assert getattr(in_si(Anything, {key: value}), name) == pytest.approx(expected, rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ def test_arrays_are_converted_element_by_element():
 
 
 def test_values_without_unit_stay_as_they_are_and_lists_become_tuples():
-    found = typed(Anything, {"samples": 5000, "psd": "published", "elements_um": [30, 7.5]})
+    found = in_si(Anything, {"samples": 5000, "psd": "published", "elements_um": [30, 7.5]})
     assert (found.samples, found.psd) == (5000, "published")
     assert found.elements == pytest.approx((30e-6, 7.5e-6), rel=1e-15)
     with pytest.raises(FrozenInstanceError):
@@ -90,7 +90,7 @@ def test_values_without_unit_stay_as_they_are_and_lists_become_tuples():
 @pytest.mark.parametrize("psd", ["identified", {"spacing_nm": 3}])
 def test_sections_inside_become_objects_of_their_fields(psd):
     plain = {"sampling": {"spacing_nm": 10}, "pairs": {"a": {"spacing_nm": 5}, "b": {"spacing_nm": 20}}, "psd": psd}
-    found = typed(Outer, plain)
+    found = in_si(Outer, plain)
     assert found.sampling == Inner(10e-9)
     assert found.pairs == {"a": Inner(5e-9), "b": Inner(20e-9)}
     assert found.psd == (Inner(3 * 1e-9) if isinstance(psd, dict) else psd)
@@ -99,4 +99,4 @@ def test_sections_inside_become_objects_of_their_fields(psd):
 @pytest.mark.parametrize("section", [{}, {"spacing_nm": 1, "margin_um": 2}])
 def test_a_missing_or_an_unknown_key_is_rejected(section):
     with pytest.raises(TypeError, match=r"spacing|margin"):
-        typed(Inner, section)
+        in_si(Inner, section)

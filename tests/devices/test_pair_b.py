@@ -9,7 +9,7 @@ import stiction
 from stiction.beam.montecarlo import Experiment, columns, simulate
 from stiction.chaos.model import resample_laws
 from stiction.config.merging import merged
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.constants import WATER_SURFACE_ENERGY
 from stiction.devices import risk
 from stiction.devices.stoppers import worst_humidity
@@ -26,7 +26,7 @@ SAMPLING = 0.8e-6
 
 
 def test_real_patches_hold_most_well_below_saturation_although_their_energy_keeps_growing():
-    patches = typed(
+    patches = in_si(
         contact.Settings, merged(job_settings(small.PLAN, "devices/contact/b_1500x30000"), {"contact": {"samples": 60}})
     )
     drawn = contact.compute(small.surfaces(), "b", "NG", patches)

@@ -7,7 +7,7 @@ from stiction.config.designs import Designs
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.stages.beams.cantilevers import Cantilevers, sections
 from stiction.stages.contact import contact
 
@@ -48,9 +48,9 @@ def test_elements_follow_the_force_laws_except_on_the_mesh_of_the_paper():
 
 
 def test_si_values_are_those_of_the_paper():
-    beam = typed(Cantilevers, sections(PLAN, "b")).beam
+    beam = in_si(Cantilevers, sections(PLAN, "b")).beam
     assert (beam.length, beam.thickness) == pytest.approx((1500e-6, 2.6e-6), rel=1e-15)
-    wanted = typed(contact.Settings, job_settings(PLAN, "contact/b_NG"))
+    wanted = in_si(contact.Settings, job_settings(PLAN, "contact/b_NG"))
     assert wanted.sampling.strips(wanted.beam.width).shape == (150, 3000)
     assert wanted.solid.young_modulus == pytest.approx(164e9)
 

@@ -12,7 +12,7 @@ import gc, json, os, sys
 from pathlib import Path
 import jsonschema, netCDF4, numba, scipy.integrate, scipy.interpolate, scipy.optimize, scipy.stats, smart_open, xarray
 import snakemake.cli
-import stiction.config.validation, stiction.run.hooks, stiction.run.kept
+import stiction.config.validation, stiction.run.snakemake_patches, stiction.run.stale_results
 from snakemake.executors.touch import Executor
 from stiction.config.files import load
 from stiction.plan.graph import stages

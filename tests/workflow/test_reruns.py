@@ -19,7 +19,7 @@ from conftest import ROOT
 from planner import Planner
 
 from stiction.config.files import normalised, paper
-from stiction.config.measured import anchored
+from stiction.config.measured import resolve_scan_paths
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.plan.graph import Graph, stages
@@ -188,7 +188,7 @@ class Tree:
         self.small = scratch / "small.yaml"
         self.small.write_text(config)
         named = yaml.safe_load(config)
-        self.graph = Graph(Plan(normalised(anchored(merged(paper(), named), named, scratch))))
+        self.graph = Graph(Plan(normalised(resolve_scan_paths(merged(paper(), named), named, scratch))))
         self.overlay = scratch / "overlay.yaml"
         self.planner = Planner(folder, scratch)
         for name in self.planner.outputs(*targets, config=[self.small]):

@@ -17,7 +17,7 @@ def test_neither_cores_nor_chunks_change_a_byte(undisturbed, tiny, tmp_path, ove
     assert datasets(tmp_path) == datasets(undisturbed)
 
 
-#: Snakemake whose way to start scripts is not known to `stiction.run.hooks`.
+#: Snakemake whose way to start scripts is not known to `stiction.run.snakemake_patches`.
 ANOTHER = """
 import sys, snakemake.cli, snakemake.script
 known = snakemake.script.PythonScript.execute_script

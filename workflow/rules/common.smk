@@ -8,10 +8,10 @@ from snakemake.logging import logger
 from stiction.config import files, measured, memory, messages
 from stiction.plan.planner import Planner
 from stiction.plan.stage import WILDCARDS
-from stiction.run import folder, hooks, kept, provenance
+from stiction.run import provenance, run_lock, snakemake_patches, stale_results
 from stiction.run.atomic import DataError
 from stiction.run.fingerprint import PACKAGE, fingerprint
-from stiction.run.remembered import Remembered
+from stiction.run.disk_cache import DiskCache
 
 
 wildcard_constraints:
@@ -19,12 +19,12 @@ wildcard_constraints:
 
 
 try:
-    folder.require_writable(".snakemake")
+    run_lock.require_writable(".snakemake")
 except RuntimeError as error:
     raise WorkflowError(str(error))
 
-hooks.compare_without_pandas()
-remember = Remembered(".snakemake/planning.json")
+snakemake_patches.compare_without_pandas()
+remember = DiskCache(".snakemake/planning.json")
 
 
 def code(file):
@@ -51,9 +51,9 @@ def rules_of_the_configuration():
 
 try:
     # Read again, because Snakemake silently uses the last of duplicate keys.
-    contents = {file: files.read(file) for file in hooks.files_of_configuration(workflow)}
+    contents = {file: files.read(file) for file in snakemake_patches.files_of_configuration(workflow)}
     for file in contents:  # files of scans are relative to the first match
-        config.update(measured.anchored(config, contents[file], file.parent))
+        config.update(measured.resolve_scan_paths(config, contents[file], file.parent))
     scanned = measured.has_scans(config)
     preliminary = validated() if scanned else remember(["valid", config, rules_of_the_configuration()], validated)
 except messages.ConfigError as error:
@@ -62,7 +62,7 @@ except messages.ConfigError as error:
 config.update(files.normalised(config))
 planner = Planner(config, preliminary, remember)
 
-if hooks.is_main(workflow):
+if snakemake_patches.is_main(workflow):
     atexit.register(planner.save)
 
 
@@ -71,9 +71,9 @@ if hooks.is_main(workflow):
 
 def unlike_this_run():
     """Files in results/ that other settings gave, or that are damaged; what is read of them, the next plan knows."""
-    read = Remembered(".snakemake/labels.json")
-    found = dict(kept.damaged("results/logs", read))
-    found |= dict(kept.foreign(Path("results").rglob("*.nc"), planner.settings, read))
+    read = DiskCache(".snakemake/labels.json")
+    found = dict(stale_results.damaged("results/logs", read))
+    found |= dict(stale_results.foreign(Path("results").rglob("*.nc"), planner.settings, read))
     read.save()
     return found
 
@@ -85,10 +85,10 @@ STALE = Path(".snakemake/stale")
 @cache
 def unusable():
     """These files, which are named: this run writes them anew."""
-    if not hooks.is_main(workflow):
+    if not snakemake_patches.is_main(workflow):
         return {}
     found = unlike_this_run()
-    for line in kept.summary(found):
+    for line in stale_results.summary(found):
         logger.warning(line)
     if found:
         STALE.parent.mkdir(exist_ok=True)

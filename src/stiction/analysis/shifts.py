@@ -17,16 +17,16 @@ from math import factorial
 import numpy as np
 from scipy.special import eval_hermitenorm
 
-from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
+from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import largest_kurtosis
 from stiction.surface.spectrum import CutoffSelfAffine, Spectrum
 
 #: Orders k of the modes. ASSUME: higher ones change only heights beyond those that touch or that a scan determines.
-ORDERS = [int(name.removeprefix("mode")) for name in OF_MEASURED[1:]]
+ORDERS = [int(name.removeprefix("mode")) for name in MODE_QUANTITIES[1:]]
 #: Steps of the central differences in either direction; those of rms and corner are logarithmic.
 STEPS = {"rms": 0.05, "skewness": 0.04, "kurtosis": 0.15, "corner": 0.05, "slope": 0.1}
-STEPS |= dict.fromkeys(OF_MEASURED[1:], 0.02)
+STEPS |= dict.fromkeys(MODE_QUANTITIES[1:], 0.02)
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Description:
     @property
     def quantities(self) -> tuple[str, ...]:
         """Names of the quantities, keys of `STEPS`."""
-        return (OF_MOMENTS if self.form is None else OF_MEASURED) + OF_SPECTRUM
+        return (MOMENT_QUANTITIES if self.form is None else MODE_QUANTITIES) + SPECTRUM_QUANTITIES
 
 
 def bracketed(surface: Description, quantity: str) -> tuple[tuple[Description, Description], float]:
@@ -65,8 +65,8 @@ def bracketed(surface: Description, quantity: str) -> tuple[tuple[Description, D
         Of ln rms, skewness, kurtosis, x_k, ln corner or slope [-].
     """
     step = STEPS[quantity]
-    if quantity in OF_MEASURED[1:]:
-        found = _mode(surface, step, ORDERS[OF_MEASURED.index(quantity) - 1])
+    if quantity in MODE_QUANTITIES[1:]:
+        found = _mode(surface, step, ORDERS[MODE_QUANTITIES.index(quantity) - 1])
     else:
         makers = {"rms": _rms, "skewness": _skewness, "kurtosis": _kurtosis, "corner": _corner, "slope": _slope}
         found = makers[quantity](surface, step)

@@ -14,7 +14,7 @@ from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
-from stiction.models import OF_MOMENTS, SIDES
+from stiction.models import MOMENT_QUANTITIES, SIDES
 
 #: Kinds of devices that crack open; a stopper is pulled off at once.
 BEAMS = ("cantilever", "bridge")
@@ -257,7 +257,7 @@ class Designs:
         ASSUME: without scans, the spectrum counts as exact; the error of one scan's spectrum changes a length by 0.2 %.
         """
         pair = self.config["pairs"][self.devices[device]["pair"]]
-        stated = OF_MOMENTS if self.devices[device].get("uncertainty", {}).get("scan_um") else ()
+        stated = MOMENT_QUANTITIES if self.devices[device].get("uncertainty", {}).get("scan_um") else ()
         surfaces = dict.fromkeys(pair[side] for side in SIDES)
         entries = {name: self.config["surfaces"][name] for name in surfaces}
         found = {name: quantities(entry) if is_measured(entry) else stated for name, entry in entries.items()}

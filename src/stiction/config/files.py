@@ -4,7 +4,7 @@ import functools
 from collections.abc import Mapping
 from pathlib import Path
 
-from stiction.config.measured import anchored, complete
+from stiction.config.measured import complete, resolve_scan_paths
 from stiction.config.merging import merged
 from stiction.config.reading import read
 
@@ -49,7 +49,7 @@ def located(path: str | Path) -> dict:
         As `stiction.config.reading.read`.
     """
     content = read(path)
-    return anchored(content, content, Path(path).parent)
+    return resolve_scan_paths(content, content, Path(path).parent)
 
 
 @functools.cache

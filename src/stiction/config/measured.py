@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from stiction.config.messages import Problem
-from stiction.config.units import NM_PER_UM, from_si, typed
+from stiction.config.units import NM_PER_UM, from_si, in_si
 from stiction.errors import ScanError
-from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM, SIDES
+from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.regular import require_regular
 from stiction.run.atomic import DataError, save_text
 from stiction.run.fingerprint import fingerprint
@@ -44,7 +44,7 @@ def is_measured(entry: Mapping[str, Any]) -> bool:
 
 def quantities(entry: Mapping[str, Any]) -> tuple[str, ...]:
     """Quantities of a surface on which its slopes depend, see `stiction.analysis.shifts`."""
-    return (OF_MEASURED if entry.get("heights") == "measured" else OF_MOMENTS) + OF_SPECTRUM
+    return (MODE_QUANTITIES if entry.get("heights") == "measured" else MOMENT_QUANTITIES) + SPECTRUM_QUANTITIES
 
 
 def has_scans(config: Mapping[str, Any]) -> bool:
@@ -59,7 +59,7 @@ def complete(entry: dict[str, Any]) -> dict[str, Any]:
     return _DEFAULTS | entry | {"scans": _OF_SCANS | entry["scans"]}
 
 
-def anchored(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
+def resolve_scan_paths(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
     """Configuration whose files of scans are in a folder, if they are those that another mapping names.
 
     Parameters
@@ -123,7 +123,7 @@ def _digest(path, _modified, _size):
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def evaluated(
+def preliminary_estimates(
     config: dict[str, Any], faults: Collection[tuple] = (), kept: str | Path | None = None
 ) -> tuple[dict[str, dict], list[Problem]]:
     """Preliminary numbers of the measured surfaces by name, and the problems of those that have none.
@@ -227,7 +227,7 @@ def _preliminary(files, reading, evaluating):
     from stiction.scans.quantiles import measured_density, quantiles
 
     scans = [_scan(path, label, reading) for label, path in files.items()]
-    found = estimate.inspect(scans, typed(estimate.Settings, evaluating))
+    found = estimate.inspect(scans, in_si(estimate.Settings, evaluating))
     rms = _in_range(from_si(math.exp(found.moments[0]), "nm"), next(iter(files)), reading)
     nearest = estimate.nearest_density(found)
     form = measured_density(quantiles(found.levelled), found.areas)
@@ -251,7 +251,7 @@ def _scan(path, label, settings):
     from stiction.scans.reading import Source, read
 
     try:
-        return replace(read(path, typed(Source, settings)).scan, name=label)
+        return replace(read(path, in_si(Source, settings)).scan, name=label)
     except ScanError as refusal:
         raise ScanError(label, refusal.key, refusal.reason) from None
 
@@ -291,7 +291,7 @@ def _problem(name, entry, refusal):
     return Problem(path, f"{given}: {refusal.file} {refusal.reason}")
 
 
-def view(config: dict[str, Any], found: Mapping[str, dict]) -> dict[str, Any]:
+def with_preliminary_estimates(config: dict[str, Any], found: Mapping[str, dict]) -> dict[str, Any]:
     """Configuration in which measured surfaces are described by their preliminary numbers, as other surfaces are.
 
     Devices on measured surfaces are uncertain even if nothing else about them is.

@@ -1,7 +1,7 @@
 """Plan of a configuration: the surfaces, cases, variants and figures to be computed.
 
 The rules of the workflow and the library use the same plan and therefore the same cases. Densities are imported where
-they are needed, because a repeated plan takes what it needs of them from `stiction.run.remembered`.
+they are needed, because a repeated plan takes what it needs of them from `stiction.run.disk_cache`.
 """
 
 import math
@@ -15,9 +15,9 @@ from typing import Any
 from stiction.config.cases import case_id, humidity_of, pair_of
 from stiction.config.designs import Designs, hamaker_constant, hamaker_constants
 from stiction.config.files import paper
-from stiction.config.measured import digest, evaluated, evaluation, is_measured, quantities, source
+from stiction.config.measured import digest, evaluation, is_measured, preliminary_estimates, quantities, source
 from stiction.config.merging import merged
-from stiction.models import BEAM_MODELS, ELASTIC, OF_MEASURED, SIDES, SURFACE_MODELS
+from stiction.models import BEAM_MODELS, ELASTIC, MODE_QUANTITIES, SIDES, SURFACE_MODELS
 
 #: Keys of the measured statistics of a surface: moments of the heights and summit statistics.
 MOMENTS = ("rms_nm", "skewness", "kurtosis")
@@ -214,7 +214,7 @@ class Plan:
 
     def quantities(self, surface: str) -> tuple[str, ...]:
         """Quantities of a surface that have slopes, see `stiction.analysis.shifts`; those of scans include modes."""
-        modes = OF_MEASURED[1:] if surface in self.scanned else ()
+        modes = MODE_QUANTITIES[1:] if surface in self.scanned else ()
         return tuple(dict.fromkeys((*quantities(self.config["surfaces"][surface]), *modes)))
 
     @cached_property
@@ -360,7 +360,7 @@ class Plan:
             return chosen(nearest_feasible(**chosen(entry, names))._asdict(), names)
         if entry["heights"] == "measured":
             return None
-        known = self.preliminary or evaluated(self.config)[0]
+        known = self.preliminary or preliminary_estimates(self.config)[0]
         return dict(zip(names, known[surface]["feasible"], strict=True))
 
     # Variants: one changed model choice each, where the paper leaves the choice open

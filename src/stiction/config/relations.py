@@ -18,7 +18,7 @@ from stiction.config import memory
 from stiction.config.cases import NAMEABLE, decimals
 from stiction.config.conditions import Relations
 from stiction.config.messages import did_you_mean, duplicates, shown
-from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, to_si, typed
+from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, in_si, to_si
 from stiction.contact.bounds import least_law
 from stiction.contact.estimate import ProfileMoments, force_law, repulsion_and_attraction
 from stiction.contact.meniscus import dry_air, film, meniscus_height
@@ -221,7 +221,7 @@ def _estimated_correlation_length(rms, radius, density, spacing):
 @functools.cache
 def _correlation_length(**psd):
     """Correlation length of a published spectrum [µm]."""
-    return from_si(correlation_length(typed(CutoffSelfAffine, psd)), "um")
+    return from_si(correlation_length(in_si(CutoffSelfAffine, psd)), "um")
 
 
 @relation("sampling.strip_length_um", "sampling.spacing_nm", "contact.every")
@@ -423,7 +423,7 @@ def estimated_strip(
     shapes, angles = _shapes(sides), wetting(sides, materials)
     if not angles or not shapes or dry_air(humidity, temperature, angles):
         return math.inf
-    bodies = [typed(Solid, solid | stated) for stated in of_material(sides, materials)]
+    bodies = [in_si(Solid, solid | stated) for stated in of_material(sides, materials)]
     summit, water = asperity_between(*bodies, medium), film(humidity, temperature, angles)
     try:
         stiffness = _estimated_stiffness(tuple(map(_summit_source, sides)), tuple(s for s, _ in shapes), summit, water)
@@ -540,7 +540,7 @@ def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature
     if not angles or dry_air(humidities[0], temperature, angles):
         return None  # no water, which other relations report
     try:
-        bodies = [typed(Solid, solid | stated) for stated in of_material(both, materials)]
+        bodies = [in_si(Solid, solid | stated) for stated in of_material(both, materials)]
         films = tuple(film(humidity, temperature, angles) for humidity in humidities)
         forces = _estimated(tuple(map(_summit_source, both)), asperity_between(*bodies, medium), films)
     except (ValueError, ArithmeticError):
@@ -619,7 +619,7 @@ def _moments(source):
     """Moments of the profile of one surface."""
     rms, given = np.float64(to_si(source[0], "nm")), source[1]
     if isinstance(given[0], tuple):
-        return ProfileMoments.of_spectrum(rms, typed(CutoffSelfAffine, dict(given)))
+        return ProfileMoments.of_spectrum(rms, in_si(CutoffSelfAffine, dict(given)))
     radius, density = np.float64(to_si(given[0], "um")), np.float64(to_si(given[1], "per_um2"))
     return ProfileMoments.of_summits(rms, radius, density)
 

@@ -67,7 +67,7 @@ def without_unit(key: str) -> str:
     return _UNIT.sub("", key)
 
 
-def typed(kind: type[T], section: dict[str, Any]) -> T:
+def in_si(kind: type[T], section: dict[str, Any]) -> T:
     """Section of the configuration, or settings of a job, as a frozen dataclass in SI.
 
     Fields that are dataclasses, or dicts of dataclasses, are built from nested sections; lists become tuples.
@@ -89,7 +89,7 @@ def typed(kind: type[T], section: dict[str, Any]) -> T:
     --------
     >>> from dataclasses import make_dataclass
     >>> Water = make_dataclass("Water", [("temperature", float), ("samples", int)])
-    >>> typed(Water, {"temperature_K": 300, "samples": 5})
+    >>> in_si(Water, {"temperature_K": 300, "samples": 5})
     Water(temperature=300.0, samples=5)
     """
     kinds = get_type_hints(kind)
@@ -113,5 +113,5 @@ def _converted(value, kind, unit):
 def _section(value, kind):
     """Section as the dataclass, or the dict of dataclasses, given by a type."""
     if get_origin(kind) is dict:
-        return {name: typed(get_args(kind)[1], entry) for name, entry in value.items()}
-    return typed(next(option for option in (kind, *get_args(kind)) if is_dataclass(option)), value)
+        return {name: in_si(get_args(kind)[1], entry) for name, entry in value.items()}
+    return in_si(next(option for option in (kind, *get_args(kind)) if is_dataclass(option)), value)

@@ -28,7 +28,7 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     Returns
     -------
     dict
-        Preliminary numbers of the measured surfaces by name, see `stiction.config.measured.evaluated`.
+        Preliminary numbers of the measured surfaces by name, see `stiction.config.measured.preliminary_estimates`.
 
     Raises
     ------
@@ -40,11 +40,11 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     sections = _OPTIONAL | config if isinstance(config, dict) else config
     broken = violated(RELATIONS, sections, wrong)
     of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
-    found, refused = measured.evaluated(config, wrong + of_surfaces, kept)
+    found, refused = measured.preliminary_estimates(config, wrong + of_surfaces, kept)
     problems = faults + broken + refused
     if found:
         files = {name: config["surfaces"][name]["scans"]["files"] for name in found}
-        problems += violated(RELATIONS, measured.view(sections, found), wrong, files)
+        problems += violated(RELATIONS, measured.with_preliminary_estimates(sections, found), wrong, files)
     if problems:
         raise ConfigError(*dict.fromkeys(map(str, problems)))
     return found

@@ -32,7 +32,7 @@ class Planner:
     preliminary : dict
         Numbers of measured surfaces, see `stiction.config.measured`.
     remember : callable
-        Keeps fingerprints, see `stiction.run.remembered.Remembered`.
+        Keeps fingerprints, see `stiction.run.disk_cache.DiskCache`.
     kept : str or Path
         File in which jobs are kept between plans.
     """

@@ -15,14 +15,14 @@ from types import SimpleNamespace
 from typing import Any, get_args, get_origin, get_type_hints
 
 from stiction.config.cases import CASE
-from stiction.config.units import typed, without_unit
+from stiction.config.units import in_si, without_unit
 from stiction.models import (
     ALTERNATIVES_OF_SCANS,
     BEAM_MODELS,
-    OF_MEASURED,
-    OF_MOMENTS,
-    OF_SPECTRUM,
-    SHIFTED,
+    MODE_QUANTITIES,
+    MOMENT_QUANTITIES,
+    SHIFTS,
+    SPECTRUM_QUANTITIES,
 )
 
 #: Folders whose modules may declare stages.
@@ -37,9 +37,9 @@ WILDCARDS = {
     "case": CASE,
     "chunk": "[0-9]+",
     "number": "[0-9]+",
-    "moment": "|".join(OF_MOMENTS),
-    "quantity": "|".join(dict.fromkeys((*OF_MOMENTS, *OF_MEASURED, *OF_SPECTRUM))),
-    "side": "|".join(SHIFTED),
+    "moment": "|".join(MOMENT_QUANTITIES),
+    "quantity": "|".join(dict.fromkeys((*MOMENT_QUANTITIES, *MODE_QUANTITIES, *SPECTRUM_QUANTITIES))),
+    "side": "|".join(SHIFTS),
     "solid_property": "modulus|poisson_ratio|hamaker_constant",
     "choice": "|".join(ALTERNATIVES_OF_SCANS),
     "variant": "base|[a-z_]+_[a-z0-9.-]+",
@@ -145,7 +145,7 @@ class Stage:
 
     def converted(self, settings: dict) -> Any:
         """Plain settings of a job as ``compute`` takes them."""
-        return settings if self.kind is None else typed(self.kind, settings)
+        return settings if self.kind is None else in_si(self.kind, settings)
 
     def patterns(self, plan: Any) -> dict[str, str]:
         """Names of all files of a job by key, with wildcards."""

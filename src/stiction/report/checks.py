@@ -21,7 +21,7 @@ from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.beam.equilibrium import allowed_imbalance
 from stiction.beam.foundation import ACCURACY
 from stiction.config.cases import case_id
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.contact.bounds import flooded_law
 from stiction.contact.forcelaw import admissible, coefficients, energy
 from stiction.contact.meniscus import film
@@ -465,11 +465,11 @@ def markdown(table: pd.DataFrame) -> str:
 
 def _checked(data, _at, settings):
     """All checks, whether passed or failed."""
-    nominal = typed(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
+    nominal = in_si(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
     beams = {pair: cantilever(nominal, pair) for pair in settings["pairs"]}
-    strip = typed(StripLength, settings["sampling"]).strip_length
+    strip = in_si(StripLength, settings["sampling"]).strip_length
     defects = {name: defect(spectrum) for name, spectrum in data["spectrum"].items()}
-    flooded = {pair: typed(Flooded, solids) for pair, solids in settings["flooded"].items()}
+    flooded = {pair: in_si(Flooded, solids) for pair, solids in settings["flooded"].items()}
     resampled = {(*case, "NG"): study for case, study in data["resampling"].items()}
     return table(
         chain(

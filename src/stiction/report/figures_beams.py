@@ -10,7 +10,7 @@ from matplotlib.transforms import ScaledTranslation
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.contact.meniscus import flooded_energy
 from stiction.models import SURFACE_MODELS
 from stiction.plan.names import by_model, by_outcome
@@ -276,8 +276,8 @@ def _percent(share):
 
 def _adhesion_energies(data, _at, settings):
     """Energies of all pairs over the humidity, with the published and measured ones."""
-    nominal = typed(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
-    waters = {pair: typed(Water, water) for pair, water in settings["water"].items()}
+    nominal = in_si(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
+    waters = {pair: in_si(Water, water) for pair, water in settings["water"].items()}
     flat = {pair: flooded_energy(water.temperature, water.contact_angles) for pair, water in waters.items()}
     pairs = {}
     for pair in settings["pairs"]:

@@ -36,7 +36,7 @@ def fingerprint(script: str | Path, remember: Callable[[object, Callable[[], Any
     ----------
     script : path
     remember : callable
-        Keeps what is found in a file of the same content, see `stiction.run.remembered.Remembered`.
+        Keeps what is found in a file of the same content, see `stiction.run.disk_cache.DiskCache`.
 
     Returns
     -------

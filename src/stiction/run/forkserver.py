@@ -26,7 +26,7 @@ PACKAGE = Path(__file__).parents[1]
 #: Command that starts the process of a `Server`. With -P, no file in the working directory is imported as a library.
 COMMAND = [sys.executable, "-P", "-m", "stiction.run.forkserver"]
 #: Module that changes Snakemake itself, of which jobs import only a small part.
-_OF_SNAKEMAKE = "stiction.run.hooks"
+_OF_SNAKEMAKE = "stiction.run.snakemake_patches"
 #: Modules that jobs import only when they start, read, write or draw.
 LATE = (
     "snakemake.iocontainers",

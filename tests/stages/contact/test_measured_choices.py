@@ -15,7 +15,7 @@ from stiction.analysis.shifts import ORDERS
 from stiction.config.files import load
 from stiction.config.measured import quantities as measured_quantities
 from stiction.config.plan import Plan
-from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
+from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.scans.histogram import EDGES, histogram
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.moments import mode_covariance, overlap_integrals
@@ -142,16 +142,16 @@ def test_modes_have_the_errors_of_all_scans_together(estimated):
     overlaps = overlap_integrals(surface.underlying, (5e-6, 5e-6), 5e-6, 24)
     expected = mode_covariance(surface.translation, overlaps, ORDERS) / 2
     assert_allclose(np.sqrt(np.diag(estimated.mode_covariance)), np.sqrt(np.diag(expected)), rtol=0.1)
-    assert tuple(estimated["mode"].values) == OF_MEASURED
+    assert tuple(estimated["mode"].values) == MODE_QUANTITIES
 
 
-@pytest.mark.parametrize(("source", "names"), [("moments", OF_MOMENTS), ("measured", OF_MEASURED)])
+@pytest.mark.parametrize(("source", "names"), [("moments", MOMENT_QUANTITIES), ("measured", MODE_QUANTITIES)])
 def test_quantities_of_the_plan_are_those_of_the_surface_and_have_errors(files, estimated, source, names):
     plan = plan_of(files, heights=source)
     own = descriptions.description(*surfaces(plan, estimated)[0]).quantities
-    assert own == measured_quantities(plan.config["surfaces"]["Etched"]) == names + OF_SPECTRUM
-    assert sorted(plan.quantities("Etched")) == sorted({*own, *OF_MEASURED[1:]})
-    assert plan.quantities("Sub1") == OF_MOMENTS + OF_SPECTRUM
+    assert own == measured_quantities(plan.config["surfaces"]["Etched"]) == names + SPECTRUM_QUANTITIES
+    assert sorted(plan.quantities("Etched")) == sorted({*own, *MODE_QUANTITIES[1:]})
+    assert plan.quantities("Sub1") == MOMENT_QUANTITIES + SPECTRUM_QUANTITIES
     assert (plan.scanned_pairs, plan.scanned_sides("b")) == (["b"], ["Etched"])
     errors = scan_uncertainty.errors_of(estimated, plan.quantities("Etched"))
     assert errors.names == names
@@ -196,12 +196,12 @@ def test_modes_of_a_surface_with_the_heights_of_its_moments_are_those_of_its_mea
             xr.testing.assert_allclose(ours, theirs, rtol=1e-6)
 
 
-@pytest.mark.parametrize(("form", "names"), [("moments", OF_MOMENTS), ("measured", OF_MEASURED)])
+@pytest.mark.parametrize(("form", "names"), [("moments", MOMENT_QUANTITIES), ("measured", MODE_QUANTITIES)])
 def test_the_budget_of_a_device_takes_the_covariance_of_the_estimate(files, estimated, form, names):
     plan = plan_of(files, heights=form)
     drawn = heights.compute(estimated, small.settings_of(heights, job_settings(plan, "heights/Etched")))
     found = inputs.of_scans(estimated, drawn)
-    assert found.quantities == (*names, *OF_SPECTRUM)
+    assert found.quantities == (*names, *SPECTRUM_QUANTITIES)
     of_heights = estimated.covariance if form == "moments" else estimated.mode_covariance
     assert_array_equal(found.covariance[: len(names), : len(names)], of_heights)
     assert_array_equal(found.covariance[len(names) :, len(names) :], estimated.fit_covariance[1:, 1:])

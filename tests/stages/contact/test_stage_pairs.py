@@ -7,7 +7,7 @@ from scipy.constants import pi
 
 from stiction.config.files import load
 from stiction.config.plan import Plan
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.asperity import HertzAsperity
 from stiction.stages.contact import contact, pairs
@@ -16,7 +16,7 @@ from stiction.stages.surfaces import heights, spectrum
 from stiction.stages.surfaces.parameters import spectrum_of
 from stiction.streams import stream
 
-SETTINGS = typed(contact.Settings, job_settings(Plan(load()), "contact/b_NG"))
+SETTINGS = in_si(contact.Settings, job_settings(Plan(load()), "contact/b_NG"))
 
 
 def datasets(name):
@@ -77,7 +77,7 @@ def test_surfaces_of_a_pair_are_those_of_their_stages_that_of_the_beam_first():
 def with_materials(**properties):
     """Settings under which the substrate is of another material."""
     changes = {"materials": {"Other": properties}, "surfaces": {"Sub1": {"material": "Other"}}}
-    return typed(contact.Settings, job_settings(Plan(load(changes)), "contact/b_NG"))
+    return in_si(contact.Settings, job_settings(Plan(load(changes)), "contact/b_NG"))
 
 
 def test_stated_properties_of_polysilicon_give_the_asperities_of_the_paper():

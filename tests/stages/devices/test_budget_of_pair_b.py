@@ -9,9 +9,9 @@ from plans import job_settings, surface_datasets
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.devices.budget import OF_SOLIDS, Budget
-from stiction.models import OF_MOMENTS
+from stiction.models import MOMENT_QUANTITIES
 from stiction.stages.contact import contact, curves, slope_contact
 from stiction.stages.devices import budget
 from stiction.stages.devices import uncertain_inputs as inputs
@@ -40,14 +40,16 @@ def surfaces():
 
 @pytest.fixture(scope="module")
 def base(surfaces):
-    return contact.compute(surfaces, "b", "NG", typed(contact.Settings, job_settings(PLAN, "contact/b_NG")))
+    return contact.compute(surfaces, "b", "NG", in_si(contact.Settings, job_settings(PLAN, "contact/b_NG")))
 
 
 @pytest.fixture(scope="module")
 def changed(surfaces):
     """Contacts with less and with more of every quantity of B2."""
-    settings = typed(slope_contact.Settings, job_settings(PLAN, "studies/slopes/contact/b_B2_rms_less"))
-    return {("B2", name): tuple(slope_contact.compute(surfaces, "b", "B2", name, settings)) for name in OF_MOMENTS}
+    settings = in_si(slope_contact.Settings, job_settings(PLAN, "studies/slopes/contact/b_B2_rms_less"))
+    return {
+        ("B2", name): tuple(slope_contact.compute(surfaces, "b", "B2", name, settings)) for name in MOMENT_QUANTITIES
+    }
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +58,7 @@ def solids(surfaces):
 
     def changed(name, side):
         plain = job_settings(PLAN, f"devices/contact/{name}/b_1500x30000_{side}")
-        return contact.compute(surfaces, "b", "NG", typed(contact.Settings, plain))
+        return contact.compute(surfaces, "b", "NG", in_si(contact.Settings, plain))
 
     return {name: tuple(changed(name, side) for side in ("less", "more")) for name in OF_SOLIDS}
 
@@ -65,7 +67,7 @@ def solids(surfaces):
 @pytest.mark.parametrize("humidity", KNOWN)
 def test_slopes_of_pair_b_are_those_of_an_independent_study(humidity, surfaces, base, changed, solids):
     known = {"B2": inputs.of_one_scan(*surfaces[0], 10e-6)}
-    settings = typed(
+    settings = in_si(
         inputs.Settings, job_settings(PLAN, f"devices/budget/{f'C1_rh{round(100 * humidity):03}'}")["budget"]
     )
     found = budget.compute(base, changed, {"modulus": solids["modulus"]}, {}, known, settings)
@@ -73,7 +75,7 @@ def test_slopes_of_pair_b_are_those_of_an_independent_study(humidity, surfaces, 
     assert set(slopes) == set(KNOWN[humidity])
     for name, (slope, error) in slopes.items():
         assert abs(slope - KNOWN[humidity][name]) < 4 * np.hypot(error, ERROR), name
-    whole, heights = budget.budget_of(found), tuple(f"{quantity} of B2" for quantity in OF_MOMENTS)
+    whole, heights = budget.budget_of(found), tuple(f"{quantity} of B2" for quantity in MOMENT_QUANTITIES)
     expected = Budget(heights, np.array([KNOWN[humidity][name] for name in heights]), whole.covariance[:3, :3])
     error = np.hypot(
         whole.error_of_effect(heights, found.slope_error.values), expected.error_of_effect(heights, [ERROR] * 3)
@@ -87,7 +89,7 @@ def test_slopes_of_pair_b_are_those_of_an_independent_study(humidity, surfaces, 
 @pytest.mark.parametrize("humidity", KNOWN)
 def test_slopes_of_the_solids_follow_the_energy_of_the_contact(humidity, base, solids):
     plan = Plan(merged(PLAN.config, {"devices": {"C1": {"uncertainty": SOLIDS}}}))
-    settings = typed(
+    settings = in_si(
         inputs.Settings, job_settings(plan, f"devices/budget/{f'C1_rh{round(100 * humidity):03}'}")["budget"]
     )
     found = budget.compute(base, {}, solids, {}, {}, settings)

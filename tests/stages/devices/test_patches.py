@@ -6,7 +6,7 @@ import small
 from plans import job_settings
 
 from stiction.config.merging import merged
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.stages.contact import contact, curves
 from stiction.stages.devices.error_notes import on_patch
 
@@ -15,7 +15,7 @@ WATER = curves.Water(300.0)
 
 def energies(length, width):
     """Adhesion energies of 200 samples of patches with these sides [nm], as in the stages of devices."""
-    settings = typed(
+    settings = in_si(
         contact.Settings,
         merged(job_settings(small.PLAN, f"devices/contact/b_{length}x{width}"), {"contact": {"samples": 200}}),
     )

@@ -10,7 +10,7 @@ from plans import job_settings
 
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.devices.budget import OF_SOLIDS
 from stiction.stages.contact import contact, curves
 from stiction.stages.devices import budget
@@ -24,7 +24,7 @@ E, RATIO = 164.0, 0.23
 
 def met(plain):
     """Contact of the surfaces of the small study under the settings of a job."""
-    return contact.compute(small.surfaces(), "b", "NG", typed(contact.Settings, plain))
+    return contact.compute(small.surfaces(), "b", "NG", in_si(contact.Settings, plain))
 
 
 def changed(name, plan=small.PLAN):

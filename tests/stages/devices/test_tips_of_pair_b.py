@@ -9,7 +9,7 @@ from plans import job_settings, surface_datasets
 from stiction.config.designs import Designs
 from stiction.config.files import load
 from stiction.config.plan import Plan
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.contact import tilted
 from stiction.contact.meniscus import flooded_energy
 from stiction.devices import arcs, risk
@@ -42,7 +42,7 @@ def settings(number, edge="rounded"):
 
 def drawn(plan, plain):
     surfaces = [surface_datasets(plan, name) for name in plan.sides("b")]
-    return contact.compute(surfaces, "b", "NG", typed(contact.Settings, plain))
+    return contact.compute(surfaces, "b", "NG", in_si(contact.Settings, plain))
 
 
 @cache

@@ -17,7 +17,7 @@ from stiction.analysis.shifts import ORDERS
 from stiction.analysis.variants import relative_shift
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
-from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
+from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.scans.estimate import Settings as Evaluation
 from stiction.scans.model_scans import SurfaceModel
 from stiction.scans.moments import mode_covariance
@@ -37,13 +37,13 @@ from stiction.stages.surfaces.spectrum import Use
 from stiction.streams import stream
 
 HUMIDITIES = (0.44, 0.67, 0.88)
-MODES = OF_MEASURED[1:]
-QUANTITIES = [*OF_MOMENTS, *OF_SPECTRUM, *MODES]
+MODES = MODE_QUANTITIES[1:]
+QUANTITIES = [*MOMENT_QUANTITIES, *SPECTRUM_QUANTITIES, *MODES]
 #: Slopes at the humidities, and those of the modes.
 SLOPES = np.array([[-6.0, -5.0, -1.6], [-6.5, -4.0, -1.0], [-1.5, -1.0, -0.3], [-0.5, -0.3, -0.1], [0.4, 0.2, 0.1]])
 SLOPES = np.vstack([SLOPES, np.outer([1.5, -14, -16, -10, 1.4, 12, 9], [1, 0.5, 0.1])])
 ERRORS = Errors(
-    names=OF_MOMENTS,
+    names=MOMENT_QUANTITIES,
     heights=np.array([[2.6e-4, -2.4e-4, 3e-4], [-2.4e-4, 1.9e-3, -5.3e-3], [3e-4, -5.3e-3, 2.0e-2]]),
     modes=np.diag(np.linspace(0.019, 0.009, 7) ** 2),
     spectrum=np.array([[1.9e-4, -1e-5], [-1e-5, 9e-6]]),
@@ -62,14 +62,16 @@ def study(errors=ERRORS, values=SLOPES, choices=None):
     )
 
 
-@pytest.mark.parametrize(("quantities", "names"), [(QUANTITIES, OF_MOMENTS), (OF_MEASURED + OF_SPECTRUM, OF_MEASURED)])
+@pytest.mark.parametrize(
+    ("quantities", "names"), [(QUANTITIES, MOMENT_QUANTITIES), (MODE_QUANTITIES + SPECTRUM_QUANTITIES, MODE_QUANTITIES)]
+)
 def test_errors_are_those_of_the_heights_that_have_slopes(quantities, names):
     modes, fit = np.diag(np.arange(1.0, 9.0)), np.diag([7.0, 8.0, 9.0])
     covariances = {"covariance": ERRORS.heights, "mode_covariance": modes, "fit_covariance": fit}
     estimate = xr.Dataset({name: ((f"{name}_1", f"{name}_2"), value) for name, value in covariances.items()})
     found = scan_uncertainty.errors_of(estimate.assign(files="a\nb"), quantities)
     assert (found.names, found.scans) == (names, 2)
-    assert_allclose(found.heights, ERRORS.heights if names == OF_MOMENTS else modes)
+    assert_allclose(found.heights, ERRORS.heights if names == MOMENT_QUANTITIES else modes)
     assert_allclose(np.diag(found.modes), np.arange(2, 9))
     assert_allclose(np.diag(found.spectrum), [8, 9])
     of_slopes = slopes.layout(quantities, HUMIDITIES, *np.zeros((2, len(quantities), len(HUMIDITIES))))
@@ -158,14 +160,14 @@ def test_choices_are_compared_on_the_same_samples():
     assert np.all(found.change_error_scans == 0)
 
 
-@pytest.mark.parametrize("names", [OF_MOMENTS, OF_MEASURED])
+@pytest.mark.parametrize("names", [MOMENT_QUANTITIES, MODE_QUANTITIES])
 def test_the_effect_of_the_form_of_the_heights_has_the_error_of_the_measured_form(names):
-    covariance = np.diag([1e-4, *np.diag(ERRORS.modes)]) if names == OF_MEASURED else ERRORS.heights
+    covariance = np.diag([1e-4, *np.diag(ERRORS.modes)]) if names == MODE_QUANTITIES else ERRORS.heights
     choices = {"beyond": small.contact_of_pair(), "heights": small.contact_of_pair()}
     found = study(replace(ERRORS, names=names, heights=covariance), choices=choices)
     of_one = np.sqrt(np.einsum("ih,ij,jh->h", SLOPES[5:], ERRORS.modes, SLOPES[5:]))
     assert_allclose(found.change_error_scans.sel(choice="heights"), np.sqrt(2) * of_one, rtol=1e-9)
-    if names == OF_MEASURED:
+    if names == MODE_QUANTITIES:
         assert_allclose(found.error.sel(surface="B2", part="shape"), of_one, rtol=1e-9)
 
 
@@ -215,7 +217,7 @@ def test_one_scan_of_b2_leaves_the_known_errors():
     surface = SURFACES["B2"]
     model = SurfaceModel(surface.density, surface.spectrum, 1e-6, surface.rms, Frame((500, 500), (1e-5, 1e-5)))
     modes = mode_covariance(model.translation, model.overlaps, ORDERS)[1:, 1:]
-    errors = Errors(OF_MOMENTS, model.covariance, modes, np.diag([0.0145**2, 0.0035**2]), 1)
+    errors = Errors(MOMENT_QUANTITIES, model.covariance, modes, np.diag([0.0145**2, 0.0035**2]), 1)
     choices = {"heights": small.contact_of_pair()}
     found = scan_uncertainty.compute({"B2": slopes_of_b2()}, {"B2": errors}, small.contact_of_pair(), choices, WANTED)
     *_, by_spectrum, total = found.error.sel(surface="B2").values

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import xarray as xr
 
 from stiction.analysis.sensitivity import shifted
-from stiction.models import SHIFTED
+from stiction.models import SHIFTS
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
@@ -47,7 +47,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
 
 def names(settings: Settings) -> list[str]:
     """Names of the contacts in the order of `compute`, such as ``rms_less``."""
-    return [f"{moment}_{side}" for moment in settings.moments for side in SHIFTED]
+    return [f"{moment}_{side}" for moment in settings.moments for side in SHIFTS]
 
 
 def moment(dataset: xr.Dataset) -> float:
@@ -66,7 +66,7 @@ STAGES = (
     Stage.writing(
         "sensitivity_contact",
         "studies/sensitivity/contact/{pair}_{each}",
-        each=lambda plan: [f"{moment}_{side}" for moment in plan.shifted_moments for side in SHIFTED],
+        each=lambda plan: [f"{moment}_{side}" for moment in plan.shifted_moments for side in SHIFTS],
         inputs=lambda plan, at: of_pair(plan, at.pair),
         settings=_settings,
         kind=Settings,

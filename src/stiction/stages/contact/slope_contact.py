@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import xarray as xr
 
 from stiction.analysis.shifts import bracketed
-from stiction.models import OF_MEASURED, SHIFTED
+from stiction.models import MODE_QUANTITIES, SHIFTS
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact.pairs import Settings
@@ -66,14 +66,14 @@ def _inputs(plan, at):
 
     Modes are those of the measured heights, which the surface may not have.
     """
-    estimate = {"estimate": f"estimate/{at.surface}"} if at.quantity in OF_MEASURED[1:] else {}
+    estimate = {"estimate": f"estimate/{at.surface}"} if at.quantity in MODE_QUANTITIES[1:] else {}
     return of_pair(plan, at.pair) | estimate
 
 
 SHIFTED_CONTACT = Stage.writing(
     "slope_contact",
     "studies/slopes/contact/{pair}_{surface}_{quantity}_{each}",
-    each=lambda plan: SHIFTED,
+    each=lambda plan: SHIFTS,
     inputs=_inputs,
     settings=lambda plan, at: select(
         Settings, plan.seen_by(at.pair, samples=plan.config["studies"]["slopes"]["samples"])

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.config.merging import merged
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.contact.pair import DistanceGrid, Summits
 from stiction.plan.stage import Stage
 from stiction.progress import progress
@@ -182,7 +182,7 @@ def _inputs(plan, at):
 def _computed(data, at, settings):
     """Summits of a pair under a variant, from plain settings: those without the variant and its changes."""
     measured = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
-    wanted = (typed(Settings, plain) for plain in (settings["base"], merged(settings["base"], settings["changes"])))
+    wanted = (in_si(Settings, plain) for plain in (settings["base"], merged(settings["base"], settings["changes"])))
     return compute(data["identifications"], at.pair, *wanted, measured)
 
 

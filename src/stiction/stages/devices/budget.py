@@ -17,7 +17,7 @@ import xarray as xr
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
 from stiction.config.cases import humidity_of, pair_of
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.devices import arcs, bridges
 from stiction.devices.budget import Budget, choice_effect, log_slope
@@ -27,7 +27,7 @@ from stiction.plan.stage import Stage, chosen
 from stiction.progress import progress
 from stiction.stages.contact import curves
 from stiction.stages.contact.contact import first
-from stiction.stages.devices.error_notes import noted
+from stiction.stages.devices.error_notes import explain_errors
 from stiction.stages.devices.patch_settings import contacts_of_budget, contacts_of_tip_budget
 from stiction.stages.devices.releases import addresses, arrests, resolved_part, section_of_beam
 from stiction.stages.devices.uncertain_inputs import (
@@ -88,7 +88,7 @@ def compute(
     changes = {}
     for name, changed in choices.items():
         base = replace(state, contact=first(contact, changed.sizes["sample"]))
-        with noted(f"This is the contact under the choice {name}."):
+        with explain_errors(f"This is the contact under the choice {name}."):
             changes[name] = effect(base, replace(state, contact=changed), respond)
     return layout(inputs, found, covariance, respond([state]), changes, settings)
 
@@ -188,7 +188,7 @@ def slopes(inputs: Sequence[Input], respond: Respond) -> np.ndarray:
     """Slopes of the logarithm of the response and their standard errors, (inputs, 2)."""
     found = []
     for entry in progress(inputs, "inputs"):
-        with noted(f"This is the contact with less or more of the input {entry.name}."):
+        with explain_errors(f"This is the contact with less or more of the input {entry.name}."):
             found.append(_slope(respond(entry.states), entry.step))
     return np.array(found).reshape(len(inputs), 2)
 
@@ -315,7 +315,7 @@ def _settings_of_tips(plan, at):
 
 def _computed(data, _at, settings):
     """Budget from the contacts with less and with more of every input, and those under other choices of the model."""
-    wanted = typed(Settings, settings["budget"])
+    wanted = in_si(Settings, settings["budget"])
     described = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     shifted = {key: (less, data["more"][key]) for key, less in data["less"].items()}
     solids = {name: (less, data["solids_more"][name]) for name, less in data["solids_less"].items()}

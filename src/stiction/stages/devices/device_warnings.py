@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.config.cases import case_id
-from stiction.config.units import from_si, typed
+from stiction.config.units import from_si, in_si
 from stiction.devices import limits
 from stiction.plan.names import by_case, by_name
 from stiction.plan.stage import File, Stage, select
@@ -184,9 +184,9 @@ def _settings(plan, at):
 def _of_one_device(data, _at, settings):
     """Warnings about a device: about its lengths, its curves and its patch, each with what follows its name."""
     if "stopper" in settings:
-        of = typed(OfStopper, settings["stopper"])
+        of = in_si(OfStopper, settings["stopper"])
         return [], [], [[[], of_stopper(of, plastic_share(data["plasticity"], of.pair))]]
-    of = typed(OfDevice, settings["beam"])
+    of = in_si(OfDevice, settings["beam"])
     share = plastic_share(data["plasticity"], of.device.pair)
     lengths = [
         [[humidity, shape], sentences]

@@ -7,7 +7,7 @@ from stiction.config.units import from_si
 
 
 @contextmanager
-def noted(text: str) -> Iterator[None]:
+def explain_errors(text: str) -> Iterator[None]:
     """Add a sentence to an error."""
     try:
         yield
@@ -18,4 +18,4 @@ def noted(text: str) -> Iterator[None]:
 
 def on_patch(length: float, width: float) -> AbstractContextManager[None]:
     """Add the sides of the patch [m] to an error of the force curves of its samples."""
-    return noted(f"The patch of surface is {from_si(length, 'um'):g} x {from_si(width, 'um'):g} µm.")
+    return explain_errors(f"The patch of surface is {from_si(length, 'um'):g} x {from_si(width, 'um'):g} µm.")

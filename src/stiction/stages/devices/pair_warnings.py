@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
-from stiction.config.units import typed
+from stiction.config.units import in_si
 from stiction.contact.meniscus import meniscus_height
 from stiction.devices import limits
 from stiction.plan.names import by_name, by_outcome
@@ -85,7 +85,7 @@ def of_pairs(
     plain : dict
         Settings of a job, `OfPairs` in units of the configuration.
     """
-    settings = typed(OfPairs, plain)
+    settings = in_si(OfPairs, plain)
     found = {
         f"pair {pair}": limits.given(*contact_warnings(plastic_share(plasticity, pair), materials[pair]))
         for pair in settings.pairs
@@ -109,7 +109,7 @@ def of_thin_films(cases: Iterable[tuple[str, float, str]], plain: Mapping[str, d
     plain : dict
         Water by pair in units of the configuration.
     """
-    films = {(pair, humidity): height(humidity, typed(Water, plain[pair])) for pair, humidity, _ in cases}
+    films = {(pair, humidity): height(humidity, in_si(Water, plain[pair])) for pair, humidity, _ in cases}
     found = {case: limits.thin_film(film) for case, film in films.items()}
     return [f"Pair {pair}, RH {humidity:g}: {sentence}" for (pair, humidity), sentence in found.items() if sentence]
 

@@ -9,7 +9,7 @@ from stiction.config.designs import KEYS_OF_SOLIDS, OF_TIPS, Patch, hamaker_cons
 from stiction.config.merging import merged
 from stiction.config.units import NM_PER_UM
 from stiction.devices.budget import OF_SOLIDS
-from stiction.models import SHIFTED, SIDES
+from stiction.models import SHIFTS, SIDES
 from stiction.plan.stage import At, select
 from stiction.stages.contact.pairs import Settings
 
@@ -57,8 +57,8 @@ def _changed(plan, device, slopes, changed, choices):
     """
     designs = plan.designs
     quantities, solids = designs.quantities(device), designs.uncertain_solids(device)
-    shifted = {side: {key: f"{slopes}_{key[0]}_{key[1]}_{side}" for key in quantities} for side in SHIFTED}
-    uncertain = {f"solids_{side}": {name: f"{changed.format(name)}_{side}" for name in solids} for side in SHIFTED}
+    shifted = {side: {key: f"{slopes}_{key[0]}_{key[1]}_{side}" for key in quantities} for side in SHIFTS}
+    uncertain = {f"solids_{side}": {name: f"{changed.format(name)}_{side}" for name in solids} for side in SHIFTS}
     return shifted | uncertain | {"choices": {name: f"{changed.format('choices')}_{name}" for name in choices}}
 
 
@@ -106,7 +106,7 @@ def with_property(settings: dict[str, Any], name: str, side: str) -> dict[str, A
 
 def _with_less_or_more(material, name, side):
     """Material with less or more of a property; of its Hamaker constants through all media by the same factor."""
-    key, end = KEYS_OF_SOLIDS[name], SHIFTED.index(side)
+    key, end = KEYS_OF_SOLIDS[name], SHIFTS.index(side)
     if name == "hamaker_constant":
         constants = hamaker_constants(material).items()
         return material | {key: {medium: OF_SOLIDS[name].ends(constant)[end] for medium, constant in constants}}

@@ -14,7 +14,7 @@ import xarray as xr
 from scipy.linalg import block_diag
 
 from stiction.devices.budget import OF_DIMENSIONS, OF_SOLIDS
-from stiction.models import OF_MEASURED, OF_MOMENTS, OF_SPECTRUM, SIDES
+from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.scans import moments
 from stiction.stages.contact.curves import Water
 from stiction.stages.contact.slope_contact import difference
@@ -158,7 +158,7 @@ def of_surface(
     """Quantities of a surface, of its heights and of its spectrum."""
     inputs = []
     for quantity in known.quantities:
-        kind = "spectrum" if quantity in OF_SPECTRUM else "heights"
+        kind = "spectrum" if quantity in SPECTRUM_QUANTITIES else "heights"
         contacts = shifted[surface, quantity]
         both = tuple(replace(state, contact=contact) for contact in contacts)
         inputs.append(Input(f"{quantity} of {surface}", f"the {kind} of {surface}", both, difference(contacts[0])))
@@ -274,8 +274,8 @@ def of_scans(estimate: xr.Dataset, heights_of: xr.Dataset) -> Known:
         Of stages estimate and heights.
     """
     measured = isinstance(heights.density(heights_of, "NG"), MeasuredDensity)
-    found = errors_of(estimate, OF_MEASURED if measured else OF_MOMENTS)
-    return Known(found.names + OF_SPECTRUM, block_diag(found.heights, found.spectrum))
+    found = errors_of(estimate, MODE_QUANTITIES if measured else MOMENT_QUANTITIES)
+    return Known(found.names + SPECTRUM_QUANTITIES, block_diag(found.heights, found.spectrum))
 
 
 def of_one_scan(heights_of: xr.Dataset, spectrum_of: xr.Dataset, side: float) -> Known:
@@ -291,4 +291,4 @@ def of_one_scan(heights_of: xr.Dataset, spectrum_of: xr.Dataset, side: float) ->
     translation = Translation(heights.density(heights_of, "NG"))
     underlying = spectrum.underlying(spectrum_of, "NG")
     reach = np.pi / float(spectrum_of.wavenumber[1] - spectrum_of.wavenumber[0])  # half of the period of its field
-    return Known(OF_MOMENTS, moments.covariance(translation, underlying, (side, side), reach))
+    return Known(MOMENT_QUANTITIES, moments.covariance(translation, underlying, (side, side), reach))

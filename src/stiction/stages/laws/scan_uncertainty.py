@@ -17,7 +17,7 @@ import xarray as xr
 
 from stiction.analysis.variants import relative_shift
 from stiction.devices.budget import Budget, joined
-from stiction.models import ALTERNATIVES_OF_SCANS, OF_MEASURED, OF_MOMENTS, OF_SPECTRUM
+from stiction.models import ALTERNATIVES_OF_SCANS, MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact.contact import first
 from stiction.stages.contact.curves import energies
@@ -54,9 +54,9 @@ class Uncertainty(NamedTuple):
 
 def errors_of(estimate: xr.Dataset, quantities: Sequence[str]) -> Errors:
     """Errors of a surface from its dataset of stage estimate; its heights have the moments if these have slopes."""
-    names = OF_MOMENTS if set(OF_MOMENTS) <= set(quantities) else OF_MEASURED
+    names = MOMENT_QUANTITIES if set(MOMENT_QUANTITIES) <= set(quantities) else MODE_QUANTITIES
     modes = estimate.mode_covariance.values
-    heights = estimate.covariance.values if names == OF_MOMENTS else modes
+    heights = estimate.covariance.values if names == MOMENT_QUANTITIES else modes
     scans = len(stage_estimate.files(estimate))
     return Errors(names, heights, modes[1:, 1:], estimate.fit_covariance.values[1:, 1:], scans)
 
@@ -98,17 +98,17 @@ def compute(
 
 def _budgets(slopes, errors):
     """Budget of ln ē and the standard errors of its slopes, one after the other for every humidity."""
-    names = (*errors.names, *OF_SPECTRUM)
+    names = (*errors.names, *SPECTRUM_QUANTITIES)
     of_slopes = zip(study_slopes.of(slopes, names), study_slopes.errors_of(slopes, names), strict=True)
     count = len(errors.names)
     for values, uncertain in of_slopes:
         heights = Budget(errors.names, values[:count], errors.heights)
-        yield joined([heights, Budget(OF_SPECTRUM, values[count:], errors.spectrum)]), uncertain
+        yield joined([heights, Budget(SPECTRUM_QUANTITIES, values[count:], errors.spectrum)]), uncertain
 
 
 def _parts(slopes, errors):
     """Relative errors of ē by the parts of one surface, (parts, n_rh) [-]."""
-    groups = errors.names[:1], errors.names[1:], OF_SPECTRUM
+    groups = errors.names[:1], errors.names[1:], SPECTRUM_QUANTITIES
     return np.transpose([[*map(budget.effect, groups), budget.total] for budget, _ in _budgets(slopes, errors)])
 
 
@@ -119,7 +119,7 @@ def _sampling(slopes, errors):
 
 def _form(slopes, errors):
     """Relative error of ē by the measured form of one surface, (n_rh,) [-]."""
-    modes = OF_MEASURED[1:]
+    modes = MODE_QUANTITIES[1:]
     return [Budget(modes, values, errors.modes).total for values in study_slopes.of(slopes, modes)]
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis.sensitivity import energy_sensitivity
-from stiction.models import SHIFTED
+from stiction.models import SHIFTS
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact.curves import Water, energies
 from stiction.stages.contact.sensitivity_contact import moment
@@ -60,7 +60,7 @@ STAGES = (
         "sensitivity",
         "studies/sensitivity/{pair}_{moment}",
         inputs=lambda plan, at: {
-            "contacts": [f"studies/sensitivity/contact/{at.pair}_{at.moment}_{side}" for side in SHIFTED]
+            "contacts": [f"studies/sensitivity/contact/{at.pair}_{at.moment}_{side}" for side in SHIFTS]
         },
         settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
         kind=Settings,

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.devices.budget import log_slope
-from stiction.models import SHIFTED
+from stiction.models import SHIFTS
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact.curves import Water, energies
 from stiction.stages.contact.slope_contact import difference
@@ -71,7 +71,7 @@ def errors_of(dataset: xr.Dataset, quantities: Sequence[str]) -> np.ndarray:
 def _inputs(plan, at):
     """Contacts of a pair with less and with more of every quantity of a surface."""
     contact = f"studies/slopes/contact/{at.pair}_{at.surface}"
-    return {side: {name: f"{contact}_{name}_{side}" for name in plan.quantities(at.surface)} for side in SHIFTED}
+    return {side: {name: f"{contact}_{name}_{side}" for name in plan.quantities(at.surface)} for side in SHIFTS}
 
 
 STAGES = (

@@ -9,7 +9,7 @@ import xarray as xr
 
 from stiction.analysis.shifts import ORDERS
 from stiction.config.units import from_si
-from stiction.models import OF_MEASURED
+from stiction.models import MODE_QUANTITIES
 from stiction.plan.stage import Stage
 from stiction.scans import estimate as evaluation
 from stiction.scans import periodogram as spectra
@@ -157,14 +157,14 @@ def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
             "score": ("score", SCORES, {"units": "1"}),
             "summit": ["radius", "density"],
             "axis": ["fast", "slow"],
-            "mode": list(OF_MEASURED),
-            "other_mode": list(OF_MEASURED),
+            "mode": list(MODE_QUANTITIES),
+            "other_mode": list(MODE_QUANTITIES),
         },
     )
 
 
 def _mode_covariance(found):
-    """Covariance of the quantities of a measured density, `stiction.models.OF_MEASURED`."""
+    """Covariance of the quantities of a measured density, `stiction.models.MODE_QUANTITIES`."""
     model = found.model
     covariance = mode_covariance(model.translation, model.overlaps, ORDERS) / len(found.inspection.names)
     covariance[0, 0] = found.covariance[0, 0]

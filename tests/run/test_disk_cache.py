@@ -2,8 +2,8 @@
 
 import pytest
 
+from stiction.run.disk_cache import DiskCache
 from stiction.run.fingerprint import fingerprint
-from stiction.run.remembered import Remembered
 
 
 def never():
@@ -11,7 +11,7 @@ def never():
 
 
 def test_a_result_is_computed_once_for_equal_arguments_and_again_for_others(tmp_path):
-    remember = Remembered(tmp_path / "kept.json")
+    remember = DiskCache(tmp_path / "kept.json")
     assert remember({"b": 1, "a": [2]}, lambda: "first") == "first"
     assert remember({"a": [2], "b": 1}, never) == "first"
     assert remember({"a": [3], "b": 1}, lambda: "second") == "second"
@@ -20,17 +20,17 @@ def test_a_result_is_computed_once_for_equal_arguments_and_again_for_others(tmp_
 def test_the_next_run_knows_the_results_that_were_used_and_no_others(tmp_path):
     path = tmp_path / "folder" / "kept.json"
     for used in (["a", "b"], ["b"]):
-        remember = Remembered(path)
+        remember = DiskCache(path)
         for key in used:
             remember(key, lambda key=key: key.upper())
         remember.save()
-    last = Remembered(path)
+    last = DiskCache(path)
     assert last("b", never) == "B"
     assert last("a", lambda: "computed again") == "computed again"
 
 
 def test_an_error_is_not_kept(tmp_path):
-    remember = Remembered(tmp_path / "kept.json")
+    remember = DiskCache(tmp_path / "kept.json")
     with pytest.raises(ZeroDivisionError):
         remember("a", lambda: 1 / 0)
     assert remember("a", lambda: 2) == 2
@@ -40,15 +40,15 @@ def test_an_error_is_not_kept(tmp_path):
 def test_a_damaged_file_counts_as_empty(tmp_path, content):
     path = tmp_path / "kept.json"
     path.write_text(content)
-    remember = Remembered(path)
+    remember = DiskCache(path)
     assert remember("a", lambda: 1) == 1
     remember.save()
-    assert Remembered(path)("a", never) == 1
+    assert DiskCache(path)("a", never) == 1
 
 
 def test_a_file_that_cannot_be_written_stops_nothing(tmp_path):
     (tmp_path / "file").touch()
-    remember = Remembered(tmp_path / "file" / "kept.json")
+    remember = DiskCache(tmp_path / "file" / "kept.json")
     remember("a", lambda: 1)
     remember.save()
 
@@ -59,7 +59,7 @@ def test_fingerprints_are_the_same_with_and_without_memory_and_follow_the_conten
     for text in ("import stiction.streams\n", "import stiction.streams\nx = 1\n"):
         script.write_text(text)
         for _ in range(2):
-            remember = Remembered(kept)
+            remember = DiskCache(kept)
             found.append(fingerprint(script, remember))
             remember.save()
         assert found[-1] == found[-2] == fingerprint(script)

@@ -13,7 +13,7 @@ from typing import Any
 from stiction.run.atomic import DataError, save_text
 
 
-class Remembered:
+class DiskCache:
     """Results by the hash of everything that determines them."""
 
     def __init__(self, path: str | Path):

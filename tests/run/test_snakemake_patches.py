@@ -17,20 +17,20 @@ from snakemake.persistence.file import FilePersistence
 from snakemake.scheduling.job_scheduler import JobScheduler
 from snakemake.script import PythonScript
 
-from stiction.run import forkserver, hooks
+from stiction.run import forkserver, snakemake_patches
 
 ROOT = forkserver.Path(__file__).parents[2]
 BARE = "from stiction.run import forkserver; forkserver.preload = lambda: None; forkserver.main()"
 SNAKEFILE = """
 import os, sys
-from stiction.run import forkserver, hooks
+from stiction.run import forkserver, snakemake_patches
 
 forkserver.COMMAND = [sys.executable, "-P", "-c", {bare!r}]
 
 onstart:
     if config["changed"]:
-        hooks.limit_timers(workflow)
-        print("forked:", hooks.fork_jobs(), flush=True)
+        snakemake_patches.limit_timers(workflow)
+        print("forked:", snakemake_patches.fork_jobs(), flush=True)
 
 onerror:
     print("timers limited:", "_schedule_reevalutation" in vars(workflow.scheduler), flush=True)
@@ -184,7 +184,7 @@ def scheduler():
 def test_a_scheduler_is_woken_once_per_timer(timers, changed, number):
     found = scheduler()
     if changed:
-        hooks.limit_timers(SimpleNamespace(scheduler=found))
+        snakemake_patches.limit_timers(SimpleNamespace(scheduler=found))
     for _ in range(20):
         found._schedule_reevalutation(0.2)
     assert [timer.interval for timer in timers] == [0.2] * number
@@ -198,8 +198,8 @@ def test_a_scheduler_is_woken_once_per_timer(timers, changed, number):
 
 def test_an_unknown_scheduler_remains_as_it_is():
     unknown = SimpleNamespace(_open_jobs=threading.Semaphore(0))
-    hooks.limit_timers(SimpleNamespace(scheduler=unknown))
-    hooks.limit_timers(SimpleNamespace())
+    snakemake_patches.limit_timers(SimpleNamespace(scheduler=unknown))
+    snakemake_patches.limit_timers(SimpleNamespace())
     assert not hasattr(unknown, "_schedule_reevalutation")
 
 
@@ -210,7 +210,7 @@ def test_parameters_compare_the_same_without_the_import_of_pandas(monkeypatch):
     records = persistence.PersistenceBase
     known = records._serialize_param_pandas
     monkeypatch.setattr(records, "_serialize_param_pandas", known)
-    hooks.compare_without_pandas()
+    snakemake_patches.compare_without_pandas()
     record = object.__new__(FilePersistence)
     frame = pandas.DataFrame({"column": [1, 2]})
     assert record._serialize_param_pandas(frame) == known(record, frame)
@@ -222,7 +222,7 @@ def test_parameters_compare_the_same_without_the_import_of_pandas(monkeypatch):
 
 def test_unknown_records_of_parameters_remain_as_they_are(monkeypatch):
     monkeypatch.delattr(persistence, "PersistenceBase")
-    hooks.compare_without_pandas()
+    snakemake_patches.compare_without_pandas()
     assert not hasattr(persistence, "PersistenceBase")
 
 
@@ -239,21 +239,21 @@ def another(self, fname, debug):
 
 
 def test_jobs_start_as_before_if_the_server_does_not_start(untouched):
-    assert not hooks.fork_jobs()
+    assert not snakemake_patches.fork_jobs()
     assert PythonScript.execute_script is untouched
 
 
 def test_jobs_start_as_before_if_snakemake_starts_them_in_an_unknown_way(monkeypatch):
     monkeypatch.setattr(forkserver, "COMMAND", [sys.executable, "-P", "-c", BARE])
     monkeypatch.setattr(PythonScript, "execute_script", another)
-    assert not hooks.fork_jobs()
+    assert not snakemake_patches.fork_jobs()
     assert PythonScript.execute_script is another
 
 
 def test_jobs_start_as_before_where_forks_are_not_safe(untouched, monkeypatch):
     monkeypatch.setattr(forkserver, "COMMAND", [sys.executable, "-P", "-c", BARE])
-    monkeypatch.setattr(hooks.sys, "platform", "darwin")
-    assert not hooks.fork_jobs()
+    monkeypatch.setattr(snakemake_patches.sys, "platform", "darwin")
+    assert not snakemake_patches.fork_jobs()
     assert PythonScript.execute_script is untouched
 
 
@@ -273,8 +273,8 @@ def test_jobs_start_as_before_once_the_server_has_ended(monkeypatch):
 
     started, job = [], SimpleNamespace(**PLAIN, threads=1, resources={})
     monkeypatch.setattr(PythonScript, "execute_script", execute_script)
-    monkeypatch.setattr(hooks, "Server", Stopped)
-    assert hooks.fork_jobs()
+    monkeypatch.setattr(snakemake_patches, "Server", Stopped)
+    assert snakemake_patches.fork_jobs()
     PythonScript.execute_script(job, "job.py")
     assert started == [(job, "job.py", False)]
     assert PythonScript.execute_script is execute_script  # the server is not tried again
@@ -287,19 +287,19 @@ SPECIAL += [{"threads": 2}, {"resources": {"tmpdir": "/elsewhere"}}, {"resources
 
 @pytest.mark.parametrize(("special", "plain"), [({}, True), *((each, False) for each in SPECIAL)], ids=str)
 def test_only_scripts_with_the_surroundings_of_the_server_are_forked(special, plain):
-    folder = hooks.tempfile.gettempdir()
-    server = SimpleNamespace(environment=hooks.environment(1, folder))
+    folder = snakemake_patches.tempfile.gettempdir()
+    server = SimpleNamespace(environment=snakemake_patches.environment(1, folder))
     script = SimpleNamespace(**PLAIN | {"threads": 1, "resources": {"tmpdir": folder}} | special)
-    assert hooks._plain(script, server) == plain
+    assert snakemake_patches._plain(script, server) == plain
 
 
 @pytest.mark.parametrize("name", [*PLAIN, "threads", "resources"])
 def test_a_script_about_which_snakemake_no_longer_tells_all_is_not_forked(name):
-    server = SimpleNamespace(environment=hooks.environment(1, hooks.tempfile.gettempdir()))
+    server = SimpleNamespace(environment=snakemake_patches.environment(1, snakemake_patches.tempfile.gettempdir()))
     script = SimpleNamespace(**PLAIN, threads=1, resources={})
-    assert hooks._plain(script, server)
+    assert snakemake_patches._plain(script, server)
     delattr(script, name)
-    assert not hooks._plain(script, server)
+    assert not snakemake_patches._plain(script, server)
 
 
 def test_a_server_starts_without_a_module_that_a_library_no_longer_has(monkeypatch):
@@ -335,17 +335,19 @@ def test_this_version_of_snakemake_has_all_that_is_asked_of_it():
 )
 def test_the_main_process_is_known_by_snakemake_or_by_its_arguments(monkeypatch, words, main):
     monkeypatch.setattr(sys, "argv", ["snakemake", *words])
-    assert hooks.is_main(Workflow()) == main
-    assert hooks.is_main(Workflow(is_main_process=not main)) != main
+    assert snakemake_patches.is_main(Workflow()) == main
+    assert snakemake_patches.is_main(Workflow(is_main_process=not main)) != main
 
 
 def test_jobs_are_not_forked_where_snakemake_does_not_say_where_they_run():
-    assert not hooks.runs_here(Workflow())
-    assert hooks.runs_here(Workflow(local_exec=True))
+    assert not snakemake_patches.runs_here(Workflow())
+    assert snakemake_patches.runs_here(Workflow(local_exec=True))
 
 
 def test_files_of_the_configuration_come_before_those_that_they_overwrite():
     files = ["first.yaml", "second.yaml"]
-    found = hooks.files_of_configuration(Workflow(overwrite_configfiles=files, configfiles=[*files, "config.yaml"]))
+    found = snakemake_patches.files_of_configuration(
+        Workflow(overwrite_configfiles=files, configfiles=[*files, "config.yaml"])
+    )
     assert [path.name for path in found] == ["second.yaml", "first.yaml", "config.yaml"]
-    assert hooks.files_of_configuration(Workflow()) == []
+    assert snakemake_patches.files_of_configuration(Workflow()) == []

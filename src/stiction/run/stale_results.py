@@ -30,7 +30,7 @@ def foreign(
     expected : callable
         Settings of the job of a file in this run; ``None`` if no job of this run writes the file.
     remember : callable
-        Keeps the labels of files that have not changed, see `stiction.run.remembered.Remembered`.
+        Keeps the labels of files that have not changed, see `stiction.run.disk_cache.DiskCache`.
 
     Yields
     ------
@@ -96,7 +96,7 @@ def damaged(logs: str | Path, remember: Callable[[object, Callable[[], Any]], An
     logs : path
         Folder of the logs.
     remember : callable
-        Keeps the checksums of files that have not changed, see `stiction.run.remembered.Remembered`.
+        Keeps the checksums of files that have not changed, see `stiction.run.disk_cache.DiskCache`.
     """
     for path, written in recorded(logs).items():
         file = Path(path)

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from stiction.run import kept, labels, storage
+from stiction.run import labels, stale_results, storage
 from stiction.run.atomic import DataError
+from stiction.run.disk_cache import DiskCache
 from stiction.run.logs import checksum, logged, recorded
-from stiction.run.remembered import Remembered
 
 HEIGHTS, SPECTRUM = {"rms_nm": 3.4, "kurtosis": 3.9}, {"spacing_nm": 7.5, "psd": {"floor_nm4": 0.8}}
 
@@ -31,16 +31,16 @@ def files(tmp_path, monkeypatch):
 
 def reasons(wanted, **changed):
     """Files that a run with these settings cannot use; a plan knows the labels that those before it have read."""
-    remember = Remembered("labels.json")
-    found = dict(kept.foreign(["heights/B2.nc", "spectrum/B2.nc"], (wanted | changed).get, remember))
+    remember = DiskCache("labels.json")
+    found = dict(stale_results.foreign(["heights/B2.nc", "spectrum/B2.nc"], (wanted | changed).get, remember))
     remember.save()
     return found
 
 
 def damaged():
     """Files that are not as their jobs wrote them; a plan knows the checksums that those before it have computed."""
-    remember = Remembered("labels.json")
-    found = dict(kept.damaged("logs", remember))
+    remember = DiskCache("labels.json")
+    found = dict(stale_results.damaged("logs", remember))
     remember.save()
     return found
 
@@ -145,7 +145,7 @@ def test_files_of_another_name_without_a_label_or_cut_off_are_not_used(files, tm
     (tmp_path / "heights" / "B2.nc").rename(other)
     assert reasons({}, **{"heights/B2.nc": HEIGHTS}) == {"heights/B2.nc": "cannot be read"}
     wanted = {"heights/Sub1.nc": HEIGHTS}
-    assert dict(kept.foreign([other.relative_to(tmp_path)], wanted.get, Remembered("none.json"))) == {
+    assert dict(stale_results.foreign([other.relative_to(tmp_path)], wanted.get, DiskCache("none.json"))) == {
         "heights/Sub1.nc": "holds heights of B2"
     }
     xr.Dataset().to_netcdf("heights/B2.nc")
@@ -201,7 +201,7 @@ def test_a_byte_of_a_dataset_that_changed_at_the_same_time_and_size_is_noticed(t
 def reasons_of(path):
     """Whether labels alone refuse a dataset with its own settings."""
     settings = {path.as_posix(): labels.read(path).settings}
-    return dict(kept.foreign([path], settings.get, Remembered("none.json")))
+    return dict(stale_results.foreign([path], settings.get, DiskCache("none.json")))
 
 
 def test_the_checksum_of_an_unchanged_file_is_computed_once(tmp_path, monkeypatch):
@@ -209,7 +209,7 @@ def test_the_checksum_of_an_unchanged_file_is_computed_once(tmp_path, monkeypatc
     with logged("logs/x.log", ["x.csv"]):
         Path("x.csv").write_text("1")
     seen = []
-    monkeypatch.setattr(kept, "checksum", lambda path: seen.append(path) or checksum(path))
+    monkeypatch.setattr(stale_results, "checksum", lambda path: seen.append(path) or checksum(path))
     assert damaged() == damaged() == {}
     assert seen == [Path("x.csv")]
     Path("x.csv").write_text("2")
@@ -226,7 +226,7 @@ def test_a_failed_job_records_no_checksum(tmp_path, monkeypatch):
 
 def test_the_summary_has_one_line_per_folder():
     found = {"a/z.nc": "cannot be read", "a/b/1.nc": "is foreign", "a/1.nc": "holds forces", "a/a.nc": "cannot be read"}
-    assert list(kept.summary(found)) == [
+    assert list(stale_results.summary(found)) == [
         "a/1.nc holds forces; this run does not use it (nor 2 more of this folder).",
         "a/b/1.nc is foreign; this run does not use it.",
     ]
