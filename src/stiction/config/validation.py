@@ -16,7 +16,7 @@ _OPTIONAL = {"materials": {}, "devices": {}}
 def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     """Check a configuration against the schema and the relations between its keys, and the files of its scans.
 
-    Relations hold for the preliminary numbers of measured surfaces as for the given numbers of others.
+    Measured surfaces are checked with their preliminary estimates.
 
     Parameters
     ----------

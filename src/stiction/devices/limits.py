@@ -43,7 +43,8 @@ def arcs_of_elements(share: float, strip: float) -> str | None:
         return None
     return (
         f"{100 * share:.4g} % of the beams end as arcs, held by the tip only. This share depends on the strip length, "
-        f"here {strip * 1e6:.3g} µm: P(stuck) of a cantilever in section devices has arcs on tilted strips at the tip."
+        f"here {strip * 1e6:.3g} µm. For a realistic share, describe the beam under `devices`, where tips are computed "
+        "on tilted strips."
     )
 
 
@@ -140,7 +141,7 @@ def large_rotation(gap: float, crack_length: float) -> str | None:
 
 
 def stubby_beam(crack_length: float, thickness: float) -> str | None:
-    """Crack that is too short for a beam without shear and with an ideal clamp."""
+    """Warn if the crack is too short for Euler-Bernoulli theory and an ideal clamp."""
     ratio = crack_length / thickness
     if ratio >= SLENDER:
         return None

@@ -1,4 +1,4 @@
-"""Results that a plan needs and that only its inputs and its code determine, kept in a file between runs.
+"""Disk cache for planning: results that only their inputs and the code determine.
 
 Planning a run again takes half of the time.
 """

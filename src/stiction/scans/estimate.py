@@ -43,7 +43,7 @@ from stiction.surface.summits import radius_and_density
 FEWEST_WAVELENGTHS, ENOUGH_WAVELENGTHS = 4, 10
 #: Largest relative difference between the sizes of the scans of a surface.
 _SAME_SIZE = 0.01
-#: Number of times that the bias of levelling is estimated: the second time on the surface without the first bias.
+#: Rounds of bias correction; the second starts from the corrected surface.
 _ROUNDS = 2
 #: Fewest model scans of a round per scan: the error of the bias is small beside that of the scans.
 _PER_SCAN = 8
@@ -253,7 +253,7 @@ def estimate(
     found = inspect(scans, settings)
     values, heights = found.moments, found.quantiles
     model, nearest = _model(found, values, heights)
-    # The verdict on the scans as they are is final: moments that are accepted before a run are not refused in it.
+    # Feasibility is decided once, on the uncorrected moments, so that a run cannot refuse what validation accepted.
     largest = LARGEST_DISTANCE_OF_SCANS if nearest is None else np.inf
     residuals = []
     for number in range(_ROUNDS):

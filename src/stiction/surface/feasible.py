@@ -1,7 +1,7 @@
 """Moments for which a maximum-entropy density of the heights exists, and the nearest ones to others (Sec. II-A).
 
 At skewness 0 a density of the form of Eq. (3) has a kurtosis of at most 3. The moments of a Gaussian surface therefore
-lie on the border of the feasible ones, and measured moments of such a surface lie beyond it every other time.
+lie on the border of the feasible ones, and half of all measurements of a Gaussian surface fall outside.
 """
 
 import functools

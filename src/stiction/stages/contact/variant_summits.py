@@ -1,4 +1,4 @@
-"""Summits of a pair under a variant: all that its contact depends on besides the solids, whose variants share them.
+"""Summits of a pair under a variant. Variants of the solids share them.
 
 The dataset depends neither on the elasticity of the solids nor on their attraction.
 """

@@ -1,4 +1,4 @@
-"""What an error of the force curves of samples is about."""
+"""Notes in error messages: which patch or contact an error of the force curves concerns."""
 
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager

@@ -26,8 +26,8 @@ class Settings:
 def compute(settings: Settings) -> xr.Dataset:
     """Solve for the maximum-entropy density with the moments of the surface, or with the nearest feasible ones.
 
-    ASSUME: measured moments that no maximum-entropy density has are an estimate of the nearest ones that one has. A
-    warning states both.
+    ASSUME: if no maximum-entropy density has the measured moments, they are off by sampling error, and the nearest
+    feasible ones are used. A warning states both.
 
     Raises
     ------
