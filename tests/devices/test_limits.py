@@ -11,7 +11,7 @@ UM, NM = 1e-6, 1e-9
 
 #: Arguments that trigger a warning, a number that its sentence must contain, and arguments that do not trigger it.
 CASES = [
-    (limits.arcs_of_elements, (0.42, 1.5 * UM), "42 %.*1.5 µm.*section devices", (0.0, 1.5 * UM)),
+    (limits.arcs_of_elements, (0.42, 1.5 * UM), "42 %.*1.5 µm.*under `devices`", (0.0, 1.5 * UM)),
     (limits.cut_off_mean, (0.58, 1400 * UM, 1500 * UM), "58 %.*1400 µm.*1500 µm", (1.0, 700 * UM, 1500 * UM)),
     (limits.plastic_contact, (0.58,), "58 %.*2 %", (0.02,)),
     (limits.plastic_contact, (np.nan,), "was not checked.*distance_nm", (0.0,)),
