@@ -74,6 +74,14 @@ rule measured:
         "Sheets and tables of the measured surfaces."
 
 
+rule scans:
+    input:
+        planner.wanted("scans"),
+    localrule: True
+    message:
+        "Sheets and statistics of scans, without the pairs of their surfaces."
+
+
 HELD = []  # open file that holds the lock on the folder of this run
 
 

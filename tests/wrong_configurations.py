@@ -2,6 +2,8 @@
 
 YES = "truth values"
 GONE = "there is no value"
+STOPPER = "{kind: stopper, pair: b, contact_um: [3, 3], restoring_force_uN: 20, humidities: [0.5, 0.8]}"
+CANTILEVER = "{kind: cantilever, pair: b, thickness_um: 3, gap_um: 10, width_um: 30, humidities: [0.5, 0.8]}"
 
 # Overlay on the paper's configuration | offending key | its value | part of the message
 WRONG_VALUES = [
@@ -83,7 +85,6 @@ WRONG_VALUES = [
     ("pairs: {a: {humidities: [0.5, 7e-1]}}", "pairs.a.humidities[1]", "'7e-1'", "write 7.0e-1"),
     ("pairs: {a: {beam: 1}}", "pairs.a.beam", "1", "must be text"),
     ("run: {pairs: a}", "run.pairs", "'a'", "write [a]"),
-    ("run: {pairs: []}", "run.pairs", "[]", "with at least one entry"),
     ("run: {pairs: [a, no]}", "run.pairs[1]", "False", YES),
     ("contact: {samples: '5,000'}", "contact.samples", "'5,000'", "write 5000 without a separator"),
     ("contact: {samples: 1'200'000}", "contact.samples", '"1\'200\'000"', "write 1200000 without a separator"),
@@ -209,6 +210,12 @@ WRONG_RELATIONS = [
     ("figures: {humidity: 0.65001}", "figures.humidity", "0.65001", "at most 4 decimals"),
     ("contact: {chunks: 5001}", "contact.chunks", "5001", "at most the number of samples (given contact.samples ="),
     ("contact: {samples: 1819}", "chaos.order", "12", "at most 11, or 1820 samples are needed"),
+    (f"contact: {{samples: 1819}}\ndevices: {{S1: {STOPPER}}}", "chaos.order", "12", "run: {pairs: []} computes"),
+    (f"run: {{pairs: []}}\ncontact: {{samples: 1819}}\ndevices: {{S1: {STOPPER}, C1: {CANTILEVER}}}", "chaos.order",
+     "12", "at most 11, or 1820 samples are needed"),
+    ("run: {pairs: []}", "run.pairs", "[]", "name a pair: there are neither devices nor scans"),
+    ("run: {studies: [mesh, mesh]}", "run.studies", "['mesh', 'mesh']", "once; 'mesh' is listed twice"),
+    ("run: {studies: []}\nchaos: {order: 12}\ncontact: {samples: 9}", "chaos.order", "12", "at most 1, or 1820"),
     ("beam: {elements: 300}", "beam.length_um", "1500", "multiple of strip_length x elements = 450 µm"),
     ("beam: {elements: 2000}", "beam.length_um", "1500", "multiple of strip_length x elements = 3000 µm"),
     ("pairs: {a: {gap_um: 1000}}\nbeam: {length_um: 900}", "pairs.a.gap_um", "1000", "below the length of the beam"),

@@ -47,6 +47,7 @@ def options(asked):
         ("run mine.yaml -- --forceall tables", ["--forceall", "tables"], ["mine.yaml"]),
         ("devices mine.yaml --dry-run", ["--dry-run", "devices"], ["mine.yaml"]),
         ("devices", ["devices"], [str(ROOT / "examples" / "devices.yaml")]),
+        ("scans mine.yaml", ["scans"], ["mine.yaml"]),
         ("figures", ["figures"], []),
         ("figures mine.yaml", ["figures"], ["mine.yaml"]),
         ("explain mine.yaml", ["--dry-run"], ["mine.yaml"]),
@@ -96,7 +97,7 @@ BAD_FILES = {
     "octal": b"seed: 010\n",
     "missing": None,
 }
-COMMANDS = ("run", "devices", "figures", "explain", "check")
+COMMANDS = ("run", "devices", "scans", "figures", "explain", "check")
 
 
 @pytest.mark.parametrize(

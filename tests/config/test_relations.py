@@ -9,7 +9,7 @@ from configurations import LEAVES, NUMBERS, PAPER, ROOT, SCHEMA, changed, proble
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from published import SURFACES
-from wrong_configurations import WRONG_RELATIONS
+from wrong_configurations import STOPPER, WRONG_RELATIONS
 
 from stiction.chaos.model import MAX_ORDER
 from stiction.config import conditions, relations, validation
@@ -72,6 +72,8 @@ def test_a_violated_relation_is_rejected_in_one_line_with_key_value_and_what_is_
         "pairs: {a: {substrate: B1}}",
         "van_der_waals: none",
         "run: {pairs: [c, a]}",
+        "run: {studies: []}\nstudies: {mesh: {elements_um: [7]}}",
+        f"run: {{pairs: []}}\ncontact: {{samples: 100}}\ndevices: {{S1: {STOPPER}}}",
     ],
 )
 def test_values_at_the_limit_of_a_relation_are_valid(overlay):

@@ -8,6 +8,7 @@ import yaml
 
 from stiction.config.files import load
 from stiction.config.plan import Plan
+from stiction.config.relations import schema
 from stiction.plan.graph import Graph, stages
 from stiction.plan.planner import Planner
 from stiction.plan.stage import File, Stage
@@ -15,7 +16,7 @@ from stiction.plan.stage import File, Stage
 ROOT = Path(__file__).parents[2]
 #: The paper, and the devices of the example, which need every stage that no measured surface needs.
 PLAN = Plan(load(yaml.safe_load((ROOT / "examples" / "devices.yaml").read_text())))
-GRAPH = Graph(PLAN)
+GRAPH, SCHEMA = Graph(PLAN), schema()
 #: Stages of surfaces described by scans; `tests/workflow/test_from_scans.py` runs them.
 OF_SCANS = {"scan", "estimate", "heights_of_scans", "spectrum_of_scans", "choice_contact", "scan_uncertainty"}
 
@@ -27,25 +28,34 @@ def listed(names):
     return list(names.values() if isinstance(names, dict) else names)
 
 
-def reached():
-    """All jobs behind the files that the targets want, by the first name of each."""
-    wanted = [
+def wanted_files(plan):
+    """Files that the targets want."""
+    return [
         name.format(**at)
         for stage, _ in stages().values()
-        if stage.targets
-        for at in stage.jobs(PLAN)
+        for at in stage.wanted(plan)
         for name in stage.files.values()
     ]
+
+
+def reached():
+    """All jobs behind the files that the targets want, by the first name of each."""
+    wanted = wanted_files(PLAN)
     wanted += [f"devices/{stage}/{case}" for stage in ("safe_lengths", "cracks") for case in PLAN.designs.cases]
     wanted += [f"devices/chart/{case}" for name in PLAN.designs.charted for case in PLAN.designs.chart_cases(name)]
     wanted += [f"devices/stoppers/{name}" for name in PLAN.designs.stoppers]
     wanted += [f"devices/budget/{name}" for name in PLAN.designs.budgets()]
+    return behind(GRAPH, wanted)
+
+
+def behind(graph, wanted):
+    """All jobs behind some files, by the first name of each."""
     jobs = {}
     while wanted:
         name = wanted.pop()
         if name in jobs or isinstance(name, File):
             continue
-        jobs[name] = job = GRAPH.job(name)
+        jobs[name] = job = graph.job(name)
         wanted += [inner for names in job.inputs.values() for inner in listed(names)]
     return jobs
 
@@ -79,6 +89,49 @@ def test_no_two_stages_write_the_same_file():
     for name, job in JOBS.items():
         others = [stage for stage, matches in GRAPH._expressions if matches.fullmatch(name)]
         assert others == [job.stage], name
+
+
+def without_studies(*studies):
+    """Jobs of the paper with only some of its studies."""
+    plan = Plan(load({"run": {"studies": list(studies)}}))
+    return behind(Graph(plan), wanted_files(plan))
+
+
+def studied(jobs):
+    """Names of the stages of studies among jobs."""
+    return {job.stage.name for name, job in jobs.items() if name.startswith(("studies/", "iteration/"))}
+
+
+def test_the_paper_runs_all_its_studies_and_a_configuration_without_studies_none_of_them():
+    assert len(studied(JOBS)) > 10
+    assert not studied(without_studies())
+    assert studied(without_studies("mesh", "orders")) == {"mesh", "correlation", "orders"}
+
+
+def test_without_studies_all_other_jobs_are_the_same():
+    few = without_studies()
+    assert {"table_3", "figure_14", "beams", "verdict"} <= {job.stage.name for job in few.values()}
+    reduced = {"checks", "model_limits"}  # which read the results of studies
+    for name, job in few.items():
+        assert job.settings == JOBS[name].settings
+        assert job.inputs == JOBS[name].inputs or job.stage.name in reduced
+
+
+def test_every_study_of_the_paper_can_be_selected():
+    listed = SCHEMA["properties"]["run"]["properties"]["studies"]["items"]["enum"]
+    assert {*listed, "slopes"} == set(PLAN.config["studies"]), "slopes are part of errors, not a study of their own"
+    assert {stage.study for stage, _ in stages().values()} == {*listed, ""}
+
+
+def test_without_pairs_only_devices_and_scans_are_wanted(tmp_path):
+    config = PLAN.config | {"run": {"pairs": []}}
+    whole, devices = (
+        {rule["name"]: rule for rule in Planner(each, {}, lambda _, compute: compute(), tmp_path / "jobs.json").rules}
+        for each in (PLAN.config, config)
+    )
+    wanted = {name for name, rule in devices.items() if rule["wanted"]}
+    assert wanted == {name for name, rule in whole.items() if "devices" in rule["targets"] and rule["wanted"]}
+    assert wanted < {name for name, rule in whole.items() if rule["wanted"]}
 
 
 @pytest.fixture

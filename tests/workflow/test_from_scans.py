@@ -85,6 +85,14 @@ def planner(tmp_path_factory):
     planner.close()
 
 
+def test_scans_are_evaluated_without_a_pair(planner, tmp_path):
+    (good,) = scans_of(tmp_path)
+    overlay = tmp_path / "mine.yaml"
+    overlay.write_text(yaml.safe_dump({"surfaces": {"Etched": {"scans": {"files": [good.name]}}}}))
+    rules = {rule for rule, _ in planner.outputs("scans", "--directory", tmp_path, config=[overlay]).values()}
+    assert rules == {"scan", "estimate", "heights_of_scans", "spectrum_of_scans", "surface_sheet", "table_scans"}
+
+
 @pytest.fixture(scope="module")
 def bad(tmp_path_factory):
     """Folder with unusable files, and what is wrong with each."""

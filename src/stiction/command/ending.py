@@ -25,7 +25,7 @@ class Status(IntEnum):
 _VERDICT = "verdict"
 #: Pages and tables of results to open first, the most important one first.
 _PAGES = ("devices/*.html", "figures/overview.png", "figures/surface_sheet_*.png", "figures/*.png")
-_TABLES = ("tables/safe_lengths.md", "tables/stoppers.md", "tables/table_3.md")
+_TABLES = ("tables/safe_lengths.md", "tables/stoppers.md", "tables/table_3.md", "tables/scans.md")
 #: Head of a line of a traceback that names an error, with the modules of its class.
 _MODULES = re.compile(r"\A(?:\w+\.)+(?=\w+:)")
 

@@ -51,6 +51,7 @@ def _parser():
     _add(commands, "run", _run, "compute your own surfaces, pairs, beams and devices", files="+")
     _add(commands, "paper", _run, "compute every table and figure of the paper", files=None)
     _add(commands, "devices", _devices, "compute only what a design of devices needs (default: the example)", files="*")
+    _add(commands, "scans", _scans, "evaluate scans alone: sheets, statistics and warnings", files="+")
     _add(commands, "figures", _figures, "draw the figures", files="*")
     _add(commands, "report", _report, "put the results into one file, results/report.html", files="*")
     _add(commands, "explain", _explain, "say what would be computed, and why", files="*")
@@ -105,8 +106,10 @@ def _check(arguments):
 
     config = load(*arguments.files)
     pairs, devices = config["run"]["pairs"], config.get("devices", {})
-    parts = [f"pair{'s' * (len(pairs) > 1)} {', '.join(pairs)}", f"devices {', '.join(devices)}" if devices else ""]
-    _say(f"{' '.join(arguments.files)} can run: {' and '.join(filter(None, parts))}.")
+    scanned = [name for name, entry in config["surfaces"].items() if "scans" in entry]
+    named = {f"pair{'s' * (len(pairs) > 1)}": pairs, "devices": devices, "scans of": scanned}
+    parts = [f"{what} {', '.join(names)}" for what, names in named.items() if names]
+    _say(f"{' '.join(arguments.files)} can run: {' and '.join(parts) or 'nothing'}.")
     return Status.DONE
 
 
@@ -133,6 +136,11 @@ def _devices(arguments):
     """Run what devices need."""
     arguments.files = arguments.files or [str(launch.WORKFLOW / "examples" / "devices.yaml")]
     return _run(arguments, "devices")
+
+
+def _scans(arguments):
+    """Evaluate scans without the pairs of their surfaces."""
+    return _run(arguments, "scans")
 
 
 def _figures(arguments):

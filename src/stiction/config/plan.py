@@ -330,14 +330,20 @@ class Plan:
     # Studies
 
     @property
+    def studies(self) -> list[str]:
+        """Studies of the paper that run, by their section."""
+        return self.config["run"].get("studies", list(self.config["studies"]))
+
+    @property
     def pressed_pairs(self) -> list[str]:
         """Pairs whose plasticity is studied."""
-        return [pair for pair in self.pairs if pair in self.config["studies"]["plasticity"]["distance_nm"]]
+        known = self.config["studies"]["plasticity"]["distance_nm"]
+        return [pair for pair in self.pairs if pair in known and "plasticity" in self.studies]
 
     @cached_property
     def shifted_moments(self) -> list[str]:
         """Moments of the surface of the figures for which a sensitivity is computed: those that can be shifted."""
-        return ["rms", *filter(self._can_be_shifted, ("skewness", "kurtosis"))]
+        return ["rms", *filter(self._can_be_shifted, ("skewness", "kurtosis"))] if self.pairs else []
 
     def _can_be_shifted(self, moment):
         """Whether surfaces with the moment slightly decreased and slightly increased exist."""

@@ -56,12 +56,20 @@ _TARGET = (
 
 
 @relation("run.pairs")
+@relation("run.studies")
 @relation("surfaces.*.scans.files")
 @relation("design.shares")
 def list_has_no_duplicates(values):
-    """A pair runs once, a scan counts once, and a share has one safe length."""
+    """A pair or a study runs once, a scan counts once, and a share has one safe length."""
     repeated = duplicates(values)
     return f"must list each value once; {shown(repeated[0])} is listed twice" if repeated else None
+
+
+@relation("run.pairs", "devices", "surfaces")
+def something_is_computed(names, devices, surfaces):
+    """A run without pairs computes devices or evaluates scans."""
+    scanned = any("scans" in surface for surface in surfaces.values())
+    return None if names or devices or scanned else "must name a pair: there are neither devices nor scans"
 
 
 @relation("run.pairs", "pairs.#")
@@ -268,11 +276,15 @@ def chunks_are_not_empty(chunks, samples):
     return None if chunks <= samples else "must be at most the number of samples"
 
 
-@relation("chaos.order", "contact.samples")
-def samples_carry_the_chaos(order, samples):
-    """There are no more polynomials in four variables, App. B, than samples to fit them."""
+@relation("chaos.order", "contact.samples", "run", "devices")
+def samples_carry_the_chaos(order, samples, run, devices):
+    """There are no more polynomials in four variables, App. B, than samples to fit them; stoppers need no model."""
+    stoppers = {device["kind"] for device in devices.values()} == {"stopper"}
     carried = next(n for n in itertools.count(order, -1) if math.comb(n + 4, 4) <= samples)
-    return None if order == carried else f"must be at most {carried}, or {math.comb(order + 4, 4)} samples are needed"
+    if order == carried or (not run["pairs"] and (stoppers or not devices)):
+        return None
+    hint = "; run: {pairs: []} computes the stoppers alone, which need no chaos model" if stoppers else ""
+    return f"must be at most {carried}, or {math.comb(order + 4, 4)} samples are needed{hint}"
 
 
 @relation("beam.length_um", "sampling.strip_length_um", "beam.elements")
@@ -291,9 +303,11 @@ def strips_fill_finer_elements(strips, length, strip):
     return "must divide the strips along the beam into whole elements, at least two"
 
 
-@relation("studies.mesh.elements_um", "studies.mesh.strips_um", "beam.length_um")
-def a_mesh_is_whole(elements, strips, length):
+@relation("studies.mesh.elements_um", "studies.mesh.strips_um", "beam.length_um", "run")
+def a_mesh_is_whole(elements, strips, length, run):
     """At least one mesh of Figure 19 is possible; lengths that do not fill each other and the beam are left out."""
+    if "mesh" not in run.get("studies", ["mesh"]):
+        return None
     fitting = (is_multiple(length, element) and is_multiple(element, strip) for element in elements for strip in strips)
     return None if any(fitting) else "must include a divisor of the beam that is a multiple of one of the strips"
 
@@ -383,7 +397,7 @@ def strips_resolve_the_crack_of_the_figures(
     strip, thickness, modulus, shown, humidities, of_figures, running, pair, *meeting
 ):
     """As above, for the beams of the figures, whose humidity need not be one of their pair."""
-    if pair != (of_figures if of_figures in running else running[0]):
+    if pair != (of_figures if of_figures in running else next(iter(running), None)):
         return None
     own, of_shown = (
         strips_resolve_the_crack(strip, thickness, modulus, each, running, pair, *meeting)

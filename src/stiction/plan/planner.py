@@ -112,12 +112,13 @@ class Planner:
         from stiction.plan.graph import constraints
 
         taken = ("name", "targets", "temporary", "cluster", "minutes", "priority", "libraries")
-        wanted = [at for at in stage.jobs(self.plan) if stage.targets]
         return {key: getattr(stage, key) for key in taken} | {
             "module": module,
             "dataset": stage.save is None,
             "files": {key: path_of(stage, name) for key, name in stage.patterns(self.plan).items()},
-            "wanted": [path_of(stage, name.format(**at)) for at in wanted for name in stage.files.values()],
+            "wanted": [
+                path_of(stage, name.format(**at)) for at in stage.wanted(self.plan) for name in stage.files.values()
+            ],
             "log": f"{RESULTS}logs/{stage.log}.log",
             "constraints": {"surface": constraints(stage, self.plan)["surface"]} if stage.surfaces else {},
             "message": re.sub(r"{(\w+)}", r"{wildcards.\1}", stage.message),

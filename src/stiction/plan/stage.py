@@ -63,9 +63,9 @@ def _nothing(_plan, _at) -> dict:
     return {}
 
 
-def _once(_plan) -> list[dict]:
-    """The one job of a stage without wildcards."""
-    return [{}]
+def _once(plan) -> list[dict]:
+    """The one job of a stage without wildcards, about the pairs that run."""
+    return [{}] if plan.pairs else []
 
 
 def titled(name: str, shows: str) -> str:
@@ -111,6 +111,7 @@ class Stage:
     surfaces: Callable[[Any], Iterable[str]] | None = None  #: surfaces to which the stage is restricted, by the plan
     jobs: Callable[[Any], list[dict]] = _once  #: wildcards of the jobs that its targets want, by the plan
     targets: tuple[str, ...] = ()  #: targets of the workflow that want its files
+    study: str = ""  #: study without which its targets do not want its files
     shown: Shown | None = None  #: how the report shows one of the files
     first: Callable[[Any], dict] | None = None  #: part of the inputs to read, by the settings
     streamed: bool = False  #: whether inputs in an order are loaded one at a time
@@ -142,6 +143,10 @@ class Stage:
             if self.save
             else self.files["dataset"].removesuffix("_{each}")
         )
+
+    def wanted(self, plan: Any) -> list[dict]:
+        """Wildcards of the jobs whose files the targets want."""
+        return self.jobs(plan) if self.targets and (not self.study or self.study in plan.studies) else []
 
     def converted(self, settings: dict) -> Any:
         """Plain settings of a job as ``compute`` takes them."""

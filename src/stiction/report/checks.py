@@ -520,7 +520,7 @@ STAGES = (
             "forces": by_outcome("forces", plan.laws),
             "chaos": by_outcome("chaos", plan.laws),
             "beams": by_outcome("beams", plan.outcomes),
-            "resampling": by_case("studies/resampling", plan.cases),
+            "resampling": by_case("studies/resampling", plan.cases) if "resampling" in plan.studies else {},
         },
         settings=lambda plan, at: (
             {

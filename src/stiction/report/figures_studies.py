@@ -489,6 +489,7 @@ STAGES = (
     _study(
         "figure_13",
         "sensitivity to the moments of a surface",
+        study="sensitivity",
         inputs=lambda plan, at: {
             "studies": {name: f"studies/sensitivity/{plan.figure_pair}_{name}" for name in plan.shifted_moments},
             "published": published.file("sensitivity"),
@@ -503,6 +504,7 @@ STAGES = (
     _study(
         "figure_16",
         "stress of the touching summits",
+        study="plasticity",
         inputs=lambda plan, at: {"studies": by_name("studies/plasticity", plan.pressed_pairs)},
         compute=lambda data, at, settings: summit_stresses(data["studies"]),
         jobs=lambda plan: [{}] if plan.pressed_pairs else [],
@@ -510,6 +512,7 @@ STAGES = (
     _study(
         "figure_17",
         "convergence in samples and coordinates",
+        study="sample_shares",
         inputs=lambda plan, at: {"sizes": "studies/sample_sizes", "chaos": by_case("chaos", plan.cases, "_NG")},
         settings=lambda plan, at: {"tolerance": plan.config["chaos"]["dimension_tolerance"]},
         compute=lambda data, at, settings: sample_convergence(
@@ -521,18 +524,21 @@ STAGES = (
     _study(
         "figure_18",
         "convergence in the order of the polynomials",
+        study="orders",
         inputs=lambda plan, at: {"orders": "studies/orders"},
         compute=lambda data, at, settings: order_convergence(data["orders"]),
     ),
     _study(
         "figure_19",
         "convergence of the mesh, autocorrelation",
+        study="mesh",
         inputs=lambda plan, at: {"mesh": "studies/mesh", "correlation": "studies/correlation"},
         compute=lambda data, at, settings: mesh_convergence(data["mesh"], data["correlation"]),
     ),
     _study(
         "variants",
         "Table III under other model choices",
+        study="variants",
         inputs=lambda plan, at: {
             "studies": by_outcome("studies/variants", plan.studied_cases),
             "published": published.file("table_3"),

@@ -260,7 +260,7 @@ def _figure_11(name, file, shows, surfaces):
         compute=lambda data, at, settings: summits(
             {name: {"G": gaussian, "NG": data["other"][name]} for name, gaussian in data["gaussian"].items()}
         ),
-        jobs=lambda plan: [{}] if surfaces(plan) else [],
+        jobs=lambda plan: [{}] if plan.pairs and surfaces(plan) else [],
         targets=("figures",),
     )
 
@@ -309,6 +309,7 @@ STAGES = (
             "iteration": by_name("iteration", plan.surfaces),
         },
         compute=lambda data, at, settings: spectra(_of_surfaces(data)),
+        study="iteration",
         targets=("figures",),
     ),
     _figure_11("figure_11", "figure_11", "heights and radii of summits", lambda plan: [plan.figure_surface]),

@@ -286,6 +286,7 @@ STAGES = (
             "resampled": by_case("studies/resampling", plan.cases),
         },
         compute=lambda data, at, settings: resampling(data["beams"], data["resampled"]),
+        study="resampling",
         targets=("figures", "study_figures"),
     ),
 )

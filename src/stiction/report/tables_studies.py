@@ -201,6 +201,7 @@ STAGES = (
         compute=lambda data, at, settings: sensitivity(
             data["studies"], settings["pair"], published.compared(data, settings)
         ),
+        study="sensitivity",
         targets=("figures", "study_figures"),
     ),
     table_stage(
@@ -213,6 +214,7 @@ STAGES = (
         },
         settings=lambda plan, at: {"of_paper": plan.paper_pairs},
         compute=lambda data, at, settings: variants(by_pair(data["studies"]), published.compared(data, settings)),
+        study="variants",
         targets=("figures", "study_figures"),
     ),
 )

@@ -174,6 +174,6 @@ STAGES = (
         inputs=lambda plan, at: {stage: f"{stage}/{at.surface}" for stage in ("estimate", "spectrum")},
         compute=lambda data, at, settings: surface_sheet(at.surface, data["estimate"], data["spectrum"]),
         jobs=lambda plan: [{"surface": name} for name in plan.scanned],
-        targets=("figures", "measured"),
+        targets=("figures", "measured", "scans"),
     ),
 )

@@ -152,7 +152,7 @@ STAGES = (
             {name: [scan for key, scan in data["scans"].items() if key[0] == name] for name in data["estimates"]},
         ),
         jobs=lambda plan: [{}] if plan.scanned else [],
-        targets=("tables", "measured"),
+        targets=("tables", "measured", "scans"),
     ),
     table_stage(
         "table_scan_uncertainty",
