@@ -3,12 +3,14 @@
 Stages, settings and addresses of random numbers are the same as in the workflow, and so are the results.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import xarray as xr
 
 from stiction.config.cases import case_id
-from stiction.config.designs import BEAMS, Designs
+from stiction.config.designs import Designs
+from stiction.config.kinds import KINDS, Kind
 from stiction.config.units import in_si
 from stiction.plan.graph import Results
 from stiction.stages.devices import device_warnings, pair_warnings
@@ -71,23 +73,23 @@ class Device:
 
         The first call takes half a minute, for a bridge a minute.
         """
-        self._must_be(*BEAMS)
+        self._must_be(lambda kind: kind.is_beam)
         return self._result("cracks", humidity)
 
     def safe_lengths(self, humidity: float) -> xr.Dataset:
         """P(stuck) over the length, and safe lengths; dataset of `stiction.stages.devices.safe_lengths`."""
-        self._must_be(*BEAMS)
+        self._must_be(lambda kind: kind.is_beam)
         return self._result("safe_lengths", humidity)
 
     def chart(self, humidity: float) -> xr.Dataset:
         """Safe lengths of the thicknesses and gaps of its chart; dataset of `stiction.stages.devices.chart`."""
-        self._must_be(*BEAMS)
+        self._must_be(lambda kind: kind.is_beam)
         self._must_state("chart", self._section.get("chart"))
         return self._result("chart", humidity)
 
     def forces(self) -> xr.Dataset:
         """Pull-off forces of a stopper, P(stuck) and the worst humidity: dataset of stage stoppers."""
-        self._must_be("stopper")
+        self._must_be(lambda kind: not kind.is_beam)
         return self.results[f"devices/stoppers/{self.name}"]
 
     def budget(self, humidity: float) -> xr.Dataset:
@@ -100,7 +102,7 @@ class Device:
 
     def tip_budget(self, humidity: float) -> xr.Dataset:
         """As `budget`, of the length that the tip of a cantilever holds."""
-        self._must_be("cantilever")
+        self._must_be(lambda kind: kind.has_tip)
         self._must_state("uncertainty", self.name in self._plan.designs.budgeted)
         return self._result("budget", humidity, "_tip")
 
@@ -128,8 +130,9 @@ class Device:
     def _section(self):
         return self._plan.config["devices"][self.name]
 
-    def _must_be(self, *kinds):
+    def _must_be(self, wanted: Callable[[Kind], bool]):
         """Refuse a result that other kinds of devices have."""
+        kinds = [name for name, kind in KINDS.items() if wanted(kind)]
         if self._section["kind"] not in kinds:
             raise ValueError(f"device {self.name} is a {self._section['kind']}; only a {' or '.join(kinds)} has this")
 

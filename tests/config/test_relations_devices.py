@@ -13,8 +13,9 @@ from plans import job_settings
 from test_messages import UNITS
 
 from stiction.config import memory
-from stiction.config.designs import KEYS, Designs
+from stiction.config.designs import Designs
 from stiction.config.files import load, normalised
+from stiction.config.kinds import KEYS
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import in_si
@@ -50,7 +51,7 @@ def plan(**changes):
 
 def test_devices_and_materials_with_all_their_keys_are_valid():
     assert problems(ALL) == ()
-    assert {key for keys in KEYS.values() for key in keys} <= {key for section in DEVICES.values() for key in section}
+    assert set(KEYS) <= {key for section in DEVICES.values() for key in section}
 
 
 @pytest.mark.parametrize(
@@ -283,7 +284,7 @@ def test_a_configuration_without_devices_has_no_cases():
 def test_cases_are_beams_at_their_humidities():
     designs = Designs(load({"devices": DEVICES}))
     assert designs.cases == ["C1_rh044", "C1_rh067", "R1_rh067"]
-    assert designs.of_kind("stopper") == ["S1"]
+    assert designs.stoppers == ["S1"]
     assert designs.charted == ["C1"]
     assert designs.pressed_pairs == ["b"]
     other = {"pairs": {"d": PAPER["pairs"]["b"]}, "devices": {"C1": C1 | {"pair": "d"}}}
@@ -293,8 +294,8 @@ def test_cases_are_beams_at_their_humidities():
 def test_strips_equal_to_those_of_the_main_line_share_their_contact():
     designs = Designs(load({"devices": {"C1": C1, "C2": C1 | {"width_um": 20}, "C3": C1 | {"strip_um": 1.2}}}))
     assert [designs.has_strips_of_pair(name) for name in ("C1", "C2", "C3")] == [True, False, False]
-    assert designs.strips("C2").name == "b_1500x20000"
-    assert designs.strips("C3").name == "b_1200x30000"
+    assert designs.ground("C2").name == "b_1500x20000"
+    assert designs.ground("C3").name == "b_1200x30000"
 
 
 def test_the_strip_of_a_tip_holds_the_wedge_of_the_flattest_beam_and_its_film():

@@ -9,23 +9,13 @@ import numpy as np
 
 from stiction.beam.cantilever import Beam
 from stiction.config.cases import case_id
+from stiction.config.kinds import Kind, kind_of
 from stiction.config.measured import is_measured, quantities
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
 from stiction.models import MOMENT_QUANTITIES, SIDES
-
-#: Kinds of devices that crack open; a stopper is pulled off at once.
-BEAMS = ("cantilever", "bridge")
-#: Keys of each kind of device apart from those that every device has.
-KEYS = {
-    "cantilever": {"thickness_um", "gap_um", "width_um"},
-    "bridge": {"thickness_um", "gap_um", "width_um", "residual_stress_MPa"},
-    "stopper": {"contact_um", "restoring_force_uN"},
-}
-#: Keys that a device need not have, by kind.
-OPTIONAL = {"cantilever": {"strip_um", "chart"}, "bridge": {"strip_um", "chart"}, "stopper": set()}
 
 #: Steps of the distance for the contact of tips, in those of section contact. ASSUME: they suffice for the largest
 #: attraction, the vertex of a parabola: with four, lengths of pair b are 0.02 to 0.19 % longer than with one.
@@ -36,24 +26,6 @@ KEYS_OF_SOLIDS = {
     "poisson_ratio": "poisson_ratio",
     "hamaker_constant": "hamaker_constant_zJ",
 }
-
-
-#: ASSUME: strips of 0.5 µm resolve the middle of a bridge, which is held on 2 to 6 µm [µm]. Shorter ones hold more:
-#: on pair b (t = h = 2 µm, 50 MPa, p = 0.001), 0.25, 0.5 and 1.5 µm give 233, 236 and 242 µm at RH 0.44, 176, 175 and
-#: 181 µm at 0.67, 112.2, 112.2 and 113.2 µm at 0.92, with standard errors of about 1 %. Windows of one surface give the
-#: same as independent strips: 208.7 ± 1.2 and 208.2 ± 0.7 µm on average at RH 0.67.
-MIDDLE = 0.5
-
-
-def strip_of(device: dict, of_pairs: float) -> float:
-    """Length of the strips along a beam [µm]: as stated, or that of pairs, or shorter at the middle of a bridge.
-
-    Examples
-    --------
-    >>> strip_of({"kind": "cantilever"}, 1.5), strip_of({"kind": "bridge"}, 1.5), strip_of({"kind": "bridge"}, 0.3)
-    (1.5, 0.5, 0.3)
-    """
-    return device.get("strip_um", min(of_pairs, MIDDLE) if device["kind"] == "bridge" else of_pairs)
 
 
 def hamaker_constants(material: dict) -> dict[str, float]:
@@ -109,14 +81,24 @@ class Designs:
         """Sections of all devices by name; empty if the configuration has none."""
         return self.config.get("devices", {})
 
-    def of_kind(self, *kinds: str) -> list[str]:
-        """Names of the devices of some kinds."""
-        return [name for name, device in self.devices.items() if device["kind"] in kinds]
+    def kind(self, device: str) -> Kind:
+        """Kind of a device."""
+        return kind_of(self.devices[device])
 
     @property
     def beams(self) -> list[str]:
         """Devices that crack open."""
-        return self.of_kind(*BEAMS)
+        return [name for name in self.devices if self.kind(name).is_beam]
+
+    @property
+    def stoppers(self) -> list[str]:
+        """Devices that touch with their whole area."""
+        return [name for name in self.devices if not self.kind(name).is_beam]
+
+    @property
+    def with_tips(self) -> list[str]:
+        """Devices that a free end may hold."""
+        return [name for name in self.devices if self.kind(name).has_tip]
 
     @property
     def cases(self) -> list[str]:
@@ -150,12 +132,12 @@ class Designs:
 
     def strip(self, device: str) -> float:
         """Length of the strips along a device [µm]."""
-        return strip_of(self.devices[device], self.config["sampling"]["strip_length_um"])
+        return self.kind(device).strip(self.devices[device], self.config["sampling"]["strip_length_um"])
 
-    def strips(self, device: str) -> Patch:
-        """Strips along a device."""
+    def ground(self, device: str) -> Patch:
+        """Patch on which a device sticks: strips along a beam, or the whole area of a stopper."""
         section = self.devices[device]
-        return patch(section["pair"], self.strip(device), section["width_um"])
+        return patch(section["pair"], *self.kind(device).sides(section, self.config["sampling"]["strip_length_um"]))
 
     def has_strips_of_pair(self, device: str) -> bool:
         """Whether a device sticks on the strips of its pair in the main line, whose contact it then shares."""
@@ -178,7 +160,7 @@ class Designs:
         KeyError
             If no tip of a device has these strips.
         """
-        devices = [name for name in self.of_kind("cantilever") if self.tips(name) == tips]
+        devices = [name for name in self.with_tips if self.tips(name) == tips]
         if not devices:
             raise KeyError(f"no device has tips on strips {tips.name}")
         slopes = {float(slope) for name in devices for slope in self._slopes(name)}
@@ -218,19 +200,7 @@ class Designs:
         least = from_si(film, "nm") + 3 * math.hypot(*rms)
         return round(2 ** (math.ceil(4 * math.log2(least)) / 4), 3)
 
-    # Stoppers and budgets
-
-    @property
-    def stoppers(self) -> list[str]:
-        """Devices that touch with their whole surface."""
-        return self.of_kind("stopper")
-
-    def ground(self, device: str) -> Patch:
-        """Patch on which a device sticks: strips along a beam, or the whole area of a stopper."""
-        section = self.devices[device]
-        if section["kind"] == "stopper":
-            return patch(section["pair"], *section["contact_um"])
-        return self.strips(device)
+    # Budgets
 
     @property
     def budgeted(self) -> list[str]:
@@ -247,7 +217,7 @@ class Designs:
         """Budgets of devices, of all with an uncertain input by default: at each humidity, and those of tips."""
         found = []
         for name in devices or self.budgeted:
-            parts = ("", "_tip") if self.devices[name]["kind"] == "cantilever" else ("",)
+            parts = ("", "_tip") if self.kind(name).has_tip else ("",)
             found += [case_id(name, humidity) + part for part in parts for humidity in self.devices[name]["humidities"]]
         return found
 

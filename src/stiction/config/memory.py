@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from stiction.config.designs import Designs, strip_of
+from stiction.config.designs import Designs
+from stiction.config.kinds import kind_of
 from stiction.config.units import NM_PER_UM, from_si
 from stiction.models import FIELD
 
@@ -29,9 +30,7 @@ def of_field(length_um: float, width_um: float, spacing_nm: float) -> float:
 
 def patch_of(device: dict, sampling: dict) -> tuple[float, float]:
     """Sides of the patch of surface on which a device sticks [µm]; section of the device."""
-    if device["kind"] == "stopper":
-        return tuple(device["contact_um"])
-    return strip_of(device, sampling["strip_length_um"]), device["width_um"]
+    return kind_of(device).sides(device, sampling["strip_length_um"])
 
 
 def spacings_of(device: dict, spacing_nm: float, others_nm: Sequence[float]) -> tuple[float, ...]:
@@ -55,7 +54,7 @@ def _of_largest_field(config):
     strip = sampling["strip_length_um"] + margin, config["beam"]["width_um"] + margin
     drawn += [(strip, at) for at in (spacing, *others)]
     designs = Designs(config)
-    tips = [designs.tips(name) for name in designs.of_kind("cantilever")]
+    tips = [designs.tips(name) for name in designs.with_tips]
     drawn += [((tip.length / NM_PER_UM + margin, tip.width / NM_PER_UM + margin), spacing) for tip in tips]
     for device in designs.devices.values():
         length, width = patch_of(device, sampling)

@@ -463,10 +463,9 @@ class Plan:
         return [name for name in self.choices(pair) if self.summits_under(pair, name) == "base"]
 
     def choices_of_device(self, name: str) -> list[str]:
-        """Those of `choices` for a device: the short strips of a bridge have those of the solids alone."""
-        section = self.config["devices"][name]
-        of_pair = self.choices_of_solids if section["kind"] == "bridge" else self.choices
-        return of_pair(section["pair"])
+        """Those of `choices` for a device: short strips have those of the solids alone."""
+        of_pair = self.choices_of_solids if self.designs.kind(name).has_short_strips else self.choices
+        return of_pair(self.config["devices"][name]["pair"])
 
     @cached_property
     def studied(self) -> list[tuple[str, str]]:

@@ -5,7 +5,8 @@ Lengths are in µm, as in the configuration. A relation gets the name of a devic
 
 from stiction.config import memory
 from stiction.config.conditions import Relations
-from stiction.config.designs import KEYS, MIDDLE, OPTIONAL, Designs, hamaker_constant, strip_of
+from stiction.config.designs import Designs, hamaker_constant
+from stiction.config.kinds import COMMON, KEYS, KINDS, kind_of
 from stiction.config.relations import (
     cases_have_unique_names,
     estimated_strip,
@@ -29,8 +30,6 @@ from stiction.models import SIDES
 #: Relations between the keys of devices.
 relation = Relations()
 
-#: Keys that every device may have.
-_COMMON = {"kind", "pair", "humidities", "uncertainty"}
 #: What a relation about the humidities of a device needs: its name, all devices and the surfaces that meet.
 _MEETING = ("devices.*.@", "devices", "pairs", "surfaces", "materials", "water.temperature_K")
 
@@ -45,16 +44,18 @@ relation("devices.*.width_um", "sampling.spacing_nm", "contact.every")(strip_is_
 )
 def strips_of_a_bridge_are_whole_on_the_grid(kind, name, devices, strip, spacing, every):
     """Strips at the middle of a bridge are whole on the grid also if their length is not stated."""
-    if kind != "bridge" or "strip_um" in devices[name]:
+    if not KINDS[kind].has_short_strips or "strip_um" in devices[name]:
         return None
-    refusal = strip_is_whole_on_the_grid(strip_of(devices[name], strip), spacing, every)
-    return refusal and f"must come with strip_um, because {MIDDLE} µm are not whole on the grid: it {refusal}"
+    refusal = strip_is_whole_on_the_grid(KINDS[kind].strip(devices[name], strip), spacing, every)
+    short = KINDS[kind].longest_strip
+    return refusal and f"must come with strip_um, because {short} µm are not whole on the grid: it {refusal}"
 
 
 @relation("devices.*.kind", "devices.*.#")
 def device_has_the_keys_of_its_kind(kind, keys):
     """A device has all keys that its kind needs, and no key of another kind."""
-    missing, strange = KEYS[kind] - set(keys), set(keys) - KEYS[kind] - OPTIONAL[kind] - _COMMON
+    needed = set(KINDS[kind].keys)
+    missing, strange = needed - set(keys), set(keys) - needed - set(KINDS[kind].optional) - COMMON
     if missing:
         return f"must come with {', '.join(sorted(missing))}"
     return f"must come without {', '.join(sorted(strange))}" if strange else None
@@ -74,7 +75,7 @@ _GROUND = ("devices.*.@", "devices", "pairs", "surfaces")
 @relation("devices.*.width_um", *_GROUND, "sampling.strip_length_um")
 def strips_hold_enough_summits(width, name, devices, pairs, surfaces, length):
     """The strips along a beam hold so many summits that each sample resists the adhesion."""
-    return _too_few_summits(strip_of(devices[name], length), width, devices[name], pairs, surfaces)
+    return _too_few_summits(kind_of(devices[name]).strip(devices[name], length), width, devices[name], pairs, surfaces)
 
 
 @relation("devices.*.contact_um", *_GROUND)
@@ -102,7 +103,7 @@ def _too_few_summits(length, width, device, pairs, surfaces):
 )
 def tips_fit_into_memory(_, name, devices, *sections):
     """The fields of the strips that hold the tips of a cantilever fit into the memory of a job."""
-    if devices[name]["kind"] != "cantilever":
+    if not kind_of(devices[name]).has_tip:
         return None
     keys = ("pairs", "surfaces", "materials", "solid", "water", "sampling", "contact")
     config = {"devices": devices} | dict(zip(keys, sections, strict=True))
@@ -157,7 +158,7 @@ def water_of_a_device_is_a_liquid(humidities, name, devices, pairs, surfaces, ma
 @relation("design.worst_humidities", *_MEETING)
 def water_of_a_stopper_is_a_liquid(humidities, name, devices, *meeting):
     """As above, along the axis on which the worst humidity of a stopper is sought."""
-    if devices[name]["kind"] != "stopper":
+    if kind_of(devices[name]).is_beam:
         return None
     return water_of_a_device_is_a_liquid(humidities, name, devices, *meeting)
 
@@ -204,7 +205,7 @@ def strips_resolve_the_cracks_of_a_device(
 
     What passes may still be refused after the contact, by `stiction.beam.resolution.resolved`.
     """
-    strip, sides = strip_of(devices[name], strip), _sides(devices[name], pairs, surfaces)
+    strip, sides = kind_of(devices[name]).strip(devices[name], strip), _sides(devices[name], pairs, surfaces)
     meeting = temperature, sides, materials
     needed = {rh: estimated_strip(thickness, solid, medium, rh, *meeting) for rh in humidities} if sides else {}
     shortest = min(needed, key=needed.get, default=None)
@@ -228,7 +229,7 @@ def strips_of_a_device_exceed_the_correlation(strip, kind, pair, pairs, surfaces
 
     So may those of bridges: force laws of neighbouring strips of 0.25 and 0.5 µm correlate by less than 0.05 on pair b.
     """
-    if kind == "bridge":
+    if KINDS[kind].has_short_strips:
         return None
     for side in _sides({"pair": pair}, pairs, surfaces):
         target = side["rms_nm"], side.get("mean_summit_radius_um"), side.get("summit_density_per_um2"), spacing
@@ -253,7 +254,7 @@ def solids_resist_the_adhesion_of_a_device(
         return solids_resist_the_adhesion(pair, met, surfaces, solid, medium, temperature, humidities[0], materials)
 
     stated = refusal([*device["humidities"], *device.get("chart", {}).get("humidities", ())])
-    if stated or device["kind"] != "stopper":
+    if stated or kind_of(device).is_beam:
         return stated
     sought = refusal(worst)
     return f"{sought} in design.worst_humidities" if sought else None
@@ -264,7 +265,7 @@ def solids_resist_the_adhesion_of_a_device(
 def device_fits_into_memory(_, name, devices, sampling, of_variants):
     """The fields from which a patch of surface is cut fit into the memory of a job."""
     device, margin = devices[name], sampling["margin_um"]
-    if not KEYS[device["kind"]] <= set(device):
+    if not set(kind_of(device).keys) <= set(device):
         return None
     length, width = memory.patch_of(device, sampling)
     spacings = memory.spacings_of(device, sampling["spacing_nm"], of_variants)
@@ -333,7 +334,7 @@ def uncertain_contact_angles_leave_water(deviation, name, devices, pairs, surfac
 @relation("devices.*.uncertainty", "devices.*.kind")
 def uncertainty_is_that_of_the_kind(uncertainty, kind):
     """Only dimensions that a device has are uncertain."""
-    strange = {"thickness_um", "gap_um", "residual_stress_MPa"} & set(uncertainty) - KEYS[kind]
+    strange = set(KEYS) & set(uncertainty) - set(KINDS[kind].keys)
     return f"must come without {', '.join(sorted(strange))}" if strange else None
 
 

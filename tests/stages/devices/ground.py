@@ -48,13 +48,13 @@ def computed(wanted, vectors, groups=2):
 VECTORS = sampled_vectors(400, 0.24)
 
 
-def lognormal_cracks(number=400, groups=4, spread=0.025, seed=1, name=cracks.CRACK):
+def lognormal_cracks(device=C1, number=400, groups=4, spread=0.025, seed=1):
     """Dataset of stage cracks with lognormal lengths around 700 µm."""
     rng = np.random.default_rng(seed)
     found = 700 * UM * np.exp(spread * rng.standard_normal((groups + 1, number)))
     laws = forcelaw.coefficients(VECTORS[:50], 1.2 * VECTORS[:, 1].max())
     beam = Beam(1500 * UM, 30 * UM, 2.6 * UM, 164e9, 20 * UM, 200)
-    return cracks.layout(name, found[0], list(found[1:]), beam, laws, RMS)
+    return cracks.layout(device.opening, found[0], list(found[1:]), beam, laws, RMS)
 
 
 def wanted(device=C1, shares=(1e-2, 1e-3)):
@@ -63,7 +63,7 @@ def wanted(device=C1, shares=(1e-2, 1e-3)):
 
 def safe_without_tips(device=R1, **more):
     """Dataset of stage safe_lengths of a bridge."""
-    return safe_lengths.compute(lognormal_cracks(name=cracks.HELD, **more), None, wanted(device))
+    return safe_lengths.compute(lognormal_cracks(device, **more), None, wanted(device))
 
 
 def smooth_tips(energies):
@@ -74,7 +74,7 @@ def smooth_tips(energies):
 def safe_with_tips(energies, **more):
     """Dataset of stage safe_lengths of a cantilever whose tips have given adhesion energies (n,) [J m⁻²]."""
     with patch.object(curves, "tip_forces", lambda *_: smooth_tips(energies)):
-        return safe_lengths.compute(lognormal_cracks(len(energies), **more), xr.Dataset(), wanted())
+        return safe_lengths.compute(lognormal_cracks(number=len(energies), **more), xr.Dataset(), wanted())
 
 
 def rng(*address):

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from stiction.stages.contact import curves
 from stiction.stages.devices import uncertain_inputs as inputs
-from stiction.stages.devices.releases import DesignedBeam
+from stiction.stages.devices.releases import S_SHAPE, DesignedBeam
 from stiction.stages.devices.uncertain_inputs import Known, Settings, State, Uncertainty
 
 WATER = curves.Water(300.0)
@@ -108,7 +108,7 @@ def test_only_a_beam_held_at_both_ends_has_a_residual_stress():
 
 
 def test_a_budget_is_of_a_length_that_tips_hold_if_their_share_is_stated_and_of_a_force_without_a_beam():
-    shares = {0.0: inputs.S_SHAPE, 0.01: inputs.ARC}
+    shares = {0.0: S_SHAPE, 0.01: inputs.ARC}
     assert {share: replace(SETTINGS, share=share).response for share in shares} == shares
     assert replace(SETTINGS, device=None).response == inputs.FORCE
 

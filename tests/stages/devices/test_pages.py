@@ -14,7 +14,7 @@ from stiction.report.devices import pages
 from stiction.report.devices.pages import Page, Section
 from stiction.stages.contact.curves import Water
 from stiction.stages.devices import device_warnings, safe_lengths, sticking
-from stiction.stages.devices.releases import DesignedBeam
+from stiction.stages.devices.releases import EITHER, S_SHAPE, DesignedBeam
 
 CANTILEVER = {
     "kind": "cantilever",
@@ -31,9 +31,9 @@ def safe(kind="cantilever", longest=600e-6):
     """Safe lengths of 400 devices that stick between two thirds of a length and this length."""
     device = DesignedBeam(kind, "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
     settings = safe_lengths.Settings(1, Water(300.0), 0.67, device, (1e-2, 1e-3, 1e-4))
-    shapes = {sticking.shapes(device)[0]: np.linspace(2 / 3, 1, 400) * longest}
+    shapes = {device.opening.shapes[0]: np.linspace(2 / 3, 1, 400) * longest}
     if kind == "cantilever":
-        shapes[sticking.EITHER] = 0.7 * shapes[sticking.S_SHAPE]
+        shapes[EITHER] = 0.7 * shapes[S_SHAPE]
     bounds = {shape: sticking.safe_lengths(values, settings) for shape, values in shapes.items()}
     errors = {shape: np.full(3, 1e-6) for shape in shapes}
     return safe_lengths.layout(shapes, bounds, errors, 3e-9, settings)
@@ -140,7 +140,9 @@ def test_the_verdict_compares_the_restoring_force_with_what_is_needed():
 
 def test_a_page_explains_the_terms_that_it_uses_and_no_others():
     silent = {("R1", 0.67, "middle"): []}
-    bridge = pages.of_beam("R1", CANTILEVER | {"kind": "bridge"}, {0.67: safe("bridge")}, {}, {}, silent).html
+    bridge = pages.of_beam(
+        "R1", CANTILEVER | {"kind": "bridge", "residual_stress_MPa": 50}, {0.67: safe("bridge")}, {}, {}, silent
+    ).html
     assert "<dt>Held by the middle</dt>" in bridge
     assert "Held by the tip" not in bridge
     assert "Choice of the model" not in bridge
@@ -165,7 +167,7 @@ def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():
     assert "<dt>Bound</dt>" in pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).html
 
 
-SHAPES = sticking.S_SHAPE, sticking.EITHER
+SHAPES = S_SHAPE, EITHER
 
 
 def test_a_beam_without_chart_and_budget_has_neither():
@@ -185,7 +187,7 @@ def test_a_beam_without_chart_and_budget_has_neither():
 
 
 def test_warnings_of_a_beam_have_the_numbers_of_its_tables():
-    warned = {("C1", 0.67, shape): ["Too steep."] * (shape == sticking.EITHER) for shape in SHAPES}
+    warned = {("C1", 0.67, shape): ["Too steep."] * (shape == EITHER) for shape in SHAPES}
     curves = [("C1", *curve) for curve in device_warnings.curves(charted(0.5))]
     warned |= dict.fromkeys(curves, []) | {curves[0]: ["Too thin.", "Too steep."]}
     page = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {0.5: charted(0.5)}, {}, warned).html

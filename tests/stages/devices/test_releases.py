@@ -65,9 +65,9 @@ def test_what_the_configuration_lets_pass_near_the_limit_is_refused_on_the_force
 
 def test_a_bridge_has_two_arms_under_its_tension_and_its_middle_is_resolved():
     assert R1.beam.tension == pytest.approx(50e6 * 60e-12)
-    assert R1.arms == 2 * C1.arms == 2
-    zone, strips = releases.resolved_part(R1, uniform_laws(20))
+    assert R1.opening.arms == 2 * C1.opening.arms == 2
+    zone, strips = R1.opening.resolved(R1, uniform_laws(20))
     assert zone.tension == R1.beam.tension
     assert zone.length / strips == pytest.approx(R1.strip, rel=1e-12)
-    assert releases.resolved_part(C1, uniform_laws(20)) == releases.long_beam(C1, uniform_laws(20))
+    assert C1.opening.resolved(C1, uniform_laws(20)) == releases.long_beam(C1, uniform_laws(20))
     assert C1.beam.tension == 0

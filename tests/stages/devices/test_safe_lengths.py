@@ -8,10 +8,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.devices import arcs, risk
 from stiction.stages.contact import curves
-from stiction.stages.devices import cracks, safe_lengths, sticking
+from stiction.stages.devices import cracks, safe_lengths
+from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE
 from stiction.streams import stream
-
-EITHER, S_SHAPE = sticking.EITHER, sticking.S_SHAPE
 
 
 def energies(mean, number=400):
@@ -69,13 +68,13 @@ def test_tips_that_hardly_adhere_hold_no_beam_and_strong_ones_hold_all():
 
 def test_a_bridge_sticks_if_it_is_longer_than_the_shortest_that_its_middle_holds():
     found = safe_without_tips()
-    assert list(found["shape"]) == [sticking.MIDDLE]
-    lengths, *_ = cracks.lengths(lognormal_cracks(name=cracks.HELD))
+    assert list(found["shape"]) == [MIDDLE]
+    lengths, *_ = cracks.lengths(lognormal_cracks(R1))
     assert_array_equal(found.stuck[0], risk.stuck_share(found.length.values, lengths)[0])
 
 
 def test_the_axis_of_lengths_is_finite_although_some_beams_never_stick():
-    dataset = lognormal_cracks(name=cracks.HELD)
+    dataset = lognormal_cracks(R1)
     dataset["held_length"][:20] = np.inf
     found = safe_lengths.compute(dataset, None, wanted(R1))
     assert np.isfinite(found.length).all()
@@ -96,5 +95,5 @@ def test_lengths_in_saturated_air_are_those_of_flooded_flats(cantilever):
 
 def test_contact_angles_reduce_the_film():
     tilted = replace(wanted(R1), water=curves.Water(300.0, (np.radians(60), 0.0)))
-    found = safe_lengths.compute(lognormal_cracks(name=cracks.HELD), None, tilted)
+    found = safe_lengths.compute(lognormal_cracks(R1), None, tilted)
     assert_allclose(float(found.film / safe_without_tips().film), 0.75, rtol=1e-12)

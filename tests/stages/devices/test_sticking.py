@@ -10,9 +10,8 @@ from stiction.devices.arcs import arc_length
 from stiction.devices.bridges import least_length
 from stiction.stages.contact import curves
 from stiction.stages.devices import sticking
+from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE
 from stiction.streams import stream
-
-EITHER, S_SHAPE = sticking.EITHER, sticking.S_SHAPE
 
 
 def test_beams_without_a_crack_stick_at_no_known_length():
@@ -23,9 +22,8 @@ def test_beams_without_a_crack_stick_at_no_known_length():
 
 def test_a_bridge_is_held_by_its_middle_and_has_no_tip():
     found = sticking.sticking_lengths(np.array([2e-4, 2.1e-4]), 3e-6, R1, None)
-    assert list(found) == sticking.shapes(R1) == [sticking.MIDDLE]
-    assert_array_equal(found[sticking.MIDDLE], [2e-4, 2.1e-4])
-    assert sticking.shapes(C1) == [S_SHAPE, EITHER]
+    assert list(found) == [MIDDLE]
+    assert_array_equal(found[MIDDLE], [2e-4, 2.1e-4])
 
 
 def test_lengths_in_saturated_air_are_those_of_flooded_flats_by_shape():

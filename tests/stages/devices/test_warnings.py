@@ -16,7 +16,7 @@ from stiction.devices import limits
 from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.graph import Graph
 from stiction.stages.devices import device_warnings, pair_warnings
-from stiction.stages.devices.sticking import EITHER, MIDDLE, S_SHAPE
+from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE
 
 PLAN = Plan(load())
 

@@ -26,20 +26,9 @@ from stiction.report.style import (
 )
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import charts
+from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.pair_warnings import numbered
 
-#: Line style of each shape in which a beam sticks, and what holds it.
-_SHAPES = {
-    "S-shape": ("--", "held by the beam"),
-    "S-shape or arc": ("-", "held by beam or tip"),
-    "middle": ("-", "held by the middle"),
-}
-#: Line style of their bounds by flooded flats, and what these are.
-_BOUNDS = {
-    "S-shape": (":", "saturated air"),
-    "S-shape or arc": ("-.", "saturated air"),
-    "middle": (":", "flooded flats"),
-}
 #: Marker of each basis of a safe length.
 _BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x"}
 #: Characters in a line of warnings, and most lines below a figure: more would take the place of its panels.
@@ -116,7 +105,7 @@ def _shares(panel: Axes, dataset, colour):
     for shape in dataset["shape"].values:
         one = dataset.sel(shape=shape)
         known = one.stuck.values > 0
-        panel.plot(length[known], one.stuck.values[known], _SHAPES[shape][0], color=colour)
+        panel.plot(length[known], one.stuck.values[known], END_STATES[shape].lines[0], color=colour)
         panel.fill_between(length[known], *one.stuck_band.values[:, known], color=colour, alpha=0.2, linewidth=0)
         for share in one.share.values:
             safe = one.sel(share=share)
@@ -125,9 +114,9 @@ def _shares(panel: Axes, dataset, colour):
 
 def _explain(panel, found):
     """Add line styles and markers that occur to the legend of a panel."""
-    for shape, (line, text) in _SHAPES.items():
+    for shape, state in END_STATES.items():
         if any(shape in dataset["shape"].values for dataset in found.values()):
-            panel.plot([], [], line, color="0.3", label=text)
+            panel.plot([], [], state.lines[0], color="0.3", label=state.legend)
     for basis, mark in _BASES.items():
         if any(basis in dataset.basis.values for dataset in found.values()):
             panel.plot([], [], mark, color="0.3", label=f"safe length, {basis}")
@@ -166,7 +155,9 @@ def chart(
         humidity_axis(panel)
     for line in lines:
         line[0, 0].set_ylabel("safe length [µm]")
-    letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm, {_SHAPES[shape][1]}" for name, gap, shape in subjects])
+    letter_lines(
+        lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].legend}" for name, gap, shape in subjects]
+    )
     figure.legend(*handles(*columns[:, 0]), loc="outside upper center", ncols=2)
     below(figure, sentences, "chart")
     return figure
@@ -183,7 +174,8 @@ def _thicknesses(panel, whole, shape, marks):
     Returns the entries of a legend of the thicknesses.
     """
     share, named = whole.share.values[len(whole.share) // 2], []
-    (line, text), (dotted, bound) = _SHAPES[shape], _BOUNDS[shape]
+    state = END_STATES[shape]
+    line, dotted = state.lines
     for thickness, shade, mark in zip(whole.thickness.values, shades(len(marks), _LIGHTEST), marks, strict=True):
         one = whole.sel(thickness=thickness, share=share)
         between, lengths = one.by_elements.values == 0, TO_UM * one.safe_length
@@ -192,8 +184,8 @@ def _thicknesses(panel, whole, shape, marks):
         panel.plot(one.relative_humidity, TO_UM * one.flooded_length, dotted, color=shade, linewidth=0.8)
         label = f"thickness {TO_UM * thickness:g} µm{mark}"
         named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=label))
-    panel.plot([], [], line, color="0.3", label=f"{text}, p = {share:g}")
-    panel.plot([], [], dotted, color="0.3", label=f"{text}, {bound}")
+    panel.plot([], [], line, color="0.3", label=f"{state.legend}, p = {share:g}")
+    panel.plot([], [], dotted, color="0.3", label=f"{state.legend}, {state.bound}")
     if not whole.by_elements.all():
         label = f"by a power law, ± {100 * float(whole.power_law_error.max()):.2g} %"
         named.append(Line2D([], [], color="0.3", marker="o", fillstyle="none", linestyle="", label=label))

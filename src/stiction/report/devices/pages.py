@@ -11,6 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.config.cases import case_id
+from stiction.config.kinds import KEYS, kind_of
 from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
@@ -20,7 +21,8 @@ from stiction.report.style import STYLE, png
 from stiction.run.atomic import save_text
 from stiction.stages.devices import device_warnings, pair_warnings
 from stiction.stages.devices.budget import budget_of, budgets_of
-from stiction.stages.devices.sticking import EITHER, MIDDLE, S_SHAPE
+from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.devices.releases import EITHER
 from stiction.stages.devices.stoppers import in_any_air, is_at_an_end, shares_stuck
 
 _PAGE = """<!DOCTYPE html>
@@ -118,16 +120,6 @@ def _words(words):
 # Devices
 
 
-_KINDS = {"cantilever": "beam clamped at one end", "bridge": "beam clamped at both ends", "stopper": "stopper"}
-#: Keys of a device, what they are called and their unit.
-_FACTS = {
-    "thickness_um": ("thickness", "µm"),
-    "gap_um": ("gap below the beam", "µm"),
-    "width_um": ("width", "µm"),
-    "residual_stress_MPa": ("tensile stress", "MPa"),
-    "contact_um": ("sides of the area in contact", "µm"),
-    "restoring_force_uN": ("restoring force", "µN"),
-}
 #: Keys of a surface, what they are called and their unit.
 _OF_SURFACES = {
     "rms_nm": ("rms", " nm"),
@@ -151,23 +143,6 @@ _OF_BEAMS = {
         "Of a cantilever: the length that sticks where water fills all gaps. Of a bridge: the length below which no "
         "surfaces hold it at this humidity, not even flooded flats in contact."
     ),
-}
-#: The same for every shape in which a device sticks.
-_OF_SHAPES = {
-    S_SHAPE: {
-        "Held by the beam": "The beam touches down behind an open crack and stays flat there (S-shape).",
-    },
-    MIDDLE: {
-        "Held by the middle": (
-            "Both cracks of a bridge have met, and a few micrometres of its middle hold it, where it has no slope. "
-            "Bridges much shorter than two cracks are held in this way."
-        ),
-    },
-    EITHER: {
-        "Held by the tip": (
-            "Only the free end touches and holds the beam (arc). Shorter beams can be held in this way."
-        ),
-    },
 }
 _OF_CHARTS = {
     "Finite elements, power law": (
@@ -240,7 +215,7 @@ def of_beam(
     answer += [safe_sentence(humidity, dataset) for humidity, dataset in found.items()]
     listed = [f"({k}) {sentence}" for k, sentence in enumerate(pair_warnings.numbered(warnings)[0], 1)]
     shapes = next(iter(found.values()))["shape"].values
-    held = {term: text for shape in shapes for term, text in _OF_SHAPES[str(shape)].items()}
+    held = {term: text for shape in shapes for term, text in END_STATES[str(shape)].terms.items()}
     words = held | _OF_BEAMS | (_OF_CHARTS if charts else {}) | _words_of_budgets(budgets)
     return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
 
@@ -271,16 +246,16 @@ def _words_of_budgets(budgets):
 
 
 def _title(name, section):
-    return f"{name}: {_KINDS[section['kind']]}"
+    return f"{name}: {kind_of(section).words}"
 
 
 def _facts_of(section):
     """Dimensions and conditions of a device, by name."""
     found = {"surfaces": f"pair {section['pair']}"} | section.get("surfaces", {})
-    for key, (name, unit) in _FACTS.items():
-        if key in section:
-            values = section[key] if isinstance(section[key], list) else [section[key]]
-            found[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
+    for key in kind_of(section).keys:
+        (name, unit), value = KEYS[key], section[key]
+        values = value if isinstance(value, list) else [value]
+        found[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
     return found | {"relative humidities": ", ".join(f"{humidity:g}" for humidity in section["humidities"])}
 
 
@@ -459,7 +434,7 @@ def _inputs(plan, at):
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
     budgets = budgets_of(plan, at.device) if at.device in designs.budgeted else {}
     own = {"budgets": {key[1:]: name for key, name in budgets.items()}, "warnings": device_warnings.files_of(at.device)}
-    if section["kind"] == "stopper":
+    if not designs.kind(at.device).is_beam:
         return own | {"stopper": f"devices/stoppers/{at.device}", "style": File(STYLE)}
     charts = designs.chart_cases(at.device) if at.device in designs.charted else []
     return own | {

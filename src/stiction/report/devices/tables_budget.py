@@ -14,18 +14,11 @@ from stiction.report.format import UN, number, signed, with_error
 from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_list
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, response_of
+from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.stoppers import in_any_air, is_at_an_end, shares_stuck
-from stiction.stages.devices.uncertain_inputs import ARC, FORCE, MIDDLE, S_SHAPE
 
 #: Rows of a budget below those of its measurements.
 TOTAL, INDEPENDENT, SCATTER = "total", "total, if all errors were independent", "scatter between devices"
-#: What the inputs of a budget move, and what holds the device.
-_RESPONSES = {
-    S_SHAPE: "mean length at which beams stick (S-shape)",
-    MIDDLE: "mean length at which the middle of bridges holds",
-    FORCE: "mean pull-off force",
-}
-_HELD_BY = {S_SHAPE: "beam", ARC: "tip", MIDDLE: "middle", FORCE: "whole area"}
 #: Other choices of the model in words for those who design.
 _CHOICES = {
     "van_der_waals_dry": "van der Waals in dry gaps",
@@ -181,7 +174,7 @@ def advised(dataset: xr.Dataset) -> str:
 def response_text(dataset: xr.Dataset) -> str:
     """What the inputs move, in words."""
     response, share = response_of(dataset)
-    return f"length that 1 in {1 / share:g} tips hold (arc)" if response == ARC else _RESPONSES[response]
+    return END_STATES[response].budget.format(f"{1 / share:g}" if share else "")
 
 
 def counted_as_exact(dataset: xr.Dataset) -> str:
@@ -192,7 +185,7 @@ def counted_as_exact(dataset: xr.Dataset) -> str:
 def _of_budget(device, humidity, dataset):
     """Numbers of one device at one humidity: inputs, measurements, totals, scatter, choices."""
     found, errors = budget_of(dataset), dataset.slope_error.values
-    head = {"device": device, "relative_humidity": humidity, "held_by": _HELD_BY[response_of(dataset)[0]]}
+    head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[response_of(dataset)[0]].by}
     deviations = np.sqrt(np.diag(found.covariance))
     for name, slope, error, deviation in zip(found.names, found.slopes, errors, deviations, strict=True):
         numbers = {"slope": slope, "slope_se": error, "standard_uncertainty": deviation}

@@ -12,7 +12,8 @@ from stiction.report.format import UM, error_alone, number
 from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_list
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import charts
-from stiction.stages.devices.device_warnings import HELD_BY, curves
+from stiction.stages.devices.device_warnings import curves
+from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.pair_warnings import numbered
 
 _SAFE_LENGTHS = (
@@ -50,7 +51,7 @@ def safe_lengths(
     numbers = numbered(warnings)[1]
     for (device, humidity), dataset in found.items():
         for shape in map(str, dataset["shape"].values):
-            head = {"device": device, "relative_humidity": humidity, "held_by": HELD_BY[shape]}
+            head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[shape].by}
             last = {"warnings": " ".join(warnings[device, humidity, shape])}
             rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
@@ -129,7 +130,7 @@ def _beam(one):
     return {
         "thickness_um": round(float(one.thickness) / UM, 9),  # as in the configuration
         "gap_um": round(float(one.gap) / UM, 9),
-        "held_by": HELD_BY[str(one["shape"].values)],
+        "held_by": END_STATES[str(one["shape"].values)].by,
         "from": "finite elements" if computed else "power law",
         "power_law_error_percent": np.nan if computed else 100 * float(one.power_law_error),
         "bound_um": _bound(one),

@@ -15,11 +15,10 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
-from stiction.beam.energy import arrest_length
 from stiction.config.cases import humidity_of, pair_of
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
-from stiction.devices import arcs, bridges
+from stiction.devices import arcs
 from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.stoppers import pull_off_force
 from stiction.devices.tail import fit_tail
@@ -29,7 +28,7 @@ from stiction.stages.contact import curves
 from stiction.stages.contact.contact import first
 from stiction.stages.devices.error_notes import explain_errors
 from stiction.stages.devices.patch_settings import contacts_of_budget, contacts_of_tip_budget
-from stiction.stages.devices.releases import addresses, arrests, resolved_part, section_of_beam
+from stiction.stages.devices.releases import addresses, arrests, section_of_beam
 from stiction.stages.devices.uncertain_inputs import (
     FORCE,
     Input,
@@ -106,7 +105,7 @@ def responder(state: State, settings: Settings) -> Respond:
     if settings.share:
         return partial(of_tips, share=settings.share)
     laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water)])[0]
-    part, strips = resolved_part(settings.device, laws)
+    part, strips = settings.device.opening.resolved(settings.device, laws)
     return partial(of_beams, mesh=part, strips=strips, number=settings.beams, address=addresses(settings))
 
 
@@ -154,20 +153,9 @@ def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, addr
     values = np.array([lengths(state, of_state) for state, of_state in zip(states, laws, strict=True)])
     # Some lengths may not be known.
     centre = np.mean if np.isfinite(values).all() else np.median
-    return Responses(values, centre, *_of_samples(states[0].device, np.array(laws)))
-
-
-def _of_samples(device, laws):
-    """What the samples contribute to the length of a device at several states, and the length on their mean.
-
-    ASSUME: lengths follow the mean energy of the samples as in Eq. (13), and those of bridges their mean energy and
-    pull-off force as in `stiction.devices.bridges.least_length`, as far as the error of the samples is concerned.
-    """
-    energies, beam = forcelaw.energy(laws), device.beam
-    if device.is_bridge:
-        both = np.stack([energies, laws[..., 0]], axis=-1)
-        return both, lambda sample: bridges.least_length(*sample.mean(axis=0), beam)
-    return energies, lambda sample: arrest_length(sample.mean(), beam)
+    device = states[0].device
+    length = partial(device.opening.length_on_mean, beam=device.beam)
+    return Responses(values, centre, device.opening.contribution(np.array(laws)), length)
 
 
 def shared_laws(found: Sequence[tuple[np.ndarray, float]]) -> list[np.ndarray]:
@@ -296,10 +284,10 @@ def _settings(plan, at):
     own |= chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(pair)
     if "hamaker_constant" in designs.uncertain_solids(name):
         own |= {"hamaker_constant_zJ": plan.beam_hamaker_constant(pair)}
-    if section["kind"] == "stopper":
-        own |= chosen(section, ["contact_um"])
-    else:
+    if designs.kind(name).is_beam:
         own |= {"device": section_of_beam(plan, name), "beams": plan.config["design"]["budget_beams"]}
+    else:
+        own |= chosen(section, ["contact_um"])
     own |= {"seed": plan.config["seed"], "water": plan.water(pair), "surfaces": plan.sides(pair)}
     quantities = list(map(list, designs.quantities(name)))
     return {"budget": own, "quantities": quantities, "choices": plan.choices_of_device(name)}

@@ -75,7 +75,7 @@ def _of_size(settings, thickness, gap):
 
 def _safe_lengths(device, model, laws, tips, settings):
     """Safe lengths of a device, (shapes, shares) [m]; slopes and forces of its tips, or none."""
-    ground = releases.resolved_part(device, laws)
+    ground = device.opening.resolved(device, laws)
     address, draw = releases.addresses(settings), partial(draw_laws, model)
     cracks = releases.arrests(device, ground, draw, settings.beams, address)
     held = None if tips is None else arcs.longest_free(*tips, device.beam)
@@ -143,7 +143,7 @@ def layout(found: Filled, rms: float, settings: Settings) -> xr.Dataset:
     settings : Settings
     """
     grid, size = (len(settings.thicknesses), len(settings.gaps)), ("thickness", "gap")
-    shapes = sticking.shapes(settings.device)
+    shapes = list(settings.device.opening.shapes)
     film = meniscus_height(settings.humidity, settings.water.temperature, settings.water.contact_angles)
     designed = (_of_size(settings, *one) for one in product(settings.thicknesses, settings.gaps))
     limits = [sticking.flooded_lengths(device, settings.water, settings.humidity) for device in designed]

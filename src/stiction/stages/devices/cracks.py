@@ -23,20 +23,18 @@ from stiction.stages.contact.contact import surface_rms
 from stiction.stages.devices.error_notes import on_patch
 from stiction.stages.devices.patch_settings import contact_of
 from stiction.stages.devices.releases import (
+    BEAMS,
     LAWS,
     DesignedBeam,
+    Opening,
     addresses,
     arrests,
     fitted,
-    resolved_part,
     settings_of_beam,
 )
 
 #: Most groups of the samples of contact, and the least number of samples in each, but always two groups.
 GROUPS, PER_GROUP = 10, 50
-#: Names of the lengths of cantilevers and of bridges, and what they are.
-CRACK, HELD = "crack_length", "held_length"
-_WORDS = {CRACK: "infinite if not S-shaped", HELD: "of the shortest bridge that its middle holds"}
 
 
 @dataclass(frozen=True)
@@ -64,23 +62,22 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
     model = fitted(vectors, limit, settings.chaos)
     address = addresses(settings)
     laws = draw_laws(model, LAWS, address("mesh"))
-    device, ground = settings.device, resolved_part(settings.device, laws)
+    device, ground = settings.device, settings.device.opening.resolved(settings.device, laws)
     groups = max(2, min(GROUPS, len(vectors) // PER_GROUP))
     models = [model, *(fitted(vectors[k::groups], limit, settings.chaos) for k in range(groups))]
     released = [arrests(device, ground, partial(draw_laws, one), settings.beams, address) for one in models]
-    name = HELD if device.is_bridge else CRACK
-    return layout(name, released[0], released[1:], ground[0], laws, surface_rms(contact))
+    return layout(device.opening, released[0], released[1:], ground[0], laws, surface_rms(contact))
 
 
 def layout(
-    name: str, arrested: np.ndarray, of_group: list[np.ndarray], beam: Beam, laws: np.ndarray, rms: float
+    opening: Opening, arrested: np.ndarray, of_group: list[np.ndarray], beam: Beam, laws: np.ndarray, rms: float
 ) -> xr.Dataset:
     """Dataset of the lengths at which the cracks of a device stop at a humidity.
 
     Parameters
     ----------
-    name : str
-        What they are, ``CRACK`` or ``HELD``.
+    opening : Opening
+        How the device opens, with the name of the lengths.
     arrested : (n,) array
         Lengths with all samples of contact, as from `stiction.stages.devices.releases.arrests` [m].
     of_group : sequence of (n,) arrays
@@ -92,7 +89,7 @@ def layout(
     rms : float
         Of the sum of both surfaces [m].
     """
-    note = {"units": "m", "long_name": _WORDS[name]}
+    name, note = opening.length, {"units": "m", "long_name": opening.words}
     lengths = {
         "foundation_length": foundation_length(beam, laws),
         "beam_length": beam.length,
@@ -111,7 +108,7 @@ def layout(
 
 def lengths(cracks: xr.Dataset) -> tuple[np.ndarray, np.ndarray, float]:
     """Crack or held lengths with all samples (n,), with each group alone (g, n), and the foundation length [m]."""
-    name = HELD if HELD in cracks else CRACK
+    name = next(opening.length for opening in BEAMS.values() if opening.length in cracks)
     return cracks[name].values, cracks[f"{name}_of_group"].values, float(cracks.foundation_length)
 
 

@@ -17,6 +17,7 @@ from stiction.plan.names import by_case, by_name
 from stiction.plan.stage import File, Stage, select
 from stiction.run.atomic import save_text
 from stiction.stages.contact.curves import Water
+from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.pair_warnings import (
     Materials,
     Warnings,
@@ -26,10 +27,6 @@ from stiction.stages.devices.pair_warnings import (
     plastic_share,
 )
 from stiction.stages.devices.releases import DesignedBeam, section_of_beam
-from stiction.stages.devices.sticking import EITHER, MIDDLE, S_SHAPE
-
-#: Shapes in words: what holds a device that sticks.
-HELD_BY = {S_SHAPE: "beam", EITHER: "beam or tip", MIDDLE: "middle"}
 
 
 @dataclass(frozen=True)
@@ -109,10 +106,10 @@ def _of_length(length, found, of, plastic, thinnest=None):
     The thinnest film [m] is that of the dataset, or along the axis of a chart.
     """
     device = of.device
-    sizes = device.gap, device.width, device.thickness, length / device.arms
+    sizes = device.gap, device.width, device.thickness, length / device.opening.arms
     return limits.of_beam(*sizes, float(found.film), float(found.rms)) + limits.given(
         limits.thin_film(thinnest or float(found.film)),
-        limits.stretched_bridge(device.gap, device.thickness) if device.is_bridge else None,
+        limits.stretched_bridge(device.gap, device.thickness) if device.opening.arms == 2 else None,
         *contact_warnings(plastic, of.materials),
     )
 
@@ -148,12 +145,12 @@ def read(files: Mapping[str, str]) -> OfDevices:
 def subjects(warnings: OfDevices) -> Warnings:
     """Warnings about devices by their subjects in words."""
     found = {
-        f"{name}, RH {humidity:g}, held by the {HELD_BY[shape]}": sentences
+        f"{name}, RH {humidity:g}, held by the {END_STATES[shape].by}": sentences
         for (name, humidity, shape), sentences in warnings.lengths.items()
     }
     for (name, thickness, gap, shape), sentences in warnings.curves.items():
         size = f"{from_si(thickness, 'um'):g} µm thick, gap {from_si(gap, 'um'):g} µm"
-        found[f"{name}, chart, {size}, held by the {HELD_BY[shape]}"] = sentences
+        found[f"{name}, chart, {size}, held by the {END_STATES[shape].by}"] = sentences
     return found | warnings.patches
 
 
@@ -176,9 +173,9 @@ def _settings(plan, at):
     """A device, its pair and the stated properties of its materials."""
     section = plan.config["devices"][at.device]
     own = {"materials": plan.stated_properties(section["pair"])} | plan.config["design"]
-    if section["kind"] == "stopper":
-        return {"stopper": select(OfStopper, section | own | {"water": plan.water(section["pair"])})}
-    return {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}
+    if plan.designs.kind(at.device).is_beam:
+        return {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}
+    return {"stopper": select(OfStopper, section | own | {"water": plan.water(section["pair"])})}
 
 
 def _of_one_device(data, _at, settings):

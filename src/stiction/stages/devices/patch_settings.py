@@ -27,7 +27,7 @@ def contact_of(plan: Any, device: str) -> str:
 
 def tips_of(plan: Any, device: str) -> dict[str, str]:
     """Contact of the strips that hold the tips of a cantilever; none for a bridge."""
-    if plan.config["devices"][device]["kind"] != "cantilever":
+    if not plan.designs.kind(device).has_tip:
         return {}
     return {"tips": f"{FOLDER}/tips/{plan.designs.tips(device).name}"}
 

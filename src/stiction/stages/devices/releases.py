@@ -1,6 +1,7 @@
 """Release of the beams of a device at a humidity, shared by stage cracks, charts and budgets.
 
-Cantilevers are longer than their cracks; bridges are shortened until their middle comes free.
+Cantilevers are longer than their cracks; bridges are shortened until their middle comes free: `BEAMS` has what the
+stages need to know of each kind.
 
 Separate from stage cracks, so that a change of the dataset of that stage reruns no chart and no budget.
 
@@ -24,10 +25,12 @@ from stiction.chaos.model import ChaosModel, Truncation, fit
 from stiction.config.cases import humidity_of, pair_of
 from stiction.config.units import from_si
 from stiction.contact import forcelaw
-from stiction.devices.bridges import half_of_bridge, held_lengths, middle_zone
+from stiction.devices.bridges import half_of_bridge, held_lengths, least_length, middle_zone
 from stiction.plan.stage import chosen, select
 from stiction.streams import stream
 
+#: End states in which a beam may stick: cracks stop on the way, or the tip holds as well, or the middle of a bridge.
+S_SHAPE, EITHER, MIDDLE = "S-shape", "S-shape or arc", "middle"
 #: Length of the long beams, in crack lengths that Eq. (13) predicts from the mean adhesion energy. Cracks stop where
 #: adhesion is strongest, so that they are shorter than this prediction.
 LONG = 1.3
@@ -43,7 +46,7 @@ LAWS = 10_000
 class DesignedBeam:
     """Dimensions of a beam that must come free, and its ground."""
 
-    kind: str  #: ``cantilever`` or ``bridge``
+    kind: str  #: key of `BEAMS`
     pair: str  #: part of the addresses of random numbers
     thickness: float  #: t [m]
     gap: float  #: h [m]
@@ -54,14 +57,9 @@ class DesignedBeam:
     hamaker_constant: float = 0.0  #: of the two solids, for the bound of a bridge [J]; 0 without van der Waals forces
 
     @property
-    def is_bridge(self) -> bool:
-        """Whether both ends are clamped."""
-        return self.kind == "bridge"
-
-    @property
-    def arms(self) -> int:
-        """Number of clamped ends, from each of which a crack opens."""
-        return 2 if self.is_bridge else 1
+    def opening(self) -> "Opening":
+        """How beams of its kind open."""
+        return BEAMS[self.kind]
 
     @property
     def beam(self) -> Beam:
@@ -107,14 +105,6 @@ def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
         raise
 
 
-def resolved_part(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
-    """Part of a device that finite elements resolve, and its number of strips: a long beam, or the middle of a bridge.
-
-    Parameters and errors as in `long_beam`.
-    """
-    return middle_zone(device.beam, device.strip, laws) if device.is_bridge else long_beam(device, laws)
-
-
 def arrests(
     device: DesignedBeam, ground: tuple[Beam, int], draw: Callable, number: int, address: Callable
 ) -> np.ndarray:
@@ -124,7 +114,7 @@ def arrests(
     ----------
     device : DesignedBeam
     ground : tuple
-        Part of the device and number of its strips, from `resolved_part`.
+        Part of the device that finite elements resolve and its number of strips, from `Opening.resolved`.
     draw : callable
         ``draw(n, rng)`` gives n force laws (n, 4) [SI].
     number : int
@@ -132,10 +122,67 @@ def arrests(
     address : callable
         ``address(k)`` is the stream of device k.
     """
-    if device.is_bridge:
-        return held_lengths(*ground, draw, number, address)
-    found = released_beams(Experiment(*ground, draw), number, address)
+    return device.opening.arrests(*ground, draw, number, address)
+
+
+def _crack_lengths(beam, strips, draw, number, address):
+    """Crack lengths of long cantilevers, parameters as of `held_lengths`."""
+    found = released_beams(Experiment(beam, strips, draw), number, address)
     return np.where(found["state"] == EndState.S_SHAPE, found["crack_length"], np.inf)
+
+
+def _energies_and_pull_offs(laws):
+    """Adhesion energy [J m⁻²] and largest attraction [Pa] of force laws (..., 4), along the last axis."""
+    return np.stack([forcelaw.energy(laws), laws[..., 0]], axis=-1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Opening:
+    """How beams of one kind open, and what then holds them."""
+
+    arms: int  #: number of clamped ends, from each of which a crack opens
+    sizes: tuple[str, ...]  #: fields of `DesignedBeam` that a measurement may determine
+    shapes: tuple[str, ...]  #: end states in which beams may stick
+    length: str  #: name in datasets of the length at which a beam is arrested
+    words: str  #: what this length is
+    resolved: Callable[[DesignedBeam, np.ndarray], tuple[Beam, int]]  #: as `long_beam`
+    arrests: Callable[..., np.ndarray]  #: as `held_lengths`
+    #: What the samples of force laws (..., m, 4) contribute to the length (..., m, ...), and the length on their mean.
+    contribution: Callable[[np.ndarray], np.ndarray]
+    length_on_mean: Callable[[np.ndarray, Beam], float]
+
+    @property
+    def has_tip(self) -> bool:
+        """Whether a free end may hold a beam."""
+        return EITHER in self.shapes
+
+
+#: How beams open by kind. ASSUME: crack lengths follow the mean energy of the samples as in Eq. (13), and lengths of
+#: bridges their mean energy and pull-off force as in `least_length`, as far as the error of the samples is concerned.
+BEAMS = {
+    "cantilever": Opening(
+        arms=1,
+        sizes=("thickness", "gap", "width"),
+        shapes=(S_SHAPE, EITHER),
+        length="crack_length",
+        words="infinite if not S-shaped",
+        resolved=long_beam,
+        arrests=_crack_lengths,
+        contribution=forcelaw.energy,
+        length_on_mean=lambda sample, beam: arrest_length(sample.mean(), beam),
+    ),
+    "bridge": Opening(
+        arms=2,
+        sizes=("thickness", "gap", "width", "residual_stress"),
+        shapes=(MIDDLE,),
+        length="held_length",
+        words="of the shortest bridge that its middle holds",
+        resolved=lambda device, laws: middle_zone(device.beam, device.strip, laws),
+        arrests=held_lengths,
+        contribution=_energies_and_pull_offs,
+        length_on_mean=lambda sample, beam: least_length(*sample.mean(axis=0), beam),
+    ),
+}
 
 
 def settings_of_beam(plan: Any, case: str) -> dict[str, Any]:
@@ -149,6 +196,5 @@ def section_of_beam(plan: Any, name: str) -> dict[str, Any]:
     """Kind, pair and dimensions of a beam, and the length of its strips."""
     section = plan.config["devices"][name]
     modulus = chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(section["pair"])
-    is_bridge = section["kind"] == "bridge"
-    solids = {"hamaker_constant_zJ": plan.hamaker_constant(section["pair"])} if is_bridge else {}
+    solids = {} if plan.designs.kind(name).has_tip else {"hamaker_constant_zJ": plan.hamaker_constant(section["pair"])}
     return select(DesignedBeam, section | modulus | solids, strip_um=plan.designs.strip(name))

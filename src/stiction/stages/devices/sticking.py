@@ -16,10 +16,6 @@ from stiction.stages.contact import curves
 from stiction.stages.devices.releases import DesignedBeam
 from stiction.streams import stream
 
-#: Shapes in which a device may stick: cracks stop on the way, or the tip holds as well; a bridge has no tip, but a
-#: middle.
-S_SHAPE, EITHER, MIDDLE = "S-shape", "S-shape or arc", "middle"
-
 
 class Settings(Protocol):
     """Settings of any job that computes safe lengths."""
@@ -30,19 +26,14 @@ class Settings(Protocol):
     shares: tuple[float, ...]  #: p [-]
 
 
-def shapes(device: DesignedBeam) -> list[str]:
-    """Shapes in which a device may stick."""
-    return [MIDDLE] if device.is_bridge else [S_SHAPE, EITHER]
-
-
 def flooded_lengths(device: DesignedBeam, water: curves.Water, humidity: float) -> list[float]:
-    """Bounds of the lengths that stick, one for each of the `shapes`, by flooded flats [m].
+    """Bounds of the lengths that stick, one for each end state, by flooded flats [m].
 
     A cantilever has the length that sticks in saturated air. The worst air of a bridge is not the wettest: it has the
     length below which its middle comes free of flats in contact at this humidity.
     """
     wet = water.temperature, water.contact_angles
-    if device.is_bridge:
+    if not device.opening.has_tip:
         law = flooded_law(film(humidity, *wet), device.hamaker_constant)
         return [bridges.least_length(*law, device.beam)]
     return [flooded_length(device.beam, *wet), arcs.arc_length(flooded_energy(*wet), device.beam)]
@@ -61,12 +52,12 @@ def sticking_lengths(
         Foundation length [m].
     device : DesignedBeam
     held : (n,) array or None
-        Longest arcs that come free [m].
+        Longest arcs that come free [m]; ``None`` without a tip.
     """
-    if device.is_bridge:
-        return {MIDDLE: cracks}
+    if held is None:
+        return dict.fromkeys(device.opening.shapes, cracks)
     alone = risk.sticking_lengths(cracks, np.isfinite(cracks), foundation)
-    return {S_SHAPE: alone, EITHER: risk.with_arcs(alone, held)}
+    return dict(zip(device.opening.shapes, (alone, risk.with_arcs(alone, held)), strict=True))
 
 
 def safe_lengths(sticking: np.ndarray, settings: Settings) -> list[SafeLength]:

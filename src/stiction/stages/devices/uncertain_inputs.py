@@ -24,9 +24,9 @@ from stiction.stages.surfaces import heights, spectrum
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.translation import Translation
 
-#: What the inputs of a budget move: the mean sticking length of S-shapes, a length that tips hold, the mean length of
-#: bridges that their middle holds, a mean force.
-S_SHAPE, ARC, MIDDLE, FORCE = "S-shape", "arc", "middle", "force"
+#: What the inputs of a budget may move apart from the mean length at which beams stick: a length that tips hold, and a
+#: mean force.
+ARC, FORCE = "arc", "force"
 #: Properties of solids, keys of `stiction.devices.budget.OF_SOLIDS`: field of their uncertainty, and for reading.
 _SOLIDS = {
     "modulus": ("young_modulus", "Young's modulus"),
@@ -72,9 +72,7 @@ class Settings:
         """What the inputs move."""
         if self.device is None:
             return FORCE
-        if self.device.is_bridge:
-            return MIDDLE
-        return ARC if self.share else S_SHAPE
+        return ARC if self.share else self.device.opening.shapes[0]
 
 
 @dataclass(frozen=True)
@@ -144,9 +142,8 @@ def uncertain(
 
 def countable(settings: Settings) -> list[str]:
     """Everything that a measurement of a device could determine, whether uncertain or not, for reading."""
-    sizes = ["the area"]
-    if device := settings.device:
-        sizes = ["the thickness", "the gap", "the width", *(["the residual stress"] if device.is_bridge else [])]
+    names = settings.device.opening.sizes if settings.device else ["area"]
+    sizes = [f"the {name.replace('_', ' ')}" for name in names]
     surfaces = [f"the {part} of {name}" for name in settings.surfaces for part in ("heights", "spectrum")]
     solids = [words for _, words in _SOLIDS.values()]
     return [*surfaces, *sizes, *solids, "the humidity", "the temperature", "the contact angles"]

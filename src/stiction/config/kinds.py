@@ -1,0 +1,79 @@
+"""Kinds of devices: which keys each has, where it sticks, and what may hold it.
+
+All other code asks the object of a kind, never its name: a new kind is an entry of `KINDS` and of the schema. How the
+beams of a kind open is in `stiction.stages.devices.releases.BEAMS`.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+#: Keys that every device may have.
+COMMON = {"kind", "pair", "humidities", "uncertainty"}
+#: Keys that depend on the kind, what they are called and their unit.
+KEYS = {
+    "thickness_um": ("thickness", "µm"),
+    "gap_um": ("gap below the beam", "µm"),
+    "width_um": ("width", "µm"),
+    "residual_stress_MPa": ("tensile stress", "MPa"),
+    "contact_um": ("sides of the area in contact", "µm"),
+    "restoring_force_uN": ("restoring force", "µN"),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kind:
+    """What distinguishes the devices of one kind from others."""
+
+    words: str  #: what it is
+    keys: tuple[str, ...]  #: that it must have, of `KEYS`
+    optional: tuple[str, ...] = ()  #: keys that it may have
+    is_beam: bool = True  #: whether it cracks open along strips; otherwise it is pulled off at once with its whole area
+    has_tip: bool = False  #: whether a free end may hold it
+    longest_strip: float = math.inf  #: of its strips where not stated [µm]; short ones resolve the middle of a beam
+
+    @property
+    def has_short_strips(self) -> bool:
+        """Whether its strips may be shorter than those of pairs and than the correlation of the surfaces."""
+        return self.longest_strip < math.inf
+
+    def strip(self, device: Mapping, of_pairs: float) -> float:
+        """Length of the strips along a beam [µm]: as its section states, or that of pairs, or shorter.
+
+        Examples
+        --------
+        >>> KINDS["cantilever"].strip({}, 1.5), KINDS["bridge"].strip({}, 1.5), KINDS["bridge"].strip({}, 0.3)
+        (1.5, 0.5, 0.3)
+        """
+        return device.get("strip_um", min(of_pairs, self.longest_strip))
+
+    def sides(self, device: Mapping, of_pairs: float) -> tuple[float, float]:
+        """Sides of the patch on which it sticks [µm]: of a strip along a beam, or of the whole area of a stopper."""
+        return (self.strip(device, of_pairs), device["width_um"]) if self.is_beam else tuple(device["contact_um"])
+
+
+#: All kinds by name.
+KINDS = {
+    "cantilever": Kind(
+        words="beam clamped at one end",
+        keys=("thickness_um", "gap_um", "width_um"),
+        optional=("strip_um", "chart"),
+        has_tip=True,
+    ),
+    "bridge": Kind(
+        words="beam clamped at both ends",
+        keys=("thickness_um", "gap_um", "width_um", "residual_stress_MPa"),
+        optional=("strip_um", "chart"),
+        # ASSUME: strips of 0.5 µm resolve the middle of a bridge, which is held on 2 to 6 µm. Shorter ones hold more:
+        # on pair b (t = h = 2 µm, 50 MPa, p = 0.001), 0.25, 0.5 and 1.5 µm give 233, 236 and 242 µm at RH 0.44, 176,
+        # 175 and 181 µm at 0.67, 112.2, 112.2 and 113.2 µm at 0.92, with standard errors of about 1 %. Windows of one
+        # surface give the same as independent strips: 208.7 ± 1.2 and 208.2 ± 0.7 µm on average at RH 0.67.
+        longest_strip=0.5,
+    ),
+    "stopper": Kind(words="stopper", keys=("contact_um", "restoring_force_uN"), is_beam=False),
+}
+
+
+def kind_of(device: Mapping) -> Kind:
+    """Kind of a device, from its section of the configuration."""
+    return KINDS[device["kind"]]

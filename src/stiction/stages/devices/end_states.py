@@ -1,0 +1,61 @@
+"""What holds a device that sticks, in words: of its lengths and of what the inputs of its budget move.
+
+Separate from the stages that find lengths and budgets, so that a word reruns none of them.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE
+from stiction.stages.devices.uncertain_inputs import ARC, FORCE
+
+
+@dataclass(frozen=True, kw_only=True)
+class EndState:
+    """A way in which a device may stick."""
+
+    by: str  #: what holds it, in tables
+    legend: str = ""  #: the same in legends
+    lines: tuple[str, str] = ("", "")  #: styles of the lengths and of their bound in figures
+    bound: str = ""  #: what bounds these lengths
+    budget: str = ""  #: what the inputs of a budget move
+    terms: Mapping[str, str] = field(default_factory=dict)  #: terms that a page explains
+
+
+#: End states by their name in datasets.
+END_STATES = {
+    S_SHAPE: EndState(
+        by="beam",
+        legend="held by the beam",
+        lines=("--", ":"),
+        bound="saturated air",
+        budget="mean length at which beams stick (S-shape)",
+        terms={"Held by the beam": "The beam touches down behind an open crack and stays flat there (S-shape)."},
+    ),
+    EITHER: EndState(
+        by="beam or tip",
+        legend="held by beam or tip",
+        lines=("-", "-."),
+        bound="saturated air",
+        terms={
+            "Held by the tip": (
+                "Only the free end touches and holds the beam (arc). Shorter beams can be held in this way."
+            )
+        },
+    ),
+    ARC: EndState(by="tip", budget="length that 1 in {} tips hold (arc)"),
+    MIDDLE: EndState(
+        by="middle",
+        legend="held by the middle",
+        lines=("-", ":"),
+        bound="flooded flats",
+        budget="mean length at which the middle of bridges holds",
+        terms={
+            "Held by the middle": (
+                "Both cracks of a bridge have met, and a few micrometres of its middle hold it, where it has no slope. "
+                "Bridges much shorter than two cracks are held in this way."
+            )
+        },
+    ),
+    FORCE: EndState(by="whole area", budget="mean pull-off force"),
+}
