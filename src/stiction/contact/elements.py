@@ -1,0 +1,286 @@
+r"""Full elastic contact of a rough strip, by boundary elements (not in the paper).
+
+A second model of the contact of a pair, with which the sum over summits is compared: every element acts on every other,
+summits have their true shape, and the attraction of water and solids deforms the surfaces. With the pressure p >= 0 of
+the solids, the attraction q >= 0, and the displacement K of `stiction.contact.halfspace`,
+
+.. math:: g = d - z + K (p - q) , \quad g \ge 0 , \quad p g = 0 , \quad q = q(g) , \quad f = \bar p - \bar q .
+
+The energy U is 0 at infinity, so that the adhesion energy is that of the one state without force:
+
+.. math:: e = -U(f = 0) , \quad U = \tfrac12 \overline{(p - q) K (p - q)} + \overline{w(g)} , \quad \frac{dU}{dd} = -f .
+
+The distance d is the one between the mean planes of the deformed surfaces if the strip repeats. Other surroundings,
+which displace all elements alike by p - q, change d by a multiple of f: distances depend on them, e and f_max do not.
+
+ASSUME: solids are linearly elastic and frictionless, and slopes small. Where several states have the same distance, the
+strip is in the one that it reaches during separation, from the state without force; that one begins without attraction.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stiction.contact.forcelaw import extremum
+from stiction.contact.halfspace import OWN_DISPLACEMENT, HalfSpace
+from stiction.contact.vanderwaals import DugdaleAttraction
+from stiction.errors import NotConverged
+from stiction.kernels import kernel
+
+#: Largest gap or overlap of an element in contact [m]: 1 % of the range of van der Waals forces.
+TOLERANCE = 2e-12
+#: Largest relative change of the attraction in the last turn.
+SETTLED = 2e-3
+#: In each turn, the pressure is computed to this share of the gaps and overlaps that the new attraction causes.
+SHARE = 0.3
+#: The attraction of each turn goes beyond that of the last gap by this factor, because turns approach from one side.
+RELAXATION = 1.4
+#: Share of the adhesion energy that a force may leave where it is taken to vanish.
+ENERGY_LEFT = 1e-3
+#: Most turns of the attraction, displacements in each, and distances in the search for one state.
+TURNS, STEPS, STATES = 100, 1000, 40
+
+
+@dataclass(frozen=True)
+class Adhesion:
+    """Attraction of two surfaces over their gap: a film of water, and van der Waals forces as a Dugdale stress.
+
+    The edge of the latter is a ramp of the same energy. It is twice as wide as the displacement of one element under
+    the stress: with a step, an element could feel all of the stress or none of it at the same distance.
+    """
+
+    height: float  #: h_C of the film [m]
+    tension: float  #: -ΔP in it [Pa]
+    stress: float = 0.0  #: -σ_vdW [Pa]
+    reach: float = 0.0  #: h_vdW [m]
+    ramp: float = 1e-10  #: width of its edge [m]
+
+    @classmethod
+    def of(cls, film: tuple[float, float], solids: DugdaleAttraction | None, space: HalfSpace) -> "Adhesion":
+        """Of a film (height, tension), see `stiction.contact.meniscus.film`, and van der Waals forces or none.
+
+        Raises
+        ------
+        ValueError
+            If the elements are too large to resolve the van der Waals forces.
+        """
+        if solids is None:
+            return cls(*film)
+        ramp = 2 * OWN_DISPLACEMENT * space.unit * solids.stress
+        if ramp > 2 * solids.range:
+            raise ValueError(
+                f"full elastic contact needs a finer grid: van der Waals forces displace an element of "
+                f"{space.spacing:.3g} m by {ramp / 2:.3g} m, more than their range of {solids.range:.3g} m"
+            )
+        return cls(*film, solids.stress, solids.range, ramp)
+
+    def traction(self, gap: np.ndarray) -> np.ndarray:
+        """Attraction q at gaps [Pa], of their shape, float32."""
+        near = np.clip((self.reach + self.ramp / 2 - gap) / np.float32(self.ramp), 0, 1)
+        return np.float32(self.tension) * (gap < self.height) + np.float32(self.stress) * near
+
+    def energy(self, gap: np.ndarray) -> np.ndarray:
+        """Energy w per area at gaps >= 0, negative [J m⁻²]."""
+        inside = np.clip(self.reach + self.ramp / 2 - gap, 0, None)
+        near = np.where(inside < self.ramp, inside**2 / (2 * self.ramp), inside - self.ramp / 2)
+        return -self.tension * np.clip(self.height - gap, 0, None) - self.stress * near
+
+
+@dataclass(frozen=True)
+class State:
+    """A strip in equilibrium at a distance."""
+
+    distance: float  #: d [m]
+    pressure: np.ndarray  #: p (n1, n2) [Pa]
+    attraction: np.ndarray  #: q (n1, n2) [Pa]
+    gap: np.ndarray  #: g (n1, n2) [m]
+    turns: int  #: of the attraction
+
+    @property
+    def force(self) -> float:
+        """Per apparent area f, positive in repulsion [Pa]."""
+        return _mean(self.pressure) - _mean(self.attraction)
+
+    def energy(self, heights: np.ndarray, adhesion: Adhesion) -> float:
+        """U per apparent area of a strip of heights z (n1, n2) [J m⁻²]; stationary in the errors of p and q."""
+        displacement = self.gap - (np.float32(self.distance) - heights)
+        elastic = (self.pressure - self.attraction) * displacement / 2
+        # p g is zero in equilibrium; without it, U would have the error of p to first order.
+        return _mean(elastic - self.pressure * self.gap) + _mean(adhesion.energy(np.maximum(self.gap, 0)))
+
+    @property
+    def residual(self) -> float:
+        """Largest gap or overlap of an element in contact, and overlap of any other [m]."""
+        return float(_residual(self.pressure, self.gap))
+
+
+def _mean(values):
+    return float(values.mean(dtype=float))
+
+
+def equilibrium(
+    space: HalfSpace, heights: np.ndarray, distance: float, adhesion: Adhesion | None = None, start: State | None = None
+) -> State:
+    """State of a strip of heights z (n1, n2) float32 [m] at a distance d [m]; without attraction by default.
+
+    It begins with the pressure and the attraction of another state, by default with contact without attraction.
+
+    Raises
+    ------
+    NotConverged
+        If pressure or attraction do not settle.
+    """
+    undeformed = np.float32(distance) - heights
+    if start is None:
+        nothing = np.zeros_like(undeformed)
+        pressure, gap, _ = _supported(space, undeformed, nothing, nothing, 0.0)
+        start = State(distance, pressure, nothing, gap, 0)
+        if adhesion is None:
+            return start
+        attraction = adhesion.traction(gap)
+    else:
+        pressure, attraction = start.pressure, start.attraction
+    for turn in range(1, TURNS + 1):
+        pressure, gap, before = _supported(space, undeformed, pressure, attraction, SHARE)
+        change = adhesion.traction(gap) - attraction
+        left = _mean(np.abs(change)) / max(_mean(np.abs(attraction)), 1.0)
+        if left <= SETTLED and before <= 5 * TOLERANCE:
+            return State(distance, pressure, attraction, gap, turn)
+        attraction = attraction + np.float32(RELAXATION) * change
+    raise NotConverged("full elastic contact: change of the attraction", left, SETTLED, TURNS)
+
+
+def _supported(space, undeformed, pressure, attraction, share):
+    """Pressure p >= 0 without overlap under an attraction, p and gap (n1, n2) [Pa], [m]; residual at the beginning [m].
+
+    Projected gradients with the steps of J. Barzilai and J. M. Borwein, IMA J. Numer. Anal. 8, 141 (1988), of one
+    displacement each. Conjugate gradients need two wherever the projection changes their direction, which is nearly
+    always here, and twice as many displacements in all.
+
+    The residual is reduced to a ``share`` of that at the beginning, or to `TOLERANCE`.
+    """
+    gap = undeformed + space.displacement(pressure - attraction)
+    first = left = _residual(pressure, gap)
+    step = first_step = 0.5 / space.unit
+    for _ in range(STEPS):
+        if left <= max(TOLERANCE, share * first):
+            return pressure, gap, first
+        descended, traction = _descended(pressure, gap, attraction, np.float32(step))
+        after = undeformed + space.displacement(traction)
+        step, left = _next_step(pressure, gap, descended, after) or first_step, _residual(descended, after)
+        pressure, gap = descended, after
+    raise NotConverged("full elastic contact: gap of an element in contact [m]", left, TOLERANCE, STEPS)
+
+
+@kernel
+def _descended(pressure, gap, attraction, step):
+    """Pressure after a step against the gap, not negative, and the pressure less the attraction (n1, n2) each [Pa]."""
+    descended, traction = np.empty_like(pressure), np.empty_like(pressure)
+    for i in range(pressure.shape[0]):
+        for j in range(pressure.shape[1]):
+            descended[i, j] = max(pressure[i, j] - step * gap[i, j], np.float32(0))
+            traction[i, j] = descended[i, j] - attraction[i, j]
+    return descended, traction
+
+
+@kernel
+def _next_step(pressure, gap, descended, after):
+    r"""Step of Barzilai and Borwein after a step, over elements in contact or overlap; 0 if there are none [Pa m⁻¹].
+
+    .. math:: \alpha = \frac{\Delta p \cdot \Delta g}{\Delta g \cdot \Delta g}
+    """
+    mixed = square = 0.0
+    for i in range(gap.shape[0]):
+        for j in range(gap.shape[1]):
+            if descended[i, j] > 0 or after[i, j] < 0:
+                change = np.float64(after[i, j] - gap[i, j])
+                mixed += (descended[i, j] - pressure[i, j]) * change
+                square += change * change
+    return mixed / square if mixed > 0 else 0.0
+
+
+@kernel
+def _residual(pressure, gap):
+    """Largest gap or overlap of an element in contact, and overlap of any other [m]."""
+    largest = np.float32(0)
+    for i in range(gap.shape[0]):
+        for j in range(gap.shape[1]):
+            largest = max(largest, abs(gap[i, j]) if pressure[i, j] > 0 else -gap[i, j])
+    return largest
+
+
+@dataclass(frozen=True)
+class Separation:
+    """A strip from the state without force to the largest attraction."""
+
+    adhesion_energy: float  #: e [J m⁻²]
+    pull_off: float  #: f_max [Pa]
+    closed: State  #: without force
+    states: int  #: number of distances
+
+
+def separation(space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, start: tuple[float, float]) -> Separation:
+    """Adhesion energy and largest attraction of a strip of heights z (n1, n2) float32 [m].
+
+    Parameters
+    ----------
+    start : tuple of 2 floats
+        Distances without force and of the largest attraction of another model, from which the search begins. A third of
+        their difference is the step between distances, and a third of that near the largest attraction [m].
+
+    Raises
+    ------
+    ValueError
+        If no distance without force is found, or no largest attraction.
+    """
+    step = (start[1] - start[0]) / 3
+
+    def at(distance, before):
+        return equilibrium(space, heights, distance, adhesion, before)
+
+    closed, states = _without_force(at, start[0], step, lambda state: state.energy(heights, adhesion))
+    coarse, before = _beyond_extremum(at, closed, step, start[1])
+    fine, _ = _beyond_extremum(at, before, step / 3, before.distance + step)
+    _, pull_off = extremum(*np.transpose(fine))
+    return Separation(-closed.energy(heights, adhesion), pull_off, closed, states + len(coarse) + len(fine) - 2)
+
+
+def _beyond_extremum(at, state, step, end):
+    """Distances and forces, in steps, beyond the largest attraction and a distance; state a step before the former."""
+    curve, before = [(state.distance, state.force)], state
+    lowest = state.force
+    while state.distance < end or state.force <= lowest:
+        last, state = state, at(state.distance + step, state)
+        if state.force < lowest:
+            lowest, before = state.force, last
+        curve.append((state.distance, state.force))
+        _refuse_after(len(curve))
+    return curve, before
+
+
+def _without_force(at, distance, step, energy):
+    """State without force near a distance [m], and number of states; ``at(distance, before)`` is a state after another.
+
+    Steps lead to a change of sign, and secants to a force too small to change the energy.
+    """
+    state, ends, number = at(distance, None), {}, 1
+    while True:
+        repels = state.force > 0
+        ends[repels] = state
+        if len(ends) == 2:
+            width, drop = ends[False].distance - ends[True].distance, ends[True].force - ends[False].force
+            if 0.5 * state.force**2 * width / drop <= ENERGY_LEFT * abs(energy(state)):
+                return state, number
+            distance = ends[True].distance + width * ends[True].force / drop
+        else:
+            distance = state.distance + (step if repels else -step)
+        state, number = at(distance, state), number + 1
+        _refuse_after(number)
+
+
+def _refuse_after(states):
+    if states > STATES:
+        raise ValueError(
+            "full elastic contact finds no distance at which the surfaces come to rest: they are too smooth or the "
+            "solid is too soft to resist the adhesion"
+        )
