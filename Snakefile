@@ -34,6 +34,12 @@ if snakemake_patches.is_main(workflow):
     remember.save()
 
 
+FRONT = Path(".snakemake/front.rst")  # front page of the report, if the command stiction report has written one
+if FRONT.exists():
+
+    report: str(FRONT.absolute())
+
+
 rule tables:
     input:
         planner.wanted("tables"),

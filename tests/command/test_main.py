@@ -4,9 +4,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from test_front import finished
 
 import stiction
 from stiction.command import launch
+from stiction.command.front import FRONT
 from stiction.command.main import main
 
 ROOT = Path(__file__).parents[2]
@@ -63,12 +65,15 @@ def test_the_folder_of_a_run_and_the_report_in_it(asked, tmp_path):
     (tmp_path / "here" / "results").mkdir(parents=True)
     assert main(["report", "--directory", "here"]) == 2, "nothing to report yet"
     assert asked == []
-    (tmp_path / "here" / "results" / "verdict.txt").touch()
+    finished(tmp_path / "here" / "results")
     assert main(["report", "--directory", "here"]) == 0
+    assert "686 ± 16" in (tmp_path / "here" / FRONT).read_text()
     found, _ = options(asked)
-    style = ROOT / "workflow" / "report" / "style.css"
-    assert found == ["--report", "results/report.html", "--report-stylesheet", str(style)]
+    style, guide = (ROOT / "workflow" / "report" / name for name in ("style.css", "guide.yaml"))
+    asked_for = ["--report", "results/report.html", "--report-stylesheet", str(style), "--report-metadata", str(guide)]
+    assert found == asked_for
     assert style.exists()
+    assert guide.exists()
 
 
 @pytest.mark.parametrize(

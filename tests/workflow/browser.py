@@ -69,6 +69,11 @@ class Browser:
         """Open a file."""
         self.send("POST", "/url", url=path.resolve().as_uri())
 
+    def resize(self, width, height=900):
+        """Pretend that the screen has a size, also below the smallest one of a window."""
+        screen = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600}
+        self.send("POST", "/goog/cdp/execute", cmd="Emulation.setDeviceMetricsOverride", params=screen)
+
     def run(self, script, *arguments):
         """Result of the body of a JavaScript function."""
         return self.send("POST", "/execute/sync", script=script, args=arguments)

@@ -7,6 +7,8 @@ import pytest
 from browser import Browser, missing
 from conftest import ROOT, snakemake
 
+from stiction.command.front import FRONT, front_page
+
 pytestmark = [pytest.mark.slow, pytest.mark.browser, pytest.mark.skipif(bool(missing()), reason=missing())]
 
 STYLE = ROOT / "workflow" / "report" / "style.css"
@@ -28,10 +30,17 @@ def browser():
         yield browser
 
 
+#: Whether an open table is wider than its frame, and the lines of its tallest cell, apart from heads.
+WIDTH = "return document.documentElement.scrollWidth - document.documentElement.clientWidth"
+LINES = "return Math.max(...[...document.querySelectorAll('td')].map(cell => cell.getClientRects()[0].height)) / 17"
+
+
 @pytest.fixture(scope="module")
 def report(smoke):
-    """Report of the smoke run."""
-    printed = snakemake(smoke, "--report", "results/report.html", "--report-stylesheet", STYLE).stdout
+    """Report of the smoke run, with its front page."""
+    (smoke / FRONT).write_text(front_page(smoke / "results"), encoding="utf-8")
+    options = ["--report-stylesheet", STYLE, "--report-metadata", STYLE.with_name("guide.yaml")]
+    printed = snakemake(smoke, "--report", "results/report.html", *options).stdout
     assert "Warning" not in printed
     assert "ERROR" not in printed, "in a caption"
     return smoke / "results" / "report.html"
@@ -76,6 +85,61 @@ def test_every_category_opens_and_shows_its_figures_and_tables(browser, report):
     browser.open(report)
     assert set(browser.run("return Object.keys(results)")) == {f"results/{path.relative_to(results)}" for path in made}
     assert faults(browser, report) == []
+
+
+def shown(browser, report, width):
+    """Open the report on a screen of some width; its front page, once it is there."""
+    browser.resize(width)
+    browser.open(report)
+    (page,) = browser.wait(lambda: browser.find("#app .prose"))
+    return page
+
+
+def test_the_front_page_opens_first_and_its_links_open_results(browser, report):
+    text = browser.text(shown(browser, report, 1440))
+    for part in (
+        "Results of pair b",
+        "Open first",
+        "checks of the results passed",
+        "Provenance",
+        "Started",
+        "order: 4",
+    ):
+        assert part in text
+    assert browser.errors() == []
+    number = len(browser.find("#app .prose a"))
+    assert number >= 3
+    for k in range(number):
+        shown(browser, report, 1440)
+        browser.click(browser.find("#app .prose a")[k])
+        path = browser.run("return app.state.resultPath")
+        kinds, _ = browser.run(KINDS)
+        assert browser.wait(lambda kind=kinds[path]: opened(browser, kind)), path
+
+
+def open_table_3(browser, report, width):
+    """Open Table III from the front page."""
+    shown(browser, report, width)
+    (link,) = [link for link in browser.find("#app .prose a") if browser.text(link).startswith("Table III")]
+    browser.click(link)
+    assert browser.wait(lambda: opened(browser, "text/html"))
+
+
+def test_table_3_is_whole_and_unbroken_on_a_screen(browser, report):
+    open_table_3(browser, report, 1440)
+    assert browser.inside("iframe", WIDTH) <= 0
+    assert browser.inside("iframe", LINES) < 1.5
+
+
+def test_on_a_phone_page_and_table_take_the_whole_width(browser, report):
+    shown(browser, report, 390)
+    page = "document.querySelector('#app .prose').getBoundingClientRect().width"
+    width, whole = browser.run(f"return [{page}, document.documentElement.scrollWidth]")
+    assert width > 300
+    assert whole <= 390
+    open_table_3(browser, report, 390)
+    assert browser.run("return document.querySelector('iframe').clientWidth") == 390
+    assert browser.run("return document.querySelector('iframe').clientHeight") > 300
 
 
 def test_a_second_label_that_halves_a_category_is_noticed(browser, report, tmp_path):

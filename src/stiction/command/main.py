@@ -5,7 +5,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from stiction.command import explain, launch
+from stiction.command import explain, front, launch
 from stiction.command.ending import Status, last_lines, status
 from stiction.command.follow import RUN
 from stiction.config import reading
@@ -151,13 +151,17 @@ def _figures(arguments):
 def _report(arguments):
     """Write the report of finished results."""
     results = Path(arguments.directory) / "results"
-    if not (results / "verdict.txt").exists():
+    if not front.is_finished(results):
         raise launch.RefusedError(
             f"there are no results for a report in {results}: run stiction paper or stiction run FILE first "
             "(stiction devices is not enough)"
         )
-    style = launch.WORKFLOW / "workflow" / "report" / "style.css"
-    return _run(arguments, "--report", "results/report.html", "--report-stylesheet", str(style))
+    page = Path(arguments.directory) / front.FRONT
+    page.parent.mkdir(exist_ok=True)
+    page.write_text(front.front_page(results), encoding="utf-8")
+    files = launch.WORKFLOW / "workflow" / "report"
+    options = ("--report-stylesheet", str(files / "style.css"), "--report-metadata", str(files / "guide.yaml"))
+    return _run(arguments, "--report", "results/report.html", *options)
 
 
 def _explain(arguments):

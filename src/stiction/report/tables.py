@@ -12,8 +12,10 @@ from stiction.run.atomic import save_text
 
 _PAGE = """<!DOCTYPE html>
 <meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
 <style>
-body {{ font: 13px sans-serif }} p {{ white-space: pre-line }} td, th {{ padding: 1px 10px; text-align: right }}
+body {{ font: 13px sans-serif }} p {{ white-space: pre-line }}
+td, th {{ padding: 1px 6px; text-align: right }} td {{ white-space: nowrap }}
 </style>
 <p>{caption}</p>
 {cells}

@@ -12,6 +12,7 @@ from stiction.run.atomic import save_text
 
 #: Libraries on which results may depend.
 LIBRARIES = (
+    "stiction",
     "numpy",
     "scipy",
     "numba",

@@ -1,0 +1,180 @@
+"""Front page of the report: the answer in words, what to open first, checks, warnings and provenance."""
+
+import csv
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from datetime import datetime
+from html import escape, unescape
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from stiction.config.files import paper
+from stiction.report.format import with_error
+
+#: Where the command leaves the page for Snakemake, relative to the folder of the run.
+FRONT = Path(".snakemake", "front.rst")
+#: Results of the report to open first, below ``results/``, and what each is; those of devices only if there are any.
+_OF_DEVICES = {
+    "devices/*.html": "Device {name}: what to build",
+    "tables/safe_lengths.html": "Safe lengths",
+    "tables/stoppers.html": "Forces of stoppers",
+    "figures/risk.png": "Share of stuck devices over their length",
+}
+_OF_PAIRS = {
+    "tables/table_3.html": "Table III: crack lengths and adhesion energies",
+    "figures/overview.png": "Overview: from surfaces to crack lengths",
+    "tables/scans.html": "Scans and their statistics",
+    "tables/table_1.html": "Table I: statistics of the surfaces",
+}
+#: Opens a result as its button in the menu does.
+_OPEN = "new ButtonViewManager(app).handleSelectedResult('{path}').props.onClick(); return false"
+
+
+def front_page(results: Path) -> str:
+    """Front page of the results of a finished run, as Snakemake takes it: HTML within reStructuredText."""
+    runs = _runs(results)
+    last, config = runs[-1], runs[-1]["config"]
+    sections = {
+        f"Results of {' and '.join(_subjects(config))}": _list(answers(results, config)),
+        "Open first": _list(_links(results, config), plain=False),
+        **({"Checks": _paragraph(_text(results / "verdict.txt"))} if config["run"]["pairs"] else {}),
+        "Warnings": _list(_warnings(results, config)) or _paragraph("No result is beyond the limits of the model."),
+        "Provenance": _list(provenance(last, len(runs))),
+        "Configuration": _configuration(config),
+    }
+    page = "\n".join(f"<h2>{escape(title)}</h2>\n{body}" for title, body in sections.items())
+    indented = "\n".join(f"   {line}" for line in page.splitlines())
+    return f"{{% raw %}}\n.. raw:: html\n\n{indented}\n\n{{% endraw %}}\n"  # Snakemake fills in templates first
+
+
+def is_finished(results: Path) -> bool:
+    """Whether a run has computed all pairs and devices of its configuration."""
+    if not (results / "provenance.json").exists():
+        return False
+    has_pairs = _runs(results)[-1]["config"]["run"]["pairs"]
+    return (results / ("verdict.txt" if has_pairs else "devices/warnings.md")).exists()
+
+
+def _runs(results):
+    """Records of all runs in a folder of results."""
+    return json.loads(_text(results / "provenance.json"))
+
+
+def _text(path):
+    return path.read_text(encoding="utf-8")
+
+
+def _subjects(config):
+    """Pairs and devices of a configuration."""
+    named = {"pair": config["run"]["pairs"], "device": config.get("devices", {})}
+    return [f"{kind}{'s' * (len(names) > 1)} {', '.join(names)}" for kind, names in named.items() if names]
+
+
+def answers(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
+    """What the results say about every device and every pair, a sentence each."""
+    for name in config.get("devices", {}):
+        page = _text(results / "devices" / f"{name}.html")
+        yield f"Device {name}: {unescape(re.search('<strong>(.*?)</strong>', page).group(1))}"
+    if not config["run"]["pairs"]:
+        return
+    rows = csv.DictReader(_text(results / "tables" / "table_3.csv").splitlines())
+    for pair, of_pair in groupby((row for row in rows if row["model"] == "NG"), lambda row: row["pair"]):
+        yield cracks(pair, list(of_pair), config["beam"]["length_um"])
+
+
+def cracks(pair: str, rows: Sequence[Mapping[str, str]], length: float) -> str:
+    """How the beams of a pair end at each humidity, from their rows of Table III; length of the beams [µm].
+
+    Examples
+    --------
+    >>> shares = {"share_s_shape": "0.98", "share_arc": "0.02", "share_free": "0"}
+    >>> row = {"relative_humidity": "0.67", "crack_length_um": "685.7", "crack_length_std_um": "16.28"}
+    >>> cracks("b", [row | shares], 1500)
+    'Pair b, beams of 1500 µm: RH 0.67: 98 % stick behind a crack of 686 ± 16 µm (mean ± standard deviation).'
+    """
+    return f"Pair {pair}, beams of {length:g} µm: {'; '.join(map(_ends, rows))} (mean ± standard deviation)."
+
+
+def _ends(row):
+    """End states of the beams at one humidity."""
+    stuck, arcs = (float(row[f"share_{state}"]) for state in ("s_shape", "arc"))
+    if not row["crack_length_um"]:
+        return f"RH {row['relative_humidity']}: {100 * arcs:.2g} % are held by their tip alone, the others come free"
+    crack = with_error(float(row["crack_length_um"]), float(row["crack_length_std_um"]))
+    return f"RH {row['relative_humidity']}: {100 * stuck:.3g} % stick behind a crack of {crack} µm"
+
+
+def _links(results, config):
+    """Links to the results to open first."""
+    shown = (_OF_DEVICES if config.get("devices") else {}) | (_OF_PAIRS if config["run"]["pairs"] else {})
+    for pattern, title in shown.items():
+        for path in sorted(results.glob(pattern)):
+            opens = _OPEN.format(path=f"results/{path.relative_to(results)}")
+            yield f'<a href="#" onclick="{opens}">{escape(title.format(name=path.stem))}</a>'
+
+
+def _warnings(results, config):
+    """Sentences about results beyond the limits of the model."""
+    pages = {"warnings.md": config["run"]["pairs"], "devices/warnings.md": config.get("devices")}
+    lines = (line for page, subjects in pages.items() if subjects for line in _text(results / page).splitlines())
+    return (line.removeprefix("- ") for line in lines if line.startswith("- "))
+
+
+def provenance(run: Mapping[str, Any], number: int) -> Iterator[str]:
+    """Date, code, machine and scans of a run from its record, the last of a number of runs."""
+    versions, git = run["versions"], run["git"]
+    package = " ".join(filter(None, ["stiction", versions.get("stiction")]))
+    before = f", the last of {number} runs" if number > 1 else ""
+    started = f"{datetime.fromisoformat(run['started']):%Y-%m-%d %H:%M %Z}"
+    yield f"Started {started}{before}; all are in results/provenance.json."
+    if git is None:
+        yield f"{package}, installed"
+    else:
+        yield f"{package}, commit {git['commit']}"
+        for kind in ("changed", "untracked"):
+            if git[kind]:
+                yield f"Files that are {kind} in its folder: {', '.join(git[kind])}"
+    yield f"{run['machine']['system']}, {run['machine']['cpu']}, {run['machine']['cores']} cores"
+    yield ", ".join(f"{name} {version}" for name, version in versions.items() if version and name != "stiction")
+    for name, surface in run["config"]["surfaces"].items():
+        if "scans" in surface:
+            yield f"Scans of {name}: {', '.join(Path(file).name for file in surface['scans']['files'])}"
+
+
+def _configuration(config):
+    """Keys of a configuration that differ from those of the paper."""
+    changes = differing(config, paper())
+    if not changes:
+        return _paragraph("That of the paper.")
+    text = yaml.safe_dump(changes, allow_unicode=True, sort_keys=False)
+    return f"{_paragraph('Keys that differ from those of the paper:')}\n<pre>{escape(text)}</pre>"
+
+
+def differing(config: Mapping[str, Any], base: Mapping[str, Any]) -> dict[str, Any]:
+    """Keys of nested sections whose values differ from those of others.
+
+    Examples
+    --------
+    >>> differing({"seed": 1, "beam": {"width": 3, "samples": 2}}, {"seed": 1, "beam": {"width": 30, "samples": 2}})
+    {'beam': {'width': 3}}
+    """
+    pairs = ((key, value, base.get(key)) for key, value in config.items())
+    return {
+        key: differing(value, other) if isinstance(value, Mapping) and isinstance(other, Mapping) else value
+        for key, value, other in pairs
+        if value != other
+    }
+
+
+def _paragraph(text):
+    return f"<p>{escape(text.strip())}</p>"
+
+
+def _list(sentences: Iterable[str], plain: bool = True) -> str:
+    """Sentences, or HTML, below each other; empty without any."""
+    items = "\n".join(f"<li>{escape(sentence) if plain else sentence}</li>" for sentence in sentences)
+    return f"<ul>\n{items}\n</ul>" if items else ""

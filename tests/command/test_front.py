@@ -1,0 +1,99 @@
+"""Front page of the report: answers, links, checks, warnings and provenance of finished results."""
+
+import copy
+import re
+
+import pytest
+
+from stiction.command.front import answers, front_page, is_finished
+from stiction.config.files import paper
+from stiction.report.devices.pages import Page
+from stiction.run.provenance import record
+
+#: Part of Table III of two pairs.
+TABLE = """pair,relative_humidity,model,crack_length_um,crack_length_std_um,share_s_shape,share_arc,share_free
+b,0.67,G,1360,76,0.5,0.5,0
+b,0.67,NG,685.68,16.284,0.98,0.02,0
+b,0.88,NG,,,0,0.25,0.75
+c,0.6,NG,501,10.2,1,0,0
+"""
+
+
+def finished(results, devices=(), **changes):
+    """Files of a finished run of pairs b and c and some devices in a folder of results."""
+    for folder in ("tables", "devices"):
+        (results / folder).mkdir(parents=True, exist_ok=True)
+    config = copy.deepcopy(paper()) | {"run": {"pairs": ["b", "c"]}, "devices": dict.fromkeys(devices, {})} | changes
+    record(results / "provenance.json", results, config)
+    (results / "verdict.txt").write_text("All 3 checks of the results passed.\n")
+    (results / "warnings.md").write_text("# Where\n\n- pair b: Too <dry> & {{ thin }}.\n\nNot in the model: curl.\n")
+    (results / "devices" / "warnings.md").write_text("# Where\n\n- C1: Too long.\n")
+    (results / "tables" / "table_3.csv").write_text(TABLE)
+    (results / "tables" / "table_3.html").touch()
+    for name in devices:
+        page = Page(name, {}, [f"Build {name} no longer than 3 µm & more.", "And others."]).html
+        (results / "devices" / f"{name}.html").write_text(page)
+    return config
+
+
+def test_the_answers_are_those_of_devices_and_of_the_beams_on_non_gaussian_surfaces(tmp_path):
+    config = finished(tmp_path, ["C1", "S1"])
+    assert list(answers(tmp_path, config)) == [
+        "Device C1: Build C1 no longer than 3 µm & more.",
+        "Device S1: Build S1 no longer than 3 µm & more.",
+        "Pair b, beams of 1500 µm: RH 0.67: 98 % stick behind a crack of 686 ± 16 µm; RH 0.88: 25 % are held by their "
+        "tip alone, the others come free (mean ± standard deviation).",
+        "Pair c, beams of 1500 µm: RH 0.6: 100 % stick behind a crack of 501 ± 10 µm (mean ± standard deviation).",
+    ]
+
+
+def test_the_page_holds_verdict_warnings_provenance_and_what_differs_from_the_paper(tmp_path):
+    config = finished(tmp_path, ["C1"], seed=7)
+    config["surfaces"]["B2"] = {"scans": {"files": ["folder/mine.gwy"]}}
+    record(tmp_path / "provenance.json", tmp_path, config)
+    page = front_page(tmp_path)
+    (version,) = re.findall(r"<li>(stiction [\d.]+), installed</li>", page)
+    assert version
+    for part in (
+        "All 3 checks",
+        "Too &lt;dry&gt; &amp; {{ thin }}.",
+        "C1: Too long.",
+        "the last of 2 runs",
+        "seed: 7\n",
+    ):
+        assert part in page
+    assert "Scans of B2: mine.gwy" in page
+    assert "sampling:" not in page, "is that of the paper"
+    assert "Not in the model" not in page.split("Provenance")[0]
+
+
+def test_what_is_shown_depends_on_the_configuration_and_not_on_files_of_other_runs(tmp_path):
+    finished(tmp_path, ["C1"])
+    assert "devices/C1.html" in front_page(tmp_path)
+    finished(tmp_path)
+    page = front_page(tmp_path)
+    assert "C1" not in page
+    assert "results/tables/table_3.html" in page
+    finished(tmp_path, ["C1"], run={"pairs": []})
+    page = front_page(tmp_path)
+    assert "device C1" in page
+    assert "Checks" not in page
+    assert "table_3" not in page
+
+
+@pytest.mark.parametrize(("pairs", "needed"), [(["b"], "verdict.txt"), ([], "devices/warnings.md")])
+def test_a_run_is_finished_when_all_that_its_configuration_names_is_there(tmp_path, pairs, needed):
+    assert not is_finished(tmp_path)
+    finished(tmp_path, ["C1"], run={"pairs": pairs})
+    assert is_finished(tmp_path)
+    (tmp_path / needed).unlink()
+    assert not is_finished(tmp_path)
+
+
+def test_templates_and_indentation_survive_in_restructured_text(tmp_path):
+    jinja2, core = (pytest.importorskip(name) for name in ("jinja2", "docutils.core"))
+    finished(tmp_path)
+    filled = jinja2.Environment().from_string(front_page(tmp_path)).render()
+    shown = core.publish_parts(filled, writer="html")["html_body"]
+    assert "{{ thin }}" in shown
+    assert shown.count("<h2>") == 6
