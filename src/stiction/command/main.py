@@ -5,7 +5,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from stiction.command import explain, front, launch
+from stiction.command import explain, launch
 from stiction.command.ending import Status, last_lines, status
 from stiction.command.follow import RUN
 from stiction.config import reading
@@ -150,6 +150,8 @@ def _figures(arguments):
 
 def _report(arguments):
     """Write the report of finished results."""
+    from stiction.command import front  # imports the libraries for numbers
+
     results = Path(arguments.directory) / "results"
     if not front.is_finished(results):
         raise launch.RefusedError(
