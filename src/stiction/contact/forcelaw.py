@@ -218,10 +218,10 @@ def _mean_attraction(left, right):
 
 
 @kernel
-def adhesion_energy(distance: np.ndarray, force: np.ndarray) -> float:
+def adhesion_energy(distance: np.ndarray, force: np.ndarray, beyond: float = 0.0) -> float:
     """Adhesion energy e (work of separation): integral of the attraction beyond the zero crossing [J m⁻²].
 
-    Parameters as in `extremum`.
+    Parameters as in `extremum`; ``beyond`` is the part of the integral beyond the grid [J m⁻²], where it is known.
 
     ASSUME: a single high asperity can make the curve repulsive again beyond its minimum (4 % of the samples of pair b
     at RH 0.44). Only the attractive parts are integrated: the net integral may be negative, and e must not (App. B).
@@ -229,12 +229,12 @@ def adhesion_energy(distance: np.ndarray, force: np.ndarray) -> float:
     Raises
     ------
     ValueError
-        If the curve has no repulsion, or has not decayed at the end of its grid.
+        If the curve has no repulsion, or has not decayed at the end of its grid and nothing is known beyond.
     """
     lowest = np.argmin(force)
-    if not abs(force[-1]) <= -DECAYED * force[lowest]:
+    if not (beyond > 0 or abs(force[-1]) <= -DECAYED * force[lowest]):
         raise ValueError("the force has not decayed at the end of its grid")
-    energy = 0.0
+    energy = beyond
     for j in range(_reach(force, lowest, 0.0), force.size - 1):
         energy += _mean_attraction(force[j], force[j + 1]) * (distance[j + 1] - distance[j])
     return energy
@@ -253,19 +253,21 @@ def limit_distance(distance: np.ndarray, force: np.ndarray, limit: float) -> flo
 
 
 def _each_sample(evaluate, curve, samples):
-    """Evaluate the curves one by one (samples, ...); the message of an error contains the number of the sample."""
+    """``evaluate(force, k)`` of the curves one by one (samples, ...); an error contains the number of the sample."""
     rows = []
     for k in range(samples):
         force = curve(k)
         try:
-            rows.append(evaluate(force))
+            rows.append(evaluate(force, k))
         except ValueError as error:
             span = f"runs from {force.min():.3g} to {force.max():.3g} and ends at {force[-1]:.3g} Pa"
             raise ValueError(f"sample {k}: {error}; it {span}") from error
     return np.array(rows)
 
 
-def parametrise(distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int) -> tuple[np.ndarray, float]:
+def parametrise(
+    distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int, beyond: np.ndarray | None = None
+) -> tuple[np.ndarray, float]:
     """Parameters of all sampled curves, Eq. (11), interpolated between the grid points.
 
     Every curve is computed twice, because f_limit depends on all curves; the memory thus does not grow with their
@@ -279,6 +281,8 @@ def parametrise(distance: np.ndarray, curve: Callable[[int], np.ndarray], sample
         ``curve(k)`` is the force of sample k on the grid, (n_d,) float64 [Pa]; the memory may be reused.
     samples : int
         Number of samples m.
+    beyond : (m,) float64, optional
+        Energy of the attraction of each sample beyond the grid [J m⁻²]; without it, the curves have decayed there.
 
     Returns
     -------
@@ -293,21 +297,25 @@ def parametrise(distance: np.ndarray, curve: Callable[[int], np.ndarray], sample
         If a curve has no attraction, is truncated by its grid or does not reach f_limit; the message contains the
         number of the sample.
     """
-    wells = _each_sample(lambda f: (*extremum(distance, f), adhesion_energy(distance, f)), curve, samples)
+    beyond = np.zeros(samples) if beyond is None else beyond
+    wells = _each_sample(lambda f, k: (*extremum(distance, f), adhesion_energy(distance, f, beyond[k])), curve, samples)
     d_max, f_max, e = wells.T
     f_limit = float(f_max.max())
-    d_limit = _each_sample(lambda f: limit_distance(distance, f, f_limit), curve, samples)
+    d_limit = _each_sample(lambda f, _: limit_distance(distance, f, f_limit), curve, samples)
     return np.column_stack([e, f_max, d_max, d_limit]), f_limit
 
 
-def adhesion_energies(distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int) -> np.ndarray:
+def adhesion_energies(
+    distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int, beyond: np.ndarray | None = None
+) -> np.ndarray:
     """Energies e of all sampled curves (m,) [J m⁻²]; parameters of `parametrise`, errors of `adhesion_energy`."""
-    return _each_sample(lambda f: adhesion_energy(distance, f), curve, samples)
+    beyond = np.zeros(samples) if beyond is None else beyond
+    return _each_sample(lambda f, k: adhesion_energy(distance, f, beyond[k]), curve, samples)
 
 
 def pull_offs(distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int) -> np.ndarray:
     """Largest attraction f_max of all sampled curves (m,) [Pa]; parameters of `parametrise`, errors of `extremum`."""
-    return _each_sample(lambda f: extremum(distance, f)[1], curve, samples)
+    return _each_sample(lambda f, _: extremum(distance, f)[1], curve, samples)
 
 
 # Eq. (12): the analytical force law

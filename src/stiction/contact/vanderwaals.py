@@ -41,6 +41,10 @@ class DugdaleAttraction:
         """Tension -σ_vdW = ω_vdW / h_vdW within the range, positive [Pa]."""
         return self.work_of_adhesion / self.range
 
+    def work(self, gap: float | np.ndarray) -> float | np.ndarray:
+        """Work per area to separate the flats from a gap >= 0 to infinity [J m⁻²]; gap [m], any shape."""
+        return self.work_of_adhesion * np.maximum(1 - gap / self.range, 0.0)
+
 
 def attraction(through: str, hamaker_constant: float | None = None) -> DugdaleAttraction | None:
     """Attraction through ``"water"`` or ``"dry"`` air; ``None`` for ``"none"``.

@@ -17,7 +17,7 @@ def compute(contact: xr.Dataset, forces: xr.Dataset, settings: Settings) -> xr.D
     """Compare every curve whose vector v has a force law with this force law."""
     vectors, limit = stage_forces.vectors(forces)
     samples = np.flatnonzero(admissible(vectors, limit))
-    distance, curve = force_curves(contact, settings.humidity, settings.water)
+    distance, curve, *_ = force_curves(contact, settings.humidity, settings.water)
     errors = fit_errors(distance, curve, samples, vectors[samples], limit)
     return layout(samples, errors, len(vectors))
 

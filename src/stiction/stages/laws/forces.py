@@ -34,10 +34,10 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
     Dataset
         Components of v(sample), Eq. (11), f_limit, and the first few curves.
     """
-    distance, curve = force_curves(contact, settings.humidity, settings.water)
-    vectors, limit = parametrise(distance, curve, contact.sizes["sample"])
-    kept = [curve(k).copy() for k in range(min(_KEPT, contact.sizes["sample"]))]
-    return layout(vectors, limit, distance, kept)
+    sampled = force_curves(contact, settings.humidity, settings.water)
+    vectors, limit = parametrise(*sampled)
+    kept = [sampled.curve(k).copy() for k in range(min(_KEPT, sampled.samples))]
+    return layout(vectors, limit, sampled.distance, kept)
 
 
 def layout(vectors: np.ndarray, limit: float, distance: np.ndarray, curves: Sequence[np.ndarray]) -> xr.Dataset:
