@@ -110,7 +110,7 @@ UNITS = {
 def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
     # The last key on the path with a unit; the keys below it are names chosen by the user.
     units = [UNITS[suffix] for key in leaf.path for suffix in sorted(UNITS, key=len) if key.endswith(suffix)][-1:]
-    text = "string" in (leaf.entry["type"], leaf.entry.get("items", {}).get("type"))
+    text = {"string", "boolean"} & {leaf.entry["type"], leaf.entry.get("items", {}).get("type")}
     assert leaf.entry["description"].endswith(tuple(units or (["[name]", "[choice]"] if text else ["[-]"])))
 
 

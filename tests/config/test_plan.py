@@ -182,3 +182,26 @@ def test_moments_are_shifted_from_feasible_ones():
     border = plan(surfaces={"B2": {"skewness": -0.3, "kurtosis": 3.5}})
     assert border.shifted_moments == ["rms"]  # on the border, less skewness or more kurtosis is infeasible
     assert plan(surfaces={"B2": {"skewness": -0.3, "kurtosis": 2.9}}).shifted_moments == PAPER.shifted_moments
+
+
+def test_only_attraction_across_gaps_changes_the_water_of_a_pair_and_nothing_else_of_its_contact():
+    across = plan(attraction={"reach": "all"})
+    assert plan(attraction={"wavelength_nm": 50}).water("b") == PAPER.water("b") == {"temperature_K": 300}
+    gaps = {"hamaker_constant_zJ": {"water": 97.5, "dry": 186.5}, "summits": "water", "wavelength_nm": 100}
+    assert across.water("b") == {"temperature_K": 300, "gaps": gaps}
+    unretarded = plan(attraction={"reach": "all", "retarded": False}).water("b")["gaps"]
+    assert unretarded == {key: gaps[key] for key in ("hamaker_constant_zJ", "summits")}
+    contact = {key: PAPER.seen_by("b")[key] for key in ("solid", "van_der_waals", "contact", "surfaces")}
+    assert {key: across.seen_by("b")[key] for key in contact} == contact
+
+
+def test_attraction_across_gaps_is_a_variant_on_the_contact_of_the_base():
+    varied = plan(studies={"variants": {"reach": ["all"]}})
+    assert ("b", "reach_all") in varied.studied
+    assert ("b", "reach_all") not in plan(attraction={"reach": "all"}, studies={"variants": {"reach": ["all"]}}).studied
+    assert varied.contact_under("reach_all") == "base"
+    assert varied.water("b", "reach_all") == plan(attraction={"reach": "all"}).water("b")
+    assert "reach_all" not in varied.choices("b")
+    dry = plan(attraction={"reach": "all"}).water("b", "van_der_waals_dry")["gaps"]
+    assert dry["summits"] == "dry"
+    assert "gaps" not in plan(attraction={"reach": "all"}).water("b", "van_der_waals_none")

@@ -235,7 +235,7 @@ def test_fit_compares_every_curve_that_has_a_law_with_its_law():
     found = study_fit.compute(small.contact_of_pair(), small.forces_of_case(), settings)
     vectors, limit = forces.vectors(small.forces_of_case())
     assert_array_equal(found.sample, np.flatnonzero(admissible(vectors, limit)))
-    distance, curve = curves.force_curves(small.contact_of_pair(), small.HUMIDITY, WATER)
+    distance, curve, *_ = curves.force_curves(small.contact_of_pair(), small.HUMIDITY, WATER)
     for sample in found.sample.values[[0, -1]]:
         used = distance >= vectors[sample, 3]
         law = coefficients(vectors[[sample]], limit)[0]

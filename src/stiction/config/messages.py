@@ -95,6 +95,7 @@ def _entry(schema, path):
 
 #: Keywords of the schema in words.
 _KINDS = {"array": "a list", "integer": "a whole number", "number": "a number", "object": "a section", "string": "text"}
+_KINDS |= {"boolean": "true or false"}
 _BOUNDS = {"exclusiveMinimum": "above", "minimum": "at least", "exclusiveMaximum": "below", "maximum": "at most"}
 
 

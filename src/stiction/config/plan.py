@@ -24,6 +24,7 @@ MOMENTS = ("rms_nm", "skewness", "kurtosis")
 SUMMITS = ("mean_summit_radius_um", "summit_density_per_um2")
 #: Key that a variant changes, and its section; the source of the spectrum is a key of each surface.
 _CHANGED = {"van_der_waals": None, "psd": None, "every": "contact", "spacing_nm": "sampling", "poisson_ratio": "solid"}
+_CHANGED |= {"reach": "attraction"}
 #: Sections of the solids, which do not affect the summits.
 _SOLIDS = ("solid", "van_der_waals")
 #: Keys that define the beam that the paper measured and simulated.
@@ -105,10 +106,21 @@ class Plan:
         used = dict.fromkeys(surfaces[surface].get("material", "the solid") for surface in self.sides(pair))
         return [[name, [_PROPERTIES[key] for key in named[name]]] for name in used if name in named]
 
-    def water(self, pair: str) -> dict:
-        """Section ``water`` with the contact angles on both surfaces of a pair if one of them is not zero."""
+    def water(self, pair: str, variant: str = "base") -> dict:
+        """Section ``water`` of a pair: with the contact angles if one is not zero, and the attraction across gaps."""
         angles = [material.get("contact_angle_deg", 0) for material in self._stated(pair)]
-        return self.config["water"] | ({"contact_angles_deg": angles} if any(angles) else {})
+        gaps = self._gaps(pair, merged(self.config, self.variants[variant]))
+        return self.config["water"] | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
+
+    def _gaps(self, pair, config):
+        """Attraction across the gaps between the solids of a pair, if there is any."""
+        reach, summits = config["attraction"], config["van_der_waals"]
+        if reach["reach"] == "touching" or summits == "none":
+            return {}
+        both = [hamaker_constants(material) for material in self._stated(pair)]
+        constants = {medium: math.sqrt(math.prod(one[medium] for one in both)) for medium in (summits, "dry")}
+        retarded = {"wavelength_nm": reach["wavelength_nm"]} if reach["retarded"] else {}
+        return {"gaps": {"hamaker_constant_zJ": constants, "summits": summits} | retarded}
 
     def beam_modulus(self, pair: str) -> dict:
         """Young's modulus of the beam of a pair if its material states one, otherwise empty."""
@@ -387,7 +399,7 @@ class Plan:
         changes = {
             f"{key}_{value}": {section: {key: value}} if section else {key: value}
             for key, section in _CHANGED.items()
-            for value in wanted[key]
+            for value in wanted.get(key, [])
         }
         return {"base": {}} | changes | {name: {"beam": mesh} for name, mesh in self.finer_beams.items()}
 
@@ -433,8 +445,8 @@ class Plan:
         return next(name for name in self.variants if self._summits(pair, name) == wanted)
 
     def contact_under(self, variant: str) -> str:
-        """Variant whose contact a variant has: that of the base if only the mesh of the beam is finer."""
-        return "base" if variant in self.finer_beams else variant
+        """Variant whose contact a variant has: that of the base if only the beam or the forces across gaps differ."""
+        return "base" if variant in self.finer_beams or "attraction" in self.variants[variant] else variant
 
     @property
     def has_samples_of_variants(self) -> bool:
@@ -451,7 +463,7 @@ class Plan:
         contact = self.variant_contact(pair, variant)
         if "materials" in contact:  # of both sides, with all properties of section solid
             del contact["solid"]
-        return self._summits(pair, variant), contact, self.finer_beams.get(variant)
+        return self._summits(pair, variant), contact, self.water(pair, variant), self.finer_beams.get(variant)
 
     def choices(self, pair: str) -> list[str]:
         """Variants that change the contact of a pair, which need not run."""

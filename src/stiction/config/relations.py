@@ -500,6 +500,12 @@ def _shape(skewness, kurtosis, form):
     return tuple(density.quantile_of_normal(_SCORES)), float(density.quantile_of_normal(_HIGHEST))
 
 
+@relation("attraction.reach", "van_der_waals")
+def solids_attract_across_gaps(reach, medium):
+    """Without van der Waals forces of the summits there are none across gaps."""
+    return "must be touching if van_der_waals is none" if (reach, medium) == ("all", "none") else None
+
+
 @relation("pairs.*.beam", "pairs.*.substrate", "surfaces", "materials")
 def water_wets_the_pair(beam, substrate, surfaces, materials):
     """Water condenses between two surfaces only if the cosines of their contact angles add up to more than zero."""

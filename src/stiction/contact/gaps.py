@@ -46,10 +46,18 @@ class FlatAttraction:
         if not 0 <= self.spacer < np.inf:
             raise ValueError(f"the thickness of a coating must not be negative, got {self.spacer:.3g} m")
 
+    @property
+    def largest_pressure(self) -> float:
+        """Bound of the tension between the flats at any gap, positive: that without retardation and spacer [Pa]."""
+        return self.hamaker_constant / (6 * np.pi * self._at_rest**3) * 2 / np.sqrt(27)
+
+    @property
+    def _at_rest(self):
+        return DugdaleAttraction(self.hamaker_constant).equilibrium_distance
+
     def work(self, gap: float | np.ndarray) -> float | np.ndarray:
         """Work per area to separate the flats from a gap to infinity [J m⁻²]; gap >= 0 [m], any shape."""
-        at_rest = DugdaleAttraction(self.hamaker_constant).equilibrium_distance
-        gap = np.asarray(gap) + self.spacer
+        at_rest, gap = self._at_rest, np.asarray(gap) + self.spacer
         near = at_rest / (at_rest + gap)
         scale = self.hamaker_constant / (12 * np.pi * at_rest**2)
         return scale * (near**2 / (1 + RETARDATION * gap / self.wavelength) - near**8 / 4)
@@ -58,7 +66,7 @@ class FlatAttraction:
 def work_across_film(
     gap: float | np.ndarray, height: float, wet: FlatAttraction, dry: FlatAttraction
 ) -> float | np.ndarray:
-    """Work to separate flats from a gap [m], with water in gaps up to the ``height`` [m] and with air beyond [J m⁻²]."""
+    """Work to separate flats from a gap [m] with water in gaps up to the ``height`` [m] and air beyond [J m⁻²]."""
     return np.where(gap < height, wet.work(gap) + (dry.work(height) - wet.work(height)), dry.work(gap))
 
 

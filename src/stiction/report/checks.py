@@ -22,9 +22,7 @@ from stiction.beam.equilibrium import allowed_imbalance
 from stiction.beam.foundation import ACCURACY
 from stiction.config.cases import case_id
 from stiction.config.units import in_si
-from stiction.contact.bounds import flooded_law
 from stiction.contact.forcelaw import admissible, coefficients, energy
-from stiction.contact.meniscus import film
 from stiction.errors import NotConverged
 from stiction.estimates import jackknife, mean_with_error
 from stiction.models import MOMENT_KEYS, SURFACE_MODELS, surface_model
@@ -35,7 +33,7 @@ from stiction.report.tables_surfaces import surface_statistics
 from stiction.run.atomic import save_text
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
 from stiction.stages.beams.releases import stuck_energies, stuck_lengths
-from stiction.stages.contact.curves import Water
+from stiction.stages.contact.curves import Water, flooded_law
 from stiction.stages.laws import forces as stage_forces
 from stiction.stages.surfaces.heights import measured_moments, substitution
 from stiction.stages.surfaces.parameters import misfits
@@ -84,8 +82,7 @@ class Flooded:
 
     def energy(self, humidity: float) -> float:
         """Their adhesion energy, which no surfaces exceed [J m⁻²]."""
-        layer = film(humidity, self.water.temperature, self.water.contact_angles)
-        return flooded_law(layer, self.hamaker_constant)[0]
+        return flooded_law(humidity, self.water, self.hamaker_constant)[0]
 
 
 def _energy(forces):

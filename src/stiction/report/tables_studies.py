@@ -22,6 +22,7 @@ _LABELS = {
     "spacing_nm": "grid {} nm",
     "poisson_ratio": "ν = {}",
     "strips_per_element": "elements of {} strips",
+    "reach": "vdW: across {} gaps",
 }
 
 

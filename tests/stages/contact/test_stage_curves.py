@@ -2,10 +2,21 @@
 
 import numpy as np
 import pytest
+from scipy.special import erfc
 
+from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.pair import DistanceGrid
 from stiction.stages.contact import contact
-from stiction.stages.contact.curves import Water, force_curves, pull_offs, tip_forces
+from stiction.stages.contact.curves import (
+    Gaps,
+    Water,
+    energies,
+    flooded_law,
+    force_curves,
+    pull_offs,
+    tip_forces,
+    vectors,
+)
 
 
 def test_force_at_a_humidity_is_solid_pressure_less_tension_on_the_wet_area():
@@ -13,7 +24,7 @@ def test_force_at_a_humidity_is_solid_pressure_less_tension_on_the_wet_area():
     solid = np.exp(-grid.solid / 2e-9)[None] * 1e8
     bearing = 1 / (1 + np.exp(grid.bearing / 2e-9))[None]
     dataset = contact.layout(solid, bearing, grid, range(1))
-    distance, curve = force_curves(dataset, 0.65, Water(300.0))
+    distance, curve, *_ = force_curves(dataset, 0.65, Water(300.0))
     # Tension 59.7 MPa and height 2.41 nm of water at RH 0.65, 300 K.
     tension, height = 59.7e6, 2.41e-9
     for k in (5, 12):
@@ -26,7 +37,7 @@ def test_contact_angles_lower_the_film_and_keep_the_tension():
     bearing = 1 / (1 + np.exp(grid.bearing / 2e-9))[None]
     dataset = contact.layout(np.zeros((1, 40)), bearing, grid, range(1))
     angles = np.radians([20.0, 60.0])
-    distance, curve = force_curves(dataset, 0.65, Water(300.0, tuple(angles)))
+    distance, curve, *_ = force_curves(dataset, 0.65, Water(300.0, tuple(angles)))
     height = 2.41e-9 * np.cos(angles).sum() / 2
     for k in (5, 12):
         wet = np.interp(distance[k] - height, grid.bearing, bearing[0])
@@ -63,3 +74,75 @@ def test_a_film_beyond_the_reach_of_the_tips_is_refused_with_its_humidity():
     found = tips(np.zeros((1, 2, 40)), np.zeros((1, 2, 50)), grid)
     with pytest.raises(ValueError, match="of up to 5 nm, and that at a relative humidity of 0.9 is 9.86 nm high"):
         tip_forces(found, 0.9, Water(300.0))
+
+
+# Attraction across gaps
+
+ACROSS = Gaps(HAMAKER_CONSTANT, "water", 100e-9)
+
+
+def rough(rms, step=0.05e-9, reach=40e-9):
+    """Contact of two samples of Gaussian heights, held at three times their standard deviation by their summits."""
+    grid = DistanceGrid.covering(-12e-9, reach, step)
+    bearing = np.tile(erfc(grid.bearing / (np.sqrt(2) * rms)) / 2, (2, 1))
+    solid = np.tile(1e6 * np.exp((3 * rms - grid.solid) / (0.1 * rms)), (2, 1))
+    return contact.layout(solid, bearing, grid, range(2))
+
+
+def test_without_attraction_across_gaps_the_curves_are_those_of_summits_and_water():
+    dataset = rough(2e-9)
+    assert force_curves(dataset, 0.6, Water(300.0)).beyond is None
+    plain, across = (energies(dataset, 0.6, Water(300.0, gaps=gaps)) for gaps in (None, ACROSS))
+    assert np.all(across > 1.01 * plain)
+
+
+def test_energy_across_gaps_does_not_depend_on_where_the_grid_of_distances_ends():
+    water = Water(300.0, gaps=ACROSS)
+    near, far = (rough(2e-9, reach=reach) for reach in (14e-9, 60e-9))
+    found = energies(near, 0.6, water)
+    np.testing.assert_allclose(found, energies(far, 0.6, water), rtol=2e-5)
+    missing = [force_curves(dataset, 0.6, water).beyond for dataset in (near, far)]
+    assert np.all(missing[0] > 5 * missing[1])
+    assert np.all(missing[0] > 1e-3 * found)
+
+
+def test_vectors_have_the_energies_across_gaps():
+    dataset, water = rough(2e-9), Water(300.0, gaps=ACROSS)
+    found, limit = vectors(dataset, 0.6, water)
+    np.testing.assert_array_equal(found[:, 0], energies(dataset, 0.6, water))
+    np.testing.assert_array_equal(found[:, 1], pull_offs(dataset, 0.6, water))
+    assert limit == found[:, 1].max()
+
+
+@pytest.mark.parametrize("medium", ["water", "dry"])
+def test_solids_that_attract_through_air_do_so_in_the_film_as_well(medium):
+    gaps = Gaps(HAMAKER_CONSTANT, medium, 100e-9)
+    counted = {"water": 0.0874, "dry": 0.167}[medium]
+    wet, air = (gaps.through(each).work(2e-9) for each in ("water", "dry"))
+    expected = 0 if medium == "dry" else air - wet
+    assert gaps.work(0.0, 2e-9) == pytest.approx(expected, abs=1e-12)
+    # Beyond the range of the Dugdale stress, nothing is subtracted.
+    assert gaps.work(1e-9, 0.5e-9) == pytest.approx(gaps.through("dry").work(1e-9), rel=1e-12)
+    assert gaps.work(0.1e-9, 2e-9) - gaps.through(medium).work(0.1e-9) < -0.5 * counted
+
+
+def test_no_sample_exceeds_the_energy_and_the_pull_off_of_flooded_flats_that_attract_across_gaps():
+    dataset, water = rough(0.1e-9), Water(300.0, gaps=ACROSS)
+    most, pull = flooded_law(0.6, water, HAMAKER_CONSTANT["water"])
+    assert np.all(energies(dataset, 0.6, water) < most)
+    assert np.all(pull_offs(dataset, 0.6, water) < pull)
+    assert most > flooded_law(0.6, Water(300.0), HAMAKER_CONSTANT["water"])[0]
+
+
+def test_a_tip_is_held_across_gaps_by_the_whole_wedge():
+    """A smooth wedge of slope θ at a distance d has the force U(d) / θ per width, wherever its stored heights end."""
+    water, slopes, length, forces = Water(300.0, gaps=ACROSS), np.array([0.05, 0.1]), 1e-6, []
+    for below in (100, 300):
+        grid = DistanceGrid(0.01e-9, 5 * below, 500)
+        wedge = [np.clip(-grid.bearing / (slope * length), 0, 1) for slope in slopes]
+        solid = 1e24 * np.maximum(3e-9 - grid.solid, 0) ** 2  # holds the tip 3 nm away, out of reach of the water
+        dataset = contact.layout(np.tile(solid, (1, 2, 1)), np.array([wedge]), grid, range(1))
+        dataset = dataset.assign(length=length).assign_coords(slope=slopes)
+        forces.append(tip_forces(dataset, 0.6, water)[1][0])
+    np.testing.assert_allclose(forces, [ACROSS.work(3e-9, 0.0) / slopes] * 2, rtol=0.02)
+    np.testing.assert_allclose(forces[0], forces[1], rtol=1e-5)

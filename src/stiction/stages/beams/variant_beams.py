@@ -101,7 +101,8 @@ def _inputs(plan, at):
 def _settings(plan, at):
     """Stages after contact under a variant: samples of the contact, water, force laws and beams without scatter."""
     study = plan.config["studies"]["variants"]
-    laws = {"chaos": plan.config["chaos"], "water": plan.water(pair_of(at.case)), "samples": study["samples"]}
+    water = plan.water(pair_of(at.case), at.variant)
+    laws = {"chaos": plan.config["chaos"], "water": water, "samples": study["samples"]}
     nominal = releases.sections(plan, at.case)
     beam = nominal["beam"] | {"samples": study["beams"]} | plan.finer_beams.get(at.variant, {})
     return nominal | laws | {"beam": beam}

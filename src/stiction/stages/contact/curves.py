@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.config.units import from_si
-from stiction.contact import forcelaw, gaps, vanderwaals
+from stiction.contact import bounds, forcelaw, gaps, vanderwaals
 from stiction.contact.meniscus import film
 from stiction.stages.contact.contact import tables
 
@@ -22,12 +22,17 @@ class Gaps:
     summits: str  #: medium through which the summits attract, whose work is not counted again
     wavelength: float = np.inf  #: of the retardation [m]
 
-    def work(self, gap: np.ndarray, height: float) -> np.ndarray:
-        """Work of two flats beyond that of the summits [J m⁻²], at gaps [m] and under a film of a height [m]."""
-        through = {medium: gaps.FlatAttraction(one, self.wavelength) for medium, one in self.hamaker_constant.items()}
-        wet = through[self.summits]  # the solids attract through air everywhere if the summits do
+    def through(self, medium: str) -> gaps.FlatAttraction:
+        """Attraction of flats through a medium."""
+        return gaps.FlatAttraction(self.hamaker_constant[medium], self.wavelength)
+
+    def work(self, gap: float | np.ndarray, height: float) -> float | np.ndarray:
+        """Work of two flats beyond that of the summits [J m⁻²], at gaps [m] and under a film of a height [m].
+
+        If the summits attract through dry air, so do the solids across the film.
+        """
         counted = vanderwaals.attraction(self.summits, self.hamaker_constant[self.summits])
-        return gaps.work_across_film(gap, height, wet, through["dry"]) - counted.work(gap)
+        return gaps.work_across_film(gap, height, self.through(self.summits), self.through("dry")) - counted.work(gap)
 
 
 @dataclass(frozen=True)
@@ -61,6 +66,15 @@ def force_curves(contact: xr.Dataset, humidity: float, water: Water) -> ForceCur
     work = partial(water.gaps.work, height=layer[0])
     pressure, beyond = gaps.gap_pressures(bearing, starts[1], distance, step, work)
     return ForceCurves(distance, lambda k: curve(k) + pressure[k], len(solid), beyond)
+
+
+def flooded_law(humidity: float, water: Water, hamaker_constant: float) -> tuple[float, float]:
+    """Upper bounds of e [J m⁻²] and f_max [Pa] of any surfaces, see `stiction.contact.bounds.flooded_law`."""
+    layer = water.film(humidity)
+    energy, pull = bounds.flooded_law(layer, hamaker_constant)
+    if water.gaps is None:
+        return energy, pull
+    return energy + float(water.gaps.work(0.0, layer[0])), pull + water.gaps.through("dry").largest_pressure
 
 
 def energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:

@@ -7,8 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from stiction.contact.bounds import flooded_law
-from stiction.contact.meniscus import film, flooded_energy
+from stiction.contact.meniscus import flooded_energy
 from stiction.devices import arcs, bridges, risk
 from stiction.devices.chart import flooded_length
 from stiction.devices.risk import SafeLength
@@ -34,7 +33,7 @@ def flooded_lengths(device: DesignedBeam, water: curves.Water, humidity: float) 
     """
     wet = water.temperature, water.contact_angles
     if not device.opening.has_tip:
-        law = flooded_law(film(humidity, *wet), device.hamaker_constant)
+        law = curves.flooded_law(humidity, water, device.hamaker_constant)
         return [bridges.least_length(*law, device.beam)]
     return [flooded_length(device.beam, *wet), arcs.arc_length(flooded_energy(*wet), device.beam)]
 
