@@ -16,8 +16,6 @@ ALTERNATIVES_OF_SCANS = {"beyond": ("cut", "continued"), "heights": ("moments", 
 #: Keys of the measured statistics of a surface: moments of the heights and summit statistics.
 MOMENT_KEYS = ("rms_nm", "skewness", "kurtosis")
 SUMMIT_KEYS = ("mean_summit_radius_um", "summit_density_per_um2")
-#: Properties of a material on which contact depends, keys of the configuration.
-ELASTIC = ("young_modulus_GPa", "poisson_ratio", "hamaker_constant_zJ")
 #: Least side of the periodic fields on which spectra are estimated [m].
 FIELD = 10.24e-6
 

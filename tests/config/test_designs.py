@@ -12,12 +12,12 @@ from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import in_si
-from stiction.devices.budget import OF_SOLIDS
+from stiction.devices.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.plan.graph import Graph
 from stiction.stages.contact import contact, slope_contact
 from stiction.stages.contact import variant_summits as summits
-from stiction.stages.devices import stoppers
+from stiction.stages.devices import budget, stoppers
 from stiction.stages.devices import uncertain_inputs as inputs
 
 SIZES = {"thickness_um": 2.6, "gap_um": 20, "width_um": 30}
@@ -37,30 +37,30 @@ def designs(**changes):
 
 
 PLAN = plan()
-PATCH, TIP = ("b", 3000, 2000), Designs(PLAN.config).tips("C1")
-#: Stage and the settings of one of its jobs.
+PATCH, TIP = "b_3000x2000", Designs(PLAN.config).tips("C1").name
+#: Settings in SI, and those of a job.
 JOBS = [
-    (stoppers, job_settings(PLAN, "devices/stoppers/S1")),
-    (inputs, job_settings(PLAN, "devices/budget/C1_rh067")["budget"]),
-    (inputs, job_settings(PLAN, "devices/budget/S1_rh090")["budget"]),
-    (inputs, job_settings(PLAN, "devices/budget/C1_rh067_tip")["budget"]),
-    *(
-        (contact, job_settings(PLAN, f"devices/contact/{name}/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_more"))
-        for name in OF_SOLIDS
+    (stoppers.Settings, job_settings(PLAN, "devices/stoppers/S1")),
+    (budget.BeamBudget, job_settings(PLAN, "devices/budget/C1_rh067")["budget"]),
+    (budget.PatchBudget, job_settings(PLAN, "devices/budget/S1_rh090")["budget"]),
+    (budget.TipBudget, job_settings(PLAN, "devices/budget/C1_rh067_tip")["budget"]),
+    *((contact.Settings, job_settings(PLAN, f"devices/contact/{name}/{PATCH}_more")) for name in OF_CONTACT),
+    *((contact.Settings, job_settings(PLAN, f"devices/contact/tips/{name}/{TIP}_more")) for name in OF_CONTACT),
+    (
+        contact.Settings,
+        job_settings(PLAN, f"devices/contact/tips/choices/{TIP}_van_der_waals_dry"),
     ),
-    *(
-        (contact, job_settings(PLAN, f"devices/contact/tips/{name}/{TIP[0]}_{TIP[1]}x{TIP[2]}_more"))
-        for name in OF_SOLIDS
+    (
+        slope_contact.Settings,
+        job_settings(PLAN, f"devices/contact/slopes/{PATCH}_B2_rms_less"),
     ),
-    (contact, job_settings(PLAN, f"devices/contact/tips/choices/{TIP[0]}_{TIP[1]}x{TIP[2]}_van_der_waals_dry")),
-    (slope_contact, job_settings(PLAN, f"devices/contact/slopes/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_B2_rms_less")),
-    (summits, job_settings(PLAN, f"devices/contact/summits/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_every_2")["base"]),
+    (summits.Settings, job_settings(PLAN, f"devices/contact/summits/{PATCH}_every_2")["base"]),
 ]
 
 
-@pytest.mark.parametrize(("stage", "settings"), JOBS)
-def test_a_stage_takes_exactly_the_settings_of_its_jobs(stage, settings):
-    found = in_si(stage.Settings, settings)
+@pytest.mark.parametrize(("kind", "settings"), JOBS)
+def test_a_stage_takes_exactly_the_settings_of_its_jobs(kind, settings):
+    found = in_si(kind, settings)
     optional = {field.name for field in fields(found) if not field.default is field.default_factory is MISSING}
     assert set(vars(found)) - optional <= {key.rpartition("_um")[0] or key.removesuffix("_GPa") for key in settings} | {
         key.removesuffix("_uN").removesuffix("_GPa") for key in settings
@@ -91,10 +91,7 @@ def test_a_device_on_scans_has_a_budget_without_a_stated_uncertainty():
     found = Designs(merged(PLAN.config, {"surfaces": {"B2": scanned}}))
     assert found.budgeted == ["C1", "C2", "S1"]
     assert found.quantities("C2") == [("B2", quantity) for quantity in MOMENT_QUANTITIES + SPECTRUM_QUANTITIES]
-    assert (
-        in_si(inputs.Settings, job_settings(PLAN, "devices/budget/C2_rh067")["budget"]).uncertainty
-        == inputs.Uncertainty()
-    )
+    assert budget.of_job(job_settings(PLAN, "devices/budget/C2_rh067")["budget"]).uncertainty == inputs.Uncertainty()
 
 
 def test_heights_are_uncertain_if_a_scan_is_stated():
@@ -119,8 +116,8 @@ def test_choices_of_solids_leave_the_surfaces_as_they_are():
         "poisson_ratio_0.18",
         "poisson_ratio_0.28",
     ]
-    settings = job_settings(PLAN, f"devices/contact/tips/choices/{TIP[0]}_{TIP[1]}x{TIP[2]}_poisson_ratio_0.28")
-    assert settings == job_settings(PLAN, f"devices/contact/tips/{TIP[0]}_{TIP[1]}x{TIP[2]}") | {
+    settings = job_settings(PLAN, f"devices/contact/tips/choices/{TIP}_poisson_ratio_0.28")
+    assert settings == job_settings(PLAN, f"devices/contact/tips/{TIP}") | {
         "solid": PLAN.config["solid"] | {"poisson_ratio": 0.28}
     }
 
@@ -132,11 +129,8 @@ def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_tips_as_beams():
     assert found["budget"] == {key: value for key, value in of_beam["budget"].items() if key != "beams"}
     assert (found["quantities"], found["choices"]) == (of_beam["quantities"], PLAN.choices_of_solids("b"))
     number = PLAN.config["design"]["beams"]
-    for name in OF_SOLIDS:
-        tips, strips = (
-            job_settings(PLAN, f"devices/contact/{folder}{name}/{TIP[0]}_{TIP[1]}x{TIP[2]}_less")
-            for folder in ("tips/", "")
-        )
+    for name in OF_CONTACT:
+        tips, strips = (job_settings(PLAN, f"devices/contact/{folder}{name}/{TIP}_less") for folder in ("tips/", ""))
         assert tips["contact"]["samples"] == number
         assert tips == strips | {"contact": tips["contact"], "tilt": tips["tilt"]}
 
@@ -144,31 +138,26 @@ def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_tips_as_beams():
 def test_the_contact_of_a_device_has_the_samples_of_a_pair_and_that_of_its_tips_one_for_each_beam():
     samples, beams = PLAN.config["contact"]["samples"], PLAN.config["design"]["beams"]
     assert samples != beams
-    assert job_settings(PLAN, f"devices/contact/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}")["contact"]["samples"] == samples
-    tips = job_settings(PLAN, f"devices/contact/tips/{TIP[0]}_{TIP[1]}x{TIP[2]}")["contact"]
+    assert job_settings(PLAN, f"devices/contact/{PATCH}")["contact"]["samples"] == samples
+    tips = job_settings(PLAN, f"devices/contact/tips/{TIP}")["contact"]
     assert (tips["samples"], tips["distance_step_nm"]) == (beams, 2 * PLAN.config["contact"]["distance_step_nm"])
 
 
 def test_contacts_of_a_budget_are_on_the_patch_of_the_device_with_the_samples_of_slopes():
     samples = PLAN.config["studies"]["slopes"]["samples"]
     for settings in (
-        job_settings(PLAN, f"devices/contact/modulus/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_less"),
-        job_settings(PLAN, f"devices/contact/summits/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_every_2")["base"],
+        job_settings(PLAN, f"devices/contact/modulus/{PATCH}_less"),
+        job_settings(PLAN, f"devices/contact/summits/{PATCH}_every_2")["base"],
     ):
         assert settings["contact"]["samples"] == samples
         assert (settings["sampling"]["strip_length_um"], settings["beam"]["width_um"]) == (3, 2)
     few = plan(contact={"samples": samples - 1, "chunks": 1}, chaos={"order": 4})
-    assert (
-        job_settings(few, f"devices/contact/summits/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_every_2")["base"]["contact"][
-            "samples"
-        ]
-        == samples - 1
-    )
+    assert job_settings(few, f"devices/contact/summits/{PATCH}_every_2")["base"]["contact"]["samples"] == samples - 1
 
 
 def test_youngs_modulus_changes_in_every_body_of_the_material_of_the_beam():
     def changed(plan, side):
-        return job_settings(plan, f"devices/contact/modulus/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_{side}")
+        return job_settings(plan, f"devices/contact/modulus/{PATCH}_{side}")
 
     less, more = (changed(PLAN, side)["solid"]["young_modulus_GPa"] for side in ("less", "more"))
     assert (less, more) == pytest.approx((0.95 * 164, 1.05 * 164))
@@ -187,7 +176,7 @@ def test_a_budget_has_the_hamaker_constant_through_the_medium_if_it_is_uncertain
     stated = {"devices": {"S1": {"uncertainty": {"hamaker_constant_zJ": 3}}}, "van_der_waals": medium}
     found = job_settings(plan(**stated), "devices/budget/S1_rh090")["budget"]
     assert found["hamaker_constant_zJ"] == pytest.approx(expected)
-    assert in_si(inputs.Settings, found).uncertainty.hamaker_constant == pytest.approx(3e-21)
+    assert budget.of_job(found).uncertainty.hamaker_constant == pytest.approx(3e-21)
     assert "hamaker_constant_zJ" not in job_settings(PLAN, "devices/budget/S1_rh090")["budget"]
     constants = {"hamaker_constant_zJ": {"water": 5, "dry": 65}}
     of_glass = {"materials": {"Glass": GLASS | constants}, "surfaces": {"B2": {"material": "Glass"}}}

@@ -340,7 +340,7 @@ JOBS = {
     chart: job_settings(PLAN, "devices/chart/C1_rh067"),
     contact: job_settings(
         PLAN,
-        f"devices/contact/tips/{Designs(PLAN.config).tips('C1')[0]}_{Designs(PLAN.config).tips('C1')[1]}x{Designs(PLAN.config).tips('C1')[2]}",
+        f"devices/contact/tips/{Designs(PLAN.config).tips('C1').name}",
     ),
 }
 

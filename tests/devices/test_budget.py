@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from stiction.beam.release import released_beam
 from stiction.contact import forcelaw
 from stiction.devices import budget
-from stiction.devices.budget import Budget, Step
+from stiction.devices.budget import Budget
 
 #: Errors of one 10 µm scan of the beam's surface of pair b, rms relative, skewness and kurtosis: the closed form of
 #: `stiction.scans.moments`, which the scatter of 192 drawn scans confirms: 0.017, 0.044, 0.144, -0.87. Some two dozen
@@ -192,22 +192,3 @@ def test_a_budget_without_correlations_keeps_the_uncertainties():
     assert_allclose(np.diag(plain.covariance), np.diag(SURFACE.covariance))
     assert_allclose(plain.total**2, np.sum(SURFACE.slopes**2 * np.diag(SURFACE.covariance)), rtol=1e-12)
     assert plain.total > 1.5 * SURFACE.total
-
-
-# Steps
-
-
-@pytest.mark.parametrize("value", [0.3, 1e-19, 164e9])
-def test_ends_of_a_relative_step_differ_by_it_in_their_logarithm(value):
-    step = Step(0.2)
-    less, more = step.ends(value)
-    assert_allclose([less / value, more / value], [0.8, 1.2], rtol=1e-12)
-    assert_allclose(step.difference, np.log(more / less), rtol=1e-12)
-
-
-@pytest.mark.parametrize("value", [0.23, 0, -0.3])
-def test_ends_of_an_absolute_step_differ_by_it_where_the_value_is_zero_too(value):
-    step = Step(0.05, relative=False)
-    less, more = step.ends(value)
-    assert_allclose([less, more], [value - 0.05, value + 0.05], rtol=1e-12, atol=1e-15)
-    assert_allclose(step.difference, more - less, rtol=1e-12)

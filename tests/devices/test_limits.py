@@ -6,9 +6,11 @@ from beams import PAPER
 
 from stiction.constants import WATER_MOLECULE
 from stiction.devices import limits
+from stiction.devices.materials import PROPERTIES
 
 UM, NM = 1e-6, 1e-9
 
+WORDS = tuple(one.words for one in PROPERTIES.values())
 #: Arguments that trigger a warning, a number that its sentence must contain, and arguments that do not trigger it.
 CASES = [
     (limits.arcs_of_elements, (0.42, 1.5 * UM), "42 %.*1.5 µm.*under `devices`", (0.0, 1.5 * UM)),
@@ -18,11 +20,11 @@ CASES = [
     (limits.default_material, ("gold", ("hardness",)), "4 properties of gold.*Hamaker constant", ("polysilicon", ())),
     (
         limits.default_material,
-        ("gold", limits.OF_THE_MATERIAL[1:]),
+        ("gold", WORDS[1:]),
         "^1 property of gold is not.*: Young's modulus.$",
-        ("gold", limits.OF_THE_MATERIAL),
+        ("gold", WORDS),
     ),
-    (limits.default_material, ("gold", ()), "5 properties of gold", ("gold", limits.OF_THE_MATERIAL)),
+    (limits.default_material, ("gold", ()), "5 properties of gold", ("gold", WORDS)),
     (limits.thin_film, (1 * NM,), "1 nm high, thinner than 4 molecules, 1.12 nm", (1.13 * NM,)),
     (limits.wide_meniscus, (10 * UM, (3 * UM, 3 * UM)), "10 µm.*667 %.*10 %", (0.1 * UM, (3 * UM, 3 * UM))),
     (limits.filled_gap, (2 * UM, 103 * NM, 3.4 * NM), "2 µm.*106 nm", (20 * UM, 103 * NM, 3.4 * NM)),

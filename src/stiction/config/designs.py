@@ -15,17 +15,12 @@ from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
+from stiction.devices.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SIDES
 
 #: Steps of the distance for the contact of tips, in those of section contact. ASSUME: they suffice for the largest
 #: attraction, the vertex of a parabola: with four, lengths of pair b are 0.02 to 0.19 % longer than with one.
 OF_TIPS = 2
-#: Keys of the properties of solids that may be uncertain, those of `stiction.devices.budget.OF_SOLIDS`.
-KEYS_OF_SOLIDS = {
-    "modulus": "young_modulus_GPa",
-    "poisson_ratio": "poisson_ratio",
-    "hamaker_constant": "hamaker_constant_zJ",
-}
 
 
 def hamaker_constants(material: dict) -> dict[str, float]:
@@ -209,9 +204,9 @@ class Designs:
         return [name for name in self.devices if stated[name] or self.quantities(name)]
 
     def uncertain_solids(self, device: str) -> list[str]:
-        """Properties of the solids of a device that are uncertain, keys of `KEYS_OF_SOLIDS`."""
+        """Properties of the material of a device that are uncertain, keys of `OF_CONTACT`."""
         stated = self.devices[device].get("uncertainty", {})
-        return [name for name, key in KEYS_OF_SOLIDS.items() if stated.get(key)]
+        return [name for name, one in OF_CONTACT.items() if stated.get(one.key)]
 
     def budgets(self, *devices: str) -> list[str]:
         """Budgets of devices, of all with an uncertain input by default: at each humidity, and those of tips."""

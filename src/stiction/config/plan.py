@@ -17,7 +17,8 @@ from stiction.config.designs import Designs, hamaker_constant, hamaker_constants
 from stiction.config.files import paper
 from stiction.config.measured import digest, evaluation, is_measured, preliminary_estimates, quantities, source
 from stiction.config.merging import merged
-from stiction.models import BEAM_MODELS, ELASTIC, MODE_QUANTITIES, SIDES, SURFACE_MODELS
+from stiction.devices.materials import ELASTIC, PROPERTIES
+from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SIDES, SURFACE_MODELS
 
 #: Keys of the measured statistics of a surface: moments of the heights and summit statistics.
 MOMENTS = ("rms_nm", "skewness", "kurtosis")
@@ -31,16 +32,6 @@ _SOLIDS = ("solid", "van_der_waals")
 _OF_BEAM = {"beam": ("length_um", "width_um", "thickness_um"), "solid": ("young_modulus_GPa",)}
 #: Keys that define the mesh of the paper and, with Young's modulus and the force laws, how fine it is; it has no width.
 _OF_MESH = {"beam": ("length_um", "thickness_um", "elements"), "sampling": ("strip_length_um",)}
-
-
-#: Names of the properties of a material in warnings.
-_PROPERTIES = {
-    "young_modulus_GPa": "Young's modulus",
-    "poisson_ratio": "Poisson's ratio",
-    "hardness_GPa": "hardness",
-    "hamaker_constant_zJ": "Hamaker constant",
-    "contact_angle_deg": "contact angle",
-}
 
 
 #: ASSUME: a solid is polysilicon if its Young's modulus differs from that of the paper by no more than this share.
@@ -100,11 +91,12 @@ class Plan:
     def stated_properties(self, pair: str) -> list:
         """Names of the materials of a pair, each with its stated properties in words; section solid if it is one."""
         named, solid = self.config.get("materials", {}), self.config["solid"]
+        words = {one.key: one.words for one in PROPERTIES.values()}
         if abs(solid["young_modulus_GPa"] / paper()["solid"]["young_modulus_GPa"] - 1) > _POLYSILICON:
             named = named | {"the solid": solid}
         surfaces = self.config["surfaces"]
         used = dict.fromkeys(surfaces[surface].get("material", "the solid") for surface in self.sides(pair))
-        return [[name, [_PROPERTIES[key] for key in named[name]]] for name in used if name in named]
+        return [[name, [words[key] for key in named[name]]] for name in used if name in named]
 
     def water(self, pair: str, variant: str = "base") -> dict:
         """Section ``water`` of a pair: with the contact angles if one is not zero, and the attraction across gaps."""

@@ -24,7 +24,7 @@ from stiction.config.relations import (
     wetting,
 )
 from stiction.config.units import NM_PER_UM
-from stiction.devices.budget import OF_SOLIDS
+from stiction.devices.materials import OF_CONTACT
 from stiction.models import SIDES
 
 #: Relations between the keys of devices.
@@ -293,7 +293,7 @@ def uncertain_modulus_stays_positive(deviation, *known):
 @relation("devices.*.uncertainty.poisson_ratio", *_MATERIAL)
 def uncertain_poisson_ratio_stays_within_its_limits(deviation, *known):
     """Poisson's ratio is possible one standard uncertainty, and one step of its slope, around its value, too."""
-    value, change = _material(*known)["poisson_ratio"], max(deviation, OF_SOLIDS["poisson_ratio"].size)
+    value, change = _material(*known)["poisson_ratio"], max(deviation, OF_CONTACT["poisson_ratio"].step.size)
     if not deviation or (value - change > -1 and value + change < 0.5):
         return None
     return f"must leave Poisson's ratio above -1 and below 0.5: its budget needs {value:g} ± {change:g}"

@@ -20,32 +20,6 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class Step:
-    """Change of an input in either direction for its slope."""
-
-    size: float  #: of the value of the input if it is relative, otherwise in its unit
-    relative: bool = True  #: the slope is then that in the logarithm of the input
-
-    def ends(self, value: float) -> tuple[float, float]:
-        """Less and more of an input of this value."""
-        if self.relative:
-            return (1 - self.size) * value, (1 + self.size) * value
-        return value - self.size, value + self.size
-
-    @property
-    def difference(self) -> float:
-        """Of the logarithm of the input between both ends, or of the input."""
-        return float(np.log((1 + self.size) / (1 - self.size))) if self.relative else 2 * self.size
-
-
-#: Step of dimensions.
-OF_DIMENSIONS = Step(0.05)
-#: Steps of the properties of solids. Poisson's ratio may be zero. The larger step of the Hamaker constant, on which
-#: lengths depend little, halves the error of its slope.
-OF_SOLIDS = {"modulus": Step(0.05), "poisson_ratio": Step(0.05, relative=False), "hamaker_constant": Step(0.2)}
-
-
-@dataclass(frozen=True)
 class Budget:
     """Slopes and covariance of the inputs of one length."""
 

@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 
 from stiction.constants import WATER_MOLECULE
+from stiction.devices.materials import PROPERTIES
 
 #: Largest plastic share of the contact area. Pair c has 58 %, and its beams stick at 72 % of the predicted length.
 PLASTIC = 0.02
@@ -33,8 +34,6 @@ NOT_MODELLED = (
     "Not in the model: drying after release, the time that water needs to condense, electric charge and voltage, wear, "
     "conformal films, which correlate both surfaces, and curl by a stress gradient."
 )
-#: Inputs whose defaults are those of polysilicon and water.
-OF_THE_MATERIAL = ("Young's modulus", "Poisson's ratio", "hardness", "Hamaker constant", "contact angle")
 
 
 def arcs_of_elements(share: float, strip: float) -> str | None:
@@ -75,7 +74,7 @@ def plastic_contact(share: float, effect: str = SHORTER) -> str | None:
 
 def default_material(name: str, stated: Sequence[str]) -> str | None:
     """Defaults that are used for another material than polysilicon; ``stated`` lists inputs that are given."""
-    missing = [quantity for quantity in OF_THE_MATERIAL if quantity not in stated]
+    missing = [one.words for one in PROPERTIES.values() if one.words not in stated]
     if name == "polysilicon" or not missing:
         return None
     if len(missing) == 1:

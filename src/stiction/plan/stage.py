@@ -16,6 +16,7 @@ from typing import Any, get_args, get_origin, get_type_hints
 
 from stiction.config.cases import CASE
 from stiction.config.units import in_si, without_unit
+from stiction.devices.materials import OF_CONTACT
 from stiction.models import (
     ALTERNATIVES_OF_SCANS,
     BEAM_MODELS,
@@ -40,7 +41,7 @@ WILDCARDS = {
     "moment": "|".join(MOMENT_QUANTITIES),
     "quantity": "|".join(dict.fromkeys((*MOMENT_QUANTITIES, *MODE_QUANTITIES, *SPECTRUM_QUANTITIES))),
     "side": "|".join(SHIFTS),
-    "solid_property": "modulus|poisson_ratio|hamaker_constant",
+    "solid_property": "|".join(OF_CONTACT),
     "choice": "|".join(ALTERNATIVES_OF_SCANS),
     "variant": "base|[a-z_]+_[a-z0-9.-]+",
     "length": "[0-9]+",

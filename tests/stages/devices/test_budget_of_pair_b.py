@@ -10,7 +10,8 @@ from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import in_si
-from stiction.devices.budget import OF_SOLIDS, Budget
+from stiction.devices.budget import Budget
+from stiction.devices.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES
 from stiction.stages.contact import contact, curves, slope_contact
 from stiction.stages.devices import budget
@@ -60,16 +61,14 @@ def solids(surfaces):
         plain = job_settings(PLAN, f"devices/contact/{name}/b_1500x30000_{side}")
         return contact.compute(surfaces, "b", "NG", in_si(contact.Settings, plain))
 
-    return {name: tuple(changed(name, side) for side in ("less", "more")) for name in OF_SOLIDS}
+    return {name: tuple(changed(name, side) for side in ("less", "more")) for name in OF_CONTACT}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("humidity", KNOWN)
 def test_slopes_of_pair_b_are_those_of_an_independent_study(humidity, surfaces, base, changed, solids):
     known = {"B2": inputs.of_one_scan(*surfaces[0], 10e-6)}
-    settings = in_si(
-        inputs.Settings, job_settings(PLAN, f"devices/budget/{f'C1_rh{round(100 * humidity):03}'}")["budget"]
-    )
+    settings = budget.of_job(job_settings(PLAN, f"devices/budget/{f'C1_rh{round(100 * humidity):03}'}")["budget"])
     found = budget.compute(base, changed, {"modulus": solids["modulus"]}, {}, known, settings)
     slopes = dict(zip(found.input.values, zip(found.slope.values, found.slope_error.values, strict=True), strict=True))
     assert set(slopes) == set(KNOWN[humidity])
@@ -89,15 +88,13 @@ def test_slopes_of_pair_b_are_those_of_an_independent_study(humidity, surfaces, 
 @pytest.mark.parametrize("humidity", KNOWN)
 def test_slopes_of_the_solids_follow_the_energy_of_the_contact(humidity, base, solids):
     plan = Plan(merged(PLAN.config, {"devices": {"C1": {"uncertainty": SOLIDS}}}))
-    settings = in_si(
-        inputs.Settings, job_settings(plan, f"devices/budget/{f'C1_rh{round(100 * humidity):03}'}")["budget"]
-    )
+    settings = budget.of_job(job_settings(plan, f"devices/budget/{f'C1_rh{round(100 * humidity):03}'}")["budget"])
     found = budget.compute(base, {}, solids, {}, {}, settings)
     slopes = dict(zip(found.input.values, zip(found.slope.values, found.slope_error.values, strict=True), strict=True))
     # Eq. (13): the length has the power -1/4 of the energy of the contact.
     for name, key in (("Poisson's ratio", "poisson_ratio"), ("Hamaker constant", "hamaker_constant")):
         energy = np.log([curves.energies(one, humidity, WATER).mean() for one in solids[key]])
-        expected = -0.25 * np.diff(energy)[0] / OF_SOLIDS[key].difference
+        expected = -0.25 * np.diff(energy)[0] / OF_CONTACT[key].step.difference
         slope, error = slopes[name]
         assert abs(slope - expected) < 4 * error, name
         assert abs(slope) > 4 * error, name  # control: another sign, or no effect, would be seen

@@ -11,19 +11,19 @@ from numpy.testing import assert_allclose
 
 from stiction.stages.contact import curves
 from stiction.stages.devices import uncertain_inputs as inputs
-from stiction.stages.devices.releases import S_SHAPE, DesignedBeam
+from stiction.stages.devices.releases import DesignedBeam
 from stiction.stages.devices.uncertain_inputs import Known, Settings, State, Uncertainty
 
 WATER = curves.Water(300.0)
 C1 = DesignedBeam("cantilever", "b", PAPER.thickness, PAPER.gap, PAPER.width, PAPER.young_modulus, 1.5e-6)
 R1 = DesignedBeam("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 1.5e-6, residual_stress=50e6)
 BASE = State(1.0, 0.67, WATER, C1, 9e-12)
-SETTINGS = Settings(1, WATER, 0.67, Uncertainty(), ("B2", "Sub1"), 164e9, C1, beams=24)
+SETTINGS = Settings(1, WATER, 0.67, Uncertainty(), ("B2", "Sub1"), 164e9)
 
 
 def uncertain(stated, water=WATER, of=C1, solids=MappingProxyType({}), **more):
     """Uncertain inputs of a device without those of surfaces: name to its states, step and standard uncertainty."""
-    settings = replace(SETTINGS, uncertainty=stated, device=of, water=water, **more)
+    settings = replace(SETTINGS, uncertainty=stated, water=water, **more)
     state = replace(BASE, water=water, device=of)
     found, covariance = inputs.uncertain(state, {}, solids, {}, settings)
     return {entry.name: (entry, u) for entry, u in zip(found, np.sqrt(np.diag(covariance)), strict=True)}
@@ -99,18 +99,12 @@ def test_what_counts_as_exact_if_it_is_not_stated_has_the_name_of_its_group():
     stated = Uncertainty(young_modulus=8.2e9, poisson_ratio=0.02, hamaker_constant=3e-20)
     changed = dict.fromkeys(("modulus", "poisson_ratio", "hamaker_constant"), (0.9, 1.1))
     found = uncertain(stated, solids=changed, hamaker_constant=1e-19)
-    assert {entry.group for entry, _ in found.values()} < set(inputs.countable(SETTINGS))
+    assert {entry.group for entry, _ in found.values()} < set(inputs.countable((), SETTINGS))
 
 
 def test_only_a_beam_held_at_both_ends_has_a_residual_stress():
-    assert "the residual stress" in inputs.countable(replace(SETTINGS, device=R1))
-    assert "the residual stress" not in inputs.countable(SETTINGS)
-
-
-def test_a_budget_is_of_a_length_that_tips_hold_if_their_share_is_stated_and_of_a_force_without_a_beam():
-    shares = {0.0: S_SHAPE, 0.01: inputs.ARC}
-    assert {share: replace(SETTINGS, share=share).response for share in shares} == shares
-    assert replace(SETTINGS, device=None).response == inputs.FORCE
+    assert "the residual stress" in inputs.countable(R1.opening.sizes, SETTINGS)
+    assert "the residual stress" not in inputs.countable(C1.opening.sizes, SETTINGS)
 
 
 def test_a_stopper_has_no_dimensions_of_a_beam():

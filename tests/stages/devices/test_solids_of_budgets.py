@@ -11,13 +11,13 @@ from plans import job_settings
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import in_si
-from stiction.devices.budget import OF_SOLIDS
+from stiction.devices.materials import OF_CONTACT
 from stiction.stages.contact import contact, curves
 from stiction.stages.devices import budget
-from stiction.stages.devices.uncertain_inputs import Settings, Uncertainty
+from stiction.stages.devices.uncertain_inputs import Uncertainty
 
 WATER = curves.Water(300.0)
-STOPPER = Settings(1, WATER, 0.5, Uncertainty(), ("B2", "Sub1"), 164e9, contact=(3e-6, 2e-6))
+STOPPER = budget.PatchBudget(1, WATER, 0.5, Uncertainty(), ("B2", "Sub1"), 164e9, contact=(3e-6, 2e-6))
 PATCH = "b", 1500, 6000
 E, RATIO = 164.0, 0.23
 
@@ -59,7 +59,7 @@ def test_poissons_ratio_acts_through_the_modulus_of_plane_strain_alone():
 
 
 def test_the_force_between_the_solids_is_proportional_to_both_stiffness_and_hamaker_constant():
-    step = OF_SOLIDS["hamaker_constant"].size
+    step = OF_CONTACT["hamaker_constant"].step.size
     for factor, side in ((1 - step, "less"), (1 + step, "more")):
         plain = job_settings(small.PLAN, f"devices/contact/hamaker_constant/{PATCH[0]}_{PATCH[1]}x{PATCH[2]}_{side}")
         stiffer = {"young_modulus_GPa": factor * E}
@@ -72,14 +72,14 @@ def test_the_force_between_the_solids_is_proportional_to_both_stiffness_and_hama
 
 def test_samples_of_changed_solids_have_the_same_surfaces():
     base = small.contact_of_pair()
-    for name in OF_SOLIDS:
+    for name in OF_CONTACT:
         for one in changed(name):
             assert_array_equal(one.bearing_area, base.bearing_area)
             assert (one.solid_pressure != base.solid_pressure).any()  # control
 
 
 def test_a_stopper_of_stiffer_solids_holds_less_and_one_of_stronger_attraction_more():
-    solids = {name: changed(name) for name in OF_SOLIDS}
+    solids = {name: changed(name) for name in OF_CONTACT}
     found = slopes(Uncertainty(young_modulus=5e9, poisson_ratio=0.02, hamaker_constant=2e-20), solids)
     modulus, ratio, constant = (found[name] for name in ("Young's modulus", "Poisson's ratio", "Hamaker constant"))
     assert modulus[0] < -4 * modulus[1]

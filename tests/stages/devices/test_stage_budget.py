@@ -18,9 +18,9 @@ from stiction.devices.tail import fit_tail
 from stiction.run import storage
 from stiction.stages.contact import curves
 from stiction.stages.devices import budget
-from stiction.stages.devices.budget import Responses
+from stiction.stages.devices.budget import BeamBudget, PatchBudget, Responses, TipBudget
 from stiction.stages.devices.releases import MIDDLE, S_SHAPE, DesignedBeam
-from stiction.stages.devices.uncertain_inputs import ARC, FORCE, Input, Settings, State, Uncertainty
+from stiction.stages.devices.uncertain_inputs import ARC, FORCE, Input, State, Uncertainty
 from stiction.streams import stream
 
 WATER = curves.Water(300.0)
@@ -31,7 +31,8 @@ R1 = DesignedBeam("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 0.5e-6, residual_stre
 #: Forces and energies are multiplied by what a test passes as contact.
 BASE = State(1.0, 0.67, WATER, C1, 9e-12)
 BEAMS = partial(budget.of_beams, mesh=PAPER, strips=1000, number=100, address=lambda k: stream(1, k))
-SETTINGS = Settings(1, WATER, 0.67, Uncertainty(), ("B2", "Sub1"), 164e9, C1, beams=24)
+COMMON = 1, WATER, 0.67, Uncertainty(), ("B2", "Sub1"), 164e9
+SETTINGS = BeamBudget(*COMMON, device=C1, beams=24)
 
 
 @pytest.fixture(autouse=True)
@@ -182,8 +183,8 @@ def test_a_budget_of_a_small_study_has_the_devices_of_all_its_samples(study):
     changed = study.isel(sample=slice(10))
     found = budget.compute(study, {}, {}, {"half": changed}, {}, settings)
     assert list(found.input.values) == ["gap"]
-    state = budget.nominal(study, settings)
-    lengths = budget.responder(state, settings)([state]).values[0]
+    state = settings.state(study)
+    lengths = settings.responder(state)([state]).values[0]
     assert len(lengths) == 4
     assert_allclose(found.centre, lengths.mean(), rtol=1e-12)
     assert_allclose(found.effect, 0, atol=1e-12)  # the same samples
@@ -191,8 +192,7 @@ def test_a_budget_of_a_small_study_has_the_devices_of_all_its_samples(study):
 
 
 def test_the_budget_of_a_stopper_is_one_of_its_forces(study):
-    patch = {"device": None, "beams": 0, "contact": (1.5e-6, 6e-6)}
-    settings = replace(SETTINGS, uncertainty=Uncertainty(humidity=0.01), **patch)
+    settings = replace(PatchBudget(*COMMON, contact=(1.5e-6, 6e-6)), uncertainty=Uncertainty(humidity=0.01))
     found = budget.compute(study, {}, {}, {}, {}, settings)
     assert (found.centre.attrs["units"], budget.response_of(found)) == ("N", (FORCE, 0))
     assert_allclose(found.centre, curves.pull_offs(study, 0.67, WATER).mean() * 9e-12, rtol=1e-12)
@@ -203,7 +203,7 @@ def test_the_budget_of_a_stopper_is_one_of_its_forces(study):
 def test_the_budget_of_tips_is_one_of_their_arcs(study, monkeypatch):
     monkeypatch.setattr(curves, "tip_forces", lambda *air: (SLOPES, curves.energies(*air)[:, None] / SLOPES))
     many = study.isel(sample=np.arange(200) % study.sizes["sample"])
-    settings = replace(SETTINGS, uncertainty=Uncertainty(gap=0.5e-6, humidity=0.01), share=0.01)
+    settings = replace(TipBudget(*COMMON, device=C1, share=0.01), uncertainty=Uncertainty(gap=0.5e-6, humidity=0.01))
     found = budget.compute(many, {}, {}, {}, {}, settings)
     assert (found.centre.attrs["units"], budget.response_of(found)) == ("m", (ARC, 0.01))
     arcs = [arc_length(curves.energies(many, h, WATER), C1.beam) for h in (0.66, 0.67, 0.68)]

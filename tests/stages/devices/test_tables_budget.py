@@ -1,7 +1,5 @@
 """Tables and figures of stoppers and budgets show the numbers of their datasets."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from legends import covering
@@ -17,7 +15,7 @@ from stiction.stages.devices import budget as study_budget
 from stiction.stages.devices import stoppers as study_stoppers
 from stiction.stages.devices.budget import Responses
 from stiction.stages.devices.releases import DesignedBeam
-from stiction.stages.devices.uncertain_inputs import Input, Settings, State, Uncertainty
+from stiction.stages.devices.uncertain_inputs import Input, State, Uncertainty
 
 STATE = State(None, 0.5, Water(300.0))
 NAMES = {"rms of B2": "heights of B2", "skewness of B2": "heights of B2", "thickness": "thickness"}
@@ -26,8 +24,10 @@ COVARIANCE = np.array([[4e-4, -1e-4, 0], [-1e-4, 4e-4, 0], [0, 0, 1e-4]])
 
 C1 = DesignedBeam("cantilever", "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
 #: Settings of the budgets of a beam, of its tips and of a stopper.
-BEAM = Settings(1, Water(300.0), 0.5, Uncertainty(), ("B2", "Sub1"), 164e9, C1)
-TIPS, PATCH = replace(BEAM, share=1e-3), replace(BEAM, device=None)
+COMMON = 1, Water(300.0), 0.5, Uncertainty(), ("B2", "Sub1"), 164e9
+BEAM = study_budget.BeamBudget(*COMMON, device=C1, beams=0)
+TIPS = study_budget.TipBudget(*COMMON, device=C1, share=1e-3)
+PATCH = study_budget.PatchBudget(*COMMON, contact=(3e-6, 3e-6))
 
 
 def budget_dataset(factor=1.0, settings=BEAM):

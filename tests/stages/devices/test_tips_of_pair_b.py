@@ -34,7 +34,7 @@ def settings(number, edge="rounded"):
     plan = Plan(load({"devices": {"C1": C1}, "design": {"beams": 200, "tip_edge": edge}}))
     plain = job_settings(
         plan,
-        f"devices/contact/tips/{Designs(plan.config).tips('C1')[0]}_{Designs(plan.config).tips('C1')[1]}x{Designs(plan.config).tips('C1')[2]}",
+        f"devices/contact/tips/{Designs(plan.config).tips('C1').name}",
     )
     plain["contact"] |= {"samples": number}
     return plan, plain

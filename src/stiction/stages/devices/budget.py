@@ -9,7 +9,7 @@ those of the samples.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -28,8 +28,9 @@ from stiction.stages.contact import curves
 from stiction.stages.contact.contact import first
 from stiction.stages.devices.error_notes import explain_errors
 from stiction.stages.devices.patch_settings import contacts_of_budget, contacts_of_tip_budget
-from stiction.stages.devices.releases import addresses, arrests, section_of_beam
+from stiction.stages.devices.releases import DesignedBeam, addresses, arrests, section_of_beam
 from stiction.stages.devices.uncertain_inputs import (
+    ARC,
     FORCE,
     Input,
     Known,
@@ -55,13 +56,84 @@ class Responses:
 Respond = Callable[[Sequence[State]], Responses]
 
 
+@dataclass(frozen=True, kw_only=True)
+class BeamBudget(Settings):
+    """Budget of the mean length at which beams stick: as S-shapes, or as bridges that are held by their middle."""
+
+    device: DesignedBeam
+    beams: int  #: number of beams for every slope
+    share: ClassVar[float] = 0.0
+
+    @property
+    def response(self) -> str:
+        """What the inputs move."""
+        return self.device.opening.shapes[0]
+
+    @property
+    def sizes(self) -> tuple[str, ...]:
+        """What a measurement of the device itself could determine."""
+        return self.device.opening.sizes
+
+    def state(self, contact: xr.Dataset) -> State:
+        """State with the stated inputs."""
+        return State(contact, self.humidity, self.water, self.device)
+
+    def responder(self, state: State) -> Respond:
+        """How the devices respond: cracks of long beams."""
+        laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water)])[0]
+        part, strips = self.device.opening.resolved(self.device, laws)
+        return partial(of_beams, mesh=part, strips=strips, number=self.beams, address=addresses(self))
+
+
+@dataclass(frozen=True, kw_only=True)
+class TipBudget(Settings):
+    """Budget of the length that the tips of a share of all cantilevers hold; methods as of `BeamBudget`."""
+
+    device: DesignedBeam
+    share: float  #: p [-]
+    response: ClassVar[str] = ARC
+
+    sizes, state = BeamBudget.sizes, BeamBudget.state
+
+    def responder(self, _state: State) -> Respond:
+        """How the devices respond: arcs of all tips."""
+        return partial(of_tips, share=self.share)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PatchBudget(Settings):
+    """Budget of the mean pull-off force of a stopper; methods as of `BeamBudget`."""
+
+    contact: tuple[float, float]  #: sides of the patch [m]
+    share: ClassVar[float] = 0.0
+    response: ClassVar[str] = FORCE
+    sizes: ClassVar[tuple[str, ...]] = ("area",)
+
+    def state(self, contact: xr.Dataset) -> State:
+        """State with the stated inputs."""
+        return State(contact, self.humidity, self.water, area=self.contact[0] * self.contact[1])
+
+    def responder(self, _state: State) -> Respond:
+        """How the devices respond: pull-off forces of all patches."""
+        return of_stoppers
+
+
+#: Settings of any budget.
+AnyBudget = BeamBudget | TipBudget | PatchBudget
+
+
+def of_job(plain: dict[str, Any]) -> AnyBudget:
+    """Settings of a budget from those of a job: tips have a share, and patches no beam."""
+    return in_si(TipBudget if "share" in plain else BeamBudget if "device" in plain else PatchBudget, plain)
+
+
 def compute(
     contact: xr.Dataset,
     shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
     solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
     choices: Mapping[str, xr.Dataset],
     known: Mapping[str, Known],
-    settings: Settings,
+    settings: AnyBudget,
 ) -> xr.Dataset:
     """Slopes of all uncertain inputs of a device at a humidity, their covariance, scatter, and other model choices.
 
@@ -72,16 +144,16 @@ def compute(
     shifted : dict
         (surface, quantity) to the contact with less and with more of it.
     solids : dict
-        Uncertain property of the solids to the contact with less and with more of it, by the step of
-        `stiction.devices.budget.OF_SOLIDS`.
+        Uncertain property of the solids to the contact with less and with more of it, by its step in
+        `stiction.devices.materials.PROPERTIES`.
     choices : dict
         Name of the choice to the contact under it; with fewer samples than ``contact``, that of the first ones.
     known : dict
         Surface to what is known of its quantities, those of ``shifted``.
-    settings : Settings
+    settings : BeamBudget, TipBudget or PatchBudget
     """
-    state = nominal(contact, settings)
-    respond = responder(state, settings)
+    state = settings.state(contact)
+    respond = settings.responder(state)
     inputs, covariance = uncertain(state, shifted, solids, known, settings)
     found = slopes(inputs, respond)
     changes = {}
@@ -90,23 +162,6 @@ def compute(
         with explain_errors(f"This is the contact under the choice {name}."):
             changes[name] = effect(base, replace(state, contact=changed), respond)
     return layout(inputs, found, covariance, respond([state]), changes, settings)
-
-
-def nominal(contact: xr.Dataset, settings: Settings) -> State:
-    """State of a device with the stated inputs."""
-    area = settings.contact[0] * settings.contact[1]
-    return State(contact, settings.humidity, settings.water, settings.device, area)
-
-
-def responder(state: State, settings: Settings) -> Respond:
-    """How the devices respond: pull-off forces of all patches of a stopper, arcs of all tips, cracks of long beams."""
-    if settings.device is None:
-        return of_stoppers
-    if settings.share:
-        return partial(of_tips, share=settings.share)
-    laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water)])[0]
-    part, strips = settings.device.opening.resolved(settings.device, laws)
-    return partial(of_beams, mesh=part, strips=strips, number=settings.beams, address=addresses(settings))
 
 
 def of_stoppers(states: Sequence[State]) -> Responses:
@@ -204,7 +259,7 @@ def layout(
     covariance: np.ndarray,
     devices: Responses,
     effects: Mapping[str, tuple[float, float]],
-    settings: Settings,
+    settings: AnyBudget,
 ) -> xr.Dataset:
     """Dataset of the budget of a device at one humidity.
 
@@ -219,7 +274,7 @@ def layout(
         Lengths or forces of n devices at the stated inputs.
     effects : dict
         Choice of the model to its relative effect and standard error [-].
-    settings : Settings
+    settings : BeamBudget, TipBudget or PatchBudget
     """
     names = [entry.name for entry in inputs]
     groups = [entry.group for entry in inputs]
@@ -243,7 +298,7 @@ def layout(
             "input": names,
             "other": names,
             "choice": list(effects),
-            "exact": [name for name in countable(settings) if name not in groups],
+            "exact": [name for name in countable(settings.sizes, settings) if name not in groups],
         },
     )
 
@@ -303,7 +358,7 @@ def _settings_of_tips(plan, at):
 
 def _computed(data, _at, settings):
     """Budget from the contacts with less and with more of every input, and those under other choices of the model."""
-    wanted = in_si(Settings, settings["budget"])
+    wanted = of_job(settings["budget"])
     described = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     shifted = {key: (less, data["more"][key]) for key, less in data["less"].items()}
     solids = {name: (less, data["solids_more"][name]) for name, less in data["solids_less"].items()}

@@ -5,10 +5,10 @@ Separate from the stages that compute these contacts, so that no other stage dep
 
 from typing import Any
 
-from stiction.config.designs import KEYS_OF_SOLIDS, OF_TIPS, Patch, hamaker_constants
+from stiction.config.designs import OF_TIPS, Patch, hamaker_constants
 from stiction.config.merging import merged
 from stiction.config.units import NM_PER_UM
-from stiction.devices.budget import OF_SOLIDS
+from stiction.devices.materials import OF_CONTACT
 from stiction.models import SHIFTS, SIDES
 from stiction.plan.stage import At, select
 from stiction.stages.contact.pairs import Settings
@@ -95,7 +95,7 @@ def of_slopes(plan: Any, at: At) -> dict[str, Any]:
 
 def with_property(settings: dict[str, Any], name: str, side: str) -> dict[str, Any]:
     """Settings of a contact with less or more of a property of the beam's material, in both bodies of it."""
-    key, solid = KEYS_OF_SOLIDS[name], settings["solid"]
+    key, solid = OF_CONTACT[name].key, settings["solid"]
     if "materials" not in settings and key in solid:
         return settings | {"solid": _with_less_or_more(solid, name, side)}
     bodies = settings.get("materials", dict.fromkeys(SIDES, solid))
@@ -106,11 +106,11 @@ def with_property(settings: dict[str, Any], name: str, side: str) -> dict[str, A
 
 def _with_less_or_more(material, name, side):
     """Material with less or more of a property; of its Hamaker constants through all media by the same factor."""
-    key, end = KEYS_OF_SOLIDS[name], SHIFTS.index(side)
-    if name == "hamaker_constant":
-        constants = hamaker_constants(material).items()
-        return material | {key: {medium: OF_SOLIDS[name].ends(constant)[end] for medium, constant in constants}}
-    return material | {key: OF_SOLIDS[name].ends(material[key])[end]}
+    changed, end = OF_CONTACT[name], SHIFTS.index(side)
+    value = (material | {"hamaker_constant_zJ": hamaker_constants(material)})[changed.key]
+    if isinstance(value, dict):
+        return material | {changed.key: {medium: changed.step.ends(one)[end] for medium, one in value.items()}}
+    return material | {changed.key: changed.step.ends(value)[end]}
 
 
 def of_choice_summits(plan: Any, at: At) -> dict[str, Any]:

@@ -1,19 +1,22 @@
 """Uncertain inputs of devices: states with less and with more of each, and the covariance of their errors.
 
-Dimensions and properties of the solids are changed by the steps of `stiction.devices.budget`: a crack jumps from strip
-to strip, so that larger steps have smaller errors. Stress, air and contact angles are changed by their standard
-uncertainty, those that cannot be below zero in one direction only.
+Dimensions and properties of the solids are changed by steps of their own: a crack jumps from strip to strip, so that
+larger steps have smaller errors. Stress, air and contact angles are changed by their standard uncertainty, those that
+cannot be below zero in one direction only. A new input is an entry of `OF_BEAMS` or `OF_AIR`, or a property of
+`stiction.devices.materials`.
 """
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, make_dataclass, replace
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from scipy.linalg import block_diag
 
-from stiction.devices.budget import OF_DIMENSIONS, OF_SOLIDS
+from stiction.config.units import without_unit
+from stiction.devices.materials import OF_CONTACT, Step
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.scans import moments
 from stiction.stages.contact.curves import Water
@@ -27,52 +30,8 @@ from stiction.surface.translation import Translation
 #: What the inputs of a budget may move apart from the mean length at which beams stick: a length that tips hold, and a
 #: mean force.
 ARC, FORCE = "arc", "force"
-#: Properties of solids, keys of `stiction.devices.budget.OF_SOLIDS`: field of their uncertainty, and for reading.
-_SOLIDS = {
-    "modulus": ("young_modulus", "Young's modulus"),
-    "poisson_ratio": ("poisson_ratio", "Poisson's ratio"),
-    "hamaker_constant": ("hamaker_constant", "the Hamaker constant"),
-}
-
-
-@dataclass(frozen=True)
-class Uncertainty:
-    """Standard uncertainties of the inputs apart from the surfaces; zero where not stated."""
-
-    thickness: float = 0.0  #: [m]
-    gap: float = 0.0  #: [m]
-    residual_stress: float = 0.0  #: [Pa]
-    young_modulus: float = 0.0  #: [Pa]
-    poisson_ratio: float = 0.0  #: [-]
-    hamaker_constant: float = 0.0  #: [J]
-    humidity: float = 0.0  #: [-]
-    temperature: float = 0.0  #: [K]
-    contact_angle: float = 0.0  #: of both surfaces, in the same direction [rad]
-    scan: float = 0.0  #: side of the scan that gave the moments of the surfaces that are described by numbers [m]
-
-
-@dataclass(frozen=True)
-class Settings:
-    """Everything that a budget depends on apart from contact and surfaces."""
-
-    seed: int
-    water: Water
-    humidity: float  #: [-]
-    uncertainty: Uncertainty
-    surfaces: tuple[str, ...]  #: names of those of the pair
-    young_modulus: float  #: E of the body of the beam or stopper [Pa]
-    device: DesignedBeam | None = None  #: a beam; none for a stopper
-    hamaker_constant: float | None = None  #: of two bodies like the beam or stopper [J], if it is uncertain
-    share: float = 0.0  #: p of the length that tips hold, if the budget is of that length [-]
-    beams: int = 0  #: number of beams for every slope
-    contact: tuple[float, float] = (0.0, 0.0)  #: sides of the patch of a stopper [m]
-
-    @property
-    def response(self) -> str:
-        """What the inputs move."""
-        if self.device is None:
-            return FORCE
-        return ARC if self.share else self.device.opening.shapes[0]
+#: Step of dimensions.
+_OF_DIMENSIONS = Step(0.05)
 
 
 @dataclass(frozen=True)
@@ -111,6 +70,87 @@ class Block(NamedTuple):
     covariance: np.ndarray  #: of their errors (k, k)
 
 
+@dataclass(frozen=True)
+class Varied:
+    """Input that is a number of a state, and whose standard uncertainty a device may state."""
+
+    field: str  #: of `Uncertainty`; inputs with the same one err together
+    name: str  #: for reading
+    value: Callable[[State], float]
+    changed: Callable[[State, float], State]
+    step: Step | None = None  #: in either direction; by default its standard uncertainty
+    least: float = -np.inf  #: below which it cannot be
+    group: str = ""  #: as of `Input`, by default from its name
+
+    def around(self, state: State, deviation: float) -> tuple[Input, float]:
+        """Input around its value in a state, and its standard uncertainty, relative if the step is."""
+        value = self.value(state)
+        ends = self.step.ends(value) if self.step else around(value, deviation, self.least)
+        states = tuple(self.changed(state, end) for end in ends)
+        step = self.step.difference if self.step else ends[1] - ends[0]
+        relative = deviation / value if self.step and self.step.relative else deviation
+        return Input(self.name, self.group or f"the {self.name}", states, step), relative
+
+
+def _size(name, step=None, least=-np.inf):
+    """Dimension, or stress, of a beam."""
+
+    def changed(state, value):
+        return replace(state, device=replace(state.device, **{name: value}))
+
+    return Varied(name, name.replace("_", " "), lambda state: getattr(state.device, name), changed, step, least)
+
+
+def _contact_angle(side):
+    """Contact angle on one of the two surfaces, with the other one as it is."""
+
+    def changed(state, value):
+        angles = tuple(value if k == side else angle for k, angle in enumerate(state.water.contact_angles))
+        return replace(state, water=replace(state.water, contact_angles=angles))
+
+    name, angle = f"contact angle on the {SIDES[side]}", lambda state: state.water.contact_angles[side]
+    return Varied("contact_angle", name, angle, changed, least=0.0, group="the contact angles")
+
+
+#: Uncertain inputs of beams, and those of all devices; the slopes of thickness and gap are in their logarithms.
+OF_BEAMS = _size("thickness", _OF_DIMENSIONS), _size("gap", _OF_DIMENSIONS), _size("residual_stress", least=0.0)
+OF_AIR = (
+    Varied("humidity", "humidity", lambda state: state.humidity, lambda state, at: replace(state, humidity=at)),
+    Varied(
+        "temperature",
+        "temperature",
+        lambda state: state.water.temperature,
+        lambda state, at: replace(state, water=replace(state.water, temperature=at)),
+    ),
+    *map(_contact_angle, range(len(SIDES))),
+)
+#: Fields of the uncertainties of the properties of solids, by their names.
+_OF_SOLIDS = {name: without_unit(one.key) for name, one in OF_CONTACT.items()}
+#: Standard uncertainties of all inputs in SI, zero where not stated; ``scan`` is the side of the scan that gave the
+#: moments of the surfaces that are described by numbers [m].
+Uncertainty = make_dataclass(
+    "Uncertainty",
+    [
+        (field, float, 0.0)
+        for field in dict.fromkeys([*(one.field for one in (*OF_BEAMS, *OF_AIR)), *_OF_SOLIDS.values(), "scan"])
+    ],
+    frozen=True,
+)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that any budget depends on apart from contact and surfaces."""
+
+    seed: int
+    water: Water
+    humidity: float  #: [-]
+    uncertainty: Uncertainty
+    surfaces: tuple[str, ...]  #: names of those of the pair
+    young_modulus: float  #: E of the body of the beam or stopper [Pa]
+    hamaker_constant: float | None = None  #: of two bodies like the beam or stopper [J], if it is uncertain
+
+
 def uncertain(
     state: State,
     shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
@@ -127,26 +167,26 @@ def uncertain(
     shifted : dict
         (surface, quantity) to the contact with less and with more of it.
     solids : dict
-        Uncertain property of the solids to the contact with less and with more of it, by the step of
-        `stiction.devices.budget.OF_SOLIDS`.
+        Uncertain property of the solids to the contact with less and with more of it, by its step in
+        `stiction.devices.materials.PROPERTIES`.
     known : dict
         Surface to what is known of its quantities, those of ``shifted``.
     settings : Settings
     """
     stated = settings.uncertainty
     blocks = [of_surface(state, name, shifted, measured) for name, measured in known.items()]
-    blocks += [*of_dimensions(state, stated), *of_solids(state, solids, settings), *of_air(state, stated)]
+    blocks += [*(of_numbers(state, OF_BEAMS, stated) if state.device else ()), *of_solids(state, solids, settings)]
+    blocks += of_numbers(state, OF_AIR, stated)
     inputs = [entry for block in blocks for entry in block.inputs]
     return inputs, block_diag(np.empty((0, 0)), *(block.covariance for block in blocks))
 
 
-def countable(settings: Settings) -> list[str]:
-    """Everything that a measurement of a device could determine, whether uncertain or not, for reading."""
-    names = settings.device.opening.sizes if settings.device else ["area"]
-    sizes = [f"the {name.replace('_', ' ')}" for name in names]
+def countable(sizes: Sequence[str], settings: Settings) -> list[str]:
+    """Everything that a measurement of a device with these sizes could determine, for reading."""
     surfaces = [f"the {part} of {name}" for name in settings.surfaces for part in ("heights", "spectrum")]
-    solids = [words for _, words in _SOLIDS.values()]
-    return [*surfaces, *sizes, *solids, "the humidity", "the temperature", "the contact angles"]
+    solids = [one.group for one in OF_CONTACT.values()]
+    air = [one.group or f"the {one.name}" for one in OF_AIR]
+    return [*surfaces, *(f"the {name.replace('_', ' ')}" for name in sizes), *solids, *dict.fromkeys(air)]
 
 
 def of_surface(
@@ -162,25 +202,12 @@ def of_surface(
     return Block(inputs, known.covariance)
 
 
-def _alone(name, group, states, step, deviation):
-    """Block of one input."""
-    return Block([Input(name, group, tuple(states), step)], np.array([[deviation**2]]))
-
-
-def of_dimensions(state: State, stated: Uncertainty) -> Iterator[Block]:
-    """Uncertain dimensions of a beam; the slopes of thickness and gap are in their logarithms."""
-    if state.device is None:
-        return
-    for name in ("thickness", "gap"):
-        if deviation := getattr(stated, name):
-            value = getattr(state.device, name)
-            sizes = OF_DIMENSIONS.ends(value)
-            both = (replace(state, device=replace(state.device, **{name: size})) for size in sizes)
-            yield _alone(name, f"the {name}", both, OF_DIMENSIONS.difference, deviation / value)
-    if deviation := stated.residual_stress:
-        ends = around(state.device.residual_stress, deviation, least=0.0)
-        both = (replace(state, device=replace(state.device, residual_stress=at)) for at in ends)
-        yield _alone("residual stress", "the residual stress", both, ends[1] - ends[0], deviation)
+def of_numbers(state: State, varied: Sequence[Varied], stated: Uncertainty) -> Iterator[Block]:
+    """Blocks of those of some inputs that are uncertain."""
+    for field, together in groupby(varied, lambda one: one.field):
+        if deviation := getattr(stated, field):
+            found, deviations = zip(*(one.around(state, deviation) for one in together), strict=True)
+            yield Block(list(found), np.full((len(found), len(found)), deviations[0] ** 2))
 
 
 def of_solids(state: State, solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings) -> Iterator[Block]:
@@ -188,42 +215,18 @@ def of_solids(state: State, solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
 
     ASSUME: a beam bends with Young's modulus alone, without the 1 - ν² of a plate; only the contact has the other two.
     """
-    for name, (field, words) in _SOLIDS.items():
+    for name, field in _OF_SOLIDS.items():
         if name not in solids:
             continue
-        both, step = [replace(state, contact=contact) for contact in solids[name]], OF_SOLIDS[name]
+        both, step = [replace(state, contact=contact) for contact in solids[name]], OF_CONTACT[name].step
         if name == "modulus" and state.device:
             moduli = step.ends(settings.young_modulus)
             beams = [replace(state.device, young_modulus=modulus) for modulus in moduli]
             both = [replace(of, device=beam) for of, beam in zip(both, beams, strict=True)]
         deviation = getattr(settings.uncertainty, field)
         relative = deviation / getattr(settings, field) if step.relative else deviation
-        yield _alone(words.removeprefix("the "), words, both, step.difference, relative)
-
-
-def of_air(state: State, stated: Uncertainty) -> Iterator[Block]:
-    """Uncertain humidity, temperature and contact angles."""
-    water = state.water
-    if deviation := stated.humidity:
-        ends = around(state.humidity, deviation)
-        both = (replace(state, humidity=at) for at in ends)
-        yield _alone("humidity", "the humidity", both, ends[1] - ends[0], deviation)
-    if deviation := stated.temperature:
-        ends = around(water.temperature, deviation)
-        both = (replace(state, water=replace(water, temperature=at)) for at in ends)
-        yield _alone("temperature", "the temperature", both, ends[1] - ends[0], deviation)
-    if deviation := stated.contact_angle:
-        inputs = [_contact_angle(state, side, deviation) for side in range(len(SIDES))]
-        yield Block(inputs, np.full((len(SIDES), len(SIDES)), deviation**2))
-
-
-def _contact_angle(state, side, deviation):
-    """Contact angle on one of the two surfaces, with the other one as it is."""
-    angles = state.water.contact_angles
-    ends = around(angles[side], deviation, least=0.0)
-    changed = [tuple(at if k == side else angle for k, angle in enumerate(angles)) for at in ends]
-    both = tuple(replace(state, water=replace(state.water, contact_angles=each)) for each in changed)
-    return Input(f"contact angle on the {SIDES[side]}", "the contact angles", both, ends[1] - ends[0])
+        entry = Input(OF_CONTACT[name].words, OF_CONTACT[name].group, tuple(both), step.difference)
+        yield Block([entry], np.array([[relative**2]]))
 
 
 def around(value: float, deviation: float, least: float = -np.inf) -> tuple[float, float]:

@@ -1,0 +1,52 @@
+"""Properties of the material of a device: what they are called, and the step for the slope of a budget."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Step:
+    """Change of an input in either direction for its slope."""
+
+    size: float  #: of the value of the input if it is relative, otherwise in its unit
+    relative: bool = True  #: the slope is then that in the logarithm of the input
+
+    def ends(self, value: float) -> tuple[float, float]:
+        """Less and more of an input of this value."""
+        if self.relative:
+            return (1 - self.size) * value, (1 + self.size) * value
+        return value - self.size, value + self.size
+
+    @property
+    def difference(self) -> float:
+        """Of the logarithm of the input between both ends, or of the input."""
+        return float(np.log((1 + self.size) / (1 - self.size))) if self.relative else 2 * self.size
+
+
+@dataclass(frozen=True)
+class Property:
+    """A property of the material of one body."""
+
+    key: str  #: of the configuration, where materials and uncertainties have it
+    words: str
+    step: Step | None = None  #: for its slope, if the contact of surfaces depends on it
+
+    @property
+    def group(self) -> str:
+        """What a measurement determines, for reading."""
+        return self.words if "'s " in self.words else f"the {self.words}"
+
+
+#: All properties by name, which those of uncertain ones have in names of files. Poisson's ratio may be zero. The larger
+#: step of the Hamaker constant, on which lengths depend little, halves the error of its slope.
+PROPERTIES = {
+    "modulus": Property("young_modulus_GPa", "Young's modulus", Step(0.05)),
+    "poisson_ratio": Property("poisson_ratio", "Poisson's ratio", Step(0.05, relative=False)),
+    "hardness": Property("hardness_GPa", "hardness"),
+    "hamaker_constant": Property("hamaker_constant_zJ", "Hamaker constant", Step(0.2)),
+    "contact_angle": Property("contact_angle_deg", "contact angle"),
+}
+#: Those on which contact depends, and their keys.
+OF_CONTACT = {name: one for name, one in PROPERTIES.items() if one.step}
+ELASTIC = tuple(one.key for one in OF_CONTACT.values())
