@@ -126,6 +126,13 @@ def test_a_wrong_device_is_refused_by_name(keys, key, message):
     assert message in line
 
 
+def test_islands_are_refused_with_devices_alone():
+    (line,) = problems(merged(with_device(), {"contact": {"asperity": "island"}}))
+    assert line.startswith("contact.asperity is ")
+    assert "must be summit, or the devices left out" in line
+    assert not problems(merged(PAPER, {"contact": {"asperity": "island"}}))
+
+
 @pytest.mark.parametrize(
     ("overlay", "key", "message"),
     [

@@ -38,10 +38,10 @@ EVERY = defaultdict(lambda: 0.144)
 BEAM = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200)
 LIMIT = 3e6
 #: Markers of points; others are the caps of error bars.
-MARKERS = tuple("os^vDPX<>*")
+MARKERS = tuple("os^vDPX<>p*")
 #: Fourteen choices, those of one key next to each other; the first eight are about those of the paper's study.
 CHOICES = (
-    *("van_der_waals_dry", "van_der_waals_none", "psd_identified", "every_2", "every_3", "every_4"),
+    *("van_der_waals_dry", "van_der_waals_none", "psd_identified", "asperity_island", "every_2", "every_3", "every_4"),
     *("spacing_nm_5", "spacing_nm_20", "poisson_ratio_0.1", "poisson_ratio_0.18", "poisson_ratio_0.28"),
     *("poisson_ratio_0.35", "strips_per_element_2", "strips_per_element_4"),
 )
@@ -193,9 +193,9 @@ def rows(cases):
 OF_PAIRS = [(name, n, 2) for name in ("12", "15", "16", "17", "19", "variants") for n in (1, 2, 3, 4, 5, 7, 9, 12)]
 OF_HUMIDITIES = [("13", 3), ("15", 1), ("17", 2), ("overview", 1), ("variants", 2)]
 OF_HUMIDITIES = [(name, pairs, n) for name, pairs in OF_HUMIDITIES for n in (1, 4, 25)]
-OF_CHOICES = [("variants", pairs, n, choices) for pairs in (1, 3, 5) for n in (1, 4, 25) for choices in (8, 14)]
+OF_CHOICES = [("variants", pairs, n, choices) for pairs in (1, 3, 5) for n in (1, 4, 25) for choices in (9, 15)]
 FAST = {("12", 1, 2), ("13", 3, 25), ("15", 1, 25), ("16", 1, 2), ("17", 4, 2), ("19", 4, 2), ("overview", 1, 25)}
-FAST |= {("variants", 1, 25, 14)}
+FAST |= {("variants", 1, 25, 15)}
 each_case = pytest.mark.parametrize("case", rows([*OF_PAIRS, *OF_HUMIDITIES, *OF_CHOICES]))
 
 
@@ -338,15 +338,15 @@ def test_every_choice_has_one_curve_of_all_humidities_and_a_legend_below_its_pan
     legends = [legend for part in (figure, *figure.subfigs) for legend in part.legends]
     named = [text.get_text() for legend in legends for text in legend.get_texts()]
     assert sorted(named) == sorted([*labels, *["base", "measured"] * len(legends)])
-    assert len(legends) == (1 if choices <= 8 else 2)
+    assert len(legends) == (1 if choices <= 9 else 2)
 
 
 def test_choices_of_one_key_stay_together_unless_they_are_more_than_the_colours():
     groups = figures_studies._groups
     assert groups([]) == [[]]
-    assert groups(list(CHOICES)) == [list(CHOICES[:8]), list(CHOICES[8:])]
-    of_one_key = [f"every_{k}" for k in range(2, 12)]
-    assert groups(["psd_identified", *of_one_key]) == [["psd_identified"], of_one_key[:8], of_one_key[8:]]
+    assert groups(list(CHOICES)) == [list(CHOICES[:9]), list(CHOICES[9:])]
+    of_one_key = [f"every_{k}" for k in range(2, 13)]
+    assert groups(["psd_identified", *of_one_key]) == [["psd_identified"], of_one_key[:9], of_one_key[9:]]
 
 
 @pytest.mark.parametrize("case", rows(OF_PAIRS))

@@ -1,6 +1,7 @@
 """Studies of small size: what they compute from the stages, and the laws that it obeys."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -30,6 +31,7 @@ from stiction.stages.contact import (
     sensitivity_contact,
     slope_contact,
     variant_contact,
+    variant_islands,
     variant_summits,
 )
 from stiction.stages.contact.pairs import streams_of_sides, surface_pair
@@ -526,6 +528,28 @@ def contact_under(variant, samples=3):
     fewer = replace(changed, contact=replace(changed.contact, samples=samples))
     solids = small.settings_of(variant_contact, small.PLAN.variant_contact("b", variant))
     return variant_contact.compute(variant_summits.compute({}, "b", base, fewer), solids)
+
+
+@pytest.mark.parametrize("variant", ["asperity_island", "base"])
+def test_the_contact_of_islands_under_a_variant_is_that_of_pairs_of_its_settings(variant):
+    """If the asperities of the base are islands, those of all its variants are found in this way."""
+    plain = small.PLAN.variant_summits("b", variant)
+    solids = {"solids": small.PLAN.variant_contact("b", variant)}
+    plain = merged(plain, {"base": {"contact": {"samples": 3}}}) | solids
+    at, data = SimpleNamespace(pair="b", variant=variant), {"identifications": {}, "heights": {}, "spectrum": {}}
+    found = stage_of(variant_islands).compute(data, at, plain)
+    changed = merged(job_settings(small.PLAN, "contact/b_NG"), small.PLAN.variants[variant])
+    settings = small.settings_of(stage_contact, merged(changed, {"contact": {"samples": 3}}))
+    plain_way = stage_contact.compute(small.surfaces(), "b", "NG", settings)
+    for name in found:
+        assert_array_equal(found[name], plain_way[name])
+    assert np.array_equal(found.solid_pressure, contact_under("base").solid_pressure) == (variant == "base")
+
+
+def stage_of(module):
+    """The only stage of a module."""
+    (stage,) = module.STAGES
+    return stage
 
 
 def test_the_contact_of_the_base_variant_is_that_of_the_pair():

@@ -24,8 +24,10 @@ from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SIDES, SURFACE_MODELS
 MOMENTS = ("rms_nm", "skewness", "kurtosis")
 SUMMITS = ("mean_summit_radius_um", "summit_density_per_um2")
 #: Key that a variant changes, and its section; the source of the spectrum is a key of each surface.
-_CHANGED = {"van_der_waals": None, "psd": None, "every": "contact", "spacing_nm": "sampling", "poisson_ratio": "solid"}
-_CHANGED |= {"reach": "attraction"}
+_CHANGED = {
+    **{"van_der_waals": None, "psd": None, "asperity": "contact", "every": "contact", "spacing_nm": "sampling"},
+    **{"poisson_ratio": "solid", "reach": "attraction"},
+}
 #: Sections of the solids, which do not affect the summits.
 _SOLIDS = ("solid", "van_der_waals")
 #: Keys that define the beam that the paper measured and simulated.
@@ -413,7 +415,7 @@ class Plan:
 
         A measured surface is that of the base: no variant changes its heights or its spectrum.
         """
-        contact = chosen(self.config["contact"], ("distance_step_nm", "every"))
+        contact = chosen(self.config["contact"], ("distance_step_nm", "every", "asperity"))
         base = chosen(self.config, ("seed", "sampling")) | {
             "contact": contact | {"samples": self.config["studies"]["variants"]["samples"]},
             "beam": chosen(self.config["beam"], ["width_um"]),
@@ -435,6 +437,11 @@ class Plan:
         """First variant with the same summits of a pair: solids do not change them."""
         wanted = self._summits(pair, variant)
         return next(name for name in self.variants if self._summits(pair, name) == wanted)
+
+    def has_islands(self, variant: str) -> bool:
+        """Whether the asperities are islands under a variant; their contact depends on more than the summits."""
+        changed = self.variants[variant].get("contact", {})
+        return (self.config["contact"] | changed).get("asperity") == "island"
 
     def contact_under(self, variant: str) -> str:
         """Variant whose contact a variant has: that of the base if only the beam or the forces across gaps differ."""
@@ -458,8 +465,10 @@ class Plan:
         return self._summits(pair, variant), contact, self.water(pair, variant), self.finer_beams.get(variant)
 
     def choices(self, pair: str) -> list[str]:
-        """Variants that change the contact of a pair, which need not run."""
-        contacts = [name for name in self.variants if self.contact_under(name) == name != "base"]
+        """Variants that change the contact of a pair, which need not run; devices have summits under all of them."""
+        contacts = [
+            name for name in self.variants if self.contact_under(name) == name != "base" and not self.has_islands(name)
+        ]
         return [name for name in contacts if self._under(pair, name) != self._under(pair, "base")]
 
     def choices_of_solids(self, pair: str) -> list[str]:

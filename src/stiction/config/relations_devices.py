@@ -68,6 +68,12 @@ def patch_of_a_stopper_is_whole_on_the_grid(sides, spacing, every):
     return next(filter(None, refusals), None)
 
 
+@relation("contact.asperity", "devices.*.pair")
+def asperities_of_devices_are_summits(asperity, _):
+    """The tips of beams and the budgets of devices are computed with summits."""
+    return None if asperity == "summit" else "must be summit, or the devices left out: their contact has summits"
+
+
 #: What the relations about them need apart from the sides of a patch.
 _GROUND = ("devices.*.@", "devices", "pairs", "surfaces")
 

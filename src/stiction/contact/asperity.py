@@ -154,23 +154,39 @@ def weak_load(interference: float, transition: float) -> float:
     return max(interference, 0.0) ** 1.5 - 2 * min(max(1 + 0.5 * np.pi * transition * interference, 0.0), 1.0)
 
 
+class Ranges(NamedTuple):
+    """Ranges of the distances at which spheres stand for asperities."""
+
+    first: np.ndarray  #: number of the first distance of each, (m,) int32
+    end: np.ndarray  #: number of the distance behind the last, (m,) int32
+
+
+def everywhere(spheres: int, distances: int) -> Ranges:
+    """Ranges of spheres that are in force at all distances; number of spheres and of distances."""
+    return Ranges(np.zeros(spheres, np.int32), np.full(spheres, distances, np.int32))
+
+
 class Asperity(Protocol):
     """Elastic sphere on a flat; interchangeable models of one asperity."""
 
     def force(self, interference: float | np.ndarray, radius: float) -> float | np.ndarray:
         """Force [N] of a sphere of this radius [m] at interferences (n,) [m]."""
 
-    def add_forces(self, tops: np.ndarray, curvatures: np.ndarray, step: float, force: np.ndarray) -> None:
-        """Add the force of all summits of an equivalent surface on a flat.
+    def add_forces(
+        self, tops: np.ndarray, curvatures: np.ndarray, step: float, force: np.ndarray, between: Ranges | None = None
+    ) -> None:
+        """Add the force of all spheres of an equivalent surface on a flat.
 
         Parameters
         ----------
         tops, curvatures : (m,) float64 arrays
-            Height [m] and mean curvature [m⁻¹] of each summit; those below the mean plane are left out.
+            Height [m] and mean curvature [m⁻¹] of each sphere; those below the mean plane are left out.
         step : float
             Of the distances [m].
         force : (n,) float64 array
             Receives the sum at the distances ``step * arange(n)`` [N].
+        between : Ranges, optional
+            Distances at which each sphere is in force; all by default.
         """
 
 
@@ -184,9 +200,11 @@ class HertzAsperity:
         """Elastic force, see `Asperity`."""
         return hertz_force(interference, radius, self.modulus)
 
-    def add_forces(self, tops: np.ndarray, curvatures: np.ndarray, step: float, force: np.ndarray) -> None:
-        """Add the elastic force of all summits, see `Asperity`."""
-        _add_hertz(tops, curvatures, step, self.modulus, force)
+    def add_forces(
+        self, tops: np.ndarray, curvatures: np.ndarray, step: float, force: np.ndarray, between: Ranges | None = None
+    ) -> None:
+        """Add the elastic force of all spheres, see `Asperity`."""
+        _add_hertz((tops, curvatures), between or everywhere(tops.size, force.size), step, self.modulus, force)
 
 
 class TableScales(NamedTuple):
@@ -266,9 +284,12 @@ class MaugisTable:
         held = np.interp(np.sqrt(np.maximum(scaled - delta[0], 0)), np.sqrt(delta - delta[0]), load)
         return np.pi * self.attraction.work_of_adhesion * radius * np.where(scaled < delta[0], 0.0, held)
 
-    def add_forces(self, tops: np.ndarray, curvatures: np.ndarray, step: float, force: np.ndarray) -> None:
-        """Add the force of all summits by interpolation in the table, see `Asperity`."""
-        _add_maugis(tops, curvatures, step, self.scales, self.snap_off, self.load, force)
+    def add_forces(
+        self, tops: np.ndarray, curvatures: np.ndarray, step: float, force: np.ndarray, between: Ranges | None = None
+    ) -> None:
+        """Add the force of all spheres by interpolation in the table, see `Asperity`."""
+        between = between or everywhere(tops.size, force.size)
+        _add_maugis((tops, curvatures), between, step, self.scales, self.snap_off, self.load, force)
 
 
 def asperity(modulus: float, attraction: Attraction | None) -> Asperity:
@@ -277,23 +298,26 @@ def asperity(modulus: float, attraction: Attraction | None) -> Asperity:
 
 
 @kernel
-def _add_hertz(tops, curvatures, step, modulus, force):
-    """Add the Hertz force of every summit at the distances ``step * arange(n)`` [N]."""
+def _add_hertz(spheres, between, step, modulus, force):
+    """Add the Hertz force of every sphere (tops, curvatures) at its distances ``step * arange(first, end)`` [N]."""
+    tops, curvatures = spheres
     for n in range(tops.size):
         if tops[n] > 0:
             factor = 4 / 3 * modulus / np.sqrt(curvatures[n])
-            for k in range(min(int(tops[n] / step) + 1, len(force))):
+            for k in range(between.first[n], min(int(tops[n] / step) + 1, between.end[n])):
                 overlap = max(tops[n] - k * step, 0.0)
                 force[k] += factor * overlap * np.sqrt(overlap)
 
 
 @kernel
-def _add_maugis(tops, curvatures, step, scales, snap_off, load, force):
-    """Add the Maugis force of every summit, by interpolation in the table."""
-    roots = np.empty(force.size)
+def _add_maugis(spheres, between, step, scales, snap_off, load, force):
+    """Add the Maugis force of every sphere (tops, curvatures) at its distances, by interpolation in the table."""
+    (tops, curvatures), roots = spheres, np.empty(force.size)
     for n in range(tops.size):
         if tops[n] > 0:
-            _add_sphere((tops[n], 1 / curvatures[n]), step, scales, snap_off, load, roots, force)
+            first, end = between.first[n], between.end[n]
+            sphere = tops[n] - first * step, 1 / curvatures[n]
+            _add_sphere(sphere, step, scales, snap_off, load, roots, force[first:end])
 
 
 @kernel

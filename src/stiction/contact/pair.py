@@ -5,20 +5,25 @@ processes, 0). Pressures are positive in repulsion. Two functions of distance de
 
 .. math:: f(d) = p_s(d) - |\Delta P| \, A(d - h_C)
 
-with the solid pressure p_s (spheres fitted to the summits, Hertz or Maugis) and the bearing area A (share of z > d).
-ASSUME: summits below the mean plane are never in contact.
+with the solid pressure p_s (spheres fitted to the asperities, Hertz or Maugis) and the bearing area A (share of z > d).
+ASSUME: asperities below the mean plane are never in contact.
 """
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
 
-from stiction.contact.asperity import Asperity
+from stiction.contact.asperity import Asperity, Ranges
 from stiction.kernels import kernel
 from stiction.surface.field import RoughSurface
+from stiction.surface.islands import find_islands
 from stiction.surface.summits import find_summits
+
+#: Levels at which islands are found, on one rms of the heights: enough for crack lengths to 0.1 %.
+LEVELS_PER_RMS = 30
 
 
 @dataclass(frozen=True)
@@ -45,12 +50,20 @@ class DistanceGrid:
         return self.step * np.arange(-self.below, self.above)
 
 
+class Definition(StrEnum):
+    """What an asperity is: the part of the surface to which a sphere is fitted in step (i)."""
+
+    SUMMIT = "summit"  #: a point higher than its eight neighbours, with its curvature there
+    ISLAND = "island"  #: a connected part of the surface above the flat, with its area
+
+
 class Summits(NamedTuple):
-    """Summits of an equivalent surface: the asperities in contact."""
+    """Spheres that stand for the asperities of an equivalent surface."""
 
     tops: np.ndarray  #: heights, (m,) [m]
     curvatures: np.ndarray  #: mean curvatures, (m,) [m⁻¹]
     area: float  #: in which a point can be a summit [m²]
+    between: Ranges | None = None  #: distances at which each is in force; all distances if none are given
 
 
 @dataclass(frozen=True)
@@ -61,6 +74,7 @@ class EquivalentSurface:
     substrate: RoughSurface
     step: float  #: of the distances [m]
     every: int = 1  #: summits and area are taken from every n-th point of the drawn grid
+    definition: Definition = Definition.SUMMIT  #: of an asperity
 
     def __post_init__(self):
         beam, substrate = self.beam.grid, self.substrate.grid
@@ -69,6 +83,11 @@ class EquivalentSurface:
                 f"surfaces must have the same points, got {beam.shape} points every {beam.spacing:.3g} m "
                 f"and {substrate.shape} every {substrate.spacing:.3g} m"
             )
+
+    @property
+    def spacing(self) -> float:
+        """Of the grid of the contact [m]."""
+        return self.beam.grid.spacing * self.every
 
     @property
     def distances(self) -> DistanceGrid:
@@ -82,16 +101,53 @@ class EquivalentSurface:
         self.substrate.add_to(heights, substrate_rng)
         return np.ascontiguousarray(heights[:: self.every, :: self.every])
 
+    def asperities(self, heights: np.ndarray) -> Summits:
+        """Asperities of one equivalent surface z (n1, n2) [m], by the chosen definition."""
+        return self.islands(heights) if self.definition == Definition.ISLAND else self.summits(heights)
+
     def summits(self, heights: np.ndarray) -> Summits:
         """Summits of one equivalent surface z (n1, n2) [m].
 
         ASSUME: a summit is higher than its eight neighbours on this grid, and a sphere of its mean curvature there.
         """
-        spacing = self.beam.grid.spacing * self.every
-        tops, curvatures, _ = find_summits(heights, spacing)
+        tops, curvatures, _ = find_summits(heights, self.spacing)
         # ASSUME: the area is the one in which a point can be a summit, 1.4 % less than that of a strip of 1.5 µm,
         # because points on the edge have fewer than eight neighbours.
-        return Summits(tops, curvatures, (heights.shape[0] - 2) * (heights.shape[1] - 2) * spacing**2)
+        return Summits(tops, curvatures, (heights.shape[0] - 2) * (heights.shape[1] - 2) * self.spacing**2)
+
+    def islands(self, heights: np.ndarray) -> Summits:
+        r"""Islands of one equivalent surface z (n1, n2) [m] above the flat, at every distance d.
+
+        ASSUME: an island of n points, each of a cell of area h², is a sphere of the same area with its highest point,
+
+        .. math:: n h^2 = 2 \pi R (\delta + s), \quad h^2 = 2 \pi R_0 s,
+
+        with the overlap δ, and the radius R₀ and the depth s of a summit there: the true top is higher than the highest
+        point of a grid, by about the depth of a cap of one cell. An island of one point that just touches is a summit,
+        and so is an asperity that does not touch yet; for large islands s is negligible.
+        ASSUME: below the rms of the heights, where islands are about to become one, they keep their spheres from there.
+        """
+        summits, grid, rms = self.summits(heights), self.distances, float(np.hypot(self.beam.rms, self.substrate.rms))
+        stride = max(round(rms / (LEVELS_PER_RMS * grid.step)), 1)
+        levels = DistanceGrid(stride * grid.step, 0, -(-grid.above // stride))
+        lowest = min(int(np.ceil(rms / levels.step)), levels.above - 1)
+        found = find_islands(heights, self.spacing, levels.step, (lowest, levels.above))
+        overlap = found.tops - found.levels * levels.step
+        curvatures = (found.curvatures + 2 * np.pi * overlap / self.spacing**2) / found.points
+        first = np.where(found.levels == lowest, 0, found.levels * stride)
+        touching = Ranges(first, np.minimum((found.levels + 1) * stride, self._lost(found.tops)))
+        high = summits.tops >= lowest * levels.step
+        apart = Ranges(self._lost(summits.tops[high]), np.full(high.sum(), grid.above))
+        return Summits(
+            np.append(found.tops, summits.tops[high]),
+            np.append(curvatures, summits.curvatures[high]),
+            summits.area,
+            Ranges(*map(np.append, touching, apart)),
+        )
+
+    def _lost(self, tops):
+        """Numbers of the first distances at which asperities with these tops (m,) [m] do not touch any more."""
+        return np.floor(tops / self.step).astype(int) + 1
 
     def bearing_area(self, heights: np.ndarray) -> np.ndarray:
         """Share A of z (n1, n2) [m] above the distances ``distances.bearing``, (n_bearing,) [-]."""
@@ -120,14 +176,14 @@ class SurfacePair(EquivalentSurface):
         bearing_area : (n_bearing,) array
             A at ``distances.bearing`` [-].
         """
-        solid = solid_pressure(self.asperity, self.summits(heights), self.distances)
+        solid = solid_pressure(self.asperity, self.asperities(heights), self.distances)
         return solid, self.bearing_area(heights)
 
 
 def solid_pressure(asperity: Asperity, summits: Summits, distances: DistanceGrid) -> np.ndarray:
-    """Pressure p_s of the summits at ``distances.solid``, (n_solid,) [Pa]."""
+    """Pressure p_s of the asperities at ``distances.solid``, (n_solid,) [Pa]."""
     force = np.zeros(distances.above)
-    asperity.add_forces(summits.tops, summits.curvatures, distances.step, force)
+    asperity.add_forces(summits.tops, summits.curvatures, distances.step, force, summits.between)
     return force / summits.area
 
 

@@ -61,11 +61,6 @@ class TiltedPair(SurfacePair):
         return DistanceGrid(self.step, int(np.ceil(self.tilt.reach / self.step)), above)
 
     @property
-    def spacing(self) -> float:
-        """Of the grid of the contact [m]."""
-        return self.beam.grid.spacing * self.every
-
-    @property
     def length(self) -> float:
         """Of the part of the strip that its points stand for [m]."""
         return (len(range(0, self.beam.grid.shape[0], self.every)) - 1 + first_weight(self.tilt.edge)) * self.spacing

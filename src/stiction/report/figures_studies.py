@@ -40,7 +40,7 @@ from stiction.report.tables_studies import variant_label
 from stiction.stages.beams.variant_beams import by_pair, cases_of
 from stiction.stages.laws.chaos import chaos_model
 
-_COLOURS = ("#0072B2", "#56B4E9", "#E69F00", "#D55E00", "#CC79A7", "#009E73", "#882255", "#7F7F00")
+_COLOURS = ("#0072B2", "#56B4E9", "#E69F00", "#D55E00", "#CC79A7", "#009E73", "#882255", "#7F7F00", "#332288")
 _ZERO = {"color": "0.6", "linewidth": 0.6, "zorder": 0}
 #: Element length [µm] chosen in the paper and the difference of Γ from ē [%] stated for it.
 _PAPER_LENGTH, _PAPER_ERROR = 7.5, 2.5

@@ -48,7 +48,7 @@ MODELS = {
 
 #: Colour of published values.
 PUBLISHED = "#D55E00"
-_MARKERS = ("o", "s", "^", "v", "D", "P", "X", "<", ">")
+_MARKERS = ("o", "s", "^", "v", "D", "P", "X", "<", ">", "p")
 _DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (1, 3)), (0, (4, 4)))
 
 #: White outline of text that lies on data.

@@ -18,6 +18,7 @@ from stiction.stages.beams.variant_beams import by_pair, cases_of
 _LABELS = {
     "van_der_waals": "vdW: {}",
     "psd": "PSD: {}",
+    "asperity": "asperity: {}",
     "every": "grid × {}",
     "spacing_nm": "grid {} nm",
     "poisson_ratio": "ν = {}",

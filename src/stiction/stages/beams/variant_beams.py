@@ -95,7 +95,7 @@ def _inputs(plan, at):
     pair, shared = pair_of(at.case), plan.contact_under(at.variant)
     if shared == "base" and plan.has_samples_of_variants:
         return {"contact": f"contact/{pair}_NG"}
-    return {"contact": f"studies/variants/contact/{pair}_{shared}"}
+    return {"contact": f"studies/variants/{'islands' if plan.has_islands(shared) else 'contact'}/{pair}_{shared}"}
 
 
 def _settings(plan, at):

@@ -13,7 +13,7 @@ import xarray as xr
 
 from stiction.contact import solids
 from stiction.contact.asperity import Asperity
-from stiction.contact.pair import EquivalentSurface, SurfacePair
+from stiction.contact.pair import Definition, EquivalentSurface, SurfacePair
 from stiction.contact.tilted import Tilt, TiltedPair
 from stiction.models import SIDES
 from stiction.stages.surfaces.rough_surfaces import Sampling, Width, rough_surface
@@ -38,6 +38,7 @@ class Contact:
     distance_step: float  #: step of the distance between the mean planes [m]
     every: int  #: n: contact is computed on every n-th point of the grid
     samples: int | None = None  #: number of surface pairs
+    asperity: str = "summit"  #: what an asperity is, see `stiction.contact.pair.Definition`
 
 
 class Surfaces(Protocol):
@@ -88,7 +89,12 @@ def equivalent_surface(
     """Sum of two surfaces from their (heights, spectrum) datasets, that of the beam first."""
     grid = settings.sampling.strips(settings.beam.width)
     beam, substrate = (rough_surface(heights, spectrum, model, grid) for heights, spectrum in surfaces)
-    return EquivalentSurface(beam, substrate, settings.contact.distance_step, settings.contact.every)
+    return EquivalentSurface(beam, substrate, *_discretised(settings.contact))
+
+
+def _discretised(contact):
+    """Step of the distances, every n-th point, and what an asperity is."""
+    return contact.distance_step, contact.every, Definition(contact.asperity)
 
 
 def surface_pair(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], model: str, settings: Settings) -> SurfacePair:
@@ -103,11 +109,10 @@ def surface_pairs(
     grid, solid = settings.sampling.strips(settings.beam.width), asperity_of(settings)
     distinct = {id(datasets): datasets for surfaces in alternatives for datasets in surfaces}
     built = {key: rough_surface(*datasets, model, grid) for key, datasets in distinct.items()}
-    step, every = settings.contact.distance_step, settings.contact.every
     build = partial(SurfacePair, asperity=solid)
     if settings.tilt:
         build = partial(TiltedPair, asperity=solid, tilt=settings.tilt)
-    return [build(*(built[id(one)] for one in surfaces), step, every) for surfaces in alternatives]
+    return [build(*(built[id(one)] for one in surfaces), *_discretised(settings.contact)) for surfaces in alternatives]
 
 
 def streams_of_sides(seed: int, pair: str) -> Callable[[int], tuple[np.random.Generator, ...]]:

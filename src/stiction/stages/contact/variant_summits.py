@@ -5,14 +5,15 @@ The dataset depends neither on the elasticity of the solids nor on their attract
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from stiction.config.merging import merged
 from stiction.config.units import in_si
-from stiction.contact.pair import DistanceGrid, Summits
-from stiction.plan.stage import Stage
+from stiction.contact.pair import DistanceGrid, EquivalentSurface, Summits
+from stiction.plan.stage import At, Stage
 from stiction.progress import progress
 from stiction.stages.contact.pairs import Contact, equivalent_surface, streams_of_sides
 from stiction.stages.surfaces import heights as stage_heights
@@ -59,7 +60,25 @@ def compute(
     changed: Settings,
     measured: Mapping[str, tuple[xr.Dataset, xr.Dataset]] | None = None,
 ) -> xr.Dataset:
-    """Summits under the changed settings, of the same surfaces as the base, even if drawn on a different grid.
+    """Summits of all samples under the changed settings, arguments of `equivalent_under`."""
+    equivalent = equivalent_under(identifications, pair, base, changed, measured)
+    streams = streams_of_sides(changed.seed, pair)
+    summits, areas = [], []
+    for k in progress(range(changed.contact.samples), "surface pairs"):
+        drawn = equivalent.draw(*streams(k))
+        summits.append(equivalent.summits(drawn))
+        areas.append(equivalent.bearing_area(drawn))
+    return layout(summits, areas, equivalent.distances)
+
+
+def equivalent_under(
+    identifications: Mapping[str, xr.Dataset],
+    pair: str,
+    base: Settings,
+    changed: Settings,
+    measured: Mapping[str, tuple[xr.Dataset, xr.Dataset]] | None = None,
+) -> EquivalentSurface:
+    """Surfaces under the changed settings, the same as those of the base, even if drawn on a different grid.
 
     Parameters
     ----------
@@ -81,14 +100,7 @@ def compute(
             identification, stage_spectrum.Use(name, changed.sampling.strip_length, changed.sampling.margin)
         )
     surfaces = surfaces_of(base.pairs[pair], base.surfaces, base.sampling.spacing, identifications, measured)
-    equivalent = equivalent_surface(surfaces, "NG", changed)
-    streams = streams_of_sides(changed.seed, pair)
-    summits, areas = [], []
-    for k in progress(range(changed.contact.samples), "surface pairs"):
-        drawn = equivalent.draw(*streams(k))
-        summits.append(equivalent.summits(drawn))
-        areas.append(equivalent.bearing_area(drawn))
-    return layout(summits, areas, equivalent.distances)
+    return equivalent_surface(surfaces, "NG", changed)
 
 
 def surfaces_of(
@@ -170,7 +182,7 @@ def distances(dataset: xr.Dataset) -> DistanceGrid:
     return DistanceGrid(float(dataset.step), below, dataset.sizes["height"] - below)
 
 
-def _inputs(plan, at):
+def inputs(plan: Any, at: At) -> dict[str, dict[str, str]]:
     """Identifications of the surfaces under a variant, and datasets of the measured surfaces of the pair."""
     identified = plan.variant_summits(at.pair, at.variant)["identified"]
     measured = plan.scanned_sides(at.pair)
@@ -179,19 +191,19 @@ def _inputs(plan, at):
     }
 
 
-def _computed(data, at, settings):
-    """Summits of a pair under a variant, from plain settings: those without the variant and its changes."""
+def arguments(data: dict, at: At, settings: dict) -> tuple:
+    """Arguments of `compute` from plain settings: those without the variant and its changes."""
     measured = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     wanted = (in_si(Settings, plain) for plain in (settings["base"], merged(settings["base"], settings["changes"])))
-    return compute(data["identifications"], at.pair, *wanted, measured)
+    return data["identifications"], at.pair, *wanted, measured
 
 
 SUMMITS = Stage.writing(
     "variant_summits",
     "studies/variants/summits/{pair}_{variant}",
-    inputs=_inputs,
+    inputs=inputs,
     settings=lambda plan, at: plan.variant_summits(at.pair, at.variant),
-    compute=_computed,
+    compute=lambda data, at, settings: compute(*arguments(data, at, settings)),
     message="Summits of pair {pair} under variant {variant}.",
     cluster=True,
     minutes=30,
