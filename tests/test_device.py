@@ -133,7 +133,7 @@ def test_a_device_that_does_not_exist_is_refused_with_those_that_do():
 @pytest.mark.parametrize(
     ("name", "ask", "message"),
     [
-        ("S1", lambda device: device.safe_lengths(0.5), "S1 is a stopper; only a cantilever or bridge has this"),
+        ("S1", lambda device: device.safe_lengths(0.5), "S1 is a stopper; only a cantilever or bridge"),
         ("S1", lambda device: device.chart(0.5), "S1 is a stopper"),
         ("C1", lambda device: device.forces(), "C1 is a cantilever; only a stopper has this"),
         ("R1", lambda device: device.chart(0.5), "R1 has no chart: state devices.R1.chart"),

@@ -91,7 +91,7 @@ WRONG = [
     ),
     ({"residual_stress_MPa": 5}, "devices.C1.kind", "must come without residual_stress_MPa"),
     ({"restoring_force_uN": 5, "contact_um": [1, 1]}, "devices.C1.kind", "without contact_um, restoring_force_uN"),
-    ({"kind": "plate"}, "devices.C1.kind", "one of cantilever, bridge, stopper"),
+    ({"kind": "plate"}, "devices.C1.kind", "one of cantilever, bridge"),
     ({"pair": "d"}, "devices.C1.pair", "must be one of a, b, c"),
     ({"humidities": [0.6, 0.6]}, "devices.C1.humidities", "listed twice"),
     ({"humidities": [0.65001]}, "devices.C1.humidities", "at most 4 decimals"),
