@@ -383,12 +383,20 @@ SPOTS = [
     ("config/files", "", " ".join(RULES)),
     ("config/merging", "variant_summits", "heights spectrum contact_chunk forces beams"),
     ("plan/names", "", " ".join(RULES)),
-    ("designs/patch_settings", "", " ".join(RULES)),
-    ("variants/summits", "variant_summits", "heights spectrum contact_chunk plasticity sensitivity_contact"),
-    ("variants/contact", "variant_contact", "variant_summits contact_chunk plasticity sensitivity_contact"),
+    ("stages/devices/patch_settings", "", " ".join(RULES)),
+    (
+        "stages/contact/variant_summits",
+        "variant_summits",
+        "heights spectrum contact_chunk plasticity sensitivity_contact",
+    ),
+    (
+        "stages/contact/variant_contact",
+        "variant_contact",
+        "variant_summits contact_chunk plasticity sensitivity_contact",
+    ),
     ("study", "", " ".join(RULES)),
-    ("designs/releases", "cracks chart", "heights spectrum contact_chunk tip_contact beams"),
-    ("designs/sticking", "safe_lengths chart", "heights spectrum contact_chunk tip_contact beams cracks"),
+    ("stages/devices/releases", "cracks chart", "heights spectrum contact_chunk tip_contact beams"),
+    ("stages/devices/sticking", "safe_lengths chart", "heights spectrum contact_chunk tip_contact beams cracks"),
     ("scans/estimate", "table_1 table_3", " ".join(RULES - {"table_1", "table_2", "table_3", "checks", "verdict"})),
 ]
 SPOT_ROWS = [
@@ -398,37 +406,43 @@ SPOT_ROWS = [
 #: The computation of a stage and the layout of its dataset are in one module, so that a new variable in the dataset is
 #: a change of that module only. It reruns the stage and the readers of its dataset, and nothing else.
 LAYOUTS = {
-    "stages/heights": {
+    "stages/surfaces/heights": {
         "heights",
         *["identification", "spectrum", "iteration", "character", "contact_chunk", "plasticity"],
     }
     | {"sensitivity_contact", "variant_summits"},
-    "stages/identification": {"identification"},
-    "stages/spectrum": {"spectrum", "sensitivity_contact", "variant_summits"},
-    "stages/character": {"character", "table_2"},  # in one module with Table I, which reads it
-    "stages/contact": {"contact_chunk", "sensitivity_contact", "variant_contact", "device_contact", "tip_contact"}
+    "stages/surfaces/identification": {"identification"},
+    "stages/surfaces/spectrum": {"spectrum", "sensitivity_contact", "variant_summits"},
+    "stages/surfaces/character": {"character", "table_2"},  # in one module with Table I, which reads it
+    "stages/contact/contact": {
+        "contact_chunk",
+        "sensitivity_contact",
+        "variant_contact",
+        "device_contact",
+        "tip_contact",
+    }
     | OF_DEVICES,
-    "stages/forces": {"forces"},
-    "stages/chaos": {"chaos"},
-    "stages/beams": {"beams"},
-    "studies/iteration": {"iteration"},
-    "studies/fit": {"fit"},
-    "studies/humidity": {"humidity"},
-    "studies/sensitivity": {"sensitivity"},
-    "studies/plasticity": {"plasticity"},
-    "studies/sample_sizes": {"sample_sizes"},
-    "studies/orders": {"orders"},
-    "studies/mesh": {"mesh"},
-    "studies/correlation": {"correlation"},
-    "studies/resampling": {"resampling"},
-    "variants/summits": {"variant_summits"},
-    "variants/beams": {"variant"},
-    "designs/cracks": {"cracks", "safe_lengths"},
-    "designs/safe_lengths": {"safe_lengths"},
-    "designs/chart": {"chart"},
+    "stages/laws/forces": {"forces"},
+    "stages/laws/chaos": {"chaos"},
+    "stages/beams/beams": {"beams"},
+    "stages/surfaces/iteration": {"iteration"},
+    "stages/laws/fit": {"fit"},
+    "stages/laws/humidity": {"humidity"},
+    "stages/laws/sensitivity": {"sensitivity"},
+    "stages/contact/plasticity": {"plasticity"},
+    "stages/laws/sample_sizes": {"sample_sizes"},
+    "stages/laws/orders": {"orders"},
+    "stages/beams/mesh": {"mesh"},
+    "stages/surfaces/correlation": {"correlation"},
+    "stages/beams/resampling": {"resampling"},
+    "stages/contact/variant_summits": {"variant_summits"},
+    "stages/beams/variant_beams": {"variant"},
+    "stages/devices/cracks": {"cracks", "safe_lengths"},
+    "stages/devices/safe_lengths": {"safe_lengths"},
+    "stages/devices/chart": {"chart"},
 }
 LAYOUT_ROWS = [
-    pytest.param(name, stages, id=name, marks=[pytest.mark.slow] * (name != "stages/forces"))
+    pytest.param(name, stages, id=name, marks=[pytest.mark.slow] * (name != "stages/laws/forces"))
     for name, stages in LAYOUTS.items()
 ]
 
@@ -484,7 +498,8 @@ def imported(path):
 
 #: Modules that affect no result, or only settings and names of inputs, which count themselves.
 SILENT = {
-    PACKAGE / f"{name}.py" for name in ("progress", "run/logs", "plan/stage", "plan/names", "designs/patch_settings")
+    PACKAGE / f"{name}.py"
+    for name in ("progress", "run/logs", "plan/stage", "plan/names", "stages/devices/patch_settings")
 }
 
 

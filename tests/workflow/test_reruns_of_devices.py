@@ -128,8 +128,12 @@ FURTHER |= {"Hamaker constant of a body", "uncertainty of a property of the soli
 FURTHER |= {"another property of the solids of a cantilever becomes uncertain"}
 ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)) for name, *row in MATRIX]
 #: Modules, and the rules whose datasets a new variable changes.
-LAYOUTS = {"designs/stoppers": {"stoppers"}, "designs/budget": {"budget", "tip_budget"}, "designs/chart": {"chart"}}
-LAYOUTS |= {"designs/cracks": {"cracks", "safe_lengths"}, "designs/safe_lengths": {"safe_lengths"}}
+LAYOUTS = {
+    "stages/devices/stoppers": {"stoppers"},
+    "stages/devices/budget": {"budget", "tip_budget"},
+    "stages/devices/chart": {"chart"},
+}
+LAYOUTS |= {"stages/devices/cracks": {"cracks", "safe_lengths"}, "stages/devices/safe_lengths": {"safe_lengths"}}
 
 
 def behind(rules):
