@@ -4,7 +4,8 @@
    and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``
    and ``make devices`` in ``runs/example`` and ``runs/devices`` beside the folder.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
-3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted.
+3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted, and the schema
+   for editors from that of the configuration.
 
 Steps 2 and 3 depend on ``docs`` alone: ``tests/test_docs.py`` repeats them and compares.
 """
@@ -34,6 +35,7 @@ from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilev
 from stiction.stages.laws.forces import vectors
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "tests")]
+import keys  # noqa: E402
 import quoted  # noqa: E402
 from benchmarks import jobs  # noqa: E402
 
@@ -69,6 +71,8 @@ DEVICE_TABLES = ("safe_lengths", "stoppers", "budget")
 DEVICE_PICTURES = {"risk": 1000, "chart": 1200, "stoppers": 700, "budget_C1": 1000}
 #: Largest picture [bytes].
 LARGEST = 350_000
+#: Schema of configuration files for editors.
+EDITORS = ROOT / "src" / "stiction" / "config" / "schema.json"
 NOTE = "<!-- Written by docs/update.py from docs/templates/{name}: edit that file, then run make numbers. -->"
 
 
@@ -242,7 +246,7 @@ def pages():
     for template in sorted((DOCS / "templates").glob("*.md")):
         body = filled(template.read_text(encoding="utf-8"), numbers)
         texts[DOCS / template.name] = NOTE.format(name=template.name) + "\n\n" + body
-    return texts
+    return texts | {EDITORS: keys.for_editors()}
 
 
 def quoted_numbers():
@@ -256,7 +260,7 @@ def quoted_numbers():
 
 def record(numbers):
     """Numbers quoted by the pages, and checksums of the tables and pictures that the pages are made of."""
-    quoted_names = {name for text in templates() for name in re.findall(r"{{ (\w+) }}", text)}
+    quoted_names = {name for text in templates() for name in re.findall(r"{{ (\w+) }}", text)} - {"keys"}
     files = sorted(path for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir())
     return {
         "numbers": {name: numbers[name] for name in sorted(quoted_names)},
@@ -272,7 +276,8 @@ def templates():
 def filled(template, numbers):
     """Template with ``{{ name }}`` replaced by a number and ``{{ table: name }}`` by a table with its caption."""
     with_tables = re.sub(r"{{ table: (\w+) }}", lambda match: shown(DOCS / "tables" / f"{match[1]}.md"), template)
-    return re.sub(r"{{ (\w+) }}", lambda match: numbers[match[1]], with_tables)
+    with_keys = with_tables.replace("{{ keys }}", keys.page()) if "{{ keys }}" in with_tables else with_tables
+    return re.sub(r"{{ (\w+) }}", lambda match: numbers[match[1]], with_keys)
 
 
 def shown(path):

@@ -2,12 +2,14 @@
 
 import importlib
 import importlib.util
+import json
 import re
 import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
 
+import jsonschema
 import numpy as np
 import pandas as pd
 import pytest
@@ -15,6 +17,7 @@ import yaml
 from PIL import Image
 
 import stiction
+from stiction.config.relations import schema
 from stiction.report.checks import RESOLVED
 from stiction.surface.feasible import nearest_feasible
 
@@ -52,6 +55,7 @@ def written():
 WRITTEN = [
     DOCS / "results.json",
     *(DOCS / path.name for path in sorted((DOCS / "templates").glob("*.md"))),
+    update.EDITORS,
 ]
 
 
@@ -140,6 +144,30 @@ def test_nearest_feasible_moments_are_those_that_the_heights_get():
         assert [float(text.replace("−", "-")) for text in found[f"near_{k}"].split(", ")] == pytest.approx(
             used[:2], abs=5e-4
         )
+
+
+# Keys
+
+
+def test_the_page_of_keys_gives_meaning_allowed_values_and_an_allowed_example_for_every_key():
+    page = (DOCS / "keys.md").read_text(encoding="utf-8")
+    listed = list(update.keys.keys(schema()))
+    assert len(re.findall(r"^\| `[\w.]+` \| ", page, re.MULTILINE)) == len(listed) > 100
+    for key in listed:
+        assert key.meaning in page
+        assert jsonschema.Draft202012Validator(key.entry).is_valid(key.example), key.path
+
+
+def test_editors_accept_every_file_that_changes_keys_and_notice_wrong_ones():
+    editor = jsonschema.Draft7Validator(json.loads(update.EDITORS.read_text(encoding="utf-8")))
+    study = ROOT / "src" / "stiction" / "command" / "study.yaml"
+    for path in (study, *(ROOT / "examples").rglob("*.yaml"), ROOT / "workflow" / "smoke.yaml", ROOT / "config.yaml"):
+        content = path.read_text(encoding="utf-8")
+        editor.validate(yaml.safe_load(content))
+        if (named := re.match(r"# yaml-language-server: \$schema=(\S+)", content)) and path != study:
+            assert (path.parent / named[1]).resolve() == update.EDITORS
+    for wrong in ("beam: {thicknes_um: 3}", "pairs: {b: {humidities: 0.5}}", "surfaces: {B1: {rms_nm: -1}}"):
+        assert not editor.is_valid(yaml.safe_load(wrong)), wrong
 
 
 # Pictures and links

@@ -1,5 +1,7 @@
 """The command line, without Snakemake: what is asked of it, and what is refused before it starts."""
 
+import json
+import re
 import sys
 from pathlib import Path
 
@@ -143,6 +145,8 @@ def test_a_path_of_python_that_snakemake_does_not_support_is_refused(asked, caps
 
 def test_the_study_that_is_written_is_valid_and_never_overwritten(tmp_path, capsys):
     assert main(["init", "--directory", str(tmp_path)]) == 0
+    (named,) = re.findall(r"\$schema=(\S+)", (tmp_path / "study.yaml").read_text())
+    assert json.loads((tmp_path / named).read_text())["properties"], "editors find the schema"
     study = tmp_path / "study.yaml"
     assert f"stiction run {study}" in capsys.readouterr().out
     text = study.read_text(encoding="utf-8")

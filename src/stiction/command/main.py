@@ -90,6 +90,8 @@ def _init(arguments):
     try:
         with target.open("x", encoding="utf-8") as file:
             file.write(Path(__file__).with_name("study.yaml").read_text(encoding="utf-8"))
+        schema = launch.PACKAGE / "config" / "schema.json"
+        target.with_name("stiction.schema.json").write_text(schema.read_text(encoding="utf-8"), encoding="utf-8")
     except FileExistsError:
         raise launch.RefusedError(f"{target} exists already: nothing was written") from None
     except OSError as error:

@@ -1,0 +1,127 @@
+"""All keys of the configuration, from its schema: the table of the docs, and the schema for editors."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from stiction.config.reading import read
+from stiction.config.relations import schema
+
+ROOT = Path(__file__).parents[1]
+#: Complete configuration of the paper: its values are the defaults.
+PAPER = read(ROOT / "config.yaml")
+#: Further values to show as examples, in the order in which they are tried.
+EXAMPLES = [PAPER, read(ROOT / "examples" / "devices.yaml"), read(ROOT / "examples" / "scans" / "mine.yaml")]
+#: Keywords of JSON Schema that hold for a complete configuration and not for a file that changes single keys.
+_OF_COMPLETE = ("required", "if", "else", "then", "allOf", "minProperties")
+
+
+class Key(NamedTuple):
+    """One key that holds a value; ``*`` stands for names in its path."""
+
+    path: tuple[str, ...]
+    entry: dict  #: its part of the schema
+
+    @property
+    def meaning(self) -> str:
+        """Description without the unit."""
+        return self.entry["description"].rpartition(" [")[0] or self.entry["description"]
+
+    @property
+    def unit(self) -> str:
+        """Unit, from the end of the description; names, choices and paths have none."""
+        unit = self.entry["description"].rpartition(" [")[2].rstrip("]")
+        return unit if "[" in self.entry["description"] and unit not in ("name", "choice", "path", "-") else ""
+
+    @property
+    def example(self) -> Any:
+        """Value in the paper's configuration, in an example or in the schema, or the first choice."""
+        values = [value for config in EXAMPLES for value in _values(config, self.path)]
+        choices = [*self.entry.get("enum", ()), *([choice] for choice in self.entry.get("items", {}).get("enum", ()))]
+        return [*values, *self.entry.get("examples", ()), *choices, None][0]
+
+
+def keys(entry: dict, path: tuple[str, ...] = ()) -> Iterator[Key]:
+    """All keys that hold a value, in the order of the schema."""
+    if entry["type"] != "object":
+        yield Key(path, entry)
+        return
+    for name, inner in entry.get("properties", {}).items():
+        yield from keys(inner, (*path, name))
+    if isinstance(named := entry["additionalProperties"], dict):
+        yield from keys(named, (*path, "*"))
+
+
+def _values(config, path):
+    """Values of a configuration at a path, for every name in place of ``*``."""
+    if not path:
+        yield config
+    elif isinstance(config, dict):
+        for name in config if path[0] == "*" else [path[0]] * (path[0] in config):
+            yield from _values(config[name], path[1:])
+
+
+def allowed(entry: dict) -> str:
+    """Allowed values in words.
+
+    Examples
+    --------
+    >>> allowed({"type": "number", "exclusiveMinimum": 0, "maximum": 5})
+    'above 0, at most 5'
+    """
+    if entry["type"] == "array":
+        number = f"{entry['maxItems']} entries" if "maxItems" in entry else "list"
+        return f"{number}: {allowed(entry['items'])}"
+    if "enum" in entry:
+        return ", ".join(f"`{choice}`" for choice in entry["enum"])
+    if entry["type"] == "string":
+        return "text"
+    words = {"exclusiveMinimum": "above", "minimum": "at least", "exclusiveMaximum": "below", "maximum": "at most"}
+    bounds = ", ".join(f"{word} {entry[bound]}" for bound, word in words.items() if bound in entry)
+    return f"whole number, {bounds}" if entry["type"] == "integer" else bounds
+
+
+def page() -> str:
+    """Sections and tables of all keys in Markdown."""
+    parts = []
+    for name, entry in schema()["properties"].items():
+        named = isinstance(entry.get("additionalProperties"), dict)
+        rows = [_row(key, 1 + named) for key in keys(entry, (name,))]
+        head = ["| key | meaning | unit | allowed | default | example |", "|---|---|---|---|---|---|"]
+        about = entry["description"].partition(" [")[0]
+        below = f" Keys below `{name}.NAME`:" if named else f" Keys below `{name}`:" if len(rows) > 1 else ""
+        parts.append("\n".join([f"## {name}", "", f"{about[0].upper()}{about[1:]}.{below}", "", *head, *rows]))
+    return "\n\n".join(parts)
+
+
+def _row(key, above):
+    """Row of one key, without the first names of its path; defaults hold without a file of one's own."""
+    default = "" if "*" in key.path else next((_yaml(value) for value in _values(PAPER, key.path)), "")
+    example = "" if default else _yaml(key.example)
+    name = ".".join(key.path[above:] or key.path).replace("*", "NAME")
+    cells = [f"`{name}`", key.meaning, key.unit, allowed(key.entry), default, example]
+    return f"| {' | '.join(cells)} |"
+
+
+def _yaml(value):
+    """A value in one line of YAML."""
+    return f"`{json.dumps(value, ensure_ascii=False)}`" if not isinstance(value, str) else f"`{value}`"
+
+
+def for_editors() -> str:
+    """Schema of files that change single keys, as JSON for editors that complete and check YAML."""
+    return json.dumps(_reduced(schema()) | {"$schema": "http://json-schema.org/draft-07/schema#"}, indent=1) + "\n"
+
+
+def _reduced(entry):
+    """Part of the schema without what only a complete configuration must fulfil."""
+    if not isinstance(entry, dict):
+        return entry
+    kept = {name: value for name, value in entry.items() if name not in _OF_COMPLETE}
+    for name in ("additionalProperties", "items"):
+        if name in kept:
+            kept[name] = _reduced(kept[name])
+    if "properties" in kept:
+        kept["properties"] = {name: _reduced(value) for name, value in kept["properties"].items()}
+    return kept
