@@ -236,6 +236,8 @@ WRONG_RELATIONS = [
     (UNCERTAIN + "poisson_ratio: 0.3}}}", "devices.C1.uncertainty.poisson_ratio", "0.3", "its budget needs 0.23 ± 0.3"),
     (UNCERTAIN + "hamaker_constant_zJ: 98}}}", "devices.C1.uncertainty.hamaker_constant_zJ", "98",
      "below the Hamaker constant itself, 97.5 zJ (given van_der_waals = 'water')"),
+    ("attraction: {reach: all}\n" + UNCERTAIN + "hamaker_constant_zJ: 9}}}",
+     "devices.C1.uncertainty.hamaker_constant_zJ", "9", "must be left out if attraction.reach is all"),
 ]  # fmt: skip
 
 WRONG = [*WRONG_VALUES, *WRONG_RELATIONS]

@@ -217,3 +217,10 @@ def test_attraction_across_gaps_is_a_variant_on_the_contact_of_the_base():
     dry = plan(attraction={"reach": "all"}).water("b", "van_der_waals_dry")["gaps"]
     assert dry["summits"] == "dry"
     assert "gaps" not in plan(attraction={"reach": "all"}).water("b", "van_der_waals_none")
+
+
+def test_budgets_leave_out_choices_of_the_medium_if_solids_attract_each_other_across_gaps():
+    across = plan(attraction={"reach": "all"})
+    media = {name for name in PAPER.choices("b") if name.startswith("van_der_waals")}
+    assert media == {"van_der_waals_dry", "van_der_waals_none"}
+    assert set(PAPER.choices("b")) - set(across.choices("b")) == media

@@ -465,10 +465,14 @@ class Plan:
         return self._summits(pair, variant), contact, self.water(pair, variant), self.finer_beams.get(variant)
 
     def choices(self, pair: str) -> list[str]:
-        """Variants that change the contact of a pair, which need not run; devices have summits under all of them."""
+        """Variants that change the contact of a pair, which need not run; devices have summits under all of them.
+
+        Those with other forces across gaps are left out: a budget has the same water under all of its choices.
+        """
         contacts = [
             name for name in self.variants if self.contact_under(name) == name != "base" and not self.has_islands(name)
         ]
+        contacts = [name for name in contacts if self.water(pair, name) == self.water(pair)]
         return [name for name in contacts if self._under(pair, name) != self._under(pair, "base")]
 
     def choices_of_solids(self, pair: str) -> list[str]:

@@ -312,6 +312,12 @@ def uncertain_hamaker_constant_stays_positive(deviation, *known):
     return None if deviation < value else f"must be below the Hamaker constant itself, {value:g} zJ"
 
 
+@relation("devices.*.uncertainty.hamaker_constant_zJ", "attraction.reach")
+def uncertain_hamaker_constant_is_that_of_summits(deviation, reach):
+    """The budget changes the Hamaker constant of the summits alone, and that across gaps would have to follow."""
+    return "must be left out if attraction.reach is all" if deviation and reach == "all" else None
+
+
 @relation("devices.*.uncertainty.humidity", "devices.*.humidities")
 def uncertain_humidity_stays_within_its_limits(deviation, humidities):
     """Humidities are above 0 and below 1 one standard uncertainty around their values, too."""
