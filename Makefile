@@ -6,6 +6,7 @@
 #   make example    crack lengths from drawn scans, compared with the true values (1 to 2 minutes), in runs/example/
 #   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (4 to 10 minutes),
 #                   in runs/devices/results/
+#   make model-error    Table III under full elastic contact, after make paper (3 minutes on two cores; takes CONFIG=... too)
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
 #
@@ -39,7 +40,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example devices figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example devices model-error figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -61,6 +62,9 @@ example: $(VENV)/ready
 
 devices: $(VENV)/ready
 	$(STICTION) devices $(CONFIG) --directory runs/devices -- $(ARGS)
+
+model-error: $(VENV)/ready
+	$(STICTION) $(if $(CONFIG),run $(CONFIG),paper) -- model_error $(ARGS)
 
 figures: $(VENV)/ready
 	$(STICTION) figures $(CONFIG) -- $(ARGS)

@@ -64,6 +64,14 @@ rule study_figures:
         "Figures and tables of the studies."
 
 
+rule model_error:
+    input:
+        planner.wanted("model_error"),
+    localrule: True
+    message:
+        "Error of the model of the contact: Table III under full elastic contact."
+
+
 rule devices:
     input:
         planner.wanted("devices"),

@@ -25,6 +25,7 @@ PLAN = Plan(
                 "sensitivity": {"samples": 4},
                 "slopes": {"samples": 20},
                 "plasticity": {"strips": 4},
+                "full_contact": {"samples": 2},
                 "orders": {"draws": 2000},
                 "resampling": {"beams": 3},
                 "mesh": {"elements_um": [15, 7.5], "strips_um": [7.5, 1.5]},

@@ -10,7 +10,7 @@ import numpy as np
 
 from stiction.constants import HAMAKER_CONSTANT, HARDNESS
 from stiction.contact.asperity import Asperity, asperity, reduced_modulus
-from stiction.contact.vanderwaals import attraction
+from stiction.contact.vanderwaals import DugdaleAttraction, attraction
 
 
 @dataclass(frozen=True)
@@ -73,5 +73,9 @@ def hamaker_constant(first: Solid, second: Solid, medium: str) -> float:
 
 def asperity_between(first: Solid, second: Solid, medium: str) -> Asperity:
     """Model of one asperity between two bodies, with attraction through a stated medium or ``"none"``."""
-    constant = None if medium == "none" else hamaker_constant(first, second, medium)
-    return asperity(composite_modulus(first, second), attraction(medium, constant))
+    return asperity(composite_modulus(first, second), attraction_between(first, second, medium))
+
+
+def attraction_between(first: Solid, second: Solid, medium: str) -> DugdaleAttraction | None:
+    """Van der Waals attraction of two solids through a stated medium; ``None`` for ``"none"``."""
+    return attraction(medium, None if medium == "none" else hamaker_constant(first, second, medium))

@@ -1,0 +1,185 @@
+"""Table and figure of the error of the model: crack lengths of Table III, model NG, under full elastic contact."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.figure import Figure
+
+from stiction.analysis.model_error import energy_ratios, length_factors
+from stiction.plan.names import by_case, by_name
+from stiction.report import published
+from stiction.report.format import MISSING, UM, as_published, percent, signed, with_error
+from stiction.report.published import value
+from stiction.report.style import (
+    DOUBLE,
+    MODELS,
+    PUBLISHED,
+    SINGLE,
+    columns_of_panels,
+    figure_stage,
+    humidity_axis,
+    legends,
+    letter_lines,
+    styled,
+)
+from stiction.report.tables import PAIR, Table, table_stage
+from stiction.stages.beams.releases import stuck_lengths
+from stiction.stages.contact.full_contact import energies
+
+_CAPTION = (
+    "Error of the model of the contact: adhesion energy ē of full elastic contact over that of the sum over summits, of "
+    "the same {strips} strips, ± standard error over strips; by how much full contact lengthens the crack, and the crack "
+    "lengths of Table III, model NG, without and with it. It has one sign and is no random error: it is not part of "
+    "any standard error. * interpolated between the humidities at which full contact was computed."
+)
+
+
+def _rows(
+    studies: Mapping[str, xr.Dataset], beams: Mapping[tuple[str, float], xr.Dataset], published: pd.DataFrame
+) -> list[dict]:
+    """One row for each pair and humidity; the ratio of the energies is NaN where full contact was not computed.
+
+    Parameters
+    ----------
+    studies : dict
+        Pair to the dataset of study full_contact.
+    beams : dict
+        (pair, humidity) to the dataset of stage beams, model NG.
+    published : pandas.DataFrame
+        Table III as published, rows of the paper's own pairs.
+    """
+    found = []
+    for pair, study in studies.items():
+        humidities, full, summits = energies(study)
+        ratios = dict(zip(humidities, zip(*energy_ratios(full, summits), strict=True), strict=True))
+        wanted = [humidity for of, humidity in beams if of == pair]
+        factors = zip(*length_factors(full, summits, humidities, np.array(wanted)), strict=True)
+        for humidity, (factor, error) in zip(wanted, factors, strict=True):
+            case = {"pair": pair, "relative_humidity": humidity}
+            ratio, ratio_error = ratios.get(humidity, (np.nan, np.nan))
+            lengths = stuck_lengths(beams[pair, humidity]) / UM
+            length = lengths.mean() if len(lengths) >= 2 else np.nan
+            known = {name: value(published, name, **case) for name in ("ng", "ng_std", "experiment", "experiment_std")}
+            found.append(
+                case
+                | {
+                    "strips": len(full),
+                    "interpolated": humidity not in ratios,
+                    "energy_ratio": ratio,
+                    "energy_ratio_se": ratio_error,
+                    "model_error_percent": 100 * (factor - 1),
+                    "model_error_se_percent": 100 * error,
+                    "crack_length_um": length,
+                    "full_contact_um": length * factor,
+                    "published_um": known["ng"],
+                    "published_std_um": known["ng_std"],
+                    "experiment_um": known["experiment"],
+                    "experiment_std_um": known["experiment_std"],
+                    "deviation_percent": percent(length, known["ng"]),
+                    "full_contact_deviation_percent": percent(length * factor, known["ng"]),
+                    "experiment_deviation_percent": percent(length, known["experiment"]),
+                    "full_contact_experiment_deviation_percent": percent(length * factor, known["experiment"]),
+                }
+            )
+    return found
+
+
+def table(*data) -> Table:
+    """Error of the model for every case; parameters as in `_rows`."""
+    rows = _rows(*data)
+    return Table.of(rows, _CAPTION.format(strips=rows[0]["strips"]), _COLUMNS)
+
+
+def _marked(change, error, interpolated):
+    """Change of the crack length ± standard error as text, with a mark if it is interpolated."""
+    text = signed(change, error)
+    return f"{text} *" if interpolated and text != MISSING else text
+
+
+_COLUMNS = PAIR | {
+    "ē full / summits": (with_error, "energy_ratio", "energy_ratio_se"),
+    "model error of l_s [%]": (_marked, "model_error_percent", "model_error_se_percent", "interpolated"),
+    "l_s [µm]": (".1f", "crack_length_um"),
+    "l_s, full contact [µm]": (".1f", "full_contact_um"),
+    "published": (as_published, "published_um", "published_std_um"),
+    "dev. published [%]": ("+.1f", "deviation_percent"),
+    "dev., full contact [%]": ("+.1f", "full_contact_deviation_percent"),
+    "measured": (as_published, "experiment_um", "experiment_std_um"),
+    "dev. measured [%]": ("+.0f", "experiment_deviation_percent"),
+    "dev. measured, full contact [%]": ("+.0f", "full_contact_experiment_deviation_percent"),
+}
+
+
+@styled
+def figure(*data) -> Figure:
+    """Error of the model over the humidity, and deviations from the published lengths; parameters as in `_rows`."""
+    frame = pd.DataFrame(_rows(*data))
+    pairs = list(dict.fromkeys(frame.pair))
+    count = 2 if frame.published_um.notna().any() else 1
+    figure, columns, lines = columns_of_panels(
+        len(pairs), count, lambda across: min(DOUBLE, 1.3 * SINGLE * across), 0.8 + 1.7 * count, sharex="col"
+    )
+    for column, pair in zip(columns, pairs, strict=True):
+        _panels(column, frame[frame.pair == pair])
+    for line in lines:
+        for panel, shows in zip(line[:, 0], ("model error of $l_s$ [%]", "deviation from published [%]"), strict=False):
+            panel.set_ylabel(shows)
+    legends(figure, {panel: {} for line in lines for panel in line[:, 0]})
+    letter_lines(lines, [f"pair {pair}" for pair in pairs])
+    return figure
+
+
+def _panels(column, rows):
+    """Panels of one pair."""
+    computed, known = rows[~rows.interpolated], rows[rows.published_um.notna()]
+    style = {"color": MODELS["NG"]["color"]}
+    column[0].plot(rows.relative_humidity, rows.model_error_percent, linestyle=":", label="interpolated", **style)
+    points = computed.relative_humidity, computed.model_error_percent, computed.model_error_se_percent
+    column[0].errorbar(*points, fmt="o", label="full contact", **style)
+    if len(column) > 1:
+        summits = {"linestyle": "--", "marker": "s", "markerfacecolor": "white", "label": "sum over summits"}
+        column[1].plot(known.relative_humidity, known.deviation_percent, **summits, **style)
+        full = {"linestyle": "-", "marker": "o", "label": "full contact"}
+        column[1].plot(known.relative_humidity, known.full_contact_deviation_percent, **full, **style)
+        measured = (
+            percent(known.experiment_um / known.published_um, 1),
+            100 * known.experiment_std_um / known.published_um,
+        )
+        column[1].errorbar(known.relative_humidity, *measured, fmt="*", color=PUBLISHED, label="measured")
+    column[-1].set_xlabel("relative humidity [–]")
+    for panel in column:
+        panel.axhline(0, color="0.6", linewidth=0.6, zorder=0)
+    humidity_axis(column[0])
+
+
+def _stage(kind, name, shows, draw, **declared):
+    """Table or figure of the error of the model."""
+    return kind(
+        name,
+        "model_error",
+        shows,
+        inputs=lambda plan, at: {
+            "studies": by_name("studies/full_contact", plan.pairs),
+            "beams": by_case("beams", plan.cases, "_NG"),
+            "published": published.file("table_3"),
+        },
+        settings=lambda plan, at: {"of_paper": plan.paper_pairs},
+        compute=lambda data, at, settings: draw(data["studies"], data["beams"], published.compared(data, settings)),
+        study="full_contact",
+        targets=("model_error",),
+        **declared,
+    )
+
+
+STAGES = (
+    _stage(table_stage, "table_model_error", "Table III under full elastic contact", table),
+    _stage(
+        figure_stage,
+        "figure_model_error",
+        "crack lengths under full elastic contact",
+        figure,
+        category="Sensitivity, appendices, model choices",
+    ),
+)

@@ -1,0 +1,126 @@
+"""Study full_contact: the first samples of stage contact under full elastic contact, beside the sum over summits."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis.plasticity import ONSET
+from stiction.contact import elements, forcelaw, solids
+from stiction.contact.halfspace import HalfSpace
+from stiction.contact.meniscus import film
+from stiction.models import ELASTIC
+from stiction.plan.stage import Stage, select
+from stiction.progress import progress
+from stiction.stages.contact import contact, pairs
+from stiction.stages.contact.curves import Water, force_curves
+from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
+from stiction.stages.surfaces.rough_surfaces import both, of_pair
+
+#: Variables of a sample at a humidity: unit and meaning.
+_VARIABLES = {
+    "adhesion_energy": ("J m-2", "e under full elastic contact"),
+    "pull_off": ("Pa", "f_max under full elastic contact"),
+    "summit_energy": ("J m-2", "e of the sum over summits"),
+    "summit_pull_off": ("Pa", "f_max of the sum over summits"),
+    "contact_share": ("1", "share of the elements in contact, without force"),
+    "onset_share": ("1", "share of them above the pressure at which a summit begins to yield"),
+    "hardness_share": ("1", "share of them above the hardness"),
+    "residual": ("m", "largest gap or overlap of an element in contact"),
+    "states": ("1", "number of distances"),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings(pairs.Settings):
+    """Settings of the contact, water, humidities and number of strips."""
+
+    water: Water
+    humidities: tuple[float, ...]  #: [-]
+    strips: int  #: number of pairs of strips: the first samples of stage contact
+
+
+def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
+    """Separate every strip at every humidity, by both models of the contact."""
+    strips = surface_pair(surfaces, "NG", settings)
+    streams, materials = streams_of_sides(settings.seed, pair), bodies(settings)
+    summits = contact.compute(surfaces, pair, "NG", settings, range(settings.strips))
+    curves = [force_curves(summits, humidity, settings.water) for humidity in settings.humidities]
+    shape = tuple(len(range(0, points, strips.every)) for points in strips.beam.grid.shape)
+    spacing = strips.beam.grid.spacing * strips.every
+    space = HalfSpace(shape, spacing, solids.composite_modulus(*materials))
+    attraction = solids.attraction_between(*materials, settings.van_der_waals)
+    water = settings.water.temperature, settings.water.contact_angles
+    adhesions = [elements.Adhesion.of(film(each, *water), attraction, space) for each in settings.humidities]
+    hardness = solids.softer_hardness(*materials)
+    rows = []
+    for k in progress(range(settings.strips), "strips"):
+        heights = strips.draw(*streams(k))
+        for (distance, curve), adhesion in zip(curves, adhesions, strict=True):
+            rows.append(_both_models(distance, curve(k), (space, heights, adhesion), hardness))
+    return layout(np.reshape(rows, (settings.strips, -1, len(_VARIABLES))), settings.humidities, spacing)
+
+
+def _both_models(distance, force, strip, hardness):
+    """Variables of one strip at one humidity; ``distance``, ``force``: curve of the sum over summits."""
+    far, pull_off = forcelaw.extremum(distance, force)
+    found = elements.separation(*strip, (forcelaw.limit_distance(distance, force, 0.0), far))
+    pressure = found.closed.pressure
+    touching = pressure[pressure > 0] / hardness
+    shares = [float((touching > level).sum() / max(touching.size, 1)) for level in (ONSET, 1)]
+    energies = [found.adhesion_energy, found.pull_off, forcelaw.adhesion_energy(distance, force), pull_off]
+    return [*energies, touching.size / pressure.size, *shares, found.closed.residual, found.states]
+
+
+def layout(values: np.ndarray, humidities: Sequence[float], spacing: float) -> xr.Dataset:
+    """Variables of every sample at every humidity.
+
+    Parameters
+    ----------
+    values : (n, n_humidity, n_variables) array
+        In the order of the variables of this module [SI].
+    humidities : sequence of float
+        [-]
+    spacing : float
+        Of the elements [m].
+    """
+    columns = {
+        name: (("sample", "humidity"), values[..., i], {"units": unit, "long_name": meaning})
+        for i, (name, (unit, meaning)) in enumerate(_VARIABLES.items())
+    }
+    return xr.Dataset(
+        columns | {"spacing": ((), spacing, {"units": "m"})},
+        coords={
+            "sample": np.arange(len(values), dtype=np.int32),
+            "humidity": ("humidity", list(humidities), {"units": "1"}),
+        },
+    )
+
+
+def energies(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Humidities (h,) [-], and energies e of full contact and of the sum over summits, (n, h) each [J m⁻²]."""
+    return study.humidity.values, study.adhesion_energy.values, study.summit_energy.values
+
+
+def _settings(plan, at):
+    """As those of the contact, with the lowest, the middle and the highest humidity of the pair."""
+    all_of_pair = sorted(plan.config["pairs"][at.pair]["humidities"])
+    chosen = dict.fromkeys(all_of_pair[k] for k in (0, (len(all_of_pair) - 1) // 2, -1))
+    study = {"humidities": list(chosen), "strips": plan.config["studies"]["full_contact"]["samples"]}
+    return select(Settings, plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None) | study)
+
+
+STAGES = (
+    Stage.writing(
+        "full_contact",
+        "studies/full_contact/{pair}",
+        inputs=lambda plan, at: of_pair(plan, at.pair),
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(both(data), at.pair, settings),
+        message="Full elastic contact of pair {pair}, beside the sum over summits.",
+        cluster=True,
+        minutes=30,
+    ),
+)

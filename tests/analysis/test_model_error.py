@@ -1,0 +1,49 @@
+import numpy as np
+import pytest
+from standard_errors import ALLOWED
+
+from stiction.analysis.model_error import energy_ratios, length_factors
+
+HUMIDITIES = np.array([0.4, 0.6, 0.9])
+RATIOS = np.array([0.6, 0.9, 1.0])
+
+
+def strips(number, seed=1, noise=0.2):
+    """Energies of strips by both models, whose means have stated ratios."""
+    rng = np.random.default_rng(seed)
+    summits = rng.gamma(4.0, size=(number, 1)) * np.array([1.0, 3.0, 10.0])
+    return summits * RATIOS * rng.normal(1, noise, size=(number, 3)), summits
+
+
+def test_models_that_agree_have_no_error():
+    _, summits = strips(10)
+    ratios, errors = energy_ratios(0.7 * summits, summits)
+    np.testing.assert_allclose(ratios, 0.7)
+    np.testing.assert_allclose(errors, 0, atol=1e-12)
+
+
+def test_the_ratio_is_that_of_the_means_and_its_error_is_that_of_repeated_studies():
+    found = [energy_ratios(*strips(20, seed)) for seed in range(400)]
+    ratios, errors = (np.array(each) for each in zip(*found, strict=True))
+    scatter = ratios.std(axis=0, ddof=1)
+    assert np.all(np.abs(ratios.mean(axis=0) - RATIOS) < ALLOWED * scatter / 20)
+    np.testing.assert_allclose(np.sqrt((errors**2).mean(axis=0)), scatter, rtol=0.15)
+    full, summits = strips(20)
+    assert np.all(np.abs(energy_ratios(full, summits)[0] - (full / summits).mean(axis=0)) > 1e-3)
+
+
+def test_crack_lengths_follow_the_fourth_root_of_the_ratio():
+    full, summits = strips(20)
+    ratios, errors = energy_ratios(full, summits)
+    factors, of_factors = length_factors(full, summits, HUMIDITIES, HUMIDITIES)
+    np.testing.assert_allclose(factors, ratios**-0.25)
+    np.testing.assert_allclose(of_factors, 0.25 * factors * errors / ratios, rtol=0.05)
+
+
+def test_between_humidities_the_logarithm_is_linear_and_beyond_them_there_is_no_number():
+    full, summits = strips(20)
+    ratios, _ = energy_ratios(full, summits)
+    (low, between, high), errors = length_factors(full, summits, HUMIDITIES, np.array([0.39, 0.5, 0.91]))
+    assert between == pytest.approx(np.sqrt(ratios[0] * ratios[1]) ** -0.25)
+    assert np.isnan([low, high, errors[0], errors[2]]).all()
+    assert 0 < errors[1] < np.inf
