@@ -29,10 +29,10 @@ from stiction.stages.beams.releases import stuck_lengths
 from stiction.stages.contact.full_contact import energies
 
 _CAPTION = (
-    "Error of the model of the contact: adhesion energy ē of full elastic contact over that of the sum over summits, of "
-    "the same {strips} strips, ± standard error over strips; by how much full contact lengthens the crack, and the crack "
-    "lengths of Table III, model NG, without and with it. It has one sign and is no random error: it is not part of "
-    "any standard error. * interpolated between the humidities at which full contact was computed."
+    "Error of the model of the contact: adhesion energy ē of full elastic contact over that of the sum over summits, "
+    "of the same {strips} strips, ± standard error over strips; by how much full contact lengthens the crack, and the "
+    "crack lengths of Table III, model NG, without and with it. It has one sign and is no random error: it is not part "
+    "of any standard error. * interpolated between the humidities at which full contact was computed."
 )
 
 

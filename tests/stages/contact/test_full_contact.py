@@ -65,3 +65,9 @@ def test_a_grid_too_coarse_for_soft_solids_is_refused_in_one_sentence():
     soft = replace(SETTINGS, strips=1, solid=replace(SETTINGS.solid, young_modulus=2e9))
     with pytest.raises(ValueError, match="full elastic contact needs a finer grid"):
         full_contact.compute(small.surfaces(), "b", soft)
+
+
+def test_attraction_across_gaps_is_refused_in_one_sentence():
+    across = replace(SETTINGS, strips=1, water=replace(SETTINGS.water, gaps=object()))
+    with pytest.raises(ValueError, match="no attraction across gaps"):
+        full_contact.compute(small.surfaces(), "b", across)

@@ -9,8 +9,7 @@ import xarray as xr
 from stiction.analysis.plasticity import ONSET
 from stiction.contact import elements, forcelaw, solids
 from stiction.contact.halfspace import HalfSpace
-from stiction.contact.meniscus import film
-from stiction.models import ELASTIC
+from stiction.devices.materials import ELASTIC
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import contact, pairs
@@ -42,7 +41,15 @@ class Settings(pairs.Settings):
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
-    """Separate every strip at every humidity, by both models of the contact."""
+    """Separate every strip at every humidity, by both models of the contact.
+
+    Raises
+    ------
+    ValueError
+        If the solids attract each other across gaps, the grid is too coarse, or a strip does not come to rest.
+    """
+    if settings.water.gaps is not None:
+        raise ValueError("full elastic contact has no attraction across gaps: it needs attraction.reach: touching")
     strips = surface_pair(surfaces, "NG", settings)
     streams, materials = streams_of_sides(settings.seed, pair), bodies(settings)
     summits = contact.compute(surfaces, pair, "NG", settings, range(settings.strips))
@@ -51,14 +58,13 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
     spacing = strips.beam.grid.spacing * strips.every
     space = HalfSpace(shape, spacing, solids.composite_modulus(*materials))
     attraction = solids.attraction_between(*materials, settings.van_der_waals)
-    water = settings.water.temperature, settings.water.contact_angles
-    adhesions = [elements.Adhesion.of(film(each, *water), attraction, space) for each in settings.humidities]
+    adhesions = [elements.Adhesion.of(settings.water.film(each), attraction, space) for each in settings.humidities]
     hardness = solids.softer_hardness(*materials)
     rows = []
     for k in progress(range(settings.strips), "strips"):
         heights = strips.draw(*streams(k))
-        for (distance, curve), adhesion in zip(curves, adhesions, strict=True):
-            rows.append(_both_models(distance, curve(k), (space, heights, adhesion), hardness))
+        for found, adhesion in zip(curves, adhesions, strict=True):
+            rows.append(_both_models(found.distance, found.curve(k), (space, heights, adhesion), hardness))
     return layout(np.reshape(rows, (settings.strips, -1, len(_VARIABLES))), settings.humidities, spacing)
 
 
