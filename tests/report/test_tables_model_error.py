@@ -58,7 +58,7 @@ def test_pairs_that_are_not_published_are_compared_with_nothing():
 def test_the_figure_shows_the_error_and_deviations_from_published_lengths(published, panels):
     figure = model_error.figure(*DATA, published)
     assert len(figure.axes) == panels
-    (points,) = [line for line in figure.axes[0].lines if line.get_marker() == "o" and line.axes is figure.axes[0]]
-    np.testing.assert_allclose(points.get_xdata(), HUMIDITIES)
+    points, *_ = figure.axes[0].containers[0]
+    np.testing.assert_allclose(np.asarray(points.get_xdata(), float), HUMIDITIES)
     assert points.get_ydata()[0] > 10
     assert style.png(figure) == style.png(model_error.figure(*DATA, published))
