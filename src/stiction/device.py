@@ -13,7 +13,8 @@ from stiction.config.designs import Designs
 from stiction.config.kinds import KINDS, Kind
 from stiction.config.units import in_si
 from stiction.plan.graph import Results
-from stiction.stages.devices import device_warnings, pair_warnings
+from stiction.stages.beams import pair_warnings
+from stiction.stages.devices import device_warnings
 from stiction.stages.devices.patch_settings import contact_of, tips_of
 
 
@@ -105,6 +106,14 @@ class Device:
         self._must_be(lambda kind: kind.has_tip)
         self._must_state("uncertainty", self.name in self._plan.designs.budgeted)
         return self._result("budget", humidity, "_tip")
+
+    def test_beams(self) -> xr.Dataset:
+        """What its test beams say about its inputs and lengths; dataset of `stiction.stages.devices.inference`.
+
+        The first call computes the budgets of device and test beams, a few minutes.
+        """
+        self._must_state("test_beams", self._section.get("test_beams"))
+        return self.results[f"devices/test_beams/{self.name}"]
 
     def warnings(self, found: xr.Dataset) -> list[str]:
         """Where a result of `safe_lengths` or `forces` is beyond the limits of the model, one sentence each.

@@ -20,9 +20,10 @@ from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.contact.meniscus import meniscus_height
+from stiction.stages.beams import pair_warnings
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.contact import contact, curves
-from stiction.stages.devices import chart, cracks, device_warnings, pair_warnings, safe_lengths
+from stiction.stages.devices import chart, cracks, device_warnings, safe_lengths
 
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67, 0.44]}
 R1 = {"kind": "bridge", "pair": "b", "thickness_um": 2, "gap_um": 2, "width_um": 30, "residual_stress_MPa": 50}

@@ -14,8 +14,9 @@ from stiction.plan.planner import Planner
 from stiction.plan.stage import File, Stage
 
 ROOT = Path(__file__).parents[2]
-#: The paper, and the devices of the example, which need every stage that no measured surface needs.
-PLAN = Plan(load(yaml.safe_load((ROOT / "examples" / "devices.yaml").read_text())))
+#: The paper, and the devices of the examples, which need every stage that no measured surface needs.
+EXAMPLES = (yaml.safe_load((ROOT / "examples" / f"{name}.yaml").read_text()) for name in ("devices", "test_beams"))
+PLAN = Plan(load(*EXAMPLES))
 GRAPH, SCHEMA = Graph(PLAN), schema()
 #: Stages of surfaces described by scans; `tests/workflow/test_from_scans.py` runs them.
 OF_SCANS = {"scan", "estimate", "heights_of_scans", "spectrum_of_scans", "choice_contact", "scan_uncertainty"}

@@ -198,6 +198,11 @@ class Designs:
     # Budgets
 
     @property
+    def tested(self) -> list[str]:
+        """Devices with test beams."""
+        return [name for name, device in self.devices.items() if "test_beams" in device]
+
+    @property
     def budgeted(self) -> list[str]:
         """Devices with an uncertain input: with a stated uncertainty, or on a surface described by scans."""
         stated = {name: any(device.get("uncertainty", {}).values()) for name, device in self.devices.items()}

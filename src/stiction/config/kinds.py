@@ -57,7 +57,7 @@ KINDS = {
     "cantilever": Kind(
         words="beam clamped at one end",
         keys=("thickness_um", "gap_um", "width_um"),
-        optional=("strip_um", "chart"),
+        optional=("strip_um", "chart", "test_beams"),
         has_tip=True,
     ),
     "bridge": Kind(

@@ -87,9 +87,9 @@ def _explained(error, schema):
 
 
 def _entry(schema, path):
-    """Part of the schema that describes the key at ``path``; the path contains no list indices."""
+    """Part of the schema that describes the key at ``path``."""
     for key in path:
-        schema = schema.get("properties", {}).get(key) or schema["additionalProperties"]
+        schema = schema.get("items") or schema.get("properties", {}).get(key) or schema["additionalProperties"]
     return schema
 
 

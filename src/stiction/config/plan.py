@@ -7,11 +7,12 @@ they are needed, because a repeated plan takes what it needs of them from `stict
 import math
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from stiction.config.arrays import as_cantilevers
 from stiction.config.cases import case_id, humidity_of, pair_of
 from stiction.config.designs import Designs, hamaker_constant, hamaker_constants
 from stiction.config.files import paper
@@ -64,6 +65,11 @@ class Plan:
     def designs(self) -> Designs:
         """Plan of the devices."""
         return Designs(self.config)
+
+    @cached_property
+    def of_test_beams(self) -> "Plan":
+        """Plan in which the arrays of test beams are the devices."""
+        return replace(self, config=self.config | {"devices": as_cantilevers(self.config)})
 
     @property
     def pairs(self) -> list[str]:

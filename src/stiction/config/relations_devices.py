@@ -4,6 +4,7 @@ Lengths are in µm, as in the configuration. A relation gets the name of a devic
 """
 
 from stiction.config import memory
+from stiction.config.arrays import shared_uncertainty
 from stiction.config.conditions import Relations
 from stiction.config.designs import Designs, hamaker_constant
 from stiction.config.kinds import COMMON, KEYS, KINDS, kind_of
@@ -360,3 +361,55 @@ def _sides(device, pairs, surfaces):
     """Sections of the surfaces of the pair of a device; empty if one is not defined, which another relation reports."""
     pair = pairs.get(device["pair"])
     return sides_of(*(pair[side] for side in SIDES), surfaces) if pair else []
+
+
+# Test beams, for which the relations of devices hold as well: see stiction.config.validation
+
+
+@relation("devices.*.test_beams", "test_beams.#")
+def arrays_of_a_device_are_defined(names, arrays):
+    """A device uses arrays that exist, each once."""
+    unknown = [name for name in names if name not in arrays]
+    if unknown:
+        return f"must be among {', '.join(arrays) or 'the arrays of section test_beams'}: {unknown[0]} is not there"
+    return None if len(set(names)) == len(names) else "must contain each array once"
+
+
+@relation("devices.*.test_beams", "devices.*.@", "devices", "test_beams", "pairs", "surfaces")
+def arrays_have_the_materials_of_the_device(names, device, devices, arrays, pairs, surfaces):
+    """Properties of the solids of test beams are those of the device."""
+    wanted = _names_of_materials(devices[device]["pair"], pairs, surfaces)
+    for name in names:
+        if name in arrays and _names_of_materials(arrays[name].get("pair"), pairs, surfaces) != wanted:
+            return f"must have the materials of the device: those of {name} differ"
+    return None
+
+
+def _names_of_materials(pair, pairs, surfaces):
+    """Names of the materials of both sides of a pair; None where not stated."""
+    return [surfaces.get(pairs.get(pair, {}).get(side), {}).get("material") for side in SIDES]
+
+
+@relation("devices.*.test_beams", "devices.*.@", "devices")
+def devices_with_common_test_beams_share_their_uncertainties(names, device, devices):
+    """What test beams and devices share is one variable, with one uncertainty."""
+    own = shared_uncertainty(devices[device])
+    for other, section in devices.items():
+        common = [name for name in names if name in section.get("test_beams", ())]
+        if common and shared_uncertainty(section) != own:
+            return (
+                f"must not share {common[0]} with {other}, which states other uncertainties: apart from those of their "
+                "dimensions, both must be the same"
+            )
+    return None
+
+
+@relation("test_beams.*.crack_lengths", "test_beams.*.length_um")
+def cracks_end_on_the_beam(data, length):
+    """Mean crack lengths are shorter than the beams."""
+    longer = next((datum for datum in data if datum["mean_um"] >= length), None)
+    if longer is None:
+        return None
+    return (
+        f"must have means below the length of the beams: that at RH {longer['humidity']:g} is {longer['mean_um']:g} µm"
+    )

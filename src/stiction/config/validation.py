@@ -2,15 +2,15 @@
 
 from pathlib import Path
 
-from stiction.config import measured, relations, relations_devices
+from stiction.config import arrays, measured, relations, relations_devices
 from stiction.config.conditions import violated
-from stiction.config.messages import ConfigError, schema_problems
+from stiction.config.messages import ConfigError, Problem, schema_problems
 from stiction.config.relations import schema
 
 #: All relations between keys.
 RELATIONS = (*relations.relation, *relations_devices.relation)
 #: Sections that a configuration need not have.
-_OPTIONAL = {"materials": {}, "devices": {}}
+_OPTIONAL = {"materials": {}, "devices": {}, "test_beams": {}}
 
 
 def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
@@ -38,13 +38,28 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     faults = schema_problems(config, schema())
     wrong = [fault.path for fault in faults]
     sections = _OPTIONAL | config if isinstance(config, dict) else config
-    broken = violated(RELATIONS, sections, wrong)
+    broken = _broken(sections, wrong)
     of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
     found, refused = measured.preliminary_estimates(config, wrong + of_surfaces, kept)
     problems = faults + broken + refused
     if found:
         files = {name: config["surfaces"][name]["scans"]["files"] for name in found}
-        problems += violated(RELATIONS, measured.with_preliminary_estimates(sections, found), wrong, files)
+        problems += _broken(measured.with_preliminary_estimates(sections, found), wrong, files)
     if problems:
         raise ConfigError(*dict.fromkeys(map(str, problems)))
     return found
+
+
+def _broken(config, faults, files=None):
+    """Violated relations; those of devices hold for the arrays of test beams, under the keys of these."""
+    broken = violated(RELATIONS, config, faults, files)
+    if any(path[:1] in ((), ("devices",), ("test_beams",)) for path in faults):
+        return broken  # sections that are wrong on their own
+    beams = violated(relations_devices.relation, config | {"devices": arrays.as_cantilevers(config)}, faults, files)
+    return broken + [_of_array(problem) for problem in beams if problem.path[0] == "devices"]
+
+
+def _of_array(problem):
+    """Problem of an array of test beams that was found as if the array were a device."""
+    path = ["crack_lengths" if key == "humidities" else key for key in problem.path[1:]]
+    return Problem(("test_beams", *path), problem.message.replace("devices.", "test_beams."))

@@ -15,8 +15,8 @@ from stiction.report import published
 from stiction.report.format import TO_MJ, UM, as_published, error_alone, number, percent, signed, with_error
 from stiction.report.published import value
 from stiction.report.tables import PAIR, Table, table_stage, with_list
+from stiction.stages.beams import pair_warnings
 from stiction.stages.beams.releases import STATES, ended, stuck_energies, stuck_lengths
-from stiction.stages.devices import pair_warnings
 from stiction.stages.laws import forces as stage_forces
 from stiction.stages.laws.scan_uncertainty import pair_errors
 

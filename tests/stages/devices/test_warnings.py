@@ -15,7 +15,8 @@ from stiction.contact.meniscus import film, surface_energy
 from stiction.devices import limits
 from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.graph import Graph
-from stiction.stages.devices import device_warnings, pair_warnings
+from stiction.stages.beams import pair_warnings
+from stiction.stages.devices import device_warnings
 from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE
 
 PLAN = Plan(load())

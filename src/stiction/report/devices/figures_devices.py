@@ -24,10 +24,10 @@ from stiction.report.style import (
     shades,
     styled,
 )
+from stiction.stages.beams.pair_warnings import numbered
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import charts
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.pair_warnings import numbered
 
 #: Marker of each basis of a safe length.
 _BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x"}

@@ -15,11 +15,19 @@ from stiction.config.kinds import KEYS, kind_of
 from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
-from stiction.report.devices import figures_budget, figures_devices, tables_budget, tables_devices
+from stiction.report.devices import (
+    figures_budget,
+    figures_devices,
+    figures_inference,
+    tables_budget,
+    tables_devices,
+    tables_inference,
+)
 from stiction.report.format import UM, UN
 from stiction.report.style import STYLE, png
 from stiction.run.atomic import save_text
-from stiction.stages.devices import device_warnings, pair_warnings
+from stiction.stages.beams import pair_warnings
+from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budget_of, budgets_of
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import EITHER
@@ -188,6 +196,7 @@ def of_beam(
     charts: Mapping[float, xr.Dataset],
     budgets: Mapping[tuple, xr.Dataset],
     warnings: Mapping[tuple, Sequence[str]],
+    test_beams: xr.Dataset | None = None,
 ) -> Page:
     """Page of a cantilever or bridge.
 
@@ -202,6 +211,8 @@ def of_beam(
         Humidity and, for tips, more to the dataset of stage budget; may be empty.
     warnings : dict
         Where the model ends: ``lengths`` and ``curves`` of `stiction.stages.devices.device_warnings.OfDevices`.
+    test_beams : Dataset, optional
+        Of stage test_beams.
     """
     cases = {(name, humidity): dataset for humidity, dataset in found.items()}
     table = tables_devices.safe_lengths(cases, warnings).cells.drop(columns="device")
@@ -212,8 +223,12 @@ def of_beam(
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets)
     answer = [build_sentence(found, budgets)]
+    if test_beams is not None:
+        sections.append(_of_test_beams(name, test_beams))
+        answer.append(tables_inference.built(test_beams))
     answer += [safe_sentence(humidity, dataset) for humidity, dataset in found.items()]
     listed = [f"({k}) {sentence}" for k, sentence in enumerate(pair_warnings.numbered(warnings)[0], 1)]
+    listed += [] if test_beams is None else tables_inference.warnings(test_beams)
     shapes = next(iter(found.values()))["shape"].values
     held = {term: text for shape in shapes for term, text in END_STATES[str(shape)].terms.items()}
     words = held | _OF_BEAMS | (_OF_CHARTS if charts else {}) | _words_of_budgets(budgets)
@@ -419,6 +434,13 @@ def _sure(name, budgets):
     return [Section("Uncertainty, and what should be measured better", sentences, cells, drawn)]
 
 
+def _of_test_beams(name, found):
+    """Section on what the test beams of a device say."""
+    said = [tables_inference.explained(found), *tables_inference.combinations(found), tables_inference.advised(found)]
+    cells = tables_inference.test_beams({name: found}).cells.drop(columns="device")
+    return Section("What the test beams say", said, cells, figures_inference.test_beams(found))
+
+
 def _side_by_side(cells):
     """Cells of the budget of one device with a pair of columns for every humidity."""
     shown = [
@@ -437,6 +459,8 @@ def _inputs(plan, at):
     if not designs.kind(at.device).is_beam:
         return own | {"stopper": f"devices/stoppers/{at.device}", "style": File(STYLE)}
     charts = designs.chart_cases(at.device) if at.device in designs.charted else []
+    if "test_beams" in section:
+        own |= {"test_beams": f"devices/test_beams/{at.device}"}
     return own | {
         "safe_lengths": {key[1]: name for key, name in by_case("devices/safe_lengths", cases).items()},
         "charts": {key[1]: name for key, name in by_case("devices/chart", charts).items()},
@@ -459,7 +483,8 @@ def _page(data, at, settings):
     if "stopper" in data:
         return of_stopper(at.device, settings, data["stopper"], budgets, warnings.patches[at.device])
     lengths, charts = data["safe_lengths"], data["charts"]
-    return of_beam(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves)
+    limits = warnings.lengths | warnings.curves
+    return of_beam(at.device, settings, lengths, charts, budgets, limits, data.get("test_beams"))
 
 
 STAGES = (

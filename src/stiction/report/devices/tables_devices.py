@@ -10,11 +10,11 @@ from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.names import by_case
 from stiction.report.format import UM, error_alone, number
 from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_list
+from stiction.stages.beams.pair_warnings import numbered
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import charts
 from stiction.stages.devices.device_warnings import curves
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.pair_warnings import numbered
 
 _SAFE_LENGTHS = (
     "Safe length: the largest length at which, with a confidence of 95 % given the drawn surfaces, at most a share p "

@@ -15,13 +15,14 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
-from stiction.config.cases import humidity_of, pair_of
+from stiction.config.cases import case_id, humidity_of, pair_of
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.devices import arcs
 from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.stoppers import pull_off_force
 from stiction.devices.tail import fit_tail
+from stiction.plan.names import by_case
 from stiction.plan.stage import Stage, chosen
 from stiction.progress import progress
 from stiction.stages.contact import curves
@@ -385,6 +386,21 @@ BUDGET = Stage.writing(
     message="Budget of {case}.",
     cluster=True,
 )
+
+
+def budgets_of_arrays(plan: Any, device: str) -> dict[tuple[str, float], str]:
+    """Datasets of the budgets of the test beams of a device, by array and humidity."""
+    arrays = plan.config["devices"][device].get("test_beams", [])
+    cases = [case_id(name, rh) for name in arrays for rh in plan.of_test_beams.config["devices"][name]["humidities"]]
+    return by_case("devices/test_beams/budget", cases)
+
+
+def _inputs_of_test_beams(plan, at):
+    """As those of a cantilever; other choices of the model are left out."""
+    plan, name = plan.of_test_beams, pair_of(at.case)
+    return _inputs(plan, name) | contacts_of_budget(plan, name) | {"choices": {}}
+
+
 STAGES = (
     BUDGET.on("budget", "devices/budget/{case}"),
     BUDGET.on(
@@ -394,5 +410,13 @@ STAGES = (
         settings=_settings_of_tips,
         label="budget",
         message="Budget of the tips of {case}.",
+    ),
+    BUDGET.on(
+        "test_beam_budget",
+        "devices/test_beams/budget/{case}",
+        inputs=_inputs_of_test_beams,
+        settings=lambda plan, at: _settings(plan.of_test_beams, at) | {"choices": []},
+        label="budget",
+        message="Budget of test beams {case}.",
     ),
 )

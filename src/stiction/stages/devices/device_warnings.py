@@ -16,9 +16,7 @@ from stiction.devices import limits
 from stiction.plan.names import by_case, by_name
 from stiction.plan.stage import File, Stage, select
 from stiction.run.atomic import save_text
-from stiction.stages.contact.curves import Water
-from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.pair_warnings import (
+from stiction.stages.beams.pair_warnings import (
     Materials,
     Warnings,
     as_markdown,
@@ -26,6 +24,8 @@ from stiction.stages.devices.pair_warnings import (
     height,
     plastic_share,
 )
+from stiction.stages.contact.curves import Water
+from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import DesignedBeam, section_of_beam
 
 

@@ -1,0 +1,250 @@
+r"""From test beams to a device: what measured crack lengths, or counts of stuck beams, say about the inputs.
+
+As in `stiction.devices.budget`, logarithms of lengths are linear in their inputs, :math:`\ln l = \ln l_0 + h^T x`,
+where x are the errors of the inputs, normal with covariance C before the test beams are measured. The model errs as
+well; its *discrepancy* is
+
+.. math:: \delta = \alpha + \beta (u - \bar u) + \varepsilon, \qquad u = \ln l - \ln l(1\,\mathrm{J/m^2}),
+
+with one factor and one slope for all beams, and a rest of its own for every array and humidity. Measured from the
+length at an adhesion energy of 1 J/m², u is -1/4 of the logarithm of the energy, so that beams of other dimensions
+share α and β. They are inputs like all others here. With the differences d = ln(measured / computed) of n test beams,
+their responses H (n, k) and the covariance R of their errors, the knowledge after the measurement is
+
+.. math:: \bar x = C H^T S^{-1} d, \qquad C' = C - C H^T S^{-1} H C, \qquad S = H C H^T + R .
+
+Counts are no logarithms of lengths. A beam of length L sticks with the probability :math:`\Phi((\ln L - \ln l) / s)`,
+where s is the scatter between beams, and Newton steps on this probit find the most probable errors of the inputs.
+"""
+
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import block_diag
+from scipy.special import chdtrc, log_ndtr
+
+from stiction.errors import NotConverged
+
+#: Names of the discrepancy of the model among the inputs: of its factor and of its slope.
+FACTOR, SLOPE = "factor of the model", "slope of the model"
+#: Newton steps for counts, and the change in prior standard deviations at which they end.
+_STEPS, _CLOSE = 50, 1e-10
+#: Variance below which a direction of the prior counts as exactly known, relative to that of single inputs.
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class Knowledge:
+    """Normal distribution of the errors of inputs."""
+
+    names: tuple[str, ...]  #: of the inputs
+    mean: np.ndarray  #: (k,), zero before a measurement, in the units of the inputs
+    covariance: np.ndarray  #: (k, k)
+
+    @property
+    def deviations(self) -> np.ndarray:
+        """Standard deviation of every input (k,)."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+
+    def of(self, response: np.ndarray) -> tuple[float | np.ndarray, float | np.ndarray]:
+        """Mean and standard deviation of the linear response of some results to the inputs, (..., k) -> (...)."""
+        variance = np.einsum("...i,ij,...j->...", response, self.covariance, response)
+        return response @ self.mean, np.sqrt(np.maximum(variance, 0.0))
+
+
+@dataclass(frozen=True)
+class Lengths:
+    """Mean crack lengths of test beams beside those that were computed."""
+
+    responses: np.ndarray  #: d ln l / dx (n, k)
+    differences: np.ndarray  #: ln(measured / computed) (n,) [-]
+    errors: np.ndarray  #: standard errors of these (n,) [-]
+
+
+@dataclass(frozen=True)
+class Counts:
+    """Numbers of stuck test beams of given lengths."""
+
+    responses: np.ndarray  #: d ln l / dx (n, k)
+    margins: np.ndarray  #: ln(length of the beams / length that half of them hold, as computed) (n,) [-]
+    scatter: np.ndarray  #: standard deviation of ln l between beams (n,) [-]
+    stuck: np.ndarray  #: (n,)
+    beams: np.ndarray  #: stuck and free together (n,)
+
+
+# Discrepancy of the model
+
+
+@dataclass(frozen=True)
+class Discrepancy:
+    """Standard deviations of the discrepancy of the model in ln l, before test beams are measured."""
+
+    factor: float  #: of α [-]
+    slope: float  #: of β [-]
+    rest: float  #: of ε [-]
+
+
+def rest(condition: Hashable) -> str:
+    """Name of the rest of the model under a condition among the inputs."""
+    return f"rest of the model, {condition}"
+
+
+def with_discrepancy(
+    prior: Knowledge,
+    responses: np.ndarray,
+    reduced: np.ndarray,
+    conditions: Sequence[Hashable | None],
+    stated: Discrepancy,
+) -> tuple[Knowledge, np.ndarray]:
+    """Prior of the inputs and of the discrepancy, and the responses of all results to both.
+
+    Parameters
+    ----------
+    prior : Knowledge
+        Of k inputs.
+    responses : (n, k) array
+        d ln l / dx of all results, of test beams and of devices.
+    reduced : (n,) array
+        u less its mean over the test beams [-].
+    conditions : sequence of n
+        Results under equal conditions have the same rest; those under none have no discrepancy at all.
+    stated : Discrepancy
+
+    Returns
+    -------
+    Knowledge
+        Of k + 2 + m inputs for m different conditions.
+    (n, k + 2 + m) array
+    """
+    rests = [one for one in dict.fromkeys(conditions) if one is not None]
+    has_rest = np.array([[one == other for other in rests] for one in conditions], float).reshape(-1, len(rests))
+    errs = np.array([one is not None for one in conditions], float)
+    variances = np.array([stated.factor, stated.slope, *[stated.rest] * len(rests)]) ** 2
+    mean = np.concatenate([prior.mean, np.zeros(len(variances))])
+    names = (*prior.names, FACTOR, SLOPE, *map(rest, rests))
+    widened = Knowledge(names, mean, block_diag(prior.covariance, np.diag(variances)))
+    return widened, np.column_stack([responses, errs, errs * reduced, has_rest])
+
+
+# Update
+
+
+def given_lengths(prior: Knowledge, data: Lengths) -> Knowledge:
+    """Knowledge after mean crack lengths were measured."""
+    shared = prior.covariance @ data.responses.T
+    gain = np.linalg.solve(_spread(prior, data), shared.T).T
+    mean = prior.mean + gain @ (data.differences - data.responses @ prior.mean)
+    covariance = prior.covariance - gain @ shared.T
+    return Knowledge(prior.names, mean, (covariance + covariance.T) / 2)
+
+
+def _spread(prior, data):
+    """Covariance of the differences before they are measured, S (n, n)."""
+    return data.responses @ prior.covariance @ data.responses.T + np.diag(data.errors**2)
+
+
+def given(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> Knowledge:
+    """Knowledge after crack lengths were measured and stuck beams counted.
+
+    With counts, it is the normal distribution around the most probable errors of the inputs that has their curvature.
+
+    Raises
+    ------
+    NotConverged
+        If Newton steps do not reach the most probable errors.
+    """
+    found = given_lengths(prior, lengths)
+    if counts is None or not len(counts.stuck):
+        return found
+    scale = np.where(prior.deviations > 0, prior.deviations, 1)
+    for _ in range(_STEPS):
+        before = found.mean
+        found = given_lengths(prior, _joined(lengths, linearised(counts, before)))
+        change = np.abs((found.mean - before) / scale).max()
+        if change < _CLOSE:
+            return found
+    raise NotConverged("errors of the inputs, in standard deviations", change, _CLOSE, _STEPS)
+
+
+def linearised(counts: Counts, errors: np.ndarray) -> Lengths:
+    """Lengths whose normal likelihood has slope and curvature of that of the counts, at errors of the inputs (k,)."""
+    score = (counts.margins - counts.responses @ errors) / counts.scatter
+    stuck, free = counts.stuck, counts.beams - counts.stuck
+    above, below = _mills(score), _mills(-score)
+    slope = stuck * above - free * below
+    curvature = stuck * above * (above + score) + free * below * (below - score)
+    return Lengths(
+        counts.responses,
+        counts.margins - counts.scatter * (score + slope / curvature),
+        counts.scatter / np.sqrt(curvature),
+    )
+
+
+def _mills(score):
+    """φ/Φ, also far below zero."""
+    return np.exp(-(score**2) / 2 - np.log(2 * np.pi) / 2 - log_ndtr(score))
+
+
+def _joined(one, other):
+    """Both sets of lengths."""
+    fields = ("responses", "differences", "errors")
+    return Lengths(*(np.concatenate([getattr(one, name), getattr(other, name)]) for name in fields))
+
+
+# What the data say
+
+
+def p_value(prior: Knowledge, data: Lengths) -> float:
+    r"""Probability of differences at least as large as the measured ones, before these are used [-].
+
+    :math:`d^T S^{-1} d` has a chi-squared distribution if inputs and discrepancy err as stated. It also is the least
+    sum of the squares of all pulls, on the data and on the inputs: data that no input explains have a small p value.
+    ASSUME: the prior predictive one; after an update, the data would be used twice, and hide what they contradict.
+    """
+    away = data.differences - data.responses @ prior.mean
+    return float(chdtrc(len(away), away @ np.linalg.solve(_spread(prior, data), away)))
+
+
+@dataclass(frozen=True)
+class Combination:
+    """Combination of the errors of inputs, independent of all others before and after the measurement."""
+
+    correlations: np.ndarray  #: of every input with the combination before the measurement (k,) [-]
+    remaining: float  #: its standard deviation after the measurement, that before being 1 [-]
+
+
+def combinations(prior: Knowledge, posterior: Knowledge) -> list[Combination]:
+    """Independent combinations of the errors of all inputs, that which the data determine best first.
+
+    Data determine as many of them as there are independent data. Inputs that are correlated with the same combination
+    are not told apart.
+    """
+    scale = np.where(prior.deviations > 0, prior.deviations, 1)
+    variances, axes = np.linalg.eigh(prior.covariance / np.outer(scale, scale))
+    uncertain = variances > _ROUNDING
+    root = axes[:, uncertain] * np.sqrt(variances[uncertain])
+    inverse = root / variances[uncertain]
+    left, directions = np.linalg.eigh(inverse.T @ (posterior.covariance / np.outer(scale, scale)) @ inverse)
+    deviations = np.sqrt(np.maximum(left, 0.0))
+    return [Combination(_signed(one), float(at)) for one, at in zip((root @ directions).T, deviations, strict=True)]
+
+
+def _signed(values):
+    """Values with the sign with which the largest one is positive."""
+    return values * np.sign(values[np.argmax(np.abs(values))])
+
+
+def further_beams(knowledge: Knowledge, target: np.ndarray, response: np.ndarray, error: float) -> float:
+    """Standard deviation of a result after the mean length of further test beams is measured [-].
+
+    Parameters
+    ----------
+    knowledge : Knowledge
+    target, response : (k,) array
+        Responses of the result and of the further test beams.
+    error : float
+        Standard error of their ln l [-].
+    """
+    data = Lengths(response[None], np.zeros(1), np.array([error]))
+    return float(given_lengths(knowledge, data).of(target)[1])

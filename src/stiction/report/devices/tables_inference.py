@@ -1,0 +1,238 @@
+"""Tables of test beams: what they say about a device, in numbers and sentences."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from stiction.devices import inference
+from stiction.plan.names import by_name
+from stiction.report.format import TO_UM, number, with_error
+from stiction.report.tables import DEVICE, Table, table_stage, with_list
+from stiction.stages.devices.inference import OWN, SHAPES
+from stiction.stages.devices.releases import EITHER, S_SHAPE
+from stiction.stages.devices.uncertain_inputs import ARC
+
+#: p value below which data count as not explained; number of standard deviations beyond which an input counts as wrong;
+#: ratio of dimensions beyond which a prediction counts as extrapolated. ASSUME: a factor of two.
+UNLIKELY, LARGE, SIZES = 0.05, 2.0, 2.0
+#: Combinations whose standard deviation falls to less than this part count as determined; inputs with a correlation of
+#: less than this part of the largest one are not named.
+DETERMINED, NAMED = 0.5, 0.25
+_MORE = {True: "more", False: "less"}
+
+
+# Sentences
+
+
+def combinations(found: xr.Dataset) -> list[str]:
+    """What the test beams determine, and which inputs they do not tell apart."""
+    names = found.input.values
+    sentences = []
+    for remaining, correlations in zip(found.remaining.values, found.correlation.values, strict=True):
+        if remaining < DETERMINED:
+            used = [
+                i for i in np.argsort(-np.abs(correlations)) if abs(correlations[i]) >= NAMED * max(abs(correlations))
+            ]
+            listed = [f"{_MORE[correlations[i] > 0]} {names[i]} ({correlations[i]:+.2f})" for i in used]
+            sentences.append(
+                f"The test beams determine one combination of the inputs {1 / remaining:.2g} times better than before: "
+                f"{', '.join(listed)}. They do not tell these apart (in brackets: correlation with the combination)."
+            )
+    return sentences or ["The test beams determine no combination of the inputs twice as well as before."]
+
+
+def advised(found: xr.Dataset) -> str:
+    """Which further test beams would help the device most, where it is known least."""
+    worst = int(np.argmax(found.length_after.values))
+    left = 100 * found.length_after_further.isel(result=worst)
+    best = int(np.argmin(left.isel(beams=0).values))
+    after = [f"{float(one):.2g} % with {int(one.beams)} beams" for one in left.isel(further=best)]
+    return (
+        f"Further test beams would help most as {found.further.values[best]}, at least "
+        f"{TO_UM * float(found.further_length[best]):.0f} µm long: the standard uncertainty of the length of "
+        f"{found.result.values[worst]} would fall from {100 * float(found.length_after[worst]):.2g} to "
+        f"{', to '.join(after)}."
+    )
+
+
+def explained(found: xr.Dataset) -> str:
+    """Whether the data agree with the model."""
+    both, alone = float(found.p_value), float(found.p_value_of_inputs)
+    return (
+        f"Differences from the computed crack lengths as large as measured, or larger, have a probability of "
+        f"{both:.2g} if inputs and model err as stated, and of {alone:.2g} if the inputs alone do."
+    )
+
+
+def built(found: xr.Dataset) -> str:
+    """The length to build before and after the measurement, for the middle one of the shares.
+
+    As `stiction.report.devices.pages.build_sentence`: the least safe length, less twice the largest uncertainty of what
+    holds the devices, here with the error of the model as far as it applies.
+    """
+    (before, after), (alone_before, alone_after) = (_built(found, response) for response in (ARC, S_SHAPE))
+    return (
+        f"With the test beams, build it no longer than {after:.0f} µm, without them {before:.0f} µm; if its tip cannot "
+        f"touch, {alone_after:.0f} and {alone_before:.0f} µm. Twice the uncertainty of the lengths is subtracted, with "
+        "that of the model for devices that the beam holds."
+    )
+
+
+def _built(found, response):
+    """Lengths to build before and after the measurement for one way in which a device is held [µm]."""
+    share = found.share.values[found.sizes["share"] // 2]
+    chosen = found.isel(result=np.flatnonzero(found.response.values == response))
+    for safe, deviation in (("safe_length", "length_before"), ("updated_safe_length", "length_after")):
+        least = float(found[safe].sel(share=share, shape=SHAPES[response]).min())
+        yield TO_UM * least * max(1 - 2 * float(chosen[deviation].max()), 0.0)
+
+
+# Table
+
+
+def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
+    """Test beams and the lengths of their devices, before and after the measurement.
+
+    Parameters
+    ----------
+    datasets : dict
+        Device to the dataset of stage test_beams.
+    """
+    rows = [row for device, found in datasets.items() for row in _rows(device, found)]
+    sentences = [
+        f"{device}: {sentence}"
+        for device, found in datasets.items()
+        for sentence in [explained(found), *combinations(found), advised(found), *warnings(found)]
+    ]
+    caption = (
+        "Test beams: measured crack lengths with the standard errors of their means, and lengths of test beams and "
+        "devices before and after the measurement, with standard deviations due to the inputs and, except for those "
+        "held by a tip, due to the model. Inputs in their standard uncertainties."
+    )
+    return Table.of(rows, with_list(caption, sentences), _COLUMNS)
+
+
+def _rows(device, found):
+    """Numbers of one device: data, lengths, safe lengths, inputs."""
+    for datum in found.datum.values:
+        at = found.sel(datum=datum)
+        computed = TO_UM * float(at.computed)
+        numbers = _of_length(computed, *(float(at[f"datum_{key}"]) for key in ("before", "shift", "after")))
+        error = float(at.measured * at.datum_measured_error)
+        own = {"measured": TO_UM * float(at.measured), "measured_se": TO_UM * error}
+        head = {"device": device, "relative_humidity": float(at.datum_humidity), "part": "crack length [µm]"}
+        yield head | {"name": str(at.array.values)} | numbers | own
+    for result in found.result.values:
+        at = found.sel(result=result)
+        length, tip = TO_UM * float(at.length), str(at.response.values) == ARC
+        numbers = _of_length(length, *(float(at[f"length_{key}"]) for key in ("before", "shift", "after")))
+        head = {"device": device, "relative_humidity": float(at.humidity_of_result)}
+        yield head | {"part": "length held by few tips [µm]" if tip else "crack length [µm]", "name": device} | numbers
+    for humidity in found.humidity.values:
+        for shape in found["shape"].values:
+            for share in found.share.values:
+                at = found.sel(humidity=humidity, shape=shape, share=share)
+                part = f"safe length, {'beam or tip' if shape == EITHER else 'beam'}, p = {share:g} [µm]"
+                head = {"device": device, "relative_humidity": float(humidity), "part": part, "name": device}
+                yield head | {"before": TO_UM * float(at.safe_length), "after": TO_UM * float(at.updated_safe_length)}
+    for name in found.input.values:
+        at = found.sel(input=name)
+        scale = float(at.prior_deviation) or np.nan
+        head = {"device": device, "relative_humidity": np.nan, "part": "input [standard uncertainties]", "name": name}
+        after = {"after": float(at["shift"]) / scale, "after_std": float(at.deviation) / scale}
+        yield head | {"before": 0.0, "before_std": 1.0} | after
+
+
+def _of_length(length, before, shift, after):
+    """A length before and after the measurement, with standard deviations, from those of its logarithm."""
+    updated = length * np.exp(shift)
+    return {"before": length, "before_std": length * before, "after": updated, "after_std": updated * after}
+
+
+def _number(value, deviation):
+    """A number, with its standard deviation if it has one."""
+    return number(value, ".1f") if np.isnan(deviation) else with_error(value, deviation)
+
+
+_COLUMNS = DEVICE | {
+    "what": (lambda part, name: f"{name}: {part}", "part", "name"),
+    "before": (_number, "before", "before_std"),
+    "after": (_number, "after", "after_std"),
+    "measured": (with_error, "measured", "measured_se"),
+}
+
+
+# Warnings
+
+
+def warnings(found: xr.Dataset) -> list[str]:
+    """What the test beams contradict, and where the prediction goes beyond them, in sentences with numbers."""
+    return [*_contradictions(found), *_moved(found), *_extrapolated(found)]
+
+
+def _contradictions(found):
+    """Data that the inputs, or inputs and model together, do not explain."""
+    alone, both = float(found.p_value_of_inputs), float(found.p_value)
+    if both < UNLIKELY:
+        yield (
+            f"Neither the errors of the inputs nor those of the model, as stated, explain the crack lengths (p = "
+            f"{both:.1g}): something else is wrong, such as a dimension, a humidity or plastic contact. Do not rely on "
+            "the update."
+        )
+    elif alone < UNLIKELY:
+        factor, slope = (float(found["shift"].sel(input=name)) for name in (inference.FACTOR, inference.SLOPE))
+        yield (
+            f"The errors of the inputs, as stated, do not explain the crack lengths (p = {alone:.1g}); an error of the "
+            f"model does: lengths are {np.exp(factor):.3g} times as large as computed, with a slope of {slope:+.2g} in "
+            "the logarithm of the length."
+        )
+    for datum in found.datum.values[found.computed.values > found.beam_length.values]:
+        at = found.sel(datum=datum)
+        yield (
+            f"{datum}: computed cracks of {TO_UM * float(at.computed):.0f} µm are longer than the beams, "
+            f"{TO_UM * float(at.beam_length):.0f} µm: mean lengths of the beams that stick are too short."
+        )
+
+
+def _moved(found):
+    """Inputs, and rests of the model, that err more than their standard deviations let expect."""
+    known = found.isel(input=np.flatnonzero(found.prior_deviation.values > 0))
+    for name, score in zip(known.input.values, (known["shift"] / known.prior_deviation).values, strict=True):
+        if abs(score) > LARGE:
+            yield f"The test beams move the {name} by {score:+.2g} of its standard uncertainties: check it."
+    for datum, rest in zip(found.datum.values, found.datum_rest.values, strict=True):
+        if abs(rest) > LARGE * found.attrs["rest"]:
+            yield f"{datum}: {100 * rest:+.2g} % of the length are left to errors of the model at this humidity alone."
+
+
+def _extrapolated(found):
+    """Conditions of the device beyond those of its test beams."""
+    low, high = float(found.datum_humidity.min()), float(found.datum_humidity.max())
+    beyond = sorted({humidity for humidity in found.humidity_of_result.values if not low <= humidity <= high})
+    if beyond:
+        yield (
+            f"Test beams were measured from RH {low:g} to {high:g}: the prediction at RH "
+            f"{', '.join(f'{humidity:g}' for humidity in beyond)} is an extrapolation."
+        )
+    for size in OWN:
+        device = float(found[f"length_{size}"][0])
+        nearest = min(found[size].values, key=lambda value: abs(np.log(device / value)))
+        if abs(np.log(device / nearest)) > np.log(SIZES):
+            yield (
+                f"The {size} of the device, {TO_UM * device:.3g} µm, differs by more than a factor of {SIZES:g} from "
+                f"that of the test beams, {TO_UM * nearest:.3g} µm: the prediction is an extrapolation."
+            )
+
+
+STAGES = (
+    table_stage(
+        "table_test_beams",
+        "test_beams",
+        "what test beams say about devices",
+        inputs=lambda plan, at: {"test_beams": by_name("devices/test_beams", plan.designs.tested)},
+        compute=lambda data, at, settings: test_beams(data["test_beams"]),
+        jobs=lambda plan: [{}] if plan.designs.tested else [],
+        targets=("devices",),
+    ),
+)

@@ -1,0 +1,133 @@
+"""Test beams in a configuration: what is refused, what they share with their devices, and what is computed for them."""
+
+import copy
+from pathlib import Path
+
+import pytest
+from configurations import PAPER, SCHEMA, leaves, problems
+from plans import job_settings
+from test_messages import UNITS
+
+from stiction.config.files import load
+from stiction.config.merging import merged
+from stiction.config.plan import Plan
+from stiction.plan.graph import Graph
+from stiction.report import published
+
+C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
+STATED = {"thickness_um": 0.05, "young_modulus_GPa": 5, "humidity": 0.01, "scan_um": 10}
+DATA = [{"humidity": rh, "mean_um": mean, "std_um": 30, "beams": 12} for rh, mean in ((0.67, 705), (0.44, 952))]
+ARRAY = {"pair": "b", "length_um": 1500, "thickness_um": 2, "gap_um": 20, "width_um": 30, "crack_lengths": DATA}
+ARRAY |= {"uncertainty": {"gap_um": 0.3}}
+SECTIONS = {
+    "test_beams": {"first": ARRAY},
+    "devices": {"C1": C1 | {"uncertainty": STATED, "test_beams": ["first"]}, "C2": C1},
+}
+PLAN = Plan(load(SECTIONS))
+
+
+def refused(array=None, datum=None, **device):
+    """Problems of the configuration with changed keys of the array, of its first datum and of the device."""
+    config = copy.deepcopy(SECTIONS)
+    config["test_beams"]["first"] |= array or {}
+    config["test_beams"]["first"]["crack_lengths"][0] |= datum or {}
+    config["devices"]["C1"] |= device
+    return problems(merged(PAPER, config))
+
+
+def test_test_beams_with_all_their_keys_are_valid():
+    assert refused() == ()
+
+
+@pytest.mark.parametrize("leaf", leaves({"test_beams": {"first": {**ARRAY, "strip_um": 1}}}, SCHEMA), ids=str)
+def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
+    units = [UNITS[suffix] for key in leaf.path for suffix in sorted(UNITS, key=len) if key.endswith(suffix)][-1:]
+    if leaf.path[-1] not in ("pair", "crack_lengths"):
+        assert leaf.entry["description"].endswith(tuple(units))
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "words"),
+    [
+        ({"datum": {"mean_um": 1600}}, "test_beams.first.crack_lengths", "that at RH 0.67 is 1600 µm"),
+        ({"datum": {"beams": 1}}, "test_beams.first.crack_lengths[0].beams", "at least 2"),
+        ({"datum": {"humidity": 67}}, "test_beams.first.crack_lengths[0].humidity", "as a fraction of 1"),
+        ({"datum": {"humidity": 0.2}}, "test_beams.first.crack_lengths", "must be at least 0.2903: in drier air"),
+        ({"datum": {"humidity": 0.44}}, "test_beams.first.crack_lengths", "must list each humidity once"),
+        ({"array": {"pair": "d"}}, "test_beams.first.pair", "must be one of a, b, c"),
+        ({"array": {"thickness_um": 0.1}}, "test_beams.first.thickness_um", "strips of 1.5 µm resolve its cracks"),
+        (
+            {"array": {"uncertainty": {"gap_um": 30}}},
+            "test_beams.first.uncertainty.gap_um",
+            "below the dimension itself",
+        ),
+        ({"array": {"uncertainty": {"humidity": 0.1}}}, "test_beams.first.uncertainty.humidity", "is unknown"),
+        ({"test_beams": ["second"]}, "devices.C1.test_beams", "must be among first: second is not there"),
+        ({"test_beams": ["first", "first"]}, "devices.C1.test_beams", "must contain each array once"),
+        ({"kind": "bridge", "residual_stress_MPa": 50}, "devices.C1.kind", "must come without test_beams"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_sentence(changes, key, words):
+    (problem,) = refused(**changes)
+    assert problem.startswith(f"{key} is ")
+    assert words in problem
+
+
+def test_a_standard_deviation_needs_the_number_of_beams():
+    config = copy.deepcopy(SECTIONS)
+    del config["test_beams"]["first"]["crack_lengths"][1]["beams"]
+    (problem,) = problems(merged(PAPER, config))
+    assert problem.startswith("test_beams.first.crack_lengths[1].beams is missing, must be a whole number at least 2")
+
+
+def test_what_is_shared_has_one_uncertainty():
+    other = {"C3": SECTIONS["devices"]["C1"] | {"uncertainty": STATED | {"humidity": 0.02}}}
+    found = problems(merged(PAPER, merged(SECTIONS, {"devices": other})))
+    assert [line.partition(" is ")[0] for line in found] == ["devices.C1.test_beams", "devices.C3.test_beams"]
+    assert all("which states other uncertainties" in line for line in found)
+    own = {"C3": SECTIONS["devices"]["C1"] | {"uncertainty": STATED | {"thickness_um": 0.1}}}
+    assert problems(merged(PAPER, merged(SECTIONS, {"devices": own}))) == ()
+
+
+def test_materials_of_test_beams_are_those_of_the_device():
+    glass = {"materials": {"Glass": {"young_modulus_GPa": 70}}, "surfaces": {"B1": {"material": "Glass"}}}
+    changed = merged(SECTIONS, glass | {"test_beams": {"first": {"pair": "a"}}})
+    found = problems(merged(PAPER, changed))
+    assert any(line.startswith("devices.C1.test_beams is ['first'], must have the materials of the") for line in found)
+
+
+def test_test_beams_share_all_inputs_with_their_device_but_the_dimensions():
+    found = job_settings(PLAN, "devices/test_beams/budget/first_rh044")["budget"]
+    shared = {key: value for key, value in STATED.items() if key != "thickness_um"}
+    assert found["uncertainty"] == shared | {"gap_um": 0.3}
+    assert (found["device"]["thickness_um"], found["humidity"]) == (2, 0.44)
+
+
+def test_contacts_of_test_beams_and_device_are_the_same_and_drawn_once():
+    graph = Graph(PLAN)
+    of_device, of_beams = (
+        graph.job(name).inputs for name in ("devices/budget/C1_rh067", "devices/test_beams/budget/first_rh067")
+    )
+    assert of_beams["contact"] == of_device["contact"]
+    for side in ("less", "more", "solids_less", "solids_more"):
+        assert of_beams[side] == of_device[side] != {}
+    assert of_beams["choices"] == {}
+
+
+def test_only_devices_with_test_beams_have_them_in_their_jobs():
+    graph = Graph(PLAN)
+    assert "test_beams" in graph.job("devices/C1.html").inputs
+    assert "test_beams" not in graph.job("devices/C2.html").inputs
+    assert PLAN.designs.tested == ["C1"]
+    assert set(graph.job("devices/test_beams/C1").inputs["test_beams"]) == {("first", 0.44), ("first", 0.67)}
+
+
+def test_the_example_has_the_crack_lengths_that_the_paper_measured():
+    config = load(Path(__file__).parents[2] / "examples" / "test_beams.yaml")
+    table = published.read(published.file("table_3"))
+    for pair in "abc":
+        rows = table[table.pair == pair]
+        array = config["test_beams"][f"paper{pair.upper()}"]
+        found = [[datum[key] for datum in array["crack_lengths"]] for key in ("humidity", "mean_um", "std_um")]
+        assert found == [rows[key].tolist() for key in ("relative_humidity", "experiment", "experiment_std")]
+        assert array["gap_um"] == config["pairs"][pair]["gap_um"]

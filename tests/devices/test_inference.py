@@ -1,0 +1,290 @@
+"""Laws of inference from test beams: with analytic responses, and on the lengths that the paper measured."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from scipy.special import ndtr
+from scipy.stats import binom
+
+from stiction.devices import inference
+from stiction.devices.budget import Budget
+from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths, given
+from stiction.report import published
+
+NAMES = ("rms", "skewness", "modulus", "thickness of test beams", "thickness")
+#: Skewness is correlated with the rms, as errors from one scan are.
+PRIOR = Knowledge(NAMES, np.zeros(5), np.diag([0.05, 0.04, 0.03, 0.02, 0.02]) ** 2)
+PRIOR.covariance[0, 1] = PRIOR.covariance[1, 0] = 0.6 * 0.05 * 0.04
+#: Responses of test beams at three humidities, and of a device at two.
+BEAMS = np.array([[1.0, 0.9, 0.56, 0.76, 0], [1.3, 1.1, 0.5, 0.76, 0], [0.4, 0.3, 0.3, 0.75, 0]])
+DEVICE = np.array([[1.0, 0.9, 0.56, 0, 0.76], [0.6, 0.5, 0.4, 0, 0.75]])
+DATA = Lengths(BEAMS, np.array([0.08, 0.11, -0.01]), np.array([0.01, 0.02, 0.015]))
+#: The default of the configuration.
+STATED = Discrepancy(factor=0.1, slope=0.3, rest=0.05)
+
+
+def part(data, *places):
+    """Some of the data, in an order."""
+    return type(data)(**{name: values[list(places)] for name, values in vars(data).items()})
+
+
+def assert_equal(one, other, rtol=1e-9):
+    assert_allclose(one.mean, other.mean, rtol, atol=1e-14)
+    assert_allclose(one.covariance, other.covariance, rtol, atol=1e-16)
+
+
+def test_without_data_the_posterior_is_the_prior():
+    found = given(PRIOR, part(DATA))
+    assert_array_equal(found.mean, PRIOR.mean)
+    assert_array_equal(found.covariance, PRIOR.covariance)
+    assert not np.allclose(given(PRIOR, part(DATA, 0)).covariance, PRIOR.covariance)  # control
+
+
+def test_an_input_measured_exactly_leaves_the_conditional_distribution():
+    # Of the rms alone: E[x | x_0 = d] = C[:, 0] d / C[0, 0], and the budget's own remaining uncertainty.
+    exact = given(PRIOR, Lengths(np.eye(5)[:1], np.array([0.03]), np.zeros(1)))
+    assert_allclose(exact.mean, PRIOR.covariance[:, 0] * 0.03 / PRIOR.covariance[0, 0], rtol=1e-12)
+    budget = Budget(NAMES, DEVICE[0], PRIOR.covariance)
+    assert_allclose(exact.of(DEVICE[0])[1], budget.remaining(["rms"]), rtol=1e-9)
+    assert abs(exact.of(DEVICE[0])[1] / budget.remaining(["modulus"]) - 1) > 0.1  # control
+
+
+def test_equal_data_twice_are_data_of_twice_as_many_beams():
+    twice = given(PRIOR, part(DATA, 0, 1, 2, 0, 1, 2))
+    assert_equal(twice, given(PRIOR, replace(DATA, errors=DATA.errors / np.sqrt(2))))
+    with pytest.raises(AssertionError):
+        assert_equal(twice, given(PRIOR, DATA))
+
+
+def test_the_order_of_the_data_does_not_matter_nor_whether_they_come_at_once():
+    assert_equal(given(PRIOR, DATA), given(PRIOR, part(DATA, 2, 0, 1)))
+    assert_equal(given(PRIOR, DATA), given(given(PRIOR, part(DATA, 0)), part(DATA, 1, 2)))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_more_beams_widen_no_interval(seed):
+    rng = np.random.default_rng(seed)
+    root = rng.normal(size=(5, 5))
+    known = Knowledge(NAMES, np.zeros(5), root @ root.T)
+    results = rng.normal(size=(20, 5))
+    widths = [known.of(results)[1]]
+    for response in rng.normal(size=(6, 5)):
+        known = given(known, Lengths(response[None], rng.normal(size=1), np.array([0.3])))
+        widths.append(known.of(results)[1])
+    assert np.all(np.diff(widths, axis=0) <= 1e-12)
+    assert widths[-1].max() < 0.9 * widths[0].max()
+
+
+def test_shared_inputs_tell_about_the_device_and_inputs_of_the_test_beams_alone_do_not():
+    found = given(PRIOR, DATA)
+    assert found.of(DEVICE[0])[1] < 0.5 * PRIOR.of(DEVICE[0])[1]
+    assert_allclose(found.deviations[-1], PRIOR.deviations[-1], rtol=1e-12)  # thickness of the device
+    apart = Lengths(BEAMS * (np.array(NAMES) == "thickness of test beams"), DATA.differences, DATA.errors)
+    assert_allclose(given(PRIOR, apart).of(DEVICE[0]), PRIOR.of(DEVICE[0]), rtol=1e-12)
+
+
+# Known truth
+
+
+def drawn(rng, truth, beams=12, scatter=0.05):
+    """Mean crack lengths of test beams with these inputs, and their standard errors as an engineer states them."""
+    single = DATA.responses @ truth + scatter * rng.normal(size=(beams, len(DATA.responses)))
+    return Lengths(DATA.responses, single.mean(axis=0), single.std(axis=0, ddof=1) / np.sqrt(beams))
+
+
+def coverage(posterior, repeats=100):
+    """Shares of true lengths of the device inside the stated intervals of 68 and 95 %."""
+    scores = []
+    for k in range(repeats):
+        rng = np.random.default_rng(k)
+        truth = rng.multivariate_normal(np.zeros(5), PRIOR.covariance)
+        mean, deviation = posterior(drawn(rng, truth)).of(DEVICE)
+        scores.append((DEVICE @ truth - mean) / deviation)
+    return np.mean(np.abs(scores) < 1), np.mean(np.abs(scores) < 1.96)
+
+
+def test_stated_intervals_hold_the_true_lengths_of_drawn_test_beams():
+    inner, outer = coverage(lambda data: given(PRIOR, data))
+    assert abs(inner - 0.68) <= 0.10
+    assert abs(outer - 0.95) <= 0.04
+
+
+def test_intervals_that_forget_the_scatter_between_beams_do_not():
+    inner, outer = coverage(lambda data: given(PRIOR, replace(data, errors=data.errors / 5)))
+    assert inner < 0.58
+    assert outer < 0.91
+
+
+# Counts
+
+
+def test_counts_reach_the_most_probable_errors_of_the_inputs():
+    counts = Counts(BEAMS[:2], np.array([0.05, -0.08]), np.full(2, 0.06), np.array([17, 4]), np.array([20, 20]))
+    found = given(PRIOR, part(DATA), counts)
+
+    def logarithm(x):
+        score = (counts.margins - counts.responses @ x) / counts.scatter
+        return (
+            binom.logpmf(counts.stuck, counts.beams, ndtr(score)).sum() - x @ np.linalg.solve(PRIOR.covariance, x) / 2
+        )
+
+    steps = 1e-3 * PRIOR.deviations * np.eye(5)
+    at = logarithm(found.mean)
+    gradient = [(logarithm(found.mean + step) - logarithm(found.mean - step)) / 2e-3 for step in steps]
+    curvature = [
+        -(logarithm(found.mean + step) + logarithm(found.mean - step) - 2 * at) / np.sum(step) ** 2 for step in steps
+    ]
+    assert_allclose(gradient, 0, atol=1e-6)
+    assert_allclose(curvature, np.diag(np.linalg.inv(found.covariance)), rtol=1e-4)
+    assert np.abs(logarithm(0.9 * found.mean) - at) > 1e-4  # control: the most probable errors are no plateau
+
+
+def test_counts_say_what_the_lengths_of_the_same_beams_say():
+    # Of N beams with measured lengths and scatter s, ln l is known to s/√N; counted at the median length, it is known
+    # to √(π/2) s/√N (a probit at Φ = 1/2).
+    number, scatter = 4000, 0.06
+    rng, response = np.random.default_rng(3), np.ones((1, 1))
+    flat = Knowledge(("ln l",), np.zeros(1), np.ones((1, 1)))
+    single = 0.1 + scatter * rng.normal(size=number)
+    measured = given(flat, Lengths(response, single.mean(keepdims=True), np.array([scatter / np.sqrt(number)])))
+    stuck = np.array([np.sum(single < 0.1)])
+    counted = given(
+        flat,
+        Lengths(np.empty((0, 1)), np.empty(0), np.empty(0)),
+        Counts(response, np.array([0.1]), np.array([scatter]), stuck, np.array([number])),
+    )
+    assert_allclose(counted.deviations / measured.deviations, np.sqrt(np.pi / 2), rtol=2e-3)
+    assert abs(counted.mean - measured.mean)[0] < 4 * counted.deviations[0]
+
+
+@pytest.mark.parametrize(("stuck", "sign"), [(0, 1), (20, -1)])
+def test_beams_that_all_stick_or_all_come_free_bound_the_length_on_one_side(stuck, sign):
+    flat = Knowledge(("ln l",), np.zeros(1), np.full((1, 1), 0.2**2))
+    counts = Counts(np.ones((1, 1)), np.zeros(1), np.array([0.05]), np.array([stuck]), np.array([20]))
+    found = given(flat, Lengths(np.empty((0, 1)), np.empty(0), np.empty(0)), counts)
+    assert sign * found.mean[0] > found.deviations[0]
+    assert found.deviations[0] < 0.2
+
+
+# What the data say
+
+
+def test_p_values_of_data_that_err_as_stated_are_uniform_and_those_of_others_small():
+    rng = np.random.default_rng(0)
+    values = []
+    for _ in range(400):
+        truth = rng.multivariate_normal(np.zeros(5), PRIOR.covariance)
+        values.append(
+            inference.p_value(PRIOR, replace(DATA, differences=BEAMS @ truth + DATA.errors * rng.normal(size=3)))
+        )
+    assert abs(np.mean(values) - 1 / 2) < 4 / np.sqrt(12 * 400)
+    assert abs(np.mean(np.array(values) < 0.1) - 0.1) < 4 * np.sqrt(0.09 / 400)
+    # Opposite differences at two humidities at which all inputs act alike.
+    assert inference.p_value(PRIOR, replace(DATA, differences=np.array([0.2, -0.2, 0]))) < 1e-4
+
+
+def test_one_length_determines_one_combination_and_leaves_its_inputs_on_a_line():
+    independent = replace(PRIOR, covariance=np.diag(np.diag(PRIOR.covariance)))
+    first, *others = inference.combinations(independent, given(independent, part(DATA, 0)))
+    assert_allclose([one.remaining for one in others], 1, rtol=1e-9)
+    # Correlation of input k with h^T x: h_k σ_k / |h σ|.
+    effects = BEAMS[0] * independent.deviations
+    assert_allclose(first.correlations, effects / np.linalg.norm(effects), atol=1e-9)
+    assert_allclose(first.remaining**2, 1 / (1 + (np.linalg.norm(effects) / DATA.errors[0]) ** 2), rtol=1e-9)
+
+
+def test_combinations_leave_out_what_is_known_and_what_is_fully_correlated():
+    covariance = np.diag([0.0, 1, 1])
+    covariance[1, 2] = covariance[2, 1] = 1
+    known = Knowledge(("exact", "angle", "other angle"), np.zeros(3), covariance)
+    data = Lengths(np.array([[1.0, 1, 1]]), np.zeros(1), np.ones(1))
+    (only,) = inference.combinations(known, given(known, data))
+    assert_allclose(only.correlations, [0, 1, 1], atol=1e-9)
+    assert_allclose(only.remaining**2, 1 / (1 + 4), rtol=1e-9)
+
+
+def test_the_expected_gain_of_further_beams_is_that_of_the_update_with_them():
+    found = given(PRIOR, DATA)
+    expected = inference.further_beams(found, DEVICE[0], BEAMS[2], 0.01)
+    later = given(found, Lengths(BEAMS[2:], np.array([0.3]), np.array([0.01])))
+    assert_allclose(expected, later.of(DEVICE[0])[1], rtol=1e-12)
+    assert expected < found.of(DEVICE[0])[1]
+    assert_allclose(inference.further_beams(found, DEVICE[0], np.zeros(5), 0.01), found.of(DEVICE[0])[1], rtol=1e-12)
+
+
+# The lengths that the paper measured, beside those of its model NG
+
+
+def measured(pair, *places):
+    """ln(measured / computed), standard deviations between beams and ln computed at some humidities of a pair."""
+    table = published.read(published.file("table_3"))
+    rows = table[table.pair == pair].iloc[list(places)] if places else table[table.pair == pair]
+    return (
+        np.log(rows.experiment / rows.ng).to_numpy(),
+        (rows.experiment_std / rows.experiment).to_numpy(),
+        np.log(rows.ng).to_numpy(),
+    )
+
+
+def predicted(known, asked, stated=STATED, beams=1):
+    """Errors of lengths predicted from others, their stated deviations, and the p value of the others.
+
+    All beams of the paper have the same dimensions, so that ln l may replace u. The number of beams is not published.
+    """
+    (differences, errors, logarithms), (truth, scatter, others) = known, asked
+    n = len(differences)
+    reduced = np.concatenate([logarithms, others]) - logarithms.mean()
+    nothing = Knowledge((), np.zeros(0), np.zeros((0, 0)))
+    prior, responses = inference.with_discrepancy(
+        nothing, np.zeros((len(reduced), 0)), reduced, list(range(len(reduced))), stated
+    )
+    data = Lengths(responses[:n], differences, errors / np.sqrt(beams))
+    mean, deviation = given(prior, data).of(responses[n:])
+    return truth - mean, np.hypot(deviation, scatter / np.sqrt(beams)), inference.p_value(prior, data)
+
+
+def of_halves(pair, **given):
+    """Every second humidity from the others: errors of all six, their scores, p values of both halves."""
+    halves = [(0, 2, 4), (1, 3, 5)]
+    found = [predicted(measured(pair, *one), measured(pair, *other), **given) for one, other in (halves, halves[::-1])]
+    errors, deviations = (np.concatenate(values) for values in list(zip(*found, strict=True))[:2])
+    return errors, errors / deviations, [p for *_, p in found]
+
+
+def rms(values):
+    return np.sqrt(np.mean(np.square(values)))
+
+
+@pytest.mark.parametrize("beams", [1, 10])
+@pytest.mark.parametrize("pair", ["a", "b", "c"])
+def test_three_humidities_predict_the_other_three_within_8_percent(pair, beams):
+    errors, scores, p_values = of_halves(pair, beams=beams)
+    assert rms(errors) <= 0.08
+    assert np.max(np.abs(scores)) < 3
+    assert min(p_values) > 0.05
+
+
+@pytest.mark.parametrize("beams", [1, 10])
+def test_test_beams_of_pair_a_predict_pair_b_within_7_percent(beams):
+    errors, scores, _ = predicted(measured("a"), measured("b"), beams=beams)
+    assert rms(errors) <= 0.07
+    assert np.max(np.abs(scores)) < 2
+
+
+def test_one_common_factor_makes_pair_c_worse_and_its_data_say_so():
+    as_computed = rms(measured("c")[0])
+    factor = replace(STATED, slope=0.0)
+    errors, _, p_values = of_halves("c", stated=factor)
+    assert rms(errors) > as_computed > 0.27
+    assert max(p_values) < 1e-3
+    assert min(of_halves("a", stated=factor)[2]) > 0.05  # control: pair a needs no slope
+
+
+def test_without_a_rest_of_the_model_ten_beams_promise_too_much():
+    exact = replace(STATED, rest=0.0)
+    for pair in "ab":
+        _, scores, _ = of_halves(pair, stated=exact, beams=10)
+        assert np.max(np.abs(scores)) > 3
+        assert predicted(measured(pair), measured(pair), stated=exact, beams=10)[2] < 1e-6

@@ -1,0 +1,260 @@
+"""Stage test_beams on budgets of analytic lengths: what a device shares with its test beams, known truth, tables."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+import xarray as xr
+from numpy.testing import assert_allclose, assert_array_equal
+
+from stiction.beam.energy import arrest_length
+from stiction.devices.inference import FACTOR, SLOPE, Discrepancy
+from stiction.report.devices import figures_inference, tables_inference
+from stiction.run import storage
+from stiction.stages.devices import inference
+from stiction.stages.devices.inference import CrackLengths, Settings
+from stiction.stages.devices.releases import EITHER, S_SHAPE, DesignedBeam
+from stiction.stages.devices.uncertain_inputs import ARC
+
+UM = 1e-6
+DEVICE = DesignedBeam("cantilever", "b", 2.6 * UM, 20 * UM, 30 * UM, 164e9, 1.5 * UM)
+ARRAY = replace(DEVICE, thickness=2 * UM, gap=15 * UM)
+HUMIDITIES = (0.44, 0.67, 0.92)
+#: Energies [J m⁻²], and standard deviations of ln of what they depend on: the rms of the surface and Young's modulus.
+ENERGY = {0.44: 1.5e-3, 0.67: 7e-3, 0.92: 75e-3}
+DEVIATIONS = {"rms of B2": 0.05, "Young's modulus": 0.03, "thickness": 0.02, "gap": 0.015}
+#: d ln energy / d ln rms.
+POWER = {0.44: -5.6, 0.67: -4.0, 0.92: -1.2}
+STATED = Discrepancy(0.1, 0.3, 0.05)
+SCATTER, BEAMS = 0.05, 12
+
+
+def length(beam, humidity, rms=0.0, modulus=0.0, thickness=0.0, gap=0.0):
+    """Crack length of Eq. (13) for errors of logarithms of the inputs [m]."""
+    changed = replace(
+        beam,
+        thickness=beam.thickness * np.exp(thickness),
+        gap=beam.gap * np.exp(gap),
+        young_modulus=beam.young_modulus * np.exp(modulus),
+    )
+    return float(arrest_length(ENERGY[humidity] * np.exp(POWER[humidity] * rms), changed.beam))
+
+
+def budget(beam, humidity, response=S_SHAPE):
+    """Dataset of stage budget of these lengths."""
+    names = list(DEVIATIONS)
+    slopes = [-POWER[humidity] / 4, 1 / 4, 3 / 4, 1 / 2]
+    centre = length(beam, humidity) / (np.sqrt(2) if response == ARC else 1)
+    return xr.Dataset(
+        {
+            "slope": ("input", slopes),
+            "covariance": (("input", "other"), np.diag(list(DEVIATIONS.values())) ** 2),
+            "centre": ((), centre, {"response": response, "share": 0.001}),
+            "scatter": ((), SCATTER),
+        },
+        coords={"input": names, "other": names},
+    )
+
+
+@cache
+def budgets():
+    """Datasets of the device and of its test beams."""
+    of_device = {("C1", rh): budget(DEVICE, rh) for rh in HUMIDITIES}
+    return of_device | {("C1", rh, "tip"): budget(DEVICE, rh, ARC) for rh in HUMIDITIES}
+
+
+def safe_lengths():
+    values = xr.DataArray([[600 * UM], [250 * UM]], coords={"shape": [S_SHAPE, EITHER], "share": [0.001]})
+    return dict.fromkeys(HUMIDITIES, xr.Dataset({"safe_length": values}))
+
+
+def computed(means, stds=None, beams=BEAMS, humidities=HUMIDITIES, stated=STATED, array=ARRAY, names=("arrayA",)):
+    """Dataset of stage test_beams for measured means [m] at some humidities of the arrays."""
+    stds = SCATTER * np.array(means) if stds is None else stds
+    found = CrackLengths(1500 * UM, tuple(humidities), tuple(means), tuple(stds), (beams,) * len(means))
+    slopes = {(name, rh): budget(array, rh) for name in names for rh in humidities}
+    settings = Settings(stated, DEVICE, dict.fromkeys(names, array), dict.fromkeys(names, found))
+    return inference.compute(budgets(), slopes, safe_lengths(), settings)
+
+
+def as_computed(factor=1.0, humidities=HUMIDITIES):
+    return [factor * length(ARRAY, rh) for rh in humidities]
+
+
+def of(found, result):
+    return found.sel(result=f"C1, RH {result}")
+
+
+def test_measured_lengths_equal_to_the_computed_ones_move_nothing_and_narrow_the_length():
+    found = computed(as_computed())
+    assert_allclose(found["shift"], 0, atol=1e-12)
+    assert_allclose(found.updated_safe_length, found.safe_length, rtol=1e-12)
+    assert np.all(found.length_after < found.length_before)
+    assert float(of(found, 0.67).length_after) < 0.6 * float(of(found, 0.67).length_before)
+    assert float(found.p_value) > 0.99
+
+
+def test_dimensions_belong_to_device_and_array_and_all_other_inputs_are_shared():
+    names = list(computed(as_computed()).input.values)
+    sizes = ["thickness of arrayA", "gap of arrayA", "thickness of C1", "gap of C1"]
+    assert sorted(names) == sorted([*sizes, "rms of B2", "Young's modulus", FACTOR, SLOPE])
+    found = computed(as_computed(1.2)).sel(input=sizes)
+    assert np.all(found["shift"][:2] > 0)
+    assert_allclose(found["shift"][2:], 0, atol=1e-15)
+
+
+def test_the_prior_of_the_length_is_that_of_its_budget_and_of_the_stated_discrepancy():
+    found = of(computed(as_computed()), 0.67)
+    slopes = np.array([-POWER[0.67] / 4, 1 / 4, 3 / 4, 1 / 2])
+    alone = np.linalg.norm(slopes * list(DEVIATIONS.values()))
+    assert_allclose(found.length_of_inputs, alone, rtol=1e-12)
+    # u of a length of Eq. (13) is -1/4 of ln of the energy.
+    reduced = (np.mean(np.log(list(ENERGY.values()))) - np.log(ENERGY[0.67])) / 4
+    assert_allclose(found.length_before, np.sqrt(alone**2 + 0.1**2 + (0.3 * reduced) ** 2 + 0.05**2), rtol=1e-9)
+
+
+def test_tips_have_the_uncertainty_of_their_budget_and_follow_the_inputs():
+    found = computed(as_computed(1.3))
+    tip = of(found, "0.67, arc")
+    assert_allclose(tip.length_before, tip.length_of_inputs, rtol=1e-12)
+    factors = (found.updated_safe_length / found.safe_length).sel(humidity=0.67, share=0.001)
+    assert_allclose(factors.sel(shape=EITHER), np.exp(tip.length_shift), rtol=1e-12)
+    assert_allclose(factors.sel(shape=S_SHAPE), np.exp(of(found, 0.67).length_shift), rtol=1e-12)
+    assert 1 < float(factors.sel(shape=EITHER)) < float(factors.sel(shape=S_SHAPE))
+
+
+def test_two_equal_arrays_that_share_their_dimensions_are_one_of_twice_as_many_beams():
+    exact = {"thickness": 0.0, "gap": 0.0}
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in exact.items():
+            patch.setitem(DEVIATIONS, name, value)
+        stated = replace(STATED, rest=0.0)
+        two = computed(as_computed(1.1), names=("arrayA", "arrayB"), stated=stated)
+        one = computed(as_computed(1.1), beams=2 * BEAMS, stated=stated)
+    for name in ("length_shift", "length_after"):
+        assert_allclose(two[name], one[name], rtol=1e-9, atol=1e-15)
+
+
+def test_neither_the_order_of_the_humidities_nor_that_of_the_arrays_matters():
+    one, other = computed(as_computed(1.1)), computed(as_computed(1.1)[::-1], humidities=HUMIDITIES[::-1])
+    for name in ("length_shift", "length_after", "p_value"):
+        assert_allclose(one[name], other[name], rtol=1e-9, atol=1e-15)
+
+
+def drawn(rng, stated=STATED):
+    """Measured mean lengths of beams with drawn inputs and model, and the true mean lengths of the device."""
+    shared = {
+        key: DEVIATIONS[name] * rng.normal() for key, name in (("rms", "rms of B2"), ("modulus", "Young's modulus"))
+    }
+    sizes = [{name: DEVIATIONS[name] * rng.normal() for name in ("thickness", "gap")} for _ in range(2)]
+    factor, slope = stated.factor * rng.normal(), stated.slope * rng.normal()
+    middle = np.mean(np.log(list(ENERGY.values())))
+
+    def true(beam, rh, own):
+        discrepancy = factor + slope * (middle - np.log(ENERGY[rh])) / 4 + stated.rest * rng.normal()
+        return length(beam, rh, **shared, **own) * np.exp(discrepancy)
+
+    single = np.array([true(ARRAY, rh, sizes[0]) for rh in HUMIDITIES]) * np.exp(
+        SCATTER * rng.normal(size=(BEAMS, len(HUMIDITIES)))
+    )
+    return single.mean(axis=0), single.std(axis=0, ddof=1), [true(DEVICE, rh, sizes[1]) for rh in HUMIDITIES]
+
+
+def scores(stated, repeats=100):
+    """Errors of the predicted lengths of the device, in their stated deviations."""
+    found = []
+    for k in range(repeats):
+        means, stds, truth = drawn(np.random.default_rng(k))
+        after = computed(means, stds, stated=stated).isel(result=slice(3))
+        found.append((np.log(truth / after.length.values) - after.length_shift.values) / after.length_after.values)
+    return np.array(found)
+
+
+def test_the_true_lengths_of_the_device_are_inside_the_stated_intervals():
+    found = np.abs(scores(STATED))
+    assert abs(np.mean(found < 1) - 0.68) <= 0.10
+    assert abs(np.mean(found < 1.96) - 0.95) <= 0.04
+
+
+def test_without_a_discrepancy_of_the_model_they_are_not():
+    found = np.abs(scores(Discrepancy(0.0, 0.0, 0.0), repeats=30))
+    assert np.mean(found < 1) < 0.4
+    assert np.mean(found < 1.96) < 0.7
+
+
+def test_further_beams_like_the_device_help_more_where_the_device_is_known_least():
+    found = computed(as_computed())
+    left = found.length_after_further
+    assert np.all(left <= found.length_after + 1e-12)
+    assert np.all(left.sel(beams=100) <= left.sel(beams=10))
+    assert_array_equal(left.further, [*(f"arrayA, RH {rh:g}" for rh in HUMIDITIES), *found.result.values[:3]])
+    # A new array at its own humidity has dimensions and a rest of its own, which no number of beams averages out.
+    wanted = of(left, 0.67).sel(further="C1, RH 0.67", beams=100)
+    assert 0.05 < float(wanted) < float(of(found, 0.67).length_after)
+
+
+def test_the_dataset_is_stored_and_read_unchanged(tmp_path):
+    found = computed(as_computed(1.1))
+    storage.save(found, tmp_path / "C1.nc", "test_beams", {})
+    xr.testing.assert_allclose(storage.load(tmp_path / "C1.nc", "test_beams"), found)
+
+
+# Sentences
+
+
+def test_data_that_the_inputs_explain_give_no_warning():
+    assert tables_inference.warnings(computed(as_computed(1.01))) == []
+
+
+def test_data_that_only_the_model_explains_say_so_with_its_factor():
+    (sentence, *_) = tables_inference.warnings(computed(as_computed(1.3)))
+    assert sentence.startswith("The errors of the inputs, as stated, do not explain the crack lengths (p = ")
+    assert "times as large as computed" in sentence
+
+
+def test_data_that_nothing_explains_are_refused_in_words():
+    zigzag = np.array(as_computed()) * [1.3, 0.7, 1.3]
+    sentences = tables_inference.warnings(computed(zigzag))
+    assert "Do not rely on the update." in sentences[0]
+    assert any(sentence.startswith("arrayA, RH 0.67: -") for sentence in sentences)
+
+
+def test_humidities_and_dimensions_beyond_those_of_the_test_beams_are_extrapolations():
+    dry = tables_inference.warnings(computed(as_computed(humidities=(0.67,)), humidities=(0.67,)))
+    assert dry == [
+        "Test beams were measured from RH 0.67 to 0.67: the prediction at RH 0.44, 0.92 is an extrapolation."
+    ]
+    thin = replace(ARRAY, thickness=1.2 * UM)
+    found = computed([length(thin, rh) for rh in HUMIDITIES], array=thin)
+    assert tables_inference.warnings(found)[0].startswith("The thickness of the device, 2.6 µm, differs by more than a")
+
+
+def test_computed_cracks_that_are_longer_than_the_beams_are_named():
+    long = replace(ARRAY, thickness=6 * UM, gap=40 * UM)
+    found = computed([length(long, rh) for rh in HUMIDITIES], array=long)
+    assert any(
+        sentence.startswith("arrayA, RH 0.44: computed cracks of") for sentence in tables_inference.warnings(found)
+    )
+
+
+def test_the_combination_that_one_length_determines_names_its_inputs():
+    found = computed(as_computed(humidities=(0.67,)), humidities=(0.67,))
+    (sentence,) = tables_inference.combinations(found)
+    assert f"more {FACTOR}" in sentence
+    assert "more rms of B2" in sentence
+    assert "thickness of C1" not in sentence
+
+
+def test_the_table_has_data_lengths_safe_lengths_and_inputs():
+    table = tables_inference.test_beams({"C1": computed(as_computed(1.1))})
+    assert len(table.frame) == 3 + 6 + 6 + 8
+    cells = table.cells.set_index("what").before
+    assert cells["C1: safe length, beam or tip, p = 0.001 [µm]"].iloc[0] == "250.0"
+    assert "Further test beams would help most as " in table.caption
+
+
+def test_the_figure_has_a_panel_for_every_array_and_one_for_the_inputs():
+    figure = figures_inference.test_beams(computed(as_computed(1.1), names=("arrayA", "arrayB")))
+    assert [panel.get_title(loc="left") for panel in figure.axes][-1].endswith("inputs")
+    assert len(figure.axes) == 3
