@@ -37,6 +37,7 @@ def numbers(tables):
     )
     found |= safe_lengths(tables["safe_lengths"]) | stoppers(tables["stoppers"]) | budget(tables["budget"])
     found |= drawn_lengths(tables["safe_lengths"], tables["budget"])
+    found |= model_errors(tables["model_error"])
     found |= studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
     return (
         found
@@ -74,6 +75,19 @@ def compared_lengths(table_3, pair="b"):
         cells += [f"{row['GEO'].published_um:.0f} ± {row['GEO'].published_std_um:.0f}"]
         lines.append(f"| {' | '.join(cells + list(map(crack_length, row.values())))} |")
     return "\n".join(lines)
+
+
+def model_errors(table):
+    """``model_error_a``: largest error of the model in a crack length [%].
+
+    ``summits_rms_a``, ``full_rms_a``: root mean square deviation from the published lengths [%].
+    """
+    found = {}
+    for pair, rows in table.groupby("pair"):
+        found[f"model_error_{pair}"] = f"{rows.model_error_percent.max():.0f}"
+        for name, column in (("summits", "deviation_percent"), ("full", "full_contact_deviation_percent")):
+            found[f"{name}_rms_{pair}"] = f"{np.sqrt(np.mean(rows[column] ** 2)):.1f}"
+    return found
 
 
 def deviations(table_3):

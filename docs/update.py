@@ -69,6 +69,8 @@ EXAMPLE_PICTURES = {"results/figures/surface_sheet_Etched": 1400, "prediction": 
 #: Tables and pictures of ``make devices``; pictures by their width [pixels].
 DEVICE_TABLES = ("safe_lengths", "stoppers", "budget")
 DEVICE_PICTURES = {"risk": 1000, "chart": 1200, "stoppers": 700, "budget_C1": 1000}
+#: Table and picture of ``make model-error``.
+MODEL_ERROR = "model_error"
 #: Largest picture [bytes].
 LARGEST = 350_000
 #: Schema of configuration files for editors.
@@ -81,6 +83,7 @@ def main(results):
     runs = results.resolve().parent / "runs"
     for folder, why, collected in (
         (results, unfinished, collect),
+        (results, unfinished_model_error, collect_model_error),
         (runs / "example", unfinished_example, collect_example),
         (runs / "devices", unfinished_devices, collect_devices),
     ):
@@ -102,6 +105,15 @@ def unfinished(results):
     if up_to_date(results.resolve().parent):
         return ""
     return f"{results} is not up to date with config.yaml and the code, see make paper ARGS=-n"
+
+
+def unfinished_model_error(results):
+    """Why a folder does not hold a finished study of the error of the model by this code; empty if it does."""
+    if not (results / "tables" / f"{MODEL_ERROR}.csv").exists():
+        return f"{results} holds no finished study of the model's error"
+    if up_to_date(results.resolve().parent, MODEL_ERROR):
+        return ""
+    return f"{results} is not up to date with config.yaml and the code, see make model-error ARGS=-n"
 
 
 def unfinished_example(folder):
@@ -146,6 +158,13 @@ def collect(results):
     for name, width in PICTURES.items():
         if (picture := results / "figures" / f"{name}.png").exists():
             shrink(picture, DOCS / "pictures" / f"{name}.png", width)
+
+
+def collect_model_error(results):
+    """Copy table and picture of the error of the model."""
+    for kind in ("csv", "md"):
+        shutil.copyfile(results / "tables" / f"{MODEL_ERROR}.{kind}", DOCS / "tables" / f"{MODEL_ERROR}.{kind}")
+    shrink(results / "figures" / f"{MODEL_ERROR}.png", DOCS / "pictures" / f"{MODEL_ERROR}.png", 1100)
 
 
 def collect_example(folder):
@@ -253,7 +272,16 @@ def quoted_numbers():
     """Every number that may be quoted, by name."""
     frames = {
         name: quoted.frame(DOCS / "tables" / f"{name}.csv")
-        for name in (*TABLES, *DEVICE_TABLES, "example_scans", "studies", "checks", "timings", "earlier_timings")
+        for name in (
+            *TABLES,
+            MODEL_ERROR,
+            *DEVICE_TABLES,
+            "example_scans",
+            "studies",
+            "checks",
+            "timings",
+            "earlier_timings",
+        )
     }
     return quoted.numbers(frames)
 
