@@ -22,7 +22,7 @@ from stiction.surface.field import RoughSurface
 from stiction.surface.islands import find_islands
 from stiction.surface.summits import find_summits
 
-#: Levels at which islands are found, on one rms of the heights: enough for crack lengths to 0.1 %.
+#: Levels at which islands are found, on one rms of the heights: enough for crack lengths to 0.2 %.
 LEVELS_PER_RMS = 30
 
 
