@@ -14,8 +14,7 @@ from stiction.report.devices import figures_inference, tables_inference
 from stiction.run import storage
 from stiction.stages.devices import inference
 from stiction.stages.devices.inference import CrackLengths, Settings
-from stiction.stages.devices.releases import EITHER, S_SHAPE, DesignedBeam
-from stiction.stages.devices.uncertain_inputs import ARC
+from stiction.stages.devices.releases import ARC, EITHER, S_SHAPE, DesignedBeam
 
 UM = 1e-6
 DEVICE = DesignedBeam("cantilever", "b", 2.6 * UM, 20 * UM, 30 * UM, 164e9, 1.5 * UM)

@@ -19,8 +19,8 @@ from stiction.run import storage
 from stiction.stages.contact import curves
 from stiction.stages.devices import budget
 from stiction.stages.devices.budget import BeamBudget, PatchBudget, Responses, TipBudget
-from stiction.stages.devices.releases import MIDDLE, S_SHAPE, DesignedBeam
-from stiction.stages.devices.uncertain_inputs import ARC, FORCE, Input, State, Uncertainty
+from stiction.stages.devices.releases import ARC, FORCE, MIDDLE, S_SHAPE, DesignedBeam
+from stiction.stages.devices.uncertain_inputs import Input, State, Uncertainty
 from stiction.streams import stream
 
 WATER = curves.Water(300.0)

@@ -10,8 +10,7 @@ from stiction.plan.names import by_name
 from stiction.report.format import TO_UM, number, with_error
 from stiction.report.tables import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.inference import OWN, SHAPES
-from stiction.stages.devices.releases import EITHER, S_SHAPE
-from stiction.stages.devices.uncertain_inputs import ARC
+from stiction.stages.devices.releases import ARC, EITHER, S_SHAPE
 
 #: p value below which data count as not explained; number of standard deviations beyond which an input counts as wrong;
 #: ratio of dimensions beyond which a prediction counts as extrapolated. ASSUME: a factor of two.

@@ -29,10 +29,8 @@ from stiction.stages.contact import curves
 from stiction.stages.contact.contact import first
 from stiction.stages.devices.error_notes import explain_errors
 from stiction.stages.devices.patch_settings import contacts_of_budget, contacts_of_tip_budget
-from stiction.stages.devices.releases import DesignedBeam, addresses, arrests, section_of_beam
+from stiction.stages.devices.releases import ARC, FORCE, DesignedBeam, addresses, arrests, section_of_beam
 from stiction.stages.devices.uncertain_inputs import (
-    ARC,
-    FORCE,
     Input,
     Known,
     Settings,

@@ -6,8 +6,7 @@ Separate from the stages that find lengths and budgets, so that a word reruns no
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE
-from stiction.stages.devices.uncertain_inputs import ARC, FORCE
+from stiction.stages.devices.releases import ARC, EITHER, FORCE, MIDDLE, S_SHAPE
 
 
 @dataclass(frozen=True, kw_only=True)

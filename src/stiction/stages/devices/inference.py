@@ -17,8 +17,7 @@ from stiction.devices import inference
 from stiction.devices.inference import Discrepancy, Knowledge, Lengths
 from stiction.plan.stage import Stage
 from stiction.stages.devices.budget import budgets_of, budgets_of_arrays, response_of
-from stiction.stages.devices.releases import EITHER, LONG, S_SHAPE, DesignedBeam, section_of_beam
-from stiction.stages.devices.uncertain_inputs import ARC
+from stiction.stages.devices.releases import ARC, EITHER, LONG, S_SHAPE, DesignedBeam, section_of_beam
 
 #: Inputs that are those of one device or array alone.
 OWN = ("thickness", "gap")

@@ -31,6 +31,9 @@ from stiction.streams import stream
 
 #: End states in which a beam may stick: cracks stop on the way, or the tip holds as well, or the middle of a bridge.
 S_SHAPE, EITHER, MIDDLE = "S-shape", "S-shape or arc", "middle"
+#: What the inputs of a budget may move apart from the mean length at which beams stick: a length that tips hold, and a
+#: mean force.
+ARC, FORCE = "arc", "force"
 #: Length of the long beams, in crack lengths that Eq. (13) predicts from the mean adhesion energy. Cracks stop where
 #: adhesion is strongest, so that they are shorter than this prediction.
 LONG = 1.3

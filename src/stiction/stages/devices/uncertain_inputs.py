@@ -27,9 +27,6 @@ from stiction.stages.surfaces import heights, spectrum
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.translation import Translation
 
-#: What the inputs of a budget may move apart from the mean length at which beams stick: a length that tips hold, and a
-#: mean force.
-ARC, FORCE = "arc", "force"
 #: Step of dimensions.
 _OF_DIMENSIONS = Step(0.05)
 
