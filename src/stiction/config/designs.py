@@ -209,7 +209,7 @@ class Designs:
         return [name for name in self.devices if stated[name] or self.quantities(name)]
 
     def uncertain_solids(self, device: str) -> list[str]:
-        """Properties of the material of a device that are uncertain, keys of `OF_CONTACT`."""
+        """Properties of the material of a device that are uncertain, keys of ``OF_CONTACT``."""
         stated = self.devices[device].get("uncertainty", {})
         return [name for name, one in OF_CONTACT.items() if stated.get(one.key)]
 

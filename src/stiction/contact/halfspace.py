@@ -86,7 +86,7 @@ def periodic_waves(shape: tuple[int, int]) -> np.ndarray:
     Returns
     -------
     (n1, n2 // 2 + 1) array
-        As `scipy.fft.rfft2` orders the waves.
+        As ``scipy.fft.rfft2`` orders the waves.
     """
     first, second = fft.fftfreq(shape[0])[:, None], fft.rfftfreq(shape[1])
     total = np.zeros((shape[0], shape[1] // 2 + 1))

@@ -87,7 +87,7 @@ def _rows(
 
 
 def table(*data) -> Table:
-    """Error of the model for every case; parameters as in `_rows`."""
+    """Error of the model for every case; parameters as in ``_rows``."""
     rows = _rows(*data)
     return Table.of(rows, _CAPTION.format(strips=rows[0]["strips"]), _COLUMNS)
 
@@ -114,7 +114,7 @@ _COLUMNS = PAIR | {
 
 @styled
 def figure(*data) -> Figure:
-    """Error of the model over the humidity, and deviations from the published lengths; parameters as in `_rows`."""
+    """Error of the model over the humidity, and deviations from the published lengths; parameters as in ``_rows``."""
     frame = pd.DataFrame(_rows(*data))
     pairs = list(dict.fromkeys(frame.pair))
     count = 2 if frame.published_um.notna().any() else 1

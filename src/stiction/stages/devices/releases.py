@@ -149,7 +149,7 @@ class Opening:
     length: str  #: name in datasets of the length at which a beam is arrested
     words: str  #: what this length is
     resolved: Callable[[DesignedBeam, np.ndarray], tuple[Beam, int]]  #: as `long_beam`
-    arrests: Callable[..., np.ndarray]  #: as `held_lengths`
+    arrests: Callable[..., np.ndarray]  #: as ``held_lengths``
     #: What the samples of force laws (..., m, 4) contribute to the length (..., m, ...), and the length on their mean.
     contribution: Callable[[np.ndarray], np.ndarray]
     length_on_mean: Callable[[np.ndarray, Beam], float]
@@ -161,7 +161,7 @@ class Opening:
 
 
 #: How beams open by kind. ASSUME: crack lengths follow the mean energy of the samples as in Eq. (13), and lengths of
-#: bridges their mean energy and pull-off force as in `least_length`, as far as the error of the samples is concerned.
+#: bridges their mean energy and pull-off force as in ``least_length``, as far as the error of the samples is concerned.
 BEAMS = {
     "cantilever": Opening(
         arms=1,

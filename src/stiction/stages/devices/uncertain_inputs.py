@@ -2,7 +2,7 @@
 
 Dimensions and properties of the solids are changed by steps of their own: a crack jumps from strip to strip, so that
 larger steps have smaller errors. Stress, air and contact angles are changed by their standard uncertainty, those that
-cannot be below zero in one direction only. A new input is an entry of `OF_BEAMS` or `OF_AIR`, or a property of
+cannot be below zero in one direction only. A new input is an entry of ``OF_BEAMS`` or ``OF_AIR``, or a property of
 `stiction.devices.materials`.
 """
 
