@@ -23,7 +23,7 @@ def test_causes_come_before_what_follows_from_them():
         plan(beams=2, chaos=1, all=1),
         record("results/a.nc was computed with x: 1 instead of 2.", logging.WARNING),
         start(0, reason="Input files updated by another job: a, b"),
-        start(1, "chaos", reason="Forced execution"),
+        start(1, "chaos", reason="Updated input files: .snakemake/stale"),
         start(2, reason="Input files updated by another job: a"),
         start(3, "all", log=()),
     )
@@ -40,6 +40,7 @@ def test_causes_come_before_what_follows_from_them():
     [
         ("Missing output files: a.nc", "results are missing: beams"),
         ("Missing output files: a.nc; Input files updated by another job: b.nc", "results are missing: beams"),
+        ("Forced execution", "an option forces them: beams"),
         ("Updated input files: scan.gwy", "an input file is newer: beams"),
         ("Something new", "Something new: beams"),
         (

@@ -11,8 +11,9 @@ from stiction.command.follow import Job, Run
 _REASONS = {
     "Missing output files": "results are missing",
     "Input files updated by another job": "",  # follows from another job
+    "Updated input files: .snakemake/stale": "results that this run does not use",  # see workflow/rules/common.smk
     "Updated input files": "an input file is newer",
-    "Forced execution": "results that this run does not use",
+    "Forced execution": "an option forces them",
     "Incomplete": "an earlier run was stopped while the job was running",
     "Software environment": "the software environment changed",
     "Code has changed": "the code changed",
@@ -53,7 +54,7 @@ def reasons(job: Job) -> Iterator[str]:
         return
     for part in filter(None, others.split("; ")):
         known = [words for start, words in _REASONS.items() if part.startswith(start)]
-        yield from filter(None, known or [part])
+        yield from filter(None, known[:1] or [part])
 
 
 def changed(reason: str) -> str:
