@@ -6,6 +6,7 @@ import xarray as xr
 
 import stiction
 from stiction.config.plan import Plan
+from stiction.contact.environment import Water
 from stiction.devices import limits
 from stiction.models import MOMENT_QUANTITIES
 from stiction.plan.graph import Graph, Results
@@ -74,7 +75,7 @@ def test_a_stopper_has_its_whole_area_and_the_forces_of_its_stage():
     stopper = stiction.Device.of(CONFIG, "S1")
     assert stopper.tips is None
     found = stopper.forces()
-    pulls = curves.pull_offs(stopper.contact, 0.5, curves.Water(300.0))
+    pulls = curves.pull_offs(stopper.contact, 0.5, Water(300.0))
     np.testing.assert_allclose(found.pull_off.sel(humidity=0.5), 9e-12 * pulls, rtol=1e-12)
     assert stopper.warnings(found) == [limits.plastic_contact(np.nan)]
 

@@ -11,6 +11,7 @@ import xarray as xr
 from stiction.beam.cantilever import Beam
 from stiction.config.cases import case_id
 from stiction.config.units import in_si
+from stiction.contact.environment import Water
 from stiction.contact.pair import SurfacePair
 from stiction.models import SURFACE_MODELS
 from stiction.plan.graph import Results
@@ -78,7 +79,7 @@ class PairStudy:
 
     def energies(self, humidity: float) -> np.ndarray:
         """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
-        return curves.energies(self.contact, humidity, in_si(curves.Water, self._plan.water(self.name)))
+        return curves.energies(self.contact, humidity, in_si(Water, self._plan.water(self.name)))
 
     def forces(self, humidity: float) -> xr.Dataset:
         """Vectors v of Eq. (11) and f_limit at a relative humidity (Sec. III-B1); dataset of stage forces."""

@@ -73,12 +73,13 @@ import sys
 from stiction.run.logs import peak_memory
 from stiction.stages.contact import contact
 from stiction.stages.contact import curves
+from stiction.contact.environment import Water
 from stiction.run import storage
 
 before, samples, paths = peak_memory(), int(sys.argv[1]), sys.argv[2:]
 joined = contact.joined((storage.load(path, "contact") for path in paths), samples)
 storage.save(joined, paths[0].replace("/0.nc", "/all.nc"), "contact", {})
-curves.energies(joined, 0.67, curves.Water(300.0))
+curves.energies(joined, 0.67, Water(300.0))
 print(before, peak_memory())
 """
 

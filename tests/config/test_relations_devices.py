@@ -19,10 +19,11 @@ from stiction.config.kinds import KEYS
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import in_si
+from stiction.contact.environment import Water
 from stiction.contact.meniscus import meniscus_height
 from stiction.stages.beams import pair_warnings
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
-from stiction.stages.contact import contact, curves
+from stiction.stages.contact import contact
 from stiction.stages.devices import chart, cracks, device_warnings, safe_lengths
 
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67, 0.44]}
@@ -366,7 +367,7 @@ def test_settings_in_si_are_those_of_the_device():
     found = in_si(cracks.Settings, JOBS[cracks])
     assert found.device.beam.young_modulus == pytest.approx(79e9)
     assert (found.device.thickness, found.device.strip) == pytest.approx((2.6e-6, 1.2e-6))
-    assert found.water == curves.Water(300, pytest.approx((1.0471975512, 0.0)))
+    assert found.water == Water(300, pytest.approx((1.0471975512, 0.0)))
     bridge = in_si(safe_lengths.Settings, JOBS[safe_lengths])
     assert bridge.device.beam.tension == pytest.approx(50e6 * 60e-12)
     assert in_si(chart.Settings, JOBS[chart]).gaps == pytest.approx((10e-6, 20e-6))

@@ -13,6 +13,7 @@ from scipy.special import gamma, ndtr, ndtri
 from stiction.beam.foundation import decay_length, ground_stiffness
 from stiction.contact import forcelaw
 from stiction.contact.asperity import HertzAsperity, MaugisTable, hertz_force, reduced_modulus
+from stiction.contact.environment import Water
 from stiction.contact.estimate import ProfileMoments, force_law, repulsion_and_attraction, solid_pressure
 from stiction.contact.meniscus import film
 from stiction.contact.pair import SurfacePair, contacts_of_samples
@@ -145,7 +146,7 @@ def test_gaussian_heights_have_the_attraction_of_the_mean_curve():
 def test_the_foundation_length_is_that_of_surfaces_that_are_drawn(humidity):
     # Pair b with 20 samples, whose foundation length, a fourth root, has an error of 2 %.
     contact = small.contact_of_pair()
-    vectors, limit = curves.vectors(contact, humidity, curves.Water(300.0))
+    vectors, limit = curves.vectors(contact, humidity, Water(300.0))
     laws = forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit)
     drawn = decay_length(1.0, ground_stiffness(laws[:, 0], laws[:, 2]).mean())
     solid = MaugisTable(POLYSILICON, attraction("water"))

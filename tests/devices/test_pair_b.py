@@ -11,6 +11,7 @@ from stiction.chaos.model import resample_laws
 from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.constants import WATER_SURFACE_ENERGY
+from stiction.contact.environment import Water
 from stiction.devices import risk
 from stiction.devices.stoppers import worst_humidity
 from stiction.stages.contact import contact, curves
@@ -30,7 +31,7 @@ def test_real_patches_hold_most_well_below_saturation_although_their_energy_keep
         contact.Settings, merged(job_settings(small.PLAN, "devices/contact/b_1500x30000"), {"contact": {"samples": 60}})
     )
     drawn = contact.compute(small.surfaces(), "b", "NG", patches)
-    axis, water = np.arange(80, 99) / 100, curves.Water(300.0)
+    axis, water = np.arange(80, 99) / 100, Water(300.0)
     pulls = np.transpose([curves.pull_offs(drawn, humidity, water) for humidity in axis])
     worst, error = worst_humidity(axis, pulls)
     assert 0.88 < worst - 4 * error < worst + 4 * error < 0.92  # of 5000 patches: 0.894

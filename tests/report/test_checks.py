@@ -9,10 +9,10 @@ from numpy.testing import assert_allclose
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.equilibrium import ROUNDING, TOLERANCE
+from stiction.contact.environment import Water
 from stiction.contact.meniscus import flooded_energy
 from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.report import checks
-from stiction.stages.contact.curves import Water
 from stiction.stages.laws import forces as stage_forces
 from stiction.stages.surfaces import heights
 from stiction.streams import stream

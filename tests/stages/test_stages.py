@@ -15,6 +15,7 @@ from stiction.beam.resolution import resolved
 from stiction.chaos.model import draw, draw_laws, fit, fit_report
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
+from stiction.contact.environment import Water
 from stiction.contact.forcelaw import parametrise
 from stiction.models import FIELD
 from stiction.run import storage
@@ -273,7 +274,7 @@ def test_spectrum_and_picture_are_of_periodic_fields(of_strips, through_a_file):
 
 def test_forces_are_those_of_the_curves_at_the_humidity(through_a_file):
     found = through_a_file(small.forces_of_case())
-    distance, curve, *_ = curves.force_curves(small.contact_of_pair(), small.HUMIDITY, curves.Water(300))
+    distance, curve, *_ = curves.force_curves(small.contact_of_pair(), small.HUMIDITY, Water(300))
     vectors, limit = forces.vectors(found)
     expected, expected_limit = parametrise(distance, curve, 20)
     assert_array_equal(vectors, expected)

@@ -20,6 +20,7 @@ from stiction.chaos.model import draw_laws, fit, resample_laws, truncated
 from stiction.config.cases import case_id
 from stiction.config.merging import merged
 from stiction.contact.asperity import reduced_modulus
+from stiction.contact.environment import Water
 from stiction.contact.forcelaw import admissible, coefficients, energy, pressure
 from stiction.contact.solids import Solid
 from stiction.stages.beams import mesh, resampling, variant_beams
@@ -43,7 +44,7 @@ from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.spectrum import autocovariance
 from stiction.surface.summits import find_summits
 
-WATER = curves.Water(300.0)
+WATER = Water(300.0)
 
 
 def of_vectors(vectors, limit=None):

@@ -22,6 +22,7 @@ from stiction.beam.equilibrium import allowed_imbalance
 from stiction.beam.foundation import ACCURACY
 from stiction.config.cases import case_id
 from stiction.config.units import in_si
+from stiction.contact.environment import Water, flooded_law
 from stiction.contact.forcelaw import admissible, coefficients, energy
 from stiction.errors import NotConverged
 from stiction.estimates import jackknife, mean_with_error
@@ -33,7 +34,6 @@ from stiction.report.tables_surfaces import surface_statistics
 from stiction.run.atomic import save_text
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
 from stiction.stages.beams.releases import stuck_energies, stuck_lengths
-from stiction.stages.contact.curves import Water, flooded_law
 from stiction.stages.laws import forces as stage_forces
 from stiction.stages.surfaces.heights import measured_moments, substitution
 from stiction.stages.surfaces.parameters import misfits

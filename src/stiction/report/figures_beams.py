@@ -11,6 +11,7 @@ from matplotlib.transforms import ScaledTranslation
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.config.units import in_si
+from stiction.contact.environment import Water
 from stiction.contact.meniscus import flooded_energy
 from stiction.models import SURFACE_MODELS
 from stiction.plan.names import by_model, by_outcome
@@ -31,7 +32,6 @@ from stiction.report.style import (
 )
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.beams.releases import ended, stuck_energies, stuck_lengths
-from stiction.stages.contact.curves import Water
 
 # Figure 14
 

@@ -5,18 +5,10 @@ import pytest
 from scipy.special import erfc
 
 from stiction.constants import HAMAKER_CONSTANT
+from stiction.contact.environment import Gaps, Water, flooded_law
 from stiction.contact.pair import DistanceGrid
 from stiction.stages.contact import contact
-from stiction.stages.contact.curves import (
-    Gaps,
-    Water,
-    energies,
-    flooded_law,
-    force_curves,
-    pull_offs,
-    tip_forces,
-    vectors,
-)
+from stiction.stages.contact.curves import energies, force_curves, pull_offs, tip_forces, vectors
 
 
 def test_force_at_a_humidity_is_solid_pressure_less_tension_on_the_wet_area():

@@ -10,13 +10,14 @@ from vectors import sampled_vectors
 from stiction.beam.cantilever import Beam
 from stiction.chaos.model import Truncation
 from stiction.contact import forcelaw
+from stiction.contact.environment import Water
 from stiction.stages.contact import curves
 from stiction.stages.devices import cracks, safe_lengths
 from stiction.stages.devices.releases import DesignedBeam
 from stiction.streams import stream
 
 UM = 1e-6
-WATER = curves.Water(300.0)
+WATER = Water(300.0)
 C1 = DesignedBeam("cantilever", "b", 2.6 * UM, 20 * UM, 30 * UM, 164e9, 1.5 * UM)
 R1 = DesignedBeam(
     "bridge", "b", 2 * UM, 2 * UM, 30 * UM, 164e9, 0.5 * UM, residual_stress=50e6, hamaker_constant=9.75e-20

@@ -10,6 +10,7 @@ from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import in_si
+from stiction.contact.environment import Water
 from stiction.devices.budget import Budget
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES
@@ -31,7 +32,7 @@ KNOWN = {
 }
 #: Their standard error [-].
 ERROR = 0.02
-WATER, RATIO = curves.Water(300.0), PLAN.config["solid"]["poisson_ratio"]
+WATER, RATIO = Water(300.0), PLAN.config["solid"]["poisson_ratio"]
 
 
 @pytest.fixture(scope="module")

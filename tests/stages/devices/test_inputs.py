@@ -9,12 +9,12 @@ import small
 from beams import PAPER
 from numpy.testing import assert_allclose
 
-from stiction.stages.contact import curves
+from stiction.contact.environment import Water
 from stiction.stages.devices import uncertain_inputs as inputs
 from stiction.stages.devices.releases import DesignedBeam
 from stiction.stages.devices.uncertain_inputs import Known, Settings, State, Uncertainty
 
-WATER = curves.Water(300.0)
+WATER = Water(300.0)
 C1 = DesignedBeam("cantilever", "b", PAPER.thickness, PAPER.gap, PAPER.width, PAPER.young_modulus, 1.5e-6)
 R1 = DesignedBeam("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 1.5e-6, residual_stress=50e6)
 BASE = State(1.0, 0.67, WATER, C1, 9e-12)

@@ -9,10 +9,10 @@ import xarray as xr
 from test_device_outputs import charted
 from test_tables_budget import BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_dataset
 
+from stiction.contact.environment import Water
 from stiction.devices.limits import NOT_MODELLED
 from stiction.report.devices import pages
 from stiction.report.devices.pages import Page, Section
-from stiction.stages.contact.curves import Water
 from stiction.stages.devices import device_warnings, safe_lengths, sticking
 from stiction.stages.devices.releases import EITHER, S_SHAPE, DesignedBeam
 

@@ -7,10 +7,11 @@ from plans import job_settings
 
 from stiction.config.merging import merged
 from stiction.config.units import in_si
+from stiction.contact.environment import Water
 from stiction.stages.contact import contact, curves
 from stiction.stages.devices.error_notes import on_patch
 
-WATER = curves.Water(300.0)
+WATER = Water(300.0)
 
 
 def energies(length, width):

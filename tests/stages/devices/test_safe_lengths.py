@@ -6,8 +6,8 @@ from ground import C1, R1, lognormal_cracks, safe_with_tips, safe_without_tips, 
 from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.beam.energy import apparent_adhesion_energy
+from stiction.contact.environment import Water
 from stiction.devices import arcs, risk
-from stiction.stages.contact import curves
 from stiction.stages.devices import cracks, safe_lengths
 from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE
 from stiction.streams import stream
@@ -94,6 +94,6 @@ def test_lengths_in_saturated_air_are_those_of_flooded_flats(cantilever):
 
 
 def test_contact_angles_reduce_the_film():
-    tilted = replace(wanted(R1), water=curves.Water(300.0, (np.radians(60), 0.0)))
+    tilted = replace(wanted(R1), water=Water(300.0, (np.radians(60), 0.0)))
     found = safe_lengths.compute(lognormal_cracks(R1), None, tilted)
     assert_allclose(float(found.film / safe_without_tips().film), 0.75, rtol=1e-12)

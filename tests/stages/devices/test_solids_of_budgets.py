@@ -11,12 +11,13 @@ from plans import job_settings
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import in_si
+from stiction.contact.environment import Water
 from stiction.devices.materials import OF_CONTACT
-from stiction.stages.contact import contact, curves
+from stiction.stages.contact import contact
 from stiction.stages.devices import budget
 from stiction.stages.devices.uncertain_inputs import Uncertainty
 
-WATER = curves.Water(300.0)
+WATER = Water(300.0)
 STOPPER = budget.PatchBudget(1, WATER, 0.5, Uncertainty(), ("B2", "Sub1"), 164e9, contact=(3e-6, 2e-6))
 PATCH = "b", 1500, 6000
 E, RATIO = 164.0, 0.23

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from vectors import sampled_vectors
 
 from stiction.contact import forcelaw
+from stiction.contact.environment import Water
 from stiction.devices.arcs import arc_length
 from stiction.devices.bridges import least_length, middle_zone
 from stiction.devices.budget import log_slope
@@ -23,7 +24,7 @@ from stiction.stages.devices.releases import ARC, FORCE, MIDDLE, S_SHAPE, Design
 from stiction.stages.devices.uncertain_inputs import Input, State, Uncertainty
 from stiction.streams import stream
 
-WATER = curves.Water(300.0)
+WATER = Water(300.0)
 VECTORS = sampled_vectors(400, spread=0.2)
 SLOPES = np.geomspace(0.01, 1, 30)
 C1 = DesignedBeam("cantilever", "b", PAPER.thickness, PAPER.gap, PAPER.width, PAPER.young_modulus, 1.5e-6)

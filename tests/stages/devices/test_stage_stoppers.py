@@ -7,12 +7,13 @@ import pytest
 import small
 from numpy.testing import assert_allclose, assert_array_equal
 
+from stiction.contact.environment import Water
 from stiction.devices.risk import samples_for
 from stiction.run import storage
 from stiction.stages.contact import curves
 from stiction.stages.devices import stoppers
 
-WATER = curves.Water(300.0)
+WATER = Water(300.0)
 AREA = 1.5e-6 * 6e-6
 SETTINGS = stoppers.Settings(WATER, (1.5e-6, 6e-6), 18e-6, (0.67, 0.88), (0.85, 0.9))
 

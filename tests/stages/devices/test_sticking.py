@@ -5,10 +5,10 @@ from ground import C1, R1, WATER, wanted
 from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.beam.energy import apparent_adhesion_energy
+from stiction.contact.environment import Water
 from stiction.devices import risk
 from stiction.devices.arcs import arc_length
 from stiction.devices.bridges import least_length
-from stiction.stages.contact import curves
 from stiction.stages.devices import sticking
 from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE
 from stiction.streams import stream
@@ -28,7 +28,7 @@ def test_a_bridge_is_held_by_its_middle_and_has_no_tip():
 
 def test_lengths_in_saturated_air_are_those_of_flooded_flats_by_shape():
     energy = 0.072 * (1 + np.cos(1.0))
-    alone, tip = sticking.flooded_lengths(C1, curves.Water(300.0, (1.0, 0.0)), 0.67)
+    alone, tip = sticking.flooded_lengths(C1, Water(300.0, (1.0, 0.0)), 0.67)
     assert_allclose(apparent_adhesion_energy(alone, C1.beam), energy, rtol=1e-9)
     assert_allclose(tip, arc_length(energy, C1.beam), rtol=1e-9)
 

@@ -8,9 +8,9 @@ from numpy.testing import assert_allclose
 
 from stiction.config.files import load
 from stiction.config.plan import Plan
+from stiction.contact.environment import Water
 from stiction.report.devices import figures_budget, tables_budget
 from stiction.report.style import DOUBLE, legend_below, panels, save, styled
-from stiction.stages.contact.curves import Water
 from stiction.stages.devices import budget as study_budget
 from stiction.stages.devices import stoppers as study_stoppers
 from stiction.stages.devices.budget import Responses

@@ -11,13 +11,14 @@ from stiction.config.files import load
 from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.contact import tilted
+from stiction.contact.environment import Water
 from stiction.contact.meniscus import flooded_energy
 from stiction.devices import arcs, risk
 from stiction.stages.contact import contact, curves
 from stiction.stages.devices.releases import DesignedBeam
 from stiction.streams import stream
 
-WATER = curves.Water(300.0)
+WATER = Water(300.0)
 BEAM = DesignedBeam("cantilever", "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6).beam
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}
 C1 |= {"humidities": [0.44, 0.67, 0.92]}

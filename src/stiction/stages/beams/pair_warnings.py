@@ -9,6 +9,7 @@ import xarray as xr
 
 from stiction.beam.cantilever import Beam
 from stiction.config.units import in_si
+from stiction.contact.environment import Water
 from stiction.contact.meniscus import meniscus_height
 from stiction.devices import limits
 from stiction.plan.names import by_name, by_outcome
@@ -16,7 +17,6 @@ from stiction.plan.stage import Stage, select
 from stiction.run.atomic import save_text
 from stiction.stages.beams.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever, sections
 from stiction.stages.beams.releases import ended, stuck_lengths
-from stiction.stages.contact.curves import Water
 
 #: Warnings by their subject, such as ``pair b, RH 0.67, G``.
 Warnings = dict[str, list[str]]

@@ -9,6 +9,7 @@ import xarray as xr
 from stiction.analysis.variants import Variant
 from stiction.chaos.model import Truncation, fit
 from stiction.config.cases import humidity_of, pair_of
+from stiction.contact.environment import Water
 from stiction.plan.stage import Stage
 from stiction.stages.beams import releases
 from stiction.stages.beams.cantilevers import Dimensions, Gap, Stiffness, StripLength
@@ -22,7 +23,7 @@ class Settings:
 
     seed: int
     samples: int  #: number of pairs of surfaces, the first of the contact
-    water: curves.Water
+    water: Water
     chaos: Truncation
     solid: Stiffness
     beam: Dimensions

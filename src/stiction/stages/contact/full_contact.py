@@ -8,12 +8,13 @@ import xarray as xr
 
 from stiction.analysis.plasticity import ONSET
 from stiction.contact import elements, forcelaw, solids
+from stiction.contact.environment import Water
 from stiction.contact.halfspace import HalfSpace
 from stiction.devices.materials import ELASTIC
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import contact, pairs
-from stiction.stages.contact.curves import Water, force_curves
+from stiction.stages.contact.curves import force_curves
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
 from stiction.stages.surfaces.rough_surfaces import both, of_pair
 

@@ -16,6 +16,7 @@ import xarray as xr
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
 from stiction.config.cases import pair_of
+from stiction.contact.environment import Water
 from stiction.contact.meniscus import meniscus_height
 from stiction.devices import arcs
 from stiction.devices.chart import checked_power_law
@@ -35,7 +36,7 @@ class Settings:
 
     seed: int
     chaos: Truncation
-    water: curves.Water
+    water: Water
     humidity: float  #: [-]
     device: DesignedBeam
     beams: int

@@ -17,6 +17,7 @@ from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
 from stiction.config.cases import pair_of
 from stiction.contact import forcelaw
+from stiction.contact.environment import Water
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import curves
 from stiction.stages.contact.contact import surface_rms
@@ -43,7 +44,7 @@ class Settings:
 
     seed: int
     chaos: Truncation
-    water: curves.Water
+    water: Water
     humidity: float  #: [-]
     device: DesignedBeam
     beams: int  #: number of beams

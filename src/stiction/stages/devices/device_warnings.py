@@ -12,6 +12,7 @@ import xarray as xr
 
 from stiction.config.cases import case_id
 from stiction.config.units import from_si, in_si
+from stiction.contact.environment import Water
 from stiction.devices import limits
 from stiction.plan.names import by_case, by_name
 from stiction.plan.stage import File, Stage, select
@@ -24,7 +25,6 @@ from stiction.stages.beams.pair_warnings import (
     height,
     plastic_share,
 )
-from stiction.stages.contact.curves import Water
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import DesignedBeam, section_of_beam
 

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.config.cases import pair_of
+from stiction.contact.environment import Water
 from stiction.contact.meniscus import meniscus_height
 from stiction.devices import arcs, risk
 from stiction.devices.risk import SafeLength
@@ -26,7 +27,7 @@ class Settings:
     """Everything that the safe lengths depend on apart from the cracks and the contact of the tips."""
 
     seed: int
-    water: curves.Water
+    water: Water
     humidity: float  #: [-]
     device: DesignedBeam
     shares: tuple[float, ...]  #: p [-]

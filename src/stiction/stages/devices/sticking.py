@@ -7,11 +7,11 @@ from typing import Protocol
 
 import numpy as np
 
+from stiction.contact.environment import Water, flooded_law
 from stiction.contact.meniscus import flooded_energy
 from stiction.devices import arcs, bridges, risk
 from stiction.devices.chart import flooded_length
 from stiction.devices.risk import SafeLength
-from stiction.stages.contact import curves
 from stiction.stages.devices.releases import DesignedBeam
 from stiction.streams import stream
 
@@ -20,12 +20,12 @@ class Settings(Protocol):
     """Settings of any job that computes safe lengths."""
 
     seed: int
-    water: curves.Water
+    water: Water
     humidity: float  #: [-]
     shares: tuple[float, ...]  #: p [-]
 
 
-def flooded_lengths(device: DesignedBeam, water: curves.Water, humidity: float) -> list[float]:
+def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list[float]:
     """Bounds of the lengths that stick, one for each end state, by flooded flats [m].
 
     A cantilever has the length that sticks in saturated air. The worst air of a bridge is not the wettest: it has the
@@ -33,7 +33,7 @@ def flooded_lengths(device: DesignedBeam, water: curves.Water, humidity: float) 
     """
     wet = water.temperature, water.contact_angles
     if not device.opening.has_tip:
-        law = curves.flooded_law(humidity, water, device.hamaker_constant)
+        law = flooded_law(humidity, water, device.hamaker_constant)
         return [bridges.least_length(*law, device.beam)]
     return [flooded_length(device.beam, *wet), arcs.arc_length(flooded_energy(*wet), device.beam)]
 

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.contact.environment import Water
 from stiction.devices.risk import samples_for
 from stiction.devices.stoppers import pull_off_force, safe_force, stuck_patches, worst_humidity
 from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
-from stiction.stages.contact.curves import Water, pull_offs
+from stiction.stages.contact.curves import pull_offs
 from stiction.stages.devices.error_notes import on_patch
 from stiction.stages.devices.patch_settings import contact_of
 

@@ -7,9 +7,10 @@ import numpy as np
 import xarray as xr
 
 from stiction.config.cases import pair_of
+from stiction.contact.environment import Water
 from stiction.contact.forcelaw import admissible, parametrise
 from stiction.plan.stage import Stage, select
-from stiction.stages.contact.curves import Water, force_curves
+from stiction.stages.contact.curves import force_curves
 
 #: Components of v, Eq. (11), and their units.
 COMPONENTS = ("adhesion_energy", "pull_off", "pull_off_distance", "limit_distance")

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.contact.environment import Water
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
-from stiction.stages.contact.curves import Water, energies
+from stiction.stages.contact.curves import energies
 
 #: Median and bounds of the band.
 _PROBABILITIES = np.array([0.05, 0.5, 0.95])

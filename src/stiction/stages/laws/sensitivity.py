@@ -7,9 +7,10 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis.sensitivity import energy_sensitivity
+from stiction.contact.environment import Water
 from stiction.models import SHIFTS
 from stiction.plan.stage import Stage, select
-from stiction.stages.contact.curves import Water, energies
+from stiction.stages.contact.curves import energies
 from stiction.stages.contact.sensitivity_contact import moment
 
 _STATISTICS = ("mean", "standard deviation")

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.contact.environment import Water
 from stiction.devices.budget import log_slope
 from stiction.models import SHIFTS
 from stiction.plan.stage import Stage, select
-from stiction.stages.contact.curves import Water, energies
+from stiction.stages.contact.curves import energies
 from stiction.stages.contact.slope_contact import difference
 
 
