@@ -65,7 +65,6 @@ def bad_files(folder, good):
         (folder / name).write_bytes(text)
     np.save(folder / "bare.npy", _HEIGHTS)
     write(folder / "holes.gwy", holes)
-    write(folder / "coarse.gwy", z[::2, ::2])
     write(folder / "tiny.gwy", z[:40, :40], (0.8e-6, 0.8e-6))
     write(folder / "far.gwy", np.cumsum(np.cumsum(1e-10 * _HEIGHTS, axis=0), axis=1), (1e-6, 1e-6))
     damage = "which cannot be read as any known format, or is damaged"
@@ -80,7 +79,6 @@ def bad_files(folder, good):
         "bare.npy": ({"height_unit": "nm"}, "size_um", "is missing: bare.npy has no size in a unit of length"),
         "bare.npy ": ({"size_um": [1, 1]}, "height_unit", "is missing: bare.npy has no unit; give one of m, mm"),
         "holes.gwy": ({}, "files[0]", "is 'holes.gwy', which has 6.4 % of its points undefined, at most 1 % may be"),
-        "coarse.gwy": ({"files": [good]}, "files[1]", "is 'coarse.gwy', which has 125 x 125 points on 5 x 5 µm, B2-0"),
         "tiny.gwy": ({}, "files[0]", "is 'tiny.gwy', which cannot give a spectrum: 8 rings are needed"),
         "far.gwy": ({}, "files[0]", "is 'far.gwy', which shows no plateau of the spectrum: "),
         "B2-0.gwy": ({"channel": "Phase"}, "channel", "is 'Phase': B2-0.gwy has no channel Phase, only: "),
@@ -101,5 +99,5 @@ BAD = [
         "bare.npy",
         "bare.npy ",
     ),
-    *("holes.gwy", "coarse.gwy", "tiny.gwy", "far.gwy", "B2-0.gwy", "B2-0.gwy "),
+    *("holes.gwy", "tiny.gwy", "far.gwy", "B2-0.gwy", "B2-0.gwy "),
 ]

@@ -24,7 +24,7 @@ from stiction.config.validation import validate
 from stiction.errors import ScanError
 from stiction.scans import estimate
 from stiction.scans.levelling import LEVELS, LINES, Levelling
-from stiction.scans.quantiles import measured_density, quantiles
+from stiction.scans.quantiles import measured_density
 from stiction.scans.reading import UNITS, ScanFile, Source
 from stiction.scans.reading import read as read_scan
 from stiction.stages.surfaces import estimate as stage_estimate
@@ -110,7 +110,7 @@ def test_preliminary_numbers_are_those_of_the_scans(folder):
     assert np.log(1e-9 * found["rms_nm"]) == pytest.approx(pooled.moments[0], rel=1e-9)
     assert found["measured"] == pytest.approx(list(pooled.moments[1:]), rel=1e-9)
     assert found["feasible"] == pytest.approx(found["measured"])
-    form = measured_density(quantiles(pooled.levelled), pooled.areas)
+    form = measured_density(pooled.quantiles, pooled.areas)
     np.testing.assert_allclose(found["form"], [form.scores, form.heights], rtol=1e-9)
     assert abs(found["measured"][0] - truth("B2")[1]) < 0.3
     entry = measured.with_preliminary_estimates(configured(*both(folder)), {"Etched": found})["surfaces"]["Etched"]
@@ -420,9 +420,9 @@ def test_files_of_equal_names_are_told_apart_by_their_folders(bad, folder, tmp_p
     assert line.startswith(f"surfaces.Etched.scans.files[1] is {str(paths[1])!r}, which cannot be read")
     shutil.copy(both(folder)[1], paths[1])
     assert problems(configured(*paths)) == ()
-    write(paths[1], np.zeros((40, 40)) + np.eye(40))
+    write(paths[1], np.zeros((20, 20)) + np.eye(20))
     (line,) = problems(configured(*paths))
-    assert line.startswith(f"surfaces.Etched.scans.files[1] is {str(paths[1])!r}, which has 40 x 40 points on")
+    assert line.startswith(f"surfaces.Etched.scans.files[1] is {str(paths[1])!r}, which has 20 x 20 points, needs")
 
 
 def test_problems_of_several_surfaces_are_found_at_once(bad):

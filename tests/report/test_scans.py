@@ -51,7 +51,7 @@ SHEETS = {
     "no flags": {"flags": ""},
     "without density": {"feasible": np.full(3, np.nan), "goodness_chi2": np.nan, "goodness_p": np.nan},
     "not square": {name: np.full(2, np.nan) for name in ("summits", "summit_errors", "model_summits")}
-    | {"points": np.array([250, 125]), "pixel": np.array([20e-9, 40e-9])},
+    | {"points": np.array([[250, 125]]), "pixel": np.array([[20e-9, 40e-9]])},
     "many digits": {"covariance": 1e-10 * np.eye(3)},
     "too few summits": {"summits": np.full(2, np.nan)},
 }
@@ -211,6 +211,22 @@ def test_every_scan_has_its_row_with_the_error_of_one_scan():
         assert row.rms_se_nm == pytest.approx(row.rms_nm * np.sqrt(2 * float(estimated().covariance[0, 0])))
         assert row.flags == f"a flag; {CLIPPED}"
     assert f"- Etched: a flag\n- Etched: {CLIPPED}" in table.markdown
+
+
+def test_a_surface_of_scans_of_two_sizes_has_the_errors_of_each():
+    smaller = [stage_scan.layout(ScanFile(scan, "Height", "nm", ())) for scan in published("B2", 4e-6, 1)]
+    datasets = [*smaller, *maps()]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        estimate = stage_estimate.compute(datasets, "Etched", stage_estimate.Settings(1, Settings(), 8))
+    table = scans({"Etched": estimate}, {"Etched": spectrum()}, {"Etched": datasets})
+    assert list(table.frame.file) == ["B2-scan-0.spm", "B2-scan-0.spm", "B2-scan-1.spm"]
+    assert list(table.frame.size_fast_um) == pytest.approx([4, 5, 5])
+    assert_allclose(table.frame.rms_nm, [1e9 * scan.elevation.values.std() for scan in datasets], rtol=0.02)
+    total = float(estimate.covariance[1, 1]) * (2 * 25 + 16)
+    assert_allclose(table.frame.skewness_se, np.sqrt(total / np.array([16, 25, 25])))
+    title = surface_sheet("Etched", estimate, spectrum())._suptitle.get_text()
+    assert "Etched: 2 scans of 5 × 5 µm, 250 × 250 points and 1 scan of 4 × 4 µm, 200 × 200 points" in title
 
 
 def uncertainty():

@@ -7,7 +7,7 @@ from drawn_scans import published
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stiction.scans import estimate as evaluation
+from stiction.scans import inspection
 from stiction.scans.estimate import Settings, estimate, inspect
 from stiction.scans.holes import filled
 from stiction.streams import stream
@@ -85,7 +85,7 @@ def test_scattered_holes_change_neither_spectrum_nor_statistics(share, monkeypat
     errors = np.sqrt(np.diag(whole.fit.covariance))
     assert np.all(np.abs(parameters(found) - parameters(whole)) < 0.3 * errors)
     assert np.all(np.abs(found.moments - whole.moments) < 0.1 * of_whole().errors)
-    monkeypatch.setattr(evaluation, "filled", at_the_level)
+    monkeypatch.setattr(inspection, "filled", at_the_level)
     before = inspect([scan], Settings())
     noise, white = (end_of_spectrum(one) - end_of_spectrum(whole) for one in (found, before))
     assert 0 < noise < 0.02 * white, "holes at the level are white noise"
@@ -112,4 +112,4 @@ def test_summits_beside_holes_count_and_the_share_is_named():
     sentence = f"{100 * share:.2g} % of the points were undefined and are filled from their neighbours"
     assert sentence in found.flags
     assert not any("undefined" in flag for flag in of_whole().flags)
-    assert np.isnan(found.inspection.levelled[0]).mean() == share, "moments leave the holes out"
+    assert np.isnan(found.inspection.largest.levelled[0]).mean() == share, "moments leave the holes out"

@@ -84,7 +84,9 @@ def test_errors_by_model_scans_are_their_scatter_over_the_root_of_the_scans(coun
     np.testing.assert_allclose(found.model_summit_errors, terms.std(axis=1, ddof=1), rtol=0.05)
     closed = found.model.covariance / count + last.bias_covariance
     np.testing.assert_allclose(found.closed_form_errors, np.sqrt(np.diag(closed)))
-    np.testing.assert_allclose(found.homogeneity, homogeneity(moments(found.inspection.powers), found.model.covariance))
+    np.testing.assert_allclose(
+        found.homogeneity, homogeneity(moments(found.inspection.largest.powers), found.model.covariance)
+    )
 
 
 def test_widened_errors_are_those_by_tiles_unless_the_closed_form_has_larger_ones():
@@ -104,7 +106,7 @@ def test_errors_are_wider_only_where_four_moments_do_not_describe_the_heights(fi
 
 
 def test_moments_of_several_scans_are_those_of_all_their_heights():
-    z = np.concatenate([scan.ravel() for scan in of_b2().inspection.levelled])
+    z = np.concatenate([scan.ravel() for scan in of_b2().inspection.largest.levelled])
     expected = np.log(z.std()), stats.skew(z), stats.kurtosis(z) + 3
     np.testing.assert_allclose(of_b2().inspection.moments, expected, rtol=1e-9)
 
@@ -213,14 +215,6 @@ def test_too_many_undefined_points_are_refused():
     assert inspect([scan], Settings(undefined_share=0.02)).names == ("a.spm",)
 
 
-def test_scans_of_other_pixels_or_size_are_refused():
-    coarse = Scan(B2[0].heights[::2, ::2], (SIDE, SIDE), "b.spm")
-    assert "files: b.spm has 125 x 125 points on 5 x 5 µm, B2-scan-0.spm has 250 x 250 points" in refused(
-        [B2[0], coarse]
-    )
-    assert "250 points on 5 x 5.1 µm" in refused([B2[0], Scan(B2[1].heights, (SIDE, 1.02 * SIDE), "b.spm")])
-
-
 def test_a_scan_without_plateau_is_refused():
     z = np.cumsum(np.cumsum(stream(1, "walk").standard_normal((200, 200)), axis=0), axis=1)  # a power law throughout
     walks = [Scan(1e-10 * part, (SIDE, SIDE), f"{name}.spm") for name, part in (("a", z), ("b", z.T))]
@@ -237,6 +231,12 @@ def changed(**values):
 
 def with_inspection(**values):
     return changed(inspection=dataclasses.replace(of_b2().inspection, **values))
+
+
+def with_frame(**values):
+    largest = of_b2().inspection.largest
+    maps = dataclasses.replace(largest, frame=dataclasses.replace(largest.frame, **values))
+    return dataclasses.replace(of_b2().inspection, sizes=(maps,))
 
 
 def fit_with(**values):
@@ -272,8 +272,7 @@ FLAGS = {
     "lines jump by 2.5 nm, against steps of 1 nm along a line; lines: offset levels them":
         lambda: changed(line_jump=(2.5e-9, 1e-9)),
     "pixels are not square: summits are not compared":
-        lambda: changed(summits=np.full(2, np.nan), inspection=dataclasses.replace(
-            of_b2().inspection, frame=dataclasses.replace(of_b2().inspection.frame, shape=(250, 125)))),
+        lambda: changed(summits=np.full(2, np.nan), inspection=with_frame(shape=(250, 125))),
     "there are too few: summits are not compared":
         lambda: changed(summit_errors=np.full(2, np.nan)),
 }  # fmt: skip
@@ -463,7 +462,9 @@ def test_errors_by_tiles_cover_the_moments_of_heavy_tails_and_the_closed_form_do
     inspected = [inspect([scan], Settings()) for scan in scans]
     deviation = np.array([found.moments[1:] - (skewness, kurtosis) for found in inspected])
     closed = [_model(found, found.moments, found.quantiles)[0].covariance for found in inspected]
-    wide = [widened(part, tile_errors(found.levelled, 4)) for part, found in zip(closed, inspected, strict=True)]
+    wide = [
+        widened(part, tile_errors(found.largest.levelled, 4)) for part, found in zip(closed, inspected, strict=True)
+    ]
     too_small, ratio = (
         np.sqrt(np.mean([np.diag(part)[1:] for part in covariances], axis=0) / np.mean(deviation**2, axis=0))
         for covariances in (closed, wide)

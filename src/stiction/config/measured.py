@@ -224,13 +224,13 @@ def _preliminary(files, reading, evaluating):
     """Read and evaluate the scans of a surface, without model scans; raises the ScanErrors of both."""
     # Imported here: configurations without scans need neither.
     from stiction.scans import estimate
-    from stiction.scans.quantiles import measured_density, quantiles
+    from stiction.scans.quantiles import measured_density
 
     scans = [_scan(path, label, reading) for label, path in files.items()]
     found = estimate.inspect(scans, in_si(estimate.Settings, evaluating))
     rms = _in_range(from_si(math.exp(found.moments[0]), "nm"), next(iter(files)), reading)
     nearest = estimate.nearest_density(found)
-    form = measured_density(quantiles(found.levelled), found.areas)
+    form = measured_density(found.quantiles, found.areas)
     skewness, kurtosis = map(float, found.moments[1:])
     return {
         "rms_nm": rms,
@@ -241,8 +241,6 @@ def _preliminary(files, reading, evaluating):
         "corner_rad_per_um": from_si(found.fit.corner, "rad_per_um"),
         "slope": found.fit.slope,
         "end_rad_per_um": from_si(float(found.reach.end), "rad_per_um"),
-        "points": list(found.frame.shape),
-        "pixel_nm": [from_si(pixel, "nm") for pixel in found.frame.pixel],
     }
 
 

@@ -4,7 +4,7 @@ A scan is not periodic: without a taper its edges would add a spectrum of ζ⁻�
 microscope holds drift and jumps of lines; the wave numbers next to it are left out of all means.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from itertools import product
 
@@ -62,6 +62,14 @@ class Rings:
         """Rings from the wave number ``low`` to ``high`` [rad m⁻¹]."""
         inside = (self.wavenumber >= low) & (self.wavenumber <= high)
         return Rings(*(getattr(self, field.name)[inside] for field in fields(self)))
+
+
+def in_order(parts: Iterable[Rings]) -> Rings:
+    """Rings of several spectra together, by increasing wave number."""
+    parts = list(parts)
+    order = np.argsort(np.concatenate([part.wavenumber for part in parts]), kind="stable")
+    columns = (np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Rings))
+    return Rings(*(values[order] for values in columns))
 
 
 def periodogram(scans: Sequence[np.ndarray], size: tuple[float, float]) -> Periodogram:

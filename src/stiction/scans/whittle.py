@@ -20,7 +20,7 @@ _SHORTEST_WAVE = 4
 #: Peak curvatures above this share of that of the tip are not resolved (Sanner et al., 2022).
 _TIP_SAFETY = 0.5
 #: ASSUME: the errors of rings on non-Gaussian heights exceed those of Gaussian ones by the scatter of drawn scans.
-_NON_GAUSSIAN = 1.15
+NON_GAUSSIAN = 1.15
 #: A spectrum has ended where it is below this share of the fit in all further rings, and the fewest of these.
 _ENDED, _RINGS_BEYOND = 0.5, 4
 #: Starting points of the search: corners per decade of the range, and exponents of the power law.
@@ -173,7 +173,7 @@ def _covariance(wavenumber, weight, log_corner, slope):
     decay = np.log(wavenumber) - log_corner
     gradient = np.where(decay > 0, [np.ones_like(decay), np.full_like(decay, -slope), decay], 0.0)
     gradient[0] = 1.0
-    return _NON_GAUSSIAN**2 * np.linalg.pinv(gradient * weight @ gradient.T, hermitian=True)
+    return NON_GAUSSIAN**2 * np.linalg.pinv(gradient * weight @ gradient.T, hermitian=True)
 
 
 def tabulated(rings: Rings, within: Reach, slope: float, cutoff: float) -> TabulatedSpectrum:

@@ -58,8 +58,6 @@ def _lines(sentences: Sequence[str]):
 
 def _title(name, estimate):
     """Scans and numbers with their errors."""
-    frame, files = stage_estimate.frame(estimate), len(stage_estimate.files(estimate))
-    size, points = " × ".join(f"{TO_UM * length:.4g}" for length in frame.size), " × ".join(map(str, frame.shape))
     rms, errors = TO_NM * stage_estimate.rms(estimate), np.sqrt(np.diag(estimate.covariance))
     skewness, kurtosis = stage_estimate.shape(estimate)
     tiles = np.max(estimate.tile_errors.values / estimate.closed_form_errors.values)
@@ -71,8 +69,14 @@ def _title(name, estimate):
         f"errors by tiles over closed form {tiles:.2g}, "
         f"largest over smallest sector {with_error(sectors, sector_error)}"
     )
-    scans = f"{files} scan{'s' * (files > 1)} of {size} µm, {points} points"
+    scans = " and ".join(_scans(*each) for each in stage_estimate.frames(estimate))
     return f"{name}: {scans}\n{_minus(numbers)}"
+
+
+def _scans(count, frame):
+    """Number, size and points of scans that are alike."""
+    size, points = " × ".join(f"{TO_UM * length:.4g}" for length in frame.size), " × ".join(map(str, frame.shape))
+    return f"{count} scan{'s' * (count > 1)} of {size} µm, {points} points"
 
 
 def _minus(text):
@@ -81,10 +85,10 @@ def _minus(text):
 
 
 def _map(figure: Figure, panel: Axes, estimate):
-    """Levelled heights of the first scan: blue below and red above the mean, undefined points grey."""
+    """Levelled heights of the first of the largest scans: blue below and red above the mean, undefined points grey."""
     z = TO_NM * estimate.elevation.values
     limit = _SATURATED * np.nanstd(z)
-    length, width = stage_estimate.frame(estimate).size
+    length, width = stage_estimate.frames(estimate)[0][1].size
     extent = [0, TO_UM * length, 0, TO_UM * width]
     colours = colormaps["RdBu_r"].with_extremes(bad="0.6")
     shades = {"cmap": colours, "vmin": -limit, "vmax": limit}
@@ -149,7 +153,8 @@ def _summits(panel, estimate):
     """Radius and density of the summits of the scans, and of scans drawn from the model."""
     panel.set(xlabel="summit radius [µm]", ylabel="summit density [µm$^{-2}$]")
     if np.isnan(estimate.summits).any():
-        reason = "too few summits" if stage_estimate.frame(estimate).square else "pixels are not square:\nno summits"
+        finest = min((frame for _, frame in stage_estimate.frames(estimate)), key=lambda frame: max(frame.pixel))
+        reason = "too few summits" if finest.square else "pixels are not square:\nno summits"
         panel.text(0.5, 0.5, reason, transform=panel.transAxes, ha="center", va="center")
         return
     for kind, style, mark, label in (

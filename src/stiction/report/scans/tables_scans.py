@@ -52,9 +52,11 @@ def scans(
 
 def _scans(name, estimate, maps):
     """Rows of one surface."""
-    errors = np.sqrt(np.diag(estimate.covariance) * len(maps))
     for dataset, moments in zip(maps, estimate.scan_moments.values, strict=True):
         scan = stage_scan.scan_of(dataset)
+        # The variance of a mean is inverse to the area.
+        scans = sum(count * (frame.area / scan.frame.area) for count, frame in stage_estimate.counted(estimate))
+        errors = np.sqrt(np.diag(estimate.covariance) * scans)
         rms = np.exp(moments[0]) / NM
         row = {"surface": name, "file": scan.name, "channel": str(dataset.channel.item())}
         row |= {f"size_{axis}_um": length / UM for axis, length in zip(("fast", "slow"), scan.size, strict=True)}

@@ -76,17 +76,18 @@ def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
         Sentences on the files, stored after those on the estimate.
     """
     inspection = found.inspection
-    frame, rings, within, fit = inspection.frame, inspection.rings, inspection.reach, inspection.fit
+    largest, rings, within, fit = inspection.largest, inspection.rings, inspection.reach, inspection.fit
     nearest = found.feasible
     near = (np.nan,) * 3 if nearest is None else (nearest.skewness, nearest.kurtosis, nearest.distance)
-    slow = spectra.rings(inspection.periodogram, inspection.periodogram.near_slow_axis)
+    powers = np.array(inspection.in_order([maps.powers for maps in inspection.sizes]))
+    slow = spectra.rings(largest.periodogram, largest.periodogram.near_slow_axis)
     wave = {"units": "rad m-1"}
     return xr.Dataset(
         {
             "moments": ("moment", found.moments, _MOMENT),
             "covariance": (("moment", "other_moment"), found.covariance, {"long_name": "of the moments"}),
             "raw_moments": ("moment", inspection.moments, {"long_name": "of the levelled scans, with their bias"}),
-            "scan_moments": (("scan", "moment"), moments(inspection.powers), {"long_name": "of every scan"}),
+            "scan_moments": (("scan", "moment"), moments(powers), {"long_name": "of every scan"}),
             "closed_form_errors": (
                 "moment",
                 found.closed_form_errors,
@@ -95,6 +96,8 @@ def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
             "tile_errors": ("moment", found.tile_errors, {"long_name": "standard errors from the scatter of tiles"}),
             "homogeneity_chi2": ("moment", found.homogeneity[0], _CHI2),
             "homogeneity_p": ("moment", found.homogeneity[1], _P),
+            "agreement_chi2": ("moment", found.agreement[0], _CHI2),
+            "agreement_p": ("moment", found.agreement[1], _P),
             "feasible": ("shape", list(near), {"long_name": "moments of the maximum-entropy density; distance"}),
             "wavenumber": ("ring", rings.wavenumber, wave),
             "density": ("ring", rings.density, {"units": "m4"}),
@@ -127,24 +130,26 @@ def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
             "goodness_p": ((), found.goodness[1], _P),
             "histogram": (
                 "bin",
-                histogram(inspection.levelled, inspection.quantiles, found.quantiles),
+                histogram(largest.levelled, largest.quantiles, found.quantiles),
                 {"units": "1", "long_name": "density of z / rms"},
             ),
-            "histogram_error": ("bin", histogram_errors(found.model) / np.sqrt(len(inspection.names)), {"units": "1"}),
+            "histogram_error": ("bin", histogram_errors(found.model) / np.sqrt(len(largest.names)), {"units": "1"}),
             "edge": ("edges", EDGES, {"units": "1", "long_name": "edges of the bins of z / rms"}),
             "mode_covariance": (("mode", "other_mode"), _mode_covariance(found), {"long_name": "of ln rms and modes"}),
             "elevation": (
                 ("fast", "slow"),
-                inspection.levelled[0].astype(np.float32),
-                {"units": "m", "long_name": "first scan, levelled"},
+                largest.levelled[0].astype(np.float32),
+                {"units": "m", "long_name": "first of the largest scans, levelled"},
             ),
             "summits": ("summit", found.summits, _SUMMITS),
             "summit_errors": ("summit", found.summit_errors, _SUMMITS),
             "model_summits": ("summit", found.model_summits, _SUMMITS),
             "model_summit_errors": ("summit", found.model_summit_errors, _SUMMITS),
             "line_jump": ("axis", list(found.line_jump[::-1]), {"units": "m", "long_name": "typical step"}),
-            "pixel": ("axis", list(frame.pixel), {"units": "m"}),
-            "points": ("axis", list(frame.shape)),
+            "scans": ("size", [len(maps.names) for maps in inspection.sizes], {"long_name": "number of each size"}),
+            "counted": ((), len(inspection.counted), {"long_name": "number of sizes that count for the moments"}),
+            "pixel": (("size", "axis"), [maps.frame.pixel for maps in inspection.sizes], {"units": "m"}),
+            "points": (("size", "axis"), [maps.frame.shape for maps in inspection.sizes]),
             "files": ((), "\n".join(inspection.names)),
             "flags": ((), "\n".join([*found.flags, *notes]), {"long_name": "limits of the estimate, one per line"}),
         },
@@ -165,8 +170,11 @@ def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
 
 def _mode_covariance(found):
     """Covariance of the quantities of a measured density, `stiction.models.MODE_QUANTITIES`."""
-    model = found.model
-    covariance = mode_covariance(model.translation, model.overlaps, ORDERS) / len(found.inspection.names)
+    inspection = found.inspection
+    models = [(evaluation.seen(inspection, found.model, maps), len(maps.names)) for maps in inspection.counted]
+    covariance = inspection.propagated(
+        [mode_covariance(model.translation, model.overlaps, ORDERS) / count for model, count in models]
+    )
     covariance[0, 0] = found.covariance[0, 0]
     return covariance
 
@@ -202,10 +210,17 @@ def rings(estimate: xr.Dataset) -> Rings:
     return Rings(*(estimate[name].values for name in ("wavenumber", "density", "modes", "weight")))
 
 
-def frame(estimate: xr.Dataset) -> Frame:
-    """Points and size of the scans."""
-    points, pixel = estimate.points.values, estimate.pixel.values
-    return Frame(tuple(map(int, points)), tuple(map(float, points * pixel)))
+def frames(estimate: xr.Dataset) -> list[tuple[int, Frame]]:
+    """Number of the scans of each size, and their points and size; the largest first."""
+    return [
+        (int(one.scans), Frame(tuple(map(int, one.points.values)), tuple(map(float, (one.points * one.pixel).values))))
+        for one in (estimate.isel(size=k) for k in range(estimate.sizes["size"]))
+    ]
+
+
+def counted(estimate: xr.Dataset) -> list[tuple[int, Frame]]:
+    """Those that count for the moments."""
+    return frames(estimate)[: int(estimate.counted)]
 
 
 def reach(estimate: xr.Dataset) -> Reach:

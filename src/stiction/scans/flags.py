@@ -1,0 +1,201 @@
+"""Sentences on everything that limits the estimate of a surface from its scans.
+
+Each function takes a `stiction.scans.estimate.SurfaceEstimate` and returns its sentence, which is empty if all is well.
+"""
+
+from typing import Any
+
+import numpy as np
+from scipy.special import chdtrc
+
+from stiction.scans import periodogram as spectra
+from stiction.scans.levelling import LEVELS
+
+#: Wavelengths of the corner along a scan from which errors are reliable.
+ENOUGH_WAVELENGTHS = 10
+#: Limits: error by tiles over that of the closed form, χ² per degree of freedom, sector ratio, p, step between lines
+#: over step along them, and difference of the summits in standard errors.
+_TILES, _MISFIT, _ANISOTROPY, UNLIKELY, _JUMP, _SUMMITS = 2.0, 2.0, 1.5, 0.01, 2.0, 4.0
+#: Names of the moments, and a factor of an error that is worth a flag.
+_MOMENTS, _WIDER = ("rms", "skewness", "kurtosis"), 1.1
+#: Ratio of the spectra of scans of different sizes that is worth a flag.
+_STEP = 1.1
+#: Difference of the largest and the smallest of 8 normal values that is exceeded with the probability 0.01, in standard
+#: deviations (studentized range).
+_RANGE_OF_SECTORS = 4.99
+
+
+def sentences(found: Any) -> tuple[str, ...]:
+    """Sentences on an estimate, the most serious causes first."""
+    return tuple(sentence for flag in _FLAGS if (sentence := flag(found)))
+
+
+def infeasible(found: Any) -> str:
+    """Which measured moments have no maximum-entropy density."""
+    _, skewness, kurtosis = found.moments
+    return f"skewness {skewness:.3g} with kurtosis {kurtosis:.3g} has no maximum-entropy density"
+
+
+def _few_wavelengths(found):
+    number = found.inspection.wavelengths
+    if number < ENOUGH_WAVELENGTHS:
+        return f"only {number:.2g} wavelengths of the corner fit into the scan; errors are reliable from 10 on"
+    return ""
+
+
+def _not_homogeneous(found):
+    ratio = np.max(found.tile_errors / found.closed_form_errors)
+    if ratio > _TILES:
+        reason = "bow, particles or marks"
+        return f"parts of a scan differ {ratio:.2g} times as much as those of one homogeneous surface ({reason})"
+    return ""
+
+
+def _bowed(found):
+    inspection = found.inspection
+    left = [remainder for remainder in inspection.remainders if remainder.likely < UNLIKELY]
+    if not left:
+        return ""
+    size = left[-1].rms / np.exp(inspection.moments[0])
+    shape = "tilt" if LEVELS[left[-1].level] == 1 else "bow"
+    return f"levelling leaves a {shape} of {size:.2g} rms (p {left[-1].likely:.1g}); level: {left[-1].level} removes it"
+
+
+def _holes(found):
+    share = found.inspection.filled_share
+    return f"{100 * share:.2g} % of the points were undefined and are filled from their neighbours" if share else ""
+
+
+def _scans_differ(found):
+    likely = found.homogeneity[1]
+    names = [name for name, p in zip(_MOMENTS, likely, strict=True) if p < UNLIKELY]
+    return f"the scans differ in {', '.join(names)} by more than their errors" if names else ""
+
+
+def _sizes_differ(found):
+    """Scans of different sizes that are not those of one surface."""
+    likely = found.agreement[1]
+    names = [name for name, p in zip(_MOMENTS, likely, strict=True) if p < UNLIKELY]
+    sizes = " and of ".join(maps.size for maps in found.inspection.counted)
+    return f"scans of {sizes} differ in {', '.join(names)} by more than their errors" if names else ""
+
+
+def _spectra_differ(found):
+    steps = [
+        f"scans of {second.size} have {ratio:.2g} times the spectrum of those of {first.size} where both resolve it"
+        for first, second, ratio, error in found.inspection.spectral_steps
+        if chdtrc(1, ((ratio - 1) / error) ** 2) < UNLIKELY and not 1 / _STEP < ratio < _STEP
+    ]
+    return "; ".join(steps)
+
+
+def _small_scans(found):
+    inspection = found.inspection
+    small = [maps.size for maps in inspection.sizes[len(inspection.counted) :]]
+    return f"scans of {', '.join(small)} show no plateau and count for the spectrum only" if small else ""
+
+
+def _spectrum_misfits(found):
+    fit = found.inspection.fit
+    ratio = fit.chi2 / fit.freedom
+    if ratio > _MISFIT and chdtrc(fit.freedom, fit.chi2) < UNLIKELY:
+        return f"the spectrum is not of the form of Eq. (7) (chi²/dof {ratio:.2g}); psd: tabulated follows it"
+    return ""
+
+
+def _spectrum_ends(found):
+    within = found.inspection.reach
+    if within.end < within.nyquist:
+        return f"the spectrum ends near {1e-6 * within.end:.3g} rad/µm; beyond: cut ends there, too"
+    return ""
+
+
+def _anisotropic(found):
+    ratio = found.sectors.max() / found.sectors.min()
+    if not np.log(ratio) > max(np.log(_ANISOTROPY), _RANGE_OF_SECTORS * found.sector_errors.max()):
+        return ""
+    width = 180 / spectra.SECTORS
+    direction = (np.argmax(found.sectors) + 0.5) * width
+    return (
+        f"the spectrum is {ratio:.2g} times as large at {direction:.0f}° to the fast axis as in the weakest direction"
+    )
+
+
+def _moments_have_no_density(found):
+    if found.feasible is None:
+        return f"{infeasible(found)}, nor have others within their errors; only heights: measured can be used"
+    if found.feasible.distance > 0:
+        near = f"skewness {found.feasible.skewness:.3g} with kurtosis {found.feasible.kurtosis:.3g}"
+        return f"{infeasible(found)}; {near}, which is {found.feasible.distance:.2g} standard errors away, is used"
+    return ""
+
+
+def _moments_do_not_describe(found):
+    distance, likely = found.goodness
+    if likely < UNLIKELY:
+        return f"four moments do not describe the heights (T² {distance:.3g}, p {likely:.1g}); heights: measured does"
+    return ""
+
+
+def _errors_are_wider(found):
+    ratio = found.errors / found.closed_form_errors
+    names = [name for name, r in zip(_MOMENTS, ratio, strict=True) if r > _WIDER]
+    if not names:
+        return ""
+    return f"errors of {', '.join(names)} are those by tiles, up to {ratio.max():.2g} times those in closed form"
+
+
+def _tip_rounds(found):
+    within = found.inspection.reach
+    if within.tip < within.nyquist:
+        return f"the tip rounds waves shorter than {2e9 * np.pi / within.tip:.3g} nm"
+    return ""
+
+
+def _lines_jump(found):
+    slow, fast = found.line_jump
+    if slow > _JUMP * fast:
+        steps = f"{1e9 * slow:.2g} nm, against steps of {1e9 * fast:.2g} nm along a line"
+        return f"lines jump by {steps}; lines: offset levels them"
+    return ""
+
+
+def _summits_differ(found):
+    # ASSUME: the spectrum of the model errs as much as the summits of its scans scatter; its rms changes all radii.
+    variance = found.summit_errors**2 + found.model_summit_errors**2 / len(found.inspection.finest.names)
+    variance[0] += (found.errors[0] * found.summits[0]) ** 2
+    if not np.any(np.abs(found.summits - found.model_summits) > _SUMMITS * np.sqrt(variance)):
+        return ""
+    radius, density = found.summits / found.model_summits
+    sharper = radius < 1 < density
+    reason = "noise, or short waves that the fit does not have" if sharper else "its short waves differ from the scans"
+    return f"summits have {radius:.2g} times the radius and {density:.2g} times the density of the model: {reason}"
+
+
+def _no_summits(found):
+    if np.isfinite(found.summits + found.summit_errors).all():
+        return ""
+    reason = "there are too few" if found.inspection.finest.frame.square else "pixels are not square"
+    return f"{reason}: summits are not compared"
+
+
+_FLAGS = (
+    _few_wavelengths,
+    _bowed,
+    _holes,
+    _not_homogeneous,
+    _scans_differ,
+    _sizes_differ,
+    _spectra_differ,
+    _small_scans,
+    _spectrum_misfits,
+    _spectrum_ends,
+    _anisotropic,
+    _moments_have_no_density,
+    _moments_do_not_describe,
+    _errors_are_wider,
+    _tip_rounds,
+    _lines_jump,
+    _summits_differ,
+    _no_summits,
+)

@@ -1,0 +1,288 @@
+"""What the scans of a surface show without a model: levelled heights, moments, spectrum and its fit by Eq. (7).
+
+Scans may differ in size and number of points. Each size is evaluated by itself; moments and quantiles of all sizes are
+averaged by scanned area, and Eq. (7) is fitted to the spectra of all sizes, each within its reach.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from operator import itemgetter
+from typing import Any
+
+import numpy as np
+
+from stiction.errors import ScanError
+from stiction.scans import periodogram as spectra
+from stiction.scans.holes import filled
+from stiction.scans.levelling import Levelling, level
+from stiction.scans.moments import moments, powers
+from stiction.scans.periodogram import Periodogram, Rings, in_order
+from stiction.scans.quantiles import correlation_areas, quantiles
+from stiction.scans.remainder import Remainder, remainders
+from stiction.scans.scan import Frame, Scan
+from stiction.scans.whittle import NON_GAUSSIAN, Reach, WhittleFit, fit_to_the_end, reach, tip_reach
+from stiction.surface.spectrum import CutoffSelfAffine
+
+#: Fewest wavelengths of the corner along a scan: for a plateau at all.
+FEWEST_WAVELENGTHS = 4
+#: ASSUME: fewest waves along a side from which the smaller scans count for the spectrum. A ring is one wave wide, so
+#: that its mean of a power law of slope -n is too large by about n (n + 1) / 24 over the square of this number: 1 %.
+_FEWEST_WAVES = 10
+#: Largest relative difference between the sides of scans that count as one size.
+_SAME_SIZE = 0.01
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How scans are evaluated."""
+
+    levelling: Levelling = Levelling()
+    tip_radius: float | None = None  #: of the microscope [m]
+    shortest: float | None = None  #: wavelength used of the spectrum; four pixels by default [m]
+    tiles: int = 4  #: tiles along each side of a scan, whose scatter tests that the scan is homogeneous
+    undefined_share: float = 0.01  #: largest share of points without height [-]
+
+
+@dataclass(frozen=True, eq=False)
+class Maps:
+    """Levelled scans of one size and number of points."""
+
+    names: tuple[str, ...]  #: of the scans
+    numbers: tuple[int, ...]  #: of these scans among all
+    frame: Frame
+    levelled: tuple[np.ndarray, ...]  #: heights, NaN where undefined, (n1, n2) each [m]
+    complete: tuple[np.ndarray, ...]  #: the same with undefined points filled from their neighbours [m]
+    periodogram: Periodogram
+    rings: Rings
+    reach: Reach
+
+    @classmethod
+    def of(cls, alike: Mapping[int, Scan], settings: Settings) -> "Maps":
+        """Level scans that are alike, by their numbers."""
+        scans = list(alike.values())
+        frame = scans[0].frame
+        levelled = tuple(level(scan.heights, settings.levelling) for scan in scans)
+        complete = tuple(filled(z, frame.pixel) for z in levelled)
+        spectrum = spectra.periodogram(complete, frame.size)
+        tip = np.inf if settings.tip_radius is None else tip_reach(complete, frame.pixel[0], settings.tip_radius)
+        within = reach(frame.size, frame.pixel, settings.shortest, tip)
+        names = tuple(scan.name for scan in scans)
+        return cls(names, tuple(alike), frame, levelled, complete, spectrum, spectra.rings(spectrum), within)
+
+    @property
+    def size(self) -> str:
+        """Size in words."""
+        return " x ".join(f"{1e6 * side:.4g}" for side in self.frame.size) + " µm"
+
+    @property
+    def area(self) -> float:
+        """Area of all scans [m²]."""
+        return self.frame.area * len(self.names)
+
+    @cached_property
+    def powers(self) -> np.ndarray:
+        """Means of z … z⁴ of every scan, (n, 4)."""
+        return np.array([powers(z) for z in self.levelled])
+
+    @property
+    def moments(self) -> np.ndarray:
+        """Moments (ln rms, skewness, kurtosis) of all scans together, (3,)."""
+        return moments(self.powers.mean(axis=0))
+
+    @cached_property
+    def quantiles(self) -> np.ndarray:
+        """Standardised heights of all scans together at `stiction.scans.quantiles.SCORES`, (49,) [-]."""
+        return quantiles(self.levelled)
+
+    def wavelengths(self, fit: WhittleFit) -> float:
+        """Wavelengths of the corner along the shorter side [-]."""
+        return fit.corner * min(self.frame.size) / (2 * np.pi)
+
+
+@dataclass(frozen=True)
+class Inspection:
+    """What the scans of a surface show without any model."""
+
+    sizes: tuple[Maps, ...]  #: the largest first
+    settings: Settings
+    rings: Rings  #: of all sizes
+    reach: Reach
+    fit: WhittleFit
+
+    @property
+    def largest(self) -> Maps:
+        """Scans of the largest size."""
+        return self.sizes[0]
+
+    @property
+    def finest(self) -> Maps:
+        """Scans with the smallest pixels."""
+        return min(self.sizes, key=_pixel)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all scans, in the order in which they were given."""
+        return self.in_order([maps.names for maps in self.sizes])
+
+    def in_order(self, of_sizes: Sequence[Sequence[Any]]) -> tuple[Any, ...]:
+        """Values of the scans of each size, in the order in which the scans were given."""
+        numbered = [
+            pair
+            for maps, values in zip(self.sizes, of_sizes, strict=True)
+            for pair in zip(maps.numbers, values, strict=True)
+        ]
+        return tuple(value for _, value in sorted(numbered, key=itemgetter(0)))
+
+    @property
+    def counted(self) -> tuple[Maps, ...]:
+        """Sizes that count for moments and quantiles, the largest first: those that show the plateau."""
+        return tuple(maps for maps in self.sizes if maps.wavelengths(self.fit) >= FEWEST_WAVELENGTHS)
+
+    @cached_property
+    def weights(self) -> np.ndarray:
+        """Share of each of these sizes in the mean moments and quantiles: that of its area, (n,) [-]."""
+        areas = np.array([maps.area for maps in self.counted])
+        return areas / areas.sum()
+
+    def averaged(self, values: Sequence[np.ndarray]) -> np.ndarray:
+        """Mean of a value of every size that counts."""
+        return sum(weight * value for weight, value in zip(self.weights, values, strict=True))
+
+    def propagated(self, covariances: Sequence[np.ndarray]) -> np.ndarray:
+        """Covariance of the mean of a value of every size that counts."""
+        return sum(weight**2 * value for weight, value in zip(self.weights, covariances, strict=True))
+
+    @property
+    def moments(self) -> np.ndarray:
+        """Moments (ln rms, skewness, kurtosis) of all scans together, (3,)."""
+        return self.averaged([maps.moments for maps in self.counted])
+
+    @property
+    def quantiles(self) -> np.ndarray:
+        """Standardised heights of all scans together at `stiction.scans.quantiles.SCORES`, (49,) [-]."""
+        return self.averaged([maps.quantiles for maps in self.counted])
+
+    @property
+    def spectrum(self) -> CutoffSelfAffine:
+        """Fit, up to the end of the measured spectrum."""
+        return self.fit.spectrum(self.reach.end)
+
+    def spectrum_in(self, maps: Maps) -> CutoffSelfAffine:
+        """The same, without the waves that are shorter than two pixels of some scans."""
+        return self.fit.spectrum(min(self.reach.end, maps.reach.nyquist))
+
+    @property
+    def filled_share(self) -> float:
+        """Share of the undefined points of all scans [-]."""
+        return float(np.mean(np.concatenate([~np.isfinite(z).ravel() for maps in self.sizes for z in maps.levelled])))
+
+    @cached_property
+    def remainders(self) -> tuple[Remainder, ...]:
+        """Tilts and bows that levelling left in the scans of the largest size, which show the plateau."""
+        error, maps = np.sqrt(self.fit.covariance[0, 0]), self.largest
+        return remainders(maps.levelled, maps.frame.size, self.settings.levelling, self.spectrum, error)
+
+    @property
+    def wavelengths(self) -> float:
+        """Wavelengths of the corner along the shorter side of the largest scans [-]."""
+        return self.largest.wavelengths(self.fit)
+
+    @property
+    def areas(self) -> float:
+        """Correlation areas of all scans that count for the moments [-]."""
+        area = sum(maps.area for maps in self.counted)
+        return correlation_areas(self.spectrum, np.exp(2 * self.moments[0]), area)
+
+    @property
+    def spectral_steps(self) -> Iterator[tuple[Maps, Maps, float, float]]:
+        """Neighbouring sizes, the spectrum of the second over that of the first where both resolve it, and its error.
+
+        Sizes without common wave numbers are left out.
+        """
+        for first, second in pairwise(self.sizes):
+            low = max(_first_wave(maps, self.sizes) for maps in (first, second))
+            high = min(self.reach.high, *(maps.reach.high for maps in (first, second)))
+            rings = [maps.rings.between(low, high) for maps in (first, second)]
+            if all(len(part.wavenumber) for part in rings):
+                fitted = self.fit.spectrum(high)
+                means = [np.average(part.density / fitted(part.wavenumber), weights=part.weight) for part in rings]
+                error = NON_GAUSSIAN * np.sqrt(sum(1 / part.weight.sum() for part in rings))
+                yield first, second, means[1] / means[0], error * means[1] / means[0]
+
+
+def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
+    """Level the scans and fit their spectrum: the fast part of an estimate, with all reasons to refuse scans.
+
+    Raises
+    ------
+    ScanError
+        If too many points are undefined, or if the scans are too small to show the plateau of the spectrum.
+    """
+    names = ", ".join(scan.name for scan in scans)
+    for scan in scans:
+        if scan.undefined_share > settings.undefined_share:
+            share = f"{100 * scan.undefined_share:.3g} % of its points undefined"
+            raise ScanError(scan.name, "files", f"has {share}, at most {100 * settings.undefined_share:.3g} % may be")
+    sizes = tuple(Maps.of(alike, settings) for alike in by_size(scans))
+    try:
+        fitted, rings, within = _fitted(sizes)
+    except ValueError as reason:
+        raise ScanError(names, "files", f"cannot give a spectrum: {reason}") from None
+    found = Inspection(sizes, settings, rings, within, fitted)
+    if found.wavelengths < FEWEST_WAVELENGTHS:
+        side = min(found.largest.frame.size) * FEWEST_WAVELENGTHS / found.wavelengths
+        raise ScanError(
+            names,
+            "files",
+            f"shows no plateau of the spectrum: {found.wavelengths:.2g} wavelengths of its corner fit into the scan, "
+            f"{FEWEST_WAVELENGTHS} are needed, as on a side of about {1e6 * side:.2g} µm or more",
+        )
+    return found
+
+
+def by_size(scans: Sequence[Scan]) -> list[dict[int, Scan]]:
+    """Scans that are alike in size and number of points together, by their numbers; the largest size first."""
+    groups = []
+    for number, scan in enumerate(scans):
+        group = next((group for group in groups if _alike(scan, next(iter(group.values())))), None)
+        if group is None:
+            groups.append(group := {})
+        group[number] = scan
+    return sorted(groups, key=lambda group: -min(next(iter(group.values())).size))
+
+
+def _alike(one, other):
+    """Whether two scans have the same number of points and, nearly, the same size."""
+    return one.frame.shape == other.frame.shape and np.allclose(one.size, other.size, rtol=_SAME_SIZE, atol=0)
+
+
+def _fitted(sizes):
+    """Fit to the spectra of all sizes, their rings and their reach.
+
+    The finest scans say where the spectrum ends; the others count within their reach only, because aliases raise the
+    spectrum beyond.
+    """
+    finest = min(sizes, key=_pixel)
+    rings, within = finest.rings, finest.reach
+    if len(sizes) > 1:
+        rings = in_order(maps.rings.between(_first_wave(maps, sizes), _last_wave(maps, finest)) for maps in sizes)
+        within = replace(within, low=sizes[0].reach.low)
+    fitted, within = fit_to_the_end(rings, within)
+    return fitted, rings, within
+
+
+def _first_wave(maps, sizes):
+    """Wave number from which scans count for a spectrum of several sizes [rad m⁻¹]."""
+    return maps.reach.low if maps is sizes[0] else 2 * np.pi * _FEWEST_WAVES / min(maps.frame.size)
+
+
+def _last_wave(maps, finest):
+    """Wave number up to which they count [rad m⁻¹]."""
+    return np.inf if maps is finest else maps.reach.high
+
+
+def _pixel(maps):
+    """Wider distance of the points of scans [m]."""
+    return max(maps.frame.pixel)
