@@ -33,6 +33,7 @@ WRONG_VALUES = [
     ("solid: {poisson_ratio: -1}", "solid.poisson_ratio", "-1", "above -1"),
     ("water: {temperature_K: 20}", "water.temperature_K", "20", "at least 273 and at most 373"),
     ("water: {temperature_K: 373.5}", "water.temperature_K", "373.5", "liquid water"),
+    ("materials: {SAM: {coating_nm: -1}}", "materials.SAM.coating_nm", "-1", "at least 0 and at most 100: thickness"),
     ("attraction: {reach: far}", "attraction.reach", "'far'", "one of touching, all"),
     ("attraction: {retarded: 5}", "attraction.retarded", "5", "must be true or false"),
     ("attraction: {wavelength_nm: 0}", "attraction.wavelength_nm", "0", "above 0"),
@@ -118,6 +119,8 @@ UNCERTAIN = (
     "devices: {C1: {kind: cantilever, pair: b, thickness_um: 2.6, gap_um: 20, width_um: 30, humidities: [0.67], "
 )
 UNCERTAIN += "uncertainty: {"
+#: Coatings as thick as they may be.
+COATED = "materials: {SAM: {coating_nm: 100}}\nsurfaces: {B1: {material: SAM}, Sub1: {material: SAM}}\n"
 #: Smooth surfaces under a beam whose strips are short enough.
 SMOOTH = "pairs: {b: {beam: Sub1}}\nbeam: {thickness_um: 8}"
 # As above, for relations between keys
@@ -201,6 +204,10 @@ WRONG_RELATIONS = [
      "must be the name of a section of materials, where no material is described"),
     ("attraction: {reach: all}\nvan_der_waals: none", "attraction.reach", "'all'",
      "must be touching if van_der_waals is none"),
+    (COATED + "pairs: {a: {gap_um: 0.19, humidities: [0.45]}}", "pairs.a.gap_um", "0.19",
+     "above the thickness of the coatings of both surfaces, 200 nm"),
+    (COATED + "devices: {C1: {kind: cantilever, pair: a, thickness_um: 2.6, gap_um: 0.19, width_um: 30, "
+     "humidities: [0.45]}}", "devices.C1.gap_um", "0.19", "coatings of both surfaces, 200 nm"),
     ("materials: {Gold: {contact_angle_deg: 40}}\nsurfaces: {B1: {material: gold}}", "surfaces.B1.material", "'gold'",
      "must be one of Gold; did you mean Gold?"),
     ("pairs: {c: {substrate: sub2}}", "pairs.c.substrate", "'sub2'", "did you mean Sub2?"),

@@ -207,6 +207,24 @@ def test_only_attraction_across_gaps_changes_the_water_of_a_pair_and_nothing_els
     assert {key: across.seen_by("b")[key] for key in contact} == contact
 
 
+def test_coatings_of_both_surfaces_keep_solids_apart_in_the_gaps_and_each_its_own_body_in_contact():
+    bodies = {"Thin": {"coating_nm": 1.2}, "Thick": {"coating_nm": 2.0, "contact_angle_deg": 30}}
+    sides = {"B2": {"material": "Thin"}, "Sub1": {"material": "Thick"}}
+    coated = plan(materials=bodies, surfaces=sides, attraction={"reach": "all"})
+    assert coated.water("b")["gaps"]["spacer_nm"] == 3.2
+    assert {side: body["coating_nm"] for side, body in coated.seen_by("b")["materials"].items()} == {
+        "beam": 1.2,
+        "substrate": 2.0,
+    }
+    assert coated.seen_by("b")["materials"]["beam"]["young_modulus_GPa"] == 164
+    assert coated.water("c") == plan(attraction={"reach": "all"}).water("c")
+    none = plan(
+        materials={"Thin": {"coating_nm": 0}}, surfaces={"B2": {"material": "Thin"}}, attraction={"reach": "all"}
+    )
+    assert none.water("b") == plan(attraction={"reach": "all"}).water("b")
+    assert coated.stated_properties("b") == [["Thin", []], ["Thick", ["contact angle"]]]
+
+
 def test_attraction_across_gaps_is_a_variant_on_the_contact_of_the_base():
     varied = plan(studies={"variants": {"reach": ["all"]}})
     assert ("b", "reach_all") in varied.studied

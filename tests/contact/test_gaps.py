@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.gaps import RETARDATION, FlatAttraction, gap_pressures, work_across_film
 from stiction.contact.pair import bearing_area
-from stiction.contact.vanderwaals import attraction
+from stiction.contact.vanderwaals import DugdaleAttraction, attraction
 from stiction.streams import stream
 
 NM = 1e-9
@@ -61,6 +61,18 @@ def test_a_spacer_shifts_the_gaps():
     coated = FlatAttraction(HAMAKER_CONSTANT["dry"], 100 * NM, spacer=2.5 * NM)
     gaps = np.linspace(0, 30, 50) * NM
     assert_allclose(coated.work(gaps), AIR.work(gaps + 2.5 * NM), rtol=1e-14)
+
+
+@given(st.floats(0.3, 20))
+def test_summits_with_coatings_have_the_tangent_of_the_work_of_flats_so_that_nothing_counts_twice(spacer):
+    """Nothing is left for gaps where coatings touch, and nowhere less; the stress of bare solids would leave less."""
+    flats, counted = FlatAttraction(1e-19, spacer=spacer * NM), DugdaleAttraction(1e-19, spacer * NM)
+    gaps = np.linspace(0, 4 * spacer, 400) * NM
+    left = flats.work(gaps) - counted.work(gaps)
+    assert_allclose(left[0], 0, atol=1e-14 * counted.work_of_adhesion)
+    assert np.all(left >= -2e-3 * counted.work_of_adhesion)
+    bare = DugdaleAttraction(1e-19)
+    assert np.min(flats.work(gaps) - bare.work(gaps)) < -0.1 * bare.work_of_adhesion
 
 
 # Retardation
@@ -147,17 +159,20 @@ def test_far_sphere_is_attracted_with_the_force_of_hamaker(gap):
     assert abs(force / (-flats.hamaker_constant * radius / (6 * (gap - AT_REST) ** 2)) - 1) > 0.02
 
 
+@pytest.mark.parametrize("spacer", [0, 2.4 * NM])
 @pytest.mark.parametrize("medium", ["water", "dry"])
-def test_touching_sphere_has_the_pull_off_of_derjaguin_muller_and_toporov(medium):
+def test_touching_sphere_has_the_pull_off_of_derjaguin_muller_and_toporov(medium, spacer):
     """2πRω: that of the Dugdale stress, to which the gaps add nothing, and without the correction far too much."""
-    radius, flats, counted = 400 * NM, FlatAttraction(HAMAKER_CONSTANT[medium]), attraction(medium)
+    counted = attraction(medium, spacer=spacer)
+    radius, flats = 400 * NM, FlatAttraction(HAMAKER_CONSTANT[medium], spacer=spacer)
     area, first = sphere(radius, 5 * NM)
     at = np.array([5 * NM])
     pull = 2 * np.pi * radius * counted.work_of_adhesion
     added = gap_pressures(area[None], first, at, STEP, lambda gap: flats.work(gap) - counted.work(gap))[0][0, 0]
-    assert abs(added) < 1e-4 * pull
+    cut = (spacer / (200 * NM)) ** 2  # the sphere ends 200 nm below its top
+    assert abs(added) < (1e-4 + cut) * pull
     twice = gap_pressures(area[None], first, at, STEP, flats.work)[0][0, 0]
-    assert_allclose(twice, -pull, rtol=1e-4)
+    assert_allclose(twice, -pull, rtol=1e-4 + 1.2 * cut)
 
 
 def test_energy_of_slightly_rough_surfaces_is_inverse_to_the_square_of_the_distance():
@@ -172,16 +187,17 @@ def test_energy_of_slightly_rough_surfaces_is_inverse_to_the_square_of_the_dista
     assert abs(energy / smooth * (16 / 8) ** 2 - 1) > 1  # one over the distance to another power
 
 
-def test_bearing_area_gives_the_pressure_of_the_map_point_by_point():
+@pytest.mark.parametrize("flats", [AIR, FlatAttraction(HAMAKER_CONSTANT["dry"], 100 * NM, spacer=2.4 * NM)])
+def test_bearing_area_gives_the_pressure_of_the_map_point_by_point(flats):
     rng = stream(1, "gaps")
     heights = (3 * NM * rng.standard_normal((400, 400))).astype(np.float32)
     distance = heights.max() + np.array([2, 5, 10]) * NM  # nearer, the few highest points are spread over their step
-    pressure, _ = of_heights(heights, distance, AIR.work)
+    pressure, _ = of_heights(heights, distance, flats.work)
     half = 0.01 * NM
     gaps = distance[:, None, None] - heights.astype(float)
-    one_by_one = np.mean(AIR.work(gaps + half) - AIR.work(gaps - half), axis=(1, 2)) / (2 * half)
+    one_by_one = np.mean(flats.work(gaps + half) - flats.work(gaps - half), axis=(1, 2)) / (2 * half)
     assert_allclose(pressure, one_by_one, rtol=1e-4)
-    mean_plane = (AIR.work(distance + half) - AIR.work(distance - half)) / (2 * half)
+    mean_plane = (flats.work(distance + half) - flats.work(distance - half)) / (2 * half)
     assert np.all(pressure < 1.1 * mean_plane)  # roughness attracts more: its mean plane alone is not enough
 
 

@@ -10,6 +10,7 @@ from stiction.contact.asperity import HertzAsperity, MaugisTable, reduced_modulu
 from stiction.contact.solids import (
     Solid,
     asperity_between,
+    attraction_between,
     composite_modulus,
     hamaker_constant,
     softer_hardness,
@@ -69,6 +70,15 @@ def test_an_asperity_has_the_modulus_and_the_attraction_of_both_bodies():
     assert asperity_between(POLYSILICON, GOLD, "none") == HertzAsperity(modulus)
 
 
+def test_coatings_of_both_bodies_keep_them_apart_and_leave_stiffness_and_hardness():
+    thin, thick = (replace(POLYSILICON, coating=thickness) for thickness in (1e-9, 1.5e-9))
+    assert attraction_between(thin, thick, "dry") == DugdaleAttraction(HAMAKER_CONSTANT["dry"], 2.5e-9)
+    assert attraction_between(thin, POLYSILICON, "water").spacer == 1e-9
+    assert attraction_between(thin, thick, "none") is None
+    assert composite_modulus(thin, thick) == composite_modulus(POLYSILICON, POLYSILICON)
+    assert softer_hardness(thin, thick) == HARDNESS
+
+
 def test_a_constant_that_is_not_stated_is_reported():
     with pytest.raises(ValueError, match="through dry is not stated, only through water"):
         hamaker_constant(POLYSILICON, GOLD, "dry")
@@ -84,6 +94,8 @@ def test_a_constant_that_is_not_stated_is_reported():
         ({"hamaker_constant": {"water": -1.0}}, "Hamaker constant .water.*-1.0"),
         ({"contact_angle": -0.1}, "contact angle.*-0.1"),
         ({"contact_angle": 3.2}, "contact angle.*3.2"),
+        ({"coating": -1e-9}, "coating.*-1e-09"),
+        ({"coating": np.inf}, "coating.*inf"),
     ],
 )
 def test_a_solid_is_checked_at_once(change, message):

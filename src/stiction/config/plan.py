@@ -18,7 +18,7 @@ from stiction.config.designs import Designs, hamaker_constant, hamaker_constants
 from stiction.config.files import paper
 from stiction.config.measured import digest, evaluation, is_measured, preliminary_estimates, quantities, source
 from stiction.config.merging import merged
-from stiction.devices.materials import ELASTIC, PROPERTIES
+from stiction.devices.materials import COATING, ELASTIC, PROPERTIES
 from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SIDES, SURFACE_MODELS
 
 #: Keys of the measured statistics of a surface: moments of the heights and summit statistics.
@@ -104,7 +104,7 @@ class Plan:
             named = named | {"the solid": solid}
         surfaces = self.config["surfaces"]
         used = dict.fromkeys(surfaces[surface].get("material", "the solid") for surface in self.sides(pair))
-        return [[name, [words[key] for key in named[name]]] for name in used if name in named]
+        return [[name, [words[key] for key in named[name] if key in words]] for name in used if name in named]
 
     def water(self, pair: str, variant: str = "base") -> dict:
         """Section ``water`` of a pair: with the contact angles if one is not zero, and the attraction across gaps."""
@@ -120,7 +120,9 @@ class Plan:
         both = [hamaker_constants(material) for material in self._stated(pair)]
         constants = {medium: math.sqrt(math.prod(one[medium] for one in both)) for medium in (summits, "dry")}
         retarded = {"wavelength_nm": reach["wavelength_nm"]} if reach["retarded"] else {}
-        return {"gaps": {"hamaker_constant_zJ": constants, "summits": summits} | retarded}
+        spacer = sum(material.get(COATING, 0) for material in self._stated(pair))
+        coated = {"spacer_nm": spacer} if spacer else {}
+        return {"gaps": {"hamaker_constant_zJ": constants, "summits": summits} | retarded | coated}
 
     def beam_modulus(self, pair: str) -> dict:
         """Young's modulus of the beam of a pair if its material states one, otherwise empty."""

@@ -24,6 +24,7 @@ from stiction.contact.estimate import ProfileMoments, force_law, repulsion_and_a
 from stiction.contact.meniscus import dry_air, film, meniscus_height
 from stiction.contact.solids import Solid, asperity_between
 from stiction.devices import limits
+from stiction.devices.materials import COATING
 from stiction.errors import NotConverged
 from stiction.models import SIDES
 from stiction.numbers import is_multiple
@@ -346,6 +347,16 @@ def not_apart(gap: float, humidities: float | list, temperature: float, sides: l
         f"must be at least {least:.4g} µm, {limits.FILMS} times the sum of the height of the water film, "
         f"{from_si(height, 'nm'):.5g} nm, and the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
     )
+
+
+@relation("pairs.*.gap_um", "pairs.*.beam", "pairs.*.substrate", "surfaces", "materials")
+def coatings_leave_a_gap(gap, beam, substrate, surfaces, materials):
+    """Both coatings together are thinner than the gap."""
+    both = of_material([surfaces.get(name, {}) for name in (beam, substrate)], materials)
+    coatings = sum(material.get(COATING, 0) for material in both)
+    if gap * NM_PER_UM > coatings:
+        return None
+    return f"must be above the thickness of the coatings of both surfaces, {coatings:g} nm"
 
 
 @relation("pairs.*.humidities", *_MEETING)

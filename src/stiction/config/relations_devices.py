@@ -10,6 +10,7 @@ from stiction.config.designs import Designs, hamaker_constant
 from stiction.config.kinds import COMMON, KEYS, KINDS, kind_of
 from stiction.config.relations import (
     cases_have_unique_names,
+    coatings_leave_a_gap,
     estimated_strip,
     field_too_large,
     length_can_exceed_the_correlation,
@@ -139,6 +140,13 @@ def axis_increases(values):
 def device_is_apart_from_the_film(gap, humidities, name, devices, pairs, surfaces, materials, temperature):
     """The gap of a device is far above the film of water and the peaks, as for pairs."""
     return not_apart(gap, humidities, temperature, _sides(devices[name], pairs, surfaces), materials)
+
+
+@relation("devices.*.gap_um", "devices.*.@", "devices", "pairs", "surfaces", "materials")
+def coatings_leave_a_gap_of_a_device(gap, name, devices, pairs, *bodies):
+    """Both coatings together are thinner than the gap of a device, as for pairs."""
+    pair = pairs.get(devices[name]["pair"], {})
+    return coatings_leave_a_gap(gap, *map(pair.get, SIDES), *bodies)
 
 
 @relation("devices.*.gap_um", "devices.*.chart.humidities", *_MEETING)

@@ -21,17 +21,18 @@ class Gaps:
     hamaker_constant: dict[str, float]  #: of the two solids, by medium [J]
     summits: str  #: medium through which the summits attract, whose work is not counted again
     wavelength: float = np.inf  #: of the retardation [m]
+    spacer: float = 0.0  #: thickness of both coatings [m]
 
     def through(self, medium: str) -> gaps.FlatAttraction:
         """Attraction of flats through a medium."""
-        return gaps.FlatAttraction(self.hamaker_constant[medium], self.wavelength)
+        return gaps.FlatAttraction(self.hamaker_constant[medium], self.wavelength, self.spacer)
 
     def work(self, gap: float | np.ndarray, height: float) -> float | np.ndarray:
         """Work of two flats beyond that of the summits [J m⁻²], at gaps [m] and under a film of a height [m].
 
         If the summits attract through dry air, so do the solids across the film.
         """
-        counted = vanderwaals.attraction(self.summits, self.hamaker_constant[self.summits])
+        counted = vanderwaals.attraction(self.summits, self.hamaker_constant[self.summits], self.spacer)
         return gaps.work_across_film(gap, height, self.through(self.summits), self.through("dry")) - counted.work(gap)
 
 

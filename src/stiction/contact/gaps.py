@@ -43,8 +43,7 @@ class FlatAttraction:
     def __post_init__(self):
         if not self.wavelength > 0:
             raise ValueError(f"the wavelength of the retardation must be positive, got {self.wavelength:.3g} m")
-        if not 0 <= self.spacer < np.inf:
-            raise ValueError(f"the thickness of a coating must not be negative, got {self.spacer:.3g} m")
+        DugdaleAttraction(self.hamaker_constant, self.spacer)  # refuses what no solids have
 
     @property
     def largest_pressure(self) -> float:

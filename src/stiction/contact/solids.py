@@ -22,7 +22,8 @@ class Solid:
     hardness: float = HARDNESS  #: σ_H [Pa]
     #: Hamaker constant of two bodies of this material through each medium [J]
     hamaker_constant: Mapping[str, float] = field(default_factory=lambda: dict(HAMAKER_CONSTANT))
-    contact_angle: float = 0.0  #: of water θ [rad]
+    contact_angle: float = 0.0  #: of water θ on the body, or on its coating [rad]
+    coating: float = 0.0  #: thickness of its coating [m]
 
     def __post_init__(self):
         constants = {f"Hamaker constant ({medium})": value for medium, value in self.hamaker_constant.items()}
@@ -34,6 +35,8 @@ class Solid:
             raise ValueError(f"Poisson's ratio of a solid must be in (-1, 0.5], got {self.poisson_ratio}")
         if not 0 <= self.contact_angle <= np.pi:
             raise ValueError(f"the contact angle of a solid must be in [0, π] rad, got {self.contact_angle}")
+        if not 0 <= self.coating < np.inf:
+            raise ValueError(f"the coating of a solid must not be thinner than nothing, got {self.coating} m")
 
 
 def composite_modulus(first: Solid, second: Solid) -> float:
@@ -78,4 +81,6 @@ def asperity_between(first: Solid, second: Solid, medium: str) -> Asperity:
 
 def attraction_between(first: Solid, second: Solid, medium: str) -> DugdaleAttraction | None:
     """Van der Waals attraction of two solids through a stated medium; ``None`` for ``"none"``."""
-    return attraction(medium, None if medium == "none" else hamaker_constant(first, second, medium))
+    if medium == "none":
+        return None
+    return attraction(medium, hamaker_constant(first, second, medium), first.coating + second.coating)

@@ -47,6 +47,8 @@ PROPERTIES = {
     "hamaker_constant": Property("hamaker_constant_zJ", "Hamaker constant", Step(0.2)),
     "contact_angle": Property("contact_angle_deg", "contact angle"),
 }
-#: Those on which contact depends, and their keys.
+#: Thickness of a coating, which only some materials have.
+COATING = "coating_nm"
+#: Those on which contact depends and that may be uncertain, and the keys of all on which it depends.
 OF_CONTACT = {name: one for name, one in PROPERTIES.items() if one.step}
-ELASTIC = tuple(one.key for one in OF_CONTACT.values())
+ELASTIC = (*(one.key for one in OF_CONTACT.values()), COATING)

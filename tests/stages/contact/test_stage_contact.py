@@ -10,8 +10,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
 from scipy.stats import norm
 
+from stiction.constants import HAMAKER_CONSTANT
+from stiction.contact.environment import Gaps, Water
 from stiction.contact.pair import DistanceGrid
+from stiction.contact.solids import Solid
+from stiction.models import SIDES
 from stiction.stages.contact import contact
+from stiction.stages.contact.curves import energies
 
 SETTINGS = small.settings_of(contact, job_settings(small.PLAN, "contact/b_NG"))
 SAMPLES = SETTINGS.contact.samples
@@ -49,6 +54,22 @@ def test_chunks_that_are_missing_repeated_or_of_other_distances_are_refused():
 
 def test_the_first_samples_are_those_computed_alone():
     xr.testing.assert_identical(contact.first(small.contact_of_pair(), 2), part(range(2)))
+
+
+def test_summits_adhere_less_with_thicker_coatings_and_a_coating_without_thickness_changes_no_bit():
+    def coated(thickness):
+        both = {side: Solid(164e9, 0.23, coating=thickness) for side in SIDES}
+        return contact.compute(small.surfaces(), "b", "NG", replace(SETTINGS, materials=both), range(2))
+
+    xr.testing.assert_identical(coated(0.0), part(range(2)))
+    pulls = [-coated(thickness).solid_pressure.min("distance").values for thickness in (0.0, 0.2e-9, 0.6e-9, 1.2e-9)]
+    assert np.all(np.diff(pulls, axis=0) < 0)
+    water = Water(300.0, gaps=Gaps(HAMAKER_CONSTANT, "dry", 100e-9))
+    across = [
+        energies(coated(thickness), 0.4, replace(water, gaps=replace(water.gaps, spacer=2 * thickness)))
+        for thickness in (0.0, 0.2e-9, 0.6e-9, 1.2e-9)
+    ]
+    assert np.all(np.diff(across, axis=0) < 0)
 
 
 def test_the_rms_of_the_surfaces_is_in_their_bearing_area():

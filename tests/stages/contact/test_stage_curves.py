@@ -7,6 +7,7 @@ from scipy.special import erfc
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.environment import Gaps, Water, flooded_law
 from stiction.contact.pair import DistanceGrid
+from stiction.contact.vanderwaals import attraction
 from stiction.stages.contact import contact
 from stiction.stages.contact.curves import energies, force_curves, pull_offs, tip_forces, vectors
 
@@ -116,6 +117,31 @@ def test_solids_that_attract_through_air_do_so_in_the_film_as_well(medium):
     # Beyond the range of the Dugdale stress, nothing is subtracted.
     assert gaps.work(1e-9, 0.5e-9) == pytest.approx(gaps.through("dry").work(1e-9), rel=1e-12)
     assert gaps.work(0.1e-9, 2e-9) - gaps.through(medium).work(0.1e-9) < -0.5 * counted
+
+
+@pytest.mark.parametrize("medium", ["water", "dry"])
+@pytest.mark.parametrize("spacer", [0.3e-9, 2.4e-9])
+def test_coated_flats_that_touch_need_the_work_at_the_distance_of_their_coatings_in_all(medium, spacer):
+    """Through air, with and without a film that fills their coatings' contact; summits count their own share once."""
+    gaps, counted = Gaps(HAMAKER_CONSTANT, medium, np.inf, spacer), attraction(medium, spacer=spacer)
+    distance = counted.closest_distance
+    whole = (
+        HAMAKER_CONSTANT["dry"] / (12 * np.pi * distance**2) * (1 - (counted.equilibrium_distance / distance) ** 6 / 4)
+    )
+    assert gaps.work(0.0, 0.0) + counted.work_of_adhesion == pytest.approx(whole, rel=1e-12)
+    wet = whole * HAMAKER_CONSTANT[medium] / HAMAKER_CONSTANT["dry"]
+    assert gaps.work(0.0, 1e-5) + counted.work_of_adhesion == pytest.approx(wet, rel=1e-6)
+    assert gaps.work(0.0, 0.0) + attraction(medium).work_of_adhesion > 1.2 * whole  # not that of the bare solids
+
+
+def test_energies_fall_with_the_thickness_of_the_coatings():
+    dataset = rough(2e-9)
+    found = [
+        energies(dataset, 0.4, Water(300.0, gaps=Gaps(HAMAKER_CONSTANT, "water", 100e-9, spacer)))
+        for spacer in (0.0, 0.6e-9, 1.2e-9, 2.4e-9, 5e-9)
+    ]
+    assert np.all(np.diff(found, axis=0) < 0)
+    np.testing.assert_array_equal(found[0], energies(dataset, 0.4, Water(300.0, gaps=ACROSS)))
 
 
 def test_no_sample_exceeds_the_energy_and_the_pull_off_of_flooded_flats_that_attract_across_gaps():
