@@ -14,7 +14,8 @@ author = "The stiction developers"
 project_copyright = "2026, The stiction developers"
 release = stiction.__version__
 
-extensions = ["myst_parser", "mathml", "plain", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon"]
+extensions = ["myst_parser", "mathml", "plain", "sphinx_copybutton"]
+extensions += [f"sphinx.ext.{name}" for name in ("autodoc", "autosummary", "napoleon", "viewcode")]
 exclude_patterns = ["_build", "templates", "tables"]
 templates_path = ["_templates"]
 

@@ -103,7 +103,7 @@ def source(entry: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def evaluation(entry: Mapping[str, Any], section: Mapping[str, Any]) -> dict[str, Any]:
-    """How scans are evaluated; `stiction.scans.estimate.Settings` in the units of the configuration."""
+    """How scans are evaluated; `stiction.scans.inspection.Settings` in the units of the configuration."""
     scans = entry["scans"]
     levelling = {"levelling": {key: scans[key] for key in ("level", "lines")}}
     limits = {key: section[key] for key in ("tiles", "undefined_share")}
