@@ -66,14 +66,21 @@ def written(found):
 
 @styled
 def drawn(found):
-    """Figure for looking at."""
-    figure, ((panel,),) = panels(1, 1, (SINGLE, 2.5))
+    """Crack lengths over the humidity, and their differences from those of the true surfaces."""
+    figure, ((lengths,), (differences,)) = panels(2, 1, (SINGLE, 3.8), sharex=True, height_ratios=[2, 1])
     error = np.hypot(found.scans_se_um, found.simulation_se_um)
-    panel.plot(found.relative_humidity, found.true_um, color="black", marker="s", label="true surfaces")
-    panel.errorbar(found.relative_humidity, found.predicted_um, error, marker="o", linestyle="", label="from scans")
-    panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$ [µm]")
-    humidity_axis(panel)
-    panel.legend()
+    scans = {"marker": "o", "linestyle": "", "label": "from scans"}
+    lengths.plot(found.relative_humidity, found.true_um, color="black", marker="s", label="true surfaces")
+    lengths.errorbar(found.relative_humidity, found.predicted_um, error, **scans)
+    lengths.set(ylabel="crack length $l_s$ [µm]")
+    lengths.legend()
+    difference, of_both = found.predicted_um - found.true_um, np.hypot(error, found.true_se_um)
+    differences.axhline(0, color="black", linewidth=0.8)
+    differences.errorbar(
+        found.relative_humidity, *(100 * part / found.true_um for part in (difference, of_both)), **scans
+    )
+    differences.set(xlabel="relative humidity [–]", ylabel="difference [%]")
+    humidity_axis(differences)
     return figure
 
 

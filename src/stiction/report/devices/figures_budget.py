@@ -9,7 +9,6 @@ from matplotlib.patches import Patch
 
 from stiction.devices.risk import stuck_share
 from stiction.plan.names import by_name
-from stiction.report.devices.figures_devices import below
 from stiction.report.devices.tables_budget import SCATTER, TOTAL, choice_label, response_text
 from stiction.report.format import TO_UN
 from stiction.report.style import (
@@ -48,7 +47,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
     datasets : dict
         Device to the dataset of stage stoppers.
     warnings : dict
-        Device to sentences, which are written below the figure.
+        Device to sentences, which the table of stoppers contains.
     """
     figure, columns, lines = columns_of_panels(len(datasets), 2, lambda n: min(DOUBLE, SINGLE * n), 5.0)
     for column, dataset in zip(columns, datasets.values(), strict=True):
@@ -59,7 +58,8 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
         line[1, 0].set_ylabel("pull-off force [µN]")
     letter_lines(lines, list(datasets))
     figure.legend(handles=shared, loc="outside upper center", ncols=2)
-    below(figure, [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found], "stoppers")
+    if any(warnings.values()):
+        figure.supxlabel("Warnings are written out in results/tables/stoppers.md", fontsize=6, ha="left", x=0.01)
     return figure
 
 

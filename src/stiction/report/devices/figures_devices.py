@@ -1,8 +1,8 @@
 """Figures of devices: share of stuck beams over their length, safe length over the relative humidity."""
 
-import textwrap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from itertools import product
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -31,8 +31,6 @@ from stiction.stages.devices.end_states import END_STATES
 
 #: Marker of each basis of a safe length.
 _BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x"}
-#: Characters in a line of warnings, and most lines below a figure: more would take the place of its panels.
-_LINE, _MOST_LINES = 130, 12
 #: Height of a line of panels, and of an entry of the legends below them [in].
 _PANEL, _ENTRY = 3.3, 0.12
 #: Lightest colour of a curve.
@@ -46,13 +44,13 @@ def _width(columns):
     return min(DOUBLE, 1.5 * SINGLE * columns)
 
 
-def below(figure: Figure, sentences: Sequence[str], table: str) -> None:
-    """Write numbered sentences below a figure, or the name of the table whose caption has them if they are many."""
-    lines = "\n".join(textwrap.fill(f"({k}) {sentence}", _LINE) for k, sentence in enumerate(sentences, 1))
-    if lines.count("\n") >= _MOST_LINES:
-        lines = f"(1) to ({len(sentences)}): warnings, written out with results/tables/{table}.md"
-    if lines:
-        figure.supxlabel(lines, fontsize=6, ha="left", x=0.01)
+def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[str]], table: str) -> None:
+    """Say below a figure which table has the warnings, by their numbers, in its caption."""
+    if count := len(numbered(warnings)[0]):
+        numbers = "(1)" if count == 1 else f"(1) to ({count})"
+        figure.supxlabel(
+            f"{numbers}: warnings, written out in results/tables/{table}.md", fontsize=6, ha="left", x=0.01
+        )
 
 
 @styled
@@ -64,10 +62,10 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
     found : dict
         Name and humidity to the dataset of stage safe_lengths.
     warnings : dict
-        Name, humidity and shape to sentences, which are written below the figure.
+        Name, humidity and shape to sentences, whose numbers mark the curves.
     """
     names = list(dict.fromkeys(name for name, _ in found))
-    sentences, numbers = numbered(warnings)
+    _, numbers = numbered(warnings)
     most = max(sum(device == name for device, _ in found) for name in names)
     figure, columns, lines = columns_of_panels(len(names), 1, _width, _PANEL + _ENTRY * most)
     for panel, name in zip(columns[:, 0], names, strict=True):
@@ -85,7 +83,7 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
     letter_lines(lines, names)
     _explain(columns[0, 0], found)
     figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=5)
-    below(figure, sentences, "safe_lengths")
+    refer_to_warnings(figure, warnings, "safe_lengths")
     return figure
 
 
@@ -135,9 +133,9 @@ def chart(
     found : dict
         Name and humidity to the dataset of stage chart.
     warnings : dict
-        Name, thickness [m], gap [m] and shape to sentences, which are written below the figure; may be empty.
+        Name, thickness [m], gap [m] and shape to sentences, whose numbers mark the curves; may be empty.
     """
-    sentences, numbers = numbered(warnings)
+    _, numbers = numbered(warnings)
     devices = {}
     for (name, humidity), dataset in sorted(found.items()):
         devices.setdefault(name, []).append(dataset.expand_dims(relative_humidity=[humidity]))
@@ -159,7 +157,7 @@ def chart(
         lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].legend}" for name, gap, shape in subjects]
     )
     figure.legend(*handles(*columns[:, 0]), loc="outside upper center", ncols=2)
-    below(figure, sentences, "chart")
+    refer_to_warnings(figure, warnings, "chart")
     return figure
 
 
