@@ -80,6 +80,58 @@ def test_a_standard_deviation_needs_the_number_of_beams():
     assert problem.startswith("test_beams.first.crack_lengths[1].beams is missing, must be a whole number at least 2")
 
 
+COUNTS = [{"humidity": 0.67, "length_um": 300, "stuck": 3, "of": 20}]
+COUNTED = {key: value for key, value in ARRAY.items() if key not in ("length_um", "crack_lengths")} | {"stuck": COUNTS}
+
+
+def of_array(array):
+    """Problems of the configuration with another array."""
+    return problems(merged(PAPER, {**copy.deepcopy(SECTIONS), "test_beams": {"first": array}}))
+
+
+def test_counts_need_no_crack_lengths_and_may_stand_beside_them():
+    assert of_array(COUNTED) == ()
+    assert of_array(ARRAY | {"stuck": COUNTS}) == ()
+
+
+@pytest.mark.parametrize(
+    ("array", "key", "words"),
+    [
+        ({**COUNTED, "stuck": [COUNTS[0] | {"stuck": 21}]}, "stuck", "no more stuck beams than there are: 21 of 20"),
+        ({**COUNTED, "stuck": COUNTS * 2}, "stuck", "beams of 300 µm at RH 0.67 are listed twice"),
+        ({**COUNTED, "stuck": [COUNTS[0] | {"humidity": 0.2}]}, "stuck", "must be at least 0.2903: in drier air"),
+        ({**COUNTED, "stuck": [COUNTS[0] | {"of": 0}]}, "stuck[0].of", "at least 1"),
+        ({key: COUNTED[key] for key in COUNTED if key != "stuck"}, "pair", "must come with crack_lengths or stuck"),
+        ({key: ARRAY[key] for key in ARRAY if key != "length_um"}, "crack_lengths", "must come with length_um"),
+    ],
+)
+def test_counts_that_cannot_be_are_refused_in_one_sentence(array, key, words):
+    (problem,) = of_array(array)
+    assert problem.startswith(f"test_beams.first.{key} is ")
+    assert words in problem
+
+
+def test_counts_have_budgets_of_beams_and_tips_on_the_contacts_of_the_device():
+    graph = Graph(Plan(load(merged(SECTIONS, {"test_beams": {"first": {"stuck": COUNTS, "thickness_um": 2.6}}}))))
+    inputs = graph.job("devices/test_beams/C1").inputs
+    assert set(inputs["test_beams"]) == {("first", 0.44), ("first", 0.67), ("first", 0.67, "tip")}
+    tips = [graph.job(f"devices/{name}_rh067_tip") for name in ("budget/C1", "test_beams/budget/first")]
+    assert tips[1].settings["budget"]["share"] == 0.5
+    assert tips[0].inputs["contact"] == tips[1].inputs["contact"] == inputs["tips"]["first"]
+    assert tips[0].inputs["less"] == tips[1].inputs["less"] != {}
+    assert inputs["grounds"]["first"] == graph.job("devices/budget/C1_rh067").inputs["contact"]
+    assert Graph(PLAN).job("devices/test_beams/C1").inputs["grounds"] == {}
+
+
+def test_tips_of_counted_beams_are_drawn_with_their_own_slopes():
+    thin = Plan(load(merged(SECTIONS, {"test_beams": {"first": {"stuck": COUNTS}}})))
+    tips = thin.of_test_beams.designs.tips("first")
+    assert tips != thin.designs.tips("C1")
+    assert thin.designs.tilt(tips)["slopes"] == list(thin.of_test_beams.designs._slopes("first"))
+    with pytest.raises(KeyError, match="no device has tips"):
+        PLAN.designs.tilt(tips)  # beams that were not counted need no tips
+
+
 def test_what_is_shared_has_one_uncertainty():
     other = {"C3": SECTIONS["devices"]["C1"] | {"uncertainty": STATED | {"humidity": 0.02}}}
     found = problems(merged(PAPER, merged(SECTIONS, {"devices": other})))

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 
 from stiction.config.kinds import KEYS
 
+#: Keys of an array that list what was measured.
+DATA = ("crack_lengths", "stuck")
 #: Keys of an array that are those of a cantilever.
 _SIZES = ("pair", "thickness_um", "gap_um", "width_um", "strip_um")
 
@@ -16,9 +18,9 @@ def users(config: Mapping, array: str) -> list[dict]:
     return [device for device in config.get("devices", {}).values() if array in device.get("test_beams", ())]
 
 
-def humidities(array: Mapping) -> list[float]:
-    """Humidities of the data of an array, increasing."""
-    return sorted(datum["humidity"] for datum in array["crack_lengths"])
+def humidities(array: Mapping, *kinds: str) -> list[float]:
+    """Humidities of the data of an array, increasing; those of some kinds of data, by default of all."""
+    return sorted({datum["humidity"] for kind in kinds or DATA for datum in array.get(kind, ())})
 
 
 def shared_uncertainty(device: Mapping) -> dict[str, float]:
@@ -28,8 +30,14 @@ def shared_uncertainty(device: Mapping) -> dict[str, float]:
 
 
 def as_cantilevers(config: Mapping) -> dict[str, dict]:
-    """Sections of all arrays as if they were devices."""
-    return {name: _cantilever(array, users(config, name)) for name, array in config.get("test_beams", {}).items()}
+    """Sections of all arrays with data as if they were devices."""
+    arrays = config.get("test_beams", {})
+    return {name: _cantilever(array, users(config, name)) for name, array in arrays.items() if humidities(array)}
+
+
+def counted(config: Mapping) -> dict[str, dict]:
+    """Sections of the arrays with counts as if they were devices: their tips may hold them."""
+    return {name: one for name, one in as_cantilevers(config).items() if "stuck" in config["test_beams"][name]}
 
 
 def _cantilever(array, devices):

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.beam.cantilever import Beam
+from stiction.config import arrays
 from stiction.config.cases import case_id
 from stiction.config.kinds import Kind, kind_of
 from stiction.config.measured import is_measured, quantities
@@ -148,18 +149,19 @@ class Designs:
         return patch(section["pair"], points * point / NM_PER_UM, section["width_um"])
 
     def tilt(self, tips: Patch) -> dict:
-        """Slopes, reach and edge of the strips that hold the tips of one or several devices.
+        """Slopes, reach and edge of the strips that hold the tips of devices and of counted test beams.
 
         Raises
         ------
         KeyError
-            If no tip of a device has these strips.
+            If no tip has these strips.
         """
-        devices = [name for name in self.with_tips if self.tips(name) == tips]
-        if not devices:
+        counted = Designs(self.config | {"devices": arrays.counted(self.config)})
+        users = [(one, name) for one in (self, counted) for name in one.with_tips if one.tips(name) == tips]
+        if not users:
             raise KeyError(f"no device has tips on strips {tips.name}")
-        slopes = {float(slope) for name in devices for slope in self._slopes(name)}
-        reach = max(map(self._reach, devices))
+        slopes = {float(slope) for one, name in users for slope in one._slopes(name)}
+        reach = max(one._reach(name) for one, name in users)
         return {"slopes": sorted(slopes), "reach_nm": reach, "edge": self.config["design"]["tip_edge"]}
 
     def _slopes(self, device):

@@ -4,7 +4,7 @@ Lengths are in µm, as in the configuration. A relation gets the name of a devic
 """
 
 from stiction.config import memory
-from stiction.config.arrays import shared_uncertainty
+from stiction.config.arrays import DATA, shared_uncertainty
 from stiction.config.conditions import Relations
 from stiction.config.designs import Designs, hamaker_constant
 from stiction.config.kinds import COMMON, KEYS, KINDS, kind_of
@@ -412,6 +412,24 @@ def devices_with_common_test_beams_share_their_uncertainties(names, device, devi
     return None
 
 
+@relation("test_beams.*.pair", "test_beams.*.#")
+def arrays_have_data(_, keys):
+    """Something was measured on an array."""
+    return None if set(DATA) & set(keys) else f"must come with {' or '.join(DATA)}"
+
+
+@relation("test_beams.*.crack_lengths", "test_beams.*.#")
+def measured_beams_have_a_length(_, keys):
+    """Beams with crack lengths have one length; those that were counted state their own."""
+    return None if "length_um" in keys else "must come with length_um, the length of the beams"
+
+
+@relation("test_beams.*.crack_lengths")
+def crack_lengths_have_one_mean_at_a_humidity(data):
+    """All beams of an array that were measured at a humidity have one mean."""
+    return cases_have_unique_names([datum["humidity"] for datum in data])
+
+
 @relation("test_beams.*.crack_lengths", "test_beams.*.length_um")
 def cracks_end_on_the_beam(data, length):
     """Mean crack lengths are shorter than the beams."""
@@ -421,3 +439,15 @@ def cracks_end_on_the_beam(data, length):
     return (
         f"must have means below the length of the beams: that at RH {longer['humidity']:g} is {longer['mean_um']:g} µm"
     )
+
+
+@relation("test_beams.*.stuck")
+def counts_are_parts_of_all_beams(data):
+    """No more beams stick than there are, and each group of beams is counted once."""
+    for entry in data:
+        group = f"beams of {entry['length_um']:g} µm at RH {entry['humidity']:g}"
+        if entry["stuck"] > entry["of"]:
+            return f"must count no more stuck beams than there are: {entry['stuck']} of {entry['of']} {group}"
+        if sum((entry["humidity"], entry["length_um"]) == (one["humidity"], one["length_um"]) for one in data) > 1:
+            return f"must count each length at a humidity once: {group} are listed twice"
+    return None

@@ -56,10 +56,11 @@ def _broken(config, faults, files=None):
     if any(path[:1] in ((), ("devices",), ("test_beams",)) for path in faults):
         return broken  # sections that are wrong on their own
     beams = violated(relations_devices.relation, config | {"devices": arrays.as_cantilevers(config)}, faults, files)
-    return broken + [_of_array(problem) for problem in beams if problem.path[0] == "devices"]
+    return broken + [_of_array(problem, config) for problem in beams if problem.path[0] == "devices"]
 
 
-def _of_array(problem):
+def _of_array(problem, config):
     """Problem of an array of test beams that was found as if the array were a device."""
-    path = ["crack_lengths" if key == "humidities" else key for key in problem.path[1:]]
+    array = config["test_beams"][problem.path[1]]
+    path = [next(filter(array.__contains__, arrays.DATA)) if key == "humidities" else key for key in problem.path[1:]]
     return Problem(("test_beams", *path), problem.message.replace("devices.", "test_beams."))

@@ -13,23 +13,28 @@ their responses H (n, k) and the covariance R of their errors, the knowledge aft
 
 .. math:: \bar x = C H^T S^{-1} d, \qquad C' = C - C H^T S^{-1} H C, \qquad S = H C H^T + R .
 
-Counts are no logarithms of lengths. A beam of length L sticks with the probability :math:`\Phi((\ln L - \ln l) / s)`,
-where s is the scatter between beams, and Newton steps on this probit find the most probable errors of the inputs.
+Counts are no logarithms of lengths. Of beams of length L, a shape holds the share :math:`\Phi(z_i(\ln L - h_i^T x))`,
+where :math:`z_i` is the normal score of its lengths as computed, and a beam sticks if any shape holds it,
+:math:`P = 1 - \prod_i \Phi(-z_i)`. Newton steps on the probit of P find the most probable errors of the inputs.
 """
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator, PPoly
 from scipy.linalg import block_diag
-from scipy.special import chdtrc, log_ndtr
+from scipy.special import chdtrc, log_ndtr, logsumexp, ndtr, ndtri_exp, xlogy
 
+from stiction.devices.tail import fit_tail
 from stiction.errors import NotConverged
 
 #: Names of the discrepancy of the model among the inputs: of its factor and of its slope.
 FACTOR, SLOPE = "factor of the model", "slope of the model"
 #: Newton steps for counts, and the change in prior standard deviations at which they end.
 _STEPS, _CLOSE = 50, 1e-10
+#: Normal scores at which the lengths of a shape are tabulated: on the fitted line, as quantiles, and beyond them.
+_SHORT, _QUANTILES, _FAR = (-8.0, -4.0, -2.0), np.linspace(-1.5, 2.0, 8), 8.0
 #: Variance below which a direction of the prior counts as exactly known, relative to that of single inputs.
 _ROUNDING = 1e-12
 
@@ -64,13 +69,61 @@ class Lengths:
 
 @dataclass(frozen=True)
 class Counts:
-    """Numbers of stuck test beams of given lengths."""
+    """Numbers of stuck test beams of given lengths, each of which may be held in any of s shapes."""
 
-    responses: np.ndarray  #: d ln l / dx (n, k)
-    margins: np.ndarray  #: ln(length of the beams / length that half of them hold, as computed) (n,) [-]
-    scatter: np.ndarray  #: standard deviation of ln l between beams (n,) [-]
+    responses: np.ndarray  #: d ln l / dx of every shape (n, s, k)
+    lengths: np.ndarray  #: of the beams that every shape could hold (n, s) [m]
+    scores: Sequence[Sequence[PPoly]]  #: normal score of every shape over ln l, `score` or `lognormal`; n times s
     stuck: np.ndarray  #: (n,)
     beams: np.ndarray  #: stuck and free together (n,)
+
+    def __len__(self):
+        return len(self.stuck)
+
+    def scored(self, errors: np.ndarray, order: int = 0) -> np.ndarray:
+        """Normal scores of all shapes at errors of the inputs (k,), or their derivatives by ln l (n, s)."""
+        at = np.log(self.lengths) - self.responses @ errors
+        found = [[one(x, order) for one, x in zip(*both, strict=True)] for both in zip(self.scores, at, strict=True)]
+        return np.reshape(found, self.lengths.shape)
+
+    def logarithms(self, errors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Logarithms of P(stuck) and P(free) at errors of the inputs (k,), (n,) each."""
+        scores = self.scored(errors)
+        free = log_ndtr(-scores).cumsum(axis=1)
+        # The first shape that holds a beam: no difference of nearly equal numbers.
+        before = np.column_stack([np.zeros(len(scores)), free[:, :-1]])
+        return logsumexp(log_ndtr(scores) + before, axis=1), free[:, -1]
+
+    def share(self, errors: np.ndarray) -> np.ndarray:
+        """P(stuck) at errors of the inputs (k,), (n,) [-]."""
+        return np.exp(self.logarithms(errors)[0])
+
+    def deviance(self, errors: np.ndarray) -> float:
+        """Twice the logarithm by which shares equal to those that were counted are more probable [-]."""
+        stuck, free = self.logarithms(errors)
+        others = self.beams - self.stuck
+        best = xlogy(self.stuck, self.stuck / self.beams) + xlogy(others, others / self.beams)
+        return float(2 * np.sum(best - self.stuck * stuck - others * free))
+
+
+def lognormal(centre: float, scatter: float) -> PPoly:
+    """Normal score over ln l of lognormal lengths with a median [m] and a standard deviation of ln l."""
+    return PchipInterpolator(np.log(centre) + scatter * np.array([-1, 1]), [-1, 1])
+
+
+def score(lengths: np.ndarray) -> PPoly:
+    """Normal score over ln l of any lengths (m,) [m]: between quantiles, and at their short end on the fitted line.
+
+    ASSUME: the long end goes on as straight as the last two quantiles.
+    """
+    tail, inner = fit_tail(lengths), np.log(np.quantile(lengths, ndtr(_QUANTILES)))
+    ends = [np.log(tail.length(ndtr(z))) for z in _SHORT], [inner[-1] + (_FAR - _QUANTILES[-1]) * _last_slope(inner)]
+    return PchipInterpolator(np.concatenate([ends[0], inner, ends[1]]), [*_SHORT, *_QUANTILES, _FAR])
+
+
+def _last_slope(inner):
+    """Of ln l over the score."""
+    return (inner[-1] - inner[-2]) / (_QUANTILES[-1] - _QUANTILES[-2])
 
 
 # Discrepancy of the model
@@ -147,7 +200,8 @@ def _spread(prior, data):
 def given(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> Knowledge:
     """Knowledge after crack lengths were measured and stuck beams counted.
 
-    With counts, it is the normal distribution around the most probable errors of the inputs that has their curvature.
+    With counts, it is the normal distribution around the most probable errors of the inputs that has their curvature
+    (Laplace), but for the curvature of the probit of several shapes (Gauss and Newton).
 
     Raises
     ------
@@ -155,7 +209,7 @@ def given(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> K
         If Newton steps do not reach the most probable errors.
     """
     found = given_lengths(prior, lengths)
-    if counts is None or not len(counts.stuck):
+    if counts is None or not len(counts):
         return found
     scale = np.where(prior.deviations > 0, prior.deviations, 1)
     for _ in range(_STEPS):
@@ -168,22 +222,26 @@ def given(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> K
 
 
 def linearised(counts: Counts, errors: np.ndarray) -> Lengths:
-    """Lengths whose normal likelihood has slope and curvature of that of the counts, at errors of the inputs (k,)."""
-    score = (counts.margins - counts.responses @ errors) / counts.scatter
-    stuck, free = counts.stuck, counts.beams - counts.stuck
-    above, below = _mills(score), _mills(-score)
-    slope = stuck * above - free * below
-    curvature = stuck * above * (above + score) + free * below * (below - score)
-    return Lengths(
-        counts.responses,
-        counts.margins - counts.scatter * (score + slope / curvature),
-        counts.scatter / np.sqrt(curvature),
-    )
+    """Lengths whose normal likelihood has slope and curvature of that of the counts, at errors of the inputs (k,).
+
+    The slope is that of the probit of P(stuck), which is z for one shape.
+    """
+    stuck, free = counts.logarithms(errors)
+    scores, slopes = counts.scored(errors), counts.scored(errors, 1)
+    probit = np.where(stuck < free, ndtri_exp(np.minimum(stuck, free)), -ndtri_exp(np.minimum(stuck, free)))
+    # dΦ(-probit) = Σ_i Φ(-z_1) … φ(z_i) … Φ(-z_s) dz_i
+    weights = np.exp(_log_density(scores) - log_ndtr(-scores) + (free - _log_density(probit))[:, None])
+    responses = np.einsum("ns,nsk->nk", weights * slopes, counts.responses)
+    above, below = np.exp(_log_density(probit) - stuck), np.exp(_log_density(probit) - free)
+    others = counts.beams - counts.stuck
+    slope = counts.stuck * above - others * below
+    curvature = counts.stuck * above * (above + probit) + others * below * (below - probit)
+    return Lengths(responses, responses @ errors - slope / curvature, 1 / np.sqrt(curvature))
 
 
-def _mills(score):
-    """φ/Φ, also far below zero."""
-    return np.exp(-(score**2) / 2 - np.log(2 * np.pi) / 2 - log_ndtr(score))
+def _log_density(score):
+    """Logarithm of φ."""
+    return -(score**2 + np.log(2 * np.pi)) / 2
 
 
 def _joined(one, other):
@@ -195,15 +253,25 @@ def _joined(one, other):
 # What the data say
 
 
-def p_value(prior: Knowledge, data: Lengths) -> float:
+def p_value(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> float:
     r"""Probability of differences at least as large as the measured ones, before these are used [-].
 
     :math:`d^T S^{-1} d` has a chi-squared distribution if inputs and discrepancy err as stated. It also is the least
     sum of the squares of all pulls, on the data and on the inputs: data that no input explains have a small p value.
-    ASSUME: the prior predictive one; after an update, the data would be used twice, and hide what they contradict.
+    Of counts, their deviance takes the place of a pull.
+    ASSUME: the prior predictive one; after an update, the data would be used twice, and hide what they contradict. The
+    chi-squared distribution of deviances is that of many beams; that of few, all or none of them stuck, is narrower.
     """
-    away = data.differences - data.responses @ prior.mean
-    return float(chdtrc(len(away), away @ np.linalg.solve(_spread(prior, data), away)))
+    if counts is None or not len(counts):
+        away = lengths.differences - lengths.responses @ prior.mean
+        return float(chdtrc(len(away), away @ np.linalg.solve(_spread(prior, lengths), away)))
+    found = given(prior, lengths, counts).mean
+    pulls = (lengths.differences - lengths.responses @ found) / lengths.errors
+    scale = np.where(prior.deviations > 0, prior.deviations, 1)
+    moved = (found - prior.mean) / scale
+    inverse = np.linalg.pinv(prior.covariance / np.outer(scale, scale), rcond=_ROUNDING, hermitian=True)
+    total = pulls @ pulls + moved @ inverse @ moved + counts.deviance(found)
+    return float(chdtrc(len(pulls) + len(counts), total))
 
 
 @dataclass(frozen=True)

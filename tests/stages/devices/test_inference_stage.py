@@ -7,13 +7,19 @@ import numpy as np
 import pytest
 import xarray as xr
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.special import ndtr
+from vectors import sampled_vectors
 
 from stiction.beam.energy import arrest_length
-from stiction.devices.inference import FACTOR, SLOPE, Discrepancy
+from stiction.beam.foundation import foundation_length
+from stiction.contact import forcelaw
+from stiction.devices import arcs
+from stiction.devices.inference import FACTOR, SLOPE, Discrepancy, lognormal
 from stiction.report.devices import figures_inference, tables_inference
 from stiction.run import storage
+from stiction.stages.contact import curves
 from stiction.stages.devices import inference
-from stiction.stages.devices.inference import CrackLengths, Settings
+from stiction.stages.devices.inference import CrackLengths, Settings, Stuck
 from stiction.stages.devices.releases import ARC, EITHER, S_SHAPE, DesignedBeam
 
 UM = 1e-6
@@ -68,13 +74,18 @@ def safe_lengths():
     return dict.fromkeys(HUMIDITIES, xr.Dataset({"safe_length": values}))
 
 
-def computed(means, stds=None, beams=BEAMS, humidities=HUMIDITIES, stated=STATED, array=ARRAY, names=("arrayA",)):
-    """Dataset of stage test_beams for measured means [m] at some humidities of the arrays."""
+def computed(
+    means, stds=None, beams=BEAMS, humidities=HUMIDITIES, stated=STATED, array=ARRAY, names=("arrayA",), stuck=None
+):
+    """Dataset of stage test_beams for measured means [m] at some humidities of the arrays, and counts."""
     stds = SCATTER * np.array(means) if stds is None else stds
-    found = CrackLengths(1500 * UM, tuple(humidities), tuple(means), tuple(stds), (beams,) * len(means))
+    lengths = CrackLengths(1500 * UM, tuple(humidities), tuple(means), tuple(stds), (beams,) * len(means))
     slopes = {(name, rh): budget(array, rh) for name in names for rh in humidities}
-    settings = Settings(stated, DEVICE, dict.fromkeys(names, array), dict.fromkeys(names, found))
-    return inference.compute(budgets(), slopes, safe_lengths(), settings)
+    if stuck:
+        slopes |= {(name, rh, "tip"): budget(array, rh, ARC) for name in names for rh in stuck.humidity}
+    found = [dict.fromkeys(names, data) if data else {} for data in (lengths if len(means) else None, stuck)]
+    settings = Settings(stated, DEVICE, dict.fromkeys(names, array), *found)
+    return inference.compute(budgets(), slopes, safe_lengths(), *[dict.fromkeys(names)] * 2, settings)
 
 
 def as_computed(factor=1.0, humidities=HUMIDITIES):
@@ -141,8 +152,11 @@ def test_neither_the_order_of_the_humidities_nor_that_of_the_arrays_matters():
         assert_allclose(one[name], other[name], rtol=1e-9, atol=1e-15)
 
 
-def drawn(rng, stated=STATED):
-    """Measured mean lengths of beams with drawn inputs and model, and the true mean lengths of the device."""
+def drawn_lengths(rng, beams, stated=STATED):
+    """Crack lengths and lengths that tips hold of beams with drawn inputs and model, and true lengths of the device.
+
+    Tips have no error of the model.
+    """
     shared = {
         key: DEVIATIONS[name] * rng.normal() for key, name in (("rms", "rms of B2"), ("modulus", "Young's modulus"))
     }
@@ -150,14 +164,24 @@ def drawn(rng, stated=STATED):
     factor, slope = stated.factor * rng.normal(), stated.slope * rng.normal()
     middle = np.mean(np.log(list(ENERGY.values())))
 
-    def true(beam, rh, own):
-        discrepancy = factor + slope * (middle - np.log(ENERGY[rh])) / 4 + stated.rest * rng.normal()
-        return length(beam, rh, **shared, **own) * np.exp(discrepancy)
+    def exact(beam, own):
+        return np.array([length(beam, rh, **shared, **own) for rh in HUMIDITIES])
 
-    single = np.array([true(ARRAY, rh, sizes[0]) for rh in HUMIDITIES]) * np.exp(
-        SCATTER * rng.normal(size=(BEAMS, len(HUMIDITIES)))
+    def true(beam, own):
+        errors = [factor + slope * (middle - np.log(ENERGY[rh])) / 4 + stated.rest * rng.normal() for rh in HUMIDITIES]
+        return exact(beam, own) * np.exp(errors)
+
+    cracks, tips = (
+        lengths * np.exp(SCATTER * rng.normal(size=(beams, len(HUMIDITIES))))
+        for lengths in (true(ARRAY, sizes[0]), exact(ARRAY, sizes[0]) / np.sqrt(2))
     )
-    return single.mean(axis=0), single.std(axis=0, ddof=1), [true(DEVICE, rh, sizes[1]) for rh in HUMIDITIES]
+    return cracks, tips, np.concatenate([true(DEVICE, sizes[1]), exact(DEVICE, sizes[1]) / np.sqrt(2)])
+
+
+def drawn(rng, stated=STATED):
+    """Means and standard deviations of measured crack lengths, and the true mean crack lengths of the device."""
+    cracks, _, truth = drawn_lengths(rng, BEAMS, stated)
+    return cracks.mean(axis=0), cracks.std(axis=0, ddof=1), truth[: len(HUMIDITIES)]
 
 
 def scores(stated, repeats=100):
@@ -182,6 +206,82 @@ def test_without_a_discrepancy_of_the_model_they_are_not():
     assert np.mean(found < 1.96) < 0.7
 
 
+# Counts
+
+
+@pytest.fixture
+def shapes(monkeypatch):
+    """Cracks and arcs of the lengths of their budgets; the function makes all arcs so many times as long."""
+
+    def longer(factor):
+        def of_shapes(cracks, *_):
+            crack = float(cracks.budget.centre)
+            arc = factor * float(budget(cracks.beam, cracks.humidity, ARC).centre)
+            return np.zeros(2), [lognormal(crack, SCATTER), lognormal(arc, SCATTER)]
+
+        monkeypatch.setattr(inference, "of_shapes", of_shapes)
+
+    longer(1.0)
+    return longer
+
+
+def counts(lengths, stuck, of, humidities=HUMIDITIES):
+    return Stuck(None, tuple(humidities), tuple(lengths), tuple(stuck), (of,) * len(stuck))
+
+
+def test_counts_say_about_the_device_what_the_crack_lengths_of_the_same_beams_say(shapes):
+    shapes(10.0)  # no tip holds
+    rng, number, centres = np.random.default_rng(2), 4000, np.array(as_computed())
+    single = 1.03 * centres * np.exp(SCATTER * rng.normal(size=(number, 3)))
+    measured = computed(single.mean(axis=0), single.std(axis=0), beams=number)
+    counted = computed([], stuck=counts(1.03 * centres, (single < 1.03 * centres).sum(axis=0), number))
+    difference = (counted.length_shift - measured.length_shift)[:3]
+    # The rest of the model is the same in both; what differs is the error of √(π/2) s/√N of a count.
+    assert np.all(np.abs(difference) < 4 * np.sqrt(np.pi / 2) * SCATTER / np.sqrt(number))
+    assert_allclose(counted.length_after, measured.length_after, rtol=1e-2)
+    other = computed([], stuck=counts(1.1 * centres, (single < 1.03 * centres).sum(axis=0), number))
+    assert np.all(np.abs(other.length_shift - measured.length_shift)[:3] > 0.01)  # control
+
+
+@pytest.mark.usefixtures("shapes")
+def test_counts_of_beams_that_tips_hold_say_more_about_tips_than_about_cracks():
+    halves = np.array(as_computed()) / np.sqrt(2)
+    found = computed([], stuck=counts(halves, [10] * 3, 20))
+    gains = (found.length_after / found.length_before).values
+    assert np.all(gains[3:] < 0.8)
+    assert np.all(gains[:3] > 0.9)
+    assert_allclose(found.stuck_before, 0.5, atol=1e-6)
+    assert_allclose(found.length_shift, 0, atol=1e-6)
+    assert_allclose(found.stuck_after, 0.5, atol=1e-6)
+
+
+@pytest.mark.usefixtures("shapes")
+def test_the_true_lengths_of_the_device_are_inside_the_stated_intervals_of_counts():
+    scores = []
+    for k in range(100):
+        rng = np.random.default_rng(k)
+        cracks, tips, truth = drawn_lengths(rng, 20)
+        lengths = np.array(as_computed()) * rng.uniform(0.7, 1.05, 3)
+        stuck = (np.minimum(cracks, tips) < lengths).sum(axis=0)
+        after = computed([], stuck=counts(lengths, stuck, 20))
+        scores.append((np.log(truth / after.length.values) - after.length_shift.values) / after.length_after.values)
+    assert abs(np.mean(np.abs(scores) < 1) - 0.68) <= 0.10
+    assert abs(np.mean(np.abs(scores) < 1.96) - 0.95) <= 0.04
+
+
+def test_cracks_and_arcs_hold_beams_of_the_lengths_of_the_model(monkeypatch):
+    laws, slopes = sampled_vectors(400, spread=0.2), np.geomspace(0.01, 1, 30)
+    monkeypatch.setattr(curves, "vectors", lambda *_: (laws, 1.1 * laws[:, 1].max()))
+    monkeypatch.setattr(curves, "tip_forces", lambda *_: (slopes, laws[:, :1] / slopes))
+    one = inference.Result("arrayA", 0.67, budget(ARRAY, 0.67), ARRAY)
+    behind, (crack, tip) = inference.of_shapes(one, None, None, None)
+    strips = forcelaw.coefficients(laws, 1.1 * laws[:, 1].max())
+    assert_allclose(behind, [2 * foundation_length(ARRAY.beam, strips), 0])
+    assert_allclose(crack(np.log(float(one.budget.centre) * np.exp([0, SCATTER]))), [0, 1], atol=1e-9)
+    held = arcs.longest_free(slopes, laws[:, :1] / slopes, ARRAY.beam)
+    assert_allclose(np.mean(ndtr(tip(np.log(held)))), 0.5, atol=0.02)
+
+
 def test_further_beams_like_the_device_help_more_where_the_device_is_known_least():
     found = computed(as_computed())
     left = found.length_after_further
@@ -193,8 +293,9 @@ def test_further_beams_like_the_device_help_more_where_the_device_is_known_least
     assert 0.05 < float(wanted) < float(of(found, 0.67).length_after)
 
 
+@pytest.mark.usefixtures("shapes")
 def test_the_dataset_is_stored_and_read_unchanged(tmp_path):
-    found = computed(as_computed(1.1))
+    found = computed(as_computed(1.1), stuck=counts(as_computed(0.7), [3, 4, 5], 20))
     storage.save(found, tmp_path / "C1.nc", "test_beams", {})
     xr.testing.assert_allclose(storage.load(tmp_path / "C1.nc", "test_beams"), found)
 
@@ -208,7 +309,7 @@ def test_data_that_the_inputs_explain_give_no_warning():
 
 def test_data_that_only_the_model_explains_say_so_with_its_factor():
     (sentence, *_) = tables_inference.warnings(computed(as_computed(1.3)))
-    assert sentence.startswith("The errors of the inputs, as stated, do not explain the crack lengths (p = ")
+    assert sentence.startswith("The errors of the inputs, as stated, do not explain the test beams (p = ")
     assert "times as large as computed" in sentence
 
 
@@ -251,6 +352,31 @@ def test_the_table_has_data_lengths_safe_lengths_and_inputs():
     cells = table.cells.set_index("what").before
     assert cells["C1: safe length, beam or tip, p = 0.001 [µm]"].iloc[0] == "250.0"
     assert "Further test beams would help most as " in table.caption
+
+
+@pytest.mark.usefixtures("shapes")
+def test_the_table_has_counts_beside_the_expected_ones():
+    found = computed([], stuck=counts(as_computed(0.7), [3, 4, 5], 20))
+    frame = tables_inference.test_beams({"C1": found}).frame
+    rows = frame[frame.part.str.startswith("stuck of 20")]
+    assert rows.measured.tolist() == [3, 4, 5]
+    assert_allclose(rows.after, 20 * found.stuck_after)
+    assert frame[frame.part == "crack length [µm]"].measured.isna().all()
+
+
+@pytest.mark.usefixtures("shapes")
+def test_the_figure_shows_counts_at_the_lengths_of_their_beams():
+    figure = figures_inference.test_beams(computed([], stuck=counts(as_computed(0.7), [3, 4, 5], 20)))
+    assert [text.get_text() for text in figure.axes[0].texts[:3]] == ["3 of 20", "4 of 20", "5 of 20"]
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "measured, 95 %" not in labels
+    assert labels[-1].startswith("length of counted beams")
+
+
+def test_no_bar_of_the_inputs_touches_the_frame():
+    panel = figures_inference.test_beams(computed(as_computed(1.1))).axes[-1]
+    left, right = panel.get_xlim()
+    assert all(left < bar.get_x() and bar.get_x() + bar.get_width() < right for bar in panel.patches)
 
 
 def test_the_figure_has_a_panel_for_every_array_and_one_for_the_inputs():

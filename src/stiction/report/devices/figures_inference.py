@@ -11,6 +11,9 @@ from stiction.report.style import DOUBLE, figure_stage, humidity_axis, letter, p
 _BEFORE, _AFTER = "0.6", "#0072B2"
 #: Height of a row of inputs and of everything else [in]; half the height of a bar in rows.
 _ROW, _AROUND, _HALF = 0.19, 0.9, 0.36
+#: Marks of measured crack lengths and of the lengths of counted beams.
+_POINT = {"fmt": "o", "color": "black", "markersize": 3}
+_COUNT = {"marker": "D", "color": "black", "markersize": 3, "linestyle": "none", "markerfacecolor": "white"}
 #: Half width of an interval that holds 95 %, in standard deviations.
 _INTERVAL = 1.96
 
@@ -28,17 +31,22 @@ def test_beams(found: xr.Dataset) -> Figure:
     uncertain = found.isel(input=np.flatnonzero(found.prior_deviation.values > 0))
     height = max(2.4, _ROW * uncertain.sizes["input"] + _AROUND)
     figure, axes = panels(1, len(arrays) + 1, (DOUBLE, height))
+    shared = {}
     for panel, name in zip(axes[0], arrays, strict=False):
-        shared = _lengths(panel, found.isel(datum=np.flatnonzero(found.array.values == name)))
+        chosen = {
+            size: np.flatnonzero(found[key].values == name)
+            for size, key in (("datum", "array"), ("count", "array_of_count"))
+        }
+        shared |= _lengths(panel, found.isel(chosen))
     axes[0, 0].set_ylabel("crack length [µm]")
     _inputs(axes[0, -1], uncertain)
     letter(axes, [*arrays, "inputs"])
-    figure.legend(handles=shared, loc="outside lower center", ncols=3)
+    figure.legend(handles=list(shared.values()), loc="outside lower center", ncols=3)
     return figure
 
 
 def _lengths(panel, data):
-    """Crack lengths of one array over the humidity; returns the entries of the legend."""
+    """Crack lengths and counts of one array over the humidity; returns the entries of the legend by their name."""
     humidity, order = data.datum_humidity.values, np.argsort(data.datum_humidity.values)
     computed, shift = TO_UM * data.computed.values, data.datum_shift.values
     entries = []
@@ -52,13 +60,18 @@ def _lengths(panel, data):
             humidity[order], (centre / reach)[order], (centre * reach)[order], color=colour, alpha=0.25, lw=0
         )
         entries += panel.plot(humidity[order], centre[order], color=colour, label=f"{name} the measurement, 95 %")
-    error = _INTERVAL * TO_UM * (data.measured * data.datum_measured_error).values
-    points = panel.errorbar(
-        humidity, TO_UM * data.measured, yerr=error, fmt="o", color="black", markersize=3, label="measured, 95 %"
-    )
+    if data.measured.notnull().any():
+        error = _INTERVAL * TO_UM * (data.measured * data.datum_measured_error).values
+        entries.append(panel.errorbar(humidity, TO_UM * data.measured, yerr=error, **_POINT, label="measured, 95 %"))
+    for k in range(data.sizes["count"]):
+        at = data.isel(count=k)
+        place = float(at.humidity_of_count), TO_UM * float(at.length_of_count)
+        (mark,) = panel.plot(*place, **_COUNT, label="length of counted beams, number of those that stick")
+        panel.annotate(f"{int(at.stuck)} of {int(at.counted)}", place, (4, 3), textcoords="offset points")
+        entries += [mark] if k == 0 else []
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
     humidity_axis(panel)
-    return [*entries, points]
+    return {entry.get_label(): entry for entry in entries}
 
 
 def _inputs(panel, found):
@@ -73,6 +86,8 @@ def _inputs(panel, found):
     panel.axvline(0, color="black", linewidth=0.6)
     panel.set_yticks(places, list(found.input.values))
     panel.tick_params(axis="y", length=0)
+    panel.use_sticky_edges = False
+    panel.autoscale_view(scaley=False)
     panel.set(ylim=(len(places) - 0.4, -0.6), xlabel="standard uncertainties")
 
 

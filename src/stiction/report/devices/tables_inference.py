@@ -59,7 +59,7 @@ def explained(found: xr.Dataset) -> str:
     """Whether the data agree with the model."""
     both, alone = float(found.p_value), float(found.p_value_of_inputs)
     return (
-        f"Differences from the computed crack lengths as large as measured, or larger, have a probability of "
+        f"Differences from the computed lengths and counts as large as measured, or larger, have a probability of "
         f"{both:.2g} if inputs and model err as stated, and of {alone:.2g} if the inputs alone do."
     )
 
@@ -105,9 +105,9 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
         for sentence in [explained(found), *combinations(found), advised(found), *warnings(found)]
     ]
     caption = (
-        "Test beams: measured crack lengths with the standard errors of their means, and lengths of test beams and "
-        "devices before and after the measurement, with standard deviations due to the inputs and, except for those "
-        "held by a tip, due to the model. Inputs in their standard uncertainties."
+        "Test beams: measured crack lengths with the standard errors of their means, counts of stuck beams, and "
+        "lengths of test beams and devices before and after the measurement, with standard deviations due to the "
+        "inputs and, except for those held by a tip, due to the model. Inputs in their standard uncertainties."
     )
     return Table.of(rows, with_list(caption, sentences), _COLUMNS)
 
@@ -119,9 +119,17 @@ def _rows(device, found):
         computed = TO_UM * float(at.computed)
         numbers = _of_length(computed, *(float(at[f"datum_{key}"]) for key in ("before", "shift", "after")))
         error = float(at.measured * at.datum_measured_error)
-        own = {"measured": TO_UM * float(at.measured), "measured_se": TO_UM * error}
+        own = {"measured": TO_UM * float(at.measured), "measured_se": TO_UM * error} if error > 0 else {}
         head = {"device": device, "relative_humidity": float(at.datum_humidity), "part": "crack length [µm]"}
         yield head | {"name": str(at.array.values)} | numbers | own
+    for k in range(found.sizes["count"]):
+        at = found.isel(count=k)
+        part = f"stuck of {int(at.counted)}, {TO_UM * float(at.length_of_count):g} µm long"
+        head = {"device": device, "relative_humidity": float(at.humidity_of_count), "part": part}
+        shares = {name: float(at.counted * at[f"stuck_{name}"]) for name in ("before", "after")}
+        yield (
+            head | {"name": str(at.array_of_count.values), "measured": float(at.stuck), "measured_se": np.nan} | shares
+        )
     for result in found.result.values:
         at = found.sel(result=result)
         length, tip = TO_UM * float(at.length), str(at.response.values) == ARC
@@ -154,11 +162,16 @@ def _number(value, deviation):
     return number(value, ".1f") if np.isnan(deviation) else with_error(value, deviation)
 
 
+def _measured(value, error):
+    """A count, or a mean with its standard error."""
+    return number(value, "g") if np.isnan(error) else with_error(value, error)
+
+
 _COLUMNS = DEVICE | {
     "what": (lambda part, name: f"{name}: {part}", "part", "name"),
     "before": (_number, "before", "before_std"),
     "after": (_number, "after", "after_std"),
-    "measured": (with_error, "measured", "measured_se"),
+    "measured": (_measured, "measured", "measured_se"),
 }
 
 
@@ -175,14 +188,14 @@ def _contradictions(found):
     alone, both = float(found.p_value_of_inputs), float(found.p_value)
     if both < UNLIKELY:
         yield (
-            f"Neither the errors of the inputs nor those of the model, as stated, explain the crack lengths (p = "
+            f"Neither the errors of the inputs nor those of the model, as stated, explain the test beams (p = "
             f"{both:.1g}): something else is wrong, such as a dimension, a humidity or plastic contact. Do not rely on "
             "the update."
         )
     elif alone < UNLIKELY:
         factor, slope = (float(found["shift"].sel(input=name)) for name in (inference.FACTOR, inference.SLOPE))
         yield (
-            f"The errors of the inputs, as stated, do not explain the crack lengths (p = {alone:.1g}); an error of the "
+            f"The errors of the inputs, as stated, do not explain the test beams (p = {alone:.1g}); an error of the "
             f"model does: lengths are {np.exp(factor):.3g} times as large as computed, with a slope of {slope:+.2g} in "
             "the logarithm of the length."
         )

@@ -15,14 +15,14 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
+from stiction.config import arrays
 from stiction.config.cases import case_id, humidity_of, pair_of
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.devices import arcs
 from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.stoppers import pull_off_force
-from stiction.devices.tail import fit_tail
-from stiction.plan.names import by_case
+from stiction.devices.tail import TAIL, fit_tail
 from stiction.plan.stage import Stage, chosen
 from stiction.progress import progress
 from stiction.stages.contact import curves
@@ -51,6 +51,8 @@ class Responses:
     length: Callable[[np.ndarray], float] | None = None  #: length on the mean of the samples (m, ...) [m]
 
 
+#: Folder of the budgets of test beams, and the share of their tips whose length theirs is of.
+OF_ARRAYS, HALF = "devices/test_beams/budget", 0.5
 #: Devices at several states.
 Respond = Callable[[Sequence[State]], Responses]
 
@@ -178,7 +180,12 @@ def of_tips(states: Sequence[State], share: float) -> Responses:
     """
     found = [(curves.tip_forces(state.contact, state.humidity, state.water), state.device.beam) for state in states]
     lengths = [arcs.longest_free(*forces, beam) for forces, beam in found]
-    return Responses(np.array(lengths), lambda lengths: fit_tail(lengths).length(share))
+    return Responses(np.array(lengths), partial(_held, share=share))
+
+
+def _held(lengths, share):
+    """Length that a share of all hold: a small one from the fit of the short end."""
+    return float(np.quantile(lengths, share)) if share > TAIL else fit_tail(lengths).length(share)
 
 
 def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, address: Callable) -> Responses:
@@ -347,12 +354,12 @@ def _settings(plan, at):
     return {"budget": own, "quantities": quantities, "choices": plan.choices_of_device(name)}
 
 
-def _settings_of_tips(plan, at):
-    """As `_settings`, of the length that the tip of a cantilever holds, for the middle one of the shares."""
+def _settings_of_tips(plan, at, share=None):
+    """As `_settings`, of the length that a share of the tips of a cantilever hold, by default the middle one."""
     settings, shares = _settings(plan, at), plan.config["design"]["shares"]
     own = {key: value for key, value in settings["budget"].items() if key != "beams"}
     choices = plan.choices_of_solids(plan.config["devices"][pair_of(at.case)]["pair"])
-    return settings | {"budget": own | {"share": shares[len(shares) // 2]}, "choices": choices}
+    return settings | {"budget": own | {"share": share or shares[len(shares) // 2]}, "choices": choices}
 
 
 def _computed(data, _at, settings):
@@ -386,17 +393,26 @@ BUDGET = Stage.writing(
 )
 
 
-def budgets_of_arrays(plan: Any, device: str) -> dict[tuple[str, float], str]:
-    """Datasets of the budgets of the test beams of a device, by array and humidity."""
-    arrays = plan.config["devices"][device].get("test_beams", [])
-    cases = [case_id(name, rh) for name in arrays for rh in plan.of_test_beams.config["devices"][name]["humidities"]]
-    return by_case("devices/test_beams/budget", cases)
+def budgets_of_arrays(plan: Any, device: str) -> dict[tuple, str]:
+    """Datasets of the budgets of the test beams of a device, by array and humidity, and ``tip`` if of counted tips."""
+    found = {}
+    for name in plan.config["devices"][device].get("test_beams", []):
+        array = plan.config["test_beams"][name]
+        for humidity in arrays.humidities(array):
+            found[name, humidity] = f"{OF_ARRAYS}/{case_id(name, humidity)}"
+        for humidity in arrays.humidities(array, "stuck"):
+            found[name, humidity, "tip"] = f"{OF_ARRAYS}/{case_id(name, humidity)}_tip"
+    return found
 
 
-def _inputs_of_test_beams(plan, at):
-    """As those of a cantilever; other choices of the model are left out."""
-    plan, name = plan.of_test_beams, pair_of(at.case)
-    return _inputs(plan, name) | contacts_of_budget(plan, name) | {"choices": {}}
+def _inputs_of_test_beams(contacts):
+    """As those of a cantilever, or of its tips; other choices of the model are left out."""
+
+    def inputs(plan, at):
+        plan, name = plan.of_test_beams, pair_of(at.case)
+        return _inputs(plan, name) | contacts(plan, name) | {"choices": {}}
+
+    return inputs
 
 
 STAGES = (
@@ -411,10 +427,18 @@ STAGES = (
     ),
     BUDGET.on(
         "test_beam_budget",
-        "devices/test_beams/budget/{case}",
-        inputs=_inputs_of_test_beams,
+        OF_ARRAYS + "/{case}",
+        inputs=_inputs_of_test_beams(contacts_of_budget),
         settings=lambda plan, at: _settings(plan.of_test_beams, at) | {"choices": []},
         label="budget",
         message="Budget of test beams {case}.",
+    ),
+    BUDGET.on(
+        "test_beam_tip_budget",
+        OF_ARRAYS + "/{case}_tip",
+        inputs=_inputs_of_test_beams(contacts_of_tip_budget),
+        settings=lambda plan, at: _settings_of_tips(plan.of_test_beams, at, HALF) | {"choices": []},
+        label="budget",
+        message="Budget of the tips of test beams {case}.",
     ),
 )

@@ -1,22 +1,27 @@
-"""Stage test_beams: what the crack lengths of test beams say about the inputs of a device, and what follows for it.
+"""Stage test_beams: what crack lengths and counts of test beams say about the inputs of a device, and what follows.
 
 Device and test beams have budgets of the same form (`stiction.stages.devices.budget`). Their dimensions are inputs of
 their own; all other inputs of the same name are one input.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy.interpolate import PPoly
 
 from stiction.beam.energy import arrest_length
+from stiction.beam.foundation import foundation_length
 from stiction.config.cases import case_id
-from stiction.devices import inference
-from stiction.devices.inference import Discrepancy, Knowledge, Lengths
+from stiction.contact.environment import Water
+from stiction.devices import arcs, inference, risk
+from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths
 from stiction.plan.stage import Stage
-from stiction.stages.devices.budget import budgets_of, budgets_of_arrays, response_of
+from stiction.stages.contact import curves
+from stiction.stages.devices.budget import budgets_of, budgets_of_arrays, response_of, shared_laws
+from stiction.stages.devices.patch_settings import contact_of, tips_of
 from stiction.stages.devices.releases import ARC, EITHER, LONG, S_SHAPE, DesignedBeam, section_of_beam
 
 #: Inputs that are those of one device or array alone.
@@ -25,8 +30,11 @@ OWN = ("thickness", "gap")
 FURTHER = (10, 100)
 #: What holds a device, as in its safe lengths, by what its budget is of; lengths in either shape are those of tips.
 SHAPES = {S_SHAPE: S_SHAPE, ARC: EITHER}
-#: Keys of a datum of the configuration.
-_COLUMNS = ("humidity", "mean_um", "std_um", "beams")
+#: Keys of the data of the configuration.
+_COLUMNS = {
+    "crack_lengths": ("humidity", "mean_um", "std_um", "beams"),
+    "stuck": ("humidity", "length_um", "stuck", "of"),
+}
 
 
 @dataclass(frozen=True)
@@ -41,6 +49,17 @@ class CrackLengths:
 
 
 @dataclass(frozen=True)
+class Stuck:
+    """Numbers of stuck beams of an array, one for every humidity and length."""
+
+    water: Water
+    humidity: tuple[float, ...]  #: [-]
+    length: tuple[float, ...]  #: [m]
+    stuck: tuple[int, ...]
+    of: tuple[int, ...]  #: stuck and free together
+
+
+@dataclass(frozen=True)
 class Settings:
     """Everything that the update depends on apart from budgets and safe lengths."""
 
@@ -48,6 +67,7 @@ class Settings:
     device: DesignedBeam
     arrays: dict[str, DesignedBeam]  #: test beams by the name of their array
     crack_lengths: dict[str, CrackLengths]  #: by array
+    stuck: dict[str, Stuck]  #: by array
 
 
 class Result(NamedTuple):
@@ -91,8 +111,10 @@ class Result(NamedTuple):
 
 def compute(
     budgets: Mapping[tuple, xr.Dataset],
-    test_beams: Mapping[tuple[str, float], xr.Dataset],
+    test_beams: Mapping[tuple, xr.Dataset],
     safe_lengths: Mapping[float, xr.Dataset],
+    grounds: Mapping[str, xr.Dataset],
+    tips: Mapping[str, xr.Dataset],
     settings: Settings,
 ) -> xr.Dataset:
     """Inputs, lengths and safe lengths of a device before and after its test beams were measured.
@@ -102,27 +124,30 @@ def compute(
     budgets : dict
         Device, humidity and, for tips, more to the dataset of its budget.
     test_beams : dict
-        Array and humidity to the dataset of its budget.
+        Array, humidity and, for tips, more to the dataset of its budget.
     safe_lengths : dict
         Humidity to the dataset of stage safe_lengths of the device.
+    grounds, tips : dict
+        Array with counts to the contact on which its beams stick, and to that of their tips.
     settings : Settings
     """
-    beams = [Result(*key, one, settings.arrays[key[0]]) for key, one in test_beams.items()]
+    of_arrays = [Result(*key[:2], one, settings.arrays[key[0]]) for key, one in test_beams.items()]
+    beams, of_tips = ([one for one in of_arrays if (one.response == ARC) == is_tip] for is_tip in (False, True))
     of_device = [Result(*key[:2], one, settings.device) for key, one in budgets.items()]
-    inputs = common_inputs([*beams, *of_device])
-    prior, responses = with_discrepancy(inputs, beams, of_device, settings.discrepancy)
-    data = measured(beams, responses[: len(beams)], settings.crack_lengths)
-    posterior = inference.given(prior, data)
-    device = responses[len(beams) :]
+    inputs = common_inputs([*beams, *of_tips, *of_device])
+    prior, responses = with_discrepancy(inputs, beams, [*of_tips, *of_device], settings.discrepancy)
+    lengths = measured(beams, responses, settings.crack_lengths)
+    counts = counted([*beams, *of_tips], responses, settings.stuck, grounds, tips)
+    posterior = inference.given(prior, lengths, counts)
+    device, own = responses[len(of_arrays) :], len(inputs.names)
     found = [
-        of_inputs(prior, posterior, len(inputs.names) + 2),
-        of_data(beams, data, prior, posterior, settings),
+        of_inputs(prior, posterior, own + 2),
+        of_data(beams, responses, prior, posterior, settings),
+        of_counts(counts, posterior, settings.stuck),
         of_lengths(of_device, device, inputs, prior, posterior),
-        of_further(beams, of_device, responses, posterior),
+        of_further(beams, responses, of_device, device, posterior),
+        of_agreement(prior, lengths, counts, own),
     ]
-    alone = Lengths(data.responses[:, : len(inputs.names)], data.differences, data.errors)
-    p_values = {"p_value": inference.p_value(prior, data), "p_value_of_inputs": inference.p_value(inputs, alone)}
-    found.append(xr.Dataset({name: ((), value, {"units": "1"}) for name, value in p_values.items()}))
     return updated(xr.merge(found, combine_attrs="no_conflicts"), safe_lengths)
 
 
@@ -137,14 +162,14 @@ def common_inputs(results: Sequence[Result]) -> Knowledge:
 
 
 def with_discrepancy(
-    inputs: Knowledge, beams: Sequence[Result], of_device: Sequence[Result], stated: Discrepancy
+    inputs: Knowledge, beams: Sequence[Result], others: Sequence[Result], stated: Discrepancy
 ) -> tuple[Knowledge, np.ndarray]:
-    """As `stiction.devices.inference.with_discrepancy`; responses are those of test beams and, after them, of a device.
+    """As `stiction.devices.inference.with_discrepancy`; responses are those of test beams and, after them, of others.
 
     ASSUME: cracks say nothing about how much the model errs at tips. Without a discrepancy, their length has the
     uncertainty of its budget; no model holds shorter arcs than saturated air does.
     """
-    results = [*beams, *of_device]
+    results = [*beams, *others]
     responses = np.zeros((len(results), len(inputs.names)))
     for row, one in zip(responses, results, strict=True):
         row[[inputs.names.index(name) for name in one.names]] = one.budget.slope.values
@@ -158,14 +183,68 @@ def measured(beams: Sequence[Result], responses: np.ndarray, found: Mapping[str,
 
     ASSUME: the crack lengths of single beams are independent; the error of a computed mean is negligible.
     """
-    means, errors = [], []
-    for one in beams:
-        lengths = found[one.owner]
-        at = lengths.humidity.index(one.humidity)
-        means.append(lengths.mean[at])
-        errors.append(lengths.std[at] / lengths.mean[at] / np.sqrt(lengths.beams[at]))
-    computed = [float(one.budget.centre) for one in beams]
-    return Lengths(responses, np.log(np.array(means) / computed), np.array(errors))
+    differences, errors, rows = [], [], []
+    for one, row in zip(beams, responses, strict=False):
+        if (at := _place(one, found)) is not None:
+            mean, std, number = (getattr(found[one.owner], key)[at] for key in ("mean", "std", "beams"))
+            differences.append(np.log(mean / float(one.budget.centre)))
+            errors.append(std / mean / np.sqrt(number))
+            rows.append(row)
+    return Lengths(np.reshape(rows, (-1, responses.shape[1])), np.array(differences), np.array(errors))
+
+
+def _place(result, found):
+    """Place of a result of test beams among the humidities at which crack lengths of its array were measured."""
+    measured_at = found[result.owner].humidity if result.owner in found else ()
+    return measured_at.index(result.humidity) if result.humidity in measured_at else None
+
+
+def counted(
+    results: Sequence[Result],
+    responses: np.ndarray,
+    found: Mapping[str, Stuck],
+    grounds: Mapping[str, xr.Dataset],
+    tips: Mapping[str, xr.Dataset],
+) -> Counts:
+    """Numbers of stuck beams beside the lengths that beams and tips hold.
+
+    ASSUME: beams were counted whose tips had touched the substrate, and may be held by them. Crack lengths are
+    lognormal.
+
+    Parameters
+    ----------
+    results : sequence of n Result
+        Of beams and tips of test beams.
+    responses : (n or more, k) array
+    found : dict
+        Array to its counts.
+    grounds, tips : dict
+        Array to the contact on which its beams stick, and to that of their tips.
+    """
+    places = {(one.owner, one.humidity, one.response): place for place, one in enumerate(results)}
+    rows, lengths, scores = [], [], []
+    for name, data in found.items():
+        shapes = {
+            humidity: of_shapes(results[places[name, humidity, S_SHAPE]], grounds[name], tips[name], data.water)
+            for humidity in set(data.humidity)
+        }
+        for humidity, length in zip(data.humidity, data.length, strict=True):
+            behind, of_humidity = shapes[humidity]
+            rows.append(responses[[places[name, humidity, shape] for shape in SHAPES]])
+            lengths.append(length - behind)
+            scores.append(of_humidity)
+    numbers = (np.concatenate([getattr(one, key) for one in found.values()] or [[]]) for key in ("stuck", "of"))
+    shape = (-1, len(SHAPES))
+    return Counts(np.reshape(rows, (*shape, responses.shape[1])), np.reshape(lengths, shape), scores, *numbers)
+
+
+def of_shapes(cracks: Result, ground: xr.Dataset, tips: xr.Dataset, water: Water) -> tuple[np.ndarray, list[PPoly]]:
+    """Lengths that beams need behind an S-shaped crack and an arc (2,) [m], and the normal scores of both."""
+    beam, humidity = cracks.beam.beam, cracks.humidity
+    laws = shared_laws([curves.vectors(ground, humidity, water)])[0]
+    held = arcs.longest_free(*curves.tip_forces(tips, humidity, water), beam)
+    scores = [inference.lognormal(float(cracks.budget.centre), cracks.scatter), inference.score(held)]
+    return np.array([risk.HOLD * foundation_length(beam, laws), 0.0]), scores
 
 
 # Datasets
@@ -190,13 +269,16 @@ def of_inputs(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Dataset:
 
 
 def of_data(
-    beams: Sequence[Result], data: Lengths, prior: Knowledge, posterior: Knowledge, settings: Settings
+    beams: Sequence[Result], responses: np.ndarray, prior: Knowledge, posterior: Knowledge, settings: Settings
 ) -> xr.Dataset:
-    """Measured and computed crack lengths, and those that are expected before and after the measurement."""
-    computed = np.array([float(one.budget.centre) for one in beams])
-    lengths = {"measured": computed * np.exp(data.differences), "computed": computed}
-    lengths |= {"beam_length": [settings.crack_lengths[one.owner].length for one in beams]}
-    numbers = {"measured_error": data.errors} | _both(prior, posterior, data.responses)
+    """Measured and computed crack lengths, and those that are expected before and after the measurement.
+
+    Those that were not measured, where beams were only counted, are not a number.
+    """
+    own = [_measured_length(one, settings.crack_lengths) for one in beams]
+    lengths = {"computed": [float(one.budget.centre) for one in beams]}
+    lengths |= {key: [data[key] for data in own] for key in ("measured", "beam_length")}
+    numbers = {"measured_error": [data["error"] for data in own]} | _both(prior, posterior, responses[: len(beams)])
     lengths |= {size: [getattr(one.beam, size) for one in beams] for size in OWN}
     numbers |= {"rest": posterior.mean[[posterior.names.index(inference.rest(one.condition)) for one in beams]]}
     return xr.Dataset(
@@ -209,6 +291,46 @@ def of_data(
         },
         attrs={"rest": settings.discrepancy.rest},
     )
+
+
+def _measured_length(result, found):
+    """Measured mean length [m], its relative standard error and the length of the beams [m]; or no numbers."""
+    at = _place(result, found)
+    if at is None:
+        return dict.fromkeys(("measured", "error", "beam_length"), np.nan)
+    data = found[result.owner]
+    error = data.std[at] / data.mean[at] / np.sqrt(data.beams[at])
+    return {"measured": data.mean[at], "error": error, "beam_length": data.length}
+
+
+def of_counts(counts: Counts, posterior: Knowledge, found: Mapping[str, Stuck]) -> xr.Dataset:
+    """Counted beams and their P(stuck) before and after the measurement, for the most probable inputs."""
+    rows = [(name, *row) for name, data in found.items() for row in zip(data.humidity, data.length, strict=True)]
+    names, humidities, lengths = zip(*rows, strict=True) if rows else ((), (), ())
+    return xr.Dataset(
+        {
+            "stuck": ("count", counts.stuck),
+            "counted": ("count", counts.beams),
+            "stuck_before": ("count", counts.share(np.zeros_like(posterior.mean)), {"units": "1"}),
+            "stuck_after": ("count", counts.share(posterior.mean), {"units": "1"}),
+        },
+        coords={
+            "array_of_count": ("count", np.array(names, str)),
+            "humidity_of_count": ("count", np.array(humidities, float)),
+            "length_of_count": ("count", np.array(lengths, float), {"units": "m"}),
+        },
+    )
+
+
+def of_agreement(prior: Knowledge, lengths: Lengths, counts: Counts, own: int) -> xr.Dataset:
+    """Whether the data agree with inputs and model, and with the inputs alone, of which there are ``own``."""
+    inputs = Knowledge(prior.names[:own], prior.mean[:own], prior.covariance[:own, :own])
+    alone = [replace(data, responses=data.responses[..., :own]) for data in (lengths, counts)]
+    p_values = {
+        "p_value": inference.p_value(prior, lengths, counts),
+        "p_value_of_inputs": inference.p_value(inputs, *alone),
+    }
+    return xr.Dataset({name: ((), value, {"units": "1"}) for name, value in p_values.items()})
 
 
 def _both(prior, posterior, responses):
@@ -235,14 +357,17 @@ def of_lengths(
 
 
 def of_further(
-    beams: Sequence[Result], of_device: Sequence[Result], responses: np.ndarray, posterior: Knowledge
+    beams: Sequence[Result],
+    responses: np.ndarray,
+    of_device: Sequence[Result],
+    device: np.ndarray,
+    posterior: Knowledge,
 ) -> xr.Dataset:
     """Standard deviations of the lengths of a device if further test beams were measured.
 
     These are more beams of an array at one of its humidities, or a new array like the device at one of its humidities,
     whose dimensions and rest of the model are then its own.
     """
-    device = responses[len(beams) :]
     further = [(one, row, 0.0) for one, row in zip(beams, responses, strict=False)]
     for one, row in zip(of_device, device, strict=True):
         if one.response != ARC:
@@ -295,15 +420,32 @@ def _settings(plan, at):
     """Dimensions of a device and of its test beams, what was measured, and the discrepancy of the model."""
     names = plan.config["devices"][at.device]["test_beams"]
     arrays = {name: plan.config["test_beams"][name] for name in names}
-    return {
+    data = {
+        kind: {
+            name: {key: [datum[key] for datum in array[kind]] for key in columns}
+            for name, array in arrays.items()
+            if kind in array
+        }
+        for kind, columns in _COLUMNS.items()
+    }
+    for name in data["crack_lengths"]:
+        data["crack_lengths"][name]["length_um"] = arrays[name]["length_um"]
+    for name in data["stuck"]:
+        data["stuck"][name]["water"] = plan.water(arrays[name]["pair"])
+    return data | {
         "discrepancy": plan.config["design"]["discrepancy"],
         "device": section_of_beam(plan, at.device),
         "arrays": {name: section_of_beam(plan.of_test_beams, name) for name in names},
-        "crack_lengths": {
-            name: {key: [datum[key] for datum in array["crack_lengths"]] for key in _COLUMNS}
-            | {"length_um": array["length_um"]}
-            for name, array in arrays.items()
-        },
+    }
+
+
+def _contacts(plan, device):
+    """Contacts on which the counted test beams of a device stick, and those of their tips, by array."""
+    arrays, of_arrays = plan.config["test_beams"], plan.of_test_beams
+    names = [name for name in plan.config["devices"][device]["test_beams"] if "stuck" in arrays[name]]
+    return {
+        "grounds": {name: contact_of(of_arrays, name) for name in names},
+        "tips": {name: tips_of(of_arrays, name)["tips"] for name in names},
     }
 
 
@@ -311,17 +453,22 @@ STAGES = (
     Stage.writing(
         "test_beams",
         "devices/test_beams/{device}",
-        inputs=lambda plan, at: {
-            "budgets": budgets_of(plan, at.device),
-            "test_beams": budgets_of_arrays(plan, at.device),
-            "safe_lengths": {
-                rh: f"devices/safe_lengths/{case_id(at.device, rh)}"
-                for rh in plan.config["devices"][at.device]["humidities"]
-            },
-        },
+        inputs=lambda plan, at: (
+            {
+                "budgets": budgets_of(plan, at.device),
+                "test_beams": budgets_of_arrays(plan, at.device),
+                "safe_lengths": {
+                    rh: f"devices/safe_lengths/{case_id(at.device, rh)}"
+                    for rh in plan.config["devices"][at.device]["humidities"]
+                },
+            }
+            | _contacts(plan, at.device)
+        ),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["budgets"], data["test_beams"], data["safe_lengths"], settings),
+        compute=lambda data, at, settings: compute(
+            data["budgets"], data["test_beams"], data["safe_lengths"], data["grounds"], data["tips"], settings
+        ),
         message="Test beams of device {device}.",
     ),
 )
