@@ -286,13 +286,12 @@ def test_a_summit_in_deep_contact_has_the_deep_load_of_its_own_radius():
     weak = SimpleNamespace(work_of_adhesion=water.work_of_adhesion / 200, stress=water.stress)
     found = np.zeros(120)
     MaugisTable(POLYSILICON, weak).add_forces(np.array([tops[0]]), np.array([1 / radius]), 0.05e-9, found)
-    transition = transition_parameter(radius, POLYSILICON, weak)
     interference = tops / interference_scale(radius, POLYSILICON, weak)
     deep = interference > 950  # beyond the table
     unit = np.pi * weak.work_of_adhesion * radius
-    load, other = (unit * np.array([deep_load(x, f * transition) for x in interference[deep]]) for f in (1, 1.01))
+    load, hertz = (unit * np.array([deep_load(x) + pull for x in interference[deep]]) for pull in (0, 1))
     np.testing.assert_allclose(found[deep], load, rtol=1e-9)
-    assert np.all(np.abs(other / load - 1) > 1e-8)
+    assert np.all(np.abs(hertz / load - 1) > 1e-8)
     assert 0 < deep.sum() < 120
 
 
@@ -333,19 +332,13 @@ def test_deep_contact_has_the_load_of_maugis(log_transition, log_interference):
     spread = brentq(lambda x: state(x)[1] - interference, np.log(1e-7), np.log(10), xtol=1e-13)
     load = state(spread)[0]
     # The closure loses up to half of its digits to cancellation at the smallest spreads.
-    assert -1e-6 * load < deep_load(interference, transition) - load < 1.1 + 1e-6 * load
+    assert -1e-6 * load < deep_load(interference) - load < 0.07 + 1e-6 * load
 
 
 @given(st.floats(30, 1e3))
 def test_deep_contact_of_a_large_soft_sphere_is_jkr(a):
     load, interference = a**3 - a * np.sqrt(6 * a), a**2 - 2 / 3 * np.sqrt(6 * a)
-    # The next order in the width s of the attraction relative to λ.
-    assert deep_load(interference, 1e4) == pytest.approx(load, rel=1e-7)
-
-
-@given(st.floats(800, 1e6))
-def test_deep_contact_of_a_small_hard_sphere_is_hertz(interference):
-    assert deep_load(interference, 1e-6) == pytest.approx(interference**1.5, rel=1e-6)
+    assert deep_load(interference) == pytest.approx(load, abs=0.3 / a**1.5)  # the next order in 1/a
 
 
 @given(st.floats(5, 12), st.floats(-9, -6.5))
