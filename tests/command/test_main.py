@@ -12,6 +12,7 @@ import stiction
 from stiction.command import launch
 from stiction.command.front import FRONT
 from stiction.command.main import main
+from stiction.config.arrays import beams
 
 ROOT = Path(__file__).parents[2]
 BASE = ["--configfile", str(ROOT / "config.yaml")]
@@ -157,6 +158,14 @@ def test_the_study_that_is_written_is_valid_and_never_overwritten(tmp_path, caps
     assert main(["init", "--directory", str(tmp_path)]) == 2
     assert study.read_text() == changed
     assert main(["init", "--directory", str(tmp_path / "none")]) == 2
+
+
+def test_a_table_of_test_beams_is_written_once(tmp_path, capsys):
+    assert main(["init", "--test-beams", "--directory", str(tmp_path)]) == 0
+    assert [file.name for file in tmp_path.iterdir()] == ["test_beams.csv"]
+    assert len(beams((tmp_path / "test_beams.csv").read_text(encoding="utf-8"))) == 4
+    assert main(["init", "--test-beams", "--directory", str(tmp_path)]) == 2
+    assert "exists already" in capsys.readouterr().err
 
 
 def test_a_check_names_what_would_be_computed_or_every_problem(tmp_path, capsys):

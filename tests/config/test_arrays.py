@@ -101,7 +101,11 @@ def test_counts_need_no_crack_lengths_and_may_stand_beside_them():
         ({**COUNTED, "stuck": COUNTS * 2}, "stuck", "beams of 300 µm at RH 0.67 are listed twice"),
         ({**COUNTED, "stuck": [COUNTS[0] | {"humidity": 0.2}]}, "stuck", "must be at least 0.2903: in drier air"),
         ({**COUNTED, "stuck": [COUNTS[0] | {"of": 0}]}, "stuck[0].of", "at least 1"),
-        ({key: COUNTED[key] for key in COUNTED if key != "stuck"}, "pair", "must come with crack_lengths or stuck"),
+        (
+            {key: COUNTED[key] for key in COUNTED if key != "stuck"},
+            "pair",
+            "must come with crack_lengths, stuck or file",
+        ),
         ({key: ARRAY[key] for key in ARRAY if key != "length_um"}, "crack_lengths", "must come with length_um"),
     ],
 )

@@ -3,6 +3,7 @@
 import argparse
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from stiction.command import explain, launch
@@ -78,6 +79,10 @@ def _add(commands, name: str, run: Callable, purpose: str, files: str | None):
             "files", nargs=files, metavar="FILE", help="changes single keys of the paper's configuration"
         )
     added.add_argument("--directory", "-d", default=".", metavar="DIR", help="results go to DIR/results (default: .)")
+    if run is _init:
+        added.add_argument(
+            "--test-beams", action="store_true", help="write test_beams.csv, a table of single test beams"
+        )
     if run not in (_init, _check):
         added.add_argument("--cores", "-c", metavar="N", help="number of jobs at the same time (default: all cores)")
         added.add_argument("--dry-run", "-n", action="store_true", help="only say what would be computed")
@@ -85,21 +90,40 @@ def _add(commands, name: str, run: Callable, purpose: str, files: str | None):
 
 
 def _init(arguments):
-    """Write a study."""
+    """Write a study, or a table of test beams."""
+    if arguments.test_beams:
+        return _init_test_beams(Path(arguments.directory) / "test_beams.csv")
     target = Path(arguments.directory) / "study.yaml"
-    try:
-        with target.open("x", encoding="utf-8") as file:
-            file.write(Path(__file__).with_name("study.yaml").read_text(encoding="utf-8"))
+    with _new(target) as file:
+        file.write(Path(__file__).with_name("study.yaml").read_text(encoding="utf-8"))
         schema = launch.PACKAGE / "config" / "schema.json"
         target.with_name("stiction.schema.json").write_text(schema.read_text(encoding="utf-8"), encoding="utf-8")
-    except FileExistsError:
-        raise launch.RefusedError(f"{target} exists already: nothing was written") from None
-    except OSError as error:
-        raise launch.RefusedError(f"{target} cannot be written: {error.strerror}") from error
     _say(f"{target} describes a surface, a pair and a beam: change them into yours. Then")
     _say(f"  stiction check {target}     says whether it can run")
     _say(f"  stiction run {target}       computes it: tables and figures in results/")
     return Status.DONE
+
+
+def _init_test_beams(target):
+    """Write a table of test beams."""
+    from stiction.config.arrays import TEMPLATE
+
+    with _new(target) as file:
+        file.write(TEMPLATE)
+    _say(f"{target} has a row for every test beam: put yours there, and name the file in test_beams.NAME.file.")
+    return Status.DONE
+
+
+@contextmanager
+def _new(target):
+    """A file that did not exist."""
+    try:
+        with target.open("x", encoding="utf-8") as file:
+            yield file
+    except FileExistsError:
+        raise launch.RefusedError(f"{target} exists already: nothing was written") from None
+    except OSError as error:
+        raise launch.RefusedError(f"{target} cannot be written: {error.strerror}") from error
 
 
 def _check(arguments):

@@ -4,6 +4,7 @@ import functools
 from collections.abc import Mapping
 from pathlib import Path
 
+from stiction.config import arrays
 from stiction.config.measured import complete, resolve_scan_paths
 from stiction.config.merging import merged
 from stiction.config.reading import read
@@ -19,7 +20,7 @@ def load(*overlays: str | Path | Mapping) -> dict:
     ----------
     *overlays : path of a YAML file, or mapping
         Each changes single keys of the preceding configuration, like ``CONFIG=mine.yaml`` in the workflow. Files of
-        scans are relative to the folder of the YAML file, in a mapping to the working directory.
+        scans and of test beams are relative to the folder of the YAML file, in a mapping to the working directory.
 
     Raises
     ------
@@ -34,14 +35,17 @@ def load(*overlays: str | Path | Mapping) -> dict:
     # Imports the physics, which reading alone does not need.
     from stiction.config.validation import validate
 
-    changes = (overlay if isinstance(overlay, Mapping) else located(overlay) for overlay in overlays)
+    changes = (
+        arrays.with_files(overlay, overlay, Path()) if isinstance(overlay, Mapping) else located(overlay)
+        for overlay in overlays
+    )
     config = functools.reduce(merged, changes, read(PAPER))
     validate(config)
     return normalised(config)
 
 
 def located(path: str | Path) -> dict:
-    """Mapping in one YAML file, with the files of scans relative to its folder.
+    """Mapping in one YAML file, with the files of scans relative to its folder and the data of test beams in files.
 
     Raises
     ------
@@ -49,7 +53,8 @@ def located(path: str | Path) -> dict:
         As `stiction.config.reading.read`.
     """
     content = read(path)
-    return resolve_scan_paths(content, content, Path(path).parent)
+    folder = Path(path).parent
+    return arrays.with_files(resolve_scan_paths(content, content, folder), content, folder)
 
 
 @functools.cache

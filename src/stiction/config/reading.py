@@ -33,7 +33,7 @@ def read(path: str | Path) -> dict:
         with the name of the file and, where it is known, the line.
     """
     try:
-        content = yaml.load(_text(path), _Strict)
+        content = yaml.load(text(path), _Strict)
     except Exception as reason:  # PyYAML does not wrap all exceptions: !!bool x raises a KeyError
         message = _one_line(reason)
         causes = [f"; {cause}" for symptom, cause in _CAUSES.items() if symptom in message]
@@ -52,7 +52,7 @@ def _one_line(reason):
     return f"line {mark.line + 1}, column {mark.column + 1}: {' '.join(filter(None, (reason.context, reason.problem)))}"
 
 
-def _text(path):
+def text(path: str | Path) -> str:
     """Text of a file in UTF-8."""
     require_regular(path)
     data = Path(path).read_bytes()

@@ -415,7 +415,7 @@ def devices_with_common_test_beams_share_their_uncertainties(names, device, devi
 @relation("test_beams.*.pair", "test_beams.*.#")
 def arrays_have_data(_, keys):
     """Something was measured on an array."""
-    return None if set(DATA) & set(keys) else f"must come with {' or '.join(DATA)}"
+    return None if set(DATA) & set(keys) else f"must come with {', '.join(DATA)} or file"
 
 
 @relation("test_beams.*.crack_lengths", "test_beams.*.#")
