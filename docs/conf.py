@@ -14,9 +14,9 @@ author = "The stiction developers"
 project_copyright = "2026, The stiction developers"
 release = stiction.__version__
 
-extensions = ["myst_parser", "mathml", "plain", "sphinx_copybutton"]
+extensions = ["myst_parser", "mathml", "plain", "sphinx_copybutton", "sphinx_gallery.gen_gallery"]
 extensions += [f"sphinx.ext.{name}" for name in ("autodoc", "autosummary", "napoleon", "viewcode")]
-exclude_patterns = ["_build", "templates", "tables"]
+exclude_patterns = ["_build", "templates", "tables", "gallery"]
 templates_path = ["_templates"]
 
 myst_enable_extensions = ["dollarmath", "amsmath"]
@@ -39,6 +39,16 @@ nitpick_ignore = [("py:class", "enum.IntEnum"), ("py:class", "callable"), ("py:o
 nitpick_ignore += [("py:class", f"collections.abc.{name}") for name in ("Callable", "Mapping", "Sequence")]
 # Public names are described where they are defined.
 nitpick_ignore += [("py:obj", f"stiction.{name}") for name in stiction.__all__]
+
+# Studies that run when the documentation is built.
+sphinx_gallery_conf = {
+    "examples_dirs": "gallery",
+    "gallery_dirs": "_gallery",
+    "within_subsection_order": "FileNameSortKey",
+    "show_memory": False,
+    "min_reported_time": 1e9,
+    "write_computation_times": False,
+}
 
 html_theme = "furo"
 html_title = f"stiction {release}"
