@@ -184,13 +184,13 @@ def test_a_dataset_that_is_built_is_found(tmp_path, call):
 
 
 def public_functions(path):
-    """Functions and methods that users call; kernels have the types of their arguments, relations those of keys."""
+    """Functions and methods that users call; kernels have the types of their arguments, relations take `Keys`."""
     for node in nodes(path)[0].body:
         inside = node.body if isinstance(node, ast.ClassDef) and not node.name.startswith("_") else [node]
         for function in inside:
             if isinstance(function, ast.FunctionDef) and not function.name.startswith("_"):
                 decorators = " ".join(map(ast.unparse, function.decorator_list))
-                if "kernel" not in decorators and "relation(" not in decorators:
+                if "kernel" not in decorators and "relation" not in decorators:
                     yield function
 
 

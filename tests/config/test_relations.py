@@ -12,7 +12,9 @@ from published import SURFACES
 from wrong_configurations import STOPPER, WRONG_RELATIONS
 
 from stiction.chaos.model import MAX_ORDER
-from stiction.config import conditions, relations, validation
+from stiction.config import relations, validation
+from stiction.config.conditions import Keys, Unknown
+from stiction.config.merging import merged
 from stiction.scans.quantiles import SCORES
 
 FUZZ = settings(max_examples=250, suppress_health_check=[HealthCheck.too_slow])
@@ -109,22 +111,39 @@ def test_the_bound_on_strips_is_the_same_for_moments_and_for_the_form_that_they_
     assert relations.longest_strip(2.6, 164, 0.95, 300, [form, without_density], {}) == np.inf
 
 
-def test_the_surfaces_that_meet_are_those_of_the_devices_and_pairs_of_a_relation():
-    pairs = {"b": {"beam": "B2", "substrate": "Sub1", "gap_um": 20}, "a": {"beam": "B1", "substrate": "Sub1"}}
-    devices = {"C1": {"pair": "b", "humidities": [0.5]}, "C2": {"pair": "a"}}
-    of_device = conditions._met([("devices", "C1", "@"), ("devices",), ("pairs",)], ["C1", devices, pairs])
-    assert {"B1", "B2", "Sub1"} & of_device == {"B2", "Sub1"}
-    assert {"B1", "B2"} & conditions._met([("run", "pairs", 0), ("pairs",)], ["a", pairs]) == {"B1"}
-    assert "B2" in conditions._met([("pairs", "b", "beam"), ("surfaces",)], ["B2", {}])
+def violated(config, files):
+    """Violated relations of a configuration whose measured surfaces have these files."""
+    return list(map(str, validation.RELATIONS.problems(Keys(validation._OPTIONAL | config, [], files))))
+
+
+def test_a_problem_of_a_device_or_a_pair_names_the_files_of_its_own_surfaces():
+    files = {name: [f"{name}.spm"] for name in ("B1", "B2", "Sub1")}
+    device = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 0.1, "width_um": 30, "strip_um": 1.5}
+    near = {"devices": {"B1": device | {"humidities": [0.6]}}, "pairs": {"b": {"gap_um": 0.1}}}
+    for key in ("devices.B1.gap_um", "pairs.b.gap_um"):
+        lines = [line for line in violated(merged(PAPER, near), files) if line.startswith(f"{key} is 0.1, must be at")]
+        assert lines
+        assert all("surfaces.B2.scans.files = ['B2.spm'], surfaces.Sub1.scans" in line for line in lines)
+        assert not any("B1.spm" in line for line in lines)
+
+
+def test_a_key_that_is_wrong_is_unknown_as_are_the_sections_around_it_and_the_keys_in_it():
+    config = Keys({"pairs": {"a": {"gap_um": 20}, "b": {"gap_um": [-1, 2]}}, "seed": 1}, [("pairs", "b", "gap_um", 0)])
+    assert config["pairs.a.gap_um"] == 20
+    assert config["pairs.b.gap_um.1"] == 2
+    for key in ("pairs", "pairs.b", "pairs.b.gap_um", "pairs.b.gap_um.0", "pairs.c", "seed.a", "pairs.a.gap_um.0"):
+        with pytest.raises(Unknown):
+            config[key]
+    assert config.names("pairs") == ["a", "b"]
+    assert list(config.entries("pairs", "gap_um")) == [("a", 20)]
+    assert list(config.items("pairs.b.gap_um")) == [("pairs.b.gap_um.1", 2)]
+    assert list(config.known("seed", "sead", "pairs")) == [("seed", 1)]
 
 
 def test_numbers_of_measured_surfaces_are_named_by_their_files():
     files = {"B2": ["folder/a.spm", "folder/b.spm"], "B1": ["c.spm"]}
     overlay = "surfaces: {B2: {kurtosis: 1.2}}\nsampling: {margin_um: 0.1}\npairs: {b: {gap_um: 0.1}}"
-    lines = [
-        str(problem)
-        for problem in conditions.violated(validation.RELATIONS, validation._OPTIONAL | changed(overlay), [], files)
-    ]
+    lines = violated(changed(overlay), files)
     shown = "surfaces.B2.scans.files = ['a.spm', 'b.spm']"
     (kurtosis,) = [line for line in lines if "skewness²" in line]
     assert kurtosis == (

@@ -1,131 +1,120 @@
-"""Relations between keys of a configuration: how they are stated, and which of them a configuration violates."""
+"""What relations between keys read: the values of a configuration by dotted key; and the problems that they report."""
 
-import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from stiction.config.messages import Problem, dotted, shown
 
 
+class Unknown(LookupError):
+    """A key that is not given, or is wrong on its own: what depends on it is not checked."""
+
+
 class Relations(list):
-    """Keys and relation between their values, for each of some relations; it also is the decorator that adds them."""
+    """Generators of refusals of values; also the decorator that adds them."""
 
-    def __call__(self, *keys: str) -> Callable:
-        """Add a relation between keys; it is only checked for values that the schema accepts.
+    def __call__(self, relation: Callable) -> Callable:
+        """Add a generator of keys, refusals of their values or ``None``, and other keys on whose values that depends.
 
-        The values are the arguments of the relation, in order; error messages are about the first key. In a key, ``*``
-        stands for each name in a section or each index of a list in turn, the same in all keys, ``#`` for the list of
-        names in a section, and ``@`` for the name of a section.
+        It takes `Keys` and ends where it reads a key that is unknown.
         """
+        self.append(relation)
+        return relation
 
-        def add(holds):
-            self.append((keys, holds))
-            return holds
+    def problems(self, config: "Keys") -> Iterator[Problem]:
+        """Violated relations between keys that are valid on their own."""
+        for relation in self:
+            with suppress(Unknown):
+                for key, refusal, *given in relation(config):
+                    if refusal:
+                        yield config.problem(key, refusal, *given)
 
-        return add
 
+@dataclass(frozen=True)
+class Keys:
+    """Values of a configuration by dotted key such as ``pairs.a.gap_um`` or ``run.pairs.0``.
 
-def violated(relations: Relations, config: dict, faults: list[tuple], files: dict | None = None) -> list[Problem]:
-    """Violated relations between keys that are valid on their own.
-
-    Parameters
-    ----------
-    relations : Relations
-    config : dict
-        Configuration.
-    faults : list of tuple
-        Keys that are wrong on their own.
-    files : dict, optional
-        Files of the measured surfaces by name.
+    Examples
+    --------
+    >>> config = Keys({"pairs": {"a": {"gap_um": 20}, "b": {"gap_um": -1}}}, [("pairs", "b", "gap_um")])
+    >>> config["pairs.a.gap_um"], config.names("pairs"), list(config.entries("pairs", "gap_um"))
+    (20, ['a', 'b'], [('a', 20)])
     """
-    cases = ((holds, paths) for keys, holds in relations for paths in _spelled_out(keys, config))
-    return [problem for holds, paths in cases for problem in _checked(holds, paths, config, faults, files or {})]
+
+    config: dict
+    faults: list[tuple]  #: paths that are wrong on their own
+    files: dict[str, list] = field(default_factory=dict)  #: of the scans of measured surfaces, by name
+
+    def __getitem__(self, key: str) -> Any:
+        """Value of a key; raises `Unknown` if it is not given, or wrong on its own, as a whole or in part."""
+        path = _path(key)
+        if any(path[: len(fault)] == fault[: len(path)] for fault in self.faults):
+            raise Unknown(key)
+        return self._value(path)
+
+    def names(self, section: str) -> list[str]:
+        """Names in a section or indices of a list, also of wrong entries; raises `Unknown` if it is wrong itself."""
+        path = _path(section)
+        if any(path[: len(fault)] == fault for fault in self.faults):
+            raise Unknown(section)
+        found = self._value(path)
+        return (
+            [name for name in found if isinstance(name, str)]
+            if isinstance(found, dict)
+            else [*map(str, range(len(found)))]
+        )
+
+    def known(self, *keys: str) -> Iterator[tuple[str, Any]]:
+        """Those of some keys that are known, with their values."""
+        for key in keys:
+            with suppress(Unknown):
+                yield key, self[key]
+
+    def items(self, listed: str) -> Iterator[tuple[str, Any]]:
+        """Keys of the items of a list, with their values."""
+        with suppress(Unknown):
+            yield from self.known(*(f"{listed}.{index}" for index in self.names(listed)))
+
+    def entries(self, section: str, *keys: str) -> Iterator[tuple]:
+        """Name of every entry of a section of which all these keys are known, and their values."""
+        with suppress(Unknown):
+            for name in self.names(section):
+                values = dict(self.known(*(f"{section}.{name}.{key}" for key in keys)))
+                if len(values) == len(keys):
+                    yield name, *values.values()
+
+    def scanned(self, *surfaces: str) -> list[str]:
+        """Keys of those surfaces that are measured, for which a problem states the files of their scans."""
+        return [f"surfaces.{name}.rms_nm" for name in self.files if name in surfaces]
+
+    def problem(self, key: str, message: str, *given: str) -> Problem:
+        """Problem with a key, and the other keys on whose values that depends."""
+        path, value = self._stated(key)
+        number = "" if path == _path(key) else f", which gives {_path(key)[-1]} = {self[key]:.4g}"
+        others = dict.fromkeys(f"{dotted(other)} = {shown(given)}" for other, given in map(self._stated, given))
+        more = f" (given {', '.join(others)})" if others else ""
+        return Problem(path, f"is {shown(value)}{number}, {message}{more}")
+
+    def _stated(self, key):
+        """Path and value as stated by the user: the numbers of a measured surface come from its files."""
+        path = _path(key)
+        if path[0] == "surfaces" and path[1] in self.files:
+            return (*path[:2], "scans", "files"), [Path(file).name for file in self.files[path[1]]]
+        return path, self._value(path)
+
+    def _value(self, path):
+        value = self.config
+        try:
+            for key in path:
+                value = value[key]
+        except (LookupError, TypeError):
+            raise Unknown(path) from None
+        return value
 
 
-def _spelled_out(keys, config):
-    """Paths of the keys, for each combination of the members that ``*`` stands for."""
-    paths = [tuple(key.split(".")) for key in keys]
-    sections = list(dict.fromkeys(path[: path.index("*")] for path in paths if "*" in path))
-    choices = itertools.product(*(_members(config, section) for section in sections))
-    return [[_chosen(path, dict(zip(sections, choice, strict=True))) for path in paths] for choice in choices]
-
-
-def _chosen(path, members):
-    """Path in which ``*`` is replaced by the chosen member of its section."""
-    if "*" not in path:
-        return path
-    depth = path.index("*")
-    return (*path[:depth], members[path[:depth]], *path[depth + 1 :])
-
-
-def _members(config, path):
-    """Names in a section or indices of a list; empty if there is neither."""
-    try:
-        found = _value(config, path)
-    except (KeyError, TypeError):
-        return []
-    return range(len(found)) if isinstance(found, list) else _names(found)
-
-
-def _checked(holds, paths, config, faults, files):
-    """Problem, if any, of one relation at the values of the paths."""
-    if any(_overlap(path, fault) for path in paths for fault in faults):
-        return []
-    try:
-        values = [_value(config, path) for path in paths]
-    except KeyError:  # an optional key that is not given
-        return []
-    message = holds(*values)
-    if message is None:
-        return []
-    path, value = _known(paths[0], values[0], files)
-    number = "" if path == paths[0] else f", which gives {paths[0][-1]} = {values[0]:.4g}"
-    return [Problem(path, f"is {shown(value)}{number}, {message}{_given(paths, values, files)}")]
-
-
-def _known(path, value, files):
-    """Key and value as given by the user: the numbers of a measured surface come from its files."""
-    if path[0] == "surfaces" and path[1] in files:
-        return (*path[:2], "scans", "files"), [Path(file).name for file in files[path[1]]]
-    return path, value
-
-
-def _given(paths, values, files):
-    """The other values of a violated relation, except names and whole sections of the configuration."""
-    given = [
-        _known(path, value, files)
-        for path, value in zip(paths[1:], values[1:], strict=True)
-        if path[-1] not in ("#", "@") and (len(path) > 1 or not isinstance(value, dict))
-    ]
-    if ("surfaces",) in paths:
-        given += [_known(("surfaces", name, "rms_nm"), None, files) for name in files if name in _met(paths, values)]
-    others = [f"{dotted(path)} = {shown(value)}" for path, value in given]
-    return f" (given {', '.join(dict.fromkeys(others))})" if others else ""
-
-
-def _met(paths, values):
-    """Names among the values of a relation, and those to which the devices and pairs of these names refer."""
-    sections = {path: value for path, value in zip(paths, values, strict=True) if isinstance(value, dict)}
-    names = {value for value in values if isinstance(value, str)}
-    for section in (("devices",), ("pairs",)):
-        entries = [entry for name, entry in sections.get(section, {}).items() if name in names]
-        names |= {value for entry in entries for value in entry.values() if isinstance(value, str)}
-    return names
-
-
-def _overlap(path, fault):
-    """Whether a fault lies at, above or below a path."""
-    depth = min(len(path), len(fault))
-    return path[:depth] == fault[:depth]
-
-
-def _value(config, path):
-    """Value at a path; ``#`` stands for the names in a section, ``@`` for the name of the section itself."""
-    for before, key in zip((None, *path), path, strict=False):
-        config = _names(config) if key == "#" else before if key == "@" else config[key]
-    return config
-
-
-def _names(section):
-    """Names in a section; empty if it is not a section."""
-    return [name for name in section if isinstance(name, str)] if isinstance(section, dict) else []
+def _path(key):
+    """Names and indices of a dotted key."""
+    return tuple(int(part) if part.isdecimal() else part for part in key.split("."))

@@ -1,13 +1,16 @@
 """Relations between the keys of a configuration.
 
-The schema bounds every key on its own. Conditions between keys are the relations below: functions of the values that
-return ``None``, or the end of the error message about the offending key. Values keep the units of their keys.
+The schema bounds every key on its own. Every condition between keys is one of the generators below, which yields a
+problem for each entry that violates it; the message is the end of a sentence about the offending key. Values keep the
+units of their keys.
 """
 
 import functools
 import itertools
 import math
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import yaml
@@ -16,7 +19,7 @@ from scipy.special import ndtri
 from stiction.beam.foundation import STRIP, decay_length, ground_stiffness
 from stiction.config import memory
 from stiction.config.cases import NAMEABLE, decimals
-from stiction.config.conditions import Relations
+from stiction.config.conditions import Keys, Relations
 from stiction.config.messages import did_you_mean, duplicates, shown
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, in_si, to_si
 from stiction.contact.bounds import least_law
@@ -47,59 +50,76 @@ def schema() -> dict:
 
 #: Relations between the keys of surfaces, pairs and the sizes of computations.
 relation = Relations()
-#: Keys of the targets of an identification.
-_TARGET = (
-    "surfaces.*.rms_nm",
-    "surfaces.*.mean_summit_radius_um",
-    "surfaces.*.summit_density_per_um2",
-    "character.spacing_nm",
-)
 
 
-@relation("run.pairs")
-@relation("run.studies")
-@relation("surfaces.*.scans.files")
-@relation("design.shares")
-def list_has_no_duplicates(values):
+@relation
+def lists_have_no_duplicates(config):
     """A pair or a study runs once, a scan counts once, and a share has one safe length."""
-    repeated = duplicates(values)
-    return f"must list each value once; {shown(repeated[0])} is listed twice" if repeated else None
+    scans = [f"surfaces.{name}.scans.files" for name, _ in config.entries("surfaces", "scans.files")]
+    for key, values in config.known("design.shares", *scans, "run.studies", "run.pairs"):
+        if repeated := duplicates(values):
+            yield key, f"must list each value once; {shown(repeated[0])} is listed twice"
 
 
-@relation("run.pairs", "devices", "surfaces")
-def something_is_computed(names, devices, surfaces):
+@relation
+def something_is_computed(config):
     """A run without pairs computes devices or evaluates scans."""
-    scanned = any("scans" in surface for surface in surfaces.values())
-    return None if names or devices or scanned else "must name a pair: there are neither devices nor scans"
+    names, devices, surfaces = config["run.pairs"], config["devices"], config["surfaces"]
+    if not (names or devices or any("scans" in surface for surface in surfaces.values())):
+        yield "run.pairs", "must name a pair: there are neither devices nor scans"
 
 
-@relation("run.pairs", "pairs.#")
-@relation("studies.plasticity.distance_nm", "pairs.#")
-def selected_pairs_exist(names, pairs):
+@relation
+def selected_pairs_exist(config):
     """Only defined pairs can run."""
-    refusals = ((name, name_is_defined(name, pairs)) for name in names)
-    return next((f"{message}; {shown(name)} is not" for name, message in refusals if message), None)
+    pairs = config.names("pairs")
+    for key, names in config.known("studies.plasticity.distance_nm", "run.pairs"):
+        if strange := [name for name in names if name not in pairs]:
+            yield key, f"{undefined(strange[0], pairs)}; {shown(strange[0])} is not"
 
 
-@relation("pairs.*.beam", "surfaces.#")
-@relation("pairs.*.substrate", "surfaces.#")
-@relation("figures.pair", "pairs.#")
-def name_is_defined(name, defined):
+@relation
+def pair_of_the_figures_is_defined(config):
     """References must be to defined names."""
+    yield "figures.pair", undefined(config["figures.pair"], config.names("pairs"))
+
+
+@relation
+def surfaces_of_pairs_are_defined(config):
+    """As above, for both sides of every pair."""
+    for side in reversed(SIDES):
+        yield from references_are_defined(config, "pairs", side, "surfaces")
+
+
+def references_are_defined(config: Keys, section: str, key: str, to: str) -> Iterator[tuple]:
+    """Refusals of a key in every entry of a section that is to name an entry of another one."""
+    defined = config.names(to)
+    for name, reference in config.entries(section, key):
+        yield f"{section}.{name}.{key}", undefined(reference, defined)
+
+
+def undefined(name: str, defined: Iterable[str]) -> str | None:
+    """Refusal of a name that is not defined."""
     return None if name in defined else f"must be one of {', '.join(defined)}{did_you_mean(name, defined)}"
 
 
-@relation("surfaces.*.material", "materials.#")
-def material_is_defined(name, defined):
+@relation
+def materials_are_defined(config):
     """Materials are defined in a section of their own, which the paper does not have."""
-    if not defined:
-        return "must be the name of a section of materials, where no material is described"
-    return name_is_defined(name, defined)
+    none = "must be the name of a section of materials, where no material is described"
+    for key, refusal in references_are_defined(config, "surfaces", "material", "materials"):
+        yield key, refusal if config.names("materials") else none
 
 
-@relation("pairs.*.humidities")
-def cases_have_unique_names(humidities):
+@relation
+def cases_have_unique_names(config, section="pairs"):
     """Each humidity of a pair has a unique name."""
+    for name, humidities in config.entries(section, "humidities"):
+        yield f"{section}.{name}.humidities", without_unique_names(humidities)
+
+
+def without_unique_names(humidities: list[float]) -> str | None:
+    """Refusal of humidities whose cases have no name, or the same."""
     nameless = [humidity for humidity in humidities if not decimals(humidity)]
     if nameless:
         return f"must each {NAMEABLE}; {nameless[0]} has more"
@@ -107,90 +127,120 @@ def cases_have_unique_names(humidities):
     return f"must list each humidity once; {repeated[0]} is listed twice" if repeated else None
 
 
-@relation("figures.humidity")
-def humidity_of_the_figures_has_a_name(humidity):
+@relation
+def humidity_of_the_figures_has_a_name(config):
     """The humidity of the figures must be valid in the name of a case."""
-    return None if decimals(humidity) else f"must {NAMEABLE}"
+    if not decimals(config["figures.humidity"]):
+        yield "figures.humidity", f"must {NAMEABLE}"
 
 
 #: Keys of a surface that is described by numbers.
 _NUMBERS = ("rms_nm", "skewness", "kurtosis", "mean_summit_radius_um", "summit_density_per_um2", "published_psd")
 
 
-@relation("surfaces.*.scans", "surfaces.*.#")
-def scans_stand_alone(scans, keys):  # noqa: ARG001
+@relation
+def scans_stand_alone(config):
     """A surface is described either by scans or by numbers."""
-    beside = [key for key in keys if key in _NUMBERS]
-    if not beside:
-        return None
-    return f"must not be given beside {', '.join(beside)}; give the measured surface a name of its own"
+    for name, _ in config.entries("surfaces", "scans"):
+        if beside := [key for key in config.names(f"surfaces.{name}") if key in _NUMBERS]:
+            message = f"must not be given beside {', '.join(beside)}; give the measured surface a name of its own"
+            yield f"surfaces.{name}.scans", message
 
 
-@relation("surfaces.*.psd", "surfaces.*.#")
-def spectrum_suits_the_surface(psd, keys):
+@relation
+def spectra_suit_their_surfaces(config):
     """Scans give a spectrum themselves."""
-    if "scans" in keys and any(key in _NUMBERS for key in keys):
-        return None  # the relation above reports this
-    which, sources = ("with", ("fitted", "tabulated")) if "scans" in keys else ("without", ("published", "identified"))
-    return None if psd in sources else f"must be {' or '.join(sources)} for a surface {which} scans"
+    for name, psd in config.entries("surfaces", "psd"):
+        keys = config.names(f"surfaces.{name}")
+        if "scans" not in keys:
+            which, sources = "without", ("published", "identified")
+        elif not any(key in _NUMBERS for key in keys):  # otherwise the relation above reports this
+            which, sources = "with", ("fitted", "tabulated")
+        else:
+            continue
+        if psd not in sources:
+            yield f"surfaces.{name}.psd", f"must be {' or '.join(sources)} for a surface {which} scans"
 
 
-@relation("surfaces.*.heights", "surfaces.*.#")
-@relation("surfaces.*.beyond", "surfaces.*.#")
-def only_scans_leave_this_choice(choice, keys):  # noqa: ARG001
+@relation
+def only_scans_leave_a_choice(config):
     """Other surfaces have the heights of their moments and a spectrum with a cut-off."""
-    return None if "scans" in keys else "must not be given for a surface without scans"
+    for choice in ("beyond", "heights"):
+        for name, _ in config.entries("surfaces", choice):
+            if "scans" not in config.names(f"surfaces.{name}"):
+                yield f"surfaces.{name}.{choice}", "must not be given for a surface without scans"
 
 
-@relation("surfaces.*.kurtosis", "surfaces.*.skewness")
-def heights_have_a_density(kurtosis, skewness):
+@relation
+def heights_have_a_density(config):
     """A density has these moments, and a maximum-entropy density of Eq. (3) these or moments near them."""
-    if kurtosis <= skewness**2 + 1:
-        return f"must be above skewness² + 1 = {skewness**2 + 1:.6g}"
-    try:
-        nearest_feasible(skewness, kurtosis)
-    except (ValueError, NotConverged) as reason:
-        return f"must be near that of a maximum-entropy density of the heights: {reason}"
-    return None
+    for name, kurtosis, skewness in config.entries("surfaces", "kurtosis", "skewness"):
+        key, given = f"surfaces.{name}.kurtosis", f"surfaces.{name}.skewness"
+        if kurtosis <= skewness**2 + 1:
+            yield key, f"must be above skewness² + 1 = {skewness**2 + 1:.6g}", given
+            continue
+        try:
+            nearest_feasible(skewness, kurtosis)
+        except (ValueError, NotConverged) as reason:
+            yield key, f"must be near that of a maximum-entropy density of the heights: {reason}", given
 
 
-@relation("surfaces.*.published_psd.corner_rad_per_um", "surfaces.*.published_psd.cutoff_rad_per_um")
-def corner_lies_below_the_cutoff(corner, cutoff):
-    """Roughness decays between the corner and the cut-off, Eq. (7)."""
-    return None if corner < cutoff else "must be below the cut-off"
+#: Key of a surface: largest wave number of its roughness.
+_CUTOFF = "published_psd.cutoff_rad_per_um"
 
 
-@relation("surfaces.*.published_psd.floor_nm4", "surfaces.*.published_psd.plateau_nm4")
-def spectrum_falls(floor, plateau):
-    """The exponent of the power law in Eq. (7) is negative."""
-    return None if floor < plateau else "must be below the plateau"
+@relation
+def spectra_fall(config):
+    """Roughness decays between the corner and the cut-off with a negative exponent, Eq. (7)."""
+    corner, floor, plateau = (f"published_psd.{key}" for key in ("corner_rad_per_um", "floor_nm4", "plateau_nm4"))
+    for low, high, words in ((corner, _CUTOFF, "cut-off"), (floor, plateau, "plateau")):
+        for name, value, bound in config.entries("surfaces", low, high):
+            if value >= bound:
+                yield f"surfaces.{name}.{low}", f"must be below the {words}", f"surfaces.{name}.{high}"
 
 
-@relation("surfaces.*.published_psd.cutoff_rad_per_um", "sampling.spacing_nm")
-def grid_carries_the_roughness(cutoff, spacing):
+@relation
+def grid_carries_the_roughness(config):
     """The cut-off lies within the Nyquist wave number of the grid."""
-    nyquist = math.pi / spacing * NM_PER_UM
-    return None if cutoff <= nyquist else f"must be at most the Nyquist wave number of the grid, {nyquist:.6g} rad/µm"
+    nyquist = math.pi / config["sampling.spacing_nm"] * NM_PER_UM
+    message = f"must be at most the Nyquist wave number of the grid, {nyquist:.6g} rad/µm"
+    for name, cutoff in config.entries("surfaces", _CUTOFF):
+        if cutoff > nyquist:
+            yield f"surfaces.{name}.{_CUTOFF}", message, "sampling.spacing_nm"
 
 
-@relation("studies.variants.spacing_nm.*", "surfaces.*.published_psd.cutoff_rad_per_um")
-def other_grid_carries_the_roughness(spacing, cutoff):
+@relation
+def other_grids_carry_the_roughness(config):
     """The cut-off lies within the Nyquist wave number of the grid of a variant."""
-    largest = math.pi / cutoff * NM_PER_UM
-    return None if spacing <= largest else f"must be at most {largest:.6g} nm, for the Nyquist wave number of the grid"
+    for key, spacing in config.items("studies.variants.spacing_nm"):
+        for name, cutoff in config.entries("surfaces", _CUTOFF):
+            largest = math.pi / cutoff * NM_PER_UM
+            if spacing > largest:
+                message = f"must be at most {largest:.6g} nm, for the Nyquist wave number of the grid"
+                yield key, message, f"surfaces.{name}.{_CUTOFF}"
 
 
-@relation("studies.variants.spacing_nm.*", "character.spacing_nm", "surfaces.*.psd")
-def other_grid_carries_an_identified_spectrum(spacing, coarse, psd):
+@relation
+def other_grids_carry_an_identified_spectrum(config):
     """The cut-off of an identified spectrum is the Nyquist wave number of the grid of Table I."""
-    return None if spacing <= coarse or psd == "published" else "must be at most that of Table I"
+    for key, spacing in config.items("studies.variants.spacing_nm"):
+        for name, psd in config.entries("surfaces", "psd"):
+            if spacing > config["character.spacing_nm"] and psd != "published":
+                yield key, "must be at most that of Table I", "character.spacing_nm", f"surfaces.{name}.psd"
 
 
-@relation("identification.patch_um", "surfaces.*.published_psd", "surfaces.*.summit_density_per_um2")
-@relation("sampling.strip_length_um", "surfaces.*.published_psd")
-@relation("sampling.margin_um", "surfaces.*.published_psd")
-def length_exceeds_the_correlation(length, psd, _=None):
+@relation
+def lengths_exceed_the_correlation(config):
     """Strips are samples of the field, and opposite edges of a strip, or of a patch to identify, are uncorrelated."""
+    strips = dict.fromkeys(("sampling.margin_um", "sampling.strip_length_um"), ("published_psd",))
+    lengths = strips | {"identification.patch_um": ("published_psd", "summit_density_per_um2")}
+    for key, length in config.known(*lengths):
+        for name, psd, *_ in config.entries("surfaces", *lengths[key]):
+            yield key, correlated(length, psd), *(f"surfaces.{name}.{stated}" for stated in lengths[key])
+
+
+def correlated(length: float, psd: dict) -> str | None:
+    """Refusal of a length [µm] within the correlation length of a published spectrum."""
     try:
         bound = _correlation_length(**psd)
     except ValueError:
@@ -198,20 +248,33 @@ def length_exceeds_the_correlation(length, psd, _=None):
     return None if length > bound else f"must be above the correlation length of the surface, {bound:.3g} µm"
 
 
+@functools.cache
+def _correlation_length(**psd):
+    """Correlation length of a published spectrum [µm]."""
+    return from_si(correlation_length(in_si(CutoffSelfAffine, psd)), "um")
+
+
+@relation
+def lengths_can_exceed_the_correlation(config):
+    """As above for identified spectra, as far as it is known before; the jobs check the identified spectrum itself."""
+    keys = "psd", "rms_nm", "mean_summit_radius_um", "summit_density_per_um2"
+    spacing = config["character.spacing_nm"]
+    for key, length in config.known("sampling.margin_um", "sampling.strip_length_um", "identification.patch_um"):
+        for name, psd, *summits in config.entries("surfaces", *keys):
+            if psd == "identified" and (refusal := correlated_as_estimated(length, *summits, spacing)):
+                given = [f"surfaces.{name}.{stated}" for stated in keys]
+                yield key, refusal, *given, "character.spacing_nm"
+
+
 #: The correlation length estimated from summits exceeds that of the identified spectrum by this factor at most.
 _AT_MOST = 1.5
 
 
-@relation("identification.patch_um", "surfaces.*.psd", *_TARGET)
-@relation("sampling.strip_length_um", "surfaces.*.psd", *_TARGET)
-@relation("sampling.margin_um", "surfaces.*.psd", *_TARGET)
-def length_can_exceed_the_correlation(length, psd, *target):
-    """As above for identified spectra, as far as it is known before; the jobs check the identified spectrum itself."""
-    if psd != "identified":
-        return None
+def correlated_as_estimated(length: float, rms: float, radius: float, density: float, spacing: float) -> str | None:
+    """Refusal of a length within the correlation length that the targets of an identification suggest."""
     try:
         with np.errstate(all="ignore"):
-            bound = _estimated_correlation_length(*target)
+            bound = _estimated_correlation_length(rms, radius, density, spacing)
     except (ValueError, ArithmeticError):
         return None  # targets that no spectrum has, which the identification reports
     if not length * _AT_MOST < bound:
@@ -227,119 +290,145 @@ def _estimated_correlation_length(rms, radius, density, spacing):
     return from_si(correlation_length(estimated_spectrum(target)), "um")
 
 
-@functools.cache
-def _correlation_length(**psd):
-    """Correlation length of a published spectrum [µm]."""
-    return from_si(correlation_length(in_si(CutoffSelfAffine, psd)), "um")
-
-
-@relation("sampling.strip_length_um", "sampling.spacing_nm", "contact.every")
-@relation("beam.width_um", "sampling.spacing_nm", "contact.every")
-def strip_is_whole_on_the_grid(side, spacing, every):
+@relation
+def strips_are_whole_on_the_grid(config):
     """Both sides of a strip are multiples of the distance between contact points."""
+    grid = "sampling.spacing_nm", "contact.every"
+    for key, side in config.known("beam.width_um", "sampling.strip_length_um"):
+        yield key, off_grid(side, *(config[step] for step in grid)), *grid
+
+
+def off_grid(side: float, spacing: float, every: int) -> str | None:
+    """Refusal of a side [µm] that is no multiple of the distance between contact points."""
     step = spacing * every
     whole = is_multiple(side * NM_PER_UM, step)
     return None if whole else f"must be a whole number of contact points {step:g} nm apart"
 
 
-@relation("studies.variants.spacing_nm.*", "contact.every", "sampling.strip_length_um", "beam.width_um")
-@relation("studies.variants.every.*", "sampling.spacing_nm", "sampling.strip_length_um", "beam.width_um")
-def strip_is_whole_under_a_variant(changed, other, *sides):
+@relation
+def strips_are_whole_under_a_variant(config):
     """As above, for the step in grid points times the grid spacing, either of which a variant may change."""
-    whole = all(is_multiple(side * NM_PER_UM, changed * other) for side in sides)
-    return None if whole else "must divide both sides of a strip into whole contact points"
+    sides = "sampling.strip_length_um", "beam.width_um"
+    variants = {"sampling.spacing_nm": "studies.variants.every", "contact.every": "studies.variants.spacing_nm"}
+    for other, step in config.known(*variants):
+        for key, changed in config.items(variants[other]):
+            if any(off_grid(config[side], changed, step) for side in sides):
+                yield key, "must divide both sides of a strip into whole contact points", other, *sides
 
 
-@relation("identification.patch_um", "sampling.spacing_nm")
-def patch_is_whole_on_the_grid(side, spacing):
+@relation
+def patches_are_whole_on_the_grid(config):
     """The side of a patch is a multiple of the grid spacing."""
-    whole = is_multiple(side * NM_PER_UM, spacing)
-    return None if whole else f"must be a whole number of grid spacings of {spacing} nm"
+    spacing = config["sampling.spacing_nm"]
+    if not is_multiple(config["identification.patch_um"] * NM_PER_UM, spacing):
+        message = f"must be a whole number of grid spacings of {spacing} nm"
+        yield "identification.patch_um", message, "sampling.spacing_nm"
 
 
-@relation("character.spacing_nm", "sampling.spacing_nm")
-def summits_are_sought_on_the_grid(coarse, spacing):
+@relation
+def summits_are_sought_on_the_grid(config):
     """Table I is sampled at every n-th height of the grid."""
-    return None if is_multiple(coarse, spacing) else f"must be a multiple of the grid spacing of {spacing} nm"
+    spacing = config["sampling.spacing_nm"]
+    if not is_multiple(config["character.spacing_nm"], spacing):
+        message = f"must be a multiple of the grid spacing of {spacing} nm"
+        yield "character.spacing_nm", message, "sampling.spacing_nm"
 
 
-@relation("character.spacing_nm", "identification.patch_um")
-@relation("character.spacing_nm", "sampling.strip_length_um")
-@relation("character.spacing_nm", "beam.width_um")
-def strip_can_hold_a_summit(coarse, side):
+@relation
+def strips_can_hold_a_summit(config):
     """A summit has eight neighbours."""
-    return None if 3 * coarse <= side * NM_PER_UM else f"must be at most a third of a side of {side} µm"
+    coarse = config["character.spacing_nm"]
+    for key, side in config.known("beam.width_um", "sampling.strip_length_um", "identification.patch_um"):
+        if 3 * coarse > side * NM_PER_UM:
+            yield "character.spacing_nm", f"must be at most a third of a side of {side} µm", key
 
 
-@relation("contact.chunks", "contact.samples")
-def chunks_are_not_empty(chunks, samples):
+@relation
+def chunks_are_not_empty(config):
     """Every chunk contains at least one sample."""
-    return None if chunks <= samples else "must be at most the number of samples"
+    if config["contact.chunks"] > config["contact.samples"]:
+        yield "contact.chunks", "must be at most the number of samples", "contact.samples"
 
 
-@relation("chaos.order", "contact.samples", "run", "devices")
-def samples_carry_the_chaos(order, samples, run, devices):
+@relation
+def samples_carry_the_chaos(config):
     """There are no more polynomials in four variables, App. B, than samples to fit them; stoppers need no model."""
-    stoppers = {device["kind"] for device in devices.values()} == {"stopper"}
+    order, samples, pairs = config["chaos.order"], config["contact.samples"], config["run"]["pairs"]
+    kinds = {device["kind"] for device in config["devices"].values()}
     carried = next(n for n in itertools.count(order, -1) if math.comb(n + 4, 4) <= samples)
-    if order == carried or (not run["pairs"] and (stoppers or not devices)):
-        return None
-    hint = "; run: {pairs: []} computes the stoppers alone, which need no chaos model" if stoppers else ""
-    return f"must be at most {carried}, or {math.comb(order + 4, 4)} samples are needed{hint}"
+    if order > carried and (pairs or kinds - {"stopper"}):
+        hint = (
+            "; run: {pairs: []} computes the stoppers alone, which need no chaos model" if kinds == {"stopper"} else ""
+        )
+        message = f"must be at most {carried}, or {math.comb(order + 4, 4)} samples are needed{hint}"
+        yield "chaos.order", message, "contact.samples"
 
 
-@relation("beam.length_um", "sampling.strip_length_um", "beam.elements")
-def strips_fill_the_elements(length, strip, elements):
+@relation
+def strips_fill_the_elements(config):
     """Every element contains the same whole number of strips, its integration points (Fig. 6)."""
-    if is_multiple(length, strip * elements):
-        return None
-    return f"must be a multiple of strip_length x elements = {strip * elements:.6g} µm: whole strips on each element"
+    given = "sampling.strip_length_um", "beam.elements"
+    least = config[given[0]] * config[given[1]]
+    if not is_multiple(config["beam.length_um"], least):
+        message = f"must be a multiple of strip_length x elements = {least:.6g} µm: whole strips on each element"
+        yield "beam.length_um", message, *given
 
 
-@relation("studies.variants.strips_per_element.*", "beam.length_um", "sampling.strip_length_um")
-def strips_fill_finer_elements(strips, length, strip):
+@relation
+def strips_fill_finer_elements(config):
     """As above, for a variant; at least two elements."""
-    if is_multiple(length, strip * strips) and length > 1.5 * strip * strips:
-        return None
-    return "must divide the strips along the beam into whole elements, at least two"
+    given = "beam.length_um", "sampling.strip_length_um"
+    length, strip = (config[key] for key in given)
+    for key, strips in config.items("studies.variants.strips_per_element"):
+        if not (is_multiple(length, strip * strips) and length > 1.5 * strip * strips):
+            message = "must divide the strips along the beam into whole elements, at least two"
+            yield key, message, *given
 
 
-@relation("studies.mesh.elements_um", "studies.mesh.strips_um", "beam.length_um", "run")
-def a_mesh_is_whole(elements, strips, length, run):
+@relation
+def a_mesh_is_whole(config):
     """At least one mesh of Figure 19 is possible; lengths that do not fill each other and the beam are left out."""
-    if "mesh" not in run.get("studies", ["mesh"]):
-        return None
+    key, *given = "studies.mesh.elements_um", "studies.mesh.strips_um", "beam.length_um"
+    elements, strips, length = (config[each] for each in (key, *given))
     fitting = (is_multiple(length, element) and is_multiple(element, strip) for element in elements for strip in strips)
-    return None if any(fitting) else "must include a divisor of the beam that is a multiple of one of the strips"
+    if "mesh" in config["run"].get("studies", ["mesh"]) and not any(fitting):
+        yield key, "must include a divisor of the beam that is a multiple of one of the strips", *given
 
 
-#: Keys of a pair, of the water and of the surfaces that meet: the last arguments of the next two relations.
-_MEETING = (
-    "run.pairs",
-    "pairs.*.@",
-    "water.temperature_K",
-    "pairs.*.beam",
-    "pairs.*.substrate",
-    "surfaces",
-    "materials",
-)
+class Meeting(NamedTuple):
+    """Two surfaces that meet, on which the water between them depends."""
+
+    sides: list[dict]  #: sections of both surfaces; empty if one is not defined or has no numbers (yet)
+    materials: dict
+    temperature: float  #: [K]
 
 
-@relation("pairs.*.gap_um", "pairs.*.humidities", *_MEETING)
-@relation("pairs.*.gap_um", "figures.humidity", *_MEETING)
-def beam_is_apart_from_the_film(gap, humidities, running, pair, temperature, *meeting):
+def _running(config, *keys):
+    """Pairs that run: the name, what meets, values of some keys, and the keys that say what meets."""
+    running, surfaces, materials = config["run.pairs"], config["surfaces"], config["materials"]
+    for pair, beam, substrate, *values in config.entries("pairs", *SIDES, *keys):
+        if pair in running:
+            given = "run.pairs", "water.temperature_K", *(f"pairs.{pair}.{side}" for side in SIDES)
+            meeting = Meeting(sides_of(beam, substrate, surfaces), materials, config["water.temperature_K"])
+            yield pair, meeting, *values, (*given, *config.scanned(beam, substrate))
+
+
+@relation
+def beams_are_apart_from_the_film(config):
     """Along most of a crack, the beam of a pair that runs is far from the water film and the peaks of the substrate."""
-    sides = sides_of(*meeting[:-1]) if pair in running else []
-    return not_apart(gap, humidities, temperature, sides, meeting[-1])
+    for air in ("figures.humidity", "pairs.{}.humidities"):
+        for pair, meeting, gap, given in _running(config, "gap_um"):
+            for key, humidities in config.known(air.format(pair)):
+                yield f"pairs.{pair}.gap_um", not_apart(gap, humidities, meeting), key, *given
 
 
-def not_apart(gap: float, humidities: float | list, temperature: float, sides: list, materials: dict) -> str | None:
-    """Refusal of a gap [µm] that is not far above the film at the highest humidity; sections of the two surfaces."""
-    angles = wetting(sides, materials)
+def not_apart(gap: float, humidities: float | list, meeting: Meeting) -> str | None:
+    """Refusal of a gap [µm] that is not far above the film at the highest humidity."""
+    angles = wetting(meeting.sides, meeting.materials)
     if not angles:
         return None
-    height = float(np.max(meniscus_height(humidities, temperature, angles)))
-    rms = math.hypot(*(to_si(side["rms_nm"], "nm") for side in sides))
+    height = float(np.max(meniscus_height(humidities, meeting.temperature, angles)))
+    rms = math.hypot(*(to_si(side["rms_nm"], "nm") for side in meeting.sides))
     least = from_si(limits.least_gap(height, rms), "um")
     if gap >= least:
         return None
@@ -349,72 +438,92 @@ def not_apart(gap: float, humidities: float | list, temperature: float, sides: l
     )
 
 
-@relation("pairs.*.gap_um", "pairs.*.beam", "pairs.*.substrate", "surfaces", "materials")
-def coatings_leave_a_gap(gap, beam, substrate, surfaces, materials):
+@relation
+def coatings_leave_a_gap(config):
     """Both coatings together are thinner than the gap."""
-    both = of_material([surfaces.get(name, {}) for name in (beam, substrate)], materials)
+    for pair, gap, *names in config.entries("pairs", "gap_um", *SIDES):
+        given = *(f"pairs.{pair}.{side}" for side in SIDES), *config.scanned(*names)
+        yield f"pairs.{pair}.gap_um", filled(gap, names, config), *given
+
+
+def filled(gap: float, names: list[str | None], config: Keys) -> str | None:
+    """Refusal of a gap [µm] that the coatings of two surfaces, which need not be defined, fill."""
+    both = of_material([config["surfaces"].get(name, {}) for name in names], config["materials"])
     coatings = sum(material.get(COATING, 0) for material in both)
     if gap * NM_PER_UM > coatings:
         return None
     return f"must be above the thickness of the coatings of both surfaces, {coatings:g} nm"
 
 
-@relation("pairs.*.humidities", *_MEETING)
-def water_is_a_liquid(humidities, running, pair, temperature, *meeting):
+@relation
+def water_is_a_liquid(config):
     """The air is not too dry for a film of liquid water between the surfaces of a pair that runs."""
-    return too_dry(humidities, temperature, sides_of(*meeting[:-1]) if pair in running else [], meeting[-1])
+    for pair, meeting, humidities, given in _running(config, "humidities"):
+        yield f"pairs.{pair}.humidities", too_dry(humidities, meeting), *given
 
 
-@relation("figures.humidity", "run.pairs", "pairs", "surfaces", "materials", "water.temperature_K")
-def water_of_the_figures_is_a_liquid(humidity, running, pairs, surfaces, materials, temperature):
+@relation
+def water_of_the_figures_is_a_liquid(config):
     """As above, for the humidity at which all pairs that run are shown."""
-    meeting = [[pairs.get(name, {}).get(side) for side in SIDES] for name in running]
-    refusals = (too_dry(humidity, temperature, sides_of(*names, surfaces), materials) for names in meeting)
-    return next(filter(None, refusals), None)
+    humidity, running = config["figures.humidity"], config["run.pairs"]
+    refusals = (too_dry(humidity, meeting_of(pair, config)) for pair in running)
+    yield "figures.humidity", next(filter(None, refusals), None), "run.pairs", "water.temperature_K"
 
 
-def too_dry(humidities: float | list, temperature: float, sides: list, materials: dict, more: float = 0) -> str | None:
+def surfaces_of(pair: str, config: Keys) -> list[str | None]:
+    """Names of the surfaces of a pair, which need not be defined."""
+    return [config["pairs"].get(pair, {}).get(side) for side in SIDES]
+
+
+def meeting_of(pair: str, config: Keys) -> Meeting:
+    """What meets in a pair, which need not be defined."""
+    sides = sides_of(*surfaces_of(pair, config), config["surfaces"])
+    return Meeting(sides, config["materials"], config["water.temperature_K"])
+
+
+def too_dry(humidities: float | list, meeting: Meeting, more: float = 0) -> str | None:
     """Refusal of the lowest humidity if the film between two surfaces is no liquid, contact angles as in `wetting`."""
-    angles = wetting(sides, materials, more)
-    return dry_air(float(np.min(humidities)), temperature, angles) if angles else None
+    angles = wetting(meeting.sides, meeting.materials, more)
+    return dry_air(float(np.min(humidities)), meeting.temperature, angles) if angles else None
 
 
-@relation("sampling.strip_length_um", "beam.thickness_um", "solid.young_modulus_GPa", "pairs.*.humidities", *_MEETING)
-def strips_resolve_the_crack(strip, thickness, modulus, humidities, running, pair, temperature, *meeting):
+#: What the strips of a pair depend on besides its humidities and surfaces.
+_BEAM = "beam.thickness_um", "solid.young_modulus_GPa"
+
+
+@relation
+def strips_resolve_the_cracks(config):
     """Strips are short enough for the force laws of a pair that runs, as far as known without computing its contact.
 
     Strips that pass may still be refused after the contact, by `stiction.beam.resolution.resolved`.
     """
-    sides = sides_of(*meeting[:-1]) if pair in running else []
-    stated = of_material(sides, meeting[-1])
-    modulus = stated[0].get("young_modulus_GPa", modulus) if stated else modulus
+    for pair, meeting, humidities, given in _running(config, "humidities"):
+        if refusal := _strips_too_long(config, pair, meeting, humidities):
+            yield "sampling.strip_length_um", refusal, *_BEAM, f"pairs.{pair}.humidities", *given
+
+
+@relation
+def strips_resolve_the_cracks_of_the_figures(config):
+    """As above, for the beams of the figures, whose humidity need not be one of their pair; one refusal is enough."""
+    humidity, of_figures, running = config["figures.humidity"], config["figures.pair"], config["run.pairs"]
+    shown_pair = of_figures if of_figures in running else next(iter(running), None)
+    for pair, meeting, humidities, given in _running(config, "humidities"):
+        own = _strips_too_long(config, pair, meeting, humidities)
+        if pair == shown_pair and not own and (refusal := _strips_too_long(config, pair, meeting, [humidity])):
+            stated = *_BEAM, "figures.humidity", f"pairs.{pair}.humidities", "figures.pair"
+            yield "sampling.strip_length_um", refusal, *stated, *given
+
+
+def _strips_too_long(config, pair, meeting, humidities):
+    """Refusal of strips that do not resolve the cracks of a pair."""
+    strip, thickness, modulus = config["sampling.strip_length_um"], *(config[key] for key in _BEAM)
+    for stated in of_material(meeting.sides, meeting.materials)[:1]:
+        modulus = stated.get("young_modulus_GPa", modulus)
     for humidity in humidities:
-        longest = longest_strip(thickness, modulus, humidity, temperature, sides, meeting[-1])
+        longest = longest_strip(thickness, modulus, humidity, meeting.temperature, meeting.sides, meeting.materials)
         if strip > longest:
             return f"must be at most {longest:.3g} µm to resolve the cracks of pair {pair} at RH {humidity:g}"
     return None
-
-
-@relation(
-    "sampling.strip_length_um",
-    "beam.thickness_um",
-    "solid.young_modulus_GPa",
-    "figures.humidity",
-    "pairs.*.humidities",
-    "figures.pair",
-    *_MEETING,
-)
-def strips_resolve_the_crack_of_the_figures(
-    strip, thickness, modulus, shown, humidities, of_figures, running, pair, *meeting
-):
-    """As above, for the beams of the figures, whose humidity need not be one of their pair."""
-    if pair != (of_figures if of_figures in running else next(iter(running), None)):
-        return None
-    own, of_shown = (
-        strips_resolve_the_crack(strip, thickness, modulus, each, running, pair, *meeting)
-        for each in (humidities, [shown])
-    )
-    return None if own else of_shown  # one refusal is enough
 
 
 def longest_strip(
@@ -511,28 +620,35 @@ def _shape(skewness, kurtosis, form):
     return tuple(density.quantile_of_normal(_SCORES)), float(density.quantile_of_normal(_HIGHEST))
 
 
-@relation("attraction.reach", "van_der_waals")
-def solids_attract_across_gaps(reach, medium):
+@relation
+def solids_attract_across_gaps(config):
     """Without van der Waals forces of the summits there are none across gaps."""
-    return "must be touching if van_der_waals is none" if (reach, medium) == ("all", "none") else None
+    if (config["attraction.reach"], config["van_der_waals"]) == ("all", "none"):
+        yield "attraction.reach", "must be touching if van_der_waals is none", "van_der_waals"
 
 
-@relation("pairs.*.beam", "pairs.*.substrate", "surfaces", "materials")
-def water_wets_the_pair(beam, substrate, surfaces, materials):
+@relation
+def water_wets_the_pairs(config):
     """Water condenses between two surfaces only if the cosines of their contact angles add up to more than zero."""
-    sides = sides_of(beam, substrate, surfaces)
-    if not sides or wetting(sides, materials):
-        return None
-    angles = " and ".join(f"{stated.get('contact_angle_deg', 0):g}" for stated in of_material(sides, materials))
-    return f"must be of a material that water wets enough: contact angles of {angles} degrees on the two surfaces"
+    surfaces, materials = config["surfaces"], config["materials"]
+    for pair, *names in config.entries("pairs", *SIDES):
+        sides = sides_of(*names, surfaces)
+        if sides and not wetting(sides, materials):
+            stated = " and ".join(f"{one.get('contact_angle_deg', 0):g}" for one in of_material(sides, materials))
+            message = (
+                f"must be of a material that water wets enough: contact angles of {stated} degrees on the two surfaces"
+            )
+            given = f"pairs.{pair}.substrate", *config.scanned(*names)
+            yield f"pairs.{pair}.beam", message, *given
 
 
-@relation("pairs.*.gap_um", "beam.length_um")
-@relation("beam.width_um", "beam.length_um")
-@relation("beam.thickness_um", "beam.length_um")
-def beam_is_slender(size, length):
+@relation
+def beam_is_slender(config):
     """The beam is longer than it is wide, thick and deflected (Euler-Bernoulli)."""
-    return None if size < length else "must be below the length of the beam"
+    gaps = [f"pairs.{pair}.gap_um" for pair, _ in config.entries("pairs", "gap_um")]
+    for key, size in config.known("beam.thickness_um", "beam.width_um", *gaps):
+        if size >= config["beam.length_um"]:
+            yield key, "must be below the length of the beam", "beam.length_um"
 
 
 #: Least ratio of the estimated repulsion at zero distance to the estimated pull-off pressure. ASSUME: 3, because the
@@ -545,29 +661,30 @@ def _resist(repulsion, pull):
     return repulsion > 0 and repulsion >= _SAFE * pull
 
 
-@relation(
-    "run.pairs.*",
-    "pairs",
-    "surfaces",
-    "solid",
-    "van_der_waals",
-    "water.temperature_K",
-    "figures.humidity",
-    "materials",
-)
-def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature, shown_humidity, materials):
+@relation
+def solids_resist_the_adhesion(config):
     """The force rises to the pull-off pressure on the grid of distances, which begins where mean planes meet."""
-    both = sides_of(*(pairs.get(name, {}).get(side) for side in SIDES), surfaces)
+    given = "van_der_waals", "water.temperature_K", "figures.humidity"
+    solid, pairs, (medium, _, humidity) = config["solid"], config["pairs"], (config[key] for key in given)
+    for key, name in config.items("run.pairs"):
+        if refusal := too_soft(
+            meeting_of(name, config), solid, medium, [*pairs.get(name, {}).get("humidities", ()), humidity]
+        ):
+            yield key, refusal, *given, *config.scanned(*surfaces_of(name, config))
+
+
+def too_soft(meeting: Meeting, solid: dict, medium: str, humidities: list[float]) -> str | None:
+    """Refusal of surfaces and solids that do not resist the adhesion at all humidities."""
+    both, materials, temperature = meeting
     if not both:
         return None  # other relations report this and the next
-    pair = pairs[name]
     spectra = [surface["published_psd"] for surface in both if surface["psd"] == "published"]
-    if any(spectrum_falls(psd["floor_nm4"], psd["plateau_nm4"]) for psd in spectra) or any(
-        corner_lies_below_the_cutoff(psd["corner_rad_per_um"], psd["cutoff_rad_per_um"]) for psd in spectra
+    if any(
+        psd["floor_nm4"] >= psd["plateau_nm4"] or psd["corner_rad_per_um"] >= psd["cutoff_rad_per_um"]
+        for psd in spectra
     ):
         return None
-    humidities = tuple(sorted({*pair["humidities"], shown_humidity}))
-    angles = wetting(both, materials)
+    humidities, angles = sorted({*humidities}), wetting(both, materials)
     if not angles or dry_air(humidities[0], temperature, angles):
         return None  # no water, which other relations report
     try:
@@ -595,10 +712,15 @@ def solids_resist_the_adhesion(name, pairs, surfaces, solid, medium, temperature
 _SUMMITS = 18
 
 
-@relation("beam.width_um", "sampling.strip_length_um", "run.pairs.*", "pairs", "surfaces")
-def strips_of_a_pair_hold_enough_summits(width, length, pair, pairs, surfaces):
+@relation
+def strips_of_a_pair_hold_enough_summits(config):
     """Strips of a pair that runs hold so many summits that each sample resists the adhesion."""
-    return too_few_summits(length, width, pair, sides_of(*(pairs.get(pair, {}).get(side) for side in SIDES), surfaces))
+    width, length = config["beam.width_um"], config["sampling.strip_length_um"]
+    for key, pair in config.items("run.pairs"):
+        names = surfaces_of(pair, config)
+        if refusal := too_few_summits(length, width, pair, sides_of(*names, config["surfaces"])):
+            given = "sampling.strip_length_um", key, *config.scanned(*names)
+            yield "beam.width_um", refusal, *given
 
 
 def too_few_summits(length: float, width: float, pair: str, sides: list[dict]) -> str | None:
@@ -655,23 +777,27 @@ def _moments(source):
     return ProfileMoments.of_summits(rms, radius, density)
 
 
-@relation("sampling.spacing_nm", "sampling.strip_length_um", "sampling.margin_um", "beam.width_um")
-@relation("studies.variants.spacing_nm.*", "sampling.strip_length_um", "sampling.margin_um", "beam.width_um")
-def strips_fit_into_memory(spacing, length, margin, width):
+@relation
+def strips_fit_into_memory(config):
     """The field from which a strip is cut fits into the memory of a job."""
-    return field_too_large(length + margin, width + margin, spacing)
+    given = "sampling.strip_length_um", "sampling.margin_um", "beam.width_um"
+    length, margin, width = (config[key] for key in given)
+    grids = [key for key, _ in config.items("studies.variants.spacing_nm")]
+    for key, spacing in config.known(*grids, "sampling.spacing_nm"):
+        yield key, field_too_large(length + margin, width + margin, spacing), *given
 
 
-@relation("sampling.spacing_nm")
-def fields_fit_into_memory(spacing):
+@relation
+def fields_fit_into_memory(config):
     """The fields on which spectra are estimated fit into the memory of a job."""
-    return field_too_large(memory.FIELD_UM, memory.FIELD_UM, spacing)
+    yield "sampling.spacing_nm", field_too_large(memory.FIELD_UM, memory.FIELD_UM, config["sampling.spacing_nm"])
 
 
-@relation("identification.patch_um", "sampling.spacing_nm")
-def patches_fit_into_memory(side, spacing):
+@relation
+def patches_fit_into_memory(config):
     """A patch fits into the memory of a job."""
-    return field_too_large(side, side, spacing)
+    side = config["identification.patch_um"]
+    yield "identification.patch_um", field_too_large(side, side, config["sampling.spacing_nm"]), "sampling.spacing_nm"
 
 
 def field_too_large(length: float, width: float, spacing: float) -> str | None:

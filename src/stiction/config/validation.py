@@ -3,12 +3,12 @@
 from pathlib import Path
 
 from stiction.config import arrays, measured, relations, relations_devices
-from stiction.config.conditions import violated
+from stiction.config.conditions import Keys, Relations
 from stiction.config.messages import ConfigError, Problem, schema_problems
 from stiction.config.relations import schema
 
 #: All relations between keys.
-RELATIONS = (*relations.relation, *relations_devices.relation)
+RELATIONS = Relations([*relations.relation, *relations_devices.relation])
 #: Sections that a configuration need not have.
 _OPTIONAL = {"materials": {}, "devices": {}, "test_beams": {}}
 
@@ -52,11 +52,12 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
 
 def _broken(config, faults, files=None):
     """Violated relations; those of devices hold for the arrays of test beams, under the keys of these."""
-    broken = violated(RELATIONS, config, faults, files)
+    broken = list(RELATIONS.problems(Keys(config, faults, files or {})))
     if any(path[:1] in ((), ("devices",), ("test_beams",)) for path in faults):
         return broken  # sections that are wrong on their own
-    beams = violated(relations_devices.relation, config | {"devices": arrays.as_cantilevers(config)}, faults, files)
-    return broken + [_of_array(problem, config) for problem in beams if problem.path[0] == "devices"]
+    beams = Keys(config | {"devices": arrays.as_cantilevers(config)}, faults, files or {})
+    found = relations_devices.relation.problems(beams)
+    return broken + [_of_array(problem, config) for problem in found if problem.path[0] == "devices"]
 
 
 def _of_array(problem, config):

@@ -43,7 +43,7 @@ def refuse_long_correlation(
 
     It is raised as well if the heights of a tabulated spectrum do not become uncorrelated.
 
-    The same condition as for published spectra, see `stiction.config.relations.length_exceeds_the_correlation`. The
+    The same condition as for published spectra, see `stiction.config.relations.lengths_exceed_the_correlation`. The
     message states the source of the spectrum.
     """
     try:
