@@ -64,7 +64,6 @@ def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
         ({"array": {"uncertainty": {"humidity": 0.1}}}, "test_beams.first.uncertainty.humidity", "is unknown"),
         ({"test_beams": ["second"]}, "devices.C1.test_beams", "must be among first: second is not there"),
         ({"test_beams": ["first", "first"]}, "devices.C1.test_beams", "must contain each array once"),
-        ({"kind": "bridge", "residual_stress_MPa": 50}, "devices.C1.kind", "must come without test_beams"),
     ],
 )
 def test_what_cannot_be_is_refused_in_one_sentence(changes, key, words):
@@ -168,6 +167,20 @@ def test_contacts_of_test_beams_and_device_are_the_same_and_drawn_once():
     for side in ("less", "more", "solids_less", "solids_more"):
         assert of_beams[side] == of_device[side] != {}
     assert of_beams["choices"] == {}
+
+
+def test_bridges_and_stoppers_use_test_beams_as_well():
+    stated = {key: value for key, value in STATED.items() if key != "thickness_um"}
+    stopper = {"kind": "stopper", "pair": "b", "contact_um": [5, 5], "restoring_force_uN": 30, "humidities": [0.67]}
+    bridge = C1 | {"kind": "bridge", "residual_stress_MPa": 50}
+    others = {"R1": bridge, "S1": stopper}
+    devices = {name: one | {"uncertainty": stated, "test_beams": ["first"]} for name, one in others.items()}
+    graph = Graph(Plan(load(merged(SECTIONS, {"devices": devices}))))
+    assert graph.job("devices/test_beams/S1").inputs["predicted"] == "devices/stoppers/S1"
+    assert set(graph.job("devices/test_beams/R1").inputs["predicted"]) == {0.67}
+    for name in devices:
+        assert graph.job(f"devices/{name}.html").inputs["test_beams"] == f"devices/test_beams/{name}"
+        assert set(graph.job(f"devices/test_beams/{name}").inputs["budgets"]) == {(name, 0.67)}
 
 
 def test_only_devices_with_test_beams_have_them_in_their_jobs():

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 #: Keys that every device may have.
-COMMON = {"kind", "pair", "humidities", "uncertainty"}
+COMMON = {"kind", "pair", "humidities", "uncertainty", "test_beams"}
 #: Keys that depend on the kind, what they are called and their unit.
 KEYS = {
     "thickness_um": ("thickness", "µm"),
@@ -57,7 +57,7 @@ KINDS = {
     "cantilever": Kind(
         words="beam clamped at one end",
         keys=("thickness_um", "gap_um", "width_um"),
-        optional=("strip_um", "chart", "test_beams"),
+        optional=("strip_um", "chart"),
         has_tip=True,
     ),
     "bridge": Kind(

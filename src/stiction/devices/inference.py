@@ -303,6 +303,21 @@ def _signed(values):
     return values * np.sign(values[np.argmax(np.abs(values))])
 
 
+def expected_share(margins: np.ndarray, weights: np.ndarray, shift: float, deviation: float) -> float:
+    """P(stuck) of devices if ln of the lengths that stick has a shift that is normal, with a standard deviation [-].
+
+    Parameters
+    ----------
+    margins : (n,) array
+        ln(length of the devices / length that sticks), as computed [-].
+    weights : (n,) array
+        Share of the devices with each of these; the others never stick.
+    shift, deviation : float
+        Of ln of all lengths that stick [-].
+    """
+    return float(weights @ ndtr((margins - shift) / max(deviation, np.finfo(float).tiny)))
+
+
 def further_beams(knowledge: Knowledge, target: np.ndarray, response: np.ndarray, error: float) -> float:
     """Standard deviation of a result after the mean length of further test beams is measured [-].
 

@@ -20,7 +20,7 @@ from stiction.run import storage
 from stiction.stages.contact import curves
 from stiction.stages.devices import inference
 from stiction.stages.devices.inference import CrackLengths, Settings, Stuck
-from stiction.stages.devices.releases import ARC, EITHER, S_SHAPE, DesignedBeam
+from stiction.stages.devices.releases import ARC, EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam
 
 UM = 1e-6
 DEVICE = DesignedBeam("cantilever", "b", 2.6 * UM, 20 * UM, 30 * UM, 164e9, 1.5 * UM)
@@ -55,7 +55,7 @@ def budget(beam, humidity, response=S_SHAPE):
         {
             "slope": ("input", slopes),
             "covariance": (("input", "other"), np.diag(list(DEVIATIONS.values())) ** 2),
-            "centre": ((), centre, {"response": response, "share": 0.001}),
+            "centre": ((), centre, {"response": response, "share": 0.001, "units": "m"}),
             "scatter": ((), SCATTER),
         },
         coords={"input": names, "other": names},
@@ -71,7 +71,10 @@ def budgets():
 
 def safe_lengths():
     values = xr.DataArray([[600 * UM], [250 * UM]], coords={"shape": [S_SHAPE, EITHER], "share": [0.001]})
-    return dict.fromkeys(HUMIDITIES, xr.Dataset({"safe_length": values}))
+    axis = np.linspace(200, 900, 351) * UM
+    stuck = [ndtr(np.log(axis / length) / SCATTER - 3.09) for length in (600 * UM, 250 * UM)]
+    risk = xr.DataArray(stuck, coords={"shape": [S_SHAPE, EITHER], "length": axis})
+    return dict.fromkeys(HUMIDITIES, xr.Dataset({"safe_length": values, "stuck": risk}))
 
 
 def computed(
@@ -84,7 +87,7 @@ def computed(
     if stuck:
         slopes |= {(name, rh, "tip"): budget(array, rh, ARC) for name in names for rh in stuck.humidity}
     found = [dict.fromkeys(names, data) if data else {} for data in (lengths if len(means) else None, stuck)]
-    settings = Settings(stated, DEVICE, dict.fromkeys(names, array), *found)
+    settings = Settings(stated, dict.fromkeys(names, array), *found, DEVICE)
     return inference.compute(budgets(), slopes, safe_lengths(), *[dict.fromkeys(names)] * 2, settings)
 
 
@@ -99,9 +102,9 @@ def of(found, result):
 def test_measured_lengths_equal_to_the_computed_ones_move_nothing_and_narrow_the_length():
     found = computed(as_computed())
     assert_allclose(found["shift"], 0, atol=1e-12)
-    assert_allclose(found.updated_safe_length, found.safe_length, rtol=1e-12)
-    assert np.all(found.length_after < found.length_before)
-    assert float(of(found, 0.67).length_after) < 0.6 * float(of(found, 0.67).length_before)
+    assert_allclose(found.updated_safe, found.safe, rtol=1e-12)
+    assert np.all(found.result_after < found.result_before)
+    assert float(of(found, 0.67).result_after) < 0.6 * float(of(found, 0.67).result_before)
     assert float(found.p_value) > 0.99
 
 
@@ -118,19 +121,19 @@ def test_the_prior_of_the_length_is_that_of_its_budget_and_of_the_stated_discrep
     found = of(computed(as_computed()), 0.67)
     slopes = np.array([-POWER[0.67] / 4, 1 / 4, 3 / 4, 1 / 2])
     alone = np.linalg.norm(slopes * list(DEVIATIONS.values()))
-    assert_allclose(found.length_of_inputs, alone, rtol=1e-12)
+    assert_allclose(found.result_of_inputs, alone, rtol=1e-12)
     # u of a length of Eq. (13) is -1/4 of ln of the energy.
     reduced = (np.mean(np.log(list(ENERGY.values()))) - np.log(ENERGY[0.67])) / 4
-    assert_allclose(found.length_before, np.sqrt(alone**2 + 0.1**2 + (0.3 * reduced) ** 2 + 0.05**2), rtol=1e-9)
+    assert_allclose(found.result_before, np.sqrt(alone**2 + 0.1**2 + (0.3 * reduced) ** 2 + 0.05**2), rtol=1e-9)
 
 
 def test_tips_have_the_uncertainty_of_their_budget_and_follow_the_inputs():
     found = computed(as_computed(1.3))
     tip = of(found, "0.67, arc")
-    assert_allclose(tip.length_before, tip.length_of_inputs, rtol=1e-12)
-    factors = (found.updated_safe_length / found.safe_length).sel(humidity=0.67, share=0.001)
-    assert_allclose(factors.sel(shape=EITHER), np.exp(tip.length_shift), rtol=1e-12)
-    assert_allclose(factors.sel(shape=S_SHAPE), np.exp(of(found, 0.67).length_shift), rtol=1e-12)
+    assert_allclose(tip.result_before, tip.result_of_inputs, rtol=1e-12)
+    factors = (found.updated_safe / found.safe).sel(humidity=0.67, share=0.001)
+    assert_allclose(factors.sel(shape=EITHER), np.exp(tip.result_shift), rtol=1e-12)
+    assert_allclose(factors.sel(shape=S_SHAPE), np.exp(of(found, 0.67).result_shift), rtol=1e-12)
     assert 1 < float(factors.sel(shape=EITHER)) < float(factors.sel(shape=S_SHAPE))
 
 
@@ -142,13 +145,13 @@ def test_two_equal_arrays_that_share_their_dimensions_are_one_of_twice_as_many_b
         stated = replace(STATED, rest=0.0)
         two = computed(as_computed(1.1), names=("arrayA", "arrayB"), stated=stated)
         one = computed(as_computed(1.1), beams=2 * BEAMS, stated=stated)
-    for name in ("length_shift", "length_after"):
+    for name in ("result_shift", "result_after"):
         assert_allclose(two[name], one[name], rtol=1e-9, atol=1e-15)
 
 
 def test_neither_the_order_of_the_humidities_nor_that_of_the_arrays_matters():
     one, other = computed(as_computed(1.1)), computed(as_computed(1.1)[::-1], humidities=HUMIDITIES[::-1])
-    for name in ("length_shift", "length_after", "p_value"):
+    for name in ("result_shift", "result_after", "p_value"):
         assert_allclose(one[name], other[name], rtol=1e-9, atol=1e-15)
 
 
@@ -190,7 +193,7 @@ def scores(stated, repeats=100):
     for k in range(repeats):
         means, stds, truth = drawn(np.random.default_rng(k))
         after = computed(means, stds, stated=stated).isel(result=slice(3))
-        found.append((np.log(truth / after.length.values) - after.length_shift.values) / after.length_after.values)
+        found.append((np.log(truth / after.centre.values) - after.result_shift.values) / after.result_after.values)
     return np.array(found)
 
 
@@ -204,6 +207,95 @@ def test_without_a_discrepancy_of_the_model_they_are_not():
     found = np.abs(scores(Discrepancy(0.0, 0.0, 0.0), repeats=30))
     assert np.mean(found < 1) < 0.4
     assert np.mean(found < 1.96) < 0.7
+
+
+# Bridges and stoppers
+
+BRIDGE = replace(DEVICE, kind="bridge", residual_stress=50e6)
+PULL_OFFS = 30e-6 * np.random.default_rng(5).lognormal(0, 0.1, 400)
+
+
+def of_other(response, predicted, device, slopes):
+    """Dataset of stage test_beams of a bridge or a stopper with an rms of B2 10 % of sigma wrong in the test beams."""
+    names = ["rms of B2", "residual stress"]
+    own = xr.Dataset(
+        {
+            "slope": ("input", slopes),
+            "covariance": (("input", "other"), np.diag([DEVIATIONS["rms of B2"], 0.1]) ** 2),
+            "centre": ((), 30e-6, {"response": response, "share": 0.0, "units": "N" if response == FORCE else "m"}),
+            "scatter": ((), 0.1),
+        },
+        coords={"input": names, "other": names},
+    )
+    # Longer cracks where the rms matters most: rougher than stated.
+    means = [length(ARRAY, rh, rms=0.08) for rh in HUMIDITIES]
+    lengths = CrackLengths(1500 * UM, HUMIDITIES, tuple(means), tuple(SCATTER * np.array(means)), (2000,) * 3)
+    settings = Settings(Discrepancy(0.0, 0.0, 1e-3), {"arrayA": ARRAY}, {"arrayA": lengths}, {}, device)
+    beams = {("arrayA", rh): budget(ARRAY, rh) for rh in HUMIDITIES}
+    return inference.compute({("R1", 0.67): own}, beams, predicted, {}, {}, settings)
+
+
+def of_bridge():
+    axis = np.linspace(100, 300, 401) * UM
+    stuck = xr.DataArray(
+        [ndtr(np.log(axis / (200 * UM)) / SCATTER)], coords={"shape": [MIDDLE], "length": ("length", axis)}
+    )
+    safe = xr.DataArray([[160 * UM]], coords={"shape": [MIDDLE], "share": [0.001]})
+    return of_other(MIDDLE, {0.67: xr.Dataset({"safe_length": safe, "stuck": stuck})}, BRIDGE, [1.0, 0.5])
+
+
+def of_stopper():
+    coords = {"humidity": [0.67], "share": [0.01, 0.001], "part": ["safe", "estimate", "error"]}
+    safe = xr.DataArray(np.array([[[37e-6, 40e-6]]] * 3), coords=coords, dims=("part", "humidity", "share"))
+    pull_off = (("humidity", "sample"), [PULL_OFFS])
+    found = xr.Dataset({"safe_force": safe, "pull_off": pull_off, "restoring_force": 33e-6})
+    return of_other(FORCE, found, None, [-2.0, 0.0])
+
+
+@pytest.mark.parametrize("found", [of_bridge, of_stopper])
+def test_bridges_and_stoppers_follow_the_inputs_alone(found):
+    found = found()
+    moved = float(found["shift"].sel(input="rms of B2"))
+    assert_allclose(moved, 0.08, rtol=0.1)
+    slope = 1.0 if MIDDLE in found.response else -2.0
+    assert_allclose(found.result_shift, [slope * moved], rtol=1e-9)
+    assert_allclose(found.updated_safe, found.safe * np.exp(slope * moved), rtol=1e-9)
+    assert_allclose(found.result_before, found.result_of_inputs, rtol=1e-12)
+    assert np.all(found.result_after < found.result_before)
+    # No length of the test beams speaks about a stress that only the bridge has.
+    stress = found.sel(input="residual stress")
+    assert_allclose([stress["shift"], stress.deviation], [0, 0.1], atol=1e-9)
+
+
+def test_the_expected_share_of_stuck_devices_is_that_of_drawn_inputs():
+    for found, sticks in (
+        (of_bridge(), lambda s, rng: rng.lognormal(np.log(200 * UM), SCATTER, len(s)) * np.exp(s) < 160 * UM),
+        (of_stopper(), lambda s, rng: rng.choice(PULL_OFFS, len(s)) * np.exp(s) > 33e-6),
+    ):
+        rng, number = np.random.default_rng(6), 200_000
+        for name, shift, deviation in (("expected", 0.0, "before"), ("updated", found.result_shift[0], "after")):
+            shifts = rng.normal(float(shift), float(found[f"result_{deviation}"][0]), number)
+            drawn = sticks(shifts, rng).mean()
+            stated = float(found[f"{name}_stuck"].values.ravel()[0])
+            assert abs(drawn - stated) < 4 * np.sqrt(stated * (1 - stated) / number) + 2e-4  # steps of the axis
+    assert float(of_stopper().updated_stuck.max()) < float(of_stopper().expected_stuck.max())
+
+
+@pytest.mark.parametrize(
+    ("found", "built", "stuck", "rows"),
+    [
+        (of_bridge, "With the test beams, build it no longer than", "of 160 µm, the safe length,", 2),
+        (of_stopper, "With the test beams, give it a restoring force of at least", "at its restoring force", 3),
+    ],
+)
+def test_pages_state_what_follows_for_bridges_and_stoppers(found, built, stuck, rows):
+    found = found()
+    assert tables_inference.built(found).startswith(built)
+    (sentence,) = tables_inference.stuck(found)
+    assert stuck in sentence
+    frame = tables_inference.test_beams({"R1": found}).frame
+    assert frame.part.str.contains("safe|stuck").sum() == rows
+    assert figures_inference.test_beams(found).axes
 
 
 # Counts
@@ -235,23 +327,23 @@ def test_counts_say_about_the_device_what_the_crack_lengths_of_the_same_beams_sa
     single = 1.03 * centres * np.exp(SCATTER * rng.normal(size=(number, 3)))
     measured = computed(single.mean(axis=0), single.std(axis=0), beams=number)
     counted = computed([], stuck=counts(1.03 * centres, (single < 1.03 * centres).sum(axis=0), number))
-    difference = (counted.length_shift - measured.length_shift)[:3]
+    difference = (counted.result_shift - measured.result_shift)[:3]
     # The rest of the model is the same in both; what differs is the error of √(π/2) s/√N of a count.
     assert np.all(np.abs(difference) < 4 * np.sqrt(np.pi / 2) * SCATTER / np.sqrt(number))
-    assert_allclose(counted.length_after, measured.length_after, rtol=1e-2)
+    assert_allclose(counted.result_after, measured.result_after, rtol=1e-2)
     other = computed([], stuck=counts(1.1 * centres, (single < 1.03 * centres).sum(axis=0), number))
-    assert np.all(np.abs(other.length_shift - measured.length_shift)[:3] > 0.01)  # control
+    assert np.all(np.abs(other.result_shift - measured.result_shift)[:3] > 0.01)  # control
 
 
 @pytest.mark.usefixtures("shapes")
 def test_counts_of_beams_that_tips_hold_say_more_about_tips_than_about_cracks():
     halves = np.array(as_computed()) / np.sqrt(2)
     found = computed([], stuck=counts(halves, [10] * 3, 20))
-    gains = (found.length_after / found.length_before).values
+    gains = (found.result_after / found.result_before).values
     assert np.all(gains[3:] < 0.8)
     assert np.all(gains[:3] > 0.9)
     assert_allclose(found.stuck_before, 0.5, atol=1e-6)
-    assert_allclose(found.length_shift, 0, atol=1e-6)
+    assert_allclose(found.result_shift, 0, atol=1e-6)
     assert_allclose(found.stuck_after, 0.5, atol=1e-6)
 
 
@@ -264,7 +356,7 @@ def test_the_true_lengths_of_the_device_are_inside_the_stated_intervals_of_count
         lengths = np.array(as_computed()) * rng.uniform(0.7, 1.05, 3)
         stuck = (np.minimum(cracks, tips) < lengths).sum(axis=0)
         after = computed([], stuck=counts(lengths, stuck, 20))
-        scores.append((np.log(truth / after.length.values) - after.length_shift.values) / after.length_after.values)
+        scores.append((np.log(truth / after.centre.values) - after.result_shift.values) / after.result_after.values)
     assert abs(np.mean(np.abs(scores) < 1) - 0.68) <= 0.10
     assert abs(np.mean(np.abs(scores) < 1.96) - 0.95) <= 0.04
 
@@ -284,13 +376,13 @@ def test_cracks_and_arcs_hold_beams_of_the_lengths_of_the_model(monkeypatch):
 
 def test_further_beams_like_the_device_help_more_where_the_device_is_known_least():
     found = computed(as_computed())
-    left = found.length_after_further
-    assert np.all(left <= found.length_after + 1e-12)
+    left = found.result_after_further
+    assert np.all(left <= found.result_after + 1e-12)
     assert np.all(left.sel(beams=100) <= left.sel(beams=10))
     assert_array_equal(left.further, [*(f"arrayA, RH {rh:g}" for rh in HUMIDITIES), *found.result.values[:3]])
     # A new array at its own humidity has dimensions and a rest of its own, which no number of beams averages out.
     wanted = of(left, 0.67).sel(further="C1, RH 0.67", beams=100)
-    assert 0.05 < float(wanted) < float(of(found, 0.67).length_after)
+    assert 0.05 < float(wanted) < float(of(found, 0.67).result_after)
 
 
 @pytest.mark.usefixtures("shapes")
@@ -348,7 +440,7 @@ def test_the_combination_that_one_length_determines_names_its_inputs():
 
 def test_the_table_has_data_lengths_safe_lengths_and_inputs():
     table = tables_inference.test_beams({"C1": computed(as_computed(1.1))})
-    assert len(table.frame) == 3 + 6 + 6 + 8
+    assert len(table.frame) == 3 + 6 + 12 + 8
     cells = table.cells.set_index("what").before
     assert cells["C1: safe length, beam or tip, p = 0.001 [µm]"].iloc[0] == "250.0"
     assert "Further test beams would help most as " in table.caption

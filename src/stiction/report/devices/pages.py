@@ -241,16 +241,21 @@ def of_stopper(
     found: xr.Dataset,
     budgets: Mapping[tuple, xr.Dataset],
     warnings: Sequence[str],
+    test_beams: xr.Dataset | None = None,
 ) -> Page:
     """Page of a stopper; parameters as in `of_beam`, with one dataset of stage stoppers and a list of warnings."""
     table = tables_budget.stoppers({name: found}, {name: []}).cells.drop(columns=["device"])
     sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: found}, {}))]
     sections += _sure(name, budgets)
-    answer = [verdict(found)]
+    answer, listed = [verdict(found)], list(warnings)
+    if test_beams is not None:
+        sections.append(_of_test_beams(name, test_beams))
+        answer.append(tables_inference.built(test_beams))
+        listed += tables_inference.warnings(test_beams)
     answer += [stuck_sentence(*row, force=float(found.restoring_force)) for row in shares_stuck(found)]
     answer += [*safe_force_sentences(found), worst_sentence(found)]
     words = _OF_STOPPERS | _words_of_budgets(budgets)
-    return Page(_title(name, section), _facts_of(section), answer, sections, warnings, words)
+    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
 
 
 def _words_of_budgets(budgets):
@@ -437,6 +442,7 @@ def _sure(name, budgets):
 def _of_test_beams(name, found):
     """Section on what the test beams of a device say."""
     said = [tables_inference.explained(found), *tables_inference.combinations(found), tables_inference.advised(found)]
+    said += tables_inference.stuck(found)
     cells = tables_inference.test_beams({name: found}).cells.drop(columns="device")
     return Section("What the test beams say", said, cells, figures_inference.test_beams(found))
 
@@ -456,11 +462,11 @@ def _inputs(plan, at):
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
     budgets = budgets_of(plan, at.device) if at.device in designs.budgeted else {}
     own = {"budgets": {key[1:]: name for key, name in budgets.items()}, "warnings": device_warnings.files_of(at.device)}
+    if "test_beams" in section:
+        own |= {"test_beams": f"devices/test_beams/{at.device}"}
     if not designs.kind(at.device).is_beam:
         return own | {"stopper": f"devices/stoppers/{at.device}", "style": File(STYLE)}
     charts = designs.chart_cases(at.device) if at.device in designs.charted else []
-    if "test_beams" in section:
-        own |= {"test_beams": f"devices/test_beams/{at.device}"}
     return own | {
         "safe_lengths": {key[1]: name for key, name in by_case("devices/safe_lengths", cases).items()},
         "charts": {key[1]: name for key, name in by_case("devices/chart", charts).items()},
@@ -479,12 +485,12 @@ def _settings(plan, at):
 
 def _page(data, at, settings):
     """Page of a device."""
-    warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
+    warnings, budgets, test_beams = device_warnings.read(data["warnings"]), data["budgets"], data.get("test_beams")
     if "stopper" in data:
-        return of_stopper(at.device, settings, data["stopper"], budgets, warnings.patches[at.device])
+        return of_stopper(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], test_beams)
     lengths, charts = data["safe_lengths"], data["charts"]
     limits = warnings.lengths | warnings.curves
-    return of_beam(at.device, settings, lengths, charts, budgets, limits, data.get("test_beams"))
+    return of_beam(at.device, settings, lengths, charts, budgets, limits, test_beams)
 
 
 STAGES = (

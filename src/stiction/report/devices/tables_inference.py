@@ -10,7 +10,7 @@ from stiction.plan.names import by_name
 from stiction.report.format import TO_UM, number, with_error
 from stiction.report.tables import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.inference import OWN, SHAPES
-from stiction.stages.devices.releases import ARC, EITHER, S_SHAPE
+from stiction.stages.devices.releases import ARC, EITHER, FORCE, MIDDLE, S_SHAPE
 
 #: p value below which data count as not explained; number of standard deviations beyond which an input counts as wrong;
 #: ratio of dimensions beyond which a prediction counts as extrapolated. ASSUME: a factor of two.
@@ -19,6 +19,24 @@ UNLIKELY, LARGE, SIZES = 0.05, 2.0, 2.0
 #: less than this part of the largest one are not named.
 DETERMINED, NAMED = 0.5, 0.25
 _MORE = {True: "more", False: "less"}
+#: Ways in which devices are held, that of the shortest devices first.
+_WEAKEST = (ARC, MIDDLE, FORCE, S_SHAPE)
+#: What the results of a device are, by what its budget is of.
+_RESULTS = {
+    S_SHAPE: "crack length [µm]",
+    ARC: "length held by few tips [µm]",
+    MIDDLE: "length that the middle holds [µm]",
+    FORCE: "mean pull-off force [µN]",
+}
+#: P(stuck) before and after, and its scale.
+_STUCK = ("expected_stuck", "updated_stuck", 100)
+#: What is safe, by shape.
+_SAFE = {
+    S_SHAPE: "safe length, beam",
+    EITHER: "safe length, beam or tip",
+    MIDDLE: "safe length, middle",
+    FORCE: "safe force",
+}
 
 
 # Sentences
@@ -43,14 +61,14 @@ def combinations(found: xr.Dataset) -> list[str]:
 
 def advised(found: xr.Dataset) -> str:
     """Which further test beams would help the device most, where it is known least."""
-    worst = int(np.argmax(found.length_after.values))
-    left = 100 * found.length_after_further.isel(result=worst)
+    worst = int(np.argmax(found.result_after.values))
+    left = 100 * found.result_after_further.isel(result=worst)
     best = int(np.argmin(left.isel(beams=0).values))
     after = [f"{float(one):.2g} % with {int(one.beams)} beams" for one in left.isel(further=best)]
     return (
         f"Further test beams would help most as {found.further.values[best]}, at least "
-        f"{TO_UM * float(found.further_length[best]):.0f} µm long: the standard uncertainty of the length of "
-        f"{found.result.values[worst]} would fall from {100 * float(found.length_after[worst]):.2g} to "
+        f"{TO_UM * float(found.further_length[best]):.0f} µm long: the standard uncertainty of the result for "
+        f"{found.result.values[worst]} would fall from {100 * float(found.result_after[worst]):.2g} to "
         f"{', to '.join(after)}."
     )
 
@@ -65,26 +83,56 @@ def explained(found: xr.Dataset) -> str:
 
 
 def built(found: xr.Dataset) -> str:
-    """The length to build before and after the measurement, for the middle one of the shares.
+    """What to build before and after the measurement, for the middle one of the shares.
 
     As `stiction.report.devices.pages.build_sentence`: the least safe length, less twice the largest uncertainty of what
-    holds the devices, here with the error of the model as far as it applies.
+    holds the devices, here with the error of the model as far as it applies; of a stopper the largest safe force, with
+    twice the uncertainty added.
     """
-    (before, after), (alone_before, alone_after) = (_built(found, response) for response in (ARC, S_SHAPE))
+    responses = list(dict.fromkeys(map(str, found.response.values)))
+    (before, after), *others = (_built(found, response) for response in sorted(responses, key=_WEAKEST.index))
+    if FORCE in responses:
+        return (
+            f"With the test beams, give it a restoring force of at least {after:.3g} µN, without them {before:.3g} µN; "
+            "twice the uncertainty of the force is added. Cracks do not say how much the model errs at stoppers."
+        )
+    alone = "".join(f"; if its tip cannot touch, {one:.0f} and {other:.0f} µm" for other, one in others)
     return (
-        f"With the test beams, build it no longer than {after:.0f} µm, without them {before:.0f} µm; if its tip cannot "
-        f"touch, {alone_after:.0f} and {alone_before:.0f} µm. Twice the uncertainty of the lengths is subtracted, with "
-        "that of the model for devices that the beam holds."
+        f"With the test beams, build it no longer than {after:.0f} µm, without them {before:.0f} µm{alone}. Twice the "
+        "uncertainty of the lengths is subtracted, with that of the model for devices that cracks along the beam hold."
     )
 
 
 def _built(found, response):
-    """Lengths to build before and after the measurement for one way in which a device is held [µm]."""
+    """Lengths, or forces, to build before and after the measurement for one way in which a device is held [µm, µN]."""
     share = found.share.values[found.sizes["share"] // 2]
     chosen = found.isel(result=np.flatnonzero(found.response.values == response))
-    for safe, deviation in (("safe_length", "length_before"), ("updated_safe_length", "length_after")):
-        least = float(found[safe].sel(share=share, shape=SHAPES[response]).min())
-        yield TO_UM * least * max(1 - 2 * float(chosen[deviation].max()), 0.0)
+    for safe, name in (("safe", "result_before"), ("updated_safe", "result_after")):
+        sizes, doubt = found[safe].sel(share=share, shape=SHAPES[response]), 2 * float(chosen[name].max())
+        least, most = (TO_UM * float(size) for size in (sizes.min(), sizes.max()))
+        yield most * (1 + doubt) if response == FORCE else least * max(1 - doubt, 0.0)
+
+
+def stuck(found: xr.Dataset) -> list[str]:
+    """P(stuck) of the devices before and after the measurement at every humidity, for all that the inputs may be."""
+    shape = SHAPES[min(map(str, found.response.values), key=_WEAKEST.index)]
+    chosen = found.sel(shape=shape)
+    if "share" in chosen.expected_stuck.dims:
+        chosen = chosen.isel(share=found.sizes["share"] // 2)
+    sentences = []
+    for one in (chosen.sel(humidity=humidity) for humidity in found.humidity.values):
+        size = "at its restoring force" if shape == FORCE else f"of {TO_UM * float(one.safe):.0f} µm, the safe length,"
+        sentences.append(
+            f"At a relative humidity of {float(one.humidity):g}, {_percent(one.expected_stuck)} of the devices {size} "
+            f"are expected to stick without the test beams and {_percent(one.updated_stuck)} with them, for all "
+            "that the inputs may be."
+        )
+    return sentences
+
+
+def _percent(share):
+    """A share for reading."""
+    return f"{100 * float(share):.2g} %"
 
 
 # Table
@@ -102,18 +150,24 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     sentences = [
         f"{device}: {sentence}"
         for device, found in datasets.items()
-        for sentence in [explained(found), *combinations(found), advised(found), *warnings(found)]
+        for sentence in [explained(found), *combinations(found), advised(found), *stuck(found), *warnings(found)]
     ]
     caption = (
         "Test beams: measured crack lengths with the standard errors of their means, counts of stuck beams, and "
         "lengths of test beams and devices before and after the measurement, with standard deviations due to the "
-        "inputs and, except for those held by a tip, due to the model. Inputs in their standard uncertainties."
+        "inputs and, of crack lengths, due to the model. Inputs in their standard uncertainties."
     )
     return Table.of(rows, with_list(caption, sentences), _COLUMNS)
 
 
 def _rows(device, found):
-    """Numbers of one device: data, lengths, safe lengths, inputs."""
+    """Numbers of one device: data, results, what is safe, inputs."""
+    for part in (_data, _results, _safe_sizes, _of_inputs):
+        yield from part(device, found)
+
+
+def _data(device, found):
+    """Crack lengths and counts."""
     for datum in found.datum.values:
         at = found.sel(datum=datum)
         computed = TO_UM * float(at.computed)
@@ -130,25 +184,47 @@ def _rows(device, found):
         yield (
             head | {"name": str(at.array_of_count.values), "measured": float(at.stuck), "measured_se": np.nan} | shares
         )
+
+
+def _results(device, found):
+    """What the budgets of the device are of."""
     for result in found.result.values:
         at = found.sel(result=result)
-        length, tip = TO_UM * float(at.length), str(at.response.values) == ARC
-        numbers = _of_length(length, *(float(at[f"length_{key}"]) for key in ("before", "shift", "after")))
+        length = TO_UM * float(at.centre)
+        numbers = _of_length(length, *(float(at[f"result_{key}"]) for key in ("before", "shift", "after")))
         head = {"device": device, "relative_humidity": float(at.humidity_of_result)}
-        yield head | {"part": "length held by few tips [µm]" if tip else "crack length [µm]", "name": device} | numbers
+        yield head | {"part": _RESULTS[str(at.response.values)], "name": device} | numbers
+
+
+def _safe_sizes(device, found):
+    """Safe lengths or forces, and P(stuck)."""
     for humidity in found.humidity.values:
-        for shape in found["shape"].values:
+        head = {"device": device, "relative_humidity": float(humidity), "name": device}
+        for shape in map(str, found["shape"].values):
+            of_shape, unit = found.sel(humidity=humidity, shape=shape), "µN" if shape == FORCE else "µm"
             for share in found.share.values:
-                at = found.sel(humidity=humidity, shape=shape, share=share)
-                part = f"safe length, {'beam or tip' if shape == EITHER else 'beam'}, p = {share:g} [µm]"
-                head = {"device": device, "relative_humidity": float(humidity), "part": part, "name": device}
-                yield head | {"before": TO_UM * float(at.safe_length), "after": TO_UM * float(at.updated_safe_length)}
+                at = of_shape.sel(share=share)
+                part = f"{_SAFE[shape]}, p = {share:g}"
+                yield head | {"part": f"{part} [{unit}]"} | _both(at, "safe", "updated_safe", TO_UM)
+                if "share" in found.expected_stuck.dims:
+                    yield head | {"part": f"stuck at the {part}, before [%]"} | _both(at, *_STUCK)
+            if "share" not in found.expected_stuck.dims:
+                yield head | {"part": "stuck at the restoring force [%]"} | _both(of_shape, *_STUCK)
+
+
+def _of_inputs(device, found):
+    """Inputs in their standard uncertainties."""
     for name in found.input.values:
         at = found.sel(input=name)
         scale = float(at.prior_deviation) or np.nan
         head = {"device": device, "relative_humidity": np.nan, "part": "input [standard uncertainties]", "name": name}
         after = {"after": float(at["shift"]) / scale, "after_std": float(at.deviation) / scale}
         yield head | {"before": 0.0, "before_std": 1.0} | after
+
+
+def _both(found, before, after, scale):
+    """Numbers before and after the measurement."""
+    return {"before": scale * float(found[before]), "after": scale * float(found[after])}
 
 
 def _of_length(length, before, shift, after):
@@ -227,8 +303,8 @@ def _extrapolated(found):
             f"Test beams were measured from RH {low:g} to {high:g}: the prediction at RH "
             f"{', '.join(f'{humidity:g}' for humidity in beyond)} is an extrapolation."
         )
-    for size in OWN:
-        device = float(found[f"length_{size}"][0])
+    for size in OWN if "own_thickness" in found else ():
+        device = float(found[f"own_{size}"][0])
         nearest = min(found[size].values, key=lambda value: abs(np.log(device / value)))
         if abs(np.log(device / nearest)) > np.log(SIZES):
             yield (

@@ -22,14 +22,16 @@ from stiction.plan.stage import Stage
 from stiction.stages.contact import curves
 from stiction.stages.devices.budget import budgets_of, budgets_of_arrays, response_of, shared_laws
 from stiction.stages.devices.patch_settings import contact_of, tips_of
-from stiction.stages.devices.releases import ARC, EITHER, LONG, S_SHAPE, DesignedBeam, section_of_beam
+from stiction.stages.devices.releases import ARC, EITHER, FORCE, LONG, MIDDLE, S_SHAPE, DesignedBeam, section_of_beam
 
 #: Inputs that are those of one device or array alone.
 OWN = ("thickness", "gap")
 #: Numbers of further test beams for which the gain is stated.
 FURTHER = (10, 100)
 #: What holds a device, as in its safe lengths, by what its budget is of; lengths in either shape are those of tips.
-SHAPES = {S_SHAPE: S_SHAPE, ARC: EITHER}
+SHAPES = {S_SHAPE: S_SHAPE, ARC: EITHER, MIDDLE: MIDDLE, FORCE: FORCE}
+#: What may hold a counted beam.
+_COUNTED = (S_SHAPE, ARC)
 #: Keys of the data of the configuration.
 _COLUMNS = {
     "crack_lengths": ("humidity", "mean_um", "std_um", "beams"),
@@ -64,28 +66,30 @@ class Settings:
     """Everything that the update depends on apart from budgets and safe lengths."""
 
     discrepancy: Discrepancy
-    device: DesignedBeam
     arrays: dict[str, DesignedBeam]  #: test beams by the name of their array
     crack_lengths: dict[str, CrackLengths]  #: by array
     stuck: dict[str, Stuck]  #: by array
+    device: DesignedBeam | None = None  #: none of a stopper
 
 
 class Result(NamedTuple):
-    """One length with a budget, of the device or of test beams."""
+    """One length or force with a budget, of the device or of test beams."""
 
     owner: str  #: the device or the array
     humidity: float  #: [-]
     budget: xr.Dataset
-    beam: DesignedBeam
+    beam: DesignedBeam | None
 
     @property
     def response(self) -> str:
-        """What holds it, ``S_SHAPE`` or ``ARC``."""
+        """What holds it, a key of ``SHAPES``."""
         return response_of(self.budget)[0]
 
     @property
     def reduced(self) -> float:
-        """u, the logarithm of the crack length over that at an adhesion energy of 1 J/m² [-]."""
+        """u, the logarithm of the crack length over that at an adhesion energy of 1 J/m²; zero of other results [-]."""
+        if self.response != S_SHAPE:
+            return 0.0
         return float(np.log(self.budget.centre / arrest_length(1.0, self.beam.beam)))
 
     @property
@@ -112,12 +116,12 @@ class Result(NamedTuple):
 def compute(
     budgets: Mapping[tuple, xr.Dataset],
     test_beams: Mapping[tuple, xr.Dataset],
-    safe_lengths: Mapping[float, xr.Dataset],
+    predicted: Mapping[float, xr.Dataset] | xr.Dataset,
     grounds: Mapping[str, xr.Dataset],
     tips: Mapping[str, xr.Dataset],
     settings: Settings,
 ) -> xr.Dataset:
-    """Inputs, lengths and safe lengths of a device before and after its test beams were measured.
+    """Inputs, lengths and safe lengths, or forces, of a device before and after its test beams were measured.
 
     Parameters
     ----------
@@ -125,8 +129,8 @@ def compute(
         Device, humidity and, for tips, more to the dataset of its budget.
     test_beams : dict
         Array, humidity and, for tips, more to the dataset of its budget.
-    safe_lengths : dict
-        Humidity to the dataset of stage safe_lengths of the device.
+    predicted : dict or Dataset
+        Humidity to the dataset of stage safe_lengths of a beam, or the dataset of stage stoppers.
     grounds, tips : dict
         Array with counts to the contact on which its beams stick, and to that of their tips.
     settings : Settings
@@ -144,11 +148,12 @@ def compute(
         of_inputs(prior, posterior, own + 2),
         of_data(beams, responses, prior, posterior, settings),
         of_counts(counts, posterior, settings.stuck),
-        of_lengths(of_device, device, inputs, prior, posterior),
+        of_results(of_device, device, inputs, prior, posterior),
         of_further(beams, responses, of_device, device, posterior),
         of_agreement(prior, lengths, counts, own),
     ]
-    return updated(xr.merge(found, combine_attrs="no_conflicts"), safe_lengths)
+    both = xr.merge(found, combine_attrs="no_conflicts")
+    return with_forces(both, predicted) if settings.device is None else with_lengths(both, predicted)
 
 
 def common_inputs(results: Sequence[Result]) -> Knowledge:
@@ -166,15 +171,15 @@ def with_discrepancy(
 ) -> tuple[Knowledge, np.ndarray]:
     """As `stiction.devices.inference.with_discrepancy`; responses are those of test beams and, after them, of others.
 
-    ASSUME: cracks say nothing about how much the model errs at tips. Without a discrepancy, their length has the
-    uncertainty of its budget; no model holds shorter arcs than saturated air does.
+    ASSUME: cracks say nothing about how much the model errs at tips, at the middle of a bridge and at stoppers. Without
+    a discrepancy, these have the uncertainty of their budget; no model holds shorter arcs than saturated air does.
     """
     results = [*beams, *others]
     responses = np.zeros((len(results), len(inputs.names)))
     for row, one in zip(responses, results, strict=True):
         row[[inputs.names.index(name) for name in one.names]] = one.budget.slope.values
     reduced = np.array([one.reduced for one in results]) - np.mean([one.reduced for one in beams])
-    conditions = [None if one.response == ARC else one.condition for one in results]
+    conditions = [one.condition if one.response == S_SHAPE else None for one in results]
     return inference.with_discrepancy(inputs, responses, reduced, conditions, stated)
 
 
@@ -230,11 +235,11 @@ def counted(
         }
         for humidity, length in zip(data.humidity, data.length, strict=True):
             behind, of_humidity = shapes[humidity]
-            rows.append(responses[[places[name, humidity, shape] for shape in SHAPES]])
+            rows.append(responses[[places[name, humidity, shape] for shape in _COUNTED]])
             lengths.append(length - behind)
             scores.append(of_humidity)
     numbers = (np.concatenate([getattr(one, key) for one in found.values()] or [[]]) for key in ("stuck", "of"))
-    shape = (-1, len(SHAPES))
+    shape = (-1, len(_COUNTED))
     return Counts(np.reshape(rows, (*shape, responses.shape[1])), np.reshape(lengths, shape), scores, *numbers)
 
 
@@ -339,15 +344,17 @@ def _both(prior, posterior, responses):
     return {"before": prior.of(responses)[1], "shift": shift, "after": after}
 
 
-def of_lengths(
+def of_results(
     of_device: Sequence[Result], responses: np.ndarray, inputs: Knowledge, prior: Knowledge, posterior: Knowledge
 ) -> xr.Dataset:
-    """Lengths of a device before and after the measurement: mean crack lengths, and lengths that few tips hold."""
+    """Results of a device before and after the measurement: mean crack lengths, lengths that few tips hold, forces."""
     numbers = {"of_inputs": inputs.of(responses[:, : len(inputs.names)])[1]} | _both(prior, posterior, responses)
+    centre = [float(one.budget.centre) for one in of_device], {"units": of_device[0].budget.centre.attrs["units"]}
+    sizes = {size: [getattr(one.beam, size) for one in of_device] for size in OWN if of_device[0].beam}
     return xr.Dataset(
-        {"length": ("result", [float(one.budget.centre) for one in of_device], {"units": "m"})}
-        | {f"length_{size}": ("result", [getattr(one.beam, size) for one in of_device], {"units": "m"}) for size in OWN}
-        | {f"length_{name}": ("result", value, {"units": "1"}) for name, value in numbers.items()},
+        {"centre": ("result", *centre)}
+        | {f"own_{size}": ("result", values, {"units": "m"}) for size, values in sizes.items()}
+        | {f"result_{name}": ("result", value, {"units": "1"}) for name, value in numbers.items()},
         coords={
             "result": [one.condition for one in of_device],
             "response": ("result", [one.response for one in of_device]),
@@ -370,7 +377,7 @@ def of_further(
     """
     further = [(one, row, 0.0) for one, row in zip(beams, responses, strict=False)]
     for one, row in zip(of_device, device, strict=True):
-        if one.response != ARC:
+        if one.response == S_SHAPE:
             own = np.isin(posterior.names, one.own)
             further.append((one, np.where(own, 0, row), float(np.linalg.norm((row * posterior.deviations)[own]))))
     left = [
@@ -385,32 +392,81 @@ def of_further(
     ]
     return xr.Dataset(
         {
-            "length_after_further": (("result", "further", "beams"), left, {"units": "1"}),
+            "result_after_further": (("result", "further", "beams"), left, {"units": "1"}),
             "further_length": ("further", [LONG * float(one.budget.centre) for one, *_ in further], {"units": "m"}),
         },
         coords={"further": [one.condition for one, *_ in further], "beams": list(FURTHER)},
     )
 
 
-def updated(found: xr.Dataset, safe_lengths: Mapping[float, xr.Dataset]) -> xr.Dataset:
-    """The dataset with the safe lengths of the device before and after the measurement.
+def with_lengths(found: xr.Dataset, safe_lengths: Mapping[float, xr.Dataset]) -> xr.Dataset:
+    """The dataset with safe lengths before and after the measurement, and P(stuck) of beams of the former ones.
 
-    ASSUME: safe lengths shift as the mean length of S-shapes, or as the length that few tips hold, as the budgets do.
+    ASSUME: safe lengths shift as the mean length of S-shapes and bridges, or as the length that few tips hold, as the
+    budgets do.
     """
     safe = xr.concat([one.safe_length for one in safe_lengths.values()], "humidity").assign_coords(
         humidity=list(safe_lengths)
     )
-    factors = xr.ones_like(safe.isel(share=0, drop=True))
-    for response, shape in SHAPES.items():
-        for at, shift in zip(*_shifts(found, response), strict=True):
-            factors.loc[{"humidity": at, "shape": shape}] = np.exp(shift)
-    return found.assign(safe_length=safe, updated_safe_length=safe * factors)
+
+    def share(humidity, shape, length, shift, deviation):
+        held = safe_lengths[humidity].stuck.sel(shape=shape)
+        weights = np.diff(held.values, prepend=0.0)
+        return inference.expected_share(np.log(length / held.length.values), weights, shift, deviation)
+
+    return found.assign(_before_and_after(found, safe) | _shares(found, safe, share))
 
 
-def _shifts(found, response):
-    """Humidities and shifts of ln l of the results of a response."""
-    chosen = found.isel(result=np.flatnonzero(found.response.values == response))
-    return chosen.humidity_of_result.values, chosen.length_shift.values
+def with_forces(found: xr.Dataset, stopper: xr.Dataset) -> xr.Dataset:
+    """The dataset with safe forces of a stopper before and after, and P(stuck) at its restoring force.
+
+    ASSUME: the forces of all patches shift as their mean.
+    """
+    safe = stopper.safe_force.sel(part="safe", drop=True).expand_dims(shape=[FORCE])
+    stated = xr.full_like(safe.isel(share=0, drop=True), float(stopper.restoring_force))
+
+    def share(humidity, _, force, shift, deviation):
+        held = np.maximum(stopper.pull_off.sel(humidity=humidity).values, np.finfo(float).tiny)
+        return inference.expected_share(np.log(held / force), np.full(len(held), 1 / len(held)), -shift, deviation)
+
+    return found.assign(_before_and_after(found, safe) | _shares(found, stated, share))
+
+
+def _before_and_after(found, safe):
+    """Safe lengths or forces before and after the measurement."""
+    return {
+        "safe": safe,
+        "updated_safe": safe * np.exp(_of_shapes(found, "result_shift").reindex_like(safe.isel(share=0))),
+    }
+
+
+def _of_shapes(found, name):
+    """Numbers of the results of a device by humidity and shape."""
+    shapes = [SHAPES[response] for response in found.response.values]
+    keys = {"humidity": ("result", found.humidity_of_result.values), "shape": ("result", shapes)}
+    return (
+        found[name]
+        .drop_vars(["result", "response", "humidity_of_result"])
+        .assign_coords(keys)
+        .set_index(result=["humidity", "shape"])
+        .unstack("result")
+    )
+
+
+def _shares(found, sizes, share):
+    """P(stuck) of devices of some sizes, expected before and after the measurement for all that the inputs may be."""
+    shift, before, after = (_of_shapes(found, f"result_{name}") for name in ("shift", "before", "after"))
+    stacked = sizes.stack(at=sizes.dims)
+    expected = {"expected_stuck": [], "updated_stuck": []}
+    for one in stacked:
+        at = {"humidity": float(one.humidity), "shape": str(one["shape"].values)}
+        moved = float(shift.sel(at)), float(after.sel(at))
+        for name, numbers in zip(expected, ((0.0, float(before.sel(at))), moved), strict=True):
+            expected[name].append(share(*at.values(), float(one), *numbers))
+    return {
+        name: stacked.copy(data=values).unstack("at").transpose(*sizes.dims).reindex_like(sizes).assign_attrs(units="1")
+        for name, values in expected.items()
+    }
 
 
 # Stage
@@ -432,11 +488,23 @@ def _settings(plan, at):
         data["crack_lengths"][name]["length_um"] = arrays[name]["length_um"]
     for name in data["stuck"]:
         data["stuck"][name]["water"] = plan.water(arrays[name]["pair"])
-    return data | {
-        "discrepancy": plan.config["design"]["discrepancy"],
-        "device": section_of_beam(plan, at.device),
-        "arrays": {name: section_of_beam(plan.of_test_beams, name) for name in names},
-    }
+    is_beam = plan.designs.kind(at.device).is_beam
+    return (
+        data
+        | ({"device": section_of_beam(plan, at.device)} if is_beam else {})
+        | {
+            "discrepancy": plan.config["design"]["discrepancy"],
+            "arrays": {name: section_of_beam(plan.of_test_beams, name) for name in names},
+        }
+    )
+
+
+def _predicted(plan, device):
+    """Safe lengths of a beam by humidity, or forces of a stopper."""
+    if not plan.designs.kind(device).is_beam:
+        return f"devices/stoppers/{device}"
+    humidities = plan.config["devices"][device]["humidities"]
+    return {humidity: f"devices/safe_lengths/{case_id(device, humidity)}" for humidity in humidities}
 
 
 def _contacts(plan, device):
@@ -457,17 +525,14 @@ STAGES = (
             {
                 "budgets": budgets_of(plan, at.device),
                 "test_beams": budgets_of_arrays(plan, at.device),
-                "safe_lengths": {
-                    rh: f"devices/safe_lengths/{case_id(at.device, rh)}"
-                    for rh in plan.config["devices"][at.device]["humidities"]
-                },
+                "predicted": _predicted(plan, at.device),
             }
             | _contacts(plan, at.device)
         ),
         settings=_settings,
         kind=Settings,
         compute=lambda data, at, settings: compute(
-            data["budgets"], data["test_beams"], data["safe_lengths"], data["grounds"], data["tips"], settings
+            data["budgets"], data["test_beams"], data["predicted"], data["grounds"], data["tips"], settings
         ),
         message="Test beams of device {device}.",
     ),
