@@ -7,6 +7,7 @@
 #   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (4 to 10 minutes),
 #                   in runs/devices/results/
 #   make model-error    Table III under full elastic contact, after make paper (3 minutes on two cores; takes CONFIG=... too)
+#   make attraction     Table III with attraction across gaps (3 minutes on two cores), in runs/attraction/results/
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
 #
@@ -40,7 +41,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example devices model-error figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example devices model-error attraction figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -65,6 +66,9 @@ devices: $(VENV)/ready
 
 model-error: $(VENV)/ready
 	$(STICTION) $(if $(CONFIG),run $(CONFIG),paper) -- model_error $(ARGS)
+
+attraction: $(VENV)/ready
+	$(STICTION) run $(or $(CONFIG),examples/attraction.yaml) --directory runs/attraction -- results/tables/variants.csv $(ARGS)
 
 figures: $(VENV)/ready
 	$(STICTION) figures $(CONFIG) -- $(ARGS)

@@ -1,8 +1,8 @@
 """Bring the docs up to date with a run: ``python docs/update.py results``, the command ``make numbers``.
 
 1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
-   and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``
-   and ``make devices`` in ``runs/example`` and ``runs/devices`` beside the folder.
+   and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``,
+   ``make devices`` and ``make attraction`` in folders of ``runs`` beside the folder.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
 3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted, and the schema
    for editors from that of the configuration.
@@ -71,6 +71,8 @@ DEVICE_TABLES = ("safe_lengths", "stoppers", "budget")
 DEVICE_PICTURES = {"risk": 1000, "chart": 1200, "stoppers": 700, "budget_C1": 1000}
 #: Table and picture of ``make model-error``.
 MODEL_ERROR = "model_error"
+#: Table of ``make attraction``, and its target.
+ATTRACTION, OF_ATTRACTION = "attraction", "results/tables/variants.csv"
 #: Largest picture [bytes].
 LARGEST = 350_000
 #: Schema of configuration files for editors.
@@ -86,6 +88,7 @@ def main(results):
         (results, unfinished_model_error, collect_model_error),
         (runs / "example", unfinished_example, collect_example),
         (runs / "devices", unfinished_devices, collect_devices),
+        (runs / "attraction", unfinished_attraction, collect_attraction),
     ):
         if reason := why(folder):
             print(f"{reason}: the docs keep their present numbers")  # noqa: T201
@@ -136,6 +139,16 @@ def unfinished_devices(folder):
     return f"{folder} is not up to date with examples/devices.yaml and the code, see make devices ARGS=-n"
 
 
+def unfinished_attraction(folder):
+    """Why a folder does not hold a finished comparison of attraction across gaps; empty if it does."""
+    if not (folder / OF_ATTRACTION).exists():
+        return f"{folder} holds no finished run"
+    configs = ROOT / "config.yaml", ROOT / "examples" / "attraction.yaml"
+    if up_to_date(folder.resolve(), OF_ATTRACTION, "--configfile", *configs):
+        return ""
+    return f"{folder} is not up to date with examples/attraction.yaml and the code, see make attraction ARGS=-n"
+
+
 def up_to_date(folder, *arguments):
     """Whether Snakemake has nothing to do in a working directory."""
     plan = [sys.executable, "-m", "snakemake", *arguments, "--snakefile", ROOT / "Snakefile", "--directory", folder]
@@ -183,6 +196,13 @@ def collect_devices(folder):
             shutil.copyfile(folder / "results" / "tables" / f"{name}.{kind}", DOCS / "tables" / f"{name}.{kind}")
     for name, width in DEVICE_PICTURES.items():
         shrink(folder / "results" / "figures" / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
+
+
+def collect_attraction(folder):
+    """Copy the numbers of Table III with and without attraction across gaps, and their table."""
+    csv = DOCS / "tables" / f"{ATTRACTION}.csv"
+    shutil.copyfile(folder / OF_ATTRACTION, csv)
+    csv.with_suffix(".md").write_text(quoted.across_gaps(quoted.frame(csv)) + "\n", encoding="utf-8")
 
 
 def scalars(studies):
@@ -275,6 +295,7 @@ def quoted_numbers():
         for name in (
             *TABLES,
             MODEL_ERROR,
+            ATTRACTION,
             *DEVICE_TABLES,
             "example_scans",
             "studies",
