@@ -65,7 +65,7 @@ devices: $(VENV)/ready
 	$(STICTION) devices $(CONFIG) --directory runs/devices -- $(ARGS)
 
 model-error: $(VENV)/ready
-	$(STICTION) $(if $(CONFIG),run $(CONFIG),paper) -- model_error $(ARGS)
+	$(STICTION) run $(CONFIG) workflow/model_error.yaml -- model_error $(ARGS)
 
 attraction: $(VENV)/ready
 	$(STICTION) run $(or $(CONFIG),examples/attraction.yaml) --directory runs/attraction -- results/tables/variants.csv $(ARGS)

@@ -114,7 +114,8 @@ def unfinished_model_error(results):
     """Why a folder does not hold a finished study of the error of the model by this code; empty if it does."""
     if not (results / "tables" / f"{MODEL_ERROR}.csv").exists():
         return f"{results} holds no finished study of the model's error"
-    if up_to_date(results.resolve().parent, MODEL_ERROR):
+    configs = ROOT / "config.yaml", ROOT / "workflow" / "model_error.yaml"
+    if up_to_date(results.resolve().parent, MODEL_ERROR, "--configfile", *configs):
         return ""
     return f"{results} is not up to date with config.yaml and the code, see make model-error ARGS=-n"
 

@@ -243,6 +243,12 @@ WRONG_RELATIONS = [
     (UNCERTAIN + "poisson_ratio: 0.3}}}", "devices.C1.uncertainty.poisson_ratio", "0.3", "its budget needs 0.23 ± 0.3"),
     (UNCERTAIN + "hamaker_constant_zJ: 98}}}", "devices.C1.uncertainty.hamaker_constant_zJ", "98",
      "below the Hamaker constant itself, 97.5 zJ (given van_der_waals = 'water')"),
+    ("attraction: {reach: all}\ncontact: {model: full}", "contact.model", "'full'", "must be summits where attraction"),
+    ("contact: {model: full}\nstudies: {variants: {reach: [all]}}", "contact.model", "'full'", "must be summits where"),
+    (f"contact: {{model: full}}\ndevices: {{S1: {STOPPER}}}", "design.worst_humidities", "[0.4, 0.98]",
+     "within the humidities of pair b, to which the correction"),
+    (f"contact: {{model: full}}\npairs: {{b: {{humidities: [0.5, 0.6]}}}}\ndevices: {{C1: {CANTILEVER}}}",
+     "devices.C1.humidities", "[0.5, 0.8]", "within the humidities of pair b"),
     ("attraction: {reach: all}\n" + UNCERTAIN + "hamaker_constant_zJ: 9}}}",
      "devices.C1.uncertainty.hamaker_constant_zJ", "9", "must be left out if attraction.reach is all"),
 ]  # fmt: skip

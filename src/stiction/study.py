@@ -3,7 +3,7 @@
 Stages, settings and addresses of random numbers are the same as in the workflow, and so are the results.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -17,7 +17,7 @@ from stiction.models import SURFACE_MODELS
 from stiction.plan.graph import Results
 from stiction.stages.beams import beams
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
-from stiction.stages.contact import curves, pairs
+from stiction.stages.contact import corrections, curves, pairs
 from stiction.stages.surfaces.rough_surfaces import both
 
 
@@ -79,7 +79,10 @@ class PairStudy:
 
     def energies(self, humidity: float) -> np.ndarray:
         """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
-        return curves.energies(self.contact, humidity, in_si(Water, self._plan.water(self.name)))
+        water = in_si(Water, self._plan.water(self.name))
+        if named := corrections.of_pair(self._plan, self.name, model=self.model):
+            water = replace(water, correction=corrections.correction(self.results[named["model_error"]]))
+        return curves.energies(self.contact, humidity, water)
 
     def forces(self, humidity: float) -> xr.Dataset:
         """Vectors v of Eq. (11) and f_limit at a relative humidity (Sec. III-B1); dataset of stage forces."""

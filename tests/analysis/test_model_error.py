@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from standard_errors import ALLOWED
 
-from stiction.analysis.model_error import energy_ratios, length_factors
+from stiction.analysis.model_error import factors, length_factors, mean_ratios
 
 HUMIDITIES = np.array([0.4, 0.6, 0.9])
 RATIOS = np.array([0.6, 0.9, 1.0])
@@ -17,33 +17,41 @@ def strips(number, seed=1, noise=0.2):
 
 def test_models_that_agree_have_no_error():
     _, summits = strips(10)
-    ratios, errors = energy_ratios(0.7 * summits, summits)
+    ratios, errors = mean_ratios(0.7 * summits, summits, HUMIDITIES, HUMIDITIES)
     np.testing.assert_allclose(ratios, 0.7)
     np.testing.assert_allclose(errors, 0, atol=1e-12)
 
 
 def test_the_ratio_is_that_of_the_means_and_its_error_is_that_of_repeated_studies():
-    found = [energy_ratios(*strips(20, seed)) for seed in range(400)]
+    found = [mean_ratios(*strips(20, seed), HUMIDITIES, HUMIDITIES) for seed in range(400)]
     ratios, errors = (np.array(each) for each in zip(*found, strict=True))
     scatter = ratios.std(axis=0, ddof=1)
     assert np.all(np.abs(ratios.mean(axis=0) - RATIOS) < ALLOWED * scatter / 20)
     np.testing.assert_allclose(np.sqrt((errors**2).mean(axis=0)), scatter, rtol=0.15)
     full, summits = strips(20)
-    assert np.all(np.abs(energy_ratios(full, summits)[0] - (full / summits).mean(axis=0)) > 1e-3)
+    assert np.all(np.abs(mean_ratios(full, summits, HUMIDITIES, HUMIDITIES)[0] - (full / summits).mean(axis=0)) > 1e-3)
 
 
 def test_crack_lengths_follow_the_fourth_root_of_the_ratio():
     full, summits = strips(20)
-    ratios, errors = energy_ratios(full, summits)
-    factors, of_factors = length_factors(full, summits, HUMIDITIES, HUMIDITIES)
-    np.testing.assert_allclose(factors, ratios**-0.25)
-    np.testing.assert_allclose(of_factors, 0.25 * factors * errors / ratios, rtol=0.05)
+    ratios, errors = mean_ratios(full, summits, HUMIDITIES, HUMIDITIES)
+    longer, of_longer = length_factors(full, summits, HUMIDITIES, HUMIDITIES)
+    np.testing.assert_allclose(longer, ratios**-0.25)
+    np.testing.assert_allclose(of_longer, 0.25 * longer * errors / ratios, rtol=0.05)
 
 
 def test_between_humidities_the_logarithm_is_linear_and_beyond_them_there_is_no_number():
     full, summits = strips(20)
-    ratios, _ = energy_ratios(full, summits)
+    ratios, _ = mean_ratios(full, summits, HUMIDITIES, HUMIDITIES)
     (low, between, high), errors = length_factors(full, summits, HUMIDITIES, np.array([0.39, 0.5, 0.91]))
     assert between == pytest.approx(np.sqrt(ratios[0] * ratios[1]) ** -0.25)
     assert np.isnan([low, high, errors[0], errors[2]]).all()
     assert 0 < errors[1] < np.inf
+
+
+def test_a_response_to_several_means_follows_their_ratios():
+    full, summits = (np.stack([one, one**2], axis=-1) for one in strips(20))
+    found, errors = factors(lambda means: np.sqrt(means[:, 0] * means[:, 1]), full, summits, HUMIDITIES, HUMIDITIES)
+    alone = [mean_ratios(full[..., k], summits[..., k], HUMIDITIES, HUMIDITIES)[0] for k in range(2)]
+    np.testing.assert_allclose(found, np.sqrt(np.prod(alone, axis=0)))
+    assert np.all(errors > 0)

@@ -237,6 +237,26 @@ def test_attraction_across_gaps_is_a_variant_on_the_contact_of_the_base():
     assert "gaps" not in plan(attraction={"reach": "all"}).water("b", "van_der_waals_none")
 
 
+def test_the_error_of_the_model_is_stated_where_its_study_is_named_and_nowhere_else():
+    named = plan(run={"studies": ["variants", "full_contact"]})
+    assert not PAPER.states_model_error
+    assert "full_contact" not in PAPER.studies
+    assert named.states_model_error
+    assert plan(contact={"model": "full"}).states_model_error
+    assert [name for name in named.variants if name not in PAPER.variants] == ["contact_full"]
+
+
+def test_full_elastic_contact_is_a_variant_on_the_contact_of_the_base():
+    named = plan(run={"studies": ["full_contact"]})
+    assert named.contact_under("contact_full") == "base"
+    assert ("b", "contact_full") in named.studied
+    assert [name for name in named.variants if named.is_corrected(name)] == ["contact_full"]
+    assert named.summits_under("b", "contact_full") == "base"
+    assert named.choices("b") == PAPER.choices("b")
+    corrected = plan(run={"studies": ["full_contact"]}, contact={"model": "full"})
+    assert ("b", "contact_full") not in corrected.studied
+
+
 def test_budgets_leave_out_choices_of_the_medium_if_solids_attract_each_other_across_gaps():
     across = plan(attraction={"reach": "all"})
     media = {name for name in PAPER.choices("b") if name.startswith("van_der_waals")}

@@ -48,6 +48,8 @@ def reached():
     wanted += [f"devices/chart/{case}" for name in PLAN.designs.charted for case in PLAN.designs.chart_cases(name)]
     wanted += [f"devices/stoppers/{name}" for name in PLAN.designs.stoppers]
     wanted += [f"devices/budget/{name}" for name in PLAN.designs.budgets()]
+    wanted += [f"devices/model_error/{name}" for name in PLAN.designs.devices]
+    wanted += [f"studies/model_error/{pair}" for pair in PLAN.pairs]
     return behind(GRAPH, wanted)
 
 

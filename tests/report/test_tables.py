@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 
 from stiction.models import surface_model
 from stiction.report import published, tables, tables_beams, tables_studies, tables_surfaces
+from stiction.stages.contact import model_error
 from stiction.stages.laws import forces as stage_forces
 
 RESOURCES = Path(published.__file__).with_name("resources")
@@ -59,6 +60,19 @@ def test_energies_without_a_force_law_are_reported_separately():
     assert_allclose(table.meso_energy_J_per_m2, ENERGIES.mean())
     assert_allclose(table.meso_energy_lawful_J_per_m2, ENERGIES[1:].mean())
     assert row().share_without_law == 0
+
+
+def test_the_error_of_the_model_stands_beside_all_but_gaussian_surfaces():
+    known = {name: (np.array([1.1, 1.05]), np.array([0.01, 0.02])) for name in ("energy_ratio", "length_factor")}
+    errors = {"a": model_error.layout(known, np.array([0.45, 0.6]), [0.45], 20)}
+    keys = [("a", humidity, model) for humidity in (0.45, 0.6) for model in ("NG", "G")]
+    given = {key: beams(0, 0, 1) for key in keys}, {key: forces() for key in keys}, PUBLISHED
+    table, plain = tables_beams.table_3(*given, errors=errors), tables_beams.table_3(*given)
+    assert table.cells["model error [%]"].tolist() == ["+10.0 ± 1.0", "–", "+5.0 ± 2.0 *", "–"]
+    assert table.frame[list(plain.frame)].equals(plain.frame)
+    assert "model error [%]" not in plain.cells
+    assert table.caption.startswith(plain.caption)
+    assert "is part of no standard error" in table.caption
 
 
 def test_a_small_share_of_beams_is_not_rounded_to_zero():

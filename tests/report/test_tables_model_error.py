@@ -5,6 +5,7 @@ import xarray as xr
 
 from stiction.report import model_error, style
 from stiction.stages.contact import full_contact
+from stiction.stages.contact import model_error as stage_model_error
 
 HUMIDITIES = [0.45, 0.7, 0.9]
 PUBLISHED = pd.DataFrame(
@@ -31,7 +32,8 @@ def beams(length=600e-6):
     return xr.Dataset({"crack_length": ("sample", lengths), "state": ("sample", states)})
 
 
-DATA = {"a": study()}, {("a", humidity): beams() for humidity in (0.45, 0.6, 0.7, 0.9)}
+ALL = stage_model_error.Settings((0.45, 0.6, 0.7, 0.9))
+DATA = {"a": stage_model_error.compute(study(), ALL)}, {("a", humidity): beams() for humidity in (0.45, 0.6, 0.7, 0.9)}
 
 
 def test_the_table_states_the_error_of_every_case_and_marks_interpolated_ones():

@@ -37,6 +37,8 @@ _OF_BEAM = {"beam": ("length_um", "width_um", "thickness_um"), "solid": ("young_
 _OF_MESH = {"beam": ("length_um", "thickness_um", "elements"), "sampling": ("strip_length_um",)}
 
 
+#: Variant that corrects the base case to full elastic contact.
+CORRECTED = "contact_full"
 #: ASSUME: a solid is polysilicon if its Young's modulus differs from that of the paper by no more than this share.
 _POLYSILICON = 0.1
 
@@ -345,8 +347,18 @@ class Plan:
 
     @property
     def studies(self) -> list[str]:
-        """Studies of the paper that run, by their section."""
-        return self.config["run"].get("studies", list(self.config["studies"]))
+        """Studies that run, by their section: by default those of the paper."""
+        of_paper = [name for name in self.config["studies"] if name != "full_contact"]
+        return self.config["run"].get("studies", of_paper)
+
+    @property
+    def states_model_error(self) -> bool:
+        """Whether the error of the model is stated beside every prediction."""
+        return "full_contact" in self.studies or self.is_corrected()
+
+    def is_corrected(self, variant: str = "base") -> bool:
+        """Whether predictions are corrected to full elastic contact."""
+        return (self.config["contact"] | self.variants[variant].get("contact", {})).get("model") == "full"
 
     @property
     def pressed_pairs(self) -> list[str]:
@@ -403,7 +415,8 @@ class Plan:
             for key, section in _CHANGED.items()
             for value in wanted.get(key, [])
         }
-        return {"base": {}} | changes | {name: {"beam": mesh} for name, mesh in self.finer_beams.items()}
+        full = {CORRECTED: {"contact": {"model": "full"}}} if "full_contact" in self.studies else {}
+        return {"base": {}} | changes | {name: {"beam": mesh} for name, mesh in self.finer_beams.items()} | full
 
     def surface_under(self, variant: str, surface: str) -> dict:
         """Description of a surface under a variant, from which it is drawn."""
@@ -432,7 +445,7 @@ class Plan:
                 name: self.surface_under(variant, name) for name in self.sides(pair) if name not in self.scanned
             },
         }
-        changes = chosen(self.variants[variant], ("sampling", "contact"))
+        changes = {} if variant == CORRECTED else chosen(self.variants[variant], ("sampling", "contact"))
         identified = sorted(name for name, entry in base["surfaces"].items() if entry["psd"] == "identified")
         return {"base": base, "changes": changes, "identified": identified}
 
@@ -452,8 +465,9 @@ class Plan:
         return (self.config["contact"] | changed).get("asperity") == "island"
 
     def contact_under(self, variant: str) -> str:
-        """Variant whose contact a variant has: that of the base if only the beam or the forces across gaps differ."""
-        return "base" if variant in self.finer_beams or "attraction" in self.variants[variant] else variant
+        """Variant whose contact a variant has: that of the base if only what follows from it differs."""
+        after = variant in self.finer_beams or variant == CORRECTED or "attraction" in self.variants[variant]
+        return "base" if after else variant
 
     @property
     def has_samples_of_variants(self) -> bool:
@@ -470,7 +484,8 @@ class Plan:
         contact = self.variant_contact(pair, variant)
         if "materials" in contact:  # of both sides, with all properties of section solid
             del contact["solid"]
-        return self._summits(pair, variant), contact, self.water(pair, variant), self.finer_beams.get(variant)
+        after = self.water(pair, variant), self.finer_beams.get(variant), self.is_corrected(variant)
+        return self._summits(pair, variant), contact, *after
 
     def choices(self, pair: str) -> list[str]:
         """Variants that change the contact of a pair, which need not run; devices have summits under all of them.

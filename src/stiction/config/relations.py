@@ -628,6 +628,15 @@ def solids_attract_across_gaps(config):
 
 
 @relation
+def full_contact_has_no_attraction_across_gaps(config):
+    """Corrections to full elastic contact are ratios without attraction across gaps."""
+    if config["contact"].get("model") == "full":
+        for key, reach in config.known("attraction.reach", "studies.variants.reach"):
+            if "all" in reach:
+                yield "contact.model", "must be summits where attraction reaches across all gaps", key
+
+
+@relation
 def water_wets_the_pairs(config):
     """Water condenses between two surfaces only if the cosines of their contact angles add up to more than zero."""
     surfaces, materials = config["surfaces"], config["materials"]

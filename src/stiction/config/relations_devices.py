@@ -145,6 +145,26 @@ def axes_increase(config):
 
 
 @relation
+def corrections_are_not_extrapolated(config):
+    """Devices are corrected to full elastic contact within the humidities of their pair."""
+    if config["contact"].get("model") != "full":
+        return
+    for name, device in config["devices"].items():
+        known = config[f"pairs.{device['pair']}.humidities"]
+        deviation = device.get("uncertainty", {}).get("humidity", 0)
+        used = {f"devices.{name}.humidities": [h + d for h in device["humidities"] for d in (-deviation, deviation)]}
+        used |= {f"devices.{name}.chart.humidities": chart["humidities"] for chart in [device.get("chart")] if chart}
+        used |= {} if kind_of(device).is_beam else {"design.worst_humidities": config["design.worst_humidities"]}
+        for key, humidities in used.items():
+            if min(humidities) < min(known) or max(humidities) > max(known):
+                message = (
+                    f"must be, with its uncertainty, within the humidities of pair {device['pair']}, to which the "
+                    "correction of contact.model full is restricted"
+                )
+                yield key, message, f"pairs.{device['pair']}.humidities"
+
+
+@relation
 def devices_are_apart_from_the_film(config):
     """The gap of a device, and the smallest gap of its chart, are far above the film of water and the peaks."""
     for gap, air in (("gap_um", "humidities"), ("gap_um", "chart.humidities"), ("chart.gaps_um", "chart.humidities")):

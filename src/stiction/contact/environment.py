@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.contact import bounds, forcelaw, gaps, vanderwaals
+from stiction.contact.correction import Correction
 from stiction.contact.meniscus import film
 
 
@@ -43,6 +44,7 @@ class Water:
     temperature: float  #: T [K]
     contact_angles: tuple[float, float] = (0.0, 0.0)  #: on beam and substrate [rad]
     gaps: Gaps | None = None  #: attraction across the gaps; without it, only the summits attract
+    correction: Correction | None = None  #: to full elastic contact; without it, the sum over summits
 
     def film(self, humidity: float) -> tuple[float, float]:
         """Height h_C [m] and tension -ΔP [Pa] at a relative humidity, see `stiction.contact.meniscus.film`."""

@@ -45,7 +45,7 @@ def fitted_curve(forces: xr.Dataset, fit: xr.Dataset) -> Figure:
         Stages forces and fit of one case.
     """
     k = typical(fit, forces.sizes["curve"])
-    samples, limit = stage_forces.vectors(forces)
+    samples, limit = stage_forces.vectors_of_curves(forces)
     vector = samples[k]
     law = forcelaw.coefficients(vector[None], limit)[0]
     far = law[1] + np.log(2 / _FOLLOWED) / law[3]

@@ -7,10 +7,12 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from stiction.analysis.model_error import energy_ratios, length_factors
-from stiction.plan.names import by_case, by_name
+from stiction.analysis import variants as comparison
+from stiction.config.plan import CORRECTED
+from stiction.plan.names import Case, by_case, by_name, by_outcome
 from stiction.report import published
-from stiction.report.format import MISSING, UM, as_published, percent, signed, with_error
+from stiction.report.beside import change, marked
+from stiction.report.format import UM, as_published, percent, signed, with_error
 from stiction.report.published import value
 from stiction.report.style import (
     DOUBLE,
@@ -26,64 +28,79 @@ from stiction.report.style import (
 )
 from stiction.report.tables import PAIR, Table, table_stage
 from stiction.stages.beams.releases import stuck_lengths
-from stiction.stages.contact.full_contact import energies
+from stiction.stages.beams.variant_beams import cases_of
 
 _CAPTION = (
     "Error of the model of the contact: adhesion energy ē of full elastic contact over that of the sum over summits, "
     "of the same {strips} strips, ± standard error over strips; by how much full contact lengthens the crack, and the "
-    "crack lengths of Table III, model NG, without and with it. It has one sign and is no random error: it is not part "
-    "of any standard error. * interpolated between the humidities at which full contact was computed."
+    "crack lengths of Table III, model NG, without and with it. Beams: the same by beams on corrected force laws, in "
+    "which e and f_max of all samples are multiplied by their ratios, ± standard error over beams. It has one sign and "
+    "is no random error: it is not part of any standard error. * interpolated between the humidities at which full "
+    "contact was computed."
 )
 
 
 def _rows(
-    studies: Mapping[str, xr.Dataset], beams: Mapping[tuple[str, float], xr.Dataset], published: pd.DataFrame
+    errors: Mapping[str, xr.Dataset],
+    beams: Mapping[tuple[str, float], xr.Dataset],
+    published: pd.DataFrame,
+    variants: Mapping[Case, xr.Dataset] | None = None,
 ) -> list[dict]:
     """One row for each pair and humidity; the ratio of the energies is NaN where full contact was not computed.
 
     Parameters
     ----------
-    studies : dict
-        Pair to the dataset of study full_contact.
+    errors : dict
+        Pair to the dataset of stage pair_model_error.
     beams : dict
         (pair, humidity) to the dataset of stage beams, model NG.
     published : pandas.DataFrame
         Table III as published, rows of the paper's own pairs.
+    variants : dict, optional
+        (pair, humidity, variant) to the dataset of stage variant, without and with a correction of the force laws.
     """
     found = []
-    for pair, study in studies.items():
-        humidities, full, summits = energies(study)
-        ratios = dict(zip(humidities, zip(*energy_ratios(full, summits), strict=True), strict=True))
-        wanted = [humidity for of, humidity in beams if of == pair]
-        factors = zip(*length_factors(full, summits, humidities, np.array(wanted)), strict=True)
-        for humidity, (factor, error) in zip(wanted, factors, strict=True):
-            case = {"pair": pair, "relative_humidity": humidity}
-            ratio, ratio_error = ratios.get(humidity, (np.nan, np.nan))
-            lengths = stuck_lengths(beams[pair, humidity]) / UM
-            length = lengths.mean() if len(lengths) >= 2 else np.nan
-            known = {name: value(published, name, **case) for name in ("ng", "ng_std", "experiment", "experiment_std")}
-            found.append(
-                case
-                | {
-                    "strips": len(full),
-                    "interpolated": humidity not in ratios,
-                    "energy_ratio": ratio,
-                    "energy_ratio_se": ratio_error,
-                    "model_error_percent": 100 * (factor - 1),
-                    "model_error_se_percent": 100 * error,
-                    "crack_length_um": length,
-                    "full_contact_um": length * factor,
-                    "published_um": known["ng"],
-                    "published_std_um": known["ng_std"],
-                    "experiment_um": known["experiment"],
-                    "experiment_std_um": known["experiment_std"],
-                    "deviation_percent": percent(length, known["ng"]),
-                    "full_contact_deviation_percent": percent(length * factor, known["ng"]),
-                    "experiment_deviation_percent": percent(length, known["experiment"]),
-                    "full_contact_experiment_deviation_percent": percent(length * factor, known["experiment"]),
-                }
-            )
+    for (pair, humidity), released in beams.items():
+        case = {"pair": pair, "relative_humidity": humidity}
+        error = errors[pair].sel(humidity=humidity)
+        ratio = error.where(~error.interpolated)
+        lengths = stuck_lengths(released) / UM
+        length = lengths.mean() if len(lengths) >= 2 else np.nan
+        longer = length * float(error.length_factor)
+        known = {name: value(published, name, **case) for name in ("ng", "ng_std", "experiment", "experiment_std")}
+        found.append(
+            case
+            | {
+                "strips": int(error.strips),
+                "energy_ratio": float(ratio.energy_ratio),
+                "energy_ratio_se": float(ratio.energy_ratio_error),
+            }
+            | change(error)
+            | _of_beams(case, variants or {})
+            | {
+                "crack_length_um": length,
+                "full_contact_um": longer,
+                "published_um": known["ng"],
+                "published_std_um": known["ng_std"],
+                "experiment_um": known["experiment"],
+                "experiment_std_um": known["experiment_std"],
+                "deviation_percent": percent(length, known["ng"]),
+                "full_contact_deviation_percent": percent(longer, known["ng"]),
+                "experiment_deviation_percent": percent(length, known["experiment"]),
+                "full_contact_experiment_deviation_percent": percent(longer, known["experiment"]),
+            }
+        )
     return found
+
+
+def _of_beams(case, variants):
+    """Change of the crack length of beams on corrected force laws, where they were computed."""
+    keys = [(*case.values(), name) for name in (CORRECTED, "base")]
+    found = np.nan, np.nan
+    if set(keys) <= set(variants):
+        (_, full), (_, base) = (next(cases_of(variants[key])) for key in keys)
+        found = 100 * np.array(comparison.shift(full, base)) / comparison.mean_crack_length(base)[0]
+    return dict(zip(("beams_change_percent", "beams_change_se_percent"), map(float, found), strict=True))
 
 
 def table(*data) -> Table:
@@ -92,15 +109,10 @@ def table(*data) -> Table:
     return Table.of(rows, _CAPTION.format(strips=rows[0]["strips"]), _COLUMNS)
 
 
-def _marked(change, error, interpolated):
-    """Change of the crack length ± standard error as text, with a mark if it is interpolated."""
-    text = signed(change, error)
-    return f"{text} *" if interpolated and text != MISSING else text
-
-
 _COLUMNS = PAIR | {
     "ē full / summits": (with_error, "energy_ratio", "energy_ratio_se"),
-    "model error of l_s [%]": (_marked, "model_error_percent", "model_error_se_percent", "interpolated"),
+    "model error of l_s [%]": (marked, "model_error_percent", "model_error_se_percent", "interpolated"),
+    "beams [%]": (signed, "beams_change_percent", "beams_change_se_percent"),
     "l_s [µm]": (".1f", "crack_length_um"),
     "l_s, full contact [µm]": (".1f", "full_contact_um"),
     "published": (as_published, "published_um", "published_std_um"),
@@ -138,6 +150,9 @@ def _panels(column, rows):
     column[0].plot(rows.relative_humidity, rows.model_error_percent, linestyle=":", label="interpolated", **style)
     points = computed.relative_humidity, computed.model_error_percent, computed.model_error_se_percent
     column[0].errorbar(*points, fmt="o", label="full contact", **style)
+    of_beams = rows.relative_humidity, rows.beams_change_percent, rows.beams_change_se_percent
+    if rows.beams_change_percent.notna().any():
+        column[0].errorbar(*of_beams, fmt="x", color="black", label="beams on corrected laws")
     if len(column) > 1:
         summits = {"linestyle": "--", "marker": "s", "markerfacecolor": "white", "label": "sum over summits"}
         column[1].plot(known.relative_humidity, known.deviation_percent, **summits, **style)
@@ -161,14 +176,20 @@ def _stage(kind, name, shows, draw, **declared):
         "model_error",
         shows,
         inputs=lambda plan, at: {
-            "studies": by_name("studies/full_contact", plan.pairs),
+            "errors": by_name("studies/model_error", plan.pairs),
             "beams": by_case("beams", plan.cases, "_NG"),
             "published": published.file("table_3"),
+            "variants": by_outcome(
+                "studies/variants",
+                [(case, name) for case, of in plan.studied_cases if of == CORRECTED for name in ("base", of)],
+            ),
         },
         settings=lambda plan, at: {"of_paper": plan.paper_pairs},
-        compute=lambda data, at, settings: draw(data["studies"], data["beams"], published.compared(data, settings)),
+        compute=lambda data, at, settings: draw(
+            data["errors"], data["beams"], published.compared(data, settings), data["variants"]
+        ),
         study="full_contact",
-        targets=("model_error",),
+        targets=("model_error", "figures", "study_figures"),
         **declared,
     )
 

@@ -11,7 +11,7 @@ from stiction.contact.forcelaw import admissible
 from stiction.estimates import mean_on_shared_samples, mean_with_error
 from stiction.models import surface_model
 from stiction.plan.names import Case, by_case, by_name, by_outcome
-from stiction.report import published
+from stiction.report import beside, published
 from stiction.report.format import TO_MJ, UM, as_published, error_alone, number, percent, signed, with_error
 from stiction.report.published import value
 from stiction.report.tables import PAIR, Table, table_stage, with_list
@@ -33,6 +33,7 @@ def table_3(
     published: pd.DataFrame,
     by_scans: Mapping[tuple[str, float], float] | None = None,
     warnings: Sequence[str] = (),
+    errors: Mapping[str, xr.Dataset] | None = None,
 ) -> Table:
     """Table III: crack lengths and adhesion energies of released beams.
 
@@ -46,10 +47,14 @@ def table_3(
         (pair, humidity) to the relative standard error of ē due to finite scans, of pairs with measured surfaces.
     warnings : sequence of str, optional
         Sentences about single cases.
+    errors : dict, optional
+        Pair to the dataset of stage pair_model_error.
     """
     rows = [_row_3(key, beams[key], forces[*key[:2], surface_model(key[2])], published) for key in beams]
     if by_scans:
         rows = [row | _by_scans(row, by_scans) for row in rows]
+    if errors:
+        rows = [row | _by_model(row, errors) for row in rows]
     caption = (
         "Table III: crack length of the S-shaped beams, mean ± standard deviation over the beams; se: standard error of"
         " the mean, over beams and samples; deviations from the published and from the measured length. Published "
@@ -61,9 +66,12 @@ def table_3(
     )
     if by_scans:
         caption += " Scans: standard error of the mean due to the finite scans of measured surfaces."
+    if errors:
+        caption += f" {beside.caption(errors)}"
     if warnings:
         caption = with_list(f"{caption} Warnings:", warnings)
-    return Table.of(rows, caption, {title: of for title, of in _TABLE_3.items() if by_scans or "scans" not in title})
+    columns = {title: of for title, of in _TABLE_3.items() if by_scans or "scans" not in title}
+    return Table.of(rows, caption, columns | (beside.COLUMN if errors else {}))
 
 
 def _row_3(key, beams, forces, published):
@@ -117,6 +125,12 @@ def _by_scans(row, relative):
         "adhesion_energy_scans_se_J_per_m2": error * row["adhesion_energy_J_per_m2"],
         "meso_energy_scans_se_J_per_m2": error * row["meso_energy_J_per_m2"],
     }
+
+
+def _by_model(row, errors):
+    """Error of the model of one case; that of Gaussian heights was not computed."""
+    known = row["model"] != "G"
+    return beside.change(errors[row["pair"]].sel(humidity=row["relative_humidity"]) if known else None)
 
 
 def _share(state):
@@ -248,7 +262,8 @@ def _table_3(data, _at, settings):
     scanned = ((pair, pair_errors(study)) for pair, study in data["by_scans"].items())
     by_scans = {(pair, humidity): error for pair, errors in scanned for humidity, error in errors.items()}
     warnings = pair_warnings.of_thin_films(data["beams"], settings["water"])
-    return table_3(data["beams"], data["forces"], published.compared(data, settings), by_scans, warnings)
+    known = published.compared(data, settings)
+    return table_3(data["beams"], data["forces"], known, by_scans, warnings, data.get("errors"))
 
 
 STAGES = (
@@ -256,12 +271,15 @@ STAGES = (
         "table_3",
         "table_3",
         "crack lengths and adhesion energies",
-        inputs=lambda plan, at: {
-            "beams": by_outcome("beams", plan.outcomes),
-            "forces": by_outcome("forces", plan.laws),
-            "by_scans": by_name("studies/scan_uncertainty", plan.scanned_pairs),
-            "published": published.file("table_3"),
-        },
+        inputs=lambda plan, at: (
+            {
+                "beams": by_outcome("beams", plan.outcomes),
+                "forces": by_outcome("forces", plan.laws),
+                "by_scans": by_name("studies/scan_uncertainty", plan.scanned_pairs),
+                "published": published.file("table_3"),
+            }
+            | beside.of_pairs(plan)
+        ),
         settings=lambda plan, at: {
             "of_paper": plan.paper_pairs,
             "water": {pair: plan.water(pair) for pair in plan.pairs},

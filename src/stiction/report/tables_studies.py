@@ -24,6 +24,7 @@ _LABELS = {
     "poisson_ratio": "ν = {}",
     "strips_per_element": "elements of {} strips",
     "reach": "vdW: across {} gaps",
+    "contact": "{} elastic contact",
 }
 
 
@@ -32,8 +33,8 @@ def variant_label(name: str) -> str:
 
     Examples
     --------
-    >>> variant_label("poisson_ratio_0.18"), variant_label("base")
-    ('ν = 0.18', 'base')
+    >>> variant_label("poisson_ratio_0.18"), variant_label("base"), variant_label("contact_full")
+    ('ν = 0.18', 'base', 'full elastic contact')
     """
     key, _, chosen = name.rpartition("_")
     return _LABELS[key].format(chosen) if key else name

@@ -9,7 +9,7 @@ from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.stages.contact import contact, curves
-from stiction.stages.devices.error_notes import on_patch
+from stiction.stages.contact.error_notes import on_patch
 
 WATER = Water(300.0)
 

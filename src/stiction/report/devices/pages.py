@@ -19,6 +19,7 @@ from stiction.report.devices import (
     figures_budget,
     figures_devices,
     figures_inference,
+    model_errors,
     tables_budget,
     tables_devices,
     tables_inference,
@@ -197,6 +198,7 @@ def of_beam(
     budgets: Mapping[tuple, xr.Dataset],
     warnings: Mapping[tuple, Sequence[str]],
     test_beams: xr.Dataset | None = None,
+    errors: Mapping[str, xr.Dataset] | None = None,
 ) -> Page:
     """Page of a cantilever or bridge.
 
@@ -213,20 +215,23 @@ def of_beam(
         Where the model ends: ``lengths`` and ``curves`` of `stiction.stages.devices.device_warnings.OfDevices`.
     test_beams : Dataset, optional
         Of stage test_beams.
+    errors : dict, optional
+        Name of the device to the dataset of stage device_model_error.
     """
     cases = {(name, humidity): dataset for humidity, dataset in found.items()}
-    table = tables_devices.safe_lengths(cases, warnings).cells.drop(columns="device")
+    table = tables_devices.safe_lengths(cases, warnings, errors).cells.drop(columns="device")
     sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, {}))]
     if charts:
         axis = {(name, humidity): dataset for humidity, dataset in charts.items()}
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
-    sections += _sure(name, budgets)
+    sections += _sure(name, budgets, errors)
     answer = [build_sentence(found, budgets)]
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
         answer.append(tables_inference.built(test_beams))
     answer += [safe_sentence(humidity, dataset) for humidity, dataset in found.items()]
+    answer += model_errors.sentences(name, errors)
     listed = [f"({k}) {sentence}" for k, sentence in enumerate(pair_warnings.numbered(warnings)[0], 1)]
     listed += [] if test_beams is None else tables_inference.warnings(test_beams)
     shapes = next(iter(found.values()))["shape"].values
@@ -242,18 +247,19 @@ def of_stopper(
     budgets: Mapping[tuple, xr.Dataset],
     warnings: Sequence[str],
     test_beams: xr.Dataset | None = None,
+    errors: Mapping[str, xr.Dataset] | None = None,
 ) -> Page:
     """Page of a stopper; parameters as in `of_beam`, with one dataset of stage stoppers and a list of warnings."""
-    table = tables_budget.stoppers({name: found}, {name: []}).cells.drop(columns=["device"])
+    table = tables_budget.stoppers({name: found}, {name: []}, errors).cells.drop(columns=["device"])
     sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: found}, {}))]
-    sections += _sure(name, budgets)
+    sections += _sure(name, budgets, errors)
     answer, listed = [verdict(found)], list(warnings)
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
         answer.append(tables_inference.built(test_beams))
         listed += tables_inference.warnings(test_beams)
     answer += [stuck_sentence(*row, force=float(found.restoring_force)) for row in shares_stuck(found)]
-    answer += [*safe_force_sentences(found), worst_sentence(found)]
+    answer += [*safe_force_sentences(found), worst_sentence(found), *model_errors.sentences(name, errors)]
     words = _OF_STOPPERS | _words_of_budgets(budgets)
     return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
 
@@ -426,7 +432,7 @@ def _ends(found):
     return [f"{float(found.axis[end]):g}" for end in (0, -1)]
 
 
-def _sure(name, budgets):
+def _sure(name, budgets, errors):
     """Section on the uncertainty of the result and what to measure better; none if no input is uncertain."""
     if not budgets:
         return []
@@ -435,7 +441,7 @@ def _sure(name, budgets):
         f"Relative humidity {humidity:g}: {tables_budget.advised(one)}" for (humidity, *_), one in budgets.items()
     ]
     sentences += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
-    cells, drawn = _side_by_side(tables_budget.budget(cases).cells), figures_budget.budget(cases)
+    cells, drawn = _side_by_side(tables_budget.budget(cases, errors).cells), figures_budget.budget(cases)
     return [Section("Uncertainty, and what should be measured better", sentences, cells, drawn)]
 
 
@@ -462,6 +468,7 @@ def _inputs(plan, at):
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
     budgets = budgets_of(plan, at.device) if at.device in designs.budgeted else {}
     own = {"budgets": {key[1:]: name for key, name in budgets.items()}, "warnings": device_warnings.files_of(at.device)}
+    own |= model_errors.of_devices(plan, at.device)
     if "test_beams" in section:
         own |= {"test_beams": f"devices/test_beams/{at.device}"}
     if not designs.kind(at.device).is_beam:
@@ -485,12 +492,13 @@ def _settings(plan, at):
 
 def _page(data, at, settings):
     """Page of a device."""
-    warnings, budgets, test_beams = device_warnings.read(data["warnings"]), data["budgets"], data.get("test_beams")
+    warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
+    more = {name: data.get(name) for name in ("test_beams", "errors")}
     if "stopper" in data:
-        return of_stopper(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], test_beams)
+        return of_stopper(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
     lengths, charts = data["safe_lengths"], data["charts"]
     limits = warnings.lengths | warnings.curves
-    return of_beam(at.device, settings, lengths, charts, budgets, limits, test_beams)
+    return of_beam(at.device, settings, lengths, charts, budgets, limits, **more)
 
 
 STAGES = (

@@ -10,15 +10,20 @@ from stiction.devices.budget import advice
 from stiction.devices.limits import NOT_MODELLED
 from stiction.estimates import mean_with_error
 from stiction.plan.names import by_name
+from stiction.report import beside
+from stiction.report.devices import model_errors
 from stiction.report.format import UN, number, signed, with_error
 from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_list
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, response_of
 from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.devices.releases import FORCE
 from stiction.stages.devices.stoppers import in_any_air, is_at_an_end, shares_stuck
 
 #: Rows of a budget below those of its measurements.
 TOTAL, INDEPENDENT, SCATTER = "total", "total, if all errors were independent", "scatter between devices"
+#: Parts that are the error of the model: computed at a humidity, or interpolated.
+MODEL = ("model", "model, interpolated")
 #: Other choices of the model in words for those who design.
 _CHOICES = {
     "van_der_waals_dry": "van der Waals in dry gaps",
@@ -47,7 +52,11 @@ def choice_label(name: str) -> str:
 # Stoppers
 
 
-def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence[str]]) -> Table:
+def stoppers(
+    datasets: Mapping[str, xr.Dataset],
+    warnings: Mapping[str, Sequence[str]],
+    errors: Mapping[str, xr.Dataset] | None = None,
+) -> Table:
     """Stoppers: pull-off force, P(stuck), restoring force needed, worst humidity.
 
     Parameters
@@ -56,8 +65,11 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
         Device to the dataset of stage stoppers.
     warnings : dict
         Device to sentences.
+    errors : dict, optional
+        Device to the dataset of stage device_model_error.
     """
     rows = [row for device, dataset in datasets.items() for row in _of_stopper(device, dataset)]
+    rows = [row | model_errors.of_device(errors, row["device"], row["relative_humidity"], FORCE) for row in rows]
     rows = [row | {"warnings": " ".join(warnings[row["device"]])} for row in rows]
     caption = (
         "Stoppers: force that pulls a patch off, an upper bound if it tilts or bends, mean ± standard error and "
@@ -68,8 +80,9 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
         "axis of humidities. Worst RH: humidity of the largest mean pull-off force along this axis."
     )
     listed = [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found]
-    caption = with_list(" ".join([caption, NOT_MODELLED, *(["Warnings:"] if listed else [])]), listed)
-    return Table.of(rows, caption, _columns_of_stoppers(rows))
+    said = [caption, *([beside.caption(errors)] if errors else []), NOT_MODELLED, *(["Warnings:"] if listed else [])]
+    columns = _columns_of_stoppers(rows) | (beside.COLUMN if errors else {})
+    return Table.of(rows, with_list(" ".join(said), listed), columns)
 
 
 def _of_stopper(device, dataset):
@@ -139,7 +152,7 @@ def worst_humidity(humidity: float, error: float, is_an_end: bool) -> str:
 # Budget
 
 
-def budget(datasets: Mapping[tuple, xr.Dataset]) -> Table:
+def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset] | None = None) -> Table:
     """Uncertainty of every device: effect of each measurement, total, scatter, choices of the model.
 
     The numbers hold every input with its slope; the text is by measurement, with a sentence on what to measure better.
@@ -148,8 +161,16 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Table:
     ----------
     datasets : dict
         Device, humidity and, for tips, more to the dataset of stage budget.
+    errors : dict, optional
+        Device to the dataset of stage device_model_error.
     """
-    frame = pd.DataFrame([row for (device, rh, *_), one in datasets.items() for row in _of_budget(device, rh, one)])
+    frame = pd.DataFrame(
+        [
+            row
+            for (device, rh, *_), one in datasets.items()
+            for row in [*_of_budget(device, rh, one), *_of_model(device, rh, one, errors)]
+        ]
+    )
     sentences = [f"{device}, RH {humidity:g}: {advised(one)}" for (device, humidity, *_), one in datasets.items()]
     omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in datasets.items()}
     caption = with_list(
@@ -157,7 +178,8 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Table:
         "few are held by their tip, of the mean length at which bridges are held by their middle, and of the mean "
         "pull-off force of stoppers, due to every measurement, the others being exact, ± standard error of the "
         "simulation. Remaining: what would be left if the measurement were exact. Scatter between devices and other "
-        "choices of the model, with the sign of their effect, are no part of the total.",
+        "choices of the model, with the sign of their effect, are no part of the total."
+        + (f" {beside.caption(errors)}" if errors else ""),
         [*sentences, *omitted],
     )
     return Table(frame, caption, as_text(frame[frame.part != "input"], _BUDGET))
@@ -201,6 +223,15 @@ def _of_budget(device, humidity, dataset):
         yield head | {"part": "choice", "name": str(name), "effect_percent": effect, "effect_se_percent": error}
 
 
+def _of_model(device, humidity, dataset, errors):
+    """Row of the error of the model, if it is known."""
+    response, _ = response_of(dataset)
+    head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[response].by}
+    for found in filter(None, [model_errors.of_device(errors, device, humidity, response)]):
+        effect = {"effect_percent": found["model_error_percent"], "effect_se_percent": found["model_error_se_percent"]}
+        yield head | {"part": MODEL[found["interpolated"]], "name": "model error: full elastic contact"} | effect
+
+
 def _effect(budget, inputs, slope_errors):
     """Effect of some inputs and its standard error [%]."""
     error = budget.error_of_effect(inputs, slope_errors)
@@ -213,7 +244,9 @@ def _part(part, name):
 
 
 def _effect_as_text(part, effect, error):
-    """Effect with its standard error, if it has one; that of a choice has a sign."""
+    """Effect with its standard error, if it has one; that of a choice, or of the model, has a sign."""
+    if part in MODEL:
+        return beside.marked(effect, error, part == MODEL[1])
     if not error > 0:
         return number(effect, ".2g")
     return (signed if part == "choice" else with_error)(effect, error)
@@ -232,11 +265,16 @@ STAGES = (
         "table_stoppers",
         "stoppers",
         "P(stuck) of stoppers",
-        inputs=lambda plan, at: {
-            "stoppers": by_name("devices/stoppers", plan.designs.stoppers),
-            "warnings": device_warnings.files_of(*plan.designs.stoppers),
-        },
-        compute=lambda data, at, settings: stoppers(data["stoppers"], device_warnings.read(data["warnings"]).patches),
+        inputs=lambda plan, at: (
+            {
+                "stoppers": by_name("devices/stoppers", plan.designs.stoppers),
+                "warnings": device_warnings.files_of(*plan.designs.stoppers),
+            }
+            | model_errors.of_devices(plan, *plan.designs.stoppers)
+        ),
+        compute=lambda data, at, settings: stoppers(
+            data["stoppers"], device_warnings.read(data["warnings"]).patches, data.get("errors")
+        ),
         jobs=lambda plan: [{}] if plan.designs.stoppers else [],
         targets=("devices",),
     ),
@@ -244,8 +282,11 @@ STAGES = (
         "table_budget",
         "budget",
         "uncertainty of devices, and what to measure better",
-        inputs=lambda plan, at: {"budgets": budgets_of(plan, *plan.designs.budgeted)},
-        compute=lambda data, at, settings: budget(data["budgets"]),
+        inputs=lambda plan, at: (
+            {"budgets": budgets_of(plan, *plan.designs.budgeted)}
+            | model_errors.of_devices(plan, *plan.designs.budgeted)
+        ),
+        compute=lambda data, at, settings: budget(data["budgets"], data.get("errors")),
         jobs=lambda plan: [{}] if plan.designs.budgeted else [],
         targets=("devices",),
     ),

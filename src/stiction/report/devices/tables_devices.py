@@ -8,6 +8,8 @@ import xarray as xr
 
 from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.names import by_case
+from stiction.report import beside
+from stiction.report.devices import model_errors
 from stiction.report.format import UM, error_alone, number
 from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_list
 from stiction.stages.beams.pair_warnings import numbered
@@ -36,7 +38,9 @@ _CHART = (
 
 
 def safe_lengths(
-    found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, str], list]
+    found: Mapping[tuple[str, float], xr.Dataset],
+    warnings: Mapping[tuple[str, float, str], list],
+    errors: Mapping[str, xr.Dataset] | None = None,
 ) -> Table:
     """Safe lengths of all beams, one row per device, humidity, shape and share.
 
@@ -46,17 +50,23 @@ def safe_lengths(
         Name and humidity to the dataset of stage safe_lengths.
     warnings : dict
         Name, humidity and shape to sentences.
+    errors : dict, optional
+        Name to the dataset of stage device_model_error.
     """
     rows, marks = [], []
     numbers = numbered(warnings)[1]
     for (device, humidity), dataset in found.items():
         for shape in map(str, dataset["shape"].values):
             head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[shape].by}
-            last = {"warnings": " ".join(warnings[device, humidity, shape])}
+            last = model_errors.of_device(errors, device, humidity, shape)
+            last |= {"warnings": " ".join(warnings[device, humidity, shape])}
             rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
-    return Table(frame, _caption(_SAFE_LENGTHS, warnings), as_text(frame, _LENGTHS).assign(warnings=marks))
+    text, columns = _SAFE_LENGTHS, _LENGTHS
+    if errors:
+        text, columns = f"{text} {beside.caption(errors)}", columns | beside.COLUMN
+    return Table(frame, _caption(text, warnings), as_text(frame, columns).assign(warnings=marks))
 
 
 def _caption(text, warnings):
@@ -157,12 +167,15 @@ STAGES = (
         "table_safe_lengths",
         "safe_lengths",
         "lengths of beams that come free",
-        inputs=lambda plan, at: {
-            "lengths": by_case("devices/safe_lengths", plan.designs.cases),
-            "warnings": device_warnings.files_of(*plan.designs.beams),
-        },
+        inputs=lambda plan, at: (
+            {
+                "lengths": by_case("devices/safe_lengths", plan.designs.cases),
+                "warnings": device_warnings.files_of(*plan.designs.beams),
+            }
+            | model_errors.of_devices(plan, *plan.designs.beams)
+        ),
         compute=lambda data, at, settings: safe_lengths(
-            data["lengths"], device_warnings.read(data["warnings"]).lengths
+            data["lengths"], device_warnings.read(data["warnings"]).lengths, data.get("errors")
         ),
         jobs=lambda plan: [{}] if plan.designs.cases else [],
         targets=("devices",),

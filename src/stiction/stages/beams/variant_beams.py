@@ -13,7 +13,7 @@ from stiction.contact.environment import Water
 from stiction.plan.stage import Stage
 from stiction.stages.beams import releases
 from stiction.stages.beams.cantilevers import Dimensions, Gap, Stiffness, StripLength
-from stiction.stages.contact import curves
+from stiction.stages.contact import corrections, curves
 from stiction.stages.contact.contact import first
 
 
@@ -94,9 +94,9 @@ def _inputs(plan, at):
     That of the base is the contact of the main line, unless the variants have more samples.
     """
     pair, shared = pair_of(at.case), plan.contact_under(at.variant)
-    if shared == "base" and plan.has_samples_of_variants:
-        return {"contact": f"contact/{pair}_NG"}
-    return {"contact": f"studies/variants/{'islands' if plan.has_islands(shared) else 'contact'}/{pair}_{shared}"}
+    other = f"studies/variants/{'islands' if plan.has_islands(shared) else 'contact'}/{pair}_{shared}"
+    of_main_line = shared == "base" and plan.has_samples_of_variants
+    return {"contact": f"contact/{pair}_NG" if of_main_line else other} | corrections.of_pair(plan, pair, at.variant)
 
 
 def _settings(plan, at):
@@ -117,7 +117,7 @@ STAGES = (
         settings=_settings,
         kind=Settings,
         first=lambda settings: {"sample": slice(settings.samples)},
-        compute=lambda data, at, settings: compute(data["contact"], at.case, settings),
+        compute=lambda data, at, settings: compute(data["contact"], at.case, corrections.corrected(settings, data)),
         message="Crack lengths of {case} under variant {variant}.",
     ),
 )

@@ -16,15 +16,26 @@ def force_curves(contact: xr.Dataset, humidity: float, water: Water) -> ForceCur
     return environment.force_curves(*tables(contact), humidity, water)
 
 
+def parametrised(sampled: ForceCurves, humidity: float, water: Water) -> tuple[np.ndarray, float]:
+    """Vectors v of Eq. (11) of force curves (m, 4) [SI] and f_limit [Pa], corrected to full elastic contact if wanted.
+
+    ASSUME: one ratio of e and one of f_max at a humidity hold for all samples, on strips and patches of any size.
+    """
+    found = forcelaw.parametrise(*sampled)
+    return water.correction.vectors(*found, humidity) if water.correction else found
+
+
 def energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
-    return forcelaw.adhesion_energies(*force_curves(contact, humidity, water))
+    found = forcelaw.adhesion_energies(*force_curves(contact, humidity, water))
+    return found * water.correction.at(humidity)[0] if water.correction else found
 
 
 def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, np.ndarray]:
     """Slopes of tips (s,) [-] and the largest attraction of each tip at each slope, per width of the beam (m, s) [N/m].
 
-    Across gaps, the wedge below the stored heights attracts like a plane of its slope.
+    Across gaps, the wedge below the stored heights attracts like a plane of its slope. Tips are not corrected to full
+    elastic contact, which is not computed on tilted strips.
 
     Raises
     ------
@@ -49,9 +60,10 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
 
 def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Largest attraction f_max of all samples at a relative humidity (m,) [Pa]."""
-    return forcelaw.pull_offs(*force_curves(contact, humidity, water)[:3])
+    found = forcelaw.pull_offs(*force_curves(contact, humidity, water)[:3])
+    return found * water.correction.at(humidity)[1] if water.correction else found
 
 
 def vectors(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, float]:
     """Vectors v of Eq. (11) of all samples at a relative humidity (m, 4) [SI], and f_limit [Pa]."""
-    return forcelaw.parametrise(*force_curves(contact, humidity, water))
+    return parametrised(force_curves(contact, humidity, water), humidity, water)

@@ -110,12 +110,22 @@ def energies(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return study.humidity.values, study.adhesion_energy.values, study.summit_energy.values
 
 
+def pull_offs(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Humidities (h,) [-], and largest attractions f_max of full contact and of the sum over summits, (n, h) [Pa]."""
+    return study.humidity.values, study.pull_off.values, study.summit_pull_off.values
+
+
 def _settings(plan, at):
-    """As those of the contact, with the lowest, the middle and the highest humidity of the pair."""
+    """As those of the contact, with the lowest, the middle and the highest humidity of the pair.
+
+    ASSUME: attraction across gaps is left out, so that both models have the same forces.
+    """
     all_of_pair = sorted(plan.config["pairs"][at.pair]["humidities"])
     chosen = dict.fromkeys(all_of_pair[k] for k in (0, (len(all_of_pair) - 1) // 2, -1))
     study = {"humidities": list(chosen), "strips": plan.config["studies"]["full_contact"]["samples"]}
-    return select(Settings, plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None) | study)
+    water = {key: value for key, value in plan.water(at.pair).items() if key != "gaps"}
+    seen = plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None)
+    return select(Settings, seen | study | {"water": water})
 
 
 STAGES = (

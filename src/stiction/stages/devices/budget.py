@@ -27,7 +27,8 @@ from stiction.plan.stage import Stage, chosen
 from stiction.progress import progress
 from stiction.stages.contact import curves
 from stiction.stages.contact.contact import first
-from stiction.stages.devices.error_notes import explain_errors
+from stiction.stages.contact.corrections import corrected
+from stiction.stages.contact.error_notes import explain_errors
 from stiction.stages.devices.patch_settings import contacts_of_budget, contacts_of_tip_budget
 from stiction.stages.devices.releases import ARC, FORCE, DesignedBeam, addresses, arrests, section_of_beam
 from stiction.stages.devices.uncertain_inputs import (
@@ -364,7 +365,7 @@ def _settings_of_tips(plan, at, share=None):
 
 def _computed(data, _at, settings):
     """Budget from the contacts with less and with more of every input, and those under other choices of the model."""
-    wanted = of_job(settings["budget"])
+    wanted = corrected(of_job(settings["budget"]), data)
     described = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     shifted = {key: (less, data["more"][key]) for key, less in data["less"].items()}
     solids = {name: (less, data["solids_more"][name]) for name, less in data["solids_less"].items()}

@@ -24,9 +24,10 @@ from stiction.plan.names import by_case
 from stiction.plan.stage import Stage, chosen, select
 from stiction.stages.contact import curves
 from stiction.stages.contact.contact import surface_rms
+from stiction.stages.contact.corrections import corrected
+from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices import releases, sticking
-from stiction.stages.devices.error_notes import on_patch
-from stiction.stages.devices.patch_settings import contact_of, tips_of
+from stiction.stages.devices.patch_settings import contact_of, corrections_of, tips_of
 from stiction.stages.devices.releases import DesignedBeam, settings_of_beam
 
 
@@ -185,10 +186,14 @@ STAGES = (
     Stage.writing(
         "chart",
         "devices/chart/{case}",
-        inputs=lambda plan, at: {"contact": contact_of(plan, pair_of(at.case))} | tips_of(plan, pair_of(at.case)),
+        inputs=lambda plan, at: (
+            {"contact": contact_of(plan, pair_of(at.case))}
+            | tips_of(plan, pair_of(at.case))
+            | corrections_of(plan, pair_of(at.case))
+        ),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], data.get("tips"), settings),
+        compute=lambda data, at, settings: compute(data["contact"], data.get("tips"), corrected(settings, data)),
         message="Chart of {case}.",
         cluster=True,
         minutes=120,

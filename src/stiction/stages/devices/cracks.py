@@ -21,8 +21,9 @@ from stiction.contact.environment import Water
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import curves
 from stiction.stages.contact.contact import surface_rms
-from stiction.stages.devices.error_notes import on_patch
-from stiction.stages.devices.patch_settings import contact_of
+from stiction.stages.contact.corrections import corrected
+from stiction.stages.contact.error_notes import on_patch
+from stiction.stages.devices.patch_settings import contact_of, corrections_of
 from stiction.stages.devices.releases import (
     BEAMS,
     LAWS,
@@ -117,10 +118,12 @@ STAGES = (
     Stage.writing(
         "cracks",
         "devices/cracks/{case}",
-        inputs=lambda plan, at: {"contact": contact_of(plan, pair_of(at.case))},
+        inputs=lambda plan, at: (
+            {"contact": contact_of(plan, pair_of(at.case))} | corrections_of(plan, pair_of(at.case))
+        ),
         settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], settings),
+        compute=lambda data, at, settings: compute(data["contact"], corrected(settings, data)),
         message="Release long beams of {case}.",
         cluster=True,
         minutes=120,

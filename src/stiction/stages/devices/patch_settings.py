@@ -11,6 +11,7 @@ from stiction.config.units import NM_PER_UM
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import SHIFTS, SIDES
 from stiction.plan.stage import At, select
+from stiction.stages.contact.corrections import of_pair
 from stiction.stages.contact.pairs import Settings
 
 #: Folder of the contacts of devices.
@@ -32,13 +33,18 @@ def tips_of(plan: Any, device: str) -> dict[str, str]:
     return {"tips": f"{FOLDER}/tips/{plan.designs.tips(device).name}"}
 
 
+def corrections_of(plan: Any, device: str) -> dict[str, str]:
+    """As `stiction.stages.contact.corrections.of_pair`, of the pair of a device."""
+    return of_pair(plan, plan.config["devices"][device]["pair"])
+
+
 def contacts_of_budget(plan: Any, device: str) -> dict[str, Any]:
     """Contact of the patch of a device, with less and more of every uncertain input, and under other choices."""
     designs = plan.designs
     patch = designs.ground(device)
     shared = f"studies/slopes/contact/{patch.pair}"
     slopes = shared if designs.has_strips_of_pair(device) else f"{FOLDER}/slopes/{patch.name}"
-    contacts = {"contact": contact_of(plan, device)}
+    contacts = {"contact": contact_of(plan, device)} | corrections_of(plan, device)
     return contacts | _changed(plan, device, slopes, f"{FOLDER}/{{}}/{patch.name}", plan.choices_of_device(device))
 
 

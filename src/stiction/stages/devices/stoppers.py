@@ -12,9 +12,10 @@ from stiction.devices.stoppers import pull_off_force, safe_force, stuck_patches,
 from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
+from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.curves import pull_offs
-from stiction.stages.devices.error_notes import on_patch
-from stiction.stages.devices.patch_settings import contact_of
+from stiction.stages.contact.error_notes import on_patch
+from stiction.stages.devices.patch_settings import contact_of, corrections_of
 
 #: Shares of stuck patches for which a restoring force is stated, as far as there are enough patches.
 SHARES = (1e-2, 1e-3, 1e-4)
@@ -139,10 +140,10 @@ STAGES = (
     Stage.writing(
         "stoppers",
         "devices/stoppers/{device}",
-        inputs=lambda plan, at: {"contact": contact_of(plan, at.device)},
+        inputs=lambda plan, at: {"contact": contact_of(plan, at.device)} | corrections_of(plan, at.device),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], settings),
+        compute=lambda data, at, settings: compute(data["contact"], corrected(settings, data)),
         message="Pull-off force of stopper {device}.",
     ),
 )

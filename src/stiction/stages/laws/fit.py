@@ -15,7 +15,7 @@ Settings = stage_forces.Settings
 
 def compute(contact: xr.Dataset, forces: xr.Dataset, settings: Settings) -> xr.Dataset:
     """Compare every curve whose vector v has a force law with this force law."""
-    vectors, limit = stage_forces.vectors(forces)
+    vectors, limit = stage_forces.vectors_of_curves(forces)
     samples = np.flatnonzero(admissible(vectors, limit))
     distance, curve, *_ = force_curves(contact, settings.humidity, settings.water)
     errors = fit_errors(distance, curve, samples, vectors[samples], limit)

@@ -8,13 +8,16 @@ import xarray as xr
 
 from stiction.config.cases import pair_of
 from stiction.contact.environment import Water
-from stiction.contact.forcelaw import admissible, parametrise
+from stiction.contact.forcelaw import admissible
 from stiction.plan.stage import Stage, select
-from stiction.stages.contact.curves import force_curves
+from stiction.stages.contact import corrections
+from stiction.stages.contact.curves import force_curves, parametrised
 
 #: Components of v, Eq. (11), and their units.
 COMPONENTS = ("adhesion_energy", "pull_off", "pull_off_distance", "limit_distance")
 _UNITS = ("J m-2", "Pa", "m", "m")
+#: By which e, and f_max and f_limit, are corrected to full elastic contact, in datasets in which they are.
+_RATIOS = ("energy_ratio", "pull_off_ratio")
 #: Number of curves stored for Fig. 12.
 _KEPT = 200
 
@@ -36,9 +39,12 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
         Components of v(sample), Eq. (11), f_limit, and the first few curves.
     """
     sampled = force_curves(contact, settings.humidity, settings.water)
-    vectors, limit = parametrise(*sampled)
+    vectors, limit = parametrised(sampled, settings.humidity, settings.water)
     kept = [sampled.curve(k).copy() for k in range(min(_KEPT, sampled.samples))]
-    return layout(vectors, limit, sampled.distance, kept)
+    found = layout(vectors, limit, sampled.distance, kept)
+    if settings.water.correction is None:
+        return found
+    return found.assign(dict(zip(_RATIOS, settings.water.correction.at(settings.humidity), strict=True)))
 
 
 def layout(vectors: np.ndarray, limit: float, distance: np.ndarray, curves: Sequence[np.ndarray]) -> xr.Dataset:
@@ -74,6 +80,15 @@ def vectors(forces: xr.Dataset) -> tuple[np.ndarray, float]:
     return np.column_stack([forces[name].values for name in COMPONENTS]), float(forces.limit)
 
 
+def vectors_of_curves(forces: xr.Dataset) -> tuple[np.ndarray, float]:
+    """As `vectors`, of the curves themselves: of the sum over summits, without a correction to full elastic contact."""
+    found, limit = vectors(forces)
+    if _RATIOS[0] not in forces:
+        return found, limit
+    energy, pull_off = (float(forces[ratio]) for ratio in _RATIOS)
+    return found / [energy, pull_off, 1, 1], limit / pull_off
+
+
 def energies(forces: xr.Dataset) -> np.ndarray:
     """Adhesion energies e of all samples (m,) [J m⁻²]."""
     return forces.adhesion_energy.values
@@ -95,10 +110,13 @@ STAGES = (
     Stage.writing(
         "forces",
         "forces/{case}_{model}",
-        inputs=lambda plan, at: {"contact": f"contact/{pair_of(at.case)}_{at.model}"},
+        inputs=lambda plan, at: (
+            {"contact": f"contact/{pair_of(at.case)}_{at.model}"}
+            | corrections.of_pair(plan, pair_of(at.case), model=at.model)
+        ),
         settings=lambda plan, at: select(Settings, plan.at(at.case)),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], settings),
+        compute=lambda data, at, settings: compute(data["contact"], corrections.corrected(settings, data)),
         message="Force curves of {case}, {model} (Sec. III-B1).",
     ),
 )

@@ -8,6 +8,7 @@ import xarray as xr
 from stiction.contact.environment import Water
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
+from stiction.stages.contact import corrections
 from stiction.stages.contact.curves import energies
 
 #: Median and bounds of the band.
@@ -63,10 +64,12 @@ STAGES = (
     Stage.writing(
         "humidity",
         "humidity/{pair}_{model}",
-        inputs=lambda plan, at: {"contact": f"contact/{at.pair}_{at.model}"},
+        inputs=lambda plan, at: (
+            {"contact": f"contact/{at.pair}_{at.model}"} | corrections.of_pair(plan, at.pair, model=at.model)
+        ),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], settings),
+        compute=lambda data, at, settings: compute(data["contact"], corrections.corrected(settings, data)),
         message="Adhesion energy of {model} surfaces of pair {pair} over the relative humidity.",
     ),
 )

@@ -1,0 +1,61 @@
+"""The error of the model of the contact beside a prediction: its numbers, its column and the caption of this."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stiction.plan.names import by_name
+from stiction.report.format import MISSING, signed
+
+
+def change(error: xr.Dataset | None, factor: str = "length_factor") -> dict[str, Any]:
+    """Numbers of a row: by how much full contact changes a prediction, and whether this is interpolated.
+
+    Parameters
+    ----------
+    error : Dataset or None
+        One humidity of a dataset of stage pair_model_error or device_model_error; ``None`` if the error is not known.
+    factor : str
+        Variable of the factor of the prediction.
+    """
+    if error is None:
+        return {"model_error_percent": np.nan, "model_error_se_percent": np.nan, "interpolated": False}
+    return {
+        "model_error_percent": 100 * (float(error[factor]) - 1),
+        "model_error_se_percent": 100 * float(error[f"{factor}_error"]),
+        "interpolated": bool(error.interpolated),
+    }
+
+
+def marked(change: float, error: float, interpolated: bool) -> str:
+    """Change ± standard error as text, with a mark if it is interpolated.
+
+    Examples
+    --------
+    >>> marked(5.33, 0.11, True), marked(2.322, 0.042, False), marked(float("nan"), float("nan"), True)
+    ('+5.33 ± 0.11 *', '+2.322 ± 0.042', '–')
+    """
+    text = signed(change, error)
+    return f"{text} *" if interpolated and text != MISSING else text
+
+
+#: Column for reading.
+COLUMN = {"model error [%]": (marked, "model_error_percent", "model_error_se_percent", "interpolated")}
+
+
+def caption(errors: Mapping[Any, xr.Dataset]) -> str:
+    """What the column shows, from the datasets with the errors."""
+    applied = any(bool(error.applied) for error in errors.values())
+    does = "has changed what is stated" if applied else "would change what is stated"
+    return (
+        f"Model error: by how much full elastic contact of the surfaces {does}, ± standard error over its strips; * "
+        "interpolated between the humidities at which it was computed; – not known. It has one sign and is no random "
+        "error: it is part of no standard error."
+    )
+
+
+def of_pairs(plan: Any) -> dict[str, Any]:
+    """Errors of all pairs, as inputs of a stage; none unless they are wanted."""
+    return {"errors": by_name("studies/model_error", plan.pairs)} if plan.states_model_error else {}

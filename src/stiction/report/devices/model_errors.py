@@ -1,0 +1,82 @@
+"""The error of the model of the contact beside the predictions for devices: rows of tables, sentences of pages."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stiction.plan.names import by_name
+from stiction.report.beside import change
+from stiction.report.format import signed
+from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.devices.releases import EITHER, FORCE
+
+
+def of_device(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: float, shape: str) -> dict[str, Any]:
+    """As `change`, of a device in an end state; nothing without datasets of stage device_model_error by device."""
+    if not errors:
+        return {}
+    error = errors[device]
+    known = shape in error["shape"] and humidity in error.humidity
+    return change(error.sel(shape=shape, humidity=humidity) if known else None, "factor")
+
+
+def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]:
+    """What full contact changes of a device in words, and which side of it is safe; none without errors.
+
+    Parameters
+    ----------
+    device : str
+    errors : dict or None
+        Device to the dataset of stage device_model_error.
+    """
+    if not errors:
+        return []
+    error = errors[device]
+    shape = str(error["shape"].values[0])
+    what = "pull-off force" if shape == FORCE else f"lengths held by the {END_STATES[shape].by}"
+    rows = {float(humidity): of_device(errors, device, humidity, shape) for humidity in error.humidity.values}
+    known = {humidity: row for humidity, row in rows.items() if np.isfinite(row["model_error_percent"])}
+    if not known:
+        return [f"The model's error in the {what} is not known at these humidities, which are not those of the pair."]
+    by = [f"{_percent(row)} at a relative humidity of {humidity:g}" for humidity, row in known.items()]
+    does = "has changed" if error.applied else "would change"
+    said = [f"Full elastic contact of the surfaces {does} the {what} by {', '.join(by)}."]
+    if len(known) < len(rows):
+        said.append(f"It is not known at {_listed(humidity for humidity in rows if humidity not in known)}.")
+    if EITHER in error["shape"]:
+        said.append("It is not known for what the tip holds.")
+    said += [] if error.applied else [_safe_side(known, -1 if shape == FORCE else 1)]
+    gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
+    if error.across_gaps:
+        return [*said, f"It leaves out the attraction across gaps that this prediction contains, and which acts {gaps}"]
+    return [*said, f"Attraction across gaps, which is in neither model, acts {gaps}"]
+
+
+def _percent(row):
+    """Change with its standard error, and whether it is interpolated."""
+    text = f"{signed(row['model_error_percent'], row['model_error_se_percent'])} %"
+    return f"{text} (interpolated)" if row["interpolated"] else text
+
+
+def _safe_side(known, sign):
+    """Whether what is stated is on the safe side: longer beams and smaller forces stick less under full contact."""
+    unsafe = {
+        humidity: abs(row["model_error_percent"])
+        for humidity, row in known.items()
+        if sign * row["model_error_percent"] < -2 * row["model_error_se_percent"]
+    }
+    if not unsafe:
+        return "What is stated is on the safe side of it, or does not differ by more than twice its standard error."
+    mend = "shorten the lengths" if sign > 0 else "raise the restoring force"
+    return f"What is stated is not on the safe side of it at {_listed(unsafe)}: {mend} by {max(unsafe.values()):.2g} %."
+
+
+def _listed(humidities):
+    return ", ".join(f"{humidity:g}" for humidity in humidities)
+
+
+def of_devices(plan: Any, *devices: str) -> dict[str, Any]:
+    """Errors of some devices, as inputs of a stage; none unless they are wanted."""
+    return {"errors": by_name("devices/model_error", devices)} if plan.states_model_error else {}

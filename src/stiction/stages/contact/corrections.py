@@ -1,0 +1,34 @@
+"""Correction of force laws to full elastic contact: which stages apply it, and how; not a stage itself.
+
+Separate from stage pair_model_error, so that the force laws do not depend on the code of full contact.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, TypeVar
+
+import xarray as xr
+
+from stiction.contact.correction import Correction
+
+S = TypeVar("S")
+
+
+def correction(error: xr.Dataset) -> Correction:
+    """Ratios of a pair from its dataset of stage pair_model_error."""
+    return Correction(error.humidity.values, error.energy_ratio.values, error.pull_off_ratio.values)
+
+
+def of_pair(plan: Any, pair: str, variant: str = "base", model: str = "NG") -> dict[str, str]:
+    """Error of the model of a pair, as input of a stage that corrects its force laws; none if they stay as they are.
+
+    Those of Gaussian heights do, for which full contact is not computed.
+    """
+    return {"model_error": f"studies/model_error/{pair}"} if plan.is_corrected(variant) and model == "NG" else {}
+
+
+def corrected(settings: S, data: Mapping[str, Any]) -> S:
+    """Settings of a stage with the correction that its inputs have."""
+    if "model_error" not in data:
+        return settings
+    return replace(settings, water=replace(settings.water, correction=correction(data["model_error"])))

@@ -1,0 +1,83 @@
+"""Error of the model of the contact at all humidities of a pair: ratios of full contact to the sum over summits.
+
+Separate from study full_contact, so that stages and tables that need no more than ratios do not depend on its code.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis.model_error import length_factors, mean_ratios
+from stiction.plan.stage import Stage
+from stiction.stages.contact import full_contact
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Humidities at which the error is stated."""
+
+    humidities: tuple[float, ...]  #: [-]
+    applied: bool = False  #: whether the predictions are corrected by it
+
+
+def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Ratios of energies and of largest attractions, and the factor of crack lengths, each with its standard error."""
+    computed, *energies = full_contact.energies(study)
+    _, *pull_offs = full_contact.pull_offs(study)
+    at = np.sort(settings.humidities)
+    given = computed, at
+    found = {
+        "energy_ratio": mean_ratios(*energies, *given),
+        "pull_off_ratio": mean_ratios(*pull_offs, *given),
+        "length_factor": length_factors(*energies, *given),
+    }
+    return layout(found, at, computed, study.sizes["sample"], settings.applied)
+
+
+def layout(
+    found: Mapping[str, tuple[np.ndarray, np.ndarray]],
+    at: np.ndarray,
+    computed: Sequence[float],
+    strips: int,
+    applied: bool = False,
+) -> xr.Dataset:
+    """Dataset of ratios and factors with their standard errors.
+
+    Parameters
+    ----------
+    found : dict
+        Name to values and standard errors, (k,) each [-].
+    at : (k,) array
+        Increasing humidities [-].
+    computed : sequence of float
+        Humidities at which full contact was computed [-].
+    strips : int
+        Number of strips.
+    applied : bool
+        Whether the predictions are corrected.
+    """
+    columns = {name: values for name, (values, _) in found.items()}
+    columns |= {f"{name}_error": errors for name, (_, errors) in found.items()}
+    return xr.Dataset(
+        {name: ("humidity", values, {"units": "1"}) for name, values in columns.items()}
+        | {"interpolated": ("humidity", ~np.isin(at, computed)), "strips": ((), strips), "applied": ((), applied)},
+        coords={"humidity": ("humidity", at, {"units": "1"})},
+    )
+
+
+STAGES = (
+    Stage.writing(
+        "pair_model_error",
+        "studies/model_error/{pair}",
+        inputs=lambda plan, at: {"study": f"studies/full_contact/{at.pair}"},
+        settings=lambda plan, at: (
+            {"humidities": plan.config["pairs"][at.pair]["humidities"]}
+            | ({"applied": True} if plan.is_corrected() else {})
+        ),
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["study"], settings),
+        message="Error of the model of the contact of pair {pair}.",
+    ),
+)

@@ -1,0 +1,105 @@
+"""Error of the model of the contact in the lengths and forces of a device: what full elastic contact would change."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis.model_error import factors
+from stiction.plan.stage import Stage, select
+from stiction.stages.contact import full_contact
+from stiction.stages.devices.releases import EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam, section_of_beam
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Humidities of a device, and its dimensions if it is a beam."""
+
+    humidities: tuple[float, ...]  #: [-]
+    device: DesignedBeam | None = None  #: none for a stopper
+    applied: bool = False  #: whether the predictions are corrected
+    across_gaps: bool = False  #: whether solids attract each other across gaps, which full contact leaves out
+
+
+def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.ndarray:
+    """Length at which a beam sticks [m], or pull-off pressure of a stopper [Pa], at each humidity (h,).
+
+    ASSUME: the strips of the pair give the ratios of a patch of any size, and a safe length changes like the length on
+    the mean contact. What tips hold is not known: their strips are tilted, on which full contact is not computed.
+
+    Parameters
+    ----------
+    shape : str
+        End state.
+    means : (h, 2) array
+        Mean energy e [J m⁻²] and mean largest attraction f_max [Pa].
+    device : DesignedBeam or None
+    """
+    if shape == FORCE:
+        return means[:, 1]
+    if shape == EITHER:
+        return np.full(len(means), np.nan)
+    samples = {S_SHAPE: means[:, :1], MIDDLE: means[:, None]}[shape]
+    return np.array([device.opening.length_on_mean(sample, device.beam) for sample in samples])
+
+
+def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Factor of every length, or of the force, at the humidities of a device."""
+    computed, *energies = full_contact.energies(study)
+    _, *pull_offs = full_contact.pull_offs(study)
+    models = [np.stack(both, axis=-1) for both in zip(energies, pull_offs, strict=True)]
+    device, at = settings.device, np.array(settings.humidities)
+    shapes = device.opening.shapes if device else (FORCE,)
+    found = [factors(lambda means, of=shape: response(of, means, device), *models, computed, at) for shape in shapes]
+    values, errors = np.moveaxis(found, 1, 0)
+    return layout(values, errors, shapes, settings, computed)
+
+
+def layout(
+    values: np.ndarray, errors: np.ndarray, shapes: Sequence[str], settings: Settings, computed: np.ndarray
+) -> xr.Dataset:
+    """Dataset of the factors and their standard errors, (shapes, humidities) each [-].
+
+    Parameters
+    ----------
+    values, errors : arrays
+    shapes : sequence of str
+        End states.
+    settings : Settings
+    computed : (h,) array
+        Humidities at which full contact was computed [-].
+    """
+    names = ("shape", "humidity")
+    return xr.Dataset(
+        {
+            "factor": (names, values, {"units": "1"}),
+            "factor_error": (names, errors, {"units": "1"}),
+            "interpolated": ("humidity", ~np.isin(settings.humidities, computed)),
+            "applied": ((), settings.applied),
+            "across_gaps": ((), settings.across_gaps),
+        },
+        coords={"shape": list(shapes), "humidity": ("humidity", list(settings.humidities), {"units": "1"})},
+    )
+
+
+def _settings(plan, at):
+    """Humidities of a device, and its dimensions."""
+    section = plan.config["devices"][at.device]
+    own = {"device": section_of_beam(plan, at.device)} if plan.designs.kind(at.device).is_beam else {}
+    applied = {"applied": True} if plan.is_corrected() else {}
+    gaps = {"across_gaps": True} if "gaps" in plan.water(section["pair"]) else {}
+    return select(Settings, {"humidities": section["humidities"]} | own | applied | gaps)
+
+
+STAGES = (
+    Stage.writing(
+        "device_model_error",
+        "devices/model_error/{device}",
+        inputs=lambda plan, at: {"study": f"studies/full_contact/{plan.config['devices'][at.device]['pair']}"},
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(data["study"], settings),
+        message="Error of the model of the contact in the predictions of {device}.",
+    ),
+)

@@ -1,0 +1,105 @@
+"""The error of the model stands beside predictions for devices, and nowhere else."""
+
+import numpy as np
+import pytest
+from ground import safe_with_tips
+from test_pages import CANTILEVER, STOPPER, safe
+from test_tables_budget import BUDGETS, STOPPERS
+
+from stiction.report.devices import model_errors, pages, tables_budget, tables_devices
+from stiction.stages.devices import model_error
+from stiction.stages.devices.releases import EITHER, FORCE, S_SHAPE
+
+COLUMN = "model error [%]"
+
+
+def error(shapes, factor, computed=(0.44,), **changed):
+    """Errors at two humidities; that of the last one of two end states is not known."""
+    values = np.tile(np.array(factor, float), (len(shapes), 1))
+    values[1:] = np.nan
+    settings = model_error.Settings((0.44, 0.67), **changed)
+    return model_error.layout(values, 0.01 * np.ones_like(values), shapes, settings, np.array(computed))
+
+
+ERRORS = {
+    "C1": error((S_SHAPE, EITHER), [1.11, 1.02]),
+    "S1": error((FORCE,), [0.7, 0.9]),
+    "S2": error((FORCE,), [1, 1]),
+}
+NONE = {("C1", humidity, shape): [] for humidity in (0.44, 0.67) for shape in (S_SHAPE, EITHER)}
+QUIET = {"S1": [], "S2": []}
+
+
+def test_safe_lengths_have_the_error_of_their_end_state_and_a_mark_where_it_is_interpolated():
+    tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(400))
+    found = {("C1", 0.44): safe_with_tips(tips), ("C1", 0.67): safe_with_tips(tips)}
+    table = tables_devices.safe_lengths(found, NONE, ERRORS)
+    cells = table.cells[COLUMN].tolist()
+    assert cells == ["+11.0 ± 1.0", "+11.0 ± 1.0", "–", "–", "+2.0 ± 1.0 *", "+2.0 ± 1.0 *", "–", "–"]
+    assert "would change what is stated" in table.caption
+    plain = tables_devices.safe_lengths(found, NONE)
+    assert COLUMN not in plain.cells
+    assert "Model error" not in plain.caption
+    columns = ["model_error_percent", "model_error_se_percent", "interpolated"]
+    assert table.frame.drop(columns=columns).equals(plain.frame)
+
+
+def test_stoppers_have_the_error_of_their_force_except_over_all_humidities():
+    table = tables_budget.stoppers(STOPPERS, QUIET, ERRORS)
+    assert table.cells[COLUMN].tolist()[:3] == ["-30.0 ± 1.0", "-10.0 ± 1.0 *", "–"]
+    assert COLUMN not in tables_budget.stoppers(STOPPERS, QUIET).cells
+
+
+def test_a_budget_has_a_row_of_the_model_that_is_no_part_of_its_total():
+    table, plain = tables_budget.budget(BUDGETS, ERRORS), tables_budget.budget(BUDGETS)
+    rows = table.cells[table.cells.what == "model error: full elastic contact"].set_index(["device", "RH", "held by"])
+    shown = rows["effect [%]"].to_dict()
+    assert shown == {
+        ("C1", "0.44", "beam"): "+11.0 ± 1.0",
+        ("C1", "0.67", "beam"): "+2.0 ± 1.0 *",
+        ("C1", "0.67", "tip"): "–",
+        ("S1", "0.67", "whole area"): "-10.0 ± 1.0 *",
+    }
+    others = table.frame[~table.frame.part.isin(tables_budget.MODEL)].reset_index(drop=True)
+    assert others.equals(plain.frame)
+
+
+def test_a_page_says_by_how_much_and_which_side_is_safe():
+    (dry, wet) = (safe(), safe(longest=500e-6))
+    given = {"C1": CANTILEVER | {"humidities": [0.44, 0.67]}}
+    page = pages.of_beam("C1", given["C1"], {0.44: dry, 0.67: wet}, {}, {}, NONE, errors=ERRORS).html
+    assert "would change the lengths held by the beam by +11.0 ± 1.0 % at a relative humidity of 0.44" in page
+    assert "It is not known for what the tip holds." in page
+    assert "What is stated is on the safe side" in page
+    stopper = pages.of_stopper("S1", STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, [], ERRORS).html
+    assert "the pull-off force by -30.0 ± 1.0 % at a relative humidity of 0.44" in stopper
+    assert "model error: full elastic contact" in stopper
+    assert "Full elastic contact" not in pages.of_stopper("S1", STOPPER, STOPPERS["S1"], {}, []).html
+
+
+@pytest.mark.parametrize(
+    ("shape", "factor", "said"),
+    [
+        (S_SHAPE, [1.1, 1.1], "is on the safe side"),
+        (S_SHAPE, [1.1, 0.985], "is on the safe side"),  # within two standard errors
+        (S_SHAPE, [1.1, 0.9], "is not on the safe side of it at 0.67: shorten the lengths by 10 %"),
+        (FORCE, [0.7, 0.9], "is on the safe side"),
+        (FORCE, [1.2, 0.9], "is not on the safe side of it at 0.44: raise the restoring force by 20 %"),
+    ],
+)
+def test_longer_beams_and_smaller_forces_are_on_the_safe_side(shape, factor, said):
+    assert said in " ".join(model_errors.sentences("D", {"D": error((shape,), factor)}))
+
+
+def test_sentences_say_what_full_contact_leaves_out_and_whether_it_has_been_applied():
+    plain, across, applied = (
+        " ".join(model_errors.sentences("D", {"D": error((S_SHAPE,), [1.1, np.nan], **changed)}))
+        for changed in ({}, {"across_gaps": True}, {"applied": True})
+    )
+    assert "which is in neither model" in plain
+    assert "that this prediction contains" in across
+    assert "It is not known at 0.67." in plain
+    assert "has changed the lengths" in applied
+    assert "safe side" not in applied
+    unknown = model_errors.sentences("D", {"D": error((FORCE,), [np.nan, np.nan])})
+    assert "is not known at these humidities" in unknown[0]
