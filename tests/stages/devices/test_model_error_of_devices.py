@@ -71,7 +71,7 @@ def test_a_page_says_by_how_much_and_which_side_is_safe():
     assert "would change the lengths held by the beam by +11.0 ± 1.0 % at a relative humidity of 0.44" in page
     assert "It is not known for what the tip holds." in page
     assert "What is stated is on the safe side" in page
-    stopper = pages.of_stopper("S1", STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, [], ERRORS).html
+    stopper = pages.of_stopper("S1", STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, [], errors=ERRORS).html
     assert "the pull-off force by -30.0 ± 1.0 % at a relative humidity of 0.44" in stopper
     assert "model error: full elastic contact" in stopper
     assert "Full elastic contact" not in pages.of_stopper("S1", STOPPER, STOPPERS["S1"], {}, []).html
