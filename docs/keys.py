@@ -12,7 +12,10 @@ ROOT = Path(__file__).parents[1]
 #: Complete configuration of the paper: its values are the defaults.
 PAPER = read(ROOT / "config.yaml")
 #: Further values to show as examples, in the order in which they are tried.
-EXAMPLES = [PAPER, *(read(ROOT / "examples" / f"{name}.yaml") for name in ("devices", "scans/mine", "test_beams"))]
+EXAMPLES = [
+    PAPER,
+    *(read(ROOT / "examples" / f"{name}.yaml") for name in ("devices", "scans/mine", "test_beams", "roughness")),
+]
 #: Keywords of JSON Schema that hold for a complete configuration and not for a file that changes single keys.
 _OF_COMPLETE = ("required", "if", "else", "then", "allOf", "minProperties")
 

@@ -2,7 +2,8 @@
 
 1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
    and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``,
-   ``make devices`` and ``make attraction`` in folders of ``runs`` beside the folder.
+   ``make devices``, ``make attraction`` and ``stiction devices examples/roughness.yaml --directory runs/roughness`` in
+   folders of ``runs`` beside the folder.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
 3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted, and the schema
    for editors from that of the configuration.
@@ -16,6 +17,7 @@ import re
 import shutil
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -69,6 +71,9 @@ EXAMPLE_PICTURES = {"results/figures/surface_sheet_Etched": 1400, "prediction": 
 #: Tables and pictures of ``make devices``; pictures by their width [pixels].
 DEVICE_TABLES = ("safe_lengths", "stoppers", "budget")
 DEVICE_PICTURES = {"risk": 1000, "chart": 1200, "stoppers": 700, "budget_C1": 1000}
+#: Table, and pictures by their width [pixels], of ``make devices CONFIG=examples/roughness.yaml``.
+ROUGHNESS = "roughness"
+ROUGHNESS_PICTURES = {"roughness_Bump": 700, "roughness_Lever": 1000}
 #: Table and picture of ``make model-error``.
 MODEL_ERROR = "model_error"
 #: Table of ``make attraction``, and its target.
@@ -87,7 +92,8 @@ def main(results):
         (results, unfinished, collect),
         (results, unfinished_model_error, collect_model_error),
         (runs / "example", unfinished_example, collect_example),
-        (runs / "devices", unfinished_devices, collect_devices),
+        (runs / "devices", partial(unfinished_devices, "devices", "budget"), collect_devices),
+        (runs / "roughness", partial(unfinished_devices, "roughness", ROUGHNESS), collect_roughness),
         (runs / "attraction", unfinished_attraction, collect_attraction),
     ):
         if reason := why(folder):
@@ -130,14 +136,14 @@ def unfinished_example(folder):
     return f"{folder} is not up to date with the code, see make example"
 
 
-def unfinished_devices(folder):
-    """Why a folder does not hold a finished run of the example of devices by this code; empty if it does."""
-    if not (folder / "results" / "tables" / "budget.csv").exists():
+def unfinished_devices(example, table, folder):
+    """Why a folder does not hold a finished run of an example of devices by this code; empty if it does."""
+    if not (folder / "results" / "tables" / f"{table}.csv").exists():
         return f"{folder} holds no finished run"
-    configs = ROOT / "config.yaml", ROOT / "examples" / "devices.yaml"
-    if up_to_date(folder.resolve(), "devices", "--configfile", *configs):
+    file = ROOT / "examples" / f"{example}.yaml"
+    if up_to_date(folder.resolve(), "devices", "--configfile", ROOT / "config.yaml", file):
         return ""
-    return f"{folder} is not up to date with examples/devices.yaml and the code, see make devices ARGS=-n"
+    return f"{folder} is not up to date with examples/{file.name} and the code, see stiction devices"
 
 
 def unfinished_attraction(folder):
@@ -204,6 +210,14 @@ def collect_attraction(folder):
     csv = DOCS / "tables" / f"{ATTRACTION}.csv"
     shutil.copyfile(folder / OF_ATTRACTION, csv)
     csv.with_suffix(".md").write_text(quoted.across_gaps(quoted.frame(csv)) + "\n", encoding="utf-8")
+
+
+def collect_roughness(folder):
+    """Copy table and pictures of a run of the example of roughness."""
+    for kind in ("csv", "md"):
+        shutil.copyfile(folder / "results" / "tables" / f"{ROUGHNESS}.{kind}", DOCS / "tables" / f"{ROUGHNESS}.{kind}")
+    for name, width in ROUGHNESS_PICTURES.items():
+        shrink(folder / "results" / "figures" / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
 
 
 def scalars(studies):

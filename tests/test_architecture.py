@@ -14,7 +14,7 @@ ORDER = [
     *("constants", "errors", "streams", "estimates", "numbers", "models", "progress", "regular", "kernels"),
     *("surface", "scans", "contact", "chaos", "beam", "analysis", "devices"),
     *("run", "config", "plan"),
-    *("stages.surfaces", "stages.contact", "stages.laws", "stages.beams", "stages.devices"),
+    *("stages.surfaces", "stages.contact", "stages.laws", "stages.beams", "stages.devices", "stages.roughness"),
     *("study", "device", "report", "command"),
 ]
 

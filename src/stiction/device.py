@@ -107,6 +107,14 @@ class Device:
         self._must_state("uncertainty", self.name in self._plan.designs.budgeted)
         return self._result("budget", humidity, "_tip")
 
+    def roughness(self) -> xr.Dataset:
+        """Safe length or force over the roughness of a surface, and which roughness suffices for its requirement.
+
+        Dataset of `stiction.stages.roughness.curves`. The first call draws the surfaces at eight roughnesses.
+        """
+        self._must_state("roughness", self._section.get("roughness"))
+        return self.results[f"devices/roughness/{self.name}"]
+
     def test_beams(self) -> xr.Dataset:
         """What its test beams say about its inputs and lengths; dataset of `stiction.stages.devices.inference`.
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from published import SURFACES
 from scipy.special import ndtr
 
-from stiction.analysis.shifts import ORDERS, STEPS, Description, bracketed
+from stiction.analysis.shifts import ORDERS, STEPS, Description, bracketed, value_of, with_value
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.scans.quantiles import SCORES
 from stiction.surface.empirical import MeasuredDensity
@@ -127,3 +127,19 @@ def test_a_table_is_bent_like_eq_7(quantity):
     else:
         np.testing.assert_allclose(ratio[2] / ratio[1], 2.5**difference, rtol=0.01)
     assert {one.spectrum.cutoff for one in both} == {table.cutoff}
+
+
+@pytest.mark.parametrize(("quantity", "value"), [("rms", 8e-9), ("skewness", -0.2), ("corner", 2e7)])
+def test_another_value_of_a_quantity_leaves_the_form_of_the_surface(quantity, value):
+    changed = with_value(B2, quantity, value)
+    assert_allclose(value_of(changed, quantity), value, rtol=1e-12)
+    kept = set(quantities(B2)) - {quantity} - ({"kurtosis"} if quantity == "skewness" else set())
+    assert_allclose([quantities(changed)[name] for name in kept], [quantities(B2)[name] for name in kept], rtol=1e-12)
+    assert changed.spectrum.cutoff == B2.spectrum.cutoff
+    assert is_feasible(changed.skewness, changed.kurtosis)
+    assert with_value(B2, quantity, value_of(B2, quantity)).rms == B2.rms
+
+
+def test_a_skewness_without_the_kurtosis_has_the_largest_feasible_one():
+    assert with_value(B2, "skewness", -1.2).kurtosis == B2.kurtosis
+    assert with_value(B2, "skewness", 0.0).kurtosis == pytest.approx(3, abs=1e-4)

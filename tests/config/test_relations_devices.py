@@ -67,6 +67,14 @@ def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
     assert leaf.entry["description"].endswith(tuple(units or (["[name]", "[choice]"] if text else ["[-]"])))
 
 
+LONG, ROUGH = {"share": 0.001, "length_um": 300}, {"surface": "B2", "rms_nm": [1, 8]}
+
+
+def with_roughness(**keys):
+    """Keys of a device over a roughness under changes."""
+    return {"requirement": LONG, "roughness": ROUGH | keys}
+
+
 WRONG = [
     ({"humidities": [0.67, 0.2]}, "devices.C1.humidities", "must be at least 0.2903: in drier air"),
     ({"chart": CHART | {"humidities": [0.1, 0.9]}}, "devices.C1.chart.humidities", "must be at least 0.2903"),
@@ -114,6 +122,44 @@ WRONG = [
     ({"uncertainty": {"gap_um": -1}}, "devices.C1.uncertainty.gap_um", "at least 0"),
     ({"uncertainty": {"temperature_K": 80}}, "devices.C1.uncertainty.temperature_K", "between 273 and 373 K"),
     (
+        {"requirement": {"share": 0.001, "length_um": 300}},
+        "devices.C1.requirement",
+        "must come with roughness",
+    ),
+    (
+        {"requirement": {"share": 0.1}, "roughness": ROUGH},
+        "devices.C1.requirement.share",
+        "above 0 and at most 0.05: share of stuck devices that is allowed",
+    ),
+    ({"requirement": {"share": 0.001}, "roughness": ROUGH}, "devices.C1.requirement", "must come with length_um"),
+    ({"roughness": ROUGH}, "devices.C1.roughness", "must come with requirement"),
+    (
+        {"requirement": LONG, "roughness": {"surface": "B2"}},
+        "devices.C1.roughness",
+        "must have one of rms_nm, skewness, corner_rad_per_um, and has none",
+    ),
+    (with_roughness(skewness=[-1, 0]), "devices.C1.roughness", "and has rms_nm and skewness"),
+    (with_roughness(surface="B1"), "devices.C1.roughness.surface", "must be a surface of pair b, B2 or Sub1"),
+    (with_roughness(surface="B9"), "devices.C1.roughness.surface", "must be a surface of pair b, B2 or Sub1"),
+    (with_roughness(rms_nm=[8, 1]), "devices.C1.roughness.rms_nm", "must be in increasing order"),
+    (with_roughness(rms_nm=[1, 8000]), "devices.C1.roughness.rms_nm[1]", "at most 1000: standard deviation"),
+    (with_roughness(rms_nm=[1]), "devices.C1.roughness.rms_nm", "2 entries"),
+    (
+        {"requirement": LONG, "roughness": {"surface": "B2", "skewness": [-3, 0]}},
+        "devices.C1.roughness.skewness",
+        "must have densities at both ends: at -3 the kurtosis of B2 must be above skewness² + 1 = 10",
+    ),
+    (
+        {"requirement": LONG, "roughness": {"surface": "B2", "corner_rad_per_um": [9, 130]}},
+        "devices.C1.roughness.corner_rad_per_um",
+        "must be below the cut-off of surface B2, 125 rad/µm",
+    ),
+    (
+        {"requirement": LONG, "roughness": {"surface": "B2", "corner_rad_per_um": [3, 20]}},
+        "devices.C1.roughness.corner_rad_per_um",
+        "must be larger at 3 rad/µm, where sampling.margin_um must be above the correlation length",
+    ),
+    (
         {"gap_um": 0.5, "humidities": [0.44], "chart": {"thicknesses_um": [2, 2.6], "humidities": [0.44, 0.97]}},
         "devices.C1.gap_um",
         "20 times the sum of the height",
@@ -126,6 +172,12 @@ def test_a_wrong_device_is_refused_by_name(keys, key, message):
     (line,) = problems(with_device(**keys))
     assert line.startswith(f"{key} is ")
     assert message in line
+
+
+def test_a_stopper_has_no_length():
+    (line,) = problems(merged(PAPER, {"devices": {"S1": S1 | with_roughness()}}))
+    assert line.startswith("devices.S1.requirement is ")
+    assert "must come without length_um, for a stopper has a force" in line
 
 
 def test_islands_are_refused_with_devices_alone():

@@ -15,10 +15,13 @@ from stiction.plan.stage import File, Stage
 
 ROOT = Path(__file__).parents[2]
 #: The paper, and the devices of the examples, which need every stage that no measured surface needs.
-EXAMPLES = (yaml.safe_load((ROOT / "examples" / f"{name}.yaml").read_text()) for name in ("devices", "test_beams"))
+EXAMPLES = [
+    yaml.safe_load((ROOT / "examples" / f"{name}.yaml").read_text()) for name in ("devices", "test_beams", "roughness")
+]
+SECTIONS = [{key: one[key] for key in ("test_beams", "devices") if key in one} for one in EXAMPLES]
 #: Counts beside the crack lengths of an array of the examples.
 COUNTS = [{"humidity": 0.67, "length_um": 300, "stuck": 3, "of": 20}]
-PLAN = Plan(load(*EXAMPLES, {"test_beams": {"paperB": {"stuck": COUNTS}}}))
+PLAN = Plan(load(*SECTIONS, {"test_beams": {"paperB": {"stuck": COUNTS}}}))
 GRAPH, SCHEMA = Graph(PLAN), schema()
 #: Stages of surfaces described by scans; `tests/workflow/test_from_scans.py` runs them.
 OF_SCANS = {"scan", "estimate", "heights_of_scans", "spectrum_of_scans", "choice_contact", "scan_uncertainty"}

@@ -73,6 +73,23 @@ def bracketed(surface: Description, quantity: str) -> tuple[tuple[Description, D
     return tuple(found), 2 * step
 
 
+def value_of(surface: Description, quantity: str) -> float:
+    """The rms [m], skewness, or corner [rad m⁻¹] of a surface."""
+    return surface.spectrum.corner if quantity == "corner" else getattr(surface, quantity)
+
+
+def with_value(surface: Description, quantity: str, value: float) -> Description:
+    """A surface with another rms [m], skewness, or corner of its spectrum [rad m⁻¹], and its form otherwise.
+
+    ASSUME: a skewness at which no surface has the kurtosis comes with the largest one that is feasible.
+    """
+    if quantity == "corner":
+        return replace(surface, spectrum=_bent(surface.spectrum, value, 0.0))
+    if quantity == "skewness":
+        return replace(surface, skewness=value, kurtosis=min(surface.kurtosis, largest_kurtosis(abs(value))))
+    return replace(surface, rms=value)
+
+
 def _around(value, step, largest=np.inf):
     """Two values a step below and above the given one, or below the largest one."""
     centre = min(value, largest - step)

@@ -205,6 +205,11 @@ class Designs:
         return [name for name, device in self.devices.items() if "test_beams" in device]
 
     @property
+    def roughened(self) -> list[str]:
+        """Devices that are computed over the roughness of a surface."""
+        return [name for name, device in self.devices.items() if "roughness" in device]
+
+    @property
     def budgeted(self) -> list[str]:
         """Devices with an uncertain input: with a stated uncertainty, or on a surface described by scans."""
         stated = {name: any(device.get("uncertainty", {}).values()) for name, device in self.devices.items()}

@@ -7,9 +7,10 @@ beams of a kind open is in `stiction.stages.devices.releases.BEAMS`.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 #: Keys that every device may have.
-COMMON = {"kind", "pair", "humidities", "uncertainty", "test_beams"}
+COMMON = {"kind", "pair", "humidities", "uncertainty", "test_beams", "requirement", "roughness"}
 #: Keys that depend on the kind, what they are called and their unit.
 KEYS = {
     "thickness_um": ("thickness", "µm"),
@@ -18,6 +19,22 @@ KEYS = {
     "residual_stress_MPa": ("tensile stress", "MPa"),
     "contact_um": ("sides of the area in contact", "µm"),
     "restoring_force_uN": ("restoring force", "µN"),
+}
+
+
+class Roughness(NamedTuple):
+    """A quantity of a surface over which a device is computed."""
+
+    words: str  #: what it is called
+    unit: str  #: with a space before it; empty without a unit
+    logarithmic: bool  #: whether its values are spaced by equal factors
+
+
+#: Quantities of section ``roughness`` by their keys.
+ROUGHNESSES = {
+    "rms_nm": Roughness("rms", " nm", True),
+    "skewness": Roughness("skewness", "", False),
+    "corner_rad_per_um": Roughness("corner of the spectrum", " rad/µm", True),
 }
 
 

@@ -175,14 +175,18 @@ def only_scans_leave_a_choice(config):
 def heights_have_a_density(config):
     """A density has these moments, and a maximum-entropy density of Eq. (3) these or moments near them."""
     for name, kurtosis, skewness in config.entries("surfaces", "kurtosis", "skewness"):
-        key, given = f"surfaces.{name}.kurtosis", f"surfaces.{name}.skewness"
-        if kurtosis <= skewness**2 + 1:
-            yield key, f"must be above skewness² + 1 = {skewness**2 + 1:.6g}", given
-            continue
-        try:
-            nearest_feasible(skewness, kurtosis)
-        except (ValueError, NotConverged) as reason:
-            yield key, f"must be near that of a maximum-entropy density of the heights: {reason}", given
+        yield f"surfaces.{name}.kurtosis", without_density(skewness, kurtosis), f"surfaces.{name}.skewness"
+
+
+def without_density(skewness: float, kurtosis: float) -> str | None:
+    """Refusal of the kurtosis of heights that have no such density."""
+    if kurtosis <= skewness**2 + 1:
+        return f"must be above skewness² + 1 = {skewness**2 + 1:.6g}"
+    try:
+        nearest_feasible(skewness, kurtosis)
+    except (ValueError, NotConverged) as reason:
+        return f"must be near that of a maximum-entropy density of the heights: {reason}"
+    return None
 
 
 #: Key of a surface: largest wave number of its roughness.

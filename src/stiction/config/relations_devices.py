@@ -3,6 +3,7 @@
 Lengths are in µm, as in the configuration.
 """
 
+import math
 from functools import partial
 
 import numpy as np
@@ -11,7 +12,7 @@ from stiction.config import memory
 from stiction.config.arrays import DATA, shared_uncertainty
 from stiction.config.conditions import Relations
 from stiction.config.designs import Designs, hamaker_constant
-from stiction.config.kinds import COMMON, KEYS, KINDS, kind_of
+from stiction.config.kinds import COMMON, KEYS, KINDS, ROUGHNESSES, kind_of
 from stiction.config.relations import (
     Meeting,
     cases_have_unique_names,
@@ -31,10 +32,12 @@ from stiction.config.relations import (
     too_few_summits,
     too_soft,
     wetting,
+    without_density,
     without_unique_names,
 )
 from stiction.config.units import NM_PER_UM
 from stiction.devices.materials import OF_CONTACT
+from stiction.surface.feasible import largest_kurtosis
 
 #: Relations between the keys of devices.
 relation = Relations()
@@ -137,7 +140,7 @@ def tips_fit_into_memory(config):
 @relation
 def axes_increase(config):
     """Values along an axis increase."""
-    axes = "chart.gaps_um", "chart.thicknesses_um", "chart.humidities"
+    axes = "chart.gaps_um", "chart.thicknesses_um", "chart.humidities", *(f"roughness.{key}" for key in ROUGHNESSES)
     charts = [f"devices.{name}.{axis}" for axis in axes for name, _ in config.entries("devices", axis)]
     for key, values in config.known(*charts, "design.worst_humidities"):
         if any(low >= high for low, high in zip(values, values[1:], strict=False)):
@@ -426,6 +429,77 @@ def _scanned(config, name):
 def _air(config, name):
     """Keys that the water at a device depends on, apart from its humidities."""
     return _TEMPERATURE, *_scanned(config, name)
+
+
+# How rough it must be
+
+
+@relation
+def requirements_and_roughnesses_come_together(config):
+    """What is required is compared with the device over one quantity of a surface."""
+    for one, other in (("requirement", "roughness"), ("roughness", "requirement")):
+        for name, _ in config.entries("devices", one):
+            if other not in config.names(f"devices.{name}"):
+                yield f"devices.{name}.{one}", f"must come with {other}"
+
+
+@relation
+def requirements_are_those_of_the_kind(config):
+    """A beam must have a length; a stopper has a restoring force."""
+    for name, requirement, kind in config.entries("devices", "requirement", "kind"):
+        if KINDS[kind].is_beam != ("length_um" in requirement):
+            words = "with length_um" if KINDS[kind].is_beam else "without length_um, for a stopper has a force"
+            yield f"devices.{name}.requirement", f"must come {words}", f"devices.{name}.kind"
+
+
+@relation
+def varied_surfaces_are_in_the_pair(config):
+    """One quantity of one of the surfaces that meet is varied."""
+    for name, roughness, pair in config.entries("devices", "roughness", "pair"):
+        stated = [key for key in ROUGHNESSES if key in roughness]
+        if len(stated) != 1:
+            message = f"must have one of {', '.join(ROUGHNESSES)}, and has {' and '.join(stated) or 'none'}"
+            yield f"devices.{name}.roughness", message
+        if _sides(config, name) and roughness["surface"] not in (sides := surfaces_of(pair, config)):
+            message = f"must be a surface of pair {pair}, {' or '.join(dict.fromkeys(sides))}"
+            yield f"devices.{name}.roughness.surface", message, f"devices.{name}.pair"
+
+
+@relation
+def varied_skewnesses_have_a_density(config):
+    """A density has the skewness at both ends, and the kurtosis of the surface or less; a measured form has its own."""
+    for name, ends, surface in config.entries("devices", "roughness.skewness", "roughness.surface"):
+        key, section = f"devices.{name}.roughness.skewness", config["surfaces"].get(surface, {})
+        if section.get("heights") == "measured":
+            yield key, f"must be left out: surface {surface} has the measured form of its heights"
+        for skewness in ends if "kurtosis" in section else ():
+            kurtosis = min(section["kurtosis"], largest_kurtosis(abs(skewness)))
+            if refusal := without_density(skewness, kurtosis):
+                message = f"must have densities at both ends: at {skewness:g} the kurtosis of {surface} {refusal}"
+                yield key, message, *config.scanned(surface)
+
+
+@relation
+def varied_corners_are_those_of_spectra(config):
+    """A corner lies below the cut-off, and patches are samples of the field where it is lowest, at the same slope."""
+    for name, ends, surface, kind in config.entries(
+        "devices", "roughness.corner_rad_per_um", "roughness.surface", "kind"
+    ):
+        key, section = f"devices.{name}.roughness.corner_rad_per_um", config["surfaces"].get(surface, {})
+        if section.get("psd") != "published":
+            continue
+        psd, (low, high) = section["published_psd"], ends
+        cutoff, plateau = psd["cutoff_rad_per_um"], psd["plateau_nm4"]
+        if high >= cutoff:
+            yield key, f"must be below the cut-off of surface {surface}, {cutoff:g} rad/µm", *config.scanned(surface)
+            continue
+        slope = math.log(psd["floor_nm4"] / plateau) / math.log(cutoff / psd["corner_rad_per_um"])
+        longest = psd | {"corner_rad_per_um": low, "floor_nm4": plateau * (cutoff / low) ** slope}
+        for length in ["margin_um"] + ["strip_length_um"] * (KINDS[kind].is_beam and not KINDS[kind].has_short_strips):
+            if refusal := correlated(config["sampling"][length], longest):
+                message = f"must be larger at {low:g} rad/µm, where sampling.{length} {refusal}"
+                yield key, message, f"sampling.{length}", *config.scanned(surface)
+                break
 
 
 # Test beams, for which the relations of devices hold as well: see stiction.config.validation

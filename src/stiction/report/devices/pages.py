@@ -19,10 +19,12 @@ from stiction.report.devices import (
     figures_budget,
     figures_devices,
     figures_inference,
+    figures_roughness,
     model_errors,
     tables_budget,
     tables_devices,
     tables_inference,
+    tables_roughness,
 )
 from stiction.report.format import UM, UN
 from stiction.report.style import STYLE, png
@@ -199,6 +201,7 @@ def of_beam(
     warnings: Mapping[tuple, Sequence[str]],
     test_beams: xr.Dataset | None = None,
     errors: Mapping[str, xr.Dataset] | None = None,
+    roughness: xr.Dataset | None = None,
 ) -> Page:
     """Page of a cantilever or bridge.
 
@@ -213,8 +216,8 @@ def of_beam(
         Humidity and, for tips, more to the dataset of stage budget; may be empty.
     warnings : dict
         Where the model ends: ``lengths`` and ``curves`` of `stiction.stages.devices.device_warnings.OfDevices`.
-    test_beams : Dataset, optional
-        Of stage test_beams.
+    test_beams, roughness : Dataset, optional
+        Of the stages of these names.
     errors : dict, optional
         Name of the device to the dataset of stage device_model_error.
     """
@@ -232,6 +235,7 @@ def of_beam(
         answer.append(tables_inference.built(test_beams))
     answer += [safe_sentence(humidity, dataset) for humidity, dataset in found.items()]
     answer += model_errors.sentences(name, errors)
+    sections += _how_rough(name, roughness)
     listed = [f"({k}) {sentence}" for k, sentence in enumerate(pair_warnings.numbered(warnings)[0], 1)]
     listed += [] if test_beams is None else tables_inference.warnings(test_beams)
     shapes = next(iter(found.values()))["shape"].values
@@ -248,11 +252,12 @@ def of_stopper(
     warnings: Sequence[str],
     test_beams: xr.Dataset | None = None,
     errors: Mapping[str, xr.Dataset] | None = None,
+    roughness: xr.Dataset | None = None,
 ) -> Page:
     """Page of a stopper; parameters as in `of_beam`, with one dataset of stage stoppers and a list of warnings."""
     table = tables_budget.stoppers({name: found}, {name: []}, errors).cells.drop(columns=["device"])
     sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: found}, {}))]
-    sections += _sure(name, budgets, errors)
+    sections += [*_sure(name, budgets, errors), *_how_rough(name, roughness)]
     answer, listed = [verdict(found)], list(warnings)
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
@@ -453,6 +458,15 @@ def _of_test_beams(name, found):
     return Section("What the test beams say", said, cells, figures_inference.test_beams(found))
 
 
+def _how_rough(name, found):
+    """Section on how rough a surface must be; none if this was not asked."""
+    if found is None:
+        return []
+    cells = tables_roughness.roughness({name: found}).cells.drop(columns="device")
+    said = [*tables_roughness.answers(found), tables_roughness.FORM]
+    return [Section("How rough must it be?", said, cells, figures_roughness.roughness(found))]
+
+
 def _side_by_side(cells):
     """Cells of the budget of one device with a pair of columns for every humidity."""
     shown = [
@@ -469,8 +483,7 @@ def _inputs(plan, at):
     budgets = budgets_of(plan, at.device) if at.device in designs.budgeted else {}
     own = {"budgets": {key[1:]: name for key, name in budgets.items()}, "warnings": device_warnings.files_of(at.device)}
     own |= model_errors.of_devices(plan, at.device)
-    if "test_beams" in section:
-        own |= {"test_beams": f"devices/test_beams/{at.device}"}
+    own |= {key: f"devices/{key}/{at.device}" for key in ("test_beams", "roughness") if key in section}
     if not designs.kind(at.device).is_beam:
         return own | {"stopper": f"devices/stoppers/{at.device}", "style": File(STYLE)}
     charts = designs.chart_cases(at.device) if at.device in designs.charted else []
@@ -493,7 +506,7 @@ def _settings(plan, at):
 def _page(data, at, settings):
     """Page of a device."""
     warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
-    more = {name: data.get(name) for name in ("test_beams", "errors")}
+    more = {name: data.get(name) for name in ("test_beams", "errors", "roughness")}
     if "stopper" in data:
         return of_stopper(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
     lengths, charts = data["safe_lengths"], data["charts"]

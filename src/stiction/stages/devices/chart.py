@@ -6,27 +6,22 @@ predicts beams in the middle, to which it was not fitted, within 1 %.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import product
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from stiction.beam.foundation import foundation_length
-from stiction.chaos.model import Truncation, draw_laws
+from stiction.chaos.model import Truncation
 from stiction.config.cases import pair_of
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import meniscus_height
-from stiction.devices import arcs
 from stiction.devices.chart import checked_power_law
 from stiction.plan.names import by_case
 from stiction.plan.stage import Stage, chosen, select
-from stiction.stages.contact import curves
 from stiction.stages.contact.contact import surface_rms
 from stiction.stages.contact.corrections import corrected
-from stiction.stages.contact.error_notes import on_patch
-from stiction.stages.devices import releases, sticking
+from stiction.stages.devices import sticking
 from stiction.stages.devices.patch_settings import contact_of, corrections_of, tips_of
 from stiction.stages.devices.releases import DesignedBeam, settings_of_beam
 
@@ -57,14 +52,13 @@ class Filled:
 
 def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
     """Safe lengths of all thicknesses and gaps; inputs as in the stages cracks and safe_lengths."""
-    with on_patch(settings.device.strip, settings.device.width):
-        model = releases.fitted(*curves.vectors(contact, settings.humidity, settings.water), settings.chaos)
-    laws = draw_laws(model, releases.LAWS, releases.addresses(settings)("mesh"))
-    held = None if tips is None else curves.tip_forces(tips, settings.humidity, settings.water)
+    met = sticking.ground(contact, tips, settings.humidity, settings)
 
     def by_elements(thickness, gap):
         """Safe lengths of beams of one size (shapes, shares) [m]."""
-        return _safe_lengths(_of_size(settings, thickness, gap), model, laws, held, settings)
+        lengths = sticking.released(_of_size(settings, thickness, gap), met, settings)
+        safe = (sticking.safe_lengths(values, settings) for values in lengths.values())
+        return np.array([[one.length for one in of_shape] for of_shape in safe])
 
     found = filled(settings.thicknesses, settings.gaps, by_elements)
     return layout(found, surface_rms(contact), settings)
@@ -73,16 +67,6 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
 def _of_size(settings, thickness, gap):
     """The designed beam with another thickness and gap [m]."""
     return replace(settings.device, thickness=float(thickness), gap=float(gap))
-
-
-def _safe_lengths(device, model, laws, tips, settings):
-    """Safe lengths of a device, (shapes, shares) [m]; slopes and forces of its tips, or none."""
-    ground = device.opening.resolved(device, laws)
-    address, draw = releases.addresses(settings), partial(draw_laws, model)
-    cracks = releases.arrests(device, ground, draw, settings.beams, address)
-    held = None if tips is None else arcs.longest_free(*tips, device.beam)
-    lengths = sticking.sticking_lengths(cracks, foundation_length(device.beam, laws), device, held)
-    return np.array([[one.length for one in sticking.safe_lengths(values, settings)] for values in lengths.values()])
 
 
 def filled(

@@ -1,17 +1,25 @@
-"""Sticking lengths of a device at a humidity and its safe lengths, shared by stage safe_lengths and charts.
+"""Sticking lengths of a device at a humidity and its safe lengths, shared by stage safe_lengths, charts and roughness.
 
 Separate from stage safe_lengths, so that a change of the dataset of that stage does not rerun charts.
 """
 
+from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 import numpy as np
+import xarray as xr
 
+from stiction.beam.foundation import foundation_length
+from stiction.chaos.model import ChaosModel, Truncation, draw_laws
 from stiction.contact.environment import Water, flooded_law
 from stiction.contact.meniscus import flooded_energy
 from stiction.devices import arcs, bridges, risk
 from stiction.devices.chart import flooded_length
 from stiction.devices.risk import SafeLength
+from stiction.stages.contact import curves
+from stiction.stages.contact.error_notes import on_patch
+from stiction.stages.devices import releases
 from stiction.stages.devices.releases import DesignedBeam
 from stiction.streams import stream
 
@@ -23,6 +31,42 @@ class Settings(Protocol):
     water: Water
     humidity: float  #: [-]
     shares: tuple[float, ...]  #: p [-]
+
+
+class BeamSettings(Protocol):
+    """Settings of any job that releases beams, from the contact on."""
+
+    seed: int
+    chaos: Truncation
+    water: Water
+    device: DesignedBeam
+    beams: int
+
+
+@dataclass(frozen=True)
+class Ground:
+    """What beams of any thickness and gap meet at one humidity."""
+
+    model: ChaosModel  #: of the force laws of strips
+    laws: np.ndarray  #: sample of these (k, 4) [SI]
+    tips: tuple[np.ndarray, np.ndarray] | None  #: slopes and forces of tips, see `curves.tip_forces`; none for a bridge
+
+
+def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settings: BeamSettings) -> Ground:
+    """Force laws at a relative humidity, from the contact of the strips and of the tips; ``None`` for a bridge."""
+    with on_patch(settings.device.strip, settings.device.width):
+        model = releases.fitted(*curves.vectors(contact, humidity, settings.water), settings.chaos)
+    laws = draw_laws(model, releases.LAWS, releases.addresses(settings)("mesh"))
+    return Ground(model, laws, None if tips is None else curves.tip_forces(tips, humidity, settings.water))
+
+
+def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> dict[str, np.ndarray]:
+    """Sticking lengths by shape of a device, or of one of another thickness and gap, on its ground, (n,) each [m]."""
+    resolved = device.opening.resolved(device, met.laws)
+    address, draw = releases.addresses(settings), partial(draw_laws, met.model)
+    cracks = releases.arrests(device, resolved, draw, settings.beams, address)
+    held = None if met.tips is None else arcs.longest_free(*met.tips, device.beam)
+    return sticking_lengths(cracks, foundation_length(device.beam, met.laws), device, held)
 
 
 def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list[float]:

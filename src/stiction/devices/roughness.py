@@ -1,0 +1,95 @@
+r"""How rough a surface must be: where a length, or a force, over its roughness meets what is required of a device.
+
+Lengths and forces are known at a few roughnesses. The margin is :math:`\ln (l / l_\mathrm{required})` of a length, or
+:math:`-\ln (F / F_\mathrm{required})` of a force: what is positive suffices. Between the known points it is a cubic
+that is monotone where they are. It may cross zero several times: a stopper may hold most at a roughness inside a range.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import Akima1DInterpolator, PchipInterpolator
+
+#: Largest margin that is distinguished: a factor of 1000. No device sticks where the margin is infinite.
+LARGEST = np.log(1e3)
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Place at which the margin is zero."""
+
+    place: float  #: coordinate of the roughness
+    error: float  #: standard error, of the margin and of the cubic between its points
+
+
+def margins(values: np.ndarray, required: float, more_is_better: bool) -> np.ndarray:
+    """Margins (n,) of lengths or forces (n,) over the required one; NaN where they are not known.
+
+    Examples
+    --------
+    >>> margins(np.array([100.0, 200.0, np.inf]), 200.0, more_is_better=True).round(1)
+    array([-0.7,  0. ,  6.9])
+    """
+    with np.errstate(divide="ignore"):
+        ratios = np.log(np.asarray(values, float) / required)
+    return np.clip(ratios if more_is_better else -ratios, -LARGEST, LARGEST)
+
+
+def crossings(axis: np.ndarray, margin: np.ndarray, errors: np.ndarray) -> list[Crossing]:
+    """All places at which the margin is zero, increasing.
+
+    Parameters
+    ----------
+    axis : (n,) array
+        Coordinate of the roughness, increasing: one in which the margin is smooth, such as ln rms.
+    margin : (n,) array
+        NaN where it is not known: there are no crossings next to such a point.
+    errors : (n,) array
+        Standard errors of the margin. ASSUME: between two points it is that of the curve through them, because all
+        points have the same random numbers.
+
+    Returns
+    -------
+    list of Crossing
+        ASSUME: the cubic errs as much as it differs from that of Akima, which has other slopes at the points.
+    """
+    found = []
+    for points in _known(margin):
+        monotone = PchipInterpolator(axis[points], margin[points])
+        other = Akima1DInterpolator(axis[points], margin[points])
+        for place in _zeros(monotone):
+            error = np.hypot(np.interp(place, axis[points], errors[points]), other(place))
+            found.append(Crossing(place, float(error / abs(monotone.derivative()(place)))))
+    return found
+
+
+def sufficient(axis: np.ndarray, margin: np.ndarray) -> list[tuple[float, float]]:
+    """Ranges of the roughness, increasing, in which the margin is not negative; parameters as of `crossings`."""
+    found = []
+    for points in _known(margin):
+        monotone, known = PchipInterpolator(axis[points], margin[points]), axis[points]
+        ends = np.array([known[0], *_zeros(monotone), known[-1]])
+        enough = monotone((ends[:-1] + ends[1:]) / 2) >= 0
+        found += _joined(ends, enough)
+    return found
+
+
+def _known(margin: np.ndarray) -> list[slice]:
+    """Runs of at least two neighbouring points with a margin."""
+    runs = np.ma.clump_unmasked(np.ma.masked_invalid(margin))
+    return [run for run in runs if run.stop - run.start > 1]
+
+
+def _zeros(curve: PchipInterpolator) -> list[float]:
+    """Places inside a curve at which its sign changes; the ends of the curve are none."""
+    places = np.unique(curve.roots(extrapolate=False).round(12))
+    inside = places[(places > curve.x[0]) & (places < curve.x[-1])]
+    ends = np.array([curve.x[0], *inside, curve.x[-1]])
+    signs = np.sign(curve((ends[:-1] + ends[1:]) / 2))
+    return [float(place) for place, before, after in zip(inside, signs, signs[1:], strict=False) if before != after]
+
+
+def _joined(ends: Sequence[float], enough: Sequence[bool]) -> list[tuple[float, float]]:
+    """Ranges between neighbouring ends (n + 1) in which a condition (n) holds."""
+    return [(float(low), float(high)) for low, high, holds in zip(ends, ends[1:], enough, strict=False) if holds]

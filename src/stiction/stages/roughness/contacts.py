@@ -1,0 +1,139 @@
+"""Contacts of a device at several roughnesses of one of its surfaces: of its patch and, for cantilevers, of its tips.
+
+The samples of all contacts have the same random numbers. Form of the heights and shape of the spectrum stay.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis.shifts import value_of, with_value
+from stiction.config.kinds import ROUGHNESSES
+from stiction.config.merging import merged
+from stiction.config.units import without_unit
+from stiction.devices.risk import samples_for
+from stiction.plan.stage import At, Stage
+from stiction.stages.contact import contact as stage_contact
+from stiction.stages.contact import pairs
+from stiction.stages.devices import patch_settings
+from stiction.stages.devices.patch_settings import FOLDER
+from stiction.stages.surfaces.descriptions import description, drawn_as
+from stiction.stages.surfaces.rough_surfaces import both, of_pair
+
+#: Points of a curve, the last of which has the surface as it is given.
+POINTS = 8
+
+
+class Varied(NamedTuple):
+    """What is varied: section ``roughness`` of a device."""
+
+    surface: str
+    key: str  #: of `stiction.config.kinds.ROUGHNESSES`
+    low: float  #: ends of the range, in the unit of the key
+    high: float
+
+    def value(self, number: int) -> float | None:
+        """Value of a point in the unit of the key, ``None`` as it is given; evenly spaced, or by equal factors."""
+        if number == POINTS - 1:
+            return None
+        spaced = np.geomspace if ROUGHNESSES[self.key].logarithmic else np.linspace
+        return float(spaced(self.low, self.high, POINTS - 1)[number].round(9))
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that such a contact depends on apart from its surfaces."""
+
+    contact: pairs.Settings
+    pair: str  #: part of the addresses of random numbers
+    surface: str  #: the one that is changed; on both sides of the pair if both have it
+    quantity: str  #: rms, skewness or corner
+    value: float | None  #: [SI]; none for the surface as it is given
+
+
+def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Settings) -> xr.Dataset:
+    """Dataset of stage contact with the value of the quantity as a further variable.
+
+    Parameters
+    ----------
+    surfaces : sequence
+        Datasets (heights, spectrum) of the surfaces of beam and substrate.
+    settings : Settings
+    """
+    names = settings.contact.surfaces
+    changed = description(*surfaces[names.index(settings.surface)])
+    if settings.value is not None:
+        changed = with_value(changed, settings.quantity, settings.value)
+        drawn = drawn_as(changed, settings.contact.sampling.spacing)
+        surfaces = [drawn if name == settings.surface else same for name, same in zip(names, surfaces, strict=True)]
+    contact = stage_contact.compute(surfaces, settings.pair, "NG", settings.contact)
+    return contact.assign(roughness=float(value_of(changed, settings.quantity)))
+
+
+def roughness_of(contact: xr.Dataset) -> float:
+    """Value of the varied quantity of the surface of a contact [SI]."""
+    return float(contact.roughness)
+
+
+def varied(plan: Any, device: str) -> Varied:
+    """What is varied of the surfaces of a device."""
+    section = plan.config["devices"][device]["roughness"]
+    key = next(key for key in ROUGHNESSES if key in section)
+    return Varied(section["surface"], key, *section[key])
+
+
+def contacts_of(plan: Any, device: str, number: int) -> dict[str, str]:
+    """Names of the contacts of a point: of the patch of a device and of the tips of a cantilever."""
+    name = f"roughness/{device}_{number}"
+    tips = {"tips": f"{FOLDER}/tips/{name}"} if plan.designs.kind(device).has_tip else {}
+    return {"contact": f"{FOLDER}/{name}"} | tips
+
+
+def _of_patch(plan, device):
+    """Settings of the contact of the patch of a device, with as many stoppers as its share of stuck ones needs."""
+    ground, share = plan.designs.ground(device), plan.config["devices"][device]["requirement"]["share"]
+    samples = plan.config["contact"]["samples"]
+    if not plan.designs.kind(device).is_beam:
+        samples = max(samples, samples_for(share))
+    return patch_settings.on_patch(plan, At(**ground._asdict()), samples)
+
+
+def _of_tips(plan, device):
+    """Settings of the contact of the tips of a cantilever."""
+    return patch_settings.of_tips(plan, At(**plan.designs.tips(device)._asdict()))
+
+
+def _stage(name, folder, contact, words):
+    """Stage of one contact of a point; ``contact`` gives its settings by plan and device."""
+
+    def settings(plan, at):
+        what = varied(plan, at.device)
+        value, unit = what.value(int(at.number)), what.key.removeprefix(without_unit(what.key))
+        if value is not None and what.key in plan.config["surfaces"][what.surface]:
+            surfaces = {what.surface: {what.key: value}}  # on which the reach of tips depends
+            plan = replace(plan, config=merged(plan.config, {"surfaces": surfaces}))
+        own = {"surface": what.surface, "quantity": without_unit(what.key), "value" + unit * (value is not None): value}
+        return {"contact": contact(plan, at.device), "pair": plan.config["devices"][at.device]["pair"]} | own
+
+    return Stage.writing(
+        name,
+        f"{folder}/roughness/{{device}}_{{number}}",
+        inputs=lambda plan, at: of_pair(plan, plan.config["devices"][at.device]["pair"]),
+        settings=settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(both(data), settings),
+        label="contact",
+        message=f"Contact of {words} of {{device}}, roughness {{number}}.",
+        temporary=True,
+        cluster=True,
+        minutes=120,
+    )
+
+
+STAGES = (
+    _stage("roughness_contact", FOLDER, _of_patch, "the patch"),
+    _stage("roughness_tip_contact", f"{FOLDER}/tips", _of_tips, "the tips"),
+)

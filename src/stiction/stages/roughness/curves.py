@@ -1,0 +1,281 @@
+"""Stage roughness: safe length or force of a device over the roughness of a surface, and which roughness suffices.
+
+Every point of the curve is the device on surfaces of another roughness, with the same random numbers; the last one has
+the surfaces as they are given, and thus the results of the device itself.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from stiction.chaos.model import Truncation
+from stiction.config.kinds import ROUGHNESSES
+from stiction.config.units import in_si
+from stiction.contact import forcelaw
+from stiction.contact.environment import Water
+from stiction.devices import risk
+from stiction.devices.roughness import crossings, margins, sufficient
+from stiction.devices.stoppers import safe_force, stuck_patches
+from stiction.errors import NotConverged
+from stiction.plan.stage import Stage, select
+from stiction.stages.contact import curves
+from stiction.stages.contact.corrections import corrected
+from stiction.stages.devices import sticking, stoppers
+from stiction.stages.devices.patch_settings import corrections_of
+from stiction.stages.devices.releases import FORCE, DesignedBeam, section_of_beam
+from stiction.stages.roughness.contacts import POINTS, contacts_of, roughness_of, varied
+
+#: Groups of the samples whose scatter gives the error of a length due to their number.
+GROUPS = 20
+
+
+class Response(NamedTuple):
+    """Length [m], or restoring force [N], at which the allowed share p sticks; and the share that sticks at another."""
+
+    safe: float  #: one-sided 95 % bound
+    estimate: float  #: infinite if no device sticks at any length
+    error: float  #: standard error of the estimate
+    bound: float  #: shortest length that sticks on any surface; NaN of a force
+    stuck: tuple[float, float, float]  #: P(stuck) at the required length or force, with the ends of its 95 % band
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfBeam:
+    """Everything that a point depends on apart from its contacts: a beam that has to have a length."""
+
+    seed: int
+    chaos: Truncation
+    water: Water
+    humidities: tuple[float, ...]  #: [-]
+    device: DesignedBeam
+    beams: int
+    share: float  #: p [-]
+    length: float  #: required [m]
+
+    @property
+    def required(self) -> tuple[float, str]:
+        """What is required, with its unit."""
+        return self.length, "m"
+
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """All shares, as in other settings of safe lengths."""
+        return (self.share,)
+
+    @property
+    def shapes(self) -> tuple[str, ...]:
+        """End states in which the device may stick."""
+        return self.device.opening.shapes
+
+    def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> list[Response]:
+        """Safe lengths at a humidity by shape."""
+        met = sticking.ground(contact, tips, humidity, self)
+        lengths = sticking.released(self.device, met, self)
+        bounds = sticking.flooded_lengths(self.device, self.water, humidity)
+        scatter = self._scatter(contact, humidity)
+        return [self._response(one, bound, scatter) for one, bound in zip(lengths.values(), bounds, strict=True)]
+
+    def _response(self, lengths, bound, scatter):
+        """Response from sticking lengths (n,) [m] and their relative error due to the number of samples."""
+        stuck = tuple(float(part[0]) for part in risk.stuck_share(np.array([self.length]), lengths))
+        if not np.isfinite(lengths).any():
+            return Response(np.inf, np.inf, 0.0, bound, stuck)
+        (safe,) = sticking.safe_lengths(lengths, self)
+        error = float(np.hypot(safe.error, scatter * safe.estimate))
+        return Response(safe.length, safe.estimate, error, bound, stuck)
+
+    def _scatter(self, contact, humidity):
+        """Relative standard error of the length on the mean of the samples [-]."""
+        vectors, limit = curves.vectors(contact, humidity, self.water)
+        laws = forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit)
+        parts, groups = self.device.opening.contribution(laws), min(GROUPS, len(laws))
+
+        def length(samples):
+            return self.device.opening.length_on_mean(samples, self.device.beam)
+
+        return risk.error_of_surfaces([length(parts[k::groups]) for k in range(groups)]) / length(parts)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfStopper:
+    """As `OfBeam`, of a stopper that a force restores."""
+
+    water: Water
+    humidities: tuple[float, ...]  #: [-]
+    contact: tuple[float, float]  #: sides of the patch [m]
+    share: float  #: p [-]
+    restoring_force: float  #: [N]
+
+    shapes = (FORCE,)
+
+    @property
+    def required(self) -> tuple[float, str]:
+        """What is required, with its unit."""
+        return self.restoring_force, "N"
+
+    def responses(self, contact: xr.Dataset, _tips: None, humidity: float) -> list[Response]:
+        """Safe force at a humidity."""
+        forces = stoppers.forces(contact, humidity, self)
+        stuck = tuple(float(part[0]) for part in stuck_patches(forces, np.array([self.restoring_force])))
+        return [Response(*safe_force(forces, self.share), np.nan, stuck)]
+
+
+def of_job(plain: dict[str, Any]) -> OfBeam | OfStopper:
+    """Settings of a point from those of a job: those of beams have their dimensions."""
+    return in_si(OfBeam if "device" in plain else OfStopper, plain)
+
+
+# Points
+
+
+def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: OfBeam | OfStopper) -> xr.Dataset:
+    """One point of the curve: lengths or forces at all humidities; what cannot be computed comes with the reason.
+
+    Parameters
+    ----------
+    contact, tips : Dataset
+        Of `stiction.stages.roughness.contacts`; the latter ``None`` without tips.
+    settings : OfBeam or OfStopper
+    """
+    found, refused = [], []
+    for humidity in settings.humidities:
+        try:
+            found.append(settings.responses(contact, tips, humidity))
+            refused.append("")
+        except (ValueError, NotConverged) as reason:
+            found.append([Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)] * len(settings.shapes))
+            refused.append(str(reason))
+    return layout(found, refused, roughness_of(contact), contact.sizes["sample"], settings)
+
+
+def layout(
+    found: Sequence[Sequence[Response]],
+    refused: Sequence[str],
+    value: float,
+    samples: int,
+    settings: OfBeam | OfStopper,
+) -> xr.Dataset:
+    """Dataset of a point: responses by humidity and shape, and why those of a humidity are missing."""
+    required, unit = settings.required
+    over, note = ("humidity", "shape"), {"units": unit}
+    columns = {name: [[getattr(one, name) for one in row] for row in found] for name in Response._fields}
+    return xr.Dataset(
+        {name: (over, columns[name], note) for name in ("safe", "estimate", "error", "bound")}
+        | {
+            "stuck": ((*over, "end"), columns["stuck"], {"units": "1"}),
+            "refused": ("humidity", list(refused)),
+            "roughness": ((), value),
+            "samples": ((), samples if isinstance(settings, OfStopper) else settings.beams),
+            "required": ((), required, note),
+            "share": ((), settings.share, {"units": "1"}),
+        },
+        coords={
+            "humidity": list(settings.humidities),
+            "shape": list(settings.shapes),
+            "end": ["estimate", "low", "high"],
+        },
+    )
+
+
+# Curves
+
+
+def joined(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Dataset:
+    """Curve of all points over the roughness, where it crosses what is required, and in which ranges it suffices.
+
+    Parameters
+    ----------
+    points : sequence of Dataset
+        The last one has the surfaces as they are given; others at the same roughness are left out.
+    key : str
+        What is varied, of `stiction.config.kinds.ROUGHNESSES`.
+    surface : str
+        Name of the surface.
+    """
+    *others, given = points
+    apart = [one for one in others if not np.isclose(one.roughness, given.roughness, rtol=1e-6, atol=0)]
+    shared = ["required", "share", "samples"]
+    over = [one.drop_vars(shared).set_coords("roughness") for one in (*apart, given)]
+    curve = xr.concat(over, "roughness").sortby("roughness")
+    curve = curve.assign(given[shared]).assign(given=given.roughness).assign_attrs(key=key, surface=surface)
+    logarithmic = ROUGHNESSES[key].logarithmic
+    axis = np.log(curve.roughness.values) if logarithmic else curve.roughness.values
+    places, ranges = [], []
+    for humidity in curve.humidity.values:
+        for shape in curve["shape"].values:
+            one, at = curve.sel(humidity=humidity, shape=shape), (float(humidity), str(shape))
+            places += [(*at, found.place, found.error) for found in crossings(axis, *_margins(one, "estimate"))]
+            ranges += [(*at, *ends) for ends in sufficient(axis, _margins(one, "safe")[0])]
+    places, ranges = (np.array(rows, dtype=object).reshape(len(rows), 4) for rows in (places, ranges))
+    if logarithmic:
+        places[:, 2], ranges[:, 2:] = np.exp(places[:, 2].astype(float)), np.exp(ranges[:, 2:].astype(float))
+        places[:, 3] = places[:, 2] * places[:, 3]
+    return curve.assign(_rows("crossing", places, "place", "error") | _rows("range", ranges, "low", "high"))
+
+
+def _margins(one, name):
+    """Margins of a curve over what is required, and their standard errors."""
+    more_is_better = one.required.attrs["units"] == "m"
+    known = np.isfinite(one.estimate.values) & (one.estimate.values > 0)
+    errors = np.divide(one.error.values, one.estimate.values, out=np.zeros(known.size), where=known)
+    return margins(one[name].values, float(one.required), more_is_better), errors
+
+
+def _rows(dimension, rows, *names):
+    """Variables of rows (humidity, shape, two numbers named ``names``) along a dimension."""
+    humidity, shape, first, second = rows.T if len(rows) else ((),) * 4
+    columns = {"humidity": humidity, "shape": shape} | dict(zip(names, (first, second), strict=True))
+    kinds = {"shape": str}
+    return {
+        f"{dimension}_{name}": (dimension, np.array(list(values), kinds.get(name, float)))
+        for name, values in columns.items()
+    }
+
+
+# Stages
+
+
+def _settings(plan, at):
+    """What is required of a device, and everything that its length or force depends on apart from the contact."""
+    section = plan.config["devices"][at.device]
+    own = plan.config["design"] | section | section["requirement"] | {"water": plan.water(section["pair"])}
+    if not plan.designs.kind(at.device).is_beam:
+        return select(OfStopper, own)
+    common = {key: plan.config[key] for key in ("seed", "chaos")}
+    return select(OfBeam, own | common | {"device": section_of_beam(plan, at.device)})
+
+
+def _what(plan, device):
+    """What is varied, and of which surface."""
+    found = varied(plan, device)
+    return {"key": found.key, "surface": found.surface}
+
+
+STAGES = (
+    Stage.writing(
+        "roughness_point",
+        "devices/roughness/points/{device}_{number}",
+        # ASSUME: a correction to full elastic contact is that of the given surfaces at every roughness.
+        inputs=lambda plan, at: contacts_of(plan, at.device, int(at.number)) | corrections_of(plan, at.device),
+        settings=_settings,
+        compute=lambda data, at, settings: compute(
+            data["contact"], data.get("tips"), corrected(of_job(settings), data)
+        ),
+        message="Device {device} at roughness {number}.",
+        cluster=True,
+        minutes=120,
+    ),
+    Stage.writing(
+        "roughness",
+        "devices/roughness/{device}",
+        inputs=lambda plan, at: {
+            "points": [f"devices/roughness/points/{at.device}_{number}" for number in range(POINTS)]
+        },
+        settings=lambda plan, at: _what(plan, at.device),
+        compute=lambda data, at, settings: joined(data["points"], **settings),
+        message="Roughness that device {device} needs.",
+    ),
+)

@@ -1,0 +1,164 @@
+"""Devices over the roughness of a surface: today's results at the given one, required values put back, limits."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stiction
+from stiction.config.plan import Plan
+from stiction.contact.environment import Water
+from stiction.plan.graph import Graph, Results
+from stiction.report.devices import figures_roughness, tables_roughness
+from stiction.report.style import png
+from stiction.stages.roughness import curves
+from stiction.stages.roughness.contacts import POINTS, Varied
+
+SAMPLES, SHARE = 200, 0.05
+S1 = {"kind": "stopper", "pair": "b", "contact_um": [1, 1], "restoring_force_uN": 3, "humidities": [0.45, 0.6]}
+S1 |= {"requirement": {"share": SHARE}, "roughness": {"surface": "B2", "rms_nm": [2, 8]}}
+C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 10, "width_um": 6, "humidities": [0.88]}
+C1 |= {"requirement": {"share": 0.02, "length_um": 300}, "roughness": {"surface": "B2", "rms_nm": [3.4, 8]}}
+SECTIONS = {
+    "devices": {"S1": S1, "C1": C1},
+    "contact": {"samples": SAMPLES},
+    "chaos": {"order": 2},
+    "design": {"beams": 200, "shares": [0.02], "worst_humidities": [0.45, 0.6]},
+    "run": {"pairs": [], "studies": []},
+}
+CONFIG = stiction.load(SECTIONS)
+
+
+@pytest.fixture(scope="module")
+def stopper():
+    return stiction.Device("S1", Results.of(CONFIG))
+
+
+def forces_at(rms, **changed):
+    """Pull-off forces of the stopper on surfaces of an rms [m], at the second humidity (m,) [N]."""
+    surfaces = {"surfaces": {"B2": {"rms_nm": 1e9 * rms}}}
+    return stiction.Device("S1", Results.of(stiction.load(SECTIONS, surfaces, changed))).forces().pull_off[1].values
+
+
+def test_the_curve_of_a_stopper_at_the_given_roughness_is_todays_result(stopper):
+    found, today = stopper.roughness(), stopper.forces()
+    given = found.sel(roughness=float(found.given))
+    np.testing.assert_array_equal(given.stuck[:, 0], today.stuck.T)
+    contact = stopper.results[f"devices/contact/roughness/S1_{POINTS - 1}"]
+    xr.testing.assert_identical(contact.drop_vars("roughness"), stopper.contact)
+    assert float(found.given) == float(stopper.results["heights/B2"].rms)
+
+
+def test_the_curve_of_a_cantilever_at_the_given_roughness_is_todays_result():
+    device = stiction.Device("C1", Results.of(CONFIG))
+    today = device.safe_lengths(0.88).sel(share=0.02)
+    given = device.results[f"devices/roughness/points/C1_{POINTS - 1}"].sel(humidity=0.88)
+    for name, theirs in (("safe", "safe_length"), ("estimate", "estimate"), ("bound", "flooded_length")):
+        np.testing.assert_array_equal(given[name], today[theirs])
+    assert np.all(given.error > today.beams_error)
+
+
+def test_a_required_roughness_put_back_has_the_share_within_its_error(stopper):
+    found = stopper.roughness()
+    place, error = (float(found[name][-1]) for name in ("crossing_place", "crossing_error"))
+    assert float(found.crossing_humidity[-1]) == 0.6
+    statistical = np.sqrt(SHARE * (1 - SHARE) / SAMPLES)
+    assert abs(np.mean(forces_at(place) > 3e-6) - SHARE) < statistical  # on the surfaces of the curve
+    for rms, holds in ((place, True), (place - 5 * error, False)):
+        share = np.mean(forces_at(rms, seed=7) > 3e-6)  # on others, whose share has an error of its own
+        assert bool(abs(share - SHARE) < 3 * np.sqrt(2) * statistical) is holds
+
+
+def test_forces_of_a_stopper_in_dry_air_decrease_with_the_roughness(stopper):
+    found = stopper.roughness().sel(humidity=0.45, shape="force")
+    assert np.all(np.diff(found.estimate) < 0)
+    assert np.all(np.diff(found.stuck.sel(end="estimate")) <= 0)
+    assert np.all(found.safe > found.estimate)
+
+
+def test_water_alone_holds_smooth_stoppers_by_its_tension_and_rough_ones_less():
+    wet = {"van_der_waals": "none", "contact": {"samples": 60}}
+    wet |= {"devices": {"S1": {"humidities": [0.95], "roughness": {"rms_nm": [0.3, 30]}}}}
+    found = stiction.Device("S1", Results.of(stiction.load(SECTIONS, wet))).roughness().isel(humidity=0, shape=0)
+    flooded = Water(300.0).film(0.95)[1] * 1e-12
+    # The largest attraction is the vertex of a parabola, which exceeds the end of a plateau a little.
+    np.testing.assert_allclose(found.estimate[0], flooded, rtol=5e-3)
+    assert np.all(np.diff(found.estimate) <= 5e-3 * flooded)
+    assert float(found.estimate[-1]) < 0.5 * flooded
+
+
+def test_a_share_that_needs_more_stoppers_than_were_drawn_has_them():
+    more = Plan(stiction.load(SECTIONS, {"devices": {"S1": {"requirement": {"share": 1e-3}}}}))
+    settings = Graph(more).job("devices/contact/roughness/S1_0").settings
+    assert settings["contact"]["contact"]["samples"] == 2995
+    assert (
+        Graph(Plan(CONFIG)).job("devices/contact/roughness/S1_0").settings["contact"]["contact"]["samples"] == SAMPLES
+    )
+
+
+def test_points_are_spaced_by_equal_factors_or_evenly_and_the_last_one_is_the_given_surface():
+    values = [Varied("B2", "rms_nm", 1, 8).value(k) for k in range(POINTS)]
+    np.testing.assert_allclose(np.diff(np.log(values[:-1])), np.log(8) / (POINTS - 2), rtol=1e-8)
+    assert values[-1] is None
+    skewness = [Varied("B2", "skewness", -1, 0.5).value(k) for k in range(POINTS - 1)]
+    np.testing.assert_allclose(np.diff(skewness), 1.5 / (POINTS - 2), rtol=1e-8)
+
+
+def test_a_range_that_ends_at_the_given_roughness_has_it_once():
+    points = [point(value) for value in (1e-9, 2e-9, 3.4e-9, 3.4e-9 * (1 + 1e-15))]
+    found = curves.joined(points, "rms_nm", "B2")
+    np.testing.assert_array_equal(found.roughness, [1e-9, 2e-9, 3.4e-9 * (1 + 1e-15)])
+
+
+def point(rms, refused="", force=None):
+    """Point of a curve of a stopper with the force 1e-6 (4 nm / rms)³, or with another one [N]."""
+    settings = curves.OfStopper(water=None, humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6)
+    force = 1e-6 * (4e-9 / rms) ** 3 if force is None else force
+    response = curves.Response(1.1 * force, force, 0.03 * force, np.nan, (0.1, 0.05, 0.15))
+    return curves.layout([[response]], [refused], rms, 400, settings)
+
+
+RANGE = np.geomspace(1e-9, 8e-9, POINTS - 1)
+
+
+def test_page_and_table_say_which_roughness_suffices_with_its_error():
+    found = curves.joined([*map(point, RANGE), point(3.4e-9)], "rms_nm", "B2")
+    (sentence,) = tables_roughness.answers(found)
+    assert "at most 1 in 20 sticks where the rms of B2 is 4.13 to 8 nm" in sentence  # 4 nm (1.1)^(1/3)
+    assert "exactly 1 in 20 sticks at 4.000 ± 0.040 nm." in sentence
+    assert "at 3.4 nm, 10 % (5 to 15 %) stick" in sentence
+    table = tables_roughness.roughness({"S1": found})
+    assert sentence in table.caption
+    np.testing.assert_allclose(table.frame.value, np.sort([*(1e9 * RANGE), 3.4]))
+    assert png(figures_roughness.roughness(found))[:4] == b"\x89PNG"
+
+
+@pytest.mark.parametrize(
+    ("force", "said"),
+    [
+        (2e-6, "no rms of B2 of 1 to 8 nm suffices: nowhere there is it certain that at most 1 in 20 sticks."),
+        (0.5e-6, "at most 1 in 20 sticks at any rms of B2 of 1 to 8 nm (95 % confidence, given the drawn surfaces)."),
+        (0.0, "at most 1 in 20 sticks at any rms of B2 of 1 to 8 nm (95 % confidence, given the drawn surfaces)."),
+    ],
+)
+def test_none_and_all_of_a_range_are_answers(force, said):
+    points = [point(rms, force=force) for rms in (*RANGE, 3.4e-9)]
+    (sentence,) = tables_roughness.answers(curves.joined(points, "rms_nm", "B2"))
+    assert said in sentence
+
+
+def test_what_cannot_be_computed_is_named_with_its_reason_and_leaves_the_rest():
+    points = [point(RANGE[0], "too smooth", np.nan), *map(point, RANGE[1:]), point(3.4e-9)]
+    sentence, refusal = tables_roughness.answers(curves.joined(points, "rms_nm", "B2"))
+    assert "where the rms of B2 is 4.13 to 8 nm" in sentence
+    assert "computed for 1.41 to 8 nm" in sentence
+    assert refusal == "Not computed at a rms of B2 of 1 nm (RH 0.6): too smooth."
+
+
+@pytest.mark.slow
+def test_the_stopper_of_the_issue_sticks_at_3_4_nm_and_not_at_5_nm():
+    bump = {"contact_um": [5, 5], "restoring_force_uN": 30, "humidities": [0.6], "requirement": {"share": 0.01}}
+    bump |= {"roughness": {"rms_nm": [3.4, 5]}}
+    few = {"contact": {"samples": 300}, "chaos": {"order": 6}, "devices": {"S1": bump}}
+    found = stiction.Device("S1", Results.of(stiction.load(SECTIONS, few))).roughness()
+    ends = found.stuck.sel(shape="force", humidity=0.6).isel(roughness=[0, -1])
+    np.testing.assert_allclose(ends.sel(end="estimate"), [0.84, 0], atol=0.005)
