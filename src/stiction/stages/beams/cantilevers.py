@@ -1,7 +1,7 @@
 """Nominal beams from the settings of a job."""
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 from stiction.beam.cantilever import Beam
 from stiction.plan.stage import select
@@ -40,24 +40,16 @@ class StripLength:
     strip_length: float  #: l_meso [m]
 
 
-class Settings(Protocol):
-    """Sections of the settings of any job with beams."""
-
-    solid: Stiffness
-    beam: Dimensions
-    pairs: dict[str, Gap]
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Cantilevers:
-    """Settings of a job that needs only the nominal beams of some pairs."""
+    """Sections of the settings of any job with beams: what the nominal beams of some pairs depend on."""
 
     solid: Stiffness
     beam: Dimensions
     pairs: dict[str, Gap]
 
 
-def cantilever(settings: Settings, pair: str) -> Beam:
+def cantilever(settings: Cantilevers, pair: str) -> Beam:
     """Nominal beam of a pair."""
     size, of_pair = settings.beam, settings.pairs[pair]
     return Beam(

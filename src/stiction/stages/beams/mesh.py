@@ -14,7 +14,7 @@ from stiction.contact import forcelaw
 from stiction.errors import NotConverged
 from stiction.plan.stage import Stage
 from stiction.progress import progress
-from stiction.stages.beams.cantilevers import Dimensions, Gap, Stiffness, cantilever, sections
+from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.laws import forces as stage_forces
 
 
@@ -26,16 +26,13 @@ class Meshes:
     strips: tuple[float, ...]  #: distances of the contact points [m]
 
 
-@dataclass(frozen=True)
-class Settings:
+@dataclass(frozen=True, kw_only=True)
+class Settings(Cantilevers):
     """Everything that the study depends on apart from the forces."""
 
     mesh: Meshes
     case: str
     pair: str
-    solid: Stiffness
-    beam: Dimensions
-    pairs: dict[str, Gap]
 
 
 def compute(forces: xr.Dataset, settings: Settings) -> xr.Dataset:

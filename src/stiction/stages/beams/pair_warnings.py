@@ -15,7 +15,7 @@ from stiction.devices import limits
 from stiction.plan.names import by_name, by_outcome
 from stiction.plan.stage import Stage, select
 from stiction.run.atomic import save_text
-from stiction.stages.beams.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever, sections
+from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
 from stiction.stages.beams.releases import ended, stuck_lengths
 
 #: Warnings by their subject, such as ``pair b, RH 0.67, G``.
@@ -24,13 +24,10 @@ Warnings = dict[str, list[str]]
 Materials = Sequence[tuple[str, Sequence[str]]]
 
 
-@dataclass(frozen=True)
-class OfPairs:
+@dataclass(frozen=True, kw_only=True)
+class OfPairs(Cantilevers):
     """Nominal beams of all pairs, and their strips."""
 
-    solid: Stiffness
-    beam: Dimensions
-    pairs: dict[str, Gap]
     sampling: StripLength
     water: dict[str, Water]  #: by pair
 

@@ -4,7 +4,7 @@ Separate from `stiction.stages.beams.beams`, so that a change of the dataset of 
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import partial
 from typing import Any
 
@@ -18,7 +18,7 @@ from stiction.chaos.model import ChaosModel, draw_laws
 from stiction.config.cases import pair_of
 from stiction.plan.stage import select
 from stiction.stages.beams import cantilevers
-from stiction.stages.beams.cantilevers import Dimensions, Gap, Stiffness, StripLength, cantilever, strips_along
+from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, strips_along
 from stiction.streams import stream
 
 #: Number of force laws from which the elements of the beams of a case are chosen.
@@ -27,18 +27,27 @@ _LAWS = 10_000
 STATES = tuple(state.label for state in EndState)
 
 
-@dataclass(frozen=True)
-class Settings:
-    """Everything that the beams of a case depend on apart from the force laws."""
+@dataclass(frozen=True, kw_only=True)
+class OnStrips(Cantilevers):
+    """What beams on random strips depend on apart from their number, their scatter and the force laws."""
 
     seed: int
-    solid: Stiffness
-    beam: Dimensions
-    pairs: dict[str, Gap]
     sampling: StripLength
+    refined: bool = False  #: whether the elements follow the force laws, as in `stiction.beam.resolution.resolved`
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings(OnStrips):
+    """Everything that the beams of a case depend on apart from the force laws."""
+
     samples: int  #: number of beams
     scatter: float  #: relative standard deviation of each dimension [-]
-    refined: bool = False  #: whether the elements follow the force laws, as in `stiction.beam.resolution.resolved`
+
+
+def without_scatter(settings: OnStrips, samples: int) -> Settings:
+    """Settings of this number of beams of nominal dimensions."""
+    common = {one.name: getattr(settings, one.name) for one in fields(OnStrips)}
+    return Settings(**common, samples=samples, scatter=0)
 
 
 def released(model: ChaosModel, case: str, settings: Settings, threads: int = 1, shapes: int = 0) -> dict:

@@ -9,29 +9,21 @@ import xarray as xr
 from stiction.chaos.model import resample_laws
 from stiction.plan.stage import Stage
 from stiction.stages.beams import releases
-from stiction.stages.beams.cantilevers import Dimensions, Gap, Stiffness, StripLength
 from stiction.stages.laws.forces import vectors
 from stiction.streams import stream
 
 
-@dataclass(frozen=True)
-class Settings:
+@dataclass(frozen=True, kw_only=True)
+class Settings(releases.OnStrips):
     """Everything that the beams depend on apart from the forces."""
 
-    seed: int
-    solid: Stiffness
-    beam: Dimensions
-    pairs: dict[str, Gap]
-    sampling: StripLength
     beams: int  #: number of beams
-    refined: bool = False  #: as in `stiction.stages.beams.releases.Settings`
 
 
 def compute(forces: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
     """Draw the force laws of every beam from the samples, with replacement, and release the beam."""
     draw = partial(resample_laws, *vectors(forces))
-    sections = settings.solid, settings.beam, settings.pairs, settings.sampling
-    beams = releases.Settings(settings.seed, *sections, samples=settings.beams, scatter=0, refined=settings.refined)
+    beams = releases.without_scatter(settings, settings.beams)
     address = partial(stream, settings.seed, "resampling", case)
     return layout(releases.released_on(draw, case, beams, address))
 

@@ -12,24 +12,17 @@ from stiction.config.cases import humidity_of, pair_of
 from stiction.contact.environment import Water
 from stiction.plan.stage import Stage
 from stiction.stages.beams import releases
-from stiction.stages.beams.cantilevers import Dimensions, Gap, Stiffness, StripLength
 from stiction.stages.contact import corrections, curves
 from stiction.stages.contact.contact import first
 
 
-@dataclass(frozen=True)
-class Settings:
+@dataclass(frozen=True, kw_only=True)
+class Settings(releases.OnStrips):
     """Settings of the stages after contact: samples of it, water, force laws and beams without scatter."""
 
-    seed: int
     samples: int  #: number of pairs of surfaces, the first of the contact
     water: Water
     chaos: Truncation
-    solid: Stiffness
-    beam: Dimensions
-    pairs: dict[str, Gap]
-    sampling: StripLength
-    refined: bool = False  #: whether the elements follow the force laws, as in `stiction.beam.resolution.resolved`
 
 
 def compute(contact: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
@@ -37,16 +30,7 @@ def compute(contact: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
     humidity = humidity_of(case)
     vectors, limit = curves.vectors(first(contact, settings.samples), humidity, settings.water)
     model = fit(vectors, limit, settings.chaos.order, settings.chaos.dimension_tolerance)
-    beams = releases.Settings(
-        settings.seed,
-        settings.solid,
-        settings.beam,
-        settings.pairs,
-        settings.sampling,
-        samples=settings.beam.samples,
-        scatter=0,
-        refined=settings.refined,
-    )
+    beams = releases.without_scatter(settings, settings.beam.samples)
     return layout([humidity], [vectors[:, 0]], [releases.released(model, case, beams)])
 
 

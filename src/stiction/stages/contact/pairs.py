@@ -11,24 +11,16 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
-from stiction.contact import solids
 from stiction.contact.asperity import Asperity
 from stiction.contact.pair import Definition, EquivalentSurface, SurfacePair
+from stiction.contact.solids import Solid, asperity_between
 from stiction.contact.tilted import Tilt, TiltedPair
 from stiction.models import SIDES
 from stiction.stages.surfaces.rough_surfaces import Sampling, Width, rough_surface
 from stiction.streams import stream
 
 #: Materials of beam and substrate by side, where section ``solid`` does not hold for both.
-Materials = dict[str, solids.Solid]
-
-
-@dataclass(frozen=True)
-class Solid:
-    """Elastic constants of both bodies."""
-
-    young_modulus: float  #: E [Pa]
-    poisson_ratio: float  #: ν [-]
+Materials = dict[str, Solid]
 
 
 @dataclass(frozen=True)
@@ -72,15 +64,14 @@ class Settings:
     tilt: Tilt | None = None  #: of the tips of beams, with the step of their distances; none for surfaces without slope
 
 
-def bodies(settings: Solids) -> tuple[solids.Solid, solids.Solid]:
-    """Materials of beam and substrate: as stated by side, otherwise section ``solid`` and polysilicon."""
-    both = solids.Solid(settings.solid.young_modulus, settings.solid.poisson_ratio)
-    return tuple(settings.materials.get(side, both) for side in SIDES)
+def bodies(settings: Solids) -> tuple[Solid, Solid]:
+    """Materials of beam and substrate: as stated by side, otherwise section ``solid``."""
+    return tuple(settings.materials.get(side, settings.solid) for side in SIDES)
 
 
 def asperity_of(settings: Solids) -> Asperity:
     """Model of one summit of the two bodies."""
-    return solids.asperity_between(*bodies(settings), settings.van_der_waals)
+    return asperity_between(*bodies(settings), settings.van_der_waals)
 
 
 def equivalent_surface(

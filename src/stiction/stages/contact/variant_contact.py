@@ -6,10 +6,11 @@ import numpy as np
 import xarray as xr
 
 from stiction.contact.pair import solid_pressure
+from stiction.contact.solids import Solid
 from stiction.plan.stage import Stage
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import variant_summits
-from stiction.stages.contact.pairs import Materials, Solid, asperity_of
+from stiction.stages.contact.pairs import Materials, asperity_of
 
 
 @dataclass(frozen=True)
