@@ -7,6 +7,8 @@ import pandas as pd
 import xarray as xr
 
 from stiction.beam.energy import CRACK_LENGTH_POWER
+from stiction.config.units import in_si
+from stiction.contact.environment import Water
 from stiction.contact.forcelaw import admissible
 from stiction.estimates import mean_on_shared_samples, mean_with_error
 from stiction.models import surface_model
@@ -261,7 +263,8 @@ def _table_3(data, _at, settings):
     """Averages over the beams of every case, with published and measured lengths."""
     scanned = ((pair, pair_errors(study)) for pair, study in data["by_scans"].items())
     by_scans = {(pair, humidity): error for pair, errors in scanned for humidity, error in errors.items()}
-    warnings = pair_warnings.of_thin_films(data["beams"], settings["water"])
+    water = {pair: in_si(Water, section) for pair, section in settings["water"].items()}
+    warnings = pair_warnings.of_thin_films(data["beams"], water)
     known = published.compared(data, settings)
     return table_3(data["beams"], data["forces"], known, by_scans, warnings, data.get("errors"))
 

@@ -11,6 +11,8 @@ from plans import job_settings
 
 from stiction.config.files import load
 from stiction.config.plan import Plan
+from stiction.config.units import in_si
+from stiction.contact.environment import Water
 from stiction.contact.meniscus import film, surface_energy
 from stiction.devices import limits
 from stiction.devices.limits import NOT_MODELLED
@@ -68,7 +70,8 @@ def test_each_dimension_beyond_the_model_is_said_once(beam, words):
 
 def about_pairs(cases, plasticity, plan=PLAN):
     settings = job_settings(plan, "warnings.md")
-    return pair_warnings.of_pairs(cases, plasticity, settings["materials"], settings["pairs"])
+    nominal = in_si(pair_warnings.OfPairs, settings["pairs"])
+    return pair_warnings.of_pairs(cases, plasticity, settings["materials"], nominal)
 
 
 PLASTIC = {pair: xr.Dataset({"plastic_share": share}) for pair, share in {"a": 0.0, "b": 0.02, "c": 0.58}.items()}
@@ -250,7 +253,7 @@ def test_cases_of_the_main_line_in_air_that_is_hardly_humid_enough_are_said():
     cases = {("b", 0.39, "NG"): beams(9, 0), ("b", 0.39, "G"): beams(9, 0), ("b", 0.4, "NG"): beams(9, 0)}
     said = {subject for subject, sentences in about_pairs(cases, PLASTIC).items() if "thinner" in " ".join(sentences)}
     assert said == {"pair b, RH 0.39, NG", "pair b, RH 0.39, G"}
-    (sentence,) = pair_warnings.of_thin_films(cases, {"b": {"temperature_K": 300}})
+    (sentence,) = pair_warnings.of_thin_films(cases, {"b": Water(300.0)})
     assert sentence.startswith("Pair b, RH 0.39: The film of water is 1.1 nm high")
 
 

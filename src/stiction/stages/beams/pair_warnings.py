@@ -67,7 +67,7 @@ def of_pairs(
     beams: Mapping[tuple[str, float, str], xr.Dataset],
     plasticity: Mapping[str, xr.Dataset],
     materials: Mapping[str, Materials],
-    plain: dict[str, Any],
+    settings: OfPairs,
 ) -> Warnings:
     """Warnings about the main line.
 
@@ -79,10 +79,8 @@ def of_pairs(
         Pair to the dataset of study plasticity, as far as it was studied.
     materials : dict
         Pair to the names of its materials, each with the properties that are stated.
-    plain : dict
-        Settings of a job, `OfPairs` in units of the configuration.
+    settings : OfPairs
     """
-    settings = in_si(OfPairs, plain)
     found = {
         f"pair {pair}": limits.given(*contact_warnings(plastic_share(plasticity, pair), materials[pair]))
         for pair in settings.pairs
@@ -96,17 +94,17 @@ def of_pairs(
     return found
 
 
-def of_thin_films(cases: Iterable[tuple[str, float, str]], plain: Mapping[str, dict[str, Any]]) -> list[str]:
+def of_thin_films(cases: Iterable[tuple[str, float, str]], water: Mapping[str, Water]) -> list[str]:
     """Warnings about films that are hardly a liquid, one for each pair and humidity of some cases.
 
     Parameters
     ----------
     cases : iterable of tuple
         Pair, humidity and model.
-    plain : dict
-        Water by pair in units of the configuration.
+    water : dict
+        Pair to its water.
     """
-    films = {(pair, humidity): height(humidity, in_si(Water, plain[pair])) for pair, humidity, _ in cases}
+    films = {(pair, humidity): height(humidity, water[pair]) for pair, humidity, _ in cases}
     found = {case: limits.thin_film(film) for case, film in films.items()}
     return [f"Pair {pair}, RH {humidity:g}: {sentence}" for (pair, humidity), sentence in found.items() if sentence]
 
@@ -134,7 +132,8 @@ def as_markdown(warnings: Warnings) -> str:
 
 def _of_pairs(data, _at, settings):
     """Warnings about all pairs as a page."""
-    return as_markdown(of_pairs(data["beams"], data["plasticity"], settings["materials"], settings["pairs"]))
+    nominal = in_si(OfPairs, settings["pairs"])
+    return as_markdown(of_pairs(data["beams"], data["plasticity"], settings["materials"], nominal))
 
 
 STAGES = (
