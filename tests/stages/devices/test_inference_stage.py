@@ -414,9 +414,16 @@ def test_data_that_nothing_explains_are_refused_in_words():
 
 def test_humidities_and_dimensions_beyond_those_of_the_test_beams_are_extrapolations():
     dry = tables_inference.warnings(computed(as_computed(humidities=(0.67,)), humidities=(0.67,)))
-    assert dry == [
+    assert dry[:1] == [
         "Test beams were measured from RH 0.67 to 0.67: the prediction at RH 0.44, 0.92 is an extrapolation."
     ]
+    # Lengths of equal beams are as the energy to the power of -1/4.
+    longer, shorter = (ENERGY[0.67] / ENERGY[0.44]) ** 0.25 - 1, (ENERGY[0.92] / ENERGY[0.67]) ** 0.25 - 1
+    assert dry[1].startswith(
+        f"C1, RH 0.44: cracks of equal beams would be {100 * longer:.0f} % longer than the longest"
+    )
+    assert dry[2].startswith(f"C1, RH 0.92: cracks of equal beams would be {100 * shorter:.0f} % shorter than")
+    assert len(dry) == 3
     thin = replace(ARRAY, thickness=1.2 * UM)
     found = computed([length(thin, rh) for rh in HUMIDITIES], array=thin)
     assert tables_inference.warnings(found)[0].startswith("The thickness of the device, 2.6 µm, differs by more than a")
@@ -463,6 +470,13 @@ def test_the_figure_shows_counts_at_the_lengths_of_their_beams():
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert "measured, 95 %" not in labels
     assert labels[-1].startswith("length of counted beams")
+
+
+def test_bands_at_one_humidity_have_a_width():
+    for humidities in ((0.67,), (0.44, 0.67)):
+        panel = figures_inference.test_beams(computed(as_computed(1.1, humidities), humidities=humidities)).axes[0]
+        for band in panel.collections[:2]:
+            assert np.ptp(band.get_paths()[0].vertices[:, 0]) >= 0.019
 
 
 def test_no_bar_of_the_inputs_touches_the_frame():

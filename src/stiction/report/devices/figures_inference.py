@@ -14,6 +14,8 @@ _ROW, _AROUND, _HALF = 0.19, 0.9, 0.36
 #: Marks of measured crack lengths and of the lengths of counted beams.
 _POINT = {"fmt": "o", "color": "black", "markersize": 3}
 _COUNT = {"marker": "D", "color": "black", "markersize": 3, "linestyle": "none", "markerfacecolor": "white"}
+#: Ends of a band at a single humidity, from this [-].
+_ALONE = np.array([-0.01, 0.01])
 #: Half width of an interval that holds 95 %, in standard deviations.
 _INTERVAL = 1.96
 
@@ -47,7 +49,9 @@ def test_beams(found: xr.Dataset) -> Figure:
 
 def _lengths(panel, data):
     """Crack lengths and counts of one array over the humidity; returns the entries of the legend by their name."""
-    humidity, order = data.datum_humidity.values, np.argsort(data.datum_humidity.values)
+    humidity = data.datum_humidity.values
+    order = np.argsort(humidity) if len(humidity) > 1 else [0, 0]
+    along = humidity[order] + (0 if len(humidity) > 1 else _ALONE)
     computed, shift = TO_UM * data.computed.values, data.datum_shift.values
     entries = []
     cases = (
@@ -56,10 +60,8 @@ def _lengths(panel, data):
     )
     for name, centre, deviation, colour in cases:
         reach = np.exp(_INTERVAL * deviation.values)
-        panel.fill_between(
-            humidity[order], (centre / reach)[order], (centre * reach)[order], color=colour, alpha=0.25, lw=0
-        )
-        entries += panel.plot(humidity[order], centre[order], color=colour, label=f"{name} the measurement, 95 %")
+        panel.fill_between(along, (centre / reach)[order], (centre * reach)[order], color=colour, alpha=0.25, lw=0)
+        entries += panel.plot(along, centre[order], color=colour, label=f"{name} the measurement, 95 %")
     if data.measured.notnull().any():
         error = _INTERVAL * TO_UM * (data.measured * data.datum_measured_error).values
         entries.append(panel.errorbar(humidity, TO_UM * data.measured, yerr=error, **_POINT, label="measured, 95 %"))

@@ -15,6 +15,9 @@ from stiction.stages.devices.releases import ARC, EITHER, FORCE, MIDDLE, S_SHAPE
 #: p value below which data count as not explained; number of standard deviations beyond which an input counts as wrong;
 #: ratio of dimensions beyond which a prediction counts as extrapolated. ASSUME: a factor of two.
 UNLIKELY, LARGE, SIZES = 0.05, 2.0, 2.0
+#: Difference of ln l of equal beams beyond which it counts as extrapolated. ASSUME: 10 % of the length, over which the
+#: standard deviation of the slope of the model is 3 %.
+ADHESION = 0.1
 #: Combinations whose standard deviation falls to less than this part count as determined; inputs with a correlation of
 #: less than this part of the largest one are not named.
 DETERMINED, NAMED = 0.5, 0.25
@@ -303,6 +306,7 @@ def _extrapolated(found):
             f"Test beams were measured from RH {low:g} to {high:g}: the prediction at RH "
             f"{', '.join(f'{humidity:g}' for humidity in beyond)} is an extrapolation."
         )
+    yield from _beyond_in_adhesion(found)
     for size in OWN if "own_thickness" in found else ():
         device = float(found[f"own_{size}"][0])
         nearest = min(found[size].values, key=lambda value: abs(np.log(device / value)))
@@ -310,6 +314,21 @@ def _extrapolated(found):
             yield (
                 f"The {size} of the device, {TO_UM * device:.3g} µm, differs by more than a factor of {SIZES:g} from "
                 f"that of the test beams, {TO_UM * nearest:.3g} µm: the prediction is an extrapolation."
+            )
+
+
+def _beyond_in_adhesion(found):
+    """Cracks of the device longer, or shorter, than equal beams would have under the conditions of the test beams."""
+    least, most = (float(found.datum_reduced.quantile(end)) for end in (0, 1))
+    for result, response, reduced in zip(
+        found.result.values, found.response.values, found.result_reduced.values, strict=True
+    ):
+        beyond = max(reduced - most, least - reduced)
+        if response == S_SHAPE and beyond > ADHESION:
+            words = "longer than the longest" if reduced > most else "shorter than the shortest"
+            yield (
+                f"{result}: cracks of equal beams would be {100 * np.expm1(beyond):.0f} % {words} of the test beams, "
+                "so that the slope of the model over the adhesion is extrapolated."
             )
 
 

@@ -285,6 +285,7 @@ def of_data(
     lengths |= {key: [data[key] for data in own] for key in ("measured", "beam_length")}
     numbers = {"measured_error": [data["error"] for data in own]} | _both(prior, posterior, responses[: len(beams)])
     lengths |= {size: [getattr(one.beam, size) for one in beams] for size in OWN}
+    numbers |= {"reduced": [one.reduced for one in beams]}
     numbers |= {"rest": posterior.mean[[posterior.names.index(inference.rest(one.condition)) for one in beams]]}
     return xr.Dataset(
         {name: ("datum", value, {"units": "m"}) for name, value in lengths.items()}
@@ -349,6 +350,7 @@ def of_results(
 ) -> xr.Dataset:
     """Results of a device before and after the measurement: mean crack lengths, lengths that few tips hold, forces."""
     numbers = {"of_inputs": inputs.of(responses[:, : len(inputs.names)])[1]} | _both(prior, posterior, responses)
+    numbers |= {"reduced": [one.reduced for one in of_device]}
     centre = [float(one.budget.centre) for one in of_device], {"units": of_device[0].budget.centre.attrs["units"]}
     sizes = {size: [getattr(one.beam, size) for one in of_device] for size in OWN if of_device[0].beam}
     return xr.Dataset(
