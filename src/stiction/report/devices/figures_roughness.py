@@ -42,7 +42,7 @@ def roughness(found: xr.Dataset) -> Figure:
         f"{'restoring force [µN]' if shapes == [FORCE] else 'length [µm]'}, p = {float(found.share):g}"
     )
     letter(axes, [END_STATES[shape].by for shape in shapes])
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2 * len(shapes))
     return figure
 
 

@@ -95,7 +95,7 @@ def _given(found, humidity, shape):
     if np.isnan(stuck):
         return "On the surfaces as they are given, it is not computed."
     place = f"{_shown(found, float(found.given))}{_unit(found)}"
-    return f"On the surfaces as they are given, at {place}, {stuck:.3g} % ({low:.2g} to {high:.2g} %) stick."
+    return f"On the surfaces as they are given, at {place}, {stuck:.3g} % ({low:.3g} to {high:.3g} %) stick."
 
 
 def _rows(found, dimension, humidity, shape):
