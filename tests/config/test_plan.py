@@ -222,7 +222,8 @@ def test_coatings_of_both_surfaces_keep_solids_apart_in_the_gaps_and_each_its_ow
         materials={"Thin": {"coating_nm": 0}}, surfaces={"B2": {"material": "Thin"}}, attraction={"reach": "all"}
     )
     assert none.water("b") == plan(attraction={"reach": "all"}).water("b")
-    assert coated.stated_properties("b") == [["Thin", []], ["Thick", ["contact angle"]]]
+    assert coated.stated_properties("b") == [["Thin", ["coating"]], ["Thick", ["coating", "contact angle"]]]
+    assert none.stated_properties("b") == [["Thin", []]]
 
 
 def test_attraction_across_gaps_is_a_variant_on_the_contact_of_the_base():

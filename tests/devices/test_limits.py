@@ -25,6 +25,7 @@ CASES = [
         ("gold", WORDS),
     ),
     (limits.default_material, ("gold", ()), "5 properties of gold", ("gold", WORDS)),
+    (limits.spacer, ("FDTS", ("contact angle", "coating")), "coating of FDTS.* on the unsafe side", ("gold", WORDS)),
     (limits.thin_film, (1 * NM,), "1 nm high, thinner than 4 molecules, 1.12 nm", (1.13 * NM,)),
     (limits.wide_meniscus, (10 * UM, (3 * UM, 3 * UM)), "10 µm.*667 %.*10 %", (0.1 * UM, (3 * UM, 3 * UM))),
     (limits.filled_gap, (2 * UM, 103 * NM, 3.4 * NM), "2 µm.*106 nm", (20 * UM, 103 * NM, 3.4 * NM)),

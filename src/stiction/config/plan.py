@@ -18,7 +18,7 @@ from stiction.config.designs import Designs, hamaker_constant, hamaker_constants
 from stiction.config.files import paper
 from stiction.config.measured import digest, evaluation, is_measured, preliminary_estimates, quantities, source
 from stiction.config.merging import merged
-from stiction.devices.materials import COATING, ELASTIC, PROPERTIES
+from stiction.devices.materials import COATED, COATING, ELASTIC, PROPERTIES
 from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SIDES, SURFACE_MODELS
 
 #: Keys of the measured statistics of a surface: moments of the heights and summit statistics.
@@ -101,12 +101,16 @@ class Plan:
     def stated_properties(self, pair: str) -> list:
         """Names of the materials of a pair, each with its stated properties in words; section solid if it is one."""
         named, solid = self.config.get("materials", {}), self.config["solid"]
-        words = {one.key: one.words for one in PROPERTIES.values()}
+        words = {one.key: one.words for one in PROPERTIES.values()} | {COATING: COATED}
         if abs(solid["young_modulus_GPa"] / paper()["solid"]["young_modulus_GPa"] - 1) > _POLYSILICON:
             named = named | {"the solid": solid}
         surfaces = self.config["surfaces"]
         used = dict.fromkeys(surfaces[surface].get("material", "the solid") for surface in self.sides(pair))
-        return [[name, [words[key] for key in named[name] if key in words]] for name in used if name in named]
+        return [
+            [name, [words[key] for key, value in named[name].items() if key != COATING or value]]
+            for name in used
+            if name in named
+        ]
 
     def water(self, pair: str, variant: str = "base") -> dict:
         """Section ``water`` of a pair: with the contact angles if one is not zero, and the attraction across gaps."""

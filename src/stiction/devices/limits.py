@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 
 from stiction.constants import WATER_MOLECULE
-from stiction.devices.materials import PROPERTIES
+from stiction.devices.materials import COATED, PROPERTIES
 
 #: Largest plastic share of the contact area. Pair c has 58 %, and its beams stick at 72 % of the predicted length.
 PLASTIC = 0.02
@@ -82,6 +82,16 @@ def default_material(name: str, stated: Sequence[str]) -> str | None:
     return (
         f"{len(missing)} properties of {name} are not stated; those of section solid and of polysilicon are used: "
         f"{', '.join(missing)}."
+    )
+
+
+def spacer(name: str, stated: Sequence[str]) -> str | None:
+    """A coating, whose own attraction is not in the model; ``stated`` lists inputs of its material that are given."""
+    if COATED not in stated:
+        return None
+    return (
+        f"The coating of {name} counts as a spacer that attracts no more than the air or water around it. Real "
+        "coatings attract, so that this result is on the unsafe side; the one without coating_nm is on the safe side."
     )
 
 

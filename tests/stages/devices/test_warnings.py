@@ -151,6 +151,7 @@ def test_a_device_within_the_limits_has_no_warning():
         ({"device": replace(C1, thickness=50 * UM)}, "times as long as the beam is thick"),
         ({"device": replace(C1, width=700 * UM)}, "bends as a plate"),
         ({"materials": (("Gold", ("hardness",)),)}, "4 properties of Gold are not stated"),
+        ({"materials": (("polysilicon", ("coating",)),)}, "coating of polysilicon counts as a spacer"),
     ],
 )
 def test_each_limit_of_a_device_is_said_once(changes, words):

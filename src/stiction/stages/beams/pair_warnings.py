@@ -54,8 +54,8 @@ def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
 
 def contact_warnings(plastic: float, materials: Materials, effect: str = limits.SHORTER) -> list[str | None]:
     """Warnings, or None, about the contact of a pair."""
-    defaults = (limits.default_material(name, stated) for name, stated in materials)
-    return [limits.plastic_contact(plastic, effect), *defaults]
+    about = (limit(*material) for material in materials for limit in (limits.default_material, limits.spacer))
+    return [limits.plastic_contact(plastic, effect), *about]
 
 
 def plastic_share(plasticity: Mapping[str, xr.Dataset], pair: str) -> float:
