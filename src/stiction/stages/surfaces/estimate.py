@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 import xarray as xr
@@ -31,6 +31,15 @@ MOMENTS = ("ln_rms", "skewness", "kurtosis")
 PARAMETERS = ("ln_plateau", "ln_corner", "slope")
 _MOMENT, _SUMMITS = {"long_name": "ln of the rms in metres, skewness, kurtosis"}, {"units": "m, m-2"}
 _CHI2, _P = {"units": "1", "long_name": "chi squared"}, {"units": "1", "long_name": "probability of a larger chi²"}
+_WAVE = {"units": "rad m-1"}
+#: Variables of the fields of `stiction.scans.whittle.Reach`, and their attributes.
+_REACH = {
+    "lowest": {"long_name": "smallest wave number of the fit"},
+    "highest": {"long_name": "largest wave number of the fit"},
+    "nyquist": {},
+    "tip": {"long_name": "wave number beyond which the tip rounds the surface"},
+    "end": {"long_name": "wave number beyond which the scans show no roughness"},
+}
 
 
 @dataclass(frozen=True)
@@ -75,84 +84,8 @@ def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
     notes : sequence of str
         Sentences on the files, stored after those on the estimate.
     """
-    inspection = found.inspection
-    largest, rings, within, fit = inspection.largest, inspection.rings, inspection.reach, inspection.fit
-    nearest = found.feasible
-    near = (np.nan,) * 3 if nearest is None else (nearest.skewness, nearest.kurtosis, nearest.distance)
-    powers = np.array(inspection.in_order([maps.powers for maps in inspection.sizes]))
-    slow = spectra.rings(largest.periodogram, largest.periodogram.near_slow_axis)
-    wave = {"units": "rad m-1"}
     return xr.Dataset(
-        {
-            "moments": ("moment", found.moments, _MOMENT),
-            "covariance": (("moment", "other_moment"), found.covariance, {"long_name": "of the moments"}),
-            "raw_moments": ("moment", inspection.moments, {"long_name": "of the levelled scans, with their bias"}),
-            "scan_moments": (("scan", "moment"), moments(powers), {"long_name": "of every scan"}),
-            "closed_form_errors": (
-                "moment",
-                found.closed_form_errors,
-                {"long_name": "standard errors if the heights have the density of the model"},
-            ),
-            "tile_errors": ("moment", found.tile_errors, {"long_name": "standard errors from the scatter of tiles"}),
-            "homogeneity_chi2": ("moment", found.homogeneity[0], _CHI2),
-            "homogeneity_p": ("moment", found.homogeneity[1], _P),
-            "agreement_chi2": ("moment", found.agreement[0], _CHI2),
-            "agreement_p": ("moment", found.agreement[1], _P),
-            "feasible": ("shape", list(near), {"long_name": "moments of the maximum-entropy density; distance"}),
-            "wavenumber": ("ring", rings.wavenumber, wave),
-            "density": ("ring", rings.density, {"units": "m4"}),
-            "modes": ("ring", rings.modes, {"units": "1", "long_name": "independent values of a ring"}),
-            "weight": ("ring", rings.weight, {"units": "1", "long_name": "independent values of a ring among many"}),
-            "slow_wavenumber": ("slow_ring", slow.wavenumber, wave),
-            "slow_density": ("slow_ring", slow.density, {"units": "m4", "long_name": "near the slow axis"}),
-            "plateau": ((), fit.plateau, {"units": "m4"}),
-            "corner": ((), fit.corner, wave),
-            "slope": ((), fit.slope, {"units": "1"}),
-            "fit_covariance": (
-                ("parameter", "other_parameter"),
-                fit.covariance,
-                {"long_name": "of the fit of Eq. (7)"},
-            ),
-            "fit_chi2": ((), fit.chi2, _CHI2),
-            "fit_freedom": ((), fit.freedom, {"long_name": "rings less parameters"}),
-            "lowest": ((), within.low, wave | {"long_name": "smallest wave number of the fit"}),
-            "highest": ((), within.high, wave | {"long_name": "largest wave number of the fit"}),
-            "nyquist": ((), within.nyquist, wave),
-            "tip": ((), within.tip, wave | {"long_name": "wave number beyond which the tip rounds the surface"}),
-            "end": ((), within.end, wave | {"long_name": "wave number beyond which the scans show no roughness"}),
-            "wavelengths": ((), inspection.wavelengths, {"units": "1", "long_name": "of the corner along a scan"}),
-            "areas": ((), inspection.areas, {"units": "1", "long_name": "correlation areas of all scans"}),
-            "sectors": ("sector", found.sectors, {"units": "1", "long_name": "spectrum relative to its mean"}),
-            "sector_errors": ("sector", found.sector_errors, {"units": "1"}),
-            "quantile": ("score", found.quantiles, {"units": "1", "long_name": "standardised height"}),
-            "quantile_error": ("score", found.quantile_errors, {"units": "1"}),
-            "goodness_chi2": ((), found.goodness[0], _CHI2),
-            "goodness_p": ((), found.goodness[1], _P),
-            "histogram": (
-                "bin",
-                histogram(largest.levelled, largest.quantiles, found.quantiles),
-                {"units": "1", "long_name": "density of z / rms"},
-            ),
-            "histogram_error": ("bin", histogram_errors(found.model) / np.sqrt(len(largest.names)), {"units": "1"}),
-            "edge": ("edges", EDGES, {"units": "1", "long_name": "edges of the bins of z / rms"}),
-            "mode_covariance": (("mode", "other_mode"), _mode_covariance(found), {"long_name": "of ln rms and modes"}),
-            "elevation": (
-                ("fast", "slow"),
-                largest.levelled[0].astype(np.float32),
-                {"units": "m", "long_name": "first of the largest scans, levelled"},
-            ),
-            "summits": ("summit", found.summits, _SUMMITS),
-            "summit_errors": ("summit", found.summit_errors, _SUMMITS),
-            "model_summits": ("summit", found.model_summits, _SUMMITS),
-            "model_summit_errors": ("summit", found.model_summit_errors, _SUMMITS),
-            "line_jump": ("axis", list(found.line_jump[::-1]), {"units": "m", "long_name": "typical step"}),
-            "scans": ("size", [len(maps.names) for maps in inspection.sizes], {"long_name": "number of each size"}),
-            "counted": ((), len(inspection.counted), {"long_name": "number of sizes that count for the moments"}),
-            "pixel": (("size", "axis"), [maps.frame.pixel for maps in inspection.sizes], {"units": "m"}),
-            "points": (("size", "axis"), [maps.frame.shape for maps in inspection.sizes]),
-            "files": ((), "\n".join(inspection.names)),
-            "flags": ((), "\n".join([*found.flags, *notes]), {"long_name": "limits of the estimate, one per line"}),
-        },
+        _moments(found) | _spectrum(found) | _heights(found) | _summits(found) | _scans(found, notes),
         coords={
             "moment": list(MOMENTS),
             "other_moment": list(MOMENTS),
@@ -166,6 +99,97 @@ def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
             "other_mode": list(MODE_QUANTITIES),
         },
     )
+
+
+def _moments(found):
+    """Variables of the moments, their errors, and whether scans agree."""
+    inspection, nearest = found.inspection, found.feasible
+    near = (np.nan,) * 3 if nearest is None else (nearest.skewness, nearest.kurtosis, nearest.distance)
+    powers = np.array(inspection.in_order([maps.powers for maps in inspection.sizes]))
+    closed_form = "standard errors if the heights have the density of the model"
+    return {
+        "moments": ("moment", found.moments, _MOMENT),
+        "covariance": (("moment", "other_moment"), found.covariance, {"long_name": "of the moments"}),
+        "raw_moments": ("moment", inspection.moments, {"long_name": "of the levelled scans, with their bias"}),
+        "scan_moments": (("scan", "moment"), moments(powers), {"long_name": "of every scan"}),
+        "closed_form_errors": ("moment", found.closed_form_errors, {"long_name": closed_form}),
+        "tile_errors": ("moment", found.tile_errors, {"long_name": "standard errors from the scatter of tiles"}),
+        "homogeneity_chi2": ("moment", found.homogeneity[0], _CHI2),
+        "homogeneity_p": ("moment", found.homogeneity[1], _P),
+        "agreement_chi2": ("moment", found.agreement[0], _CHI2),
+        "agreement_p": ("moment", found.agreement[1], _P),
+        "feasible": ("shape", list(near), {"long_name": "moments of the maximum-entropy density; distance"}),
+    }
+
+
+def _spectrum(found):
+    """Variables of the spectrum, its fit, and the wave numbers that the scans resolve."""
+    inspection, largest = found.inspection, found.inspection.largest
+    rings, fit = inspection.rings, inspection.fit
+    slow = spectra.rings(largest.periodogram, largest.periodogram.near_slow_axis)
+    reach = zip(_REACH.items(), astuple(inspection.reach), strict=True)
+    return {
+        "wavenumber": ("ring", rings.wavenumber, _WAVE),
+        "density": ("ring", rings.density, {"units": "m4"}),
+        "modes": ("ring", rings.modes, {"units": "1", "long_name": "independent values of a ring"}),
+        "weight": ("ring", rings.weight, {"units": "1", "long_name": "independent values of a ring among many"}),
+        "slow_wavenumber": ("slow_ring", slow.wavenumber, _WAVE),
+        "slow_density": ("slow_ring", slow.density, {"units": "m4", "long_name": "near the slow axis"}),
+        "plateau": ((), fit.plateau, {"units": "m4"}),
+        "corner": ((), fit.corner, _WAVE),
+        "slope": ((), fit.slope, {"units": "1"}),
+        "fit_covariance": (("parameter", "other_parameter"), fit.covariance, {"long_name": "of the fit of Eq. (7)"}),
+        "fit_chi2": ((), fit.chi2, _CHI2),
+        "fit_freedom": ((), fit.freedom, {"long_name": "rings less parameters"}),
+        **{name: ((), value, _WAVE | words) for (name, words), value in reach},
+        "wavelengths": ((), inspection.wavelengths, {"units": "1", "long_name": "of the corner along a scan"}),
+        "areas": ((), inspection.areas, {"units": "1", "long_name": "correlation areas of all scans"}),
+        "sectors": ("sector", found.sectors, {"units": "1", "long_name": "spectrum relative to its mean"}),
+        "sector_errors": ("sector", found.sector_errors, {"units": "1"}),
+    }
+
+
+def _heights(found):
+    """Variables of the form of the heights, and a map of them."""
+    largest = found.inspection.largest
+    density = histogram(largest.levelled, largest.quantiles, found.quantiles)
+    errors = histogram_errors(found.model) / np.sqrt(len(largest.names))
+    first = {"units": "m", "long_name": "first of the largest scans, levelled"}
+    return {
+        "quantile": ("score", found.quantiles, {"units": "1", "long_name": "standardised height"}),
+        "quantile_error": ("score", found.quantile_errors, {"units": "1"}),
+        "goodness_chi2": ((), found.goodness[0], _CHI2),
+        "goodness_p": ((), found.goodness[1], _P),
+        "histogram": ("bin", density, {"units": "1", "long_name": "density of z / rms"}),
+        "histogram_error": ("bin", errors, {"units": "1"}),
+        "edge": ("edges", EDGES, {"units": "1", "long_name": "edges of the bins of z / rms"}),
+        "mode_covariance": (("mode", "other_mode"), _mode_covariance(found), {"long_name": "of ln rms and modes"}),
+        "elevation": (("fast", "slow"), largest.levelled[0].astype(np.float32), first),
+    }
+
+
+def _summits(found):
+    """Variables of the summits of the scans and of the model."""
+    return {
+        "summits": ("summit", found.summits, _SUMMITS),
+        "summit_errors": ("summit", found.summit_errors, _SUMMITS),
+        "model_summits": ("summit", found.model_summits, _SUMMITS),
+        "model_summit_errors": ("summit", found.model_summit_errors, _SUMMITS),
+    }
+
+
+def _scans(found, notes):
+    """Variables of the scans themselves, and sentences about them."""
+    inspection = found.inspection
+    return {
+        "line_jump": ("axis", list(found.line_jump[::-1]), {"units": "m", "long_name": "typical step"}),
+        "scans": ("size", [len(maps.names) for maps in inspection.sizes], {"long_name": "number of each size"}),
+        "counted": ((), len(inspection.counted), {"long_name": "number of sizes that count for the moments"}),
+        "pixel": (("size", "axis"), [maps.frame.pixel for maps in inspection.sizes], {"units": "m"}),
+        "points": (("size", "axis"), [maps.frame.shape for maps in inspection.sizes]),
+        "files": ((), "\n".join(inspection.names)),
+        "flags": ((), "\n".join([*found.flags, *notes]), {"long_name": "limits of the estimate, one per line"}),
+    }
 
 
 def _mode_covariance(found):
@@ -225,7 +249,7 @@ def counted(estimate: xr.Dataset) -> list[tuple[int, Frame]]:
 
 def reach(estimate: xr.Dataset) -> Reach:
     """Wave numbers that the scans resolve."""
-    return Reach(*(float(estimate[name]) for name in ("lowest", "highest", "nyquist", "tip", "end")))
+    return Reach(*(float(estimate[name]) for name in _REACH))
 
 
 def distance(estimate: xr.Dataset) -> float:
