@@ -4,6 +4,7 @@
 #   make smoke      the same with small samples (half a minute), in runs/smoke/results/   (takes CONFIG=... too)
 #   make run CONFIG=mine.yaml    your own surfaces, pairs and beams; the file changes single keys of config.yaml
 #   make example    crack lengths from drawn scans, compared with the true values (1 to 2 minutes), in runs/example/
+#   make example-beams   a device with and without drawn test beams, beside the truth, in runs/example-beams/
 #   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (4 to 10 minutes),
 #                   in runs/devices/results/
 #   make model-error    Table III under full elastic contact, after make paper (3 minutes on two cores; takes CONFIG=... too)
@@ -41,7 +42,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example devices model-error attraction figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-beams devices model-error attraction figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -60,6 +61,13 @@ example: $(VENV)/ready
 	cp examples/scans/mine.yaml runs/example/
 	$(STICTION) run runs/example/mine.yaml --directory runs/example -- measured $(ARGS)
 	$(BIN)/python examples/scans/compare.py runs/example
+
+# Draws test beams and the true lengths of a device, and compares what the test beams say about the device.
+example-beams: $(VENV)/ready
+	$(BIN)/python examples/drawn_beams/draw.py runs/example-beams
+	cp examples/drawn_beams/mine.yaml runs/example-beams/
+	$(STICTION) devices runs/example-beams/mine.yaml --directory runs/example-beams -- $(ARGS)
+	$(BIN)/python examples/drawn_beams/compare.py runs/example-beams
 
 devices: $(VENV)/ready
 	$(STICTION) devices $(CONFIG) --directory runs/devices -- $(ARGS)

@@ -68,6 +68,8 @@ EXAMPLE_TABLES = {
     "example_prediction": "prediction",
 }
 EXAMPLE_PICTURES = {"results/figures/surface_sheet_Etched": 1400, "prediction": 700}
+#: Table and picture of ``make example-beams``.
+DRAWN_BEAMS = "drawn_beams"
 #: Tables and pictures of ``make devices``; pictures by their width [pixels].
 DEVICE_TABLES = ("safe_lengths", "stoppers", "budget")
 DEVICE_PICTURES = {"risk": 1000, "chart": 1200, "stoppers": 700, "budget_C1": 1000}
@@ -92,6 +94,7 @@ def main(results):
         (results, unfinished, collect),
         (results, unfinished_model_error, collect_model_error),
         (runs / "example", unfinished_example, collect_example),
+        (runs / "example-beams", partial(unfinished_example, target="devices"), collect_beams),
         (runs / "devices", partial(unfinished_devices, "devices", "budget"), collect_devices),
         (runs / "roughness", partial(unfinished_devices, "roughness", ROUGHNESS), collect_roughness),
         (runs / "attraction", unfinished_attraction, collect_attraction),
@@ -126,14 +129,14 @@ def unfinished_model_error(results):
     return f"{results} is not up to date with config.yaml and the code, see make model-error ARGS=-n"
 
 
-def unfinished_example(folder):
-    """Why a folder does not hold a finished run of the example by this code; empty if it does."""
+def unfinished_example(folder, target="measured"):
+    """Why a folder does not hold a finished run of an example with a known truth by this code; empty if it does."""
     if not (folder / "prediction.md").exists():
         return f"{folder} holds no finished run"
     configs = ROOT / "config.yaml", folder.resolve() / "mine.yaml"
-    if up_to_date(folder.resolve(), "measured", "--configfile", *configs):
+    if up_to_date(folder.resolve(), target, "--configfile", *configs):
         return ""
-    return f"{folder} is not up to date with the code, see make example"
+    return f"{folder} is not up to date with the code, see make {folder.name}"
 
 
 def unfinished_devices(example, table, folder):
@@ -194,6 +197,13 @@ def collect_example(folder):
             shutil.copyfile(folder / f"{place}.{kind}", DOCS / "tables" / f"{name}.{kind}")
     for place, width in EXAMPLE_PICTURES.items():
         shrink(folder / f"{place}.png", DOCS / "pictures" / f"{Path(place).name}.png", width)
+
+
+def collect_beams(folder):
+    """Copy table and picture of a run of the example of test beams."""
+    for kind in ("csv", "md"):
+        shutil.copyfile(folder / f"prediction.{kind}", DOCS / "tables" / f"{DRAWN_BEAMS}.{kind}")
+    shrink(folder / "prediction.png", DOCS / "pictures" / f"{DRAWN_BEAMS}.png", 700)
 
 
 def collect_devices(folder):

@@ -107,6 +107,19 @@ def test_tables_and_pictures_of_the_example_are_copied(tmp_path, monkeypatch):
     assert (tmp_path / "docs" / "tables" / "example_scans.md").read_text() == "results/tables/scans md"
 
 
+def test_table_and_picture_of_the_drawn_test_beams_are_copied(tmp_path, monkeypatch):
+    assert "no finished run" in update.unfinished_example(tmp_path, target="devices")
+    monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
+    for part in ("tables", "pictures"):
+        (tmp_path / "docs" / part).mkdir(parents=True)
+    for kind in ("csv", "md"):
+        (tmp_path / f"prediction.{kind}").write_text(kind)
+    Image.new("RGB", (20, 10)).save(tmp_path / "prediction.png")
+    update.collect_beams(tmp_path)
+    made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
+    assert made == {"drawn_beams.csv", "drawn_beams.md", "drawn_beams.png"}
+
+
 def test_numbers_of_checks_scans_and_timings_are_those_of_their_tables():
     checks = pd.DataFrame(
         {
