@@ -105,6 +105,7 @@ onstart:
         signal.signal(signal.SIGTERM, lambda *received: threading.Thread(target=handler, args=received).start())
     try:
         HELD.append(run_lock.reserved(".snakemake/running"))
+        refuse_what_samples_show()
         provenance.record("results/provenance.json", BASE, config)
     except (OSError, DataError) as error:
         reason = error.__cause__ or error

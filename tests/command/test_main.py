@@ -168,14 +168,27 @@ def test_a_table_of_test_beams_is_written_once(tmp_path, capsys):
     assert "exists already" in capsys.readouterr().err
 
 
-def test_a_check_names_what_would_be_computed_or_every_problem(tmp_path, capsys):
+def test_a_check_names_what_would_be_computed_or_every_problem(tmp_path, capsys, monkeypatch):
     path = tmp_path / "mine.yaml"
     path.write_text("run: {pairs: [a, b]}\n")
+    monkeypatch.chdir(tmp_path)
     assert main(["check", str(path)]) == 0
     assert capsys.readouterr().out == f"{path} can run: pairs a, b.\n"
     path.write_text("seeds: 1\nchaos: {ordr: 2}\n")
     assert main(["check", str(path)]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 2
+
+
+def test_a_check_draws_the_first_samples_and_remembers_what_they_showed(tmp_path, capsys, monkeypatch):
+    path = tmp_path / "mine.yaml"
+    path.write_text("run: {pairs: [b]}\nbeam: {width_um: 0.06}\nstudies: {variants: {every: []}}\n")
+    words = ["check", str(path), "--directory", str(tmp_path)]
+    assert main(words) == 2
+    refusal = capsys.readouterr().err
+    assert refusal.startswith("beam.width_um is 0.06, must give patches of surface with so many summits")
+    monkeypatch.delattr("stiction.pilot.contacts_of_samples")
+    assert main(words) == 2
+    assert capsys.readouterr().err == refusal
 
 
 @pytest.mark.parametrize("words", [["--help"], ["run", "--help"]])

@@ -55,7 +55,6 @@ def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
         ({"datum": {"humidity": 0.2}}, "test_beams.first.crack_lengths", "must be at least 0.2903: in drier air"),
         ({"datum": {"humidity": 0.44}}, "test_beams.first.crack_lengths", "must list each humidity once"),
         ({"array": {"pair": "d"}}, "test_beams.first.pair", "must be one of a, b, c"),
-        ({"array": {"thickness_um": 0.1}}, "test_beams.first.thickness_um", "strips of 1.5 µm resolve its cracks"),
         (
             {"array": {"uncertainty": {"gap_um": 30}}},
             "test_beams.first.uncertainty.gap_um",

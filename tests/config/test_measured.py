@@ -202,10 +202,6 @@ LAWS = {
                     "must be below the cut-off"),
     "gap": ({"pairs": {"b": {"gap_um": 0.3}}}, "pairs.b.gap_um is 0.3, must be at least",
             "surfaces.Etched.scans.files = ['B2-0.gwy']"),
-    "soft solid": ({"solid": {"young_modulus_GPa": 0.05}, "beam": {"thickness_um": 40}},
-                   "run.pairs[0] is 'b', must have surfaces rough", "surfaces.Etched.scans.files = ['B2-0.gwy']"),
-    "thin beam": ({"beam": {"thickness_um": 0.5}}, "sampling.strip_length_um is 1.5, must be at most",
-                  "surfaces.Etched.scans.files = ['B2-0.gwy']"),
 }  # fmt: skip
 
 
@@ -223,21 +219,6 @@ def test_laws_of_the_configuration_hold_for_measured_surfaces_and_name_their_fil
     if "coarse grid" not in begins:
         assert not [line for line in lines if "rms_nm" in line]
         assert not [line for line in lines if "Unmet" in line and "sampling.margin_um" not in line]
-
-
-#: A cantilever on the measured surface.
-CANTILEVER = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.9]}
-
-
-@pytest.mark.parametrize("heights", ["moments", "measured"])
-def test_the_strips_of_a_device_on_scans_resolve_its_cracks(folder, heights):
-    config = configured(both(folder)[0], heights=heights) | {"devices": {"C1": CANTILEVER}}
-    config["surfaces"]["Unmet"] = {"scans": {"files": [str(both(folder)[1])]}}
-    assert problems(config) == ()
-    (line,) = problems(merged(config, {"devices": {"C1": {"thickness_um": 0.2}}}))
-    assert line.startswith("devices.C1.thickness_um is 0.2, must be so large that strips of 1.5 µm resolve its cracks")
-    assert "surfaces.Etched.scans.files = ['B2-0.gwy']" in line
-    assert "Unmet" not in line
 
 
 def test_gaussian_scans_are_not_refused(tmp_path):

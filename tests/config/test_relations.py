@@ -3,19 +3,16 @@
 import copy
 import re
 
-import numpy as np
 import pytest
 from configurations import LEAVES, NUMBERS, PAPER, ROOT, SCHEMA, changed, problems, without
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from published import SURFACES
 from wrong_configurations import STOPPER, WRONG_RELATIONS
 
 from stiction.chaos.model import MAX_ORDER
 from stiction.config import relations, validation
 from stiction.config.conditions import Keys, Unknown
 from stiction.config.merging import merged
-from stiction.scans.quantiles import SCORES
 
 FUZZ = settings(max_examples=250, suppress_health_check=[HealthCheck.too_slow])
 
@@ -99,16 +96,6 @@ def test_all_problems_are_found_at_once_and_each_only_once():
         "chaos.order",
     }
     assert (keys, len(lines)) == (expected, 6)
-
-
-def test_the_bound_on_strips_is_the_same_for_moments_and_for_the_form_that_they_have():
-    b2 = SURFACES["B2"]
-    numbers = {"rms_nm": 1e9 * b2.rms, "skewness": b2.skewness, "kurtosis": b2.kurtosis}
-    form = {"rms_nm": 1e9 * b2.rms, "form": (tuple(SCORES), tuple(b2.density.quantile_of_normal(SCORES)))}
-    bounds = [relations.longest_strip(2.6, 164, 0.95, 300, [side, side], {}) for side in (numbers, form)]
-    assert bounds[1] == pytest.approx(bounds[0], rel=0.1)  # the highest points are those of straight tails
-    without_density = numbers | {"kurtosis": None, "skewness": None}
-    assert relations.longest_strip(2.6, 164, 0.95, 300, [form, without_density], {}) == np.inf
 
 
 def violated(config, files):
@@ -224,27 +211,6 @@ def test_values_within_the_schema_can_only_violate_relations(values):
     for line in problems(config):
         assert re.match(r"[\w.\[\]]+ is .*, must ", line)
         assert not any(leaf.entry["description"] in line for leaf in SCALARS)
-
-
-@pytest.mark.parametrize("name", ["B1", "B2", "Sub2"])
-def test_the_density_of_summits_is_that_of_the_rougher_surface_or_half_of_its_spectrum(name):
-    rough, smooth = PAPER["surfaces"][name], PAPER["surfaces"]["Sub1"]
-    stated = rough["summit_density_per_um2"]
-    assert relations.summit_density([smooth, rough]) == relations.summit_density([rough, smooth]) == stated
-    unstated = {key: value for key, value in rough.items() if key != "summit_density_per_um2"}
-    assert relations.summit_density([smooth, unstated]) == pytest.approx(stated, rel=0.3)
-
-
-@pytest.mark.parametrize("figures", ["{humidity: 0.97}", "{humidity: 0.97, pair: a}"])
-def test_strips_resolve_the_crack_at_the_humidity_of_the_figures(figures):
-    dry = "beam: {thickness_um: 0.7}\nrun: {pairs: [b]}\npairs: {b: {humidities: [0.44]}}\n"
-    assert problems(changed(dry)) == ()
-    (line,) = problems(changed(f"{dry}figures: {figures}"))
-    assert line.startswith(
-        "sampling.strip_length_um is 1.5, must be at most 1.37 µm to resolve the cracks of pair b at RH"
-    )
-    (line,) = problems(changed(f"{dry.replace('0.44', '0.97')}figures: {figures}"))
-    assert "pairs.b.humidities = [0.97]" in line
 
 
 @pytest.mark.parametrize(("more", "wet"), [(0, True), (4.9, True), (5.1, False)])

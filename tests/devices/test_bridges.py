@@ -10,7 +10,8 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import STRIP, foundation_length
 from stiction.beam.middle import shortest_held
-from stiction.contact import bounds, forcelaw
+from stiction.contact import forcelaw
+from stiction.contact.environment import Water, flooded_law
 from stiction.devices import bridges
 from stiction.streams import stream
 
@@ -84,9 +85,10 @@ def test_no_random_ground_holds_a_bridge_below_the_bound_of_its_strongest_law():
 
 
 def test_flooded_flats_bound_water_and_solids_at_every_humidity():
-    water = bounds.flooded_law((2.4e-9, 60e6), 0.0)
-    assert_allclose(water, (0.144, 60e6), rtol=1e-12)
-    both = bounds.flooded_law((2.4e-9, 60e6), 9.75e-20)
+    height, tension = Water(300.0).film(0.65)
+    water = flooded_law(0.65, Water(300.0), 0.0)
+    assert_allclose(water, (height * tension, tension), rtol=1e-12)
+    both = flooded_law(0.65, Water(300.0), 9.75e-20)
     solid = np.subtract(both, water)
     assert_allclose(solid[0] / solid[1], 0.2275e-9, rtol=1e-3)  # range of the van der Waals stress
     assert bridges.least_length(*both, R1) < bridges.least_length(*water, R1)

@@ -45,6 +45,19 @@ def test_a_wrong_configuration_stops_before_the_first_job(planner, tmp_path, ove
     assert not (folder / "results").exists()
 
 
+def test_what_the_first_samples_show_stops_before_the_first_job(planner, tmp_path, overlay):
+    file = overlay("run: {pairs: [b]}\nbeam: {width_um: 0.06}\nstudies: {variants: {every: []}}")
+    folder = tmp_path / "work"
+    folder.mkdir()
+    status, printed = planner("--directory", folder, "--cores", 1, "results/heights/B2.nc", config=[file])
+    assert status == 1
+    (line,) = [line for line in printed.splitlines() if line.startswith("beam.width_um")]
+    assert "so many summits that every sample resists the adhesion" in line
+    assert "Traceback" not in printed
+    assert not (folder / "results").exists()
+    assert (folder / ".snakemake" / "pilot.json").exists()
+
+
 @pytest.mark.slow
 def test_a_results_folder_that_cannot_be_written_is_reported(planner, tmp_path):
     # A file in place of the folder also stops root, which ignores permissions.

@@ -67,6 +67,17 @@ if snakemake_patches.is_main(workflow):
     atexit.register(planner.save)
 
 
+def refuse_what_samples_show():
+    """Refuse a configuration whose first samples show that a job would fail."""
+    from stiction import pilot
+
+    shown = DiskCache(".snakemake/pilot.json")
+    problems = pilot.problems(config, preliminary, code(PACKAGE / "pilot.py"), shown)
+    shown.save()
+    if problems:
+        raise WorkflowError("The configuration is invalid:\n" + "\n".join(map(str, problems)))
+
+
 # Results of other runs
 
 

@@ -15,6 +15,14 @@ from stiction.contact import forcelaw
 ALONG_START = 4
 
 
+def longest(beam: Beam, laws: np.ndarray) -> tuple[float, float]:
+    """Longest strip and longest element with which a beam resolves a crack on force laws (n, 4) [m]."""
+    foundation = foundation_length(beam, laws)
+    start = START * min(arrest_length(forcelaw.energy(laws).mean(), beam), beam.length)
+    element = min(ELEMENT * foundation, start / ALONG_START)
+    return min(STRIP * foundation, element), element
+
+
 def resolved(beam: Beam, points: int, laws: np.ndarray) -> Beam:
     """Beam with as many elements as its laws require, and at least its original number.
 
@@ -31,10 +39,7 @@ def resolved(beam: Beam, points: int, laws: np.ndarray) -> Beam:
     ValueError
         If the strips are too long for these laws, whatever the elements.
     """
-    length, strip = foundation_length(beam, laws), beam.length / points
-    start = START * min(arrest_length(forcelaw.energy(laws).mean(), beam), beam.length)
-    element = min(ELEMENT * length, start / ALONG_START)
-    allowed = min(STRIP * length, element)
+    length, strip, (allowed, element) = foundation_length(beam, laws), beam.length / points, longest(beam, laws)
     if strip > allowed:
         raise ValueError(
             f"strips of {1e6 * strip:.3g} µm do not resolve a crack on these surfaces: the adhesion needs strips of at "

@@ -128,9 +128,18 @@ def _new(target):
 
 def _check(arguments):
     """Check files."""
-    from stiction.config.files import load  # imports the physics
+    from stiction import pilot  # imports the physics
+    from stiction.config.files import load
+    from stiction.config.measured import preliminary_estimates
+    from stiction.run.disk_cache import DiskCache
+    from stiction.run.fingerprint import fingerprint
 
-    config = load(*arguments.files)
+    config, shown = load(*arguments.files), DiskCache(Path(arguments.directory, ".snakemake", "pilot.json"))
+    code = fingerprint(pilot.__file__, shown)
+    problems = pilot.problems(config, preliminary_estimates(config)[0], code, shown)
+    shown.save()
+    if problems:
+        raise ConfigError(*map(str, problems))
     pairs, devices = config["run"]["pairs"], config.get("devices", {})
     scanned = [name for name, entry in config["surfaces"].items() if "scans" in entry]
     named = {f"pair{'s' * (len(pairs) > 1)}": pairs, "devices": devices, "scans of": scanned}

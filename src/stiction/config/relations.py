@@ -14,31 +14,21 @@ from typing import NamedTuple
 
 import numpy as np
 import yaml
-from scipy.special import ndtri
 
-from stiction.beam.foundation import STRIP, decay_length, ground_stiffness
 from stiction.config import memory
 from stiction.config.cases import NAMEABLE, decimals
 from stiction.config.conditions import Keys, Relations
 from stiction.config.messages import did_you_mean, duplicates, shown
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, in_si, to_si
-from stiction.contact.bounds import least_law
-from stiction.contact.estimate import ProfileMoments, force_law, repulsion_and_attraction
-from stiction.contact.meniscus import dry_air, film, meniscus_height
-from stiction.contact.solids import Solid, asperity_between
+from stiction.contact.meniscus import dry_air, meniscus_height
 from stiction.devices import limits
 from stiction.devices.materials import COATING
 from stiction.errors import NotConverged
 from stiction.models import SIDES
 from stiction.numbers import is_multiple
-from stiction.surface import maxent
-from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import nearest_feasible
 from stiction.surface.identify import SummitTarget, estimated_spectrum
 from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
-
-#: Normal scores of equally probable heights; score that one of 10 strips with 450 000 points each exceeds.
-_SCORES, _HIGHEST = ndtri((np.arange(200) + 0.5) / 200), 5.0
 
 
 @functools.cache
@@ -491,96 +481,6 @@ def too_dry(humidities: float | list, meeting: Meeting, more: float = 0) -> str 
     return dry_air(float(np.min(humidities)), meeting.temperature, angles) if angles else None
 
 
-#: What the strips of a pair depend on besides its humidities and surfaces.
-_BEAM = "beam.thickness_um", "solid.young_modulus_GPa"
-
-
-@relation
-def strips_resolve_the_cracks(config):
-    """Strips are short enough for the force laws of a pair that runs, as far as known without computing its contact.
-
-    Strips that pass may still be refused after the contact, by `stiction.beam.resolution.resolved`.
-    """
-    for pair, meeting, humidities, given in _running(config, "humidities"):
-        if refusal := _strips_too_long(config, pair, meeting, humidities):
-            yield "sampling.strip_length_um", refusal, *_BEAM, f"pairs.{pair}.humidities", *given
-
-
-@relation
-def strips_resolve_the_cracks_of_the_figures(config):
-    """As above, for the beams of the figures, whose humidity need not be one of their pair; one refusal is enough."""
-    humidity, of_figures, running = config["figures.humidity"], config["figures.pair"], config["run.pairs"]
-    shown_pair = of_figures if of_figures in running else next(iter(running), None)
-    for pair, meeting, humidities, given in _running(config, "humidities"):
-        own = _strips_too_long(config, pair, meeting, humidities)
-        if pair == shown_pair and not own and (refusal := _strips_too_long(config, pair, meeting, [humidity])):
-            stated = *_BEAM, "figures.humidity", f"pairs.{pair}.humidities", "figures.pair"
-            yield "sampling.strip_length_um", refusal, *stated, *given
-
-
-def _strips_too_long(config, pair, meeting, humidities):
-    """Refusal of strips that do not resolve the cracks of a pair."""
-    strip, thickness, modulus = config["sampling.strip_length_um"], *(config[key] for key in _BEAM)
-    for stated in of_material(meeting.sides, meeting.materials)[:1]:
-        modulus = stated.get("young_modulus_GPa", modulus)
-    for humidity in humidities:
-        longest = longest_strip(thickness, modulus, humidity, meeting.temperature, meeting.sides, meeting.materials)
-        if strip > longest:
-            return f"must be at most {longest:.3g} µm to resolve the cracks of pair {pair} at RH {humidity:g}"
-    return None
-
-
-def longest_strip(
-    thickness: float, modulus: float, humidity: float, temperature: float, sides: list, materials: dict
-) -> float:
-    """Length that no strip may exceed on which a beam of this thickness [µm] and Young's modulus [GPa] is to stop [µm].
-
-    It is infinite where nothing is known without the contact.
-    """
-    shapes, angles = _shapes(sides), wetting(sides, materials)
-    if not angles or not shapes or dry_air(humidity, temperature, angles):
-        return math.inf
-    (beam, substrate), highest = zip(*shapes, strict=True)
-    rms = np.array([to_si(side["rms_nm"], "nm") for side in sides])
-    heights, top = np.add.outer(rms[0] * np.array(beam), rms[1] * np.array(substrate)), float(rms @ highest)
-    bending = to_si(modulus, "GPa") * to_si(thickness, "um") ** 3 / 12
-    f_max, a_left = least_law(heights, top, film(humidity, temperature, angles))
-    if not f_max:
-        return math.inf
-    return from_si(STRIP * decay_length(bending, ground_stiffness(f_max, a_left)), "um")
-
-
-#: ASSUME: estimated foundation lengths are at most this much too long; more often they are too short.
-_ESTIMATED = 1.25
-
-
-def estimated_strip(
-    thickness: float, solid: dict, medium: str, humidity: float, temperature: float, sides: list, materials: dict
-) -> float:
-    """As `longest_strip`, from the estimated force law, which is far closer but no bound; section ``solid``."""
-    shapes, angles = _shapes(sides), wetting(sides, materials)
-    if not angles or not shapes or dry_air(humidity, temperature, angles):
-        return math.inf
-    bodies = [in_si(Solid, solid | stated) for stated in of_material(sides, materials)]
-    summit, water = asperity_between(*bodies, medium), film(humidity, temperature, angles)
-    try:
-        stiffness = _estimated_stiffness(tuple(map(_summit_source, sides)), tuple(s for s, _ in shapes), summit, water)
-    except (ValueError, ArithmeticError):
-        return math.inf  # other relations report what is out of range
-    bending = bodies[0].young_modulus * to_si(thickness, "um") ** 3 / 12
-    return from_si(_ESTIMATED * STRIP * decay_length(bending, stiffness), "um")
-
-
-@functools.lru_cache(maxsize=1000)
-def _estimated_stiffness(sources, shapes, summit, water):
-    """Estimated stiffness of the ground of a pair [Pa/m]."""
-    rms = [to_si(source[0], "nm") for source in sources]
-    heights = np.sort(np.add.outer(rms[0] * np.array(shapes[0]), rms[1] * np.array(shapes[1])).ravel())
-    with np.errstate(all="raise", under="ignore"):
-        surface = ProfileMoments.of_sum(map(_moments, sources))
-        return ground_stiffness(*force_law(surface, summit, heights, water))
-
-
 def sides_of(beam: str, substrate: str, surfaces: dict) -> list[dict]:
     """Sections of the surfaces of a pair; empty if one is not defined or has no numbers (yet)."""
     both = [surfaces.get(name, {}) for name in (beam, substrate)]
@@ -600,28 +500,6 @@ def wetting(sides: list[dict], materials: dict, more: float = 0) -> tuple[float,
     stated = (material.get("contact_angle_deg", 0) for material in of_material(sides, materials))
     angles = [to_si(angle + more, "deg") for angle in stated]
     return tuple(angles) if sum(map(math.cos, angles)) > 1e-9 else ()
-
-
-def _shapes(sides):
-    """Equally probable heights and the highest one of each side, in units of its rms; empty if one has no density."""
-    found = [_shape(side.get("skewness"), side.get("kurtosis"), side.get("form")) for side in sides]
-    return [] if None in found else found
-
-
-@functools.cache
-def _shape(skewness, kurtosis, form):
-    """As `_shapes`, of moments or of the form of measured heights; ``None`` without a density, as above."""
-    if form:
-        density = MeasuredDensity(*map(np.array, form))
-    elif skewness is None:  # of scans whose moments have no density, which is reported with their files
-        return None
-    else:
-        try:
-            moments = nearest_feasible(skewness, kurtosis)
-        except (ValueError, NotConverged):
-            return None
-        density = maxent.solve(moments.skewness, moments.kurtosis)
-    return tuple(density.quantile_of_normal(_SCORES)), float(density.quantile_of_normal(_HIGHEST))
 
 
 @relation
@@ -662,132 +540,6 @@ def beam_is_slender(config):
     for key, size in config.known("beam.thickness_um", "beam.width_um", *gaps):
         if size >= config["beam.length_um"]:
             yield key, "must be below the length of the beam", "beam.length_um"
-
-
-#: Least ratio of the estimated repulsion at zero distance to the estimated pull-off pressure. ASSUME: 3, because the
-#: repulsion is estimated up to a factor of two too high, and the weakest sample must resist the strongest attraction.
-_SAFE = 3
-
-
-def _resist(repulsion, pull):
-    """Whether summits resist the adhesion; an estimate without attraction is of surfaces that do not stick."""
-    return repulsion > 0 and repulsion >= _SAFE * pull
-
-
-@relation
-def solids_resist_the_adhesion(config):
-    """The force rises to the pull-off pressure on the grid of distances, which begins where mean planes meet."""
-    given = "van_der_waals", "water.temperature_K", "figures.humidity"
-    solid, pairs, (medium, _, humidity) = config["solid"], config["pairs"], (config[key] for key in given)
-    for key, name in config.items("run.pairs"):
-        if refusal := too_soft(
-            meeting_of(name, config), solid, medium, [*pairs.get(name, {}).get("humidities", ()), humidity]
-        ):
-            yield key, refusal, *given, *config.scanned(*surfaces_of(name, config))
-
-
-def too_soft(meeting: Meeting, solid: dict, medium: str, humidities: list[float]) -> str | None:
-    """Refusal of surfaces and solids that do not resist the adhesion at all humidities."""
-    both, materials, temperature = meeting
-    if not both:
-        return None  # other relations report this and the next
-    spectra = [surface["published_psd"] for surface in both if surface["psd"] == "published"]
-    if any(
-        psd["floor_nm4"] >= psd["plateau_nm4"] or psd["corner_rad_per_um"] >= psd["cutoff_rad_per_um"]
-        for psd in spectra
-    ):
-        return None
-    humidities, angles = sorted({*humidities}), wetting(both, materials)
-    if not angles or dry_air(humidities[0], temperature, angles):
-        return None  # no water, which other relations report
-    try:
-        bodies = [in_si(Solid, solid | stated) for stated in of_material(both, materials)]
-        films = tuple(film(humidity, temperature, angles) for humidity in humidities)
-        forces = _estimated(tuple(map(_summit_source, both)), asperity_between(*bodies, medium), films)
-    except (ValueError, ArithmeticError):
-        return "must have surfaces and a solid for which the adhesion can be estimated; some value is far out of range"
-    stuck = [(at, *force) for at, force in zip(humidities, forces, strict=True) if not _resist(*force)]
-    if not stuck:
-        return None
-    humidity, repulsion, pull = stuck[0]
-    pull, repulsion = (f"{from_si(pressure, 'MPa'):.3g} MPa" for pressure in (pull, max(repulsion, 0)))
-    return (
-        f"must have surfaces rough enough and a solid stiff enough for its humidities: at {humidity}"
-        f"{' and others' if len(stuck) > 1 else ''}, water and van der Waals forces pull with an estimated {pull} and "
-        f"the summits resist with {repulsion} where the mean planes meet, where {_SAFE} times the pull is needed; "
-        "increase the roughness or young_modulus_GPa, or choose other humidities"
-    )
-
-
-#: Least expected number of summits on a patch. ASSUME: as many resist the adhesion of every sample. Measured on patches
-#: of pair b that are 0.05 to 1.5 µm long: with 19 summits none of 5000 samples fails at RH 0.5 or more and 2 fail at RH
-#: 0.3; with 10 there are 2 of 1000 samples, and with 4 there are 50. Pairs a and c need fewer.
-_SUMMITS = 18
-
-
-@relation
-def strips_of_a_pair_hold_enough_summits(config):
-    """Strips of a pair that runs hold so many summits that each sample resists the adhesion."""
-    width, length = config["beam.width_um"], config["sampling.strip_length_um"]
-    for key, pair in config.items("run.pairs"):
-        names = surfaces_of(pair, config)
-        if refusal := too_few_summits(length, width, pair, sides_of(*names, config["surfaces"])):
-            given = "sampling.strip_length_um", key, *config.scanned(*names)
-            yield "beam.width_um", refusal, *given
-
-
-def too_few_summits(length: float, width: float, pair: str, sides: list[dict]) -> str | None:
-    """Refusal of a patch [µm] that holds too few summits, as far as their density is known."""
-    try:
-        number = summit_density(sides) * length * width if sides else _SUMMITS
-    except (ValueError, ArithmeticError):
-        return None  # other relations report what is out of range
-    if number >= _SUMMITS:
-        return None
-    return (
-        f"must give patches of surface with at least {_SUMMITS} summits, so that every sample resists the adhesion: "
-        f"{length:g} x {width:g} µm of pair {pair} hold about {number:.2g}"
-    )
-
-
-def summit_density(sides: list[dict]) -> float:
-    """Estimated density of the summits of the sum of two surfaces, that of the rougher one [1/µm²].
-
-    ASSUME: without a measured density it is half of that of the spectrum, because sampling leaves out fine summits; the
-    spectra of the paper have 1.5 to 2 times the measured density.
-
-    Raises
-    ------
-    ValueError or ArithmeticError
-        If a number is far out of range.
-    """
-    rougher = max(sides, key=lambda side: side["rms_nm"])
-    with np.errstate(all="raise", under="ignore"):
-        stated = rougher.get("summit_density_per_um2")
-        return float(stated or 0.5 * from_si(_moments(_summit_source(rougher)).summit_density, "per_um2"))
-
-
-def _summit_source(surface):
-    """What the estimate takes of a surface, hashable: rms and either Eq. (7) or the summits."""
-    if surface["psd"] == "published":
-        return surface["rms_nm"], tuple(surface["published_psd"].items())
-    return surface["rms_nm"], (surface["mean_summit_radius_um"], surface["summit_density_per_um2"])
-
-
-@functools.lru_cache(maxsize=1000)
-def _estimated(sources, summit, films):
-    """Estimated repulsion at zero distance and attraction of a pair with each film of water [Pa]."""
-    with np.errstate(all="raise", under="ignore"):
-        return repulsion_and_attraction(ProfileMoments.of_sum(map(_moments, sources)), summit, films)
-
-
-def _moments(source):
-    """Moments of the profile of one surface."""
-    rms, given = np.float64(to_si(source[0], "nm")), source[1]
-    if isinstance(given[0], tuple):
-        return ProfileMoments.of_spectrum(rms, in_si(CutoffSelfAffine, dict(given)))
-    radius, density = np.float64(to_si(given[0], "um")), np.float64(to_si(given[1], "per_um2"))
-    return ProfileMoments.of_summits(rms, radius, density)
 
 
 @relation

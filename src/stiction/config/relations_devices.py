@@ -18,7 +18,6 @@ from stiction.config.relations import (
     cases_have_unique_names,
     correlated,
     correlated_as_estimated,
-    estimated_strip,
     field_too_large,
     filled,
     meeting_of,
@@ -29,8 +28,6 @@ from stiction.config.relations import (
     sides_of,
     surfaces_of,
     too_dry,
-    too_few_summits,
-    too_soft,
     wetting,
     without_density,
     without_unique_names,
@@ -98,24 +95,6 @@ def asperities_of_devices_are_summits(config):
         if config["contact.asperity"] != "summit":
             message = "must be summit, or the devices left out: their contact has summits"
             yield "contact.asperity", message, f"devices.{name}.pair"
-
-
-@relation
-def strips_of_devices_hold_enough_summits(config):
-    """The strips along a beam hold so many summits that each sample resists the adhesion."""
-    for name, width in config.entries("devices", "width_um"):
-        device = config["devices"][name]
-        length = kind_of(device).strip(device, config[_STRIP])
-        if refusal := too_few_summits(length, width, device["pair"], _sides(config, name)):
-            yield f"devices.{name}.width_um", refusal, _STRIP, *_scanned(config, name)
-
-
-@relation
-def patches_of_stoppers_hold_enough_summits(config):
-    """As above, for the area of a stopper."""
-    for name, sides in config.entries("devices", "contact_um"):
-        if refusal := too_few_summits(*sides, config["devices"][name]["pair"], _sides(config, name)):
-            yield f"devices.{name}.contact_um", refusal, *_scanned(config, name)
 
 
 @relation
@@ -220,40 +199,6 @@ def uncertain_water_of_devices_is_a_liquid(config):
 
 
 @relation
-def strips_resolve_the_cracks_of_devices(config):
-    """Strips are short enough for the force laws of a device, as far as they can be estimated without its contact.
-
-    What passes may still be refused after the contact, by `stiction.beam.resolution.resolved`.
-    """
-    for name, thickness, humidities in config.entries("devices", "thickness_um", "humidities"):
-        yield from _unresolved(config, name, "thickness_um", thickness, "humidities", humidities)
-
-
-@relation
-def strips_resolve_the_thinnest_beams_of_charts(config):
-    """As above, for the thinnest beam of a chart."""
-    for name, thicknesses, humidities in config.entries("devices", "chart.thicknesses_um", "chart.humidities"):
-        yield from _unresolved(config, name, "chart.thicknesses_um", thicknesses[0], "chart.humidities", humidities)
-
-
-def _unresolved(config, name, key, thickness, air, humidities):
-    """Problem of a thickness, of this key, with which strips do not resolve the cracks at humidities of another key."""
-    solid, medium, device = config["solid"], config["van_der_waals"], config["devices"][name]
-    strip, (sides, materials, temperature) = kind_of(device).strip(device, config[_STRIP]), _meeting(config, name)
-    if not sides:
-        return
-    needed = {rh: estimated_strip(thickness, solid, medium, rh, temperature, sides, materials) for rh in humidities}
-    shortest = min(needed, key=needed.get)
-    if strip > needed[shortest]:
-        message = (
-            f"must be so large that strips of {strip:g} µm resolve its cracks: at RH {shortest:g} they must be below "
-            f"about {needed[shortest]:.2g} µm; decrease strip_um, which must stay above the correlation length"
-        )
-        given = f"devices.{name}.{air}", _TEMPERATURE, "van_der_waals", _STRIP, *_scanned(config, name)
-        yield f"devices.{name}.{key}", message, *given
-
-
-@relation
 def strips_of_devices_exceed_the_correlation(config):
     """Strips are independent samples; those of tips, which are never next to each other, may be shorter.
 
@@ -274,21 +219,6 @@ def _correlated(strip, side, spacing):
         return correlated(strip, side["published_psd"])
     summits = side["rms_nm"], side.get("mean_summit_radius_um"), side.get("summit_density_per_um2")
     return correlated_as_estimated(strip, *summits, spacing)
-
-
-@relation
-def solids_of_devices_resist_the_adhesion(config):
-    """As for pairs that run, at the humidities of a device, and at those among which its worst one is sought."""
-    solid, medium, worst = config["solid"], config["van_der_waals"], config["design.worst_humidities"]
-    for name, _ in config.entries("devices", "pair"):
-        device, meeting = config["devices"][name], _meeting(config, name)
-        own = [*device["humidities"], *device.get("chart", {}).get("humidities", ())]
-        refusal = too_soft(meeting, solid, medium, own)
-        if not (refusal or kind_of(device).is_beam) and (sought := too_soft(meeting, solid, medium, worst)):
-            refusal = f"{sought} in design.worst_humidities"
-        if refusal:
-            given = _TEMPERATURE, "van_der_waals", "design.worst_humidities", *_scanned(config, name)
-            yield f"devices.{name}.pair", refusal, *given
 
 
 @relation

@@ -11,7 +11,7 @@ largest contact, as during separation.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -280,6 +280,7 @@ class MaugisTable:
         _add_maugis((tops, curvatures), between, step, self.scales, self.snap_off, self.load, force)
 
 
+@lru_cache(maxsize=4)  # the table of Maugis takes longer than the contact of ten strips
 def asperity(modulus: float, attraction: Attraction | None) -> Asperity:
     """Model of one asperity of reduced modulus E' [Pa]: Maugis with attraction, Hertz without."""
     return HertzAsperity(modulus) if attraction is None else MaugisTable(modulus, attraction)

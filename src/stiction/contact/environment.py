@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.contact import bounds, forcelaw, gaps, vanderwaals
+from stiction.contact import forcelaw, gaps, vanderwaals
 from stiction.contact.correction import Correction
 from stiction.contact.meniscus import film
 
@@ -88,9 +88,16 @@ def force_curves(
 
 
 def flooded_law(humidity: float, water: Water, hamaker_constant: float) -> tuple[float, float]:
-    """Upper bounds of e [J m⁻²] and f_max [Pa] of any surfaces, see `stiction.contact.bounds.flooded_law`."""
-    layer = water.film(humidity)
-    energy, pull = bounds.flooded_law(layer, hamaker_constant)
+    """Upper bounds of e [J m⁻²] and f_max [Pa] of any surfaces at a humidity: those of flooded flats that touch.
+
+    Water pulls nowhere harder or farther than between flats, and neither do the solids. Their Hamaker constant [J] is 0
+    without van der Waals forces.
+    """
+    height, pull = water.film(humidity)
+    energy = height * pull
+    if hamaker_constant:
+        solid = vanderwaals.DugdaleAttraction(hamaker_constant)
+        energy, pull = energy + solid.work_of_adhesion, pull + solid.stress
     if water.gaps is None:
         return energy, pull
-    return energy + float(water.gaps.work(0.0, layer[0])), pull + water.gaps.through("dry").largest_pressure
+    return energy + float(water.gaps.work(0.0, height)), pull + water.gaps.through("dry").largest_pressure

@@ -53,6 +53,11 @@ def half_of_bridge(beam: Beam, residual_stress: float) -> Beam:
 # Finite elements
 
 
+def longest_strip(part: Beam, laws: np.ndarray) -> float:
+    """Longest strip that resolves the middle of a bridge on force laws (n, 4) [m]; ``part`` is any part of it."""
+    return STRIP * foundation_length(part, laws)
+
+
 def middle_zone(part: Beam, strip: float, laws: np.ndarray) -> tuple[Beam, int]:
     """Zone around the middle of a bridge with elements that resolve it, and its number of strips.
 
@@ -70,11 +75,11 @@ def middle_zone(part: Beam, strip: float, laws: np.ndarray) -> tuple[Beam, int]:
     ValueError
         If the strips are too long for the laws.
     """
-    foundation = foundation_length(part, laws)
-    if strip > STRIP * foundation:
+    foundation, allowed = foundation_length(part, laws), longest_strip(part, laws)
+    if strip > allowed:
         raise ValueError(
             f"strips of {1e6 * strip:.3g} µm do not resolve the middle of a bridge on these surfaces: they must be at "
-            f"most {1e6 * STRIP * foundation:.3g} µm long"
+            f"most {1e6 * allowed:.3g} µm long; decrease strip_um, or increase the thickness of the bridge"
         )
     strips = 2 * int(np.ceil(ZONE * foundation / strip))
     each = int(np.ceil(strip / (ELEMENT * foundation)))

@@ -172,7 +172,7 @@ def vectors_are_possible(case: str, forces: xr.Dataset) -> Check:
 
 
 def energies_are_bounded(case: str, forces: xr.Dataset, bound: float) -> Check:
-    """No sample has more energy than flooded flats in contact, ``bound`` [J m⁻²] of `stiction.contact.bounds`."""
+    """No sample has more energy than flooded flats in contact, ``bound`` [J m⁻²]."""
     largest = float(_energy(forces).max())
     message = f"the largest adhesion energy is {largest:.3g} mJ/m², flooded flats have {TO_MJ * bound:.3g} mJ/m²"
     return Check("energies are below those of flooded flats", case, bool(largest <= TO_MJ * bound), message)

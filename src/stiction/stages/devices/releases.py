@@ -20,12 +20,12 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
 from stiction.beam.montecarlo import Experiment, released_beams
 from stiction.beam.release import EndState
-from stiction.beam.resolution import resolved
+from stiction.beam.resolution import longest, resolved
 from stiction.chaos.model import ChaosModel, Truncation, fit
 from stiction.config.cases import humidity_of, pair_of
 from stiction.config.units import from_si
 from stiction.contact import forcelaw
-from stiction.devices.bridges import half_of_bridge, held_lengths, least_length, middle_zone
+from stiction.devices.bridges import half_of_bridge, held_lengths, least_length, longest_strip, middle_zone
 from stiction.plan.stage import chosen, select
 from stiction.streams import stream
 
@@ -88,6 +88,14 @@ def addresses(settings: Seeded) -> Callable:
     return partial(stream, settings.seed, "devices", settings.device.pair)
 
 
+def _unresolved(device, laws):
+    """As `long_beam`, with the elements of the paper."""
+    part = device.beam
+    parts = int(np.ceil(LONG * arrest_length(forcelaw.energy(laws).mean(), part) / part.length))
+    points = parts * PART
+    return replace(part, length=parts * part.length, elements=points // PER_ELEMENT), points
+
+
 def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
     """Beam of a device that is longer than its cracks, with elements that resolve them, and its number of strips.
 
@@ -96,10 +104,7 @@ def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
     ValueError
         If the strips are too long for the force laws (n, 4).
     """
-    part = device.beam
-    parts = int(np.ceil(LONG * arrest_length(forcelaw.energy(laws).mean(), part) / part.length))
-    points = parts * PART
-    beam = replace(part, length=parts * part.length, elements=points // PER_ELEMENT)
+    beam, points = _unresolved(device, laws)
     try:
         return resolved(beam, points, laws), points
     except ValueError as error:
@@ -149,6 +154,7 @@ class Opening:
     length: str  #: name in datasets of the length at which a beam is arrested
     words: str  #: what this length is
     resolved: Callable[[DesignedBeam, np.ndarray], tuple[Beam, int]]  #: as `long_beam`
+    longest_strip: Callable[[DesignedBeam, np.ndarray], float]  #: that it resolves on force laws (n, 4) [m]
     arrests: Callable[..., np.ndarray]  #: as ``held_lengths``
     #: What the samples of force laws (..., m, 4) contribute to the length (..., m, ...), and the length on their mean.
     contribution: Callable[[np.ndarray], np.ndarray]
@@ -170,6 +176,7 @@ BEAMS = {
         length="crack_length",
         words="infinite if not S-shaped",
         resolved=long_beam,
+        longest_strip=lambda device, laws: longest(_unresolved(device, laws)[0], laws)[0],
         arrests=_crack_lengths,
         contribution=forcelaw.energy,
         length_on_mean=lambda sample, beam: arrest_length(sample.mean(), beam),
@@ -181,6 +188,7 @@ BEAMS = {
         length="held_length",
         words="of the shortest bridge that its middle holds",
         resolved=lambda device, laws: middle_zone(device.beam, device.strip, laws),
+        longest_strip=lambda device, laws: longest_strip(device.beam, laws),
         arrests=held_lengths,
         contribution=_energies_and_pull_offs,
         length_on_mean=lambda sample, beam: least_length(*sample.mean(axis=0), beam),

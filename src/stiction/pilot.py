@@ -1,0 +1,361 @@
+"""Pilot: the first samples of a run, drawn before any job, decide what no relation between keys can.
+
+They show whether the summits of every patch resist the adhesion (Sec. III-B1), and whether strips resolve the cracks
+(Sec. III-C). Samples and criteria are those of the jobs. A patch is refused if one of its samples does not resist; a
+strip, if it is longer than allowed by more than three standard errors of the samples. What passes may still fail in a
+job, with the error of the same criterion.
+
+The spectrum of measured surfaces and of those whose spectrum is to be identified is preliminary, and so are force laws
+that will be corrected to full elastic contact: these are refused only if none of their samples resists, or if strips
+are far too long.
+"""
+
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache, cached_property, partial, reduce
+from itertools import chain, count, takewhile
+from operator import getitem
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stiction.beam.resolution import longest
+from stiction.config.arrays import DATA
+from stiction.config.cases import case_id
+from stiction.config.designs import Patch, patch
+from stiction.config.measured import is_measured, with_preliminary_estimates
+from stiction.config.messages import Problem, dotted, shown
+from stiction.config.plan import Plan
+from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
+from stiction.contact import forcelaw
+from stiction.contact.environment import ForceCurves, Water, force_curves
+from stiction.contact.pair import contacts_of_samples
+from stiction.models import SURFACE_MODELS
+from stiction.plan.stage import At, select
+from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
+from stiction.stages.contact.pairs import Settings, streams_of_sides, surface_pair
+from stiction.stages.devices.patch_settings import on_patch
+from stiction.stages.devices.releases import DesignedBeam, section_of_beam
+from stiction.stages.surfaces import heights, spectrum
+from stiction.surface.empirical import MeasuredDensity
+from stiction.surface.identify import SummitTarget, estimated_spectrum
+from stiction.surface.spectrum import CutoffSelfAffine
+
+#: Samples of a strip of the paper, and the least number of samples. Smaller patches have more, in the same time:
+#: only some of them lack the summits that resist the adhesion.
+SAMPLES, FEWEST = 20, 5
+#: Points of the field of a strip of the paper, 2.5 x 31 µm every 10 nm, and its distances.
+_POINTS, _DISTANCES = 250 * 3100, 400
+#: Standard errors beyond which something is certain.
+_CERTAIN = 3
+#: ASSUME: preliminary surfaces and force laws give the longest strips within this factor.
+_PRELIMINARY = 1.25
+
+
+@dataclass(frozen=True)
+class Use:
+    """What sticks on a patch at some humidities, and the keys that say so."""
+
+    patch: Patch
+    models: tuple[str, ...]  #: of the surfaces
+    humidities: list[float]  #: at which its summits must resist
+    pair: tuple  #: key that names the pair
+    size: tuple  #: key of the size of the patch
+    air: tuple  #: key of the humidities
+    resolved: list[float] = ()  #: humidities at which strips must resolve a crack
+    longest_strip: Callable[[np.ndarray], float] | None = None  #: on force laws (n, 4) [m]; none for a stopper
+    strip: tuple = ()  #: key that a refusal of its strips is about
+    thickness: float | None = None  #: of its beam, if this key is its thickness [µm]
+
+
+def problems(
+    config: dict, preliminary: dict[str, dict], code: object, remember: Callable[[object, Callable], Any]
+) -> list[Problem]:
+    """Problems that the first samples of a configuration show, one for each key and patch.
+
+    Parameters
+    ----------
+    config : dict
+        Complete and valid configuration in normal form.
+    preliminary : dict
+        Preliminary numbers of its measured surfaces, see `stiction.config.measured.preliminary_estimates`.
+    code : object
+        Fingerprint of this module.
+    remember : callable
+        Keeps what the samples showed, see `stiction.run.disk_cache.DiskCache`.
+    """
+    plan = Plan(with_preliminary_estimates(config, preliminary), preliminary)
+    samples = cache(partial(Samples, plan, cache(partial(_surface, plan)), ["pilot", code], remember))
+    guessed, found = _guessed(config), {}
+    for use in chain(_pairs(plan), _devices(plan, "devices"), _devices(plan.of_test_beams, "test_beams")):
+        given = [guessed[name] for name in dict.fromkeys(plan.sides(use.patch.pair)) if name in guessed]
+        given += ["contact.model = 'full'"] * plan.is_corrected()
+        for path, message in _refusals(use, samples, preliminary=bool(given)):
+            end = f" (preliminary, given {', '.join(given)})" if given else ""
+            value = shown(reduce(getitem, path, config))
+            found.setdefault((path, use.patch), Problem(path, f"is {value}, {message}{end}"))
+    return list(found.values())
+
+
+def _guessed(config):
+    """Keys and values of the surfaces whose spectrum the run will improve, by name."""
+    found = {}
+    for name, entry in config["surfaces"].items():
+        if is_measured(entry):
+            files = [Path(file).name for file in entry["scans"]["files"]]
+            found[name] = f"surfaces.{name}.scans.files = {shown(files)}"
+        elif entry["psd"] != "published":
+            found[name] = f"surfaces.{name}.psd = {shown(entry['psd'])}"
+    return found
+
+
+# What sticks
+
+
+def _pairs(plan):
+    """Strips of the pairs that run, at their humidities and at that of the figures."""
+    config = plan.config
+    for number, pair in enumerate(plan.pairs):
+        beam = cantilever(in_si(Cantilevers, sections(plan, pair)), pair)
+        use = partial(
+            Use,
+            patch(pair, config["sampling"]["strip_length_um"], config["beam"]["width_um"]),
+            SURFACE_MODELS,
+            pair=("run", "pairs", number),
+            size=("beam", "width_um"),
+            longest_strip=lambda laws, beam=beam: longest(beam, laws)[0],
+            strip=("sampling", "strip_length_um"),
+        )
+        stated, shown = config["pairs"][pair]["humidities"], [config["figures"]["humidity"]]
+        yield use(stated, air=("pairs", pair, "humidities"), resolved=_refined(plan, pair, stated))
+        cracks = _refined(plan, pair, shown) if pair == plan.figure_pair else []
+        yield use(shown, air=("figures", "humidity"), resolved=cracks)
+
+
+def _refined(plan, pair, humidities):
+    """Those at which the elements of the beams of a pair follow their force laws."""
+    return [humidity for humidity in humidities if not plan.has_mesh_of_paper(case_id(pair, humidity))]
+
+
+def _devices(plan, section):
+    """Patches of devices, also along the axes of their charts and of the worst humidity of stoppers."""
+    designs = plan.designs
+    for name, device in designs.devices.items():
+        own, ground = (section, name), designs.ground(name)
+        use = partial(Use, ground, ("NG",), pair=(*own, "pair"))
+        air = (
+            *own,
+            "humidities" if section == "devices" else next(key for key in DATA if key in plan.config[section][name]),
+        )
+        if not designs.kind(name).is_beam:
+            yield use(device["humidities"], size=(*own, "contact_um"), air=air)
+            sought = plan.config["design"]["worst_humidities"], ("design", "worst_humidities")
+            yield use(sought[0], size=(*own, "contact_um"), air=sought[1])
+            continue
+        sizes = [(device["humidities"], air, (*own, "thickness_um"), {})]
+        if chart := device.get("chart"):
+            thinnest = {
+                "thickness_um": chart["thicknesses_um"][0],
+                "gap_um": chart.get("gaps_um", [device["gap_um"]])[0],
+            }
+            keys = [(*own, "chart", key) for key in ("humidities", "thicknesses_um")]
+            sizes.append((designs.axis(name), *keys, thinnest))
+        for humidities, of_air, key, size in sizes:
+            beam = in_si(DesignedBeam, section_of_beam(plan, name) | size)
+            yield use(
+                humidities,
+                size=(*own, "width_um"),
+                air=of_air,
+                resolved=humidities,
+                longest_strip=partial(beam.opening.longest_strip, beam),
+                strip=key,
+                thickness=from_si(beam.thickness, "um"),
+            )
+
+
+# What the samples show
+
+
+def _refusals(use: Use, samples: Callable, preliminary: bool) -> Iterator[tuple[tuple, str]]:
+    """Keys and messages of what is wrong with a use."""
+    law = use.longest_strip is not None
+    try:
+        shown = {
+            (model, humidity): samples(use.patch, model).at(humidity, law, preliminary)
+            for model in use.models
+            for humidity in use.humidities
+        }
+    except (ValueError, ArithmeticError) as reason:
+        yield use.pair, f"must have surfaces and a solid whose contact can be computed: {reason}"
+        return
+    if weak := sorted(humidity for (_, humidity), found in shown.items() if "weak" in found):
+        yield _weak(use, weak, next(found["weak"] for found in shown.values() if "weak" in found))
+        return
+    strips = [(*_longest(use, shown[at]["laws"]), at) for at in shown if at[1] in use.resolved]
+    length, error, at = min(strips, default=(np.inf, 0.0, None))
+    doubt = _PRELIMINARY if preliminary else 1
+    if use.patch.length > doubt * (length + _CERTAIN * error):
+        yield use.strip, _too_long(use, length, error, f"at RH {at[1]:g} {len(shown[at]['laws'])} samples")
+
+
+def _longest(use, laws):
+    """Longest strip that resolves the cracks of a use, and its jackknife error [nm]."""
+    laws = np.array(laws)
+    without = [use.longest_strip(np.delete(laws, k, axis=0)) for k in range(len(laws))]
+    error = np.std(without) * np.sqrt(len(laws) - 1)
+    return from_si(use.longest_strip(laws), "nm"), from_si(float(error), "nm")
+
+
+def _too_long(use, length, error, samples):
+    """Message about strips that are longer than samples allow, with a length or thickness that would do."""
+    strip, enough = use.patch.length / NM_PER_UM, (length - _CERTAIN * error) / NM_PER_UM
+    found = f"{samples} allow {length / NM_PER_UM:.3g} ± {error / NM_PER_UM:.1g} µm"
+    if use.thickness is None:
+        return f"must be at most {enough:.3g} µm to resolve the cracks of pair {use.patch.pair}: {found}"
+    # All lengths of a crack on given force laws are proportional to t^(3/4).
+    thickness = use.thickness * (strip / enough) ** (4 / 3)
+    return (
+        f"must be so large that strips of {strip:g} µm resolve its cracks, at least {thickness:.3g} µm: {found}; or "
+        f"decrease strip_um to at most {enough:.3g} µm, which must stay above the correlation length"
+    )
+
+
+def _weak(use, humidities, weak):
+    """Key and message of a patch, a sample of which does not resist the adhesion at the first of some humidities."""
+    pull, repulsion = (f"{from_si(weak[key], 'MPa'):.3g} MPa" for key in ("pull", "repulsion"))
+    resist = (
+        f"at RH {humidities[0]:g}{' and others' * (len(set(humidities)) > 1)}, water and van der Waals forces pull "
+        f"with up to {pull}, and the summits of sample {weak['sample']} of {weak['samples']} resist with {repulsion}"
+    )
+    if weak["together"]:
+        length, width = (side / NM_PER_UM for side in use.patch[1:])
+        return use.size, (
+            f"must give patches of surface with so many summits that every sample resists the adhesion: {resist} on "
+            f"{length:g} x {width:g} µm of pair {use.patch.pair}; as far as these samples show, {weak['together']} "
+            "times the area would do"
+        )
+    others = [f"{one:g}" for one in use.humidities if one not in humidities]
+    choose = f"only {', '.join(others)}" if others else "other humidities"
+    return use.pair, (
+        f"must have surfaces rough enough and a solid stiff enough for its humidities: {resist} where the mean planes "
+        f"meet; increase the roughness or young_modulus_GPa, or choose {choose} in {dotted(use.air)}"
+    )
+
+
+def _surface(plan, name):
+    """Datasets (heights, spectrum) of a surface that is described by numbers."""
+    entry, rms = plan.config["surfaces"][name], plan.config["surfaces"][name]["rms_nm"]
+    if "form" in entry:
+        measured = heights.Settings(to_si(rms, "nm"), np.nan, np.nan)
+        density = heights.layout(MeasuredDensity(*map(np.array, entry["form"])), measured)
+    else:
+        with warnings.catch_warnings(action="ignore"):  # about nearest feasible moments, which the job will give
+            density = heights.compute(in_si(heights.Settings, select(heights.Settings, entry)))
+    if entry["psd"] == "published":
+        target = in_si(CutoffSelfAffine, entry["published_psd"])
+    else:
+        radius, number = to_si(entry["mean_summit_radius_um"], "um"), to_si(entry["summit_density_per_um2"], "per_um2")
+        of_summits = to_si(plan.config["character"]["spacing_nm"], "nm")
+        target = estimated_spectrum(SummitTarget(to_si(rms, "nm"), radius, number, of_summits))
+    return density, spectrum.on_grid(target, density, to_si(plan.config["sampling"]["spacing_nm"], "nm"))
+
+
+@dataclass(frozen=True)
+class Samples:
+    """First samples of a patch of a pair."""
+
+    plan: Plan
+    surfaces: Callable  #: datasets (heights, spectrum) of a surface by name
+    code: list  #: on which the answers depend
+    remember: Callable
+    patch: Patch
+    model: str
+
+    def at(self, humidity: float, law: bool, preliminary: bool) -> dict[str, Any]:
+        """What they show at a humidity, see `shown_by`."""
+        entries = [self._entry(name) for name in self.plan.sides(self.patch.pair)]
+        water = self.plan.water(self.patch.pair)
+        settings = [self.patch, self.model, entries, self.plan.config["character"], self._settings]
+        return self.remember(
+            [*self.code, *settings, water, humidity, law, preliminary],
+            lambda: shown_by(force_curves(*self._contact, humidity, in_si(Water, water)), law, preliminary),
+        )
+
+    def _entry(self, name):
+        return self.plan.config["surfaces"][name]
+
+    @cached_property
+    def _settings(self):
+        """Settings of the contact of as many samples as the time allows."""
+        at = At(pair=self.patch.pair, length=str(self.patch.length), width=str(self.patch.width))
+        return on_patch(self.plan, at, self.plan.config["contact"]["samples"])
+
+    @cached_property
+    def _contact(self):
+        """Solid pressures, bearing areas and their grids, as in stage contact."""
+        settings = in_si(Settings, self._settings)
+        both = [self.surfaces(name) for name in self.plan.sides(self.patch.pair)]
+        pair = surface_pair(both, self.model, settings)
+        work = np.prod(pair.beam.grid.field_shape) / _POINTS * (1 + pair.distances.above / _DISTANCES) / 2
+        number = min(settings.contact.samples, max(FEWEST, int(SAMPLES / work)))
+        streams = streams_of_sides(settings.seed, self.patch.pair)
+        ((solid, bearing),) = contacts_of_samples([pair], streams, range(number))
+        grid = pair.distances
+        return solid, bearing, (float(grid.solid[0]), float(grid.bearing[0])), grid.step
+
+
+def shown_by(curves: ForceCurves, law: bool, preliminary: bool = False) -> dict[str, Any]:
+    """What force curves show: their force laws, or the sample that resists the adhesion least if it does not resist.
+
+    Parameters
+    ----------
+    curves : ForceCurves
+    law : bool
+        Whether they must have force laws, and rise to the largest attraction of all samples, or only hold a patch.
+    preliminary : bool
+        Whether samples that do not resist are left out as long as others do.
+
+    Returns
+    -------
+    dict
+        ``laws`` (n, 4) [SI], none if none are needed. Or ``weak``: number of a ``sample`` and of all ``samples``, its
+        ``repulsion`` and the largest ``pull`` [Pa], and how many patches ``together`` resist, ``None`` if not even all.
+
+    Raises
+    ------
+    ValueError
+        If the criteria of the jobs refuse the curves for another reason, or fewer than two have a force law.
+    """
+    forces = np.array([curves.curve(k).copy() for k in range(curves.samples)])
+    repulsion, needed = _repulsion(forces), -forces.min() if law else 0.0
+    resist = repulsion > needed
+    if not (resist.any() if preliminary else resist.all()):
+        sizes = takewhile(lambda size: size <= len(forces), (2**n for n in count(1)))
+        together = next((size for size in sizes if np.all(_repulsion(_joined(forces, size)) > needed)), None)
+        weakest = int(np.argmin(repulsion))
+        weak = {"sample": weakest, "repulsion": max(float(repulsion[weakest]), 0.0), "pull": -float(forces.min())}
+        return {"weak": weak | {"samples": len(forces), "together": together}}
+    kept = forces[resist]
+    if not law:
+        forcelaw.pull_offs(curves.distance, kept.__getitem__, len(kept))
+        return {"laws": []}
+    beyond = None if curves.beyond is None else curves.beyond[resist]
+    laws, lawful = forcelaw.coefficients_where_lawful(
+        *forcelaw.parametrise(curves.distance, kept.__getitem__, len(kept), beyond)
+    )
+    if lawful.sum() < 2:
+        raise ValueError(f"{lawful.sum()} of {len(kept)} samples have a force law of Eq. (12)")
+    return {"laws": laws[lawful].tolist()}
+
+
+def _repulsion(forces):
+    """Largest force of each curve (n, n_d) at smaller distances than its largest attraction (n,) [Pa]."""
+    return np.array([force[: force.argmin()].max(initial=-np.inf) for force in forces])
+
+
+def _joined(forces, size):
+    """Force curves (n, n_d) of patches that are several times as large."""
+    whole = len(forces) // size
+    return forces[: whole * size].reshape(whole, size, -1).mean(axis=1)

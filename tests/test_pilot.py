@@ -1,0 +1,294 @@
+"""The first samples of a run decide before any job what its jobs would refuse, by the criteria of the jobs.
+
+An earlier estimate without samples refused surfaces on which no adhesion is left by false sentences, and accepted
+strips that were twice too long.
+"""
+
+import functools
+import re
+from dataclasses import replace
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+import yaml
+from configurations import PAPER, ROOT
+from configurations import problems as invalid
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from written_scans import etched, scans_of
+
+from stiction import pilot
+from stiction.chaos.model import draw_laws
+from stiction.config import measured
+from stiction.config.designs import Patch
+from stiction.config.files import normalised
+from stiction.config.merging import merged
+from stiction.config.plan import Plan
+from stiction.config.units import in_si
+from stiction.contact import forcelaw
+from stiction.contact.environment import ForceCurves
+from stiction.contact.forcelaw import coefficients
+from stiction.device import Device
+from stiction.run.disk_cache import DiskCache
+from stiction.stages.contact import curves
+from stiction.stages.devices import cracks
+from stiction.stages.devices.releases import fitted
+from stiction.stages.laws import forces
+from stiction.study import PairStudy
+
+REMEMBER = DiskCache("none")  # the tests ask for many of the same samples
+B = "run: {pairs: [b]}\n"
+BEAM = "kind: cantilever, pair: b, thickness_um: 2.6, gap_um: 20, width_um: 30, humidities: [0.67]"
+STOPPER = "kind: stopper, pair: b, restoring_force_uN: 20, humidities: [0.5]"
+
+
+def configured(*overlays):
+    """Normal form of the paper's configuration under overlays in YAML, which have no other problems."""
+    config = functools.reduce(merged, map(yaml.safe_load, overlays), PAPER)
+    assert invalid(config) == ()
+    return normalised(config)
+
+
+def refused(*overlays):
+    """What the pilot of a configuration refuses, one line each."""
+    return list(map(str, pilot.problems(configured(*overlays), {}, "code", REMEMBER)))
+
+
+@pytest.mark.parametrize("file", ["config.yaml", "examples/devices.yaml", "examples/test_beams.yaml"])
+def test_the_paper_and_the_examples_can_run(file):
+    assert refused((ROOT / file).read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize("rms", [10, 20, 40])
+def test_rough_surfaces_can_run(rms):
+    assert refused(B, f"surfaces: {{B2: {{rms_nm: {rms}}}}}\npairs: {{b: {{humidities: [0.67]}}}}") == []
+
+
+def test_poorly_wetted_surfaces_can_run():
+    wax = "materials: {Wax: {contact_angle_deg: 80}}\nsurfaces: {B2: {material: Wax}, Sub1: {material: Wax}}"
+    assert refused(B, wax, "pairs: {b: {humidities: [0.85, 0.9]}}\nfigures: {humidity: 0.9}") == []
+
+
+WEAK, FEW = "surfaces rough enough and a solid stiff enough", "so many summits that every sample resists the adhesion"
+CHART = "chart: {thicknesses_um: [0.2, 3], gaps_um: [10, 20], humidities: [0.5, 0.9]}"
+REFUSALS = [
+    (
+        "surfaces: {B2: {rms_nm: 0.3}}",
+        "run.pairs[0] is 'b'",
+        f"{WEAK} for its humidities: at RH 0.44 and others, water",
+    ),
+    ("surfaces: {B2: {rms_nm: 0.3}}", "run.pairs[0] is 'b'", "or choose other humidities in pairs.b.humidities"),
+    ("surfaces: {B2: {rms_nm: 0.2, psd: identified}}", "run.pairs[0]", "(preliminary, given surfaces.B2.psd = 'identi"),
+    ("solid: {young_modulus_GPa: 0.1}", "run.pairs[0] is 'b'", "the summits of sample 0 of"),
+    (
+        "materials: {Gel: {young_modulus_GPa: 1.0e-4}}\nsurfaces: {Sub1: {material: Gel}}",
+        "run.pairs[0] is 'b'",
+        "increase the roughness or young_modulus_GPa",
+    ),
+    ("beam: {width_um: 0.06}", "beam.width_um is 0.06", f"{FEW}: at RH 0.44 and others, water"),
+    ("beam: {width_um: 0.06}", "beam.width_um is 0.06", "on 1.5 x 0.06 µm of pair b; as far as these samples show, "),
+    ("beam: {thickness_um: 1}", "sampling.strip_length_um is 1.5", "µm to resolve the cracks of pair b: at RH "),
+    ("surfaces: {B2: {kurtosis: 1.5777}}", "sampling.strip_length_um is 1.5", "must be at most 0.6"),
+    (
+        "figures: {humidity: 0.88}\npairs: {b: {humidities: [0.44]}}\nbeam: {thickness_um: 1.2}",
+        "sampling.strip_length_um",
+        "pair b: at RH 0.88 ",
+    ),
+    (f"devices: {{D: {{{BEAM}, thickness_um: 0.1}}}}", "devices.D.thickness_um is 0.1", "must be so large that strips"),
+    (f"devices: {{D: {{{BEAM}, {CHART}}}}}", "devices.D.chart.thicknesses_um is [0.2, 3]", "of 1.5 µm resolve its"),
+    (
+        f"devices: {{D: {{{BEAM}, kind: bridge, residual_stress_MPa: 50, thickness_um: 0.1}}}}",
+        "devices.D.thickness_um is 0.1",
+        "strips of 0.5 µm resolve its cracks, at least 0.3",
+    ),
+    (f"devices: {{D: {{{BEAM}, width_um: 0.06}}}}", "devices.D.width_um is 0.06", f"{FEW}: at RH 0.67, water"),
+    (f"devices: {{D: {{{STOPPER}, contact_um: [0.1, 0.1]}}}}", "devices.D.contact_um is [0.1, 0.1]", "0.1 x 0.1 µm of"),
+    (
+        f"devices: {{D: {{{BEAM}, test_beams: [first]}}}}\ntest_beams: {{first: {{pair: b, thickness_um: 0.2, gap_um: "
+        "20, width_um: 30, length_um: 900, crack_lengths: [{humidity: 0.67, mean_um: 100, std_um: 5, beams: 9}]}}",
+        "test_beams.first.thickness_um is 0.2",
+        "must be so large that strips of 1.5 µm resolve its cracks, at least",
+    ),
+]
+
+
+@pytest.mark.parametrize(("overlay", "key", "words"), REFUSALS, ids=[row[0][:50] for row in REFUSALS])
+def test_what_the_jobs_would_refuse_is_refused_by_name(overlay, key, words):
+    (line,) = refused(B, overlay)
+    assert line.startswith(key)
+    assert f"{key.split(' is')[0]} is " in line
+    assert ", must " in line
+    assert words in line
+
+
+@pytest.fixture(scope="module")
+def scans(tmp_path_factory):
+    """Folder with two scans of B2."""
+    path = tmp_path_factory.mktemp("scans")
+    scans_of(path, count=2)
+    return path
+
+
+@pytest.mark.parametrize("heights", ["moments", "measured"])
+@pytest.mark.parametrize(
+    ("overlay", "begins"),
+    [
+        ("solid: {young_modulus_GPa: 0.05}", "run.pairs[0] is 'b', must have surfaces rough enough"),
+        ("beam: {thickness_um: 0.5}", "sampling.strip_length_um is 1.5, must be at most"),
+    ],
+)
+def test_measured_surfaces_are_drawn_from_their_preliminary_numbers(scans, overlay, begins, heights):
+    files = sorted(scans.glob("B2-*.gwy"))
+    unmet = {"surfaces": {"Unmet": {"scans": {"files": [str(files[1])]}}}}
+    valid = functools.reduce(merged, (etched(files[0], heights=heights), unmet, yaml.safe_load(B)), PAPER)
+    found = measured.preliminary_estimates(valid)[0]
+    assert pilot.problems(normalised(valid), found, "code", REMEMBER) == []
+    config = normalised(merged(valid, yaml.safe_load(overlay)))
+    (line,) = map(str, pilot.problems(config, found, "code", REMEMBER))
+    assert line.startswith(begins)
+    assert line.endswith("(preliminary, given surfaces.Etched.scans.files = ['B2-0.gwy'])")
+
+
+@pytest.mark.parametrize("overlay", ["surfaces: {B2: {rms_nm: 0.3}}", "solid: {young_modulus_GPa: 0.1}"])
+def test_a_patch_that_does_not_resist_is_refused_with_the_forces_of_its_weakest_sample(overlay):
+    config = configured(B, overlay, "contact: {samples: 200}\nchaos: {order: 2}")
+    (line,) = map(str, pilot.problems(config, {}, "code", REMEMBER))
+    number, of = map(int, re.search(r"sample (\d+) of (\d+)", line).groups())
+    pull = float(re.search(r"with up to ([\d.]+) MPa", line)[1])
+    study = PairStudy.of(config, "b", "G" if "Gaussian" in line else "NG")
+    with pytest.raises(ValueError, match="the force does not rise to zero or to f_limit|minimum of the force is at an"):
+        study.forces(0.44)
+    assert 0 <= number < of
+    assert 0 < pull < 500
+
+
+def test_strips_are_allowed_as_the_jobs_allow_them_within_the_error_of_the_samples():
+    config = configured(
+        B, f"contact: {{samples: 300}}\nchaos: {{order: 4}}\ndevices: {{D: {{{BEAM}, thickness_um: 1}}}}"
+    )
+    (line,) = map(str, pilot.problems(config, {}, "code", REMEMBER))
+    thickness, longest, error, enough = map(float, re.search(LENGTHS, line).groups())
+    device = Device.of(config, "D")
+
+    def job(thickness_um, strip_um):
+        """What stage cracks finds for another thickness and length of the strips on the same force laws."""
+        settings = in_si(cracks.Settings, device.results.graph.job("devices/cracks/D_rh067").settings)
+        vectors, limit = curves.vectors(device.contact, 0.67, settings.water)
+        laws = draw_laws(fitted(vectors, limit, settings.chaos), 10_000, np.random.default_rng(1))
+        beam = replace(settings.device, thickness=1e-6 * thickness_um, strip=1e-6 * strip_um)
+        return beam.opening.resolved(beam, laws)
+
+    job(1, longest - 4 * error)
+    job(1, enough)
+    job(thickness, 1.5)
+    for refused_by_job in ((1, longest + 4 * error), (0.9 * thickness, 1.5)):
+        with pytest.raises(ValueError, match="do not resolve a crack"):
+            job(*refused_by_job)
+
+
+#: Thickness that would do, longest strip and its error, strips that would do.
+LENGTHS = r"at least ([\d.]+) µm: .* allow ([\d.]+) ± ([\d.]+) µm; or decrease strip_um to at most ([\d.]+) µm"
+
+
+def test_what_is_close_to_the_limit_of_the_samples_runs():
+    def lines(strip):
+        beam = f"devices: {{D: {{{BEAM}, thickness_um: 1, strip_um: {strip}}}}}"
+        return list(map(str, pilot.problems(normalised(merged(PAPER, yaml.safe_load(B + beam))), {}, "code", REMEMBER)))
+
+    (line,) = lines(1.5)
+    _, longest, error, _ = map(float, re.search(LENGTHS, line).groups())
+    assert 0 < 3 * error < 0.1 * longest
+    assert lines(round(longest + error, 2)) == []
+    assert len(lines(round(longest + 6 * error, 2))) == 1
+
+
+@pytest.mark.parametrize("model", ["NG", "G"])
+def test_the_samples_are_the_first_ones_of_the_run(model):
+    changes = (
+        "contact: {samples: 8, asperity: island}\nbeam: {width_um: 3}\nchaos: {order: 1}\nattraction: {reach: all}"
+    )
+    config = configured(B, changes)
+    plan = Plan(config)
+    surfaces = functools.partial(pilot._surface, plan)
+    samples = pilot.Samples(plan, surfaces, [], lambda _, compute: compute(), Patch("b", 1500, 3000), model)
+    study = PairStudy.of(config, "b", model)
+    solid, bearing, *_ = samples._contact
+    np.testing.assert_array_equal(solid, study.contact.solid_pressure)
+    np.testing.assert_array_equal(bearing, study.contact.bearing_area)
+    expected = coefficients(*forces.vectors(study.forces(0.67)))
+    np.testing.assert_array_equal(samples.at(0.67, law=True, preliminary=False)["laws"], expected)
+
+
+def test_answers_are_remembered_until_something_changes_on_which_they_depend(tmp_path):
+    config, kept = configured(B, "contact: {samples: 5}\nchaos: {order: 1}"), tmp_path / "pilot.json"
+
+    def drawn(config, code="code"):
+        """Number of contacts that are computed."""
+        with patch.object(pilot, "contacts_of_samples", wraps=pilot.contacts_of_samples) as contacts:
+            remember = DiskCache(kept)
+            pilot.problems(config, {}, code, remember)
+            remember.save()
+        return contacts.call_count
+
+    assert drawn(config) == 2, "with Gaussian heights and others"
+    assert drawn(config) == 0
+    assert drawn(merged(config, {"beam": {"thickness_um": 3}})) == 0
+    assert drawn(config, "other code") == 2
+    for changed in ({"attraction": {"reach": "all"}}, {"surfaces": {"B2": {"rms_nm": 4}}}, {"seed": 2}):
+        assert drawn(config) == 2, "the last configuration is remembered"
+        assert drawn(merged(config, changed)) == 2
+
+
+# What force curves show
+
+DISTANCE = 1e-9 * np.arange(40.0)
+
+
+def curve(repulsion, pull):
+    """Force that rises to a repulsion at the distance 2 nm, with its largest attraction at 10 nm."""
+    return np.interp(DISTANCE, 1e-9 * np.array([0, 2, 10, 30]), [0.5 * repulsion, repulsion, -pull, 0])
+
+
+def shown(curves, law=True, preliminary=False):
+    return pilot.shown_by(ForceCurves(DISTANCE, curves.__getitem__, len(curves)), law, preliminary)
+
+
+forces_of_samples = st.lists(st.tuples(st.floats(-1, 5), st.floats(0.5, 3)), min_size=3, max_size=8)
+
+
+@given(forces_of_samples)
+def test_samples_are_weak_if_their_force_curves_have_no_parameters(samples):
+    curves = np.array([curve(*sample) for sample in samples])
+    repulsion, pull = np.array(samples).T
+    assume(np.all(np.abs(repulsion - pull.max()) > 1e-3))
+    found = shown(curves)
+    if "weak" not in found:
+        vectors, limit = forcelaw.parametrise(DISTANCE, curves.__getitem__, len(curves))
+        assert len(found["laws"]) == forcelaw.admissible(vectors, limit).sum()
+        return
+    assert (found["weak"]["sample"], found["weak"]["samples"]) == (np.argmin(repulsion), len(samples))
+    assert found["weak"]["pull"] == pytest.approx(pull.max())
+    with pytest.raises(ValueError, match="does not rise"):
+        forcelaw.parametrise(DISTANCE, curves.__getitem__, len(curves))
+
+
+def test_a_stopper_resists_if_anything_stops_it():
+    held, pressed = curve(0.1, 2.0), np.interp(DISTANCE, [0, 30e-9], [-1, 0])
+    assert shown(np.array([held, held]), law=False) == {"laws": []}
+    assert "weak" in shown(np.array([held, held]))
+    weak = shown(np.array([held, pressed]), law=False)["weak"]
+    assert (weak["sample"], weak["repulsion"]) == (1, 0)
+
+
+def test_larger_patches_resist_if_their_samples_do_together():
+    strong, soft = curve(4.0, 1.0), curve(0.0, 1.0)
+    assert shown(np.array([strong, soft] * 4))["weak"]["together"] == 2
+    assert shown(np.array([strong, soft, soft, soft] * 4))["weak"]["together"] is None, "0.25 x 4 does not exceed 1"
+    assert shown(np.array([soft] * 4))["weak"]["together"] is None
+
+
+def test_surfaces_whose_spectrum_is_preliminary_are_refused_if_no_sample_resists():
+    strong, soft = curve(4.0, 1.0), curve(0.0, 1.0)
+    assert len(shown(np.array([strong, soft, strong]), preliminary=True)["laws"]) == 2
+    assert "weak" in shown(np.array([soft, soft]), preliminary=True)
