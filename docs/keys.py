@@ -82,6 +82,7 @@ def allowed(entry: dict) -> str:
         return "text"
     words = {"exclusiveMinimum": "above", "minimum": "at least", "exclusiveMaximum": "below", "maximum": "at most"}
     bounds = ", ".join(f"{word} {entry[bound]}" for bound, word in words.items() if bound in entry)
+    bounds += f", or `{entry['word']}`" if "word" in entry else ""
     return f"whole number, {bounds}" if entry["type"] == "integer" else bounds
 
 
@@ -122,6 +123,8 @@ def _reduced(entry):
     if not isinstance(entry, dict):
         return entry
     kept = {name: value for name, value in entry.items() if name not in _OF_COMPLETE}
+    if "word" in kept:
+        return {"description": kept.pop("description"), "anyOf": [{"const": kept.pop("word")}, kept]}
     for name in ("additionalProperties", "items"):
         if name in kept:
             kept[name] = _reduced(kept[name])

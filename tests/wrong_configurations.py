@@ -19,8 +19,9 @@ WRONG_VALUES = [
     ("surfaces: {B1: {published_psd: {plateau_nm4: 0}}}", "surfaces.B1.published_psd.plateau_nm4", "0", "[nm⁴]"),
     ("surfaces: {B1: {published_psd: {floor_nm4: 0}}}", "surfaces.B1.published_psd.floor_nm4", "0", "above 0"),
     ("pairs: {a: {gap_um: -20}}", "pairs.a.gap_um", "-20", "at least 0.001"),
-    ("pairs: {a: {humidities: [0.5, 0]}}", "pairs.a.humidities[1]", "0", "above 0 and below 1"),
-    ("pairs: {a: {humidities: [1]}}", "pairs.a.humidities[0]", "1", "above 0 and below 1"),
+    ("pairs: {a: {humidities: [0.5, -0.1]}}", "pairs.a.humidities[1]", "-0.1", "at least 0 and below 1 or dry"),
+    ("pairs: {a: {humidities: [1]}}", "pairs.a.humidities[0]", "1", "at least 0 and below 1 or dry"),
+    ("pairs: {a: {humidities: [Dry, 0.5]}}", "pairs.a.humidities[0]", "'Dry'", "at least 0 and below 1 or dry"),
     ("pairs: {a: {humidities: [65]}}", "pairs.a.humidities[0]", "65", "as a fraction of 1"),
     ("sampling: {spacing_nm: 0}", "sampling.spacing_nm", "0", "at least 0.1"),
     ("sampling: {strip_length_um: -1.5}", "sampling.strip_length_um", "-1.5", "at least 0.01"),
@@ -50,7 +51,9 @@ WRONG_VALUES = [
     ("beam: {samples: 0}", "beam.samples", "0", "at least 2"),
     ("beam: {scatter: -0.01}", "beam.scatter", "-0.01", "at least 0 and below 0.2"),
     ("beam: {scatter: 0.2}", "beam.scatter", "0.2", "below 0.2"),
-    ("figures: {humidity: 1.0}", "figures.humidity", "1.0", "above 0 and below 1"),
+    (f"devices: {{C1: {CANTILEVER[:-1]}, chart: {{thicknesses_um: [3], humidities: [dry, 0.9]}}}}}}",
+     "devices.C1.chart.humidities[0]", "0.0", "above 0 and below 1: relative humidity, as a fraction of 1; dry air is"),
+    ("figures: {humidity: 1.0}", "figures.humidity", "1.0", "at least 0 and below 1 or dry"),
     ("studies: {sensitivity: {step: 0}}", "studies.sensitivity.step", "0", "at least 0.001 and at most 0.5"),
     ("studies: {sensitivity: {step: 1.0e-12}}", "studies.sensitivity.step", "1e-12", "far above single precision"),
     ("studies: {plasticity: {distance_nm: {a: -1}}}", "studies.plasticity.distance_nm.a", "-1", "[nm]"),
@@ -59,7 +62,7 @@ WRONG_VALUES = [
     # values misread by YAML
     ("seed: 1e3", "seed", "'1e3'", "as text, write 1000"),
     ("beam: {thickness_um: 1.5e-3um}", "beam.thickness_um", "'1.5e-3um'", "write 1.5e-3 without"),
-    ("pairs: {a: {humidities: [44%]}}", "pairs.a.humidities[0]", "'44%'", "below 1: relative humidity, as a fraction"),
+    ("pairs: {a: {humidities: [44%]}}", "pairs.a.humidities[0]", "'44%'", "below 1 or dry: relative humidity"),
     ("chaos: {dimension_tolerance: 1e-3}", "chaos.dimension_tolerance", "'1e-3'", "as text, write 1.0e-3"),
     ("solid: {young_modulus_GPa: 1.64e2}", "solid.young_modulus_GPa", "'1.64e2'", "write 1.64e+2"),
     ("contact: {samples: 5E3}", "contact.samples", "'5E3'", "write 5000"),
@@ -119,6 +122,9 @@ UNCERTAIN = (
     "devices: {C1: {kind: cantilever, pair: b, thickness_um: 2.6, gap_um: 20, width_um: 30, humidities: [0.67], "
 )
 UNCERTAIN += "uncertainty: {"
+#: A cantilever in dry and in humid air, without the braces at its end.
+IN_DRY_AIR = "devices: {C1: {kind: cantilever, pair: b, thickness_um: 3, gap_um: 10, width_um: 30, "
+IN_DRY_AIR += "humidities: [dry, 0.8], "
 #: Coatings as thick as they may be.
 COATED = "materials: {SAM: {coating_nm: 100}}\nsurfaces: {B1: {material: SAM}, Sub1: {material: SAM}}\n"
 # As above, for relations between keys
@@ -149,6 +155,26 @@ WRONG_RELATIONS = [
      "must be at least 0.2903: in drier air, at 300 K and contact angles of 0 and 0 degrees, the film between the "
      "surfaces is thinner than 3 molecules, 0.84 nm, which are no liquid"),
     ("figures: {humidity: 0.01}", "figures.humidity", "0.01", "must be at least 0.2903"),
+    ("pairs: {b: {humidities: [dry, 0.29]}}\nattraction: {reach: all}", "pairs.b.humidities", "[0.0, 0.29]",
+     "which are no liquid; results for dry air and for the driest air that is allowed bracket those between"),
+    ("pairs: {b: {humidities: [dry, 0.6]}}", "attraction.reach", "'touching'",
+     "must be all for pair b, in dry air: without attraction across gaps, energies in dry air are 5 to 30 times too"),
+    (IN_DRY_AIR + "}}", "attraction.reach", "'touching'", "must be all for pair b, in dry air: without attraction"),
+    (IN_DRY_AIR + "uncertainty: {humidity: 0.01}}}\nattraction: {reach: all}",
+     "devices.C1.uncertainty.humidity", "0.01",
+     "must be left out, because dry air has no humidity that could be uncertain: describe two devices"),
+    ("run: {pairs: []}\nmaterials: {Wax: {contact_angle_deg: 92}}\nattraction: {reach: all}\n"
+     "surfaces: {B2: {material: Wax}, Sub1: {material: Wax}}\n" + IN_DRY_AIR + "uncertainty: {contact_angle_deg: 3}}}",
+     "devices.C1.uncertainty.contact_angle_deg", "3",
+     "must leave contact angles at which no water condenses: their cosines add up to zero or less"),
+    (IN_DRY_AIR + "requirement: {share: 0.001, length_um: 300}, roughness: {surface: B2, rms_nm: [1, 8]}}}\n"
+     "attraction: {reach: all}", "devices.C1.roughness", "{'surface': 'B2', 'rms_nm': [1, 8]}",
+     "must be left out for a device in dry air: it is computed in humid air alone"),
+    (IN_DRY_AIR + "chart: {thicknesses_um: [3], humidities: [0.01, 0.9]}}}\nattraction: {reach: all}",
+     "devices.C1.chart.humidities", "[0.01, 0.9]", "must be at least 0.2903"),
+    ("figures: {humidity: dry}\nrun: {pairs: [c]}", "attraction.reach", "'touching'", "must be all for pair c, in dry"),
+    ("materials: {Wax: {contact_angle_deg: 180}}\nsurfaces: {B2: {material: Wax}}", "attraction.reach", "'touching'",
+     "must be all for pair b, where no water condenses at contact angles of 180 and 0 degrees: without attraction"),
     ("figures: {humidity: 0.4}\nwater: {temperature_K: 373}", "figures.humidity", "0.4", "at least 0.4272: in drier"),
     ("run: {pairs: [c]}\npairs: {c: {humidities: [0.9]}}\nfigures: {humidity: 0.67}\n"
      "materials: {M: {contact_angle_deg: 80}}\nsurfaces: {B1: {material: M}, Sub2: {material: M}}",

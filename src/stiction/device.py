@@ -20,7 +20,7 @@ from stiction.stages.devices.patch_settings import contact_of, tips_of
 
 @dataclass(frozen=True)
 class Device:
-    """One device of a configuration, and its safe lengths or pull-off forces at any relative humidity.
+    """One device of a configuration, and its safe lengths or pull-off forces at any relative humidity, or ``"dry"``.
 
     Examples
     --------
@@ -61,15 +61,20 @@ class Device:
 
     @property
     def contact(self) -> xr.Dataset:
-        """Contact of the strips along a beam, or of the whole area of a stopper."""
-        return self.results[contact_of(self._plan, self.name)]
+        """Contact of the strips along a beam, or of the whole area of a stopper, at its highest humidity."""
+        return self.results[contact_of(self._plan, self._wettest)]
 
     @property
     def tips(self) -> xr.Dataset | None:
-        """Contact of the strips that hold the tips of a cantilever; ``None`` for other devices."""
-        return next((self.results[name] for name in tips_of(self._plan, self.name).values()), None)
+        """Contact of the strips that hold the tips of a cantilever, at its highest humidity; ``None`` for others."""
+        return next((self.results[name] for name in tips_of(self._plan, self._wettest).values()), None)
 
-    def cracks(self, humidity: float) -> xr.Dataset:
+    @property
+    def _wettest(self):
+        """Name of the device at its highest humidity: the contact differs in dry air alone."""
+        return case_id(self.name, max(self._section["humidities"]))
+
+    def cracks(self, humidity: float | str) -> xr.Dataset:
         """Crack lengths of long beams, or lengths of held bridges; dataset of `stiction.stages.devices.cracks`.
 
         The first call takes half a minute, for a bridge a minute.
@@ -77,12 +82,12 @@ class Device:
         self._must_be(lambda kind: kind.is_beam)
         return self._result("cracks", humidity)
 
-    def safe_lengths(self, humidity: float) -> xr.Dataset:
+    def safe_lengths(self, humidity: float | str) -> xr.Dataset:
         """P(stuck) over the length, and safe lengths; dataset of `stiction.stages.devices.safe_lengths`."""
         self._must_be(lambda kind: kind.is_beam)
         return self._result("safe_lengths", humidity)
 
-    def chart(self, humidity: float) -> xr.Dataset:
+    def chart(self, humidity: float | str) -> xr.Dataset:
         """Safe lengths of the thicknesses and gaps of its chart; dataset of `stiction.stages.devices.chart`."""
         self._must_be(lambda kind: kind.is_beam)
         self._must_state("chart", self._section.get("chart"))
@@ -93,7 +98,7 @@ class Device:
         self._must_be(lambda kind: not kind.is_beam)
         return self.results[f"devices/stoppers/{self.name}"]
 
-    def budget(self, humidity: float) -> xr.Dataset:
+    def budget(self, humidity: float | str) -> xr.Dataset:
         """Uncertainty of the mean length or force; dataset of `stiction.stages.devices.budget`.
 
         The first call draws the surfaces with every uncertain input changed, a few minutes.
@@ -101,7 +106,7 @@ class Device:
         self._must_state("uncertainty", self.name in self._plan.designs.budgeted)
         return self._result("budget", humidity)
 
-    def tip_budget(self, humidity: float) -> xr.Dataset:
+    def tip_budget(self, humidity: float | str) -> xr.Dataset:
         """As `budget`, of the length that the tip of a cantilever holds."""
         self._must_be(lambda kind: kind.has_tip)
         self._must_state("uncertainty", self.name in self._plan.designs.budgeted)

@@ -87,7 +87,12 @@ def problems(
         Keeps what the samples showed, see `stiction.run.disk_cache.DiskCache`.
     """
     plan = Plan(with_preliminary_estimates(config, preliminary), preliminary)
-    samples = cache(partial(Samples, plan, cache(partial(_surface, plan)), ["pilot", code], remember))
+    of_patch = cache(partial(Samples, plan, cache(partial(_surface, plan)), ["pilot", code], remember))
+
+    def samples(patch, model, humidity):
+        """First samples of a patch, whose solids attract each other through the air of a humidity."""
+        return of_patch(patch._replace(pair=plan.in_air(patch.pair, humidity)), model)
+
     guessed, found = _guessed(config), {}
     for use in chain(_pairs(plan), _devices(plan, "devices"), _devices(plan.of_test_beams, "test_beams")):
         given = [guessed[name] for name in dict.fromkeys(plan.sides(use.patch.pair)) if name in guessed]
@@ -152,7 +157,8 @@ def _devices(plan, section):
         if not designs.kind(name).is_beam:
             yield use(device["humidities"], size=(*own, "contact_um"), air=air)
             sought = plan.config["design"]["worst_humidities"], ("design", "worst_humidities")
-            yield use(sought[0], size=(*own, "contact_um"), air=sought[1])
+            if any(device["humidities"]):
+                yield use(sought[0], size=(*own, "contact_um"), air=sought[1])
             continue
         sizes = [(device["humidities"], air, (*own, "thickness_um"), {})]
         if chart := device.get("chart"):
@@ -183,7 +189,7 @@ def _refusals(use: Use, samples: Callable, preliminary: bool) -> Iterator[tuple[
     law = use.longest_strip is not None
     try:
         shown = {
-            (model, humidity): samples(use.patch, model).at(humidity, law, preliminary)
+            (model, humidity): samples(use.patch, model, humidity).at(humidity, law, preliminary)
             for model in use.models
             for humidity in use.humidities
         }
@@ -197,7 +203,12 @@ def _refusals(use: Use, samples: Callable, preliminary: bool) -> Iterator[tuple[
     length, error, at = min(strips, default=(np.inf, 0.0, None))
     doubt = _PRELIMINARY if preliminary else 1
     if use.patch.length > doubt * (length + _CERTAIN * error):
-        yield use.strip, _too_long(use, length, error, f"at RH {at[1]:g} {len(shown[at]['laws'])} samples")
+        yield use.strip, _too_long(use, length, error, f"{_at(at[1])} {len(shown[at]['laws'])} samples")
+
+
+def _at(humidity):
+    """Humidity in words, at the beginning of what samples show."""
+    return f"at RH {humidity:g}" if humidity else "in dry air"
 
 
 def _longest(use, laws):
@@ -226,7 +237,7 @@ def _weak(use, humidities, weak):
     """Key and message of a patch, a sample of which does not resist the adhesion at the first of some humidities."""
     pull, repulsion = (f"{from_si(weak[key], 'MPa'):.3g} MPa" for key in ("pull", "repulsion"))
     resist = (
-        f"at RH {humidities[0]:g}{' and others' * (len(set(humidities)) > 1)}, water and van der Waals forces pull "
+        f"{_at(humidities[0])}{' and others' * (len(set(humidities)) > 1)}, water and van der Waals forces pull "
         f"with up to {pull}, and the summits of sample {weak['sample']} of {weak['samples']} resist with {repulsion}"
     )
     if weak["together"]:

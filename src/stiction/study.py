@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
-from stiction.config.cases import case_id
+from stiction.config.cases import case_id, in_numbers
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.contact.pair import SurfacePair
@@ -23,7 +23,7 @@ from stiction.stages.surfaces.rough_surfaces import both
 
 @dataclass(frozen=True)
 class PairStudy:
-    """One pair of surfaces and its results at any relative humidity, stage by stage.
+    """One pair of surfaces and its results at any relative humidity, or ``"dry"``, stage by stage.
 
     Examples
     --------
@@ -67,8 +67,12 @@ class PairStudy:
 
     @property
     def contact(self) -> xr.Dataset:
-        """Solid pressure and bearing area of all samples (Sec. III-A); dataset of stage contact."""
-        return self.results[f"contact/{self.name}_{self.model}"]
+        """Solid pressure and bearing area of all samples at the highest humidity (Sec. III-A), of stage contact."""
+        return self._contact_at(max(self._plan.config["pairs"][self.name]["humidities"]))
+
+    def _contact_at(self, humidity):
+        """Contact at a humidity, which differs in dry air alone."""
+        return self.results[f"contact/{self._plan.in_air(self.name, humidity)}_{self.model}"]
 
     @property
     def surfaces(self) -> SurfacePair:
@@ -77,31 +81,32 @@ class PairStudy:
         settings = in_si(pairs.Settings, job.settings)
         return pairs.surface_pair(both(self.results.inputs(job)), self.model, settings)
 
-    def energies(self, humidity: float) -> np.ndarray:
+    def energies(self, humidity: float | str) -> np.ndarray:
         """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
-        water = in_si(Water, self._plan.water(self.name))
+        humidity = in_numbers(humidity)
+        water = in_si(Water, self._plan.water(self._plan.in_air(self.name, humidity)))
         if named := corrections.of_pair(self._plan, self.name, model=self.model):
             water = replace(water, correction=corrections.correction(self.results[named["model_error"]]))
-        return curves.energies(self.contact, humidity, water)
+        return curves.energies(self._contact_at(humidity), humidity, water)
 
-    def forces(self, humidity: float) -> xr.Dataset:
+    def forces(self, humidity: float | str) -> xr.Dataset:
         """Vectors v of Eq. (11) and f_limit at a relative humidity (Sec. III-B1); dataset of stage forces."""
         return self.results[f"forces/{case_id(self.name, humidity)}_{self.model}"]
 
-    def chaos(self, humidity: float) -> xr.Dataset:
+    def chaos(self, humidity: float | str) -> xr.Dataset:
         """Chaos model of the force laws at a relative humidity (App. B); dataset of stage chaos.
 
         `stiction.stages.laws.chaos.chaos_model` returns the model itself, which draws force laws.
         """
         return self.results[f"chaos/{case_id(self.name, humidity)}_{self.model}"]
 
-    def beams(self, humidity: float, scatter: float = 0.0, threads: int = 1) -> xr.Dataset:
+    def beams(self, humidity: float | str, scatter: float = 0.0, threads: int = 1) -> xr.Dataset:
         """Beams released at a relative humidity (Sec. III-C); dataset of stage beams.
 
         Parameters
         ----------
-        humidity : float
-            [-]
+        humidity : float or str
+            [-], or ``"dry"``
         scatter : float
             Relative standard deviation of each dimension of the beams [-]; 0.025 in the paper's model GEO.
         threads : int

@@ -1,12 +1,13 @@
 """Cases and their names correspond one to one."""
 
 import math
+import re
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stiction.config.cases import case_id, humidity_of, pair_of
+from stiction.config.cases import CASE, PAIR_IN_AIR, case_id, humidity_of, in_any_air, in_dry_air, in_numbers, pair_of
 
 
 @pytest.mark.parametrize(
@@ -29,14 +30,55 @@ def test_every_humidity_of_four_decimals_is_recovered_from_its_case_name(tenthou
     assert humidity_of(case_id("b", humidity)) == humidity
 
 
-@pytest.mark.parametrize("humidity", [0, 1, -0.5, 0.67512, 0.1 + 0.2, 1e-5, math.nan, 67])
+@pytest.mark.parametrize("humidity", [1, -0.5, 0.67512, 0.1 + 0.2, 1e-5, math.nan, 67])
 def test_a_humidity_without_a_valid_case_name_is_rejected(humidity):
-    with pytest.raises(ValueError, match="must be above 0, below 1 and have at most 4 decimals"):
+    with pytest.raises(ValueError, match="must be dry, or above 0, below 1 and have at most 4 decimals"):
         case_id("b", humidity)
 
 
+@pytest.mark.parametrize("name", ["b", "Mine2", "dry"])
+def test_the_case_of_dry_air_has_the_humidity_zero_and_the_name_of_its_contact(name):
+    assert case_id(name, "dry") == case_id(name, 0.0) == in_dry_air(name) == in_dry_air(in_dry_air(name))
+    assert (pair_of(case_id(name, 0)), humidity_of(case_id(name, 0))) == (name, 0.0)
+    assert in_any_air(in_dry_air(name)) == in_any_air(name) == name
+    assert re.fullmatch(PAIR_IN_AIR, in_dry_air(name))
+    assert re.fullmatch(CASE, in_dry_air(name))
+
+
+def test_the_word_dry_stands_for_the_number_zero_where_a_humidity_stands_and_nowhere_else():
+    config = {
+        "figures": {"humidity": "dry", "pair": "dry"},
+        "pairs": {"dry": {"beam": "dry", "humidities": ["dry", 0.45]}},
+        "test_beams": {"T": {"crack_lengths": [{"humidity": "dry", "mean_um": 700}]}},
+        "van_der_waals": "dry",
+    }
+    numbers = in_numbers(config)
+    assert numbers["figures"] == {"humidity": 0.0, "pair": "dry"}
+    assert numbers["pairs"] == {"dry": {"beam": "dry", "humidities": [0.0, 0.45]}}
+    assert numbers["test_beams"]["T"]["crack_lengths"] == [{"humidity": 0.0, "mean_um": 700}]
+    assert numbers["van_der_waals"] == "dry"
+    assert in_numbers(numbers) == numbers
+
+
 @pytest.mark.parametrize(
-    "case", ["b_rh000", "b_rh0600", "b_rh06", "b_rh067512", "b_rh167", "_rh067", "b_rh067\n", "b_rh0٦٧", "rh067", ""]
+    "case",
+    [
+        "b_rh000",
+        "b_rh0600",
+        "b_rh067_dry",
+        "_dry",
+        "b_dry\n",
+        "dry",
+        "b_dry_dry",
+        "b_rh06",
+        "b_rh067512",
+        "b_rh167",
+        "_rh067",
+        "b_rh067\n",
+        "b_rh0٦٧",
+        "rh067",
+        "",
+    ],
 )
 def test_an_invalid_case_name_is_rejected(case):
     with pytest.raises(ValueError, match="must be like b_rh067"):

@@ -192,8 +192,6 @@ def test_islands_are_refused_with_devices_alone():
         ("design: {shares: [0.01, 0.010]}", "design.shares", "each value once; 0.01 is listed twice"),
         ("surfaces: {B2: {material: Gold}}", "surfaces.B2.material", "must be the name of a section of materials"),
         ("materials: {Gold: {hamaker_constant_zJ: {water: 250}}}", "materials.Gold.hamaker_constant_zJ.dry", "missing"),
-        ("materials: {Wax: {contact_angle_deg: 180}}\nsurfaces: {B2: {material: Wax}}", "pairs.b.beam",
-         "contact angles of 180 and 0 degrees"),
     ],
 )  # fmt: skip
 def test_wrong_sizes_and_materials_are_refused_by_name(overlay, key, message):

@@ -68,6 +68,11 @@ def test_between_flats_that_do_not_wet_no_water_condenses(second):
         meniscus_height(0.67, 300, (np.radians(61), second))
 
 
+@pytest.mark.parametrize(("humidity", "angles"), [(0.0, (0.0, 0.0)), (0.9, (np.pi / 2, np.pi / 2)), (0.2, (3.0, 2.0))])
+def test_in_dry_air_and_between_flats_that_water_does_not_wet_there_is_no_film(humidity, angles):
+    assert film(humidity, 300.0, angles) == (0.0, 0.0)
+
+
 @given(humidities, temperatures)
 def test_vapour_over_the_meniscus_obeys_kelvins_equation(humidity, temperature):
     radius = kelvin_radius(humidity, temperature)

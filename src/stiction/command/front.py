@@ -12,6 +12,7 @@ from typing import Any
 
 import yaml
 
+from stiction.config.cases import air
 from stiction.config.files import paper
 from stiction.report.format import with_error
 
@@ -101,11 +102,12 @@ def cracks(pair: str, rows: Sequence[Mapping[str, str]], length: float) -> str:
 
 def _ends(row):
     """End states of the beams at one humidity."""
+    where = air(float(row["relative_humidity"]))
     stuck, arcs = (float(row[f"share_{state}"]) for state in ("s_shape", "arc"))
     if not row["crack_length_um"]:
-        return f"RH {row['relative_humidity']}: {100 * arcs:.2g} % are held by their tip alone, the others come free"
+        return f"{where}: {100 * arcs:.2g} % are held by their tip alone, the others come free"
     crack = with_error(float(row["crack_length_um"]), float(row["crack_length_std_um"]))
-    return f"RH {row['relative_humidity']}: {100 * stuck:.3g} % stick behind a crack of {crack} µm"
+    return f"{where}: {100 * stuck:.3g} % stick behind a crack of {crack} µm"
 
 
 def _links(results, config):

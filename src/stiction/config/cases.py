@@ -1,30 +1,96 @@
-"""Names of cases, which are used in file names."""
+"""Names of cases, which are used in file names, and the word ``dry`` for air from which no water condenses.
+
+Dry air has the humidity 0 in the code. It has no water at all, which is not a film that becomes thinner and thinner.
+"""
 
 import re
+from typing import Any
 
-#: Pattern of a case in paths: name of the pair, two to four decimals of the relative humidity.
-CASE = "[A-Za-z][A-Za-z0-9]*_rh0[0-9]{2,4}"
+#: Word for the humidity of dry air in configurations, and the end of the names of its cases and contacts.
+DRY, _OF_DRY = "dry", "_dry"
+#: Pattern of a case in paths: name of the pair, two to four decimals of the relative humidity, or dry.
+CASE = "[A-Za-z][A-Za-z0-9]*_(?:rh0[0-9]{2,4}|dry)"
+#: Pattern of a pair whose contact is computed, in dry air where its name says so.
+PAIR_IN_AIR = "[A-Za-z][A-Za-z0-9]*(?:_dry)?"
+#: Why dry air is refused without attraction across gaps, as the end of a sentence.
+TOO_LITTLE = "without attraction across gaps, energies in dry air are 5 to 30 times too small, which is the unsafe side"
+#: Keys of humidities in a configuration.
+_HUMIDITIES = ("humidity", "humidities")
+#: Levels above ``test_beams.T.crack_lengths[0].humidity``, the deepest of them.
+_LEVELS = 5
 #: Requirement on a humidity, as part of an error message.
 NAMEABLE = "have at most 4 decimals, because the names of files contain them"
 
 
-def case_id(pair: str, humidity: float) -> str:
-    """Name of the case of a pair at a relative humidity [-], safe in paths and wildcards.
+def case_id(pair: str, humidity: float | str) -> str:
+    """Name of the case of a pair at a relative humidity [-], or in dry air, safe in paths and wildcards.
 
     Raises
     ------
     ValueError
-        If the humidity is not in (0, 1) or has more than four decimals.
+        If the humidity is neither in (0, 1) nor that of dry air, or has more than four decimals.
 
     Examples
     --------
-    >>> case_id("b", 0.67), case_id("b", 0.6), case_id("b", 0.675)
-    ('b_rh067', 'b_rh060', 'b_rh0675')
+    >>> case_id("b", 0.67), case_id("b", 0.6), case_id("b", 0.675), case_id("b", "dry"), case_id("b", 0)
+    ('b_rh067', 'b_rh060', 'b_rh0675', 'b_dry', 'b_dry')
     """
+    humidity = in_numbers(humidity)
+    if humidity == 0:
+        return pair + _OF_DRY
     text = decimals(humidity)
     if not (0 < humidity < 1 and text):
-        raise ValueError(f"humidity {humidity} of pair {pair} must be above 0, below 1 and {NAMEABLE}")
+        raise ValueError(f"humidity {humidity} of pair {pair} must be dry, or above 0, below 1 and {NAMEABLE}")
     return f"{pair}_rh{text.replace('.', '')}"
+
+
+def in_numbers(value: Any, key: str = "humidity", levels: int = _LEVELS) -> Any:
+    """Humidity, or configuration with its humidities, in which 0 replaces the word ``dry``; ``key`` is that of a value.
+
+    Values below more levels of sections and lists than any humidity has are left as they are.
+
+    Examples
+    --------
+    >>> in_numbers("dry"), in_numbers({"pairs": {"dry": {"humidities": ["dry", 0.45], "beam": "dry"}}})
+    (0.0, {'pairs': {'dry': {'humidities': [0.0, 0.45], 'beam': 'dry'}}})
+    """
+    if isinstance(value, dict) and levels:
+        return {name: in_numbers(inner, name, levels - 1) for name, inner in value.items()}
+    if isinstance(value, list) and levels:
+        return [in_numbers(inner, key, levels - 1) for inner in value]
+    return 0.0 if value == DRY and key in _HUMIDITIES else value
+
+
+def air(humidity: float) -> str:
+    """Relative humidity [-] in words, of a case in dry air as well.
+
+    Examples
+    --------
+    >>> air(0.67), air(0.0)
+    ('RH 0.67', 'dry')
+    """
+    return f"RH {humidity:g}" if humidity else DRY
+
+
+def in_dry_air(pair: str) -> str:
+    """Name of the contact of a pair in dry air, whose summits attract each other through air.
+
+    Examples
+    --------
+    >>> in_dry_air("b"), in_dry_air("b_dry"), in_any_air("b_dry"), in_any_air("b"), is_in_dry_air("b_dry")
+    ('b_dry', 'b_dry', 'b', 'b', True)
+    """
+    return in_any_air(pair) + _OF_DRY
+
+
+def in_any_air(pair: str) -> str:
+    """Name of a pair from that of its contact, see `in_dry_air`."""
+    return pair.removesuffix(_OF_DRY)
+
+
+def is_in_dry_air(pair: str) -> bool:
+    """Whether a name is that of the contact of a pair in dry air."""
+    return pair.endswith(_OF_DRY)
 
 
 def humidity_of(case: str) -> float:
@@ -37,8 +103,8 @@ def humidity_of(case: str) -> float:
 
     Examples
     --------
-    >>> humidity_of("b_rh067")
-    0.67
+    >>> humidity_of("b_rh067"), humidity_of("b_dry")
+    (0.67, 0.0)
     """
     return _parted(case)[1]
 
@@ -56,10 +122,11 @@ def pair_of(case: str) -> str:
 
 def _parted(case):
     """Pair and humidity of a case, the inverse of `case_id`."""
-    pair, _, digits = case.partition("_rh0")
-    humidity = float(f"0.{digits}") if re.fullmatch(CASE, case) else 0.0
-    if not humidity or case_id(pair, humidity) != case:
-        raise ValueError(f"{case!r} is not a case, must be like b_rh067 for pair b at relative humidity 0.67")
+    pair, _, digits = case.removesuffix(_OF_DRY).partition("_rh0")
+    valid = re.fullmatch(CASE, case)
+    humidity = float(f"0.{digits or 0}") if valid else 0.0
+    if not valid or case_id(pair, humidity) != case:
+        raise ValueError(f"{case!r} is not a case, must be like b_rh067 for pair b at relative humidity 0.67, or b_dry")
     return pair, humidity
 
 

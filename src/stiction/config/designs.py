@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.beam.cantilever import Beam
 from stiction.config import arrays
-from stiction.config.cases import case_id
+from stiction.config.cases import case_id, in_any_air
 from stiction.config.kinds import Kind, kind_of
 from stiction.config.measured import is_measured, quantities
 from stiction.config.units import NM_PER_UM, from_si, to_si
@@ -60,6 +60,11 @@ class Patch(NamedTuple):
         """
         return f"{self.pair}_{self.length}x{self.width}"
 
+    @property
+    def in_any_air(self) -> "Patch":
+        """The patch by the name of its pair alone, see `stiction.config.cases.in_dry_air`."""
+        return self._replace(pair=in_any_air(self.pair))
+
 
 def patch(pair: str, length_um: float, width_um: float) -> Patch:
     """Patch of a pair with sides in µm."""
@@ -107,8 +112,9 @@ class Designs:
         return [name for name in self.beams if "chart" in self.devices[name]]
 
     def chart_cases(self, device: str) -> list[str]:
-        """A device at each humidity along the axis of its chart."""
-        return [case_id(device, humidity) for humidity in self.axis(device)]
+        """A device at each humidity along the axis of its chart, and in dry air, beside the axis, if it states that."""
+        dry = [humidity for humidity in self.devices[device]["humidities"] if humidity == 0]
+        return [case_id(device, humidity) for humidity in [*dry, *self.axis(device)]]
 
     def axis(self, device: str) -> list[float]:
         """Humidities along the axis of the chart of a device, with at most four decimals."""
@@ -157,7 +163,7 @@ class Designs:
             If no tip has these strips.
         """
         counted = Designs(self.config | {"devices": arrays.counted(self.config)})
-        users = [(one, name) for one in (self, counted) for name in one.with_tips if one.tips(name) == tips]
+        users = [(one, name) for one in (self, counted) for name in one.with_tips if one.tips(name) == tips.in_any_air]
         if not users:
             raise KeyError(f"no device has tips on strips {tips.name}")
         slopes = {float(slope) for one, name in users for slope in one._slopes(name)}
@@ -193,7 +199,7 @@ class Designs:
         section = self.devices[device]
         wettest = max(section["humidities"] + section.get("chart", {}).get("humidities", []))
         rms = [self.config["surfaces"][self.config["pairs"][section["pair"]][side]]["rms_nm"] for side in SIDES]
-        film = float(meniscus_height(wettest, self.config["water"]["temperature_K"]))
+        film = float(meniscus_height(wettest, self.config["water"]["temperature_K"])) if wettest else 0.0
         least = from_si(film, "nm") + 3 * math.hypot(*rms)
         return round(2 ** (math.ceil(4 * math.log2(least)) / 4), 3)
 

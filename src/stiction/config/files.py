@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from stiction.config import arrays
+from stiction.config.cases import in_numbers
 from stiction.config.measured import complete, resolve_scan_paths
 from stiction.config.merging import merged
 from stiction.config.reading import read
@@ -68,12 +69,14 @@ def normalised(config: dict) -> dict:
 
     Keys are sorted, so that the parameters of a rule do not depend on their order. The humidities of each pair and
     device are sorted as well, so that tables and curves begin with the lowest. Measured surfaces get all their keys.
+    Dry air has the humidity 0.
 
     Parameters
     ----------
     config : dict
         Complete configuration that `stiction.config.validation.validate` accepts.
     """
+    config = in_numbers(config)
     named = {section: config[section] for section in ("pairs", "devices") if section in config}
     surfaces = {name: complete(entry) for name, entry in config["surfaces"].items()}
     in_order = {section: _sorted(entries) for section, entries in named.items()}

@@ -103,6 +103,7 @@ def _allowed(entry):
     """Allowed values of a schema entry in words, with description and unit."""
     words = [f"one of {', '.join(entry['enum'])}" if "enum" in entry else _KINDS[entry["type"]]]
     words.append(" and ".join(f"{word} {entry[bound]}" for bound, word in _BOUNDS.items() if bound in entry))
+    words.append(f"or {entry['word']}" if "word" in entry else "")
     if entry.get("properties"):
         words.append(f"with the keys {', '.join(entry['properties'])}")
     if "maxItems" in entry:

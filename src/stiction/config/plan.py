@@ -13,11 +13,13 @@ from pathlib import Path
 from typing import Any
 
 from stiction.config.arrays import as_cantilevers
-from stiction.config.cases import case_id, humidity_of, pair_of
+from stiction.config.cases import TOO_LITTLE, case_id, humidity_of, in_any_air, in_dry_air, is_in_dry_air, pair_of
 from stiction.config.designs import Designs, hamaker_constant, hamaker_constants
 from stiction.config.files import paper
 from stiction.config.measured import digest, evaluation, is_measured, preliminary_estimates, quantities, source
 from stiction.config.merging import merged
+from stiction.config.units import to_si
+from stiction.contact.meniscus import is_wetted
 from stiction.devices.materials import COATED, COATING, ELASTIC, PROPERTIES
 from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SIDES, SURFACE_MODELS
 
@@ -46,6 +48,11 @@ _POLYSILICON = 0.1
 def chosen(section: dict[str, Any], names: Iterable[str]) -> dict[str, Any]:
     """Section reduced to the named keys, as far as it contains them."""
     return {name: section[name] for name in names if name in section}
+
+
+def _in_its_air(pair, config):
+    """Configuration in which the summits of a pair attract each other through the air that its name says."""
+    return config | {"van_der_waals": "dry"} if is_in_dry_air(pair) else config
 
 
 def _same(section, other, only=None, but=()):
@@ -79,8 +86,40 @@ class Plan:
         return self.config["run"]["pairs"]
 
     def sides(self, pair: str) -> list[str]:
-        """Names of the surfaces of a pair, that of the beam first."""
-        return [self.config["pairs"][pair][side] for side in SIDES]
+        """Names of the surfaces of a pair, in any air, that of the beam first."""
+        return [self.config["pairs"][in_any_air(pair)][side] for side in SIDES]
+
+    def in_air(self, pair: str, humidity: float) -> str:
+        """Name of the contact of a pair at a humidity: that in dry air where no water condenses.
+
+        Its summits attract each other through air. One contact is enough if they do so at any humidity.
+
+        Raises
+        ------
+        ValueError
+            If no water condenses and attraction does not reach across gaps.
+        """
+        if humidity > 0 and self.is_wetted(pair):
+            return pair
+        if self.config["attraction"]["reach"] == "touching":
+            raise ValueError(f"pair {pair} in dry air needs attraction.reach: all: {TOO_LITTLE}")
+        return pair if self.config["van_der_waals"] == "dry" else in_dry_air(pair)
+
+    def is_wetted(self, pair: str) -> bool:
+        """Whether water condenses between the surfaces of a pair at some humidity."""
+        return is_wetted(tuple(to_si(angle, "deg") for angle in self._contact_angles(pair)))
+
+    def in_air_of(self, case: str) -> str:
+        """As `in_air`, of a case."""
+        return self.in_air(pair_of(case), humidity_of(case))
+
+    def in_air_of_device(self, case: str) -> str:
+        """As `in_air`, of the pair of a device at a humidity."""
+        return self.in_air(self.config["devices"][pair_of(case)]["pair"], humidity_of(case))
+
+    def humid(self, pair: str) -> list[float]:
+        """Humidities of a pair at which water condenses: studies over the humidity leave out dry air."""
+        return [rh for rh in self.config["pairs"][pair]["humidities"] if rh > 0 and self.is_wetted(pair)]
 
     def _stated(self, pair):
         """Stated properties of the materials of both surfaces of a pair."""
@@ -114,9 +153,13 @@ class Plan:
 
     def water(self, pair: str, variant: str = "base") -> dict:
         """Section ``water`` of a pair: with the contact angles if one is not zero, and the attraction across gaps."""
-        angles = [material.get("contact_angle_deg", 0) for material in self._stated(pair)]
-        gaps = self._gaps(pair, merged(self.config, self.variants[variant]))
+        angles = self._contact_angles(pair)
+        gaps = self._gaps(pair, _in_its_air(pair, merged(self.config, self.variants[variant])))
         return self.config["water"] | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
+
+    def _contact_angles(self, pair):
+        """Contact angles on both surfaces of a pair [°]."""
+        return [material.get("contact_angle_deg", 0) for material in self._stated(pair)]
 
     def _gaps(self, pair, config):
         """Attraction across the gaps between the solids of a pair, if there is any."""
@@ -136,7 +179,7 @@ class Plan:
 
     def hamaker_constant(self, pair: str) -> float:
         """Hamaker constant of the two bodies of a pair, zero without van der Waals forces [zJ]."""
-        medium = self.config["van_der_waals"]
+        medium = _in_its_air(pair, self.config)["van_der_waals"]
         if medium == "none":
             return 0.0
         return math.sqrt(math.prod(hamaker_constants(material)[medium] for material in self._stated(pair)))
@@ -160,16 +203,26 @@ class Plan:
         """
         changed = {key: value for key, value in (self.config["contact"] | contact).items() if value is not None}
         own = {"surfaces": self.sides(pair), "water": self.water(pair), "contact": changed}
-        others = {key: value for key, value in self.config.items() if key != "materials"}
+        others = {key: value for key, value in _in_its_air(pair, self.config).items() if key != "materials"}
         return others | own | self.materials(pair, properties)
 
     def at(self, case: str) -> dict[str, Any]:
         """As `seen_by`, with the humidity of a case."""
-        return self.seen_by(pair_of(case)) | {"humidity": humidity_of(case)}
+        return self.seen_by(self.in_air_of(case)) | {"humidity": humidity_of(case)}
 
     def over_humidities(self, pair: str) -> dict[str, Any]:
         """As `seen_by`, with the humidities of a pair."""
-        return self.seen_by(pair) | {"humidities": self.config["pairs"][pair]["humidities"]}
+        return self.seen_by(pair) | {"humidities": self.humid(pair)}
+
+    @property
+    def humid_pairs(self) -> list[str]:
+        """Pairs that run between whose surfaces water condenses at some humidity."""
+        return [pair for pair in self.pairs if self.humid(pair)]
+
+    @property
+    def humid_cases(self) -> list[str]:
+        """Those of `cases` in which water condenses."""
+        return [case_id(pair, humidity) for pair in self.pairs for humidity in self.humid(pair)]
 
     @property
     def samples_of_slopes(self) -> int:
@@ -229,8 +282,8 @@ class Plan:
 
     @cached_property
     def scanned_pairs(self) -> list[str]:
-        """Pairs with a surface described by scans."""
-        return [pair for pair in self.pairs if self.scanned_sides(pair)]
+        """Pairs with a surface described by scans, between whose surfaces water condenses."""
+        return [pair for pair in self.humid_pairs if self.scanned_sides(pair)]
 
     def quantities(self, surface: str) -> tuple[str, ...]:
         """Quantities of a surface that have slopes, see `stiction.analysis.shifts`; those of scans include modes."""
@@ -351,9 +404,15 @@ class Plan:
 
     @property
     def studies(self) -> list[str]:
-        """Studies that run, by their section: by default those of the paper."""
+        """Studies that run, by their section: by default those of the paper.
+
+        Those over the humidity need pairs that water wets.
+        """
         of_paper = [name for name in self.config["studies"] if name != "full_contact"]
-        return self.config["run"].get("studies", of_paper)
+        wanted = self.config["run"].get("studies", of_paper)
+        needed = {"sensitivity": [self.figure_pair]} if self.pairs else {}
+        needed |= dict.fromkeys(("full_contact", "variants"), self.pairs)
+        return [name for name in wanted if name not in needed or any(map(self.humid, needed[name]))]
 
     @property
     def states_model_error(self) -> bool:
@@ -440,6 +499,7 @@ class Plan:
 
         A measured surface is that of the base: no variant changes its heights or its spectrum.
         """
+        pair = in_any_air(pair)
         contact = chosen(self.config["contact"], ("distance_step_nm", "every", "asperity"))
         base = chosen(self.config, ("seed", "sampling")) | {
             "contact": contact | {"samples": self.config["studies"]["variants"]["samples"]},
@@ -456,7 +516,7 @@ class Plan:
     def variant_contact(self, pair: str, variant: str) -> dict:
         """Solids of a pair under a variant: the settings of the contact, given the summits."""
         found = merged(chosen(self.config, _SOLIDS), chosen(self.variants[variant], _SOLIDS))
-        return found | self.materials(pair, ELASTIC, found["solid"])
+        return _in_its_air(pair, found) | self.materials(pair, ELASTIC, found["solid"])
 
     def summits_under(self, pair: str, variant: str) -> str:
         """First variant with the same summits of a pair: solids do not change them."""
@@ -506,17 +566,17 @@ class Plan:
         """Those of `choices` that leave the surfaces as they are, on patches of any size."""
         return [name for name in self.choices(pair) if self.summits_under(pair, name) == "base"]
 
-    def choices_of_device(self, name: str) -> list[str]:
-        """Those of `choices` for a device: short strips have those of the solids alone."""
-        of_pair = self.choices_of_solids if self.designs.kind(name).has_short_strips else self.choices
-        return of_pair(self.config["devices"][name]["pair"])
+    def choices_of_device(self, case: str) -> list[str]:
+        """Those of `choices` for a device at a humidity: short strips have those of the solids alone."""
+        of_pair = self.choices_of_solids if self.designs.kind(pair_of(case)).has_short_strips else self.choices
+        return of_pair(self.in_air_of_device(case))
 
     @cached_property
     def studied(self) -> list[tuple[str, str]]:
         """Pairs and their variants, without those that change nothing for the pair."""
         return [
             (pair, variant)
-            for pair in self.pairs
+            for pair in self.humid_pairs
             for variant in self.variants
             if variant == "base" or self._under(pair, variant) != self._under(pair, "base")
         ]
@@ -524,8 +584,4 @@ class Plan:
     @property
     def studied_cases(self) -> list[tuple[str, str]]:
         """Cases of the pairs and their variants."""
-        return [
-            (case_id(pair, humidity), variant)
-            for pair, variant in self.studied
-            for humidity in self.config["pairs"][pair]["humidities"]
-        ]
+        return [(case_id(pair, humidity), variant) for pair, variant in self.studied for humidity in self.humid(pair)]

@@ -16,7 +16,7 @@ import numpy as np
 import yaml
 
 from stiction.config import memory
-from stiction.config.cases import NAMEABLE, decimals
+from stiction.config.cases import NAMEABLE, TOO_LITTLE, decimals
 from stiction.config.conditions import Keys, Relations
 from stiction.config.messages import did_you_mean, duplicates, shown
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, in_si, to_si
@@ -418,10 +418,10 @@ def beams_are_apart_from_the_film(config):
 
 def not_apart(gap: float, humidities: float | list, meeting: Meeting) -> str | None:
     """Refusal of a gap [µm] that is not far above the film at the highest humidity."""
-    angles = wetting(meeting.sides, meeting.materials)
-    if not angles:
+    if not meeting.sides:
         return None
-    height = float(np.max(meniscus_height(humidities, meeting.temperature, angles)))
+    angles, humid = wetting(meeting.sides, meeting.materials), above_zero(humidities)
+    height = float(np.max(meniscus_height(humid, meeting.temperature, angles))) if angles and humid else 0.0
     rms = math.hypot(*(to_si(side["rms_nm"], "nm") for side in meeting.sides))
     least = from_si(limits.least_gap(height, rms), "um")
     if gap >= least:
@@ -477,8 +477,13 @@ def meeting_of(pair: str, config: Keys) -> Meeting:
 
 def too_dry(humidities: float | list, meeting: Meeting, more: float = 0) -> str | None:
     """Refusal of the lowest humidity if the film between two surfaces is no liquid, contact angles as in `wetting`."""
-    angles = wetting(meeting.sides, meeting.materials, more)
-    return dry_air(float(np.min(humidities)), meeting.temperature, angles) if angles else None
+    angles, humid = wetting(meeting.sides, meeting.materials, more), above_zero(humidities)
+    return dry_air(min(humid), meeting.temperature, angles) if angles and humid else None
+
+
+def above_zero(humidities: float | list) -> list[float]:
+    """Humidities, of one or several, without that of dry air."""
+    return [float(humidity) for humidity in np.ravel(humidities) if humidity > 0]
 
 
 def sides_of(beam: str, substrate: str, surfaces: dict) -> list[dict]:
@@ -519,18 +524,22 @@ def full_contact_has_no_attraction_across_gaps(config):
 
 
 @relation
-def water_wets_the_pairs(config):
-    """Water condenses between two surfaces only if the cosines of their contact angles add up to more than zero."""
-    surfaces, materials = config["surfaces"], config["materials"]
-    for pair, *names in config.entries("pairs", *SIDES):
-        sides = sides_of(*names, surfaces)
-        if sides and not wetting(sides, materials):
-            stated = " and ".join(f"{one.get('contact_angle_deg', 0):g}" for one in of_material(sides, materials))
-            message = (
-                f"must be of a material that water wets enough: contact angles of {stated} degrees on the two surfaces"
-            )
-            given = f"pairs.{pair}.substrate", *config.scanned(*names)
-            yield f"pairs.{pair}.beam", message, *given
+def attraction_reaches_across_dry_gaps(config):
+    """Where no water condenses, surfaces attract each other mostly where they do not touch."""
+    for pair, meeting, humidities, given in _running(config, "humidities"):
+        for key, shown_humidity in config.known("figures.humidity"):
+            refusal = too_short(config, pair, meeting, [*humidities, shown_humidity])
+            yield "attraction.reach", refusal, key, f"pairs.{pair}.humidities", *given
+
+
+def too_short(config: Keys, pair: str, meeting: Meeting, humidities: list[float]) -> str | None:
+    """Refusal of attraction that ends where surfaces touch, if no water condenses between those of a pair."""
+    wetted = not meeting.sides or wetting(meeting.sides, meeting.materials)
+    if config["attraction.reach"] == "all" or (wetted and min(humidities) > 0):
+        return None
+    stated = " and ".join(f"{one.get('contact_angle_deg', 0):g}" for one in of_material(*meeting[:2]))
+    why = "in dry air" if wetted else f"where no water condenses at contact angles of {stated} degrees"
+    return f"must be all for pair {pair}, {why}: {TOO_LITTLE}"
 
 
 @relation

@@ -15,6 +15,7 @@ from stiction.config.designs import Designs, hamaker_constant
 from stiction.config.kinds import COMMON, KEYS, KINDS, ROUGHNESSES, kind_of
 from stiction.config.relations import (
     Meeting,
+    above_zero,
     cases_have_unique_names,
     correlated,
     correlated_as_estimated,
@@ -28,6 +29,7 @@ from stiction.config.relations import (
     sides_of,
     surfaces_of,
     too_dry,
+    too_short,
     wetting,
     without_density,
     without_unique_names,
@@ -178,8 +180,31 @@ def water_of_stoppers_is_a_liquid(config):
     """As above, along the axis on which the worst humidity of a stopper is sought."""
     humidities = config["design.worst_humidities"]
     for name, device in config["devices"].items():
-        if not kind_of(device).is_beam and (refusal := too_dry(humidities, _meeting(config, name))):
+        if _seeks_worst_air(device) and (refusal := too_dry(humidities, _meeting(config, name))):
             yield "design.worst_humidities", refusal, *_air(config, name)
+
+
+def _seeks_worst_air(device):
+    """Whether a device is a stopper that is not in dry air alone."""
+    return not kind_of(device).is_beam and any(device["humidities"])
+
+
+@relation
+def attraction_reaches_across_dry_gaps_of_devices(config):
+    """As for pairs, at the humidities of a device."""
+    for name, humidities in config.entries("devices", "humidities"):
+        refusal = too_short(config, config["devices"][name]["pair"], _meeting(config, name), humidities)
+        yield "attraction.reach", refusal, f"devices.{name}.humidities", *_scanned(config, name)
+
+
+@relation
+def roughnesses_are_in_humid_air(config):
+    """The contacts of a device over the roughness of a surface are those in humid air."""
+    for name, _, humidities in config.entries("devices", "roughness", "humidities"):
+        sides, materials, _ = _meeting(config, name)
+        if min(humidities) == 0 or (sides and not wetting(sides, materials)):
+            message = "must be left out for a device in dry air: it is computed in humid air alone"
+            yield f"devices.{name}.roughness", message, f"devices.{name}.humidities", *_scanned(config, name)
 
 
 @relation
@@ -189,7 +214,7 @@ def uncertain_water_of_devices_is_a_liquid(config):
     for key in keys:
         for name, deviation, humidities in config.entries("devices", f"uncertainty.{key}", "humidities"):
             meeting, (drier, warmer, more) = _meeting(config, name), (deviation * (key == one) for one in keys)
-            driest = min(humidities) - drier
+            driest = min(above_zero(humidities), default=0) - drier
             if driest <= 0 or _freezes_or_boils(warmer, meeting.temperature) or too_dry(humidities, meeting):
                 continue  # other relations report it
             if refusal := too_dry(driest, meeting._replace(temperature=meeting.temperature + warmer), more):
@@ -294,8 +319,12 @@ def uncertain_hamaker_constants_are_those_of_summits(config):
 def uncertain_humidities_stay_within_their_limits(config):
     """Humidities are above 0 and below 1 one standard uncertainty around their values, too."""
     for name, deviation, humidities in config.entries("devices", "uncertainty.humidity", "humidities"):
-        if not (min(humidities) - deviation > 0 and max(humidities) + deviation < 1):
-            message, given = "must leave the humidities above 0 and below 1", f"devices.{name}.humidities"
+        message, given = None, f"devices.{name}.humidities"
+        if deviation and min(humidities) == 0:
+            message = "must be left out, because dry air has no humidity that could be uncertain: describe two devices"
+        elif not (min(above_zero(humidities), default=1) - deviation > 0 and max(humidities) + deviation < 1):
+            message = "must leave the humidities above 0 and below 1"
+        if message:
             yield f"devices.{name}.uncertainty.humidity", message, given
 
 
@@ -317,12 +346,15 @@ def _freezes_or_boils(deviation, temperature):
 
 @relation
 def uncertain_contact_angles_leave_water(config):
-    """Water condenses one standard uncertainty above the contact angles, too."""
+    """Whether water condenses is the same one standard uncertainty around the contact angles."""
     materials, key = config["materials"], "uncertainty.contact_angle_deg"
     for name, deviation in config.entries("devices", key):
         sides = _sides(config, name)
         if wetting(sides, materials) and not wetting(sides, materials, deviation):
             message = "must leave contact angles at which water condenses: their cosines must add up to more than zero"
+            yield f"devices.{name}.{key}", message, *_scanned(config, name)
+        if sides and not wetting(sides, materials) and wetting(sides, materials, -deviation):
+            message = "must leave contact angles at which no water condenses: their cosines add up to zero or less"
             yield f"devices.{name}.{key}", message, *_scanned(config, name)
 
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from stiction.config import arrays, measured, relations, relations_devices
+from stiction.config.cases import in_numbers
 from stiction.config.conditions import Keys, Relations
 from stiction.config.messages import ConfigError, Problem, schema_problems
 from stiction.config.relations import schema
@@ -35,6 +36,7 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     ConfigError
         If the configuration is invalid; one line per problem: full key, value, allowed values.
     """
+    config = in_numbers(config)
     faults = schema_problems(config, schema())
     wrong = [fault.path for fault in faults]
     sections = _OPTIONAL | config if isinstance(config, dict) else config

@@ -4,7 +4,7 @@ The contact of the solids does not depend on it. Force curves at any humidity fo
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple
 
@@ -49,6 +49,11 @@ class Water:
     def film(self, humidity: float) -> tuple[float, float]:
         """Height h_C [m] and tension -ΔP [Pa] at a relative humidity, see `stiction.contact.meniscus.film`."""
         return film(humidity, self.temperature, self.contact_angles)
+
+    @property
+    def without(self) -> "Water":
+        """What attracts in dry air, where the summits do so through air."""
+        return replace(self, gaps=self.gaps and replace(self.gaps, summits="dry"))
 
 
 class ForceCurves(NamedTuple):

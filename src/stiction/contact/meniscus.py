@@ -14,6 +14,8 @@ from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_MOLECULE,
 #: Kim, J. Phys. Chem. B 109, 16760, 2005); on mica, water is solid-like between RH 0.2 and 0.4 (Hu, Xiao, Ogletree and
 #: Salmeron, Surf. Sci. 344, 221, 1995). Eqs. (8) and (9) give thinner films a tension that grows without limit.
 MOLECULES = 3
+#: Rounding of the sum of two cosines that are opposite to each other.
+_ROUNDING = 1e-9
 #: Temperature of the paper [K].
 _REFERENCE = 300.0
 #: Critical temperature of water [K]; IAPWS R1-76(2014).
@@ -148,18 +150,23 @@ def dry_air(humidity: float, temperature: float, contact_angles: tuple[float, fl
     return (
         f"must be at least {np.ceil(1e4 * least) / 1e4:.4g}: in drier air, at {temperature:g} K and contact angles of "
         f"{degrees} degrees, the film between the surfaces is thinner than {MOLECULES} molecules, "
-        f"{1e9 * MOLECULES * WATER_MOLECULE:.2g} nm, which are no liquid"
+        f"{1e9 * MOLECULES * WATER_MOLECULE:.2g} nm, which are no liquid; results for dry air and for the driest "
+        "air that is allowed bracket those between"
     )
 
 
 def film(humidity: float, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
     """Height h_C [m] and tension -ΔP [Pa] of the water at one humidity, see `meniscus_height`.
 
+    Both are zero in dry air, whose humidity is 0, and at any humidity between surfaces that are not `is_wetted`.
+
     Raises
     ------
     ValueError
-        If the air is too dry for a film that is a liquid, or if no water condenses at all.
+        If the air is not dry, and too dry for a film that is a liquid.
     """
+    if humidity == 0 or not is_wetted(contact_angles):
+        return 0.0, 0.0
     if refusal := dry_air(humidity, temperature, contact_angles):
         raise ValueError(f"a relative humidity of {humidity:g} {refusal}")
     height = float(meniscus_height(humidity, temperature, contact_angles))
@@ -172,6 +179,17 @@ def flooded_energy(temperature: float, contact_angles: tuple[float, float] = (0.
     It is tension times height of the water at any humidity, and the limit of wet rough surfaces.
     """
     return float(surface_energy(temperature) * _wetting(contact_angles))
+
+
+def is_wetted(contact_angles: tuple[float, float]) -> bool:
+    """Whether water condenses between two flats: the cosines of their contact angles [rad] add up to more than zero.
+
+    Examples
+    --------
+    >>> is_wetted((0.0, 0.0)), is_wetted((np.pi / 2, np.pi / 2)), is_wetted((0.1, 3.0))
+    (True, False, True)
+    """
+    return bool(np.cos(contact_angles).sum() > _ROUNDING)
 
 
 def _wetting(contact_angles):

@@ -96,13 +96,24 @@ def spacer(name: str, stated: Sequence[str]) -> str | None:
 
 
 def thin_film(film: float) -> str | None:
-    """Film of height h_C that is hardly a liquid."""
-    if film >= MOLECULES * WATER_MOLECULE:
+    """Film of height h_C that is hardly a liquid; of height zero, there is none."""
+    if not 0 < film < MOLECULES * WATER_MOLECULE:
         return None
     return (
         f"The film of water is {film * 1e9:.2g} nm high, thinner than {MOLECULES} molecules, "
         f"{MOLECULES * WATER_MOLECULE * 1e9:.3g} nm: the air is drier than the range in which the theory of a liquid "
-        "is valid, so that this result may be off to either side."
+        "is valid, so that this result may be off to either side. Results for dry air and for the next humidity above "
+        "bracket it."
+    )
+
+
+def no_water(film: float, humidity: float) -> str | None:
+    """Air that is not dry, without a film of height h_C: no water condenses between the surfaces."""
+    if film > 0 or humidity == 0:
+        return None
+    return (
+        "No water condenses between the surfaces, because the cosines of their contact angles add up to zero or less: "
+        "results at any humidity are those for dry air."
     )
 
 

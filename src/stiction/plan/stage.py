@@ -14,7 +14,7 @@ from importlib import import_module
 from types import SimpleNamespace
 from typing import Any, get_args, get_origin, get_type_hints
 
-from stiction.config.cases import CASE
+from stiction.config.cases import CASE, PAIR_IN_AIR
 from stiction.config.units import in_si, without_unit
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import (
@@ -33,7 +33,7 @@ _NAME = "[A-Za-z][A-Za-z0-9]*"
 WILDCARDS = {
     "surface": _NAME,
     "device": _NAME,
-    "pair": _NAME,
+    "pair": PAIR_IN_AIR,
     "model": "|".join(BEAM_MODELS),
     "case": CASE,
     "chunk": "[0-9]+",

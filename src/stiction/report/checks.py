@@ -20,7 +20,7 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.beam.equilibrium import allowed_imbalance
 from stiction.beam.foundation import ACCURACY
-from stiction.config.cases import case_id
+from stiction.config.cases import air, case_id
 from stiction.config.units import in_si
 from stiction.contact.environment import Water, flooded_law
 from stiction.contact.forcelaw import admissible, coefficients, energy
@@ -360,7 +360,7 @@ def of_force_laws(
 
 
 def of_trends(forces: Mapping[Case, xr.Dataset], skewed: Collection[str]) -> Iterator[Check]:
-    """All comparisons between cases.
+    """All comparisons between cases; no trend leads to dry air.
 
     Parameters
     ----------
@@ -370,7 +370,7 @@ def of_trends(forces: Mapping[Case, xr.Dataset], skewed: Collection[str]) -> Ite
         Pairs of the paper of which no surface is skewed positively and at least one negatively.
     """
     for pair, model in sorted({(pair, model) for pair, _, model in forces}):
-        rising = sorted(humidity for p, humidity, m in forces if (p, m) == (pair, model))
+        rising = sorted(humidity for p, humidity, m in forces if (p, m) == (pair, model) and humidity > 0)
         for low, high in pairwise(rising):
             case = f"{_case(pair, low, model)} to {high:g}"
             drier, more_humid = (forces[pair, humidity, model] for humidity in (low, high))
@@ -381,7 +381,7 @@ def of_trends(forces: Mapping[Case, xr.Dataset], skewed: Collection[str]) -> Ite
     for pair, humidity, model in forces:
         if model == "NG" and pair in skewed:
             both = (forces[pair, humidity, which] for which in SURFACE_MODELS)
-            yield skewness_increases_adhesion(f"{pair}, RH {humidity:g}", *both)
+            yield skewness_increases_adhesion(f"{pair}, {air(humidity)}", *both)
 
 
 def of_beams(
@@ -427,7 +427,7 @@ def of_resampling(outcomes: Mapping[Case, xr.Dataset], resampled: Mapping[Case, 
 
 def _case(pair, humidity, model):
     """A case as text."""
-    return f"{pair} {model}, RH {humidity:g}"
+    return f"{pair} {model}, {air(humidity)}"
 
 
 def table(checks: Iterable[Check]) -> pd.DataFrame:

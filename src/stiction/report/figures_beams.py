@@ -12,7 +12,7 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
-from stiction.contact.meniscus import flooded_energy
+from stiction.contact.meniscus import flooded_energy, is_wetted
 from stiction.models import SURFACE_MODELS
 from stiction.plan.names import by_model, by_outcome
 from stiction.report import published
@@ -23,11 +23,13 @@ from stiction.report.style import (
     MODELS,
     OUTLINED,
     PUBLISHED,
+    dry_tick,
     figure_stage,
     handles,
     humidity_axis,
     letter,
     panels,
+    places,
     styled,
 )
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
@@ -103,38 +105,42 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
     """Figure 15: apparent adhesion energy over the humidity; models G and NG on the left, GEO on the right.
 
     The share of S-shapes is stated at each mean if it is below 100 %; if such labels of a pair would cover each other,
-    the shares have panels of their own below those of the energies.
+    the shares have panels of their own below those of the energies. Beams in dry air are beside the axis.
 
     Parameters
     ----------
     pairs : dict
         Pair to its nominal beam, a dict of (humidity, model) to the dataset of stage beams, and a dict of model (G, NG)
-        to the dataset of stage humidity.
+        to the dataset of stage humidity, empty for surfaces in dry air alone.
     published : pandas.DataFrame
         The published Table III, rows of the paper's own pairs.
     flat : dict
-        Pair to the adhesion energy of its flats in saturated air [J m⁻²].
+        Pair to the adhesion energy of its flats in saturated air, zero where no water condenses [J m⁻²].
     """
     figure, axes, rows_of_pairs = _rows_of_panels(pairs, published)
     for (row, below), (pair, (beam, released, bands)) in zip(rows_of_pairs, pairs.items(), strict=True):
         weakest = apparent_adhesion_energy(beam.length, beam)
-        lowest = min(weakest, *(float(axis.energy_quantile.sel(probability=0.5).min()) for axis in bands.values()))
+        known = rows(published, pair=pair)
+        placed = places([*(humidity for humidity, _ in released), *known.relative_humidity])
+        released = {(placed[humidity], model): beams for (humidity, model), beams in released.items()}
+        lowest = min([weakest, *(float(axis.energy_quantile.sel(probability=0.5).min()) for axis in bands.values())])
         highest = max(2 * flat[pair], 2 * weakest, *map(_reach, released.values()))
         row[0].set(yscale="log", ylim=(TO_MJ * lowest / 2, TO_MJ * highest))
         row[0].set_ylabel(r"adhesion energy $\Gamma$ [mJ/m²]")
         for panel, models in zip(row, _COLUMNS, strict=True):
             _bounds(panel, flat[pair], weakest)
-            for surface in SURFACE_MODELS if "G" in models else ("NG",):
+            for surface in sorted(bands.keys() & (SURFACE_MODELS if "G" in models else ("NG",))):
                 _band(panel, bands[surface], surface)
-            _known(panel, rows(published, pair=pair), beam, models)
+            _known(panel, known, beam, models)
             for model in models:
                 _released(panel, released, model)
                 if below is None:
                     _labels(panel, released, model, TO_MJ * weakest)
         row[0].margins(x=0.06)
-        humidity_axis(row[0])
+        humidity_axis(row[0], placed)
         if below is not None:
             _panels_of_shares(below, released, row[0].get_xlim())
+            dry_tick(below[0], placed)
     for panel in axes[-1]:
         panel.set_xlabel("relative humidity RH [–]")
     kinds = [(pair, kind) for pair, (_, below) in zip(pairs, rows_of_pairs, strict=True) for kind in _kinds(below)]
@@ -193,7 +199,8 @@ def _aside(panel, points):
 def _bounds(panel, flat, weakest):
     """Energy of flat surfaces in saturated air and of the longest crack that fits into the beam [J m⁻²]."""
     style = {"color": "black", "linewidth": 0.8}
-    panel.axhline(TO_MJ * flat, linestyle="-.", label="flat surfaces in saturated air", **style)
+    if flat:
+        panel.axhline(TO_MJ * flat, linestyle="-.", label="flat surfaces in saturated air", **style)
     panel.axhline(TO_MJ * weakest, linestyle=":", label="crack as long as the beam", **style)
 
 
@@ -278,7 +285,10 @@ def _adhesion_energies(data, _at, settings):
     """Energies of all pairs over the humidity, with the published and measured ones."""
     nominal = in_si(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
     waters = {pair: in_si(Water, water) for pair, water in settings["water"].items()}
-    flat = {pair: flooded_energy(water.temperature, water.contact_angles) for pair, water in waters.items()}
+    flat = {
+        pair: flooded_energy(water.temperature, water.contact_angles) if is_wetted(water.contact_angles) else 0.0
+        for pair, water in waters.items()
+    }
     pairs = {}
     for pair in settings["pairs"]:
         released = {key[1:]: beams for key, beams in data["beams"].items() if key[0] == pair}
@@ -305,7 +315,7 @@ STAGES = (
         _CATEGORY,
         inputs=lambda plan, at: {
             "beams": by_outcome("beams", plan.outcomes),
-            "humidity": by_model("humidity", plan.pairs, SURFACE_MODELS),
+            "humidity": by_model("humidity", plan.humid_pairs, SURFACE_MODELS),
             "published": published.file("table_3"),
         },
         settings=lambda plan, at: (

@@ -13,7 +13,7 @@ from stiction.plan.names import by_outcome
 from stiction.report import published
 from stiction.report.format import TO_MPA, TO_NM, TO_UM
 from stiction.report.published import rows
-from stiction.report.style import MODELS, PUBLISHED, figure_stage, humidity_axis, letter, panels, styled
+from stiction.report.style import MODELS, PUBLISHED, figure_stage, humidity_axis, letter, panels, places, styled
 from stiction.stages.beams.releases import ended, stuck_lengths
 from stiction.stages.laws import forces as stage_forces
 
@@ -126,16 +126,22 @@ def _lengths(panel, released, published):
     model = "GEO" if any(which == "GEO" for _, which in released) else "NG"
     points = sorted(key for key in released if key[1] == model)
     stuck = [TO_UM * stuck_lengths(released[key]) for key in points]
-    cases = zip((humidity for humidity, _ in points), stuck, strict=True)
+    placed = places([*(humidity for humidity, _ in points), *published.relative_humidity])
+    cases = zip((placed[humidity] for humidity, _ in points), stuck, strict=True)
     bars = [(humidity, found.mean(), found.std(ddof=1)) for humidity, found in cases if len(found) > 1]
     humidity, mean, deviation = np.reshape(bars, (-1, 3)).T
-    panel.errorbar(humidity - _APART, mean, deviation, fmt="o-", color=_COLOUR, markersize=3, label="computed here")
+    style = {"color": _COLOUR, "markersize": 3}
+    dry = humidity == placed.get(0.0)  # no line leads there
+    if dry.any():
+        panel.errorbar(humidity[dry], mean[dry], deviation[dry], fmt="o", **style)
+    style |= {"fmt": "o-", "label": "computed here"}
+    panel.errorbar(humidity[~dry] - _APART, mean[~dry], deviation[~dry], **style)
     panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$ [µm]")
     panel.margins(y=0.12)
     if len(humidity) > _FEW:
         low, high = panel.get_ylim()
         panel.set_ylim(low, high + 0.3 * (high - low))  # room for the legend
-    humidity_axis(panel)
+    humidity_axis(panel, placed)
     panel.legend()
 
 

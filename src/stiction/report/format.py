@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from stiction.config.cases import DRY
+
 #: Units in SI, for tables: the stored number is a quantity divided by its unit; a product may differ in the last bit.
 NM, UM, UN, PER_UM2 = 1e-9, 1e-6, 1e-6, 1e12
 #: Factors from SI, for axes and sentences, mJ m⁻² among them; exact in single precision, in which most data are stored.
@@ -34,6 +36,17 @@ def number(value: float, form: str) -> str:
         return MISSING
     text = format(value, form)
     return text if float(text) else format(0.0, form)
+
+
+def humidity_text(value: float) -> str:
+    """Text of a relative humidity [-], which is zero in dry air.
+
+    Examples
+    --------
+    >>> humidity_text(0.67), humidity_text(0.0), humidity_text(float("nan"))
+    ('0.67', 'dry', '–')
+    """
+    return number(value, "g") if value else DRY
 
 
 def with_error(value: float, error: float, sign: str = "") -> str:

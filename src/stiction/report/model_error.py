@@ -176,8 +176,8 @@ def _stage(kind, name, shows, draw, **declared):
         "model_error",
         shows,
         inputs=lambda plan, at: {
-            "errors": by_name("studies/model_error", plan.pairs),
-            "beams": by_case("beams", plan.cases, "_NG"),
+            "errors": by_name("studies/model_error", plan.humid_pairs),
+            "beams": by_case("beams", plan.humid_cases, "_NG"),
             "published": published.file("table_3"),
             "variants": by_outcome(
                 "studies/variants",

@@ -22,6 +22,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
+from stiction.config.cases import DRY
 from stiction.plan.stage import File, Shown, Stage, titled
 from stiction.run.atomic import save_bytes
 
@@ -32,6 +33,8 @@ SINGLE, DOUBLE = 3.5, 7.16
 TALLEST = 24.0
 #: Shortest axis of the relative humidity, for figures of a single one [-].
 _SHORTEST = 0.1
+#: Distance of dry air from the lowest humidity of an axis, in lengths of the axis [-].
+_BESIDE = 0.2
 #: Largest number of columns of panels side by side.
 _ABREAST = 4
 #: Points of an inch; height of the labels below a panel, in points.
@@ -175,8 +178,25 @@ def legend_below(panel: Axes, entries: Sequence[Artist]) -> None:
     panel.legend(handles=entries, ncols=max(1, columns), **place)
 
 
-def humidity_axis(panel: Axes) -> None:
-    """Keep the axis of the relative humidity within 0 and 1, and so long that its ticks do not meet."""
+def places(humidities: Iterable[float]) -> dict[float, float]:
+    """Place of every relative humidity along an axis; dry air is never on it, but beside its lowest humidity.
+
+    Examples
+    --------
+    >>> places([0.0, 0.5, 0.75])
+    {0.0: 0.45, 0.5: 0.5, 0.75: 0.75}
+    """
+    humidities = sorted(set(humidities))
+    on_axis = [humidity for humidity in humidities if humidity > 0] or [0.5]
+    apart = _BESIDE * max(on_axis[-1] - on_axis[0], _SHORTEST)
+    return {humidity: humidity or on_axis[0] - apart for humidity in humidities}
+
+
+def humidity_axis(panel: Axes, placed: Mapping[float, float] | None = None) -> None:
+    """Keep the axis of the relative humidity within 0 and 1, and so long that its ticks do not meet.
+
+    Dry air, if it is among the `places` of an axis, has a tick of its own beyond a dotted line.
+    """
     left, right = panel.get_xlim()
     short = max(0, _SHORTEST - (right - left)) / 2
     if short or left < 0 or right > 1:
@@ -184,6 +204,18 @@ def humidity_axis(panel: Axes) -> None:
     if short:
         # Labels at the ends would stick out of the panel.
         panel.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10], prune="both"))
+    dry_tick(panel, placed or {})
+
+
+def dry_tick(panel: Axes, placed: Mapping[float, float]) -> None:
+    """Tick for dry air if it is among the `places` of an axis, and a line between it and the lowest humidity."""
+    if 0 not in placed:
+        return
+    dry, lowest = (*sorted(placed.values()), np.inf)[:2]
+    ticks = [tick for tick in panel.get_xticks() if (dry + lowest) / 2 < tick <= panel.get_xlim()[1]]
+    panel.set_xticks([dry, *ticks], [DRY, *(f"{tick:g}" for tick in ticks)])
+    for one in panel.get_shared_x_axes().get_siblings(panel) if ticks else ():
+        one.axvline((dry + lowest) / 2, color="0.6", linestyle=":", linewidth=0.8)
 
 
 def letter(axes: Iterable[Axes], names: Sequence[str] | None = None) -> None:

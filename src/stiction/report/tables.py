@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 
 from stiction.plan.stage import Shown, Stage, titled
-from stiction.report.format import number
+from stiction.report.format import humidity_text, number
 from stiction.run.atomic import save_text
 
 _PAGE = """<!DOCTYPE html>
@@ -24,7 +24,7 @@ td, th {{ padding: 1px 6px; text-align: right }} td {{ white-space: nowrap }}
 #: Columns for reading by title: a format or a function, and the keys of the numbers that it shows as text.
 Columns = Mapping[str, tuple[str | Callable[..., str], *tuple[str, ...]]]
 #: The first columns of most tables.
-HUMIDITY = {"RH": ("g", "relative_humidity")}
+HUMIDITY = {"RH": (humidity_text, "relative_humidity")}
 PAIR = {"pair": (str, "pair")} | HUMIDITY
 DEVICE = {"device": (str, "device")} | HUMIDITY
 

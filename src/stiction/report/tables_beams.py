@@ -264,7 +264,7 @@ def _table_3(data, _at, settings):
     scanned = ((pair, pair_errors(study)) for pair, study in data["by_scans"].items())
     by_scans = {(pair, humidity): error for pair, errors in scanned for humidity, error in errors.items()}
     water = {pair: in_si(Water, section) for pair, section in settings["water"].items()}
-    warnings = pair_warnings.of_thin_films(data["beams"], water)
+    warnings = pair_warnings.of_films(data["beams"], water)
     known = published.compared(data, settings)
     return table_3(data["beams"], data["forces"], known, by_scans, warnings, data.get("errors"))
 

@@ -254,7 +254,7 @@ def test_cases_of_the_main_line_in_air_that_is_hardly_humid_enough_are_said():
     cases = {("b", 0.39, "NG"): beams(9, 0), ("b", 0.39, "G"): beams(9, 0), ("b", 0.4, "NG"): beams(9, 0)}
     said = {subject for subject, sentences in about_pairs(cases, PLASTIC).items() if "thinner" in " ".join(sentences)}
     assert said == {"pair b, RH 0.39, NG", "pair b, RH 0.39, G"}
-    (sentence,) = pair_warnings.of_thin_films(cases, {"b": Water(300.0)})
+    (sentence,) = pair_warnings.of_films(cases, {"b": Water(300.0)})
     assert sentence.startswith("Pair b, RH 0.39: The film of water is 1.1 nm high")
 
 
@@ -333,7 +333,7 @@ def test_the_rim_of_a_film_adds_its_share_to_the_force_of_the_film():
 
 
 @pytest.mark.parametrize(
-    "dry", [{"humidities": [0.39, 0.9]}, {"worst": [0.3, 0.9]}, {"humidities": [0.6], "angle": 60}]
+    "dry", [{"humidities": [0.39, 0.9]}, {"worst": [0.3, 0.9]}, {"humidities": [0.6], "worst": [0.6, 0.9], "angle": 60}]
 )
 def test_a_stopper_in_air_that_is_hardly_humid_enough_for_a_liquid_is_said(dry, warned):
     (sentence,) = warned({"S1": stopper(**dry)}).patches["S1"]

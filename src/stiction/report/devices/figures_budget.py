@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from stiction.config.cases import air
 from stiction.devices.risk import stuck_share
 from stiction.plan.names import by_name
 from stiction.report.devices.tables_budget import SCATTER, TOTAL, choice_label, response_text
@@ -24,6 +25,7 @@ from stiction.report.style import (
     letter,
     letter_lines,
     panels,
+    places,
     shades,
     styled,
 )
@@ -70,7 +72,7 @@ def _stuck_over_force(panel, dataset):
         forces = TO_UN * dataset.pull_off.sel(humidity=humidity).values
         at = np.sort(forces)
         share, low, high = stuck_share(-at, -forces)
-        panel.plot(at, share, color=f"C{k}", linestyle=dashes(k), label=f"RH {humidity:g}")
+        panel.plot(at, share, color=f"C{k}", linestyle=dashes(k), label=air(float(humidity)))
         panel.fill_between(at, low, high, color=f"C{k}", alpha=0.2, linewidth=0)
     panel.axvline(restoring, color="0.4", linestyle=":", linewidth=0.8)
     panel.annotate(
@@ -93,14 +95,19 @@ def _force_over_humidity(panel, dataset):
     """
     low, high = (TO_UN * dataset.quantile_along.sel(probability=p) for p in dataset.probability.values[[0, -1]])
     light = {"color": _COLOUR, "alpha": 0.2, "linewidth": 0}
-    band = panel.fill_between(dataset.axis, low, high, **light, label="5 to 95 % of the patches")
-    (mean,) = panel.plot(dataset.axis, TO_UN * dataset.mean_along, color=_COLOUR, label="mean")
+    placed, humid = places([*dataset.axis.values.tolist(), float(dataset.worst_humidity)]), dataset.axis.values > 0
+    axis, means = dataset.axis[humid], TO_UN * dataset.mean_along
+    band = panel.fill_between(axis, low[humid], high[humid], **light, label="5 to 95 % of the patches")
+    (mean,) = panel.plot(axis, means[humid], color=_COLOUR, label="mean")
+    if not humid.all():
+        reach = np.abs(np.stack([low, high]) - means.values)[:, ~humid]
+        panel.errorbar(placed[0.0], means[~humid], reach, fmt="o", color=_COLOUR, markersize=3, alpha=0.6)
     panel.axhline(TO_UN * float(dataset.restoring_force), color="0.4", linestyle=":", linewidth=0.8)
     worst = float(dataset.worst_humidity)
-    top = TO_UN * float(dataset.mean_along.max())
-    (mark,) = panel.plot([worst], [top], "v", color="black", label=f"worst humidity {worst:.2f}")
+    label = f"worst humidity {worst:.2f}" if worst else "worst in dry air"
+    (mark,) = panel.plot([placed[worst]], [float(means.max())], "v", color="black", label=label)
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
-    humidity_axis(panel)
+    humidity_axis(panel, placed)
     legend_below(panel, [mark])
     return [mean, band]
 
@@ -132,9 +139,7 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
         line[1].set_xlabel("change [%]")
     letter(axes, [title for text in parts for title in (text, "choices of the model")])
     humidities = list(next(iter(parts.values())))
-    marks = [
-        Patch(color=shade, label=f"RH {h:g}") for h, shade in zip(humidities, shades(len(humidities)), strict=True)
-    ]
+    marks = [Patch(color=shade, label=air(h)) for h, shade in zip(humidities, shades(len(humidities)), strict=True)]
     figure.legend(handles=marks, loc="outside lower center", ncols=8)
     return figure
 
@@ -142,33 +147,40 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
 def _measurements(cases):
     """Rows of all measurements, the largest first, and of the total: name to bars [%] by humidity."""
     found = {humidity: budget_of(dataset) for humidity, dataset in cases.items()}
-    groups = groups_of(next(iter(cases.values())))
-    largest = sorted(groups, key=lambda name: -max(one.effect(groups[name]) for one in found.values()))
-    rows = {name: groups[name] for name in largest} | {TOTAL: next(iter(found.values())).names}
+    groups = {name: inputs for dataset in cases.values() for name, inputs in groups_of(dataset).items()}
+    everything = [name for inputs in groups.values() for name in inputs]
     errors = [dataset.slope_error.values for dataset in cases.values()]
-    return {
-        name: [
-            _both_sides(one.effect(inputs), one.error_of_effect(inputs, error))
-            for one, error in zip(found.values(), errors, strict=True)
-        ]
-        for name, inputs in rows.items()
+    rows = {
+        name: [_both_sides(one, inputs, error) for one, error in zip(found.values(), errors, strict=True)]
+        for name, inputs in (groups | {TOTAL: everything}).items()
     }
+    largest = sorted(groups, key=lambda name: -max(high for _, high, _ in rows[name]))
+    return {name: rows[name] for name in [*largest, TOTAL]}
 
 
-def _both_sides(effect, error):
-    """Bar of an effect in both directions, and its error [%]."""
-    return -100 * effect, 100 * effect, 100 * error
+def _both_sides(budget, inputs, slope_errors):
+    """Bar of the effect of some inputs in both directions, and its error [%]; zero if a budget has none of them."""
+    own = [name for name in budget.names if name in inputs]
+    if not own:
+        return 0.0, 0.0, 0.0
+    effect = 100 * budget.effect(own)
+    return -effect, effect, 100 * budget.error_of_effect(own, slope_errors)
 
 
 def _choices(cases):
     """Rows of all choices of the model: name to bars from zero, with errors [%], by humidity."""
     rows = {}
-    for choice in next(iter(cases.values())).choice.values:
-        chosen = [dataset.sel(choice=choice) for dataset in cases.values()]
-        rows[choice_label(str(choice))] = [
-            (*sorted((0.0, 100 * float(one.effect))), 100 * float(one.effect_error)) for one in chosen
-        ]
+    for choice in dict.fromkeys(name for dataset in cases.values() for name in dataset.choice.values.tolist()):
+        rows[choice_label(choice)] = [_from_zero(dataset, choice) for dataset in cases.values()]
     return rows
+
+
+def _from_zero(dataset, choice):
+    """Bar of the effect of a choice of the model, and its error [%]; zero if a budget does not have this choice."""
+    if choice not in dataset.choice.values:
+        return 0.0, 0.0, 0.0
+    one = dataset.sel(choice=choice)
+    return (*sorted((0.0, 100 * float(one.effect))), 100 * float(one.effect_error))
 
 
 def _tornado(panel, rows: Mapping[str, Sequence[tuple]]):

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from stiction.config.cases import air
 from stiction.plan.names import by_case
 from stiction.report.format import TO_UM
 from stiction.report.style import (
@@ -21,6 +22,7 @@ from stiction.report.style import (
     humidity_axis,
     legend_below,
     letter_lines,
+    places,
     shades,
     styled,
 )
@@ -73,7 +75,7 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
         named = []
         for (humidity, dataset), shade in zip(cases.items(), shades(len(cases), _LIGHTEST), strict=True):
             _shares(panel, dataset, shade)
-            label = f"RH {humidity:g}{_marks(numbers, name, humidity)}"
+            label = f"{air(humidity)}{_marks(numbers, name, humidity)}"
             named.append(Line2D([], [], color=shade, linewidth=3, label=label))
         legend_below(panel, named)
         shares = np.concatenate([dataset.share.values for dataset in cases.values()])
@@ -127,6 +129,7 @@ def chart(
     """Safe length over the relative humidity for the middle one of the shares.
 
     Each device, gap and shape has a panel: a tip holds beams that are so much shorter that one axis would hide them.
+    Dry air is beside the axis.
 
     Parameters
     ----------
@@ -141,16 +144,17 @@ def chart(
         devices.setdefault(name, []).append(dataset.expand_dims(relative_humidity=[humidity]))
     joint = {"data_vars": "minimal", "coords": "minimal", "compat": "equals", "join": "exact"}
     axes = {name: xr.concat(parts, "relative_humidity", **joint) for name, parts in devices.items()}
+    placed = {name: places(whole.relative_humidity.values.tolist()) for name, whole in axes.items()}
     subjects = [(name, *one) for name, whole in axes.items() for one in product(whole.gap.values, _shapes_of(whole))]
     most = max(whole.sizes["thickness"] for whole in axes.values()) + 1
     figure, columns, lines = columns_of_panels(len(subjects), 1, _width, _PANEL + _ENTRY * most)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
         whole = axes[name].sel(gap=gap, shape=shape)
         marks = [_listed(numbers.get((name, thickness, gap, shape), ())) for thickness in whole.thickness.values]
-        legend_below(panel, _thicknesses(panel, whole, shape, marks))
+        legend_below(panel, _thicknesses(panel, whole, shape, marks, placed[name]))
         low, high = panel.dataLim.intervaly
         panel.set(xlabel="relative humidity [–]", ylim=(0.95 * low, high + _ROOM * (high - low)))
-        humidity_axis(panel)
+        humidity_axis(panel, placed[name])
     for line in lines:
         line[0, 0].set_ylabel("safe length [µm]")
     letter_lines(
@@ -166,8 +170,10 @@ def _shapes_of(dataset):
     return map(str, dataset["shape"].values)
 
 
-def _thicknesses(panel, whole, shape, marks):
+def _thicknesses(panel, whole, shape, marks, placed):
     """Curves of all thicknesses of one device, gap and shape, their bounds, and what a power law gave.
+
+    Points are at the places of their humidities; no line leads to dry air.
 
     Returns the entries of a legend of the thicknesses.
     """
@@ -175,11 +181,12 @@ def _thicknesses(panel, whole, shape, marks):
     state = END_STATES[shape]
     line, dotted = state.lines
     for thickness, shade, mark in zip(whole.thickness.values, shades(len(marks), _LIGHTEST), marks, strict=True):
-        one = whole.sel(thickness=thickness, share=share)
-        between, lengths = one.by_elements.values == 0, TO_UM * one.safe_length
-        panel.plot(one.relative_humidity, lengths, line, color=shade)
-        panel.plot(one.relative_humidity[between], lengths[between], "o", color=shade, fillstyle="none")
-        panel.plot(one.relative_humidity, TO_UM * one.flooded_length, dotted, color=shade, linewidth=0.8)
+        for one, styles in _parts(whole.sel(thickness=thickness, share=share), (line, dotted)):
+            at = [placed[humidity] for humidity in one.relative_humidity.values]
+            between, lengths = one.by_elements.values == 0, TO_UM * one.safe_length
+            panel.plot(at, lengths, styles[0], color=shade)
+            panel.plot(np.array(at)[between], lengths[between], "o", color=shade, fillstyle="none")
+            panel.plot(at, TO_UM * one.flooded_length, styles[1], color=shade, linewidth=0.8)
         label = f"thickness {TO_UM * thickness:g} µm{mark}"
         named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=label))
     panel.plot([], [], line, color="0.3", label=f"{state.legend}, p = {share:g}")
@@ -188,6 +195,13 @@ def _thicknesses(panel, whole, shape, marks):
         label = f"by a power law, ± {100 * float(whole.power_law_error.max()):.2g} %"
         named.append(Line2D([], [], color="0.3", marker="o", fillstyle="none", linestyle="", label=label))
     return named
+
+
+def _parts(whole, lines):
+    """Lengths along the axis, as lines, and in dry air, as markers, each with the styles of lengths and bounds."""
+    humid = whole.relative_humidity.values > 0
+    parts = (whole.isel(relative_humidity=humid), lines), (whole.isel(relative_humidity=~humid), ("D", "_"))
+    return [(part, styles) for part, styles in parts if part.sizes["relative_humidity"]]
 
 
 STAGES = (

@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.report.format import TO_UM
-from stiction.report.style import DOUBLE, figure_stage, humidity_axis, letter, panels, styled
+from stiction.report.style import DOUBLE, figure_stage, humidity_axis, letter, panels, places, styled
 
 #: Colours before and after the measurement.
 _BEFORE, _AFTER = "0.6", "#0072B2"
@@ -47,11 +47,20 @@ def test_beams(found: xr.Dataset) -> Figure:
     return figure
 
 
+def _band(humidity, part):
+    """Places along a band through some humidities, in order; that of a single one has a width."""
+    if len(part) == 1:
+        return humidity[part] + _ALONE, [part[0], part[0]]
+    order = part[np.argsort(humidity[part])]
+    return humidity[order], order
+
+
 def _lengths(panel, data):
     """Crack lengths and counts of one array over the humidity; returns the entries of the legend by their name."""
-    humidity = data.datum_humidity.values
-    order = np.argsort(humidity) if len(humidity) > 1 else [0, 0]
-    along = humidity[order] + (0 if len(humidity) > 1 else _ALONE)
+    placed = places([*data.datum_humidity.values.tolist(), *data.humidity_of_count.values.tolist()])
+    humidity = np.array([placed[one] for one in data.datum_humidity.values])
+    dry = data.datum_humidity.values == 0
+    bands = [_band(humidity, part) for part in map(np.flatnonzero, (~dry, dry)) if len(part)]
     computed, shift = TO_UM * data.computed.values, data.datum_shift.values
     entries = []
     cases = (
@@ -60,8 +69,9 @@ def _lengths(panel, data):
     )
     for name, centre, deviation, colour in cases:
         reach = np.exp(_INTERVAL * deviation.values)
-        panel.fill_between(along, (centre / reach)[order], (centre * reach)[order], color=colour, alpha=0.25, lw=0)
-        entries += panel.plot(along, centre[order], color=colour, label=f"{name} the measurement, 95 %")
+        for along, order in bands:
+            panel.fill_between(along, (centre / reach)[order], (centre * reach)[order], color=colour, alpha=0.25, lw=0)
+            entries += panel.plot(along, centre[order], color=colour, label=f"{name} the measurement, 95 %")
     if data.measured.notnull().any():
         error = _INTERVAL * TO_UM * (data.measured * data.datum_measured_error).values
         entries.append(panel.errorbar(humidity, TO_UM * data.measured, yerr=error, **_POINT, label="measured, 95 %"))
@@ -72,7 +82,7 @@ def _lengths(panel, data):
         panel.annotate(f"{int(at.stuck)} of {int(at.counted)}", place, (4, 3), textcoords="offset points")
         entries += [mark] if k == 0 else []
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
-    humidity_axis(panel)
+    humidity_axis(panel, placed)
     return {entry.get_label(): entry for entry in entries}
 
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 from stiction.plan.names import by_name
 from stiction.report.beside import change
-from stiction.report.format import signed
+from stiction.report.format import humidity_text, signed
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import EITHER, FORCE
 
@@ -74,7 +74,7 @@ def _safe_side(known, sign):
 
 
 def _listed(humidities):
-    return ", ".join(f"{humidity:g}" for humidity in humidities)
+    return ", ".join(map(humidity_text, humidities))
 
 
 def of_devices(plan: Any, *devices: str) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """Pages of single devices for the report: the answer in words, tables, figures, warnings and terms."""
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 
@@ -10,7 +10,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from stiction.config.cases import case_id
+from stiction.config.cases import DRY, case_id
 from stiction.config.kinds import KEYS, kind_of
 from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.names import by_case
@@ -26,7 +26,7 @@ from stiction.report.devices import (
     tables_inference,
     tables_roughness,
 )
-from stiction.report.format import UM, UN
+from stiction.report.format import MISSING, UM, UN, humidity_text
 from stiction.report.style import STYLE, png
 from stiction.run.atomic import save_text
 from stiction.stages.beams import pair_warnings
@@ -34,7 +34,7 @@ from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budget_of, budgets_of
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import EITHER
-from stiction.stages.devices.stoppers import in_any_air, is_at_an_end, shares_stuck
+from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
 
 _PAGE = """<!DOCTYPE html>
 <html lang="en">
@@ -155,6 +155,12 @@ _OF_BEAMS = {
         "surfaces hold it at this humidity, not even flooded flats in contact."
     ),
 }
+_IN_DRY_AIR = {
+    "Dry air": (
+        "No water condenses: the surfaces attract each other alone, where they touch and across gaps. The bound of a "
+        "cantilever is then the length that sticks on flats in contact."
+    ),
+}
 _OF_CHARTS = {
     "Finite elements, power law": (
         "Lengths of simulated beams, or a power of thickness and gap between them, with its largest error at simulated "
@@ -240,7 +246,13 @@ def of_beam(
     listed += [] if test_beams is None else tables_inference.warnings(test_beams)
     shapes = next(iter(found.values()))["shape"].values
     held = {term: text for shape in shapes for term, text in END_STATES[str(shape)].terms.items()}
-    words = held | _OF_BEAMS | (_OF_CHARTS if charts else {}) | _words_of_budgets(budgets)
+    words = (
+        held
+        | _OF_BEAMS
+        | (_IN_DRY_AIR if 0 in found else {})
+        | (_OF_CHARTS if charts else {})
+        | _words_of_budgets(budgets)
+    )
     return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
 
 
@@ -264,7 +276,8 @@ def of_stopper(
         answer.append(tables_inference.built(test_beams))
         listed += tables_inference.warnings(test_beams)
     answer += [stuck_sentence(*row, force=float(found.restoring_force)) for row in shares_stuck(found)]
-    answer += [*safe_force_sentences(found), worst_sentence(found), *model_errors.sentences(name, errors)]
+    worst = [worst_sentence(found)] if ends(found) else []
+    answer += [*safe_force_sentences(found), *worst, *model_errors.sentences(name, errors)]
     words = _OF_STOPPERS | _words_of_budgets(budgets)
     return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
 
@@ -287,7 +300,25 @@ def _facts_of(section):
         (name, unit), value = KEYS[key], section[key]
         values = value if isinstance(value, list) else [value]
         found[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
-    return found | {"relative humidities": ", ".join(f"{humidity:g}" for humidity in section["humidities"])}
+    return found | {"relative humidities": ", ".join(map(humidity_text, section["humidities"]))}
+
+
+def airs(humidities: Iterable[float]) -> str:
+    """Where a device is, for the end of a sentence.
+
+    Examples
+    --------
+    >>> airs([0.0, 0.45, 0.67]), airs([0.67]), airs([0.0])
+    ('in dry air and at relative humidities of 0.45, 0.67', 'at relative humidities of 0.67', 'in dry air')
+    """
+    humid = [f"{humidity:g}" for humidity in humidities if humidity > 0]
+    places = {"in dry air": len(humid) < len(list(humidities)), f"at relative humidities of {', '.join(humid)}": humid}
+    return " and ".join(words for words, is_one in places.items() if is_one)
+
+
+def _at(humidity):
+    """One humidity, for the beginning of a sentence."""
+    return f"At a relative humidity of {humidity:g}" if humidity else "In dry air"
 
 
 def described(surface: Mapping) -> str:
@@ -321,9 +352,8 @@ def build_sentence(found: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr
     if length <= 0:
         return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
     sentence = (
-        f"Build it no longer than {length:.0f} µm: then at most 1 in {1 / _chosen(_any(found)):g} sticks at "
-        f"relative humidities of {', '.join(f'{humidity:g}' for humidity in found)} (95 % confidence, given the drawn "
-        "surfaces)."
+        f"Build it no longer than {length:.0f} µm: then at most 1 in {1 / _chosen(_any(found)):g} sticks "
+        f"{airs(found)} (95 % confidence, given the drawn surfaces)."
     )
     if total == 0:
         return f"{sentence} No uncertainty of the measurements is subtracted, because none is stated."
@@ -356,7 +386,7 @@ def _of_shortest(found, budgets):
 
 def verdict(found: xr.Dataset) -> str:
     """Whether the restoring force of a stopper suffices, for the smallest share that its patches can bound."""
-    force, (low, high) = float(found.restoring_force), _ends(found)
+    force, where = float(found.restoring_force), airs(found.humidity.values)
     stated, any_air = found.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(found)[1]
     known = [float(share) for share in found.share if np.isfinite(stated.sel(share=share))]
     if not known:
@@ -365,12 +395,13 @@ def verdict(found: xr.Dataset) -> str:
     at_these, anywhere = (float(needed.sel(share=share)) for needed in (stated, any_air))
     head = f"The restoring force of {force / UN:g} µN"
     tail = f"at most 1 in {1 / share:g} sticks (95 % confidence, given the drawn surfaces)."
-    humidities = ", ".join(f"{humidity:g}" for humidity in found.humidity.values)
     if force < at_these:
-        return f"{head} does not suffice at relative humidities of {humidities}: a larger one is needed if {tail}"
+        return f"{head} does not suffice {where}: a larger one is needed if {tail}"
     if force < anywhere:
-        return f"{head} suffices at relative humidities of {humidities}, but not at all from {low} to {high}: {tail}"
-    return f"{head} suffices at all relative humidities from {low} to {high}: {tail}"
+        return f"{head} suffices {where}, but not at all{_range(found)}: {tail}"
+    dry = ["in dry air"] if found.axis[0] == 0 else []
+    humid = [f"at all relative humidities{_range(found)}"] if ends(found) else []
+    return f"{head} suffices {' and '.join(dry + humid)}: {tail}"
 
 
 def safe_sentence(humidity: float, found: xr.Dataset) -> str:
@@ -378,7 +409,7 @@ def safe_sentence(humidity: float, found: xr.Dataset) -> str:
     share = _chosen(found)
     lengths = found.safe_length.sel(share=share) / UM
     shortest, longest = float(lengths.min()), float(lengths.max())
-    air, but = f"At a relative humidity of {humidity:g}", f"at most 1 in {1 / share:g}"
+    air, but = _at(humidity), f"at most 1 in {1 / share:g}"
     sentence = (
         f"{air}, devices of up to {shortest:.0f} µm come free after they were pressed down, except for {but} (95 % "
         "confidence, given the drawn surfaces)."
@@ -396,11 +427,8 @@ def stuck_sentence(humidity: float, stuck: float, low: float, high: float, force
     >>> stuck_sentence(0.67, 0.012, 0.01, 0.015, 20e-6)
     'At a relative humidity of 0.67, 1.2 % of the stoppers (1 to 1.5 %) hold more than the restoring force of 20 µN.'
     """
-    share, ends = f"{100 * stuck:.3g} %", f"{100 * low:.3g} to {100 * high:.3g} %"
-    return (
-        f"At a relative humidity of {humidity:g}, {share} of the stoppers ({ends}) hold more than the restoring force "
-        f"of {force / UN:g} µN."
-    )
+    share, band = f"{100 * stuck:.3g} %", f"{100 * low:.3g} to {100 * high:.3g} %"
+    return f"{_at(humidity)}, {share} of the stoppers ({band}) hold more than the restoring force of {force / UN:g} µN."
 
 
 def safe_force_sentences(found: xr.Dataset) -> list[str]:
@@ -408,11 +436,12 @@ def safe_force_sentences(found: xr.Dataset) -> list[str]:
 
     For the shares that its patches can bound.
     """
-    stated, (low, high) = found.safe_force.sel(part="safe").max("humidity"), _ends(found)
+    stated = found.safe_force.sel(part="safe").max("humidity")
+    where = "At all these humidities" if ends(found) else "In dry air"
     return [
-        f"At all these humidities, a restoring force of {float(force) / UN:.3g} µN leaves at most 1 in "
-        f"{1 / float(force.share):g} stuck (95 % confidence); at any humidity from {low} to {high}, "
-        f"{float(more) / UN:.3g} µN are needed."
+        f"{where}, a restoring force of {float(force) / UN:.3g} µN leaves at most 1 in "
+        f"{1 / float(force.share):g} stuck (95 % confidence)"
+        + (f"; at any humidity{_range(found)}, {float(more) / UN:.3g} µN are needed." if ends(found) else ".")
         for force, more in zip(stated, in_any_air(found)[1], strict=True)
         if np.isfinite(force)
     ]
@@ -420,21 +449,25 @@ def safe_force_sentences(found: xr.Dataset) -> list[str]:
 
 def worst_sentence(found: xr.Dataset) -> str:
     """The worst humidity of a stopper in words."""
-    worst, (low, high) = float(found.worst_humidity), _ends(found)
+    worst = float(found.worst_humidity)
     share, least, most = (100 * share for share in in_any_air(found)[0])
     stuck = f" In no air of this range do more than {share:.3g} % ({least:.3g} to {most:.3g} %) stick."
     stuck = "" if f"{share:.3g}" == "100" else stuck
     if is_at_an_end(found):
-        return f"Between relative humidities of {low} and {high}, the stopper holds most at {worst:g}.{stuck}"
+        low, high = ends(found)
+        return f"Between relative humidities of {low:g} and {high:g}, the stopper holds most at {worst:g}.{stuck}"
+    if not worst:
+        return f"The stopper holds most in dry air; humid air{_range(found)} is less critical.{stuck}"
     return (
-        f"The stopper holds most at a relative humidity of {worst:.2f}; drier and wetter air, from {low} to {high}, "
+        f"The stopper holds most at a relative humidity of {worst:.2f}; drier and wetter air,{_range(found)}, "
         f"are less critical.{stuck}"
     )
 
 
-def _ends(found):
-    """Ends of the axis of humidities along which the worst was sought."""
-    return [f"{float(found.axis[end]):g}" for end in (0, -1)]
+def _range(found):
+    """Range of humidities along which the worst was sought, in words."""
+    low, high = ends(found)
+    return f" from {low:g} to {high:g}"
 
 
 def _sure(name, budgets, errors):
@@ -443,7 +476,8 @@ def _sure(name, budgets, errors):
         return []
     cases = {(name, *key): dataset for key, dataset in budgets.items()}
     sentences = [
-        f"Relative humidity {humidity:g}: {tables_budget.advised(one)}" for (humidity, *_), one in budgets.items()
+        f"{f'Relative humidity {humidity:g}' if humidity else 'Dry air'}: {tables_budget.advised(one)}"
+        for (humidity, *_), one in budgets.items()
     ]
     sentences += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
     cells, drawn = _side_by_side(tables_budget.budget(cases, errors).cells), figures_budget.budget(cases)
@@ -470,10 +504,12 @@ def _how_rough(name, found):
 def _side_by_side(cells):
     """Cells of the budget of one device with a pair of columns for every humidity."""
     shown = [
-        part.set_index(["held by", "what"])[["effect [%]", "remaining [%]"]].add_prefix(f"RH {humidity}: ")
-        for humidity, part in cells.groupby("RH", sort=False)
+        part.set_index(["held by", "what"])[["effect [%]", "remaining [%]"]].add_prefix(
+            f"{text if text == DRY else f'RH {text}'}: "
+        )
+        for text, part in cells.groupby("RH", sort=False)
     ]
-    return pd.concat(shown, axis=1).reset_index()
+    return pd.concat(shown, axis=1).fillna(MISSING).reset_index()
 
 
 def _inputs(plan, at):

@@ -6,13 +6,14 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from stiction.config.cases import air
 from stiction.devices.budget import advice
 from stiction.devices.limits import NOT_MODELLED
 from stiction.estimates import mean_with_error
 from stiction.plan.names import by_name
 from stiction.report import beside
 from stiction.report.devices import model_errors
-from stiction.report.format import UN, number, signed, with_error
+from stiction.report.format import UN, humidity_text, number, signed, with_error
 from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_list
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, response_of
@@ -79,6 +80,8 @@ def stoppers(
         "confidence; – where there are too few patches. The last row of a stopper has the largest values along a fine "
         "axis of humidities. Worst RH: humidity of the largest mean pull-off force along this axis."
     )
+    if any(dataset.axis[0] == 0 for dataset in datasets.values()):
+        caption += " For a stopper in dry air as well, this is one of them."
     listed = [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found]
     said = [caption, *([beside.caption(errors)] if errors else []), NOT_MODELLED, *(["Warnings:"] if listed else [])]
     columns = _columns_of_stoppers(rows) | (beside.COLUMN if errors else {})
@@ -123,8 +126,10 @@ def _columns_of_stoppers(rows):
 
 
 def _humidities(humidity, lowest, highest):
-    """Humidity of a row, or the range of all."""
-    return f"{lowest:g} to {highest:g}" if np.isnan(humidity) else f"{humidity:g}"
+    """Humidity of a row, or the range of all, which dry air may precede."""
+    if np.isnan(humidity):
+        return " to ".join(dict.fromkeys(map(humidity_text, (lowest, highest))))
+    return humidity_text(humidity)
 
 
 def percentage(share: float, low: float, high: float) -> str:
@@ -146,6 +151,8 @@ def worst_humidity(humidity: float, error: float, is_an_end: bool) -> str:
     >>> worst_humidity(0.901, 0.0021, False), worst_humidity(0.98, 0.0, True)
     ('0.9010 ± 0.0021', '0.98 or beyond')
     """
+    if not humidity:
+        return humidity_text(humidity)
     return f"{humidity:g} or beyond" if is_an_end else with_error(humidity, error)
 
 
@@ -171,7 +178,7 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
             for row in [*_of_budget(device, rh, one), *_of_model(device, rh, one, errors)]
         ]
     )
-    sentences = [f"{device}, RH {humidity:g}: {advised(one)}" for (device, humidity, *_), one in datasets.items()]
+    sentences = [f"{device}, {air(humidity)}: {advised(one)}" for (device, humidity, *_), one in datasets.items()]
     omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in datasets.items()}
     caption = with_list(
         "Relative standard uncertainty of the mean length at which beams stick as S-shapes, of the length at which "

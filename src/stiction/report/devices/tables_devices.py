@@ -10,7 +10,7 @@ from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.names import by_case
 from stiction.report import beside
 from stiction.report.devices import model_errors
-from stiction.report.format import UM, error_alone, number
+from stiction.report.format import UM, error_alone, humidity_text, number
 from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_list
 from stiction.stages.beams.pair_warnings import numbered
 from stiction.stages.devices import device_warnings
@@ -35,6 +35,8 @@ _CHART = (
     "length that sticks where water fills all gaps; for a bridge, that below which even flooded flats do not hold its "
     "middle at this humidity. The warnings are about the shortest length of each thickness and gap."
 )
+#: Ends a caption if a device is in dry air.
+_IN_DRY_AIR = " In dry air, the bound of a cantilever is the length that sticks on flats in contact."
 
 
 def safe_lengths(
@@ -63,10 +65,15 @@ def safe_lengths(
             rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
-    text, columns = _SAFE_LENGTHS, _LENGTHS
+    text, columns = _with_dry_air(_SAFE_LENGTHS, found), _LENGTHS
     if errors:
         text, columns = f"{text} {beside.caption(errors)}", columns | beside.COLUMN
     return Table(frame, _caption(text, warnings), as_text(frame, columns).assign(warnings=marks))
+
+
+def _with_dry_air(text, found):
+    """Text with what is different in dry air, if a device is in it."""
+    return text + (_IN_DRY_AIR if any(humidity == 0 for _, humidity in found) else "")
 
 
 def _caption(text, warnings):
@@ -131,7 +138,7 @@ def chart(
             lengths = dict(zip(one.share.values.tolist(), one.safe_length.values / UM, strict=True))
             rows += [beam | {"share": share, "safe_length_um": length} | last for share, length in lengths.items()]
             cells.append(_beam_as_text(beam, lengths) | marks)
-    return Table(pd.DataFrame(rows), _caption(_CHART, warnings), pd.DataFrame(cells))
+    return Table(pd.DataFrame(rows), _caption(_with_dry_air(_CHART, found), warnings), pd.DataFrame(cells))
 
 
 def _beam(one):
@@ -155,7 +162,7 @@ def _beam_as_text(beam, lengths):
         "thickness [µm]": f"{beam['thickness_um']:g}",
         "gap [µm]": f"{beam['gap_um']:g}",
         "held by": beam["held_by"],
-        "RH": f"{beam['relative_humidity']:g}",
+        "RH": humidity_text(beam["relative_humidity"]),
         **{f"p = {share:g} [µm]": number(length, ".1f") for share, length in lengths.items()},
         "from": beam["from"] + ("" if np.isnan(error) else f", ± {error:.2g} %"),
         "bound [µm]": number(beam["bound_um"], ".1f"),

@@ -5,9 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from stiction.config.cases import DRY
 from stiction.devices import inference
 from stiction.plan.names import by_name
-from stiction.report.format import TO_UM, number, with_error
+from stiction.report.format import TO_UM, humidity_text, number, with_error
 from stiction.report.tables import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.inference import OWN, SHAPES
 from stiction.stages.devices.releases import ARC, EITHER, FORCE, MIDDLE, S_SHAPE
@@ -299,12 +300,15 @@ def _moved(found):
 
 def _extrapolated(found):
     """Conditions of the device beyond those of its test beams."""
-    low, high = float(found.datum_humidity.min()), float(found.datum_humidity.max())
-    beyond = sorted({humidity for humidity in found.humidity_of_result.values if not low <= humidity <= high})
+    measured = set(found.datum_humidity.values.tolist())
+    humid = sorted(measured - {0.0}) or [np.inf]
+    results = sorted(set(found.humidity_of_result.values.tolist()) - measured)
+    beyond = [humidity for humidity in results if not humid[0] <= humidity <= humid[-1]]
     if beyond:
+        where = [DRY] * (0 in measured) + [f"from RH {humid[0]:g} to {humid[-1]:g}"] * bool(measured - {0.0})
         yield (
-            f"Test beams were measured from RH {low:g} to {high:g}: the prediction at RH "
-            f"{', '.join(f'{humidity:g}' for humidity in beyond)} is an extrapolation."
+            f"Test beams were measured {' and '.join(where)}: the prediction at RH "
+            f"{', '.join(map(humidity_text, beyond))} is an extrapolation."
         )
     yield from _beyond_in_adhesion(found)
     for size in OWN if "own_thickness" in found else ():

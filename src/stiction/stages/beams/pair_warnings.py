@@ -1,6 +1,6 @@
 """Where results of pairs are beyond the limits of the model, in sentences of `stiction.devices.limits`."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
+from stiction.config.cases import air
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
-from stiction.contact.meniscus import meniscus_height
 from stiction.devices import limits
 from stiction.plan.names import by_name, by_outcome
 from stiction.plan.stage import Stage, select
@@ -30,11 +30,6 @@ class OfPairs(Cantilevers):
 
     sampling: StripLength
     water: dict[str, Water]  #: by pair
-
-
-def height(humidity: float, water: Water) -> float:
-    """Height h_C of the film at a relative humidity [m]."""
-    return float(meniscus_height(humidity, water.temperature, water.contact_angles))
 
 
 def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
@@ -82,31 +77,41 @@ def of_pairs(
     settings : OfPairs
     """
     found = {
-        f"pair {pair}": limits.given(*contact_warnings(plastic_share(plasticity, pair), materials[pair]))
+        f"pair {pair}": limits.given(
+            _without_water(pair, beams, settings.water[pair]),
+            *contact_warnings(plastic_share(plasticity, pair), materials[pair]),
+        )
         for pair in settings.pairs
     }
     for (pair, humidity, model), dataset in beams.items():
         nominal = cantilever(settings, pair)
-        film = limits.given(limits.thin_film(height(humidity, settings.water[pair])))
-        found[f"pair {pair}, RH {humidity:g}, {model}"] = film + of_beams(
+        film = limits.given(limits.thin_film(settings.water[pair].film(humidity)[0]))
+        found[f"pair {pair}, {air(humidity)}, {model}"] = film + of_beams(
             dataset, nominal, settings.sampling.strip_length
         )
     return found
 
 
-def of_thin_films(cases: Iterable[tuple[str, float, str]], water: Mapping[str, Water]) -> list[str]:
-    """Warnings about films that are hardly a liquid, one for each pair and humidity of some cases.
+def _without_water(pair, cases, water):
+    """Warning, or None, about a pair that no water wets; pair, humidity and model of all cases."""
+    wettest = max((humidity for of, humidity, _ in cases if of == pair), default=0.0)
+    return limits.no_water(water.film(wettest)[0], wettest)
+
+
+def of_films(cases: Collection[tuple[str, float, str]], water: Mapping[str, Water]) -> list[str]:
+    """Warnings about pairs that no water wets, and about films that are hardly a liquid, at each humidity of a pair.
 
     Parameters
     ----------
-    cases : iterable of tuple
+    cases : collection of tuple
         Pair, humidity and model.
     water : dict
         Pair to its water.
     """
-    films = {(pair, humidity): height(humidity, water[pair]) for pair, humidity, _ in cases}
-    found = {case: limits.thin_film(film) for case, film in films.items()}
-    return [f"Pair {pair}, RH {humidity:g}: {sentence}" for (pair, humidity), sentence in found.items() if sentence]
+    found = {f"Pair {pair}": _without_water(pair, cases, one) for pair, one in water.items()}
+    for pair, humidity, _ in cases:
+        found[f"Pair {pair}, {air(humidity)}"] = limits.thin_film(water[pair].film(humidity)[0])
+    return [f"{subject}: {sentence}" for subject, sentence in found.items() if sentence]
 
 
 def numbered(warnings: Mapping[Any, list[str]]) -> tuple[list[str], dict[Any, list[int]]]:

@@ -120,7 +120,7 @@ def _settings(plan, at):
 
     ASSUME: attraction across gaps is left out, so that both models have the same forces.
     """
-    all_of_pair = sorted(plan.config["pairs"][at.pair]["humidities"])
+    all_of_pair = sorted(plan.humid(at.pair))
     chosen = dict.fromkeys(all_of_pair[k] for k in (0, (len(all_of_pair) - 1) // 2, -1))
     study = {"humidities": list(chosen), "strips": plan.config["studies"]["full_contact"]["samples"]}
     water = {key: value for key, value in plan.water(at.pair).items() if key != "gaps"}

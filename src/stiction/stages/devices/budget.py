@@ -341,25 +341,25 @@ def _settings(plan, at):
     """Settings of a budget, the quantities of its surfaces and its variants of the model."""
     name, designs = pair_of(at.case), plan.designs
     section = plan.config["devices"][name]
-    pair = section["pair"]
+    pair = plan.in_air_of_device(at.case)
     own = {"uncertainty": section.get("uncertainty", {}), "humidity": humidity_of(at.case)}
     own |= chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(pair)
     if "hamaker_constant" in designs.uncertain_solids(name):
         own |= {"hamaker_constant_zJ": plan.beam_hamaker_constant(pair)}
     if designs.kind(name).is_beam:
-        own |= {"device": section_of_beam(plan, name), "beams": plan.config["design"]["budget_beams"]}
+        own |= {"device": section_of_beam(plan, name, pair), "beams": plan.config["design"]["budget_beams"]}
     else:
         own |= chosen(section, ["contact_um"])
     own |= {"seed": plan.config["seed"], "water": plan.water(pair), "surfaces": plan.sides(pair)}
     quantities = list(map(list, designs.quantities(name)))
-    return {"budget": own, "quantities": quantities, "choices": plan.choices_of_device(name)}
+    return {"budget": own, "quantities": quantities, "choices": plan.choices_of_device(at.case)}
 
 
 def _settings_of_tips(plan, at, share=None):
     """As `_settings`, of the length that a share of the tips of a cantilever hold, by default the middle one."""
     settings, shares = _settings(plan, at), plan.config["design"]["shares"]
     own = {key: value for key, value in settings["budget"].items() if key != "beams"}
-    choices = plan.choices_of_solids(plan.config["devices"][pair_of(at.case)]["pair"])
+    choices = plan.choices_of_solids(plan.in_air_of_device(at.case))
     return settings | {"budget": own | {"share": share or shares[len(shares) // 2]}, "choices": choices}
 
 
@@ -386,7 +386,7 @@ def budgets_of(plan: Any, *devices: str) -> dict[tuple, str]:
 BUDGET = Stage.writing(
     "budget",
     "devices/budget/{case}",
-    inputs=lambda plan, at: _inputs(plan, pair_of(at.case)) | contacts_of_budget(plan, pair_of(at.case)),
+    inputs=lambda plan, at: _inputs(plan, pair_of(at.case)) | contacts_of_budget(plan, at.case),
     settings=_settings,
     compute=_computed,
     message="Budget of {case}.",
@@ -411,7 +411,7 @@ def _inputs_of_test_beams(contacts):
 
     def inputs(plan, at):
         plan, name = plan.of_test_beams, pair_of(at.case)
-        return _inputs(plan, name) | contacts(plan, name) | {"choices": {}}
+        return _inputs(plan, name) | contacts(plan, at.case) | {"choices": {}}
 
     return inputs
 
@@ -421,7 +421,7 @@ STAGES = (
     BUDGET.on(
         "tip_budget",
         "devices/budget/{case}_tip",
-        inputs=lambda plan, at: _inputs(plan, pair_of(at.case)) | contacts_of_tip_budget(plan, pair_of(at.case)),
+        inputs=lambda plan, at: _inputs(plan, pair_of(at.case)) | contacts_of_tip_budget(plan, at.case),
         settings=_settings_of_tips,
         label="budget",
         message="Budget of the tips of {case}.",

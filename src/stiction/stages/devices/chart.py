@@ -15,7 +15,6 @@ import xarray as xr
 from stiction.chaos.model import Truncation
 from stiction.config.cases import pair_of
 from stiction.contact.environment import Water
-from stiction.contact.meniscus import meniscus_height
 from stiction.devices.chart import checked_power_law
 from stiction.plan.names import by_case
 from stiction.plan.stage import Stage, chosen, select
@@ -130,7 +129,6 @@ def layout(found: Filled, rms: float, settings: Settings) -> xr.Dataset:
     """
     grid, size = (len(settings.thicknesses), len(settings.gaps)), ("thickness", "gap")
     shapes = list(settings.device.opening.shapes)
-    film = meniscus_height(settings.humidity, settings.water.temperature, settings.water.contact_angles)
     designed = (_of_size(settings, *one) for one in product(settings.thicknesses, settings.gaps))
     limits = [sticking.flooded_lengths(device, settings.water, settings.humidity) for device in designed]
     metres, none = {"units": "m"}, {"units": "1"}
@@ -140,7 +138,7 @@ def layout(found: Filled, rms: float, settings: Settings) -> xr.Dataset:
             "flooded_length": ((*size, "shape"), np.reshape(limits, (*grid, -1)), metres),
             "by_elements": (size, found.by_elements.reshape(grid).astype(np.int8), none),
             "power_law_error": ((), found.error, none),
-            "film": ((), float(film), metres),
+            "film": ((), settings.water.film(settings.humidity)[0], metres),
             "rms": ((), rms, metres),
             "humidity": ((), settings.humidity, none),
         },
@@ -171,9 +169,7 @@ STAGES = (
         "chart",
         "devices/chart/{case}",
         inputs=lambda plan, at: (
-            {"contact": contact_of(plan, pair_of(at.case))}
-            | tips_of(plan, pair_of(at.case))
-            | corrections_of(plan, pair_of(at.case))
+            {"contact": contact_of(plan, at.case)} | tips_of(plan, at.case) | corrections_of(plan, pair_of(at.case))
         ),
         settings=_settings,
         kind=Settings,

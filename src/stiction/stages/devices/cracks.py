@@ -118,9 +118,7 @@ STAGES = (
     Stage.writing(
         "cracks",
         "devices/cracks/{case}",
-        inputs=lambda plan, at: (
-            {"contact": contact_of(plan, pair_of(at.case))} | corrections_of(plan, pair_of(at.case))
-        ),
+        inputs=lambda plan, at: {"contact": contact_of(plan, at.case)} | corrections_of(plan, pair_of(at.case)),
         settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
         kind=Settings,
         compute=lambda data, at, settings: compute(data["contact"], corrected(settings, data)),

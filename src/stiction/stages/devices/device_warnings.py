@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import case_id
+from stiction.config.cases import air, case_id
 from stiction.config.units import from_si, in_si
 from stiction.contact.environment import Water
 from stiction.devices import limits
@@ -22,7 +22,6 @@ from stiction.stages.beams.pair_warnings import (
     Warnings,
     as_markdown,
     contact_warnings,
-    height,
     plastic_share,
 )
 from stiction.stages.devices.end_states import END_STATES
@@ -49,7 +48,7 @@ class OfStopper:
     materials: Materials = ()  #: of its pair
 
 
-def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan) -> dict[str, list[str]]:
+def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan, humidity: float = 0.0) -> dict[str, list[str]]:
     """Warnings about a device at a humidity, by the shape in which it sticks.
 
     Each shape is checked at the shortest of its lengths, where slopes are largest.
@@ -61,10 +60,13 @@ def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan) -> dict[
     of : OfDevice
     plastic : float
         Plastic share of the contact area; NaN if it was not studied [-].
+    humidity : float
+        At which no water condensing is worth a sentence; in dry air it is not [-].
     """
     shortest = found.safe_length.min("share")
+    without = limits.given(limits.no_water(float(found.film), humidity))
     return {
-        shape: _of_length(float(shortest.sel(shape=shape)), found, of, plastic)
+        shape: without + _of_length(float(shortest.sel(shape=shape)), found, of, plastic)
         for shape in map(str, found["shape"].values)
     }
 
@@ -90,7 +92,7 @@ def of_chart(
         of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
         length = float(shortest.safe_length.min())
         warnings[thickness, gap, shape] = _of_length(
-            length, shortest, of_size, plastic, min(float(one.film) for one in along)
+            length, shortest, of_size, plastic, min(filter(None, (float(one.film) for one in along)), default=0.0)
         )
     return warnings
 
@@ -116,8 +118,10 @@ def _of_length(length, found, of, plastic, thinnest=None):
 
 def _of_water(of):
     """Warnings, or None, about the thinnest and the thickest film on the patch of a stopper."""
-    films = [height(humidity, of.water) for humidity in (*of.humidities, *of.worst_humidities)]
-    return limits.thin_film(min(films)), limits.wide_meniscus(max(films), of.contact)
+    humid = [*filter(None, of.humidities), *of.worst_humidities] if any(of.humidities) else []
+    films = [of.water.film(humidity)[0] for humidity in humid] or [0.0]
+    without = limits.no_water(max(films), max(of.humidities))
+    return without, limits.thin_film(min(films)), limits.wide_meniscus(max(films), of.contact)
 
 
 class OfDevices(NamedTuple):
@@ -145,7 +149,7 @@ def read(files: Mapping[str, str]) -> OfDevices:
 def subjects(warnings: OfDevices) -> Warnings:
     """Warnings about devices by their subjects in words."""
     found = {
-        f"{name}, RH {humidity:g}, held by the {END_STATES[shape].by}": sentences
+        f"{name}, {air(humidity)}, held by the {END_STATES[shape].by}": sentences
         for (name, humidity, shape), sentences in warnings.lengths.items()
     }
     for (name, thickness, gap, shape), sentences in warnings.curves.items():
@@ -188,7 +192,7 @@ def _of_one_device(data, _at, settings):
     lengths = [
         [[humidity, shape], sentences]
         for (_, humidity), dataset in data["lengths"].items()
-        for shape, sentences in of_device(dataset, of, share).items()
+        for shape, sentences in of_device(dataset, of, share, humidity).items()
     ]
     charts = list(data["charts"].values())
     curves = [[curve, sentences] for curve, sentences in of_chart(charts, of, share).items()] if charts else []

@@ -14,7 +14,8 @@ from scipy.interpolate import PPoly
 
 from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import foundation_length
-from stiction.config.cases import case_id
+from stiction.config.arrays import humidities
+from stiction.config.cases import air, case_id
 from stiction.contact.environment import Water
 from stiction.devices import arcs, inference, risk
 from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths
@@ -110,7 +111,7 @@ class Result(NamedTuple):
     @property
     def condition(self) -> str:
         """Under which the model errs by the same rest."""
-        return f"{self.owner}, RH {self.humidity:g}{', arc' if self.response == ARC else ''}"
+        return f"{self.owner}, {air(self.humidity)}{', arc' if self.response == ARC else ''}"
 
 
 def compute(
@@ -489,7 +490,7 @@ def _settings(plan, at):
     for name in data["crack_lengths"]:
         data["crack_lengths"][name]["length_um"] = arrays[name]["length_um"]
     for name in data["stuck"]:
-        data["stuck"][name]["water"] = plan.water(arrays[name]["pair"])
+        data["stuck"][name]["water"] = plan.water(plan.of_test_beams.in_air_of_device(_counted_case(arrays, name)))
     is_beam = plan.designs.kind(at.device).is_beam
     return (
         data
@@ -505,8 +506,13 @@ def _predicted(plan, device):
     """Safe lengths of a beam by humidity, or forces of a stopper."""
     if not plan.designs.kind(device).is_beam:
         return f"devices/stoppers/{device}"
-    humidities = plan.config["devices"][device]["humidities"]
-    return {humidity: f"devices/safe_lengths/{case_id(device, humidity)}" for humidity in humidities}
+    stated = plan.config["devices"][device]["humidities"]
+    return {humidity: f"devices/safe_lengths/{case_id(device, humidity)}" for humidity in stated}
+
+
+def _counted_case(arrays, name):
+    """An array at the highest humidity of its counts, none of which is in dry air."""
+    return case_id(name, max(humidities(arrays[name], "stuck")))
 
 
 def _contacts(plan, device):
@@ -514,8 +520,8 @@ def _contacts(plan, device):
     arrays, of_arrays = plan.config["test_beams"], plan.of_test_beams
     names = [name for name in plan.config["devices"][device]["test_beams"] if "stuck" in arrays[name]]
     return {
-        "grounds": {name: contact_of(of_arrays, name) for name in names},
-        "tips": {name: tips_of(of_arrays, name)["tips"] for name in names},
+        "grounds": {name: contact_of(of_arrays, _counted_case(arrays, name)) for name in names},
+        "tips": {name: tips_of(of_arrays, _counted_case(arrays, name))["tips"] for name in names},
     }
 
 

@@ -5,6 +5,7 @@ Separate from the stages that compute these contacts, so that no other stage dep
 
 from typing import Any
 
+from stiction.config.cases import pair_of
 from stiction.config.designs import OF_TIPS, Patch, hamaker_constants
 from stiction.config.merging import merged
 from stiction.config.units import NM_PER_UM
@@ -18,19 +19,23 @@ from stiction.stages.contact.pairs import Settings
 FOLDER = "devices/contact"
 
 
-def contact_of(plan: Any, device: str) -> str:
-    """Contact of the patch on which a device sticks: that of its pair in the main line if both are equal."""
-    designs = plan.designs
-    if designs.has_strips_of_pair(device):
-        return f"contact/{plan.config['devices'][device]['pair']}_NG"
-    return f"{FOLDER}/{designs.ground(device).name}"
+def contact_of(plan: Any, case: str) -> str:
+    """Contact of the patch on which a device sticks at a humidity: that of its pair in the main line if it is equal."""
+    if plan.designs.has_strips_of_pair(pair_of(case)):
+        return f"contact/{plan.in_air_of_device(case)}_NG"
+    return f"{FOLDER}/{_in_its_air(plan, case, plan.designs.ground).name}"
 
 
-def tips_of(plan: Any, device: str) -> dict[str, str]:
-    """Contact of the strips that hold the tips of a cantilever; none for a bridge."""
-    if not plan.designs.kind(device).has_tip:
+def _in_its_air(plan, case, patch_of):
+    """Patch of a device with the name of its pair in the air of a case, see `stiction.config.plan.Plan.in_air`."""
+    return patch_of(pair_of(case))._replace(pair=plan.in_air_of_device(case))
+
+
+def tips_of(plan: Any, case: str) -> dict[str, str]:
+    """Contact of the strips that hold the tips of a cantilever at a humidity; none for a bridge."""
+    if not plan.designs.kind(pair_of(case)).has_tip:
         return {}
-    return {"tips": f"{FOLDER}/tips/{plan.designs.tips(device).name}"}
+    return {"tips": f"{FOLDER}/tips/{_in_its_air(plan, case, plan.designs.tips).name}"}
 
 
 def corrections_of(plan: Any, device: str) -> dict[str, str]:
@@ -38,22 +43,23 @@ def corrections_of(plan: Any, device: str) -> dict[str, str]:
     return of_pair(plan, plan.config["devices"][device]["pair"])
 
 
-def contacts_of_budget(plan: Any, device: str) -> dict[str, Any]:
+def contacts_of_budget(plan: Any, case: str) -> dict[str, Any]:
     """Contact of the patch of a device, with less and more of every uncertain input, and under other choices."""
-    designs = plan.designs
-    patch = designs.ground(device)
+    designs, device = plan.designs, pair_of(case)
+    patch = _in_its_air(plan, case, designs.ground)
     shared = f"studies/slopes/contact/{patch.pair}"
     slopes = shared if designs.has_strips_of_pair(device) else f"{FOLDER}/slopes/{patch.name}"
-    contacts = {"contact": contact_of(plan, device)} | corrections_of(plan, device)
-    return contacts | _changed(plan, device, slopes, f"{FOLDER}/{{}}/{patch.name}", plan.choices_of_device(device))
+    contacts = {"contact": contact_of(plan, case)} | corrections_of(plan, device)
+    return contacts | _changed(plan, device, slopes, f"{FOLDER}/{{}}/{patch.name}", plan.choices_of_device(case))
 
 
-def contacts_of_tip_budget(plan: Any, device: str) -> dict[str, Any]:
+def contacts_of_tip_budget(plan: Any, case: str) -> dict[str, Any]:
     """As `contacts_of_budget`, of the tips of a cantilever."""
-    tips = plan.designs.tips(device)
+    tips = _in_its_air(plan, case, plan.designs.tips)
     folder, choices = f"{FOLDER}/tips", plan.choices_of_solids(tips.pair)
     contacts = {"contact": f"{folder}/{tips.name}"}
-    return contacts | _changed(plan, device, f"{folder}/slopes/{tips.name}", f"{folder}/{{}}/{tips.name}", choices)
+    changed = f"{folder}/slopes/{tips.name}", f"{folder}/{{}}/{tips.name}"
+    return contacts | _changed(plan, pair_of(case), *changed, choices)
 
 
 def _changed(plan, device, slopes, changed, choices):

@@ -198,14 +198,15 @@ BEAMS = {
 
 def settings_of_beam(plan: Any, case: str) -> dict[str, Any]:
     """A device at a humidity: force laws, dimensions and number of beams; more than any one stage needs."""
-    section = plan.config["devices"][pair_of(case)]
-    own = {"device": section_of_beam(plan, pair_of(case)), "humidity": humidity_of(case)}
-    return plan.seen_by(section["pair"]) | plan.config["design"] | own
+    pair = plan.in_air_of_device(case)
+    own = {"device": section_of_beam(plan, pair_of(case), pair), "humidity": humidity_of(case)}
+    return plan.seen_by(pair) | plan.config["design"] | own
 
 
-def section_of_beam(plan: Any, name: str) -> dict[str, Any]:
-    """Kind, pair and dimensions of a beam, and the length of its strips."""
+def section_of_beam(plan: Any, name: str, in_air: str | None = None) -> dict[str, Any]:
+    """Kind, pair and dimensions of a beam, length of its strips, and its solids in the air that its pair names."""
     section = plan.config["devices"][name]
     modulus = chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(section["pair"])
-    solids = {} if plan.designs.kind(name).has_tip else {"hamaker_constant_zJ": plan.hamaker_constant(section["pair"])}
+    constant = plan.hamaker_constant(in_air or section["pair"])
+    solids = {} if plan.designs.kind(name).has_tip else {"hamaker_constant_zJ": constant}
     return select(DesignedBeam, section | modulus | solids, strip_um=plan.designs.strip(name))

@@ -6,9 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import pair_of
 from stiction.contact.environment import Water
-from stiction.contact.meniscus import meniscus_height
 from stiction.devices import arcs, risk
 from stiction.devices.risk import SafeLength
 from stiction.plan.stage import Stage, select
@@ -89,8 +87,7 @@ def layout(
         "beams_error": ([[one.error for one in rows] for rows in safe.values()], "standard error, number of beams"),
         "surfaces_error": (list(surfaces.values()), "standard error, number of sampled surfaces"),
     }
-    film = float(meniscus_height(settings.humidity, settings.water.temperature, settings.water.contact_angles))
-    scalars = {"film": film, "rms": rms}
+    scalars = {"film": settings.water.film(settings.humidity)[0], "rms": rms}
     flooded = flooded_lengths(settings.device, settings.water, settings.humidity)
     return xr.Dataset(
         {
@@ -114,7 +111,7 @@ STAGES = (
     Stage.writing(
         "safe_lengths",
         "devices/safe_lengths/{case}",
-        inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | tips_of(plan, pair_of(at.case)),
+        inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | tips_of(plan, at.case),
         settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
         kind=Settings,
         compute=lambda data, at, settings: compute(data["cracks"], data.get("tips"), settings),

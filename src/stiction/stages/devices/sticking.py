@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
+from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import ChaosModel, Truncation, draw_laws
 from stiction.contact.environment import Water, flooded_law
@@ -72,13 +73,17 @@ def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> dict[
 def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list[float]:
     """Bounds of the lengths that stick, one for each end state, by flooded flats [m].
 
-    A cantilever has the length that sticks in saturated air. The worst air of a bridge is not the wettest: it has the
-    length below which its middle comes free of flats in contact at this humidity.
+    A cantilever has the length that sticks in saturated air or, where no water condenses, that of flats in contact. The
+    worst air of a bridge is not the wettest: it has the length below which its middle comes free of flats in contact at
+    this humidity.
     """
     wet = water.temperature, water.contact_angles
     if not device.opening.has_tip:
         law = flooded_law(humidity, water, device.hamaker_constant)
         return [bridges.least_length(*law, device.beam)]
+    if not water.film(humidity)[0]:
+        energy = float(water.gaps.through("dry").work(0.0))
+        return [float(arrest_length(energy, device.beam)), arcs.arc_length(energy, device.beam)]
     return [flooded_length(device.beam, *wet), arcs.arc_length(flooded_energy(*wet), device.beam)]
 
 

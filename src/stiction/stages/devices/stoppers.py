@@ -6,7 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stiction.config.cases import case_id
 from stiction.contact.environment import Water
+from stiction.contact.meniscus import is_wetted
 from stiction.devices.risk import samples_for
 from stiction.devices.stoppers import pull_off_force, safe_force, stuck_patches, worst_humidity
 from stiction.estimates import mean_with_error
@@ -39,17 +41,38 @@ class Settings:
 def forces(contact: xr.Dataset, humidity: float, settings: Settings) -> np.ndarray:
     """Pull-off forces of all sampled patches at a relative humidity (m,) [N]."""
     area = settings.contact[0] * settings.contact[1]
+    water = settings.water if humidity > 0 else settings.water.without
     with on_patch(*settings.contact):
-        return pull_off_force(pull_offs(contact, humidity, settings.water), area)
+        return pull_off_force(pull_offs(contact, humidity, water), area)
 
 
-def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Pull-off forces at the humidities of the device and along a fine axis, P(stuck) and the worst humidity."""
-    axis = fine_axis(*settings.worst_humidities)
-    at = {float(h): forces(contact, float(h), settings) for h in progress([*settings.humidities, *axis], "humidities")}
+def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = None) -> xr.Dataset:
+    """Pull-off forces at the humidities of the device and along a fine axis, P(stuck) and the worst humidity.
+
+    Parameters
+    ----------
+    contact : Dataset
+        In the wettest air of the device.
+    settings : Settings
+    dry : Dataset, optional
+        Contact in dry air, if that is one of the humidities of the device.
+    """
+    axis = axis_of(settings)
+    contacts = {float(h): dry if h == 0 and dry is not None else contact for h in (*settings.humidities, *axis)}
+    at = {h: forces(one, h, settings) for h, one in progress(contacts.items(), "humidities", total=len(contacts))}
     chosen = np.array([at[h] for h in settings.humidities])
     along = np.array([at[float(h)] for h in axis])
     return layout(settings, chosen, axis, along)
+
+
+def axis_of(settings: Settings) -> np.ndarray:
+    """Humidities among which the worst is sought: the fine axis and, before it, dry air if it is one of the device [-].
+
+    A device in dry air alone, or with surfaces that no water wets, has no other air.
+    """
+    humid = max(settings.humidities) > 0 and is_wetted(settings.water.contact_angles)
+    dry = [0.0] if min(settings.humidities) == 0 or not humid else []
+    return np.array([*dry, *(fine_axis(*settings.worst_humidities) if humid else ())])
 
 
 def fine_axis(low: float, high: float) -> np.ndarray:
@@ -60,21 +83,18 @@ def fine_axis(low: float, high: float) -> np.ndarray:
 def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.ndarray) -> xr.Dataset:
     """Dataset of the pull-off forces of a stopper.
 
-    The error of the worst humidity contains that of a place between two points of the axis, their distance / √12.
-
     Parameters
     ----------
     settings : Settings
     chosen : (n_rh, m) array
         Pull-off forces at the humidities of the device [N].
     axis : (n,) array
-        Humidities of the fine axis [-].
+        Humidities of the fine axis, which dry air may precede [-].
     along : (n, m) array
         Pull-off forces along it [N].
     """
     newton, none = {"units": "N"}, {"units": "1"}
-    worst, scatter = worst_humidity(axis, along.T)
-    worst_error = float(np.hypot(scatter, (axis[1] - axis[0]) / np.sqrt(12)))
+    worst, worst_error = _worst(axis, along)
     stuck = np.array([_stuck(row, settings.restoring_force) for row in along]).T
     stuck_chosen = np.array([_stuck(row, settings.restoring_force) for row in chosen]).T
     safe, safe_along = (np.array([[_safe(row, p) for p in SHARES] for row in rows]) for rows in (chosen, along))
@@ -104,6 +124,18 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
     )
 
 
+def _worst(axis, along):
+    """Worst humidity and its standard error, which contains that of a place between two points of the axis.
+
+    The latter is their distance / √12. Dry air, if it is worse than all humid air, has no error.
+    """
+    humid, means = axis > 0, along.mean(axis=1)
+    if means[~humid].max(initial=0.0) >= means[humid].max(initial=0.0):
+        return 0.0, 0.0
+    worst, scatter = worst_humidity(axis[humid], along[humid].T)
+    return worst, float(np.hypot(scatter, np.diff(axis[humid])[0] / np.sqrt(12)))
+
+
 def _stuck(pull_off, force):
     """P(stuck) at one restoring force and the ends of its band, (3,) [-]."""
     return [float(part[0]) for part in stuck_patches(pull_off, np.array([force]))]
@@ -116,7 +148,13 @@ def _safe(pull_off, share):
 
 def is_at_an_end(dataset: xr.Dataset) -> bool:
     """Whether the worst humidity is an end of the fine axis, so that the largest force may lie beyond it."""
-    return float(dataset.worst_humidity) in (float(dataset.axis[0]), float(dataset.axis[-1]))
+    return float(dataset.worst_humidity) in ends(dataset)
+
+
+def ends(dataset: xr.Dataset) -> tuple[float, ...]:
+    """Lowest and highest humidity of the fine axis [-]; none if the device is in dry air alone."""
+    humid = dataset.axis.values[dataset.axis.values > 0]
+    return tuple(map(float, humid[[0, -1]])) if humid.size else ()
 
 
 def in_any_air(dataset: xr.Dataset) -> tuple[tuple[float, float, float], xr.DataArray]:
@@ -133,17 +171,26 @@ def shares_stuck(dataset: xr.Dataset) -> Sequence[tuple[float, float, float, flo
 def _settings(plan, at):
     """Water, patch, restoring force and humidities of a stopper, and its fine axis of humidities."""
     section = plan.config["devices"][at.device]
-    return select(Settings, plan.config["design"] | section | {"water": plan.water(section["pair"])})
+    pair = plan.in_air(section["pair"], max(section["humidities"]))
+    return select(Settings, plan.config["design"] | section | {"water": plan.water(pair)})
+
+
+def _inputs(plan, at):
+    """Contact in the wettest air of a stopper, and in dry air if that is one of its humidities."""
+    humidities = plan.config["devices"][at.device]["humidities"]
+    wettest, driest = (case_id(at.device, end(humidities)) for end in (max, min))
+    dry = {"dry": contact_of(plan, driest)} if 0 in humidities else {}
+    return {"contact": contact_of(plan, wettest)} | dry | corrections_of(plan, at.device)
 
 
 STAGES = (
     Stage.writing(
         "stoppers",
         "devices/stoppers/{device}",
-        inputs=lambda plan, at: {"contact": contact_of(plan, at.device)} | corrections_of(plan, at.device),
+        inputs=_inputs,
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], corrected(settings, data)),
+        compute=lambda data, at, settings: compute(data["contact"], corrected(settings, data), data.get("dry")),
         message="Pull-off force of stopper {device}.",
     ),
 )

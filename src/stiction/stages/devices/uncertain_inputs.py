@@ -155,7 +155,7 @@ def uncertain(
     known: Mapping[str, Known],
     settings: Settings,
 ) -> tuple[list[Input], np.ndarray]:
-    """All uncertain inputs and the covariance of their errors.
+    """All uncertain inputs and the covariance of their errors; where no water condenses, those of the air are none.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def uncertain(
     stated = settings.uncertainty
     blocks = [of_surface(state, name, shifted, measured) for name, measured in known.items()]
     blocks += [*(of_numbers(state, OF_BEAMS, stated) if state.device else ()), *of_solids(state, solids, settings)]
-    blocks += of_numbers(state, OF_AIR, stated)
+    blocks += of_numbers(state, OF_AIR, stated) if state.water.film(state.humidity)[0] else ()
     inputs = [entry for block in blocks for entry in block.inputs]
     return inputs, block_diag(np.empty((0, 0)), *(block.covariance for block in blocks))
 
@@ -182,7 +182,7 @@ def countable(sizes: Sequence[str], settings: Settings) -> list[str]:
     """Everything that a measurement of a device with these sizes could determine, for reading."""
     surfaces = [f"the {part} of {name}" for name in settings.surfaces for part in ("heights", "spectrum")]
     solids = [one.group for one in OF_CONTACT.values()]
-    air = [one.group or f"the {one.name}" for one in OF_AIR]
+    air = [one.group or f"the {one.name}" for one in OF_AIR if settings.water.film(settings.humidity)[0]]
     return [*surfaces, *(f"the {name.replace('_', ' ')}" for name in sizes), *solids, *dict.fromkeys(air)]
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import pair_of
 from stiction.contact.forcelaw import admissible, fit_errors
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact.curves import force_curves
@@ -50,7 +49,7 @@ STAGES = (
         "fit",
         "fit/{case}_{model}",
         inputs=lambda plan, at: {
-            "contact": f"contact/{pair_of(at.case)}_{at.model}",
+            "contact": f"contact/{plan.in_air_of(at.case)}_{at.model}",
             "forces": f"forces/{at.case}_{at.model}",
         },
         settings=lambda plan, at: select(Settings, plan.at(at.case)),

@@ -111,7 +111,7 @@ STAGES = (
         "forces",
         "forces/{case}_{model}",
         inputs=lambda plan, at: (
-            {"contact": f"contact/{pair_of(at.case)}_{at.model}"}
+            {"contact": f"contact/{plan.in_air_of(at.case)}_{at.model}"}
             | corrections.of_pair(plan, pair_of(at.case), model=at.model)
         ),
         settings=lambda plan, at: select(Settings, plan.at(at.case)),
