@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 import xarray as xr
 from numpy.testing import assert_allclose, assert_array_equal
-from scipy.special import ndtr
+from scipy.special import ndtr, ndtri
 from vectors import sampled_vectors
 
 from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.contact import forcelaw
 from stiction.devices import arcs
-from stiction.devices.inference import FACTOR, SLOPE, Discrepancy, lognormal
+from stiction.devices.inference import FACTOR, SLOPE, Discrepancy, expected_share, lognormal
 from stiction.report.devices import figures_inference, tables_inference
 from stiction.run import storage
 from stiction.stages.contact import curves
@@ -74,7 +74,7 @@ def safe_lengths():
     axis = np.linspace(200, 900, 351) * UM
     stuck = [ndtr(np.log(axis / length) / SCATTER - 3.09) for length in (600 * UM, 250 * UM)]
     risk = xr.DataArray(stuck, coords={"shape": [S_SHAPE, EITHER], "length": axis})
-    return dict.fromkeys(HUMIDITIES, xr.Dataset({"safe_length": values, "stuck": risk}))
+    return dict.fromkeys(HUMIDITIES, xr.Dataset({"safe_length": values, "estimate": values, "stuck": risk}))
 
 
 def computed(
@@ -241,7 +241,9 @@ def of_bridge():
         [ndtr(np.log(axis / (200 * UM)) / SCATTER)], coords={"shape": [MIDDLE], "length": ("length", axis)}
     )
     safe = xr.DataArray([[160 * UM]], coords={"shape": [MIDDLE], "share": [0.001]})
-    return of_other(MIDDLE, {0.67: xr.Dataset({"safe_length": safe, "stuck": stuck})}, BRIDGE, [1.0, 0.5])
+    estimate = xr.full_like(safe, 200 * UM * np.exp(SCATTER * ndtri(0.001)))
+    found = xr.Dataset({"safe_length": safe, "estimate": estimate, "stuck": stuck})
+    return of_other(MIDDLE, {0.67: found}, BRIDGE, [1.0, 0.5])
 
 
 def of_stopper():
@@ -279,6 +281,26 @@ def test_the_expected_share_of_stuck_devices_is_that_of_drawn_inputs():
             stated = float(found[f"{name}_stuck"].values.ravel()[0])
             assert abs(drawn - stated) < 4 * np.sqrt(stated * (1 - stated) / number) + 2e-4  # steps of the axis
     assert float(of_stopper().updated_stuck.max()) < float(of_stopper().expected_stuck.max())
+
+
+def test_small_shares_are_those_of_the_fit_and_not_those_of_the_few_counted_beams():
+    shares, axis = [1e-2, 1e-3, 1e-4], np.linspace(150, 300, 301) * UM
+    counted = np.floor(400 * ndtr(np.log(axis / (200 * UM)) / SCATTER)) / 400
+    estimate = 200 * UM * np.exp(SCATTER * ndtri(shares))
+    found = xr.Dataset(
+        {"estimate": ("share", estimate), "stuck": ("length", counted)}, coords={"share": shares, "length": axis}
+    )
+    lengths, stuck = inference.sticking(found)
+    assert np.all(np.diff(lengths) > 0)
+    assert np.all(np.diff(stuck) >= 0)
+    margins = [np.log(estimate[1] / at) for at in (lengths, axis)]
+    of_fit, of_counts = (
+        expected_share(margin, np.diff(share, prepend=0.0), 0.0, 0.02)
+        for margin, share in zip(margins, (stuck, counted), strict=True)
+    )
+    exact = ndtr(np.log(estimate[1] / (200 * UM)) / np.hypot(SCATTER, 0.02))  # both are normal
+    assert_allclose(of_fit, exact, rtol=0.1)
+    assert of_counts < 0.6 * exact  # control
 
 
 @pytest.mark.parametrize(

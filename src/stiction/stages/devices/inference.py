@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from scipy.interpolate import PPoly
+from scipy.special import ndtr, ndtri
 
 from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import foundation_length
@@ -31,6 +32,8 @@ OWN = ("thickness", "gap")
 FURTHER = (10, 100)
 #: What holds a device, as in its safe lengths, by what its budget is of; lengths in either shape are those of tips.
 SHAPES = {S_SHAPE: S_SHAPE, ARC: EITHER, MIDDLE: MIDDLE, FORCE: FORCE}
+#: Points between the smallest and the largest share for which a safe length is stated.
+_SMALL = 50
 #: What may hold a counted beam.
 _COUNTED = (S_SHAPE, ARC)
 #: Keys of the data of the configuration.
@@ -413,11 +416,26 @@ def with_lengths(found: xr.Dataset, safe_lengths: Mapping[float, xr.Dataset]) ->
     )
 
     def share(humidity, shape, length, shift, deviation):
-        held = safe_lengths[humidity].stuck.sel(shape=shape)
-        weights = np.diff(held.values, prepend=0.0)
-        return inference.expected_share(np.log(length / held.length.values), weights, shift, deviation)
+        lengths, shares = sticking(safe_lengths[humidity].sel(shape=shape))
+        return inference.expected_share(np.log(length / lengths), np.diff(shares, prepend=0.0), shift, deviation)
 
     return found.assign(_before_and_after(found, safe) | _shares(found, safe, share))
+
+
+def sticking(found: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Lengths of one shape (n,) [m] and P(stuck) at each [-]: estimated for the small shares, and counted above them.
+
+    Too few beams are counted to give the small shares.
+    """
+    estimates = found.estimate.sortby("share")
+    scores = ndtri(estimates.share.values)
+    small = np.linspace(scores[0], scores[-1], _SMALL)
+    lengths, shares = np.exp(np.interp(small, scores, np.log(estimates.values))), ndtr(small)
+    above = (found.stuck.values > shares[-1]) & (found.length.values > lengths[-1])
+    return (
+        np.concatenate([lengths, found.length.values[above]]),
+        np.concatenate([shares, found.stuck.values[above]]),
+    )
 
 
 def with_forces(found: xr.Dataset, stopper: xr.Dataset) -> xr.Dataset:
