@@ -64,3 +64,11 @@ def test_the_figure_shows_the_error_and_deviations_from_published_lengths(publis
     np.testing.assert_allclose(np.asarray(points.get_xdata(), float), HUMIDITIES)
     assert points.get_ydata()[0] > 10
     assert style.png(figure) == style.png(model_error.figure(*DATA, published))
+
+
+def test_lengths_that_are_corrected_already_are_not_corrected_again():
+    errors, released = DATA
+    applied = {"a": errors["a"].assign(applied=True)}
+    plain, frame = model_error.table(*DATA, PUBLISHED).frame, model_error.table(applied, released, PUBLISHED).frame
+    np.testing.assert_allclose(frame.full_contact_um, 600)
+    np.testing.assert_allclose(frame.crack_length_um, 600 * plain.crack_length_um / plain.full_contact_um)

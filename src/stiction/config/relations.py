@@ -524,6 +524,19 @@ def full_contact_has_no_attraction_across_gaps(config):
 
 
 @relation
+def corrections_reach_the_figures(config):
+    """Pairs that run are corrected to full elastic contact within their humidities, that of the figures among them."""
+    if config["contact"].get("model") != "full":
+        return
+    humidity = config["figures.humidity"]
+    for pair in config["run.pairs"]:
+        known = config[f"pairs.{pair}.humidities"]
+        if not min(known) <= humidity <= max(known):
+            message = f"must be within the humidities of pair {pair}, beyond which contact.model full corrects nothing"
+            yield "figures.humidity", message, f"pairs.{pair}.humidities"
+
+
+@relation
 def attraction_reaches_across_dry_gaps(config):
     """Where no water condenses, surfaces attract each other mostly where they do not touch."""
     for pair, meeting, humidities, given in _running(config, "humidities"):

@@ -67,6 +67,8 @@ def _rows(
         lengths = stuck_lengths(released) / UM
         length = lengths.mean() if len(lengths) >= 2 else np.nan
         longer = length * float(error.length_factor)
+        if error.applied:  # the beams have the corrected laws
+            length, longer = length / float(error.length_factor), length
         known = {name: value(published, name, **case) for name in ("ng", "ng_std", "experiment", "experiment_std")}
         found.append(
             case
