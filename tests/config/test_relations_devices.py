@@ -12,8 +12,7 @@ from configurations import PAPER, SCHEMA, changed, leaves, problems
 from plans import job_settings
 from test_messages import UNITS
 
-from stiction.config import memory, relations_devices
-from stiction.config.conditions import Keys
+from stiction.config import memory
 from stiction.config.designs import Designs
 from stiction.config.files import load, normalised
 from stiction.config.kinds import KEYS
@@ -168,13 +167,6 @@ def test_a_wrong_device_is_refused_by_name(keys, key, message):
     (line,) = problems(with_device(**keys))
     assert line.startswith(f"{key} is ")
     assert message in line
-
-
-@pytest.mark.parametrize(("humidities", "refused"), [([0.6, 0.9], []), ([0, 0.9], ["devices.S1.humidities"])])
-def test_a_device_over_a_roughness_is_not_in_dry_air(humidities, refused):
-    stopper = S1 | with_roughness() | {"humidities": humidities}
-    found = relations_devices.devices_over_a_roughness_are_in_humid_air(Keys(ALL | {"devices": {"S1": stopper}}, []))
-    assert [key for key, _ in found] == refused
 
 
 def test_a_stopper_has_no_length():

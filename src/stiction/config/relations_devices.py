@@ -415,15 +415,6 @@ def requirements_are_those_of_the_kind(config):
 
 
 @relation
-def devices_over_a_roughness_are_in_humid_air(config):
-    """In dry air, which has the humidity 0, summits attract each other through air: another contact, not drawn here."""
-    for name, humidities, _ in config.entries("devices", "humidities", "roughness"):
-        sides = _sides(config, name)
-        if min(humidities) == 0 or (sides and not wetting(sides, config["materials"])):
-            yield f"devices.{name}.humidities", "must leave out dry air for a device with roughness"
-
-
-@relation
 def varied_surfaces_are_in_the_pair(config):
     """One quantity of one of the surfaces that meet is varied."""
     for name, roughness, pair in config.entries("devices", "roughness", "pair"):
