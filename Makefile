@@ -9,6 +9,8 @@
 #                   in runs/devices/results/
 #   make model-error    Table III under full elastic contact, after make paper (3 minutes on two cores; takes CONFIG=... too)
 #   make attraction     Table III with attraction across gaps (3 minutes on two cores), in runs/attraction/results/
+#   make asperities     Table III with other readings of an asperity, after make paper (10 minutes on two cores)
+#   make pressing       how much more a pair sticks after its surfaces were pressed (2 minutes on two cores)
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
 #
@@ -42,7 +44,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-beams devices model-error attraction figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-beams devices model-error asperities pressing attraction figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -74,6 +76,9 @@ devices: $(VENV)/ready
 
 model-error: $(VENV)/ready
 	$(STICTION) run $(CONFIG) workflow/model_error.yaml -- model_error $(ARGS)
+
+asperities pressing: $(VENV)/ready
+	$(STICTION) $(if $(CONFIG),run $(CONFIG),paper) -- $@ $(ARGS)
 
 attraction: $(VENV)/ready
 	$(STICTION) run $(or $(CONFIG),examples/attraction.yaml) --directory runs/attraction -- results/tables/variants.csv $(ARGS)

@@ -72,6 +72,22 @@ rule model_error:
         "Error of the model of the contact: Table III under full elastic contact."
 
 
+rule asperities:
+    input:
+        planner.wanted("asperities"),
+    localrule: True
+    message:
+        "Table III under several readings of an asperity."
+
+
+rule pressing:
+    input:
+        planner.wanted("pressing"),
+    localrule: True
+    message:
+        "Adhesion after surfaces were pressed together."
+
+
 rule devices:
     input:
         planner.wanted("devices"),

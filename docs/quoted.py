@@ -40,6 +40,7 @@ def numbers(tables):
     found |= safe_lengths(tables["safe_lengths"]) | stoppers(tables["stoppers"]) | budget(tables["budget"])
     found |= drawn_lengths(tables["safe_lengths"], tables["budget"])
     found |= model_errors(tables["model_error"]) | attraction(tables["attraction"])
+    found |= readings(tables["asperities"]) | pressing(tables["pressing"])
     found |= studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
     return (
         found
@@ -133,6 +134,34 @@ def _both_reaches(table):
     """Rows of each case without and with attraction across gaps."""
     of = {variant: rows.itertuples() for variant, rows in table.groupby("variant")}
     return zip(of["base"], of[ACROSS], strict=True)
+
+
+def readings(table):
+    """``island_5_water_a``: root mean square deviation from the published lengths under a reading, on a grid [%].
+
+    ``error_summit``: largest standard error of a length [%]; ``strips_summit``: number of strips.
+    """
+    found = {}
+    for row in table.itertuples():
+        found[f"{row.reading}_{row.spacing_nm:g}_{row.vdw}_{row.pair}"] = f"{row.rms_published_percent:.1f}"
+    for reading, rows in table.groupby("reading"):
+        found[f"error_{reading}"] = f"{rows.change_se_percent.max():.1g}"
+        found[f"strips_{reading}"] = str(rows.strips.max())
+    return found
+
+
+def pressing(table):
+    """``pressed_c_060``: ratio of the energies after the last press; ``adhered_c``: largest change by adhesion [%]."""
+    found = {}
+    for pair, rows in table.groupby("pair"):
+        alone, last = rows[rows.press == 0], rows[rows.press == rows.press.max()]
+        found[f"adhered_{pair}"] = f"{100 * (alone.energy_ratio - 1).abs().max():.1g}"
+        found[f"pressed_MPa_{pair}"] = f"{last.pressure_MPa.iloc[0]:.0f}"
+        found[f"pressed_at_H_{pair}"] = f"{last.at_hardness_percent.iloc[0]:.1g}"
+        for row in last.itertuples():
+            name = f"pressed_{pair}_{_digits(row.relative_humidity)}"
+            found[name] = with_error(row.energy_ratio, row.energy_ratio_se)
+    return found
 
 
 def deviations(table_3):

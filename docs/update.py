@@ -76,8 +76,13 @@ DEVICE_PICTURES = {"risk": 1000, "chart": 1200, "stoppers": 700, "budget_C1": 10
 #: Table, and pictures by their width [pixels], of ``make devices CONFIG=examples/roughness.yaml``.
 ROUGHNESS = "roughness"
 ROUGHNESS_PICTURES = {"roughness_Bump": 700, "roughness_Lever": 1000}
-#: Table and picture of ``make model-error``.
-MODEL_ERROR = "model_error"
+#: Tables of studies with a command of their own: command, and width of the picture of the same name [pixels] or 0.
+OWN_STUDIES = {
+    "model_error": ("make model-error", 1100),
+    "asperities": ("make asperities", 1100),
+    "model_error_parts": ("make asperities", 0),
+    "pressing": ("make pressing", 700),
+}
 #: Table of ``make attraction``, and its target.
 ATTRACTION, OF_ATTRACTION = "attraction", "results/tables/variants.csv"
 #: Largest picture [bytes].
@@ -92,7 +97,7 @@ def main(results):
     runs = results.resolve().parent / "runs"
     for folder, why, collected in (
         (results, unfinished, collect),
-        (results, unfinished_model_error, collect_model_error),
+        *((results, partial(unfinished_study, name), partial(collect_study, name)) for name in OWN_STUDIES),
         (runs / "example", unfinished_example, collect_example),
         (runs / "example-beams", partial(unfinished_example, target="devices"), collect_beams),
         (runs / "devices", partial(unfinished_devices, "devices", "budget"), collect_devices),
@@ -119,14 +124,16 @@ def unfinished(results):
     return f"{results} is not up to date with config.yaml and the code, see make paper ARGS=-n"
 
 
-def unfinished_model_error(results):
-    """Why a folder does not hold a finished study of the error of the model by this code; empty if it does."""
-    if not (results / "tables" / f"{MODEL_ERROR}.csv").exists():
-        return f"{results} holds no finished study of the model's error"
-    configs = ROOT / "config.yaml", ROOT / "workflow" / "model_error.yaml"
-    if up_to_date(results.resolve().parent, MODEL_ERROR, "--configfile", *configs):
+def unfinished_study(name, results):
+    """Why a folder does not hold a finished study of `OWN_STUDIES` by this code; empty if it does."""
+    command, _ = OWN_STUDIES[name]
+    if not (results / "tables" / f"{name}.csv").exists():
+        return f"{results} holds no results of {command}"
+    more = ROOT / "config.yaml", ROOT / "workflow" / "model_error.yaml"
+    configs = ("--configfile", *more) if name == "model_error" else ()
+    if up_to_date(results.resolve().parent, command.removeprefix("make ").replace("-", "_"), *configs):
         return ""
-    return f"{results} is not up to date with config.yaml and the code, see make model-error ARGS=-n"
+    return f"{results} is not up to date with config.yaml and the code, see {command} ARGS=-n"
 
 
 def unfinished_example(folder, target="measured"):
@@ -183,11 +190,12 @@ def collect(results):
             shrink(picture, DOCS / "pictures" / f"{name}.png", width)
 
 
-def collect_model_error(results):
-    """Copy table and picture of the error of the model."""
+def collect_study(name, results):
+    """Copy table and picture of a study of `OWN_STUDIES`."""
     for kind in ("csv", "md"):
-        shutil.copyfile(results / "tables" / f"{MODEL_ERROR}.{kind}", DOCS / "tables" / f"{MODEL_ERROR}.{kind}")
-    shrink(results / "figures" / f"{MODEL_ERROR}.png", DOCS / "pictures" / f"{MODEL_ERROR}.png", 1100)
+        shutil.copyfile(results / "tables" / f"{name}.{kind}", DOCS / "tables" / f"{name}.{kind}")
+    if width := OWN_STUDIES[name][1]:
+        shrink(results / "figures" / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
 
 
 def collect_example(folder):
@@ -319,7 +327,7 @@ def quoted_numbers():
         name: quoted.frame(DOCS / "tables" / f"{name}.csv")
         for name in (
             *TABLES,
-            MODEL_ERROR,
+            *OWN_STUDIES,
             ATTRACTION,
             *DEVICE_TABLES,
             "example_scans",

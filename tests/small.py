@@ -26,10 +26,12 @@ PLAN = Plan(
                 "slopes": {"samples": 20},
                 "plasticity": {"strips": 4},
                 "full_contact": {"samples": 2},
+                "asperities": {"samples": 3, "shapes": 2},
+                "pressing": {"samples": 2, "steps": 2, "distance_nm": {"b": 4}},
                 "orders": {"draws": 2000},
                 "resampling": {"beams": 3},
                 "mesh": {"elements_um": [15, 7.5], "strips_um": [7.5, 1.5]},
-                "variants": {"samples": 20, "beams": 2},
+                "variants": {"samples": 20, "beams": 2, "asperity": ["island"]},
             },
         }
     )

@@ -21,7 +21,9 @@ EXAMPLES = [
 SECTIONS = [{key: one[key] for key in ("test_beams", "devices") if key in one} for one in EXAMPLES]
 #: Counts beside the crack lengths of an array of the examples.
 COUNTS = [{"humidity": 0.67, "length_um": 300, "stuck": 3, "of": 20}]
-PLAN = Plan(load(*SECTIONS, {"test_beams": {"paperB": {"stuck": COUNTS}}}))
+#: Islands as a variant, which the paper does not run.
+ISLANDS = {"variants": {"asperity": ["island"]}}
+PLAN = Plan(load(*SECTIONS, {"test_beams": {"paperB": {"stuck": COUNTS}}, "studies": ISLANDS}))
 GRAPH, SCHEMA = Graph(PLAN), schema()
 #: Stages of surfaces described by scans; `tests/workflow/test_from_scans.py` runs them.
 OF_SCANS = {"scan", "estimate", "heights_of_scans", "spectrum_of_scans", "choice_contact", "scan_uncertainty"}

@@ -63,7 +63,9 @@ def something_is_computed(config):
 def selected_pairs_exist(config):
     """Only defined pairs can run."""
     pairs = config.names("pairs")
-    for key, names in config.known("studies.plasticity.distance_nm", "run.pairs"):
+    for key, names in config.known(
+        *(f"studies.{name}.distance_nm" for name in ("plasticity", "pressing")), "run.pairs"
+    ):
         if strange := [name for name in names if name not in pairs]:
             yield key, f"{undefined(strange[0], pairs)}; {shown(strange[0])} is not"
 

@@ -13,7 +13,12 @@ The energy U is 0 at infinity, so that the adhesion energy is that of the one st
 The distance d is the one between the mean planes of the deformed surfaces if the strip repeats. Other surroundings,
 which displace all elements alike by p - q, change d by a multiple of f: distances depend on them, e and f_max do not.
 
-ASSUME: solids are linearly elastic and frictionless, and slopes small. Where several states have the same distance, the
+Solids may also yield: elements press with the hardness H at most, and overlap where that does not hold the surfaces
+apart. The overlap is flattening that remains (`State.flattening`), and the flattened surface carries the same pressures
+elastically: p = H where g < 0.
+
+ASSUME: solids are linearly elastic up to the hardness, perfectly plastic beyond, without material that piles up beside
+the flattened tops, and frictionless, and slopes are small. Where several states have the same distance, the
 strip is in the one that it reaches during separation, from the state without force; that one begins without attraction.
 """
 
@@ -95,6 +100,7 @@ class State:
     attraction: np.ndarray  #: q (n1, n2) [Pa]
     gap: np.ndarray  #: g (n1, n2) [m]
     turns: int  #: of the attraction
+    hardness: float = np.inf  #: largest pressure [Pa]
 
     @property
     def force(self) -> float:
@@ -110,8 +116,13 @@ class State:
 
     @property
     def residual(self) -> float:
-        """Largest gap or overlap of an element in contact, and overlap of any other [m]."""
-        return float(_residual(self.pressure, self.gap))
+        """Largest gap of an element in contact, and overlap of one that is not at the hardness [m]."""
+        return float(_residual(self.pressure, self.gap, np.float32(self.hardness)))
+
+    @property
+    def flattening(self) -> np.ndarray:
+        """Overlap of the elements at the hardness, by which their heights are less afterwards (n1, n2) [m]."""
+        return np.where(self.pressure >= np.float32(self.hardness), np.maximum(-self.gap, 0), np.float32(0))
 
 
 def _mean(values):
@@ -119,9 +130,14 @@ def _mean(values):
 
 
 def equilibrium(
-    space: HalfSpace, heights: np.ndarray, distance: float, adhesion: Adhesion | None = None, start: State | None = None
+    space: HalfSpace,
+    heights: np.ndarray,
+    distance: float,
+    adhesion: Adhesion | None = None,
+    start: State | None = None,
+    hardness: float = np.inf,
 ) -> State:
-    """State of a strip of heights z (n1, n2) float32 [m] at a distance d [m]; without attraction by default.
+    """State of a strip of heights z (n1, n2) float32 [m] at a distance d [m]; elastic, without attraction by default.
 
     It begins with the pressure and the attraction of another state, by default with contact without attraction.
 
@@ -133,25 +149,25 @@ def equilibrium(
     undeformed = np.float32(distance) - heights
     if start is None:
         nothing = np.zeros_like(undeformed)
-        pressure, gap, _ = _supported(space, undeformed, nothing, nothing, 0.0)
-        start = State(distance, pressure, nothing, gap, 0)
+        pressure, gap, _ = _supported(space, undeformed, nothing, nothing, 0.0, hardness)
+        start = State(distance, pressure, nothing, gap, 0, hardness)
         if adhesion is None:
             return start
         attraction = adhesion.traction(gap)
     else:
         pressure, attraction = start.pressure, start.attraction
     for turn in range(1, TURNS + 1):
-        pressure, gap, before = _supported(space, undeformed, pressure, attraction, SHARE)
+        pressure, gap, before = _supported(space, undeformed, pressure, attraction, SHARE, hardness)
         change = adhesion.traction(gap) - attraction
         left = _mean(np.abs(change)) / max(_mean(np.abs(attraction)), 1.0)
         if left <= SETTLED and before <= 5 * TOLERANCE:
-            return State(distance, pressure, attraction, gap, turn)
+            return State(distance, pressure, attraction, gap, turn, hardness)
         attraction = attraction + np.float32(RELAXATION) * change
     raise NotConverged("full elastic contact: change of the attraction", left, SETTLED, TURNS)
 
 
-def _supported(space, undeformed, pressure, attraction, share):
-    """Pressure p >= 0 without overlap under an attraction, p and gap (n1, n2) [Pa], [m]; residual at the beginning [m].
+def _supported(space, undeformed, pressure, attraction, share, hardness):
+    """Pressure 0 <= p <= H without overlap where p < H, p and gap (n1, n2) [Pa], [m]; residual at the beginning [m].
 
     Projected gradients with the steps of J. Barzilai and J. M. Borwein, IMA J. Numer. Anal. 8, 141 (1988), of one
     displacement each. Conjugate gradients need two wherever the projection changes their direction, which is nearly
@@ -159,40 +175,42 @@ def _supported(space, undeformed, pressure, attraction, share):
 
     The residual is reduced to a ``share`` of that at the beginning, or to `TOLERANCE`.
     """
-    gap = undeformed + space.displacement(pressure - attraction)
-    first = left = _residual(pressure, gap)
+    gap, hardness = undeformed + space.displacement(pressure - attraction), np.float32(hardness)
+    first = left = _residual(pressure, gap, hardness)
     step = first_step = 0.5 / space.unit
     for _ in range(STEPS):
         if left <= max(TOLERANCE, share * first):
             return pressure, gap, first
-        descended, traction = _descended(pressure, gap, attraction, np.float32(step))
+        descended, traction = _descended(pressure, gap, attraction, np.float32(step), hardness)
         after = undeformed + space.displacement(traction)
-        step, left = _next_step(pressure, gap, descended, after) or first_step, _residual(descended, after)
-        pressure, gap = descended, after
+        step = _next_step(pressure, gap, descended, after, hardness) or first_step
+        pressure, gap, left = descended, after, _residual(descended, after, hardness)
     raise NotConverged("full elastic contact: gap of an element in contact [m]", left, TOLERANCE, STEPS)
 
 
 @kernel
-def _descended(pressure, gap, attraction, step):
-    """Pressure after a step against the gap, not negative, and the pressure less the attraction (n1, n2) each [Pa]."""
+def _descended(pressure, gap, attraction, step, hardness):
+    """Pressure in [0, H] after a step against the gap, and the pressure less the attraction (n1, n2) each [Pa]."""
     descended, traction = np.empty_like(pressure), np.empty_like(pressure)
     for i in range(pressure.shape[0]):
         for j in range(pressure.shape[1]):
-            descended[i, j] = max(pressure[i, j] - step * gap[i, j], np.float32(0))
+            descended[i, j] = min(max(pressure[i, j] - step * gap[i, j], np.float32(0)), hardness)
             traction[i, j] = descended[i, j] - attraction[i, j]
     return descended, traction
 
 
 @kernel
-def _next_step(pressure, gap, descended, after):
+def _next_step(pressure, gap, descended, after, hardness):
     r"""Step of Barzilai and Borwein after a step, over elements in contact or overlap; 0 if there are none [Pa m⁻¹].
+
+    Elements that overlap at the hardness stay as they are.
 
     .. math:: \alpha = \frac{\Delta p \cdot \Delta g}{\Delta g \cdot \Delta g}
     """
     mixed = square = 0.0
     for i in range(gap.shape[0]):
         for j in range(gap.shape[1]):
-            if descended[i, j] > 0 or after[i, j] < 0:
+            if (descended[i, j] > 0 or after[i, j] < 0) and not (descended[i, j] == hardness and after[i, j] < 0):
                 change = np.float64(after[i, j] - gap[i, j])
                 mixed += (descended[i, j] - pressure[i, j]) * change
                 square += change * change
@@ -200,12 +218,15 @@ def _next_step(pressure, gap, descended, after):
 
 
 @kernel
-def _residual(pressure, gap):
-    """Largest gap or overlap of an element in contact, and overlap of any other [m]."""
+def _residual(pressure, gap, hardness):
+    """Largest gap of an element in contact, and overlap of one that is not at the hardness [m]."""
     largest = np.float32(0)
     for i in range(gap.shape[0]):
         for j in range(gap.shape[1]):
-            largest = max(largest, abs(gap[i, j]) if pressure[i, j] > 0 else -gap[i, j])
+            if pressure[i, j] > 0:
+                largest = max(largest, gap[i, j])
+            if pressure[i, j] < hardness:
+                largest = max(largest, -gap[i, j])
     return largest
 
 
@@ -238,11 +259,20 @@ def separation(space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, start:
     def at(distance, before):
         return equilibrium(space, heights, distance, adhesion, before)
 
-    closed, states = _without_force(at, start[0], step, lambda state: state.energy(heights, adhesion))
+    closed, states = at_rest(space, heights, adhesion, start)
     coarse, before = _beyond_extremum(at, closed, step, start[1])
     fine, _ = _beyond_extremum(at, before, step / 3, before.distance + step)
     _, pull_off = extremum(*np.transpose(fine))
     return Separation(-closed.energy(heights, adhesion), pull_off, closed, states + len(coarse) + len(fine) - 2)
+
+
+def at_rest(space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, start: tuple[float, float]) -> tuple[State, int]:
+    """State without force, which has the adhesion energy, and the number of states; parameters of `separation`."""
+
+    def at(distance, before):
+        return equilibrium(space, heights, distance, adhesion, before)
+
+    return _without_force(at, start[0], (start[1] - start[0]) / 3, lambda state: state.energy(heights, adhesion))
 
 
 def _beyond_extremum(at, state, step, end):

@@ -1,7 +1,8 @@
 """Study full_contact: the first samples of stage contact under full elastic contact, beside the sum over summits."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -11,7 +12,7 @@ from stiction.contact import elements, forcelaw, solids
 from stiction.contact.environment import Water
 from stiction.contact.halfspace import HalfSpace
 from stiction.devices.materials import ELASTIC
-from stiction.plan.stage import Stage, select
+from stiction.plan.stage import At, Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import contact, pairs
 from stiction.stages.contact.curves import force_curves
@@ -49,35 +50,57 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
     ValueError
         If the solids attract each other across gaps, the grid is too coarse, or a strip does not come to rest.
     """
+    hardness = solids.softer_hardness(*bodies(settings))
+    rows = [
+        [_both_models(*curve, (space, heights, adhesion), hardness) for adhesion, curve in cases]
+        for space, heights, cases in strips(surfaces, pair, settings)
+    ]
+    return layout(np.array(rows), settings.humidities, surface_pair(surfaces, "NG", settings).spacing)
+
+
+def strips(
+    surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings
+) -> Iterator[tuple[HalfSpace, np.ndarray, list[tuple[elements.Adhesion, tuple[np.ndarray, np.ndarray]]]]]:
+    """Strips one after the other: elements, heights z (n1, n2) [m], and for each humidity the attraction and the curve.
+
+    The curve is that of the sum over summits: distances [m] and forces [Pa].
+    """
     if settings.water.gaps is not None:
         raise ValueError("full elastic contact has no attraction across gaps: it needs attraction.reach: touching")
-    strips = surface_pair(surfaces, "NG", settings)
+    drawn = surface_pair(surfaces, "NG", settings)
     streams, materials = streams_of_sides(settings.seed, pair), bodies(settings)
     summits = contact.compute(surfaces, pair, "NG", settings, range(settings.strips))
     curves = [force_curves(summits, humidity, settings.water) for humidity in settings.humidities]
-    shape = tuple(len(range(0, points, strips.every)) for points in strips.beam.grid.shape)
-    spacing = strips.beam.grid.spacing * strips.every
-    space = HalfSpace(shape, spacing, solids.composite_modulus(*materials))
+    shape = tuple(len(range(0, points, drawn.every)) for points in drawn.beam.grid.shape)
+    space = HalfSpace(shape, drawn.spacing, solids.composite_modulus(*materials))
     attraction = solids.attraction_between(*materials, settings.van_der_waals)
     adhesions = [elements.Adhesion.of(settings.water.film(each), attraction, space) for each in settings.humidities]
-    hardness = solids.softer_hardness(*materials)
-    rows = []
     for k in progress(range(settings.strips), "strips"):
-        heights = strips.draw(*streams(k))
-        for found, adhesion in zip(curves, adhesions, strict=True):
-            rows.append(_both_models(found.distance, found.curve(k), (space, heights, adhesion), hardness))
-    return layout(np.reshape(rows, (settings.strips, -1, len(_VARIABLES))), settings.humidities, spacing)
+        found = [(each.distance, each.curve(k)) for each in curves]
+        yield space, drawn.draw(*streams(k)), list(zip(adhesions, found, strict=True))
 
 
 def _both_models(distance, force, strip, hardness):
     """Variables of one strip at one humidity; ``distance``, ``force``: curve of the sum over summits."""
-    far, pull_off = forcelaw.extremum(distance, force)
-    found = elements.separation(*strip, (forcelaw.limit_distance(distance, force, 0.0), far))
+    found = elements.separation(*strip, start(distance, force))
     pressure = found.closed.pressure
     touching = pressure[pressure > 0] / hardness
     shares = [float((touching > level).sum() / max(touching.size, 1)) for level in (ONSET, 1)]
-    energies = [found.adhesion_energy, found.pull_off, forcelaw.adhesion_energy(distance, force), pull_off]
-    return [*energies, touching.size / pressure.size, *shares, found.closed.residual, found.states]
+    summits = forcelaw.adhesion_energy(distance, force), forcelaw.extremum(distance, force)[1]
+    return [
+        found.adhesion_energy,
+        found.pull_off,
+        *summits,
+        touching.size / pressure.size,
+        *shares,
+        found.closed.residual,
+        found.states,
+    ]
+
+
+def start(distance: np.ndarray, force: np.ndarray) -> tuple[float, float]:
+    """Distances of a curve without force and of its largest attraction, from which `elements.separation` begins [m]."""
+    return forcelaw.limit_distance(distance, force, 0.0), forcelaw.extremum(distance, force)[0]
 
 
 def layout(values: np.ndarray, humidities: Sequence[float], spacing: float) -> xr.Dataset:
@@ -115,7 +138,7 @@ def pull_offs(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return study.humidity.values, study.pull_off.values, study.summit_pull_off.values
 
 
-def _settings(plan, at):
+def settings_of(plan: Any, at: At) -> dict[str, Any]:
     """As those of the contact, with the lowest, the middle and the highest humidity of the pair.
 
     ASSUME: attraction across gaps is left out, so that both models have the same forces.
@@ -133,7 +156,7 @@ STAGES = (
         "full_contact",
         "studies/full_contact/{pair}",
         inputs=lambda plan, at: of_pair(plan, at.pair),
-        settings=_settings,
+        settings=settings_of,
         kind=Settings,
         compute=lambda data, at, settings: compute(both(data), at.pair, settings),
         message="Full elastic contact of pair {pair}, beside the sum over summits.",

@@ -1,0 +1,176 @@
+"""Contact regions of a rough strip, each solved alone with its true shape (not in the paper).
+
+A region is a connected part of the surface that the flat touches at a distance, or may attract: within twice the reach
+of the attraction, because attracted elements rise and lift their neighbours. Its elements displace each other on an
+infinite half-space, and no elements of other regions. Compared with a sum over asperities, regions keep the
+shape to which a sphere would be fitted; compared with full elastic contact (`stiction.contact.elements`), they do not
+act on each other. As in the paper, the film of water acts on the undeformed surfaces and is not part of the pressure.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from stiction.contact import forcelaw
+from stiction.contact.elements import Adhesion, State, equilibrium
+from stiction.contact.halfspace import HalfSpace, love
+from stiction.contact.pair import DistanceGrid, bearing_area
+from stiction.kernels import kernel
+
+#: Between the distances at which contact is computed [m]; with half of it, energies change by less than 1 %.
+BETWEEN = 1e-10
+
+#: The eight neighbours of a point.
+_AROUND = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
+
+#: Elements of a strip (m,), and the space in which they displace each other, at the height of the lowest of them [m].
+Within = Callable[[float], tuple[np.ndarray, "HalfSpace | Regions"]]
+
+
+@dataclass(frozen=True)
+class Regions:
+    """Elements in one row, region after region, that displace those of their own region; in place of a `HalfSpace`."""
+
+    rows: np.ndarray  #: of the elements in the strip (m,) int32
+    columns: np.ndarray  #: (m,) int32
+    ends: np.ndarray  #: position behind the last element of each region (k,)
+    offsets: np.ndarray  #: displacement by an element at each offset (n1, n2) float32 [m Pa⁻¹]
+    unit: float  #: Δ/E' [m Pa⁻¹]
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of elements."""
+        return 1, self.rows.size
+
+    def displacement(self, pressure: np.ndarray) -> np.ndarray:
+        """Displacement of all elements (1, m) float32 [m] under pressures on them (1, m) float32 [Pa]."""
+        return _displacement(pressure, self.rows, self.columns, self.ends, self.offsets)
+
+
+def alone(heights: np.ndarray, space: HalfSpace) -> Within:
+    """Regions of a strip of heights z (n1, n2) float32 [m], connected across corners and, if periodic, across ends."""
+    along = [np.minimum(k, n - k) if space.periodic else k for n in space.shape for k in [np.arange(n)]]
+    offsets = (space.unit * love(*np.ix_(*along))).astype(np.float32)
+
+    def within(level):
+        places, ends = _connected(heights, level, space.periodic)
+        rows, columns = (k.astype(np.int32) for k in np.unravel_index(places, heights.shape))
+        return places, Regions(rows, columns, ends, offsets, space.unit)
+
+    return within
+
+
+def together(space: HalfSpace) -> Within:
+    """All elements of a strip, which displace each other."""
+    everything = np.arange(space.shape[0] * space.shape[1])
+    return lambda level: (everything, space)
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A strip of heights z and films of water on its undeformed surfaces, as in Sec. III-A."""
+
+    heights: np.ndarray  #: z (n1, n2) float32 [m]
+    grid: DistanceGrid  #: distances
+    films: Sequence[tuple[float, float]]  #: height [m] and tension [Pa] at each humidity
+
+    @cached_property
+    def bearing_area(self) -> np.ndarray:
+        """Share A of z above ``grid.bearing`` (n_bearing,) [-]."""
+        return bearing_area(self.heights, self.grid.step, self.grid.below, self.grid.above)
+
+    @cached_property
+    def pull(self) -> np.ndarray:
+        """Largest tension of all films per apparent area at ``grid.solid`` (n_solid,) [Pa]."""
+        nothing = np.zeros(self.grid.above)
+        return np.max([-self._curve(nothing, film)[1][: self.grid.above] for film in self.films], axis=0)
+
+    def energies(self, solid: np.ndarray) -> list[float]:
+        """Adhesion energy e under each film [J m⁻²], for a pressure at the last distances of ``grid.solid`` [Pa]."""
+        return [forcelaw.adhesion_energy(*self._curve(solid, film)) for film in self.films]
+
+    def _curve(self, solid, film):
+        """Distances [m] and force [Pa] under a film."""
+        starts = float(self.grid.solid[-len(solid)]), float(self.grid.bearing[0])
+        distance, curve = forcelaw.humid_curves(solid[None], self.bearing_area[None], starts, self.grid.step, film)
+        return distance, curve(0)
+
+
+def solid_pressure(strip: Strip, within: Within, attraction: Adhesion) -> np.ndarray:
+    """Pressure of the solids p_s at the last distances of ``grid.solid`` (n,) [Pa], until it exceeds the water's pull.
+
+    ASSUME: where several states have the same distance, the strip is in the one that it reaches during approach. The
+    energies of the pairs of the paper are less than 1 % larger in those that it reaches during separation.
+
+    Parameters
+    ----------
+    strip : Strip
+    within : callable
+        `alone` or `together`.
+    attraction : Adhesion
+        Of the solids, without a film.
+    """
+    grid, heights = strip.grid, strip.heights.ravel()
+    numbers = np.arange(grid.above - 1, -1, -max(round(BETWEEN / grid.step), 1))
+    reach = 2 * attraction.reach
+    pressure, pull = np.zeros((2, heights.size), np.float32)
+    found = []
+    for number in numbers:
+        distance = float(grid.solid[number])
+        places, space = within(distance - reach)
+        if not places.size:
+            found.append(0.0)
+            continue
+        z, *before = (values[places].reshape(space.shape) for values in (heights, pressure, pull))
+        state = equilibrium(space, z, distance, attraction, State(distance, *before, z, 0))
+        pressure[places], pull[places] = state.pressure.ravel(), state.attraction.ravel()
+        found.append(state.force * places.size / heights.size)
+        if found[-1] > strip.pull[number]:
+            break
+    known = numbers[: len(found)][::-1]
+    return PchipInterpolator(known, found[::-1])(np.arange(known[0], grid.above))
+
+
+@kernel
+def _connected(heights, level, periodic):
+    """Places of the points above a level (m,), region after region, and where each region ends (k,)."""
+    rows, columns = heights.shape
+    unseen = heights.ravel() > level
+    places, ends = np.empty(unseen.sum(), np.int64), np.empty(unseen.sum(), np.int64)
+    found, seen, regions = 0, 0, 0
+    for first in range(unseen.size):
+        if unseen[first]:
+            unseen[first] = False
+            places[found] = first
+            found += 1
+            while seen < found:
+                i, j = places[seen] // columns, places[seen] % columns
+                seen += 1
+                for down, right in _AROUND:
+                    row, column = i + down, j + right
+                    if periodic or (0 <= row < rows and 0 <= column < columns):
+                        place = row % rows * columns + column % columns
+                        if unseen[place]:
+                            unseen[place] = False
+                            places[found] = place
+                            found += 1
+            ends[regions] = found
+            regions += 1
+    return places, ends[:regions].copy()
+
+
+@kernel
+def _displacement(pressure, rows, columns, ends, offsets):
+    """Sum over the elements of each region."""
+    displacement, first = np.zeros_like(pressure), 0
+    for end in ends:
+        for source in range(first, end):
+            if pressure[0, source] != 0:
+                i, j = rows[source], columns[source]
+                for k in range(first, end):
+                    displacement[0, k] += pressure[0, source] * offsets[abs(rows[k] - i), abs(columns[k] - j)]
+        first = end
+    return displacement

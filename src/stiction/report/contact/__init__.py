@@ -1,0 +1,1 @@
+"""Tables and figures of studies of the contact."""

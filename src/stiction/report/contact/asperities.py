@@ -1,0 +1,263 @@
+"""Table and figure of the readings of an asperity: crack lengths of Table III, model NG, under each of them."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.figure import Figure
+
+from stiction.analysis.asperities import rms_deviation
+from stiction.analysis.model_error import length_factors
+from stiction.plan.names import by_case, by_name
+from stiction.report import published
+from stiction.report.format import TO_NM, UM, number, percent, signed, with_error
+from stiction.report.published import value
+from stiction.report.style import (
+    DOUBLE,
+    PUBLISHED,
+    SINGLE,
+    columns_of_panels,
+    figure_stage,
+    handles,
+    humidity_axis,
+    letter_lines,
+    styled,
+)
+from stiction.report.tables import PAIR, Table, table_stage
+from stiction.stages.beams.releases import stuck_lengths
+from stiction.stages.contact import full_contact
+from stiction.stages.contact.asperities import cost, energies_of_readings
+
+_CAPTION = (
+    "Crack lengths of Table III, model NG, under several readings of an asperity, from the ratio of the mean adhesion "
+    "energies of the same strips to the power -1/4: change against spheres on summits, on the grid of the contact and "
+    "with attraction of the solids, at the lowest and at the highest humidity; root mean square over the humidities of "
+    "the deviation from the published length, and from that under full elastic contact where it was computed; "
+    "processor time of a strip over that of spheres on summits; ± standard error over strips. Shape: every island "
+    "with its true shape, solved alone. vdW: the medium through which the solids attract, or none."
+)
+
+
+def _rows(
+    studies: Mapping[str, xr.Dataset],
+    full: Mapping[str, xr.Dataset],
+    beams: Mapping[tuple[str, float], xr.Dataset],
+    published: pd.DataFrame,
+) -> list[dict]:
+    """One row for each pair, reading, grid, attraction and humidity.
+
+    Parameters
+    ----------
+    studies, full : dict
+        Pair to the dataset of study asperities and to that of study full_contact.
+    beams : dict
+        (pair, humidity) to the dataset of stage beams, model NG.
+    published : pandas.DataFrame
+        Table III as published, rows of the paper's own pairs.
+    """
+    found = []
+    for pair, study in studies.items():
+        humidities, base = study.humidity.values, None
+        cases = [{"pair": pair, "relative_humidity": humidity} for humidity in humidities]
+        lengths = np.array([stuck_lengths(beams[pair, humidity]).mean() / UM for humidity in humidities])
+        known = np.array([value(published, "ng", **case) for case in cases])
+        for labels, energies in energies_of_readings(study):
+            base = energies if base is None else base  # the first reading
+            others, count = base[: len(energies)], {"strips": len(energies)}
+            whole = {"time_over_summits": cost(study, **labels)}
+            whole |= _rms("published", energies, others, lengths / known)
+            whole |= _rms("full_contact", *_of_full_contact(energies, humidities, full[pair]))
+            labels = {
+                "reading": labels["reading"],
+                "spacing_nm": TO_NM * labels["spacing"],
+                "vdw": labels["attraction"],
+            }
+            factors = length_factors(energies, others, humidities, humidities)
+            for case, length, of_paper, factor, error in zip(cases, lengths, known, *factors, strict=True):
+                row = {"change_percent": 100 * (factor - 1), "change_se_percent": 100 * error}
+                row |= {"crack_length_um": length * factor, "published_um": of_paper}
+                row |= {"deviation_percent": percent(length * factor, of_paper)}
+                found.append(case | labels | count | row | whole)
+    return found
+
+
+def _rms(name, *compared):
+    """Columns of a root mean square deviation [%]."""
+    rms, error = rms_deviation(*compared)
+    return {f"rms_{name}_percent": 100 * rms, f"rms_{name}_se_percent": 100 * error}
+
+
+def _of_full_contact(energies, humidities, study):
+    """Energies of a reading and of full contact, in the strips and at the humidities that both have."""
+    at, full, _ = full_contact.energies(study)
+    strips = min(len(energies), len(full))
+    return energies[:strips, np.isin(humidities, at)], full[:strips]
+
+
+def table(*data) -> Table:
+    """Numbers of every case, and a line for each reading; parameters as in ``_rows``."""
+    frame = pd.DataFrame(_rows(*data))
+    lines = frame.groupby(["pair", "vdw", "reading", "spacing_nm"], sort=False)
+    return Table(frame, _CAPTION, pd.DataFrame([_line(*group) for group in lines]))
+
+
+def _line(labels, rows):
+    """One reading of a pair as text."""
+    pair, vdw, reading, spacing = labels
+    first, last = rows.iloc[0], rows.iloc[-1]
+    shown = {"pair": pair, "asperity": reading, "grid [nm]": f"{spacing:g}", "vdW": vdw, "strips": str(first.strips)}
+    for title, end in (("low RH", first), ("high RH", last)):
+        shown[f"Δl_s [%], {title}"] = signed(end.change_percent, end.change_se_percent)
+    for title, name in (("published", "published"), ("full contact", "full_contact")):
+        rms, error = first[f"rms_{name}_percent"], first[f"rms_{name}_se_percent"]
+        fixed = error < _ROUNDING  # that of the base from print does not depend on the strips
+        shown[f"rms dev. from {title} [%]"] = number(rms, ".2f") if fixed else with_error(rms, error)
+    return shown | {"time / summits": f"{float(f'{first.time_over_summits:.2g}'):g}"}
+
+
+_PARTS = (
+    "Parts of the error of the model of the contact, as changes of the crack length [%], of the same strips, ± "
+    "standard error: from spheres on summits to islands of their true shape, each alone; from these to full elastic "
+    "contact, in which islands act on each other and water deforms them; both together; and a grid twice as fine for "
+    "spheres on summits, for comparison. With attraction of the solids. Factors multiply."
+)
+#: Two models of the contact for each part, named as in `_energies_of_models`: the change is that from the second.
+_MODELS_OF_PARTS = {
+    "shape": ("shape", "summit"),
+    "interaction": ("full", "shape"),
+    "together": ("full", "summit"),
+    "grid": ("fine", "summit"),
+}
+_COLUMNS_OF_PARTS = {
+    "strips": ("d", "strips"),
+    "true shape": (signed, "shape_percent", "shape_se_percent"),
+    "interaction, water": (signed, "interaction_percent", "interaction_se_percent"),
+    "together": (signed, "together_percent", "together_se_percent"),
+    "grid": (signed, "grid_percent", "grid_se_percent"),
+}
+
+
+def parts(studies: Mapping[str, xr.Dataset], full: Mapping[str, xr.Dataset]) -> Table:
+    """Parts of the error of the model at every humidity of full contact; parameters as in ``_rows``."""
+    rows = []
+    for pair, study in studies.items():
+        humidities, of_models = _energies_of_models(study, full[pair])
+        factors = {
+            part: length_factors(of_models[one], of_models[other], humidities, humidities)
+            for part, (one, other) in _MODELS_OF_PARTS.items()
+        }
+        for k, humidity in enumerate(humidities):
+            row = {"pair": pair, "relative_humidity": humidity, "strips": len(of_models["full"])}
+            for part, (factor, error) in factors.items():
+                row |= {f"{part}_percent": 100 * (factor[k] - 1), f"{part}_se_percent": 100 * error[k]}
+            rows.append(row)
+    return Table.of(rows, _PARTS, PAIR | _COLUMNS_OF_PARTS)
+
+
+def _energies_of_models(study, of_full):
+    """Humidities of full contact, and energies of the strips that all models have, with attraction of the solids."""
+    at, full, _ = full_contact.energies(of_full)
+    known, found = np.isin(study.humidity.values, at), {"full": full}
+    coarse, fine = (float(study.spacing[k]) for k in (0, -1))
+    names = {("summit", coarse): "summit", ("summit", fine): "fine", ("shape", coarse): "shape"}
+    for of, energies in energies_of_readings(study):
+        if of["attraction"] == study.attraction[0] and (of["reading"], of["spacing"]) in names:
+            found[names[of["reading"], of["spacing"]]] = energies[:, known]
+    strips = min(map(len, found.values()))
+    return at, {name: energies[:strips] for name, energies in found.items()}
+
+
+#: Error that is due to rounding [%].
+_ROUNDING = 1e-10
+_STYLES = {
+    "summit": {"color": "#0072B2", "marker": "o"},
+    "island": {"color": "#009E73", "marker": "s"},
+    "shape": {"color": "#CC79A7", "marker": "^"},
+}
+
+
+@styled
+def figure(*data) -> Figure:
+    """Change of the crack lengths by each reading, with attraction of the solids and without; as ``_rows``."""
+    frame, full = pd.DataFrame(_rows(*data)), data[1]
+    pairs, media = (list(dict.fromkeys(frame[column])) for column in ("pair", "vdw"))
+    figure, columns, lines = columns_of_panels(
+        len(pairs), len(media), lambda across: min(DOUBLE, 1.3 * SINGLE * across), 1.4 + 1.8 * len(media), sharex="col"
+    )
+    for column, pair in zip(columns, pairs, strict=True):
+        for panel, medium in zip(column, media, strict=True):
+            _panel(panel, frame[(frame.pair == pair) & (frame.vdw == medium)], full[pair])
+        column[-1].set_xlabel("relative humidity [–]")
+        humidity_axis(column[0])
+    for line in lines:
+        for panel, medium in zip(line[:, 0], media, strict=True):
+            panel.set_ylabel(f"change of $l_s$ [%], vdW: {medium}")
+    figure.legend(*handles(*columns.flat), loc="outside lower center", ncols=4)
+    letter_lines(lines, [f"pair {pair}" for pair in pairs])
+    return figure
+
+
+def _panel(panel, rows, full):
+    """Readings under one attraction, beside full contact and the published lengths."""
+    finest = rows.spacing_nm.min()
+    for (reading, spacing), curve in rows.groupby(["reading", "spacing_nm"], sort=False):
+        fine = {"linestyle": "--", "markerfacecolor": "white"} if spacing == finest else {"linestyle": "-"}
+        style = _STYLES[reading] | fine | {"label": f"{reading}, {spacing:g} nm"}
+        panel.errorbar(curve.relative_humidity, curve.change_percent, curve.change_se_percent, **style)
+    humidities, *energies = full_contact.energies(full)
+    factor, error = length_factors(*energies, humidities, humidities)
+    style = {"fmt": "D", "color": "black", "label": "full contact"}
+    panel.errorbar(humidities, 100 * (factor - 1), 100 * error, **style)
+    known = rows[rows.published_um.notna()].drop_duplicates("relative_humidity")
+    if len(known):
+        unchanged = known.crack_length_um / (1 + known.change_percent / 100)
+        needed = 100 * (known.published_um / unchanged - 1)
+        panel.plot(known.relative_humidity, needed, "*", color=PUBLISHED, label="published")
+    panel.axhline(0, color="0.6", linewidth=0.6, zorder=0)
+
+
+def _stage(kind, name, shows, draw, **declared):
+    """Table or figure of the readings of an asperity."""
+    return kind(
+        name,
+        "asperities",
+        shows,
+        inputs=lambda plan, at: {
+            "studies": by_name("studies/asperities", plan.humid_pairs),
+            "full": by_name("studies/full_contact", plan.humid_pairs),
+            "beams": by_case("beams", plan.humid_cases, "_NG"),
+            "published": published.file("table_3"),
+        },
+        settings=lambda plan, at: {"of_paper": plan.paper_pairs},
+        compute=lambda data, at, settings: draw(
+            data["studies"], data["full"], data["beams"], published.compared(data, settings)
+        ),
+        study="asperities",
+        targets=("asperities",),
+        **declared,
+    )
+
+
+STAGES = (
+    _stage(table_stage, "table_asperities", "Table III under several readings of an asperity", table),
+    table_stage(
+        "table_model_error_parts",
+        "model_error_parts",
+        "parts of the error of the model",
+        inputs=lambda plan, at: {
+            "studies": by_name("studies/asperities", plan.humid_pairs),
+            "full": by_name("studies/full_contact", plan.humid_pairs),
+        },
+        compute=lambda data, at, settings: parts(data["studies"], data["full"]),
+        study="asperities",
+        targets=("asperities",),
+    ),
+    _stage(
+        figure_stage,
+        "figure_asperities",
+        "crack lengths under several readings of an asperity",
+        figure,
+        category="Sensitivity, appendices, model choices",
+    ),
+)

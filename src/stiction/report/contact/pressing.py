@@ -1,0 +1,138 @@
+"""Table and figure of study pressing: adhesion after surfaces were pressed together, over that before."""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.figure import Figure
+
+from stiction.estimates import jackknife, mean_with_error
+from stiction.plan.names import by_name
+from stiction.report.format import TO_MPA, TO_NM, with_error
+from stiction.report.style import (
+    DOUBLE,
+    SINGLE,
+    columns_of_panels,
+    dashes,
+    figure_stage,
+    letter_lines,
+    marker,
+    shades,
+    styled,
+)
+from stiction.report.tables import Table, table_stage
+
+_CAPTION = (
+    "Adhesion after surfaces were pressed together once: ratio of the mean adhesion energy ē to that before, at each "
+    "relative humidity, ± standard error over {strips} strips; by full contact with pressures up to the hardness, and "
+    "flattening that remains. The first line of a pair is what its adhesion alone does. Pressure: mean of the strips; "
+    "at H: share of the elements in contact at the hardness; flattening: largest of an element, mean of the strips."
+)
+
+
+def _rows(studies: Mapping[str, xr.Dataset]) -> Iterator[dict]:
+    """One row for each pair, press and humidity; the first press is adhesion alone, without pressure.
+
+    Parameters
+    ----------
+    studies : dict
+        Pair to the dataset of study pressing.
+    """
+    for pair, study in studies.items():
+        fresh = study.fresh_energy.values
+        after = [study.adhered_energy.values, *study.pressed_energy.transpose("step", "sample", "humidity").values]
+        for number, energies in enumerate(after):
+            press = {"pair": pair, "press": number, "strips": len(fresh)} | _press(study, number)
+            both = np.hstack([energies, fresh])
+            ratios, errors = jackknife(lambda means: np.divide(*np.split(means, 2)), both)
+            for humidity, ratio, error in zip(study.humidity.values, ratios, errors, strict=True):
+                yield press | {"relative_humidity": humidity, "energy_ratio": ratio, "energy_ratio_se": error}
+
+
+def _press(study, number):
+    """Means over the strips of a press; only its pressure, 0, if it is adhesion alone."""
+    columns = {"pressure_MPa": ("pressure", TO_MPA), "distance_nm": ("separation", TO_NM)}
+    columns |= {"contact_percent": ("contact_share", 100), "at_hardness_percent": ("hardness_share", 100)}
+    found = {}
+    for column, (name, unit) in (columns | {"flattening_nm": ("flattening", TO_NM)}).items():
+        mean, error = mean_with_error(unit * study[name].values)
+        nothing = 0.0 if column == "pressure_MPa" else np.nan
+        of_press = (mean[number - 1], error[number - 1]) if number else (nothing, nothing)
+        found |= dict(zip((column, f"{column}_se"), of_press, strict=True))
+    return found
+
+
+def table(studies: Mapping[str, xr.Dataset]) -> Table:
+    """Numbers of every press and humidity, and a line for each press; parameters as in ``_rows``."""
+    frame = pd.DataFrame(_rows(studies))
+    lines = [_line(*group) for group in frame.groupby(["pair", "press"], sort=False)]
+    return Table(frame, _CAPTION.format(strips=frame.strips.max()), pd.DataFrame(lines))
+
+
+def _line(key, rows):
+    """One press of a pair as text."""
+    pair, number = key
+    first, shown = rows.iloc[0], {"pair": pair}
+    shown["pressure [MPa]"] = with_error(first.pressure_MPa, first.pressure_MPa_se) if number else "adhesion alone"
+    titles = {"distance [nm]": "distance_nm", "contact [%]": "contact_percent", "at H [%]": "at_hardness_percent"}
+    for title, column in (titles | {"flattening [nm]": "flattening_nm"}).items():
+        shown[title] = with_error(first[column], first[f"{column}_se"])
+    for row in rows.itertuples():
+        shown[f"ē after / before, RH {row.relative_humidity:g}"] = with_error(row.energy_ratio, row.energy_ratio_se)
+    return shown
+
+
+@styled
+def figure(studies: Mapping[str, xr.Dataset]) -> Figure:
+    """Ratio of the energies over the mean pressure, for each humidity; parameters as in ``_rows``."""
+    frame = pd.DataFrame(_rows(studies))
+    figure, columns, lines = columns_of_panels(len(studies), 1, lambda across: min(DOUBLE, 1.3 * SINGLE * across), 3.0)
+    for (panel,), pair in zip(columns, studies, strict=True):
+        of_pair = frame[frame.pair == pair]
+        humidities = of_pair.relative_humidity.unique()
+        for k, (humidity, shade) in enumerate(zip(humidities, shades(len(humidities)), strict=True)):
+            curve = of_pair[of_pair.relative_humidity == humidity]
+            style = {"color": shade, "marker": marker(k), "linestyle": dashes(k), "label": f"RH {humidity:g}"}
+            errors = {"xerr": curve.pressure_MPa_se, "yerr": curve.energy_ratio_se}
+            panel.errorbar(curve.pressure_MPa, curve.energy_ratio, **errors, **style)
+        panel.axhline(1, color="0.6", linewidth=0.6, zorder=0)
+        panel.set_xlabel("mean pressure [MPa]")
+        panel.legend()
+    for line in lines:
+        line[0, 0].set_ylabel(r"$\bar e$ after / before pressing")
+    letter_lines(lines, [f"pair {pair}" for pair in studies])
+    return figure
+
+
+def _pairs(plan):
+    """Pairs that run and are pressed."""
+    known = plan.config["studies"]["pressing"]["distance_nm"]
+    return [pair for pair in plan.humid_pairs if pair in known]
+
+
+def _stage(kind, name, shows, draw, **declared):
+    """Table or figure of study pressing."""
+    return kind(
+        name,
+        "pressing",
+        shows,
+        inputs=lambda plan, at: {"studies": by_name("studies/pressing", _pairs(plan))},
+        compute=lambda data, at, settings: draw(data["studies"]),
+        jobs=lambda plan: [{}] if _pairs(plan) else [],
+        study="pressing",
+        targets=("pressing",),
+        **declared,
+    )
+
+
+STAGES = (
+    _stage(table_stage, "table_pressing", "adhesion after surfaces were pressed together", table),
+    _stage(
+        figure_stage,
+        "figure_pressing",
+        "adhesion after surfaces were pressed together",
+        figure,
+        category="Sensitivity, appendices, model choices",
+    ),
+)

@@ -1,0 +1,146 @@
+"""Study pressing: how much more the surfaces of a pair stick after they were pressed together until summits yield."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from stiction.config.units import from_si
+from stiction.contact import solids
+from stiction.contact.elements import Adhesion, State, at_rest, equilibrium
+from stiction.contact.halfspace import HalfSpace
+from stiction.plan.stage import Stage
+from stiction.stages.contact import full_contact
+from stiction.stages.contact.pairs import bodies
+from stiction.stages.surfaces.rough_surfaces import both, of_pair
+
+#: Variables of a strip that is pressed: unit and meaning.
+_PRESSED = {
+    "pressure": ("Pa", "mean pressure"),
+    "separation": ("m", "distance between the mean planes"),
+    "contact_share": ("1", "share of the elements in contact"),
+    "hardness_share": ("1", "share of them at the hardness"),
+    "flattening": ("m", "largest flattening of an element"),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings(full_contact.Settings):
+    """Settings of full elastic contact, and how close the surfaces are pressed."""
+
+    distance: float  #: smallest distance between the mean planes [m]
+    steps: int  #: number of distances to which strips are pressed
+
+
+def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
+    """Energies of strips when they are fresh, after their own adhesion flattened them, and after pressing.
+
+    Strips separate elastically after they were flattened.
+
+    Raises
+    ------
+    ValueError
+        As in study full_contact, and if a strip rests at the smallest distance without being pressed.
+    """
+    hardness = solids.softer_hardness(*bodies(settings))
+    found = [
+        _of_strip(*strip, np.linspace(0, 1, settings.steps + 1), settings.distance, hardness)
+        for strip in full_contact.strips(surfaces, pair, settings)
+    ]
+    return layout(*map(np.array, zip(*found, strict=True)), settings.humidities)
+
+
+def _of_strip(space, heights, cases, shares, closest, hardness):
+    """Energies (2 + n_steps, n_humidity) and variables of the presses (n_steps, n_variables) of one strip."""
+    starts = [(adhesion, full_contact.start(*curve)) for adhesion, curve in cases]
+    fresh = [at_rest(space, heights, *each)[0] for each in starts]
+    before = [state.energy(heights, adhesion) for state, (adhesion, _) in zip(fresh, starts, strict=True)]
+    own = [
+        equilibrium(space, heights, state.distance, adhesion, state, hardness).flattening
+        for state, (adhesion, _) in zip(fresh, starts, strict=True)
+    ]
+    rest = min(state.distance for state in fresh)
+    pressed = list(_pressed(space, heights, rest + (closest - rest) * shares, hardness))
+    after = [
+        [
+            _energy(space, heights - by, *each) if by.any() else e
+            for by, each, e in zip(flat, starts, before, strict=True)
+        ]
+        for flat in (own, *([state.flattening] * len(starts) for state in pressed))
+    ]
+    return -np.array([before, *after]), [_of_press(state) for state in pressed]
+
+
+def _energy(space, heights, adhesion, start):
+    """Energy U of a strip without force [J m⁻²]."""
+    return at_rest(space, heights, adhesion, start)[0].energy(heights, adhesion)
+
+
+def _pressed(space: HalfSpace, heights: np.ndarray, distances: np.ndarray, hardness: float) -> Iterator[State]:
+    """States of a strip at distances that decrease, all but the first.
+
+    ASSUME: while surfaces are pressed, their attraction is left out, which is small against the pressure.
+    """
+    if not np.all(np.diff(distances) < 0):
+        rest, wanted = (from_si(distance, "nm") for distance in distances[[0, -1]])
+        raise ValueError(
+            f"studies.pressing.distance_nm: the surfaces rest {rest:.3g} nm apart without being pressed, which is less "
+            f"than {wanted:.3g} nm"
+        )
+    state = None
+    for distance in distances[1:]:
+        state = equilibrium(space, heights, distance, Adhesion(0.0, 0.0), state, hardness)
+        yield state
+
+
+def _of_press(state):
+    """Variables of a strip that is pressed."""
+    touching = state.pressure > 0
+    at_hardness = (state.pressure >= np.float32(state.hardness)).sum() / touching.sum()
+    return [state.force, state.distance, touching.mean(), at_hardness, state.flattening.max()]
+
+
+def layout(energies: np.ndarray, presses: np.ndarray, humidities: Sequence[float]) -> xr.Dataset:
+    """Energies of every strip, and the states to which it was pressed.
+
+    Parameters
+    ----------
+    energies : (n, 2 + n_steps, n_humidity) array
+        Fresh, after adhesion alone, and after each press [J m⁻²].
+    presses : (n, n_steps, n_variables) array
+        In the order of the variables of this module [SI].
+    humidities : sequence of float
+        [-]
+    """
+    units = {"units": "J m-2"}
+    columns = {
+        "fresh_energy": (("sample", "humidity"), energies[:, 0], units | {"long_name": "e before"}),
+        "adhered_energy": (("sample", "humidity"), energies[:, 1], units | {"long_name": "e after adhesion alone"}),
+        "pressed_energy": (("sample", "step", "humidity"), energies[:, 2:], units | {"long_name": "e after pressing"}),
+    }
+    for i, (name, (unit, meaning)) in enumerate(_PRESSED.items()):
+        columns[name] = (("sample", "step"), presses[..., i], {"units": unit, "long_name": meaning})
+    return xr.Dataset(columns, coords={"humidity": ("humidity", list(humidities), {"units": "1"})})
+
+
+def _settings(plan, at):
+    """As those of study full_contact, with the number of strips and the distances of this one."""
+    study = plan.config["studies"]["pressing"]
+    size = {"strips": study["samples"], "distance_nm": study["distance_nm"][at.pair], "steps": study["steps"]}
+    return full_contact.settings_of(plan, at) | size
+
+
+STAGES = (
+    Stage.writing(
+        "pressed",
+        "studies/pressing/{pair}",
+        inputs=lambda plan, at: of_pair(plan, at.pair),
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, at, settings: compute(both(data), at.pair, settings),
+        message="Pair {pair} after its surfaces were pressed together.",
+        cluster=True,
+        minutes=60,
+    ),
+)
