@@ -8,6 +8,7 @@
 #   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (4 to 10 minutes),
 #                   in runs/devices/results/
 #   make model-error    Table III under full elastic contact, after make paper (3 minutes on two cores; takes CONFIG=... too)
+#   make sealed     devices in dry nitrogen, bare and coated (3 minutes on two cores), in runs/sealed/results/
 #   make attraction     Table III with attraction across gaps (3 minutes on two cores), in runs/attraction/results/
 #   make asperities     Table III with other readings of an asperity, after make paper (10 minutes on two cores)
 #   make pressing       how much more a pair sticks after its surfaces were pressed (2 minutes on two cores)
@@ -44,7 +45,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-beams devices model-error asperities pressing attraction figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-beams devices model-error asperities pressing sealed tails attraction figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -79,6 +80,13 @@ model-error: $(VENV)/ready
 
 asperities pressing: $(VENV)/ready
 	$(STICTION) $(if $(CONFIG),run $(CONFIG),paper) -- $@ $(ARGS)
+
+sealed: $(VENV)/ready
+	$(STICTION) devices examples/sealed.yaml --directory runs/sealed -- $(ARGS)
+
+# Cracks on force curves themselves, compared with those on Eq. (12): an hour of one core.
+tails: $(VENV)/ready
+	$(BIN)/python tests/benchmarks/tails.py $(ARGS) | tee docs/tables/tails.md
 
 attraction: $(VENV)/ready
 	$(STICTION) run $(or $(CONFIG),examples/attraction.yaml) --directory runs/attraction -- results/tables/variants.csv $(ARGS)

@@ -41,6 +41,7 @@ def numbers(tables):
     found |= drawn_lengths(tables["safe_lengths"], tables["budget"])
     found |= model_errors(tables["model_error"]) | attraction(tables["attraction"])
     found |= readings(tables["asperities"]) | pressing(tables["pressing"])
+    found |= sealed(tables["sealed_safe_lengths"], tables["sealed_stoppers"])
     found |= studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
     return (
         found
@@ -127,6 +128,21 @@ def attraction(table):
         for name, column in (("published", "published"), ("measured", "experiment")):
             rms = np.sqrt(np.mean(rows[f"{column}_deviation_percent"] ** 2))
             found[f"{reach}_rms_{name}_{pair}"] = f"{rms:.1f}"
+    return found
+
+
+def sealed(safe_lengths, stoppers):
+    """``sealed_rms17_beam``, ``sealed_rms17_tip``: safe length in dry air, p = 0.001, beam or either holds [µm].
+
+    ``sealed_bare``, ``sealed_bare_stuck``: pull-off force of a stopper [µN], and P(stuck) [%].
+    """
+    found = {}
+    for row in safe_lengths[np.isclose(safe_lengths.share, 1e-3)].itertuples():
+        found[f"sealed_{row.device}_{'beam' if row.held_by == 'beam' else 'tip'}"] = f"{row.safe_length_um:.0f}"
+    for device, rows in stoppers.groupby("device"):
+        first = rows.iloc[0]
+        found[f"sealed_{device}"] = f"{first.pull_off_uN:.2g}"
+        found[f"sealed_{device}_stuck"] = f"{100 * first.share_stuck:.3g}"
     return found
 
 

@@ -2,8 +2,8 @@
 
 1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
    and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``,
-   ``make devices``, ``make attraction`` and ``stiction devices examples/roughness.yaml --directory runs/roughness`` in
-   folders of ``runs`` beside the folder.
+   ``make devices``, ``make sealed``, ``make attraction`` and ``stiction devices examples/roughness.yaml --directory
+   runs/roughness`` in folders of ``runs`` beside the folder.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
 3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted, and the schema
    for editors from that of the configuration.
@@ -83,6 +83,8 @@ OWN_STUDIES = {
     "model_error_parts": ("make asperities", 0),
     "pressing": ("make pressing", 700),
 }
+#: Tables of ``make sealed``.
+SEALED_TABLES = ("safe_lengths", "stoppers")
 #: Table of ``make attraction``, and its target.
 ATTRACTION, OF_ATTRACTION = "attraction", "results/tables/variants.csv"
 #: Largest picture [bytes].
@@ -102,6 +104,7 @@ def main(results):
         (runs / "example-beams", partial(unfinished_example, target="devices"), collect_beams),
         (runs / "devices", partial(unfinished_devices, "devices", "budget"), collect_devices),
         (runs / "roughness", partial(unfinished_devices, "roughness", ROUGHNESS), collect_roughness),
+        (runs / "sealed", partial(unfinished_devices, "sealed", "stoppers"), collect_sealed),
         (runs / "attraction", unfinished_attraction, collect_attraction),
     ):
         if reason := why(folder):
@@ -223,6 +226,13 @@ def collect_devices(folder):
         shrink(folder / "results" / "figures" / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
 
 
+def collect_sealed(folder):
+    """Copy tables of a run of the example of sealed devices."""
+    for name in SEALED_TABLES:
+        for kind in ("csv", "md"):
+            shutil.copyfile(folder / "results" / "tables" / f"{name}.{kind}", DOCS / "tables" / f"sealed_{name}.{kind}")
+
+
 def collect_attraction(folder):
     """Copy the numbers of Table III with and without attraction across gaps, and their table."""
     csv = DOCS / "tables" / f"{ATTRACTION}.csv"
@@ -329,6 +339,7 @@ def quoted_numbers():
             *TABLES,
             *OWN_STUDIES,
             ATTRACTION,
+            *(f"sealed_{name}" for name in SEALED_TABLES),
             *DEVICE_TABLES,
             "example_scans",
             "studies",

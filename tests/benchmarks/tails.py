@@ -1,0 +1,204 @@
+"""Crack lengths of beams on force curves themselves, and on the laws of Eq. (12) that stand for them: ``make tails``.
+
+The attraction across gaps falls with the third power of the distance, and Eq. (12) exponentially. It keeps energy,
+largest attraction and its distance of every curve, and this script measures what the rest of the shape does to cracks:
+on one sample everywhere, and on samples drawn at random. The beam on tabulated curves is solved by code of its own.
+"""
+
+import argparse
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numba import njit
+from scipy.linalg import solveh_banded
+
+from stiction.beam import release
+from stiction.beam.energy import arrest_length
+from stiction.beam.equilibrium import STEP, allowed_imbalance, distances, hermite
+from stiction.beam.resolution import resolved
+from stiction.config.cases import air
+from stiction.config.files import load
+from stiction.config.plan import Plan
+from stiction.config.units import in_si, to_si
+from stiction.contact import forcelaw
+from stiction.contact.environment import Water, force_curves
+from stiction.errors import NotConverged
+from stiction.estimates import mean_with_error
+from stiction.plan.graph import Results
+from stiction.report.format import TO_MJ, with_error
+from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
+from stiction.stages.contact.contact import tables
+from stiction.streams import stream
+
+#: End of the tables of the curves [m], where the pressure is below 1e-4 of its largest value.
+END = 150e-9
+#: Beams longer than their cracks by this factor, of elements with five strips.
+LONGER, STRIPS = 1.6, 5
+#: Length of the strips [µm], short enough for all pairs.
+STRIP = 1.0
+
+
+# A beam on tabulated curves
+
+
+@njit
+def pressures_and_slopes(curves, drawn, step, distance):
+    """Forces [Pa] of the curves (m, n) drawn at the points, at their distances (points,) [m], and derivatives [Pa/m].
+
+    Cubic between nodes, with the slopes of central differences; linear before the second node, zero beyond the last.
+    """
+    force, slope = np.zeros(distance.size), np.zeros(distance.size)
+    for p in range(distance.size):
+        curve, place = curves[drawn[p]], distance[p] / step
+        if place < curve.size - 3:
+            k = max(int(place), 1)
+            left, right, s = (curve[k + 1] - curve[k - 1]) / 2, (curve[k + 2] - curve[k]) / 2, max(place - k, 0.0)
+            rise = curve[k + 1] - curve[k]
+            square, cube = 3 * rise - 2 * left - right, left + right - 2 * rise
+            force[p] = curve[k] + s * (left + s * (square + s * cube)) + min(place - k, 0.0) * left
+            slope[p] = (left + s * (2 * square + 3 * s * cube)) / step
+    return force, slope
+
+
+@njit
+def tangent(bend, stiffness, functions):
+    """Upper band (4, n) of the beam's elements (4, 4) and the stiffness of their points (elements, points)."""
+    band = np.zeros((4, 2 * len(stiffness) + 2))
+    for e in range(len(stiffness)):
+        for i in range(4):
+            for j in range(i, 4):
+                ground = np.sum(stiffness[e] * functions[:, i] * functions[:, j])
+                band[3 - (j - i), 2 * e + j] += bend[i, j] + ground
+    return band
+
+
+def relaxed(beam, laws, curve, deflection, load=0.0):
+    """Deflection (elements + 1, 2) after a beam has crept downhill to its next equilibrium on ``curve(distance)``.
+
+    As `stiction.beam.equilibrium.equilibrate`: Newton's method with dashpots; the laws limit the steps.
+    """
+    size, functions = (
+        beam.element_length,
+        hermite((np.arange(len(laws) // beam.elements) + 0.5) * beam.elements / len(laws)),
+    )
+    area, scale = beam.width * beam.length / len(laws), np.array([1, size])
+    bend = (
+        np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]]) * beam.bending_stiffness / size**3
+    )
+    weight = load * size * np.array([1 / 2, 1 / 12, 1 / 2, -1 / 12])
+    tolerance, steepest = (
+        allowed_imbalance(beam, laws[:, 0].mean() * area),
+        0.5 * np.max(laws[:, 0] * laws[:, 3]) * area,
+    )
+    u, viscosity = (deflection * scale).ravel(), steepest
+    for _ in range(20_000):
+        distance = distances(beam, laws, u.reshape(-1, 2) / scale)
+        far = np.where(distance < laws[:, 1], laws[:, 2], laws[:, 3]) * (distance - laws[:, 1])
+        ahead = 1 + np.maximum(far, 0)
+        force, slope = curve(distance)
+        push = (force * area).reshape(beam.elements, -1)
+        ends = np.hstack([u.reshape(-1, 2)[:-1], u.reshape(-1, 2)[1:]])
+        unbalanced = np.zeros_like(u)
+        parts = weight - ends @ bend - push @ functions
+        unbalanced.reshape(-1, 2)[:-1] += parts[:, :2]
+        unbalanced.reshape(-1, 2)[1:] += parts[:, 2:]
+        unbalanced[:2] = 0.0
+        settled = np.abs(unbalanced).max() <= tolerance
+        if settled:
+            return u.reshape(-1, 2) / scale
+        stiffness = (viscosity / ahead**2 - slope * area).reshape(beam.elements, -1)
+        band = tangent(bend, stiffness, functions)
+        band[:, :2], band[2, 2], band[1, 2:4], band[0, 3:5] = 0.0, 0.0, 0.0, 0.0
+        band[3, :2] = 1.0
+        try:
+            change = solveh_banded(band, unbalanced, check_finite=False)
+        except np.linalg.LinAlgError:
+            viscosity *= 4
+            continue
+        moved = distances(beam, laws, change.reshape(-1, 2) / scale) - beam.gap
+        move = np.max(np.where(far > 0, laws[:, 3], laws[:, 2]) * np.abs(moved) / ahead) / STEP
+        if move <= 2:
+            u = u + change
+        viscosity = max(viscosity, 0.01 * steepest * (move > 1)) * min(max(move, 0.25), 4.0)
+    raise NotConverged("equilibrium of the beam [N]", np.abs(unbalanced).max(), tolerance, 20_000)
+
+
+def crack_length(beam, laws, curve, start):
+    """Crack length of a beam released from a crack of the length ``start``, as `stiction.beam.release.release` [m]."""
+    pressed = release.s_shape(beam, beam.gap - laws[:, 1].mean(), start)
+    held = relaxed(beam, laws, curve, pressed, release.holding_load(beam, start))
+    return release.crack_length(beam, laws, relaxed(beam, laws, curve, held))
+
+
+# Samples of a pair and their laws
+
+
+def sampled(contact, humidity, water):
+    """Curves (m, n) [Pa] up to END, their step [m], and their laws (m, 4)."""
+    solid, bearing, starts, step = tables(contact)
+    bearing = np.pad(bearing, ((0, 0), (0, round((END - starts[1]) / step) - bearing.shape[1])))
+    found = force_curves(solid, bearing, starts, step, humidity, water)
+    curves = np.array([found.curve(k).copy() for k in range(found.samples)])
+    vectors, limit = forcelaw.parametrise(*found)
+    lawful = forcelaw.admissible(vectors, limit)
+    return curves[lawful], step, forcelaw.coefficients(vectors[lawful], limit)
+
+
+def resolved_beam(beam, strip, laws):
+    """Beam longer than its crack on these laws, with elements that resolve it, and the number of its strips."""
+    length = LONGER * arrest_length(forcelaw.energy(laws).mean(), beam)
+    elements = int(np.ceil(length / (STRIPS * strip)))
+    longer = replace(beam, length=elements * STRIPS * strip, elements=elements)
+    return resolved(longer, elements * STRIPS, laws), elements * STRIPS
+
+
+def excess(beam, curves, step, laws, drawn):
+    """By how much the crack on the curves of the drawn samples (strips,) is longer than that on their laws, in ln l."""
+    ground = np.ascontiguousarray(laws[drawn])
+    energy = forcelaw.energy(ground).mean()
+    start = release.START * min(arrest_length(energy, beam), beam.length)
+    curve = partial(pressures_and_slopes, curves, drawn, step)
+    return np.log(crack_length(beam, ground, curve, start) / release.released_beam(beam, ground, energy).crack_length)
+
+
+def row(pair, humidity, reach, samples, beams):
+    """One row of the table: pair, air, reach, mean and scatter of the energies, and the difference of the cracks."""
+    strip = {"sampling": {"strip_length_um": STRIP}, "beam": {"elements": 300}}
+    sizes = {
+        "contact": {"samples": samples, "chunks": 1},
+        "chaos": {"order": 2},
+        "studies": {"variants": {"samples": 5}},
+    }
+    medium = {"van_der_waals": "water" if humidity else "dry", "attraction": {"reach": reach}}
+    config = load(strip | sizes | medium)
+    plan = Plan(config)
+    contact = Results.of(config)[f"contact/{pair}_NG"]
+    curves, step, laws = sampled(contact, humidity, in_si(Water, plan.water(pair)))
+    one = cantilever(in_si(Cantilevers, sections(plan, pair)), pair)
+    beam, strips = resolved_beam(one, to_si(STRIP, "um"), laws)
+    rng, energies = stream(config["seed"], "tails", pair), forcelaw.energy(laws)
+    longer = [excess(beam, curves, step, laws, rng.integers(len(laws), size=strips)) for _ in range(beams)]
+    difference = with_error(*(100 * each for each in mean_with_error(np.array(longer))), "+")
+    scatter = energies.std(ddof=1) / energies.mean()
+    return [pair, air(humidity), reach, f"{TO_MJ * energies.mean():.2g}", f"{scatter:.2f}", difference]
+
+
+#: Pair, humidity (0 in dry air) and reach of the attraction.
+CASES = (("b", 0.0, "all"), ("c", 0.0, "all"), ("c", 0.6, "all"), ("c", 0.6, "touching"), ("a", 0.0, "all"))
+HEADER = ("pair", "air", "reach", "ē [mJ/m²]", "scatter of e", "ln l_s, curves over Eq. (12) [%]")
+
+
+def main():
+    """Print the table as Markdown."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--samples", type=int, default=80)
+    parser.add_argument("--beams", type=int, default=12)
+    sizes = parser.parse_args()
+    print(f"| {' | '.join(HEADER)} |\n|{'---|' * len(HEADER)}", flush=True)  # noqa: T201
+    for case in CASES:
+        print(f"| {' | '.join(row(*case, sizes.samples, sizes.beams))} |", flush=True)  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()
