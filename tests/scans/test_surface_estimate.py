@@ -11,6 +11,7 @@ from scipy import stats
 from stiction.errors import ScanError
 from stiction.scans import estimate as evaluation
 from stiction.scans.estimate import Settings, _model, _residual, estimate, inspect, nearest_density, widened
+from stiction.scans.flags import ENOUGH_WAVELENGTHS
 from stiction.scans.levelling import Levelling
 from stiction.scans.model_scans import ModelScans, draw_model_scans
 from stiction.scans.moments import homogeneity, moments, powers, tile_errors
@@ -245,7 +246,7 @@ def fit_with(**values):
 
 FLAGS = {
     "only 7.5 wavelengths of the corner fit into the scan; errors are reliable from 10 on":
-        lambda: fit_with(corner=7.5 * 2 * np.pi / SIDE),
+        lambda: fit_with(corner=0.75 * ENOUGH_WAVELENGTHS * 2 * np.pi / SIDE),
     "parts of a scan differ 2.5 times as much as those of one homogeneous surface (bow, particles or marks)":
         lambda: changed(tile_errors=of_b2().errors * [1, 1, 2.5]),
     "the scans differ in rms, kurtosis by more than their errors":

@@ -21,7 +21,7 @@ def interpolated(ratios: np.ndarray, humidities: np.ndarray, at: float | np.ndar
 
     Examples
     --------
-    >>> float(interpolated(np.array([0.64, 1.0]), np.array([0.4, 0.8]), 0.6))
+    >>> round(float(interpolated(np.array([0.64, 1.0]), np.array([0.4, 0.8]), 0.6)), 12)
     0.8
     """
     return np.exp(np.interp(at, humidities, np.log(ratios), left=np.nan, right=np.nan))
