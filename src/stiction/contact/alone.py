@@ -27,12 +27,12 @@ BETWEEN = 1e-10
 _AROUND = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
 
 #: Elements of a strip (m,), and the space in which they displace each other, at the height of the lowest of them [m].
-Within = Callable[[float], tuple[np.ndarray, "HalfSpace | Regions"]]
+_Within = Callable[[float], tuple[np.ndarray, "HalfSpace | Regions"]]
 
 
 @dataclass(frozen=True)
 class Regions:
-    """Elements in one row, region after region, that displace those of their own region; in place of a `HalfSpace`."""
+    """Elements in one row, region after region, that displace those of their own region; as in a half-space."""
 
     rows: np.ndarray  #: of the elements in the strip (m,) int32
     columns: np.ndarray  #: (m,) int32
@@ -50,7 +50,7 @@ class Regions:
         return _displacement(pressure, self.rows, self.columns, self.ends, self.offsets)
 
 
-def alone(heights: np.ndarray, space: HalfSpace) -> Within:
+def alone(heights: np.ndarray, space: HalfSpace) -> _Within:
     """Regions of a strip of heights z (n1, n2) float32 [m], connected across corners and, if periodic, across ends."""
     along = [np.minimum(k, n - k) if space.periodic else k for n in space.shape for k in [np.arange(n)]]
     offsets = (space.unit * love(*np.ix_(*along))).astype(np.float32)
@@ -63,7 +63,7 @@ def alone(heights: np.ndarray, space: HalfSpace) -> Within:
     return within
 
 
-def together(space: HalfSpace) -> Within:
+def together(space: HalfSpace) -> _Within:
     """All elements of a strip, which displace each other."""
     everything = np.arange(space.shape[0] * space.shape[1])
     return lambda level: (everything, space)
@@ -99,7 +99,7 @@ class Strip:
         return distance, curve(0)
 
 
-def solid_pressure(strip: Strip, within: Within, attraction: Adhesion) -> np.ndarray:
+def solid_pressure(strip: Strip, within: _Within, attraction: Adhesion) -> np.ndarray:
     """Pressure of the solids p_s at the last distances of ``grid.solid`` (n,) [Pa], until it exceeds the water's pull.
 
     ASSUME: where several states have the same distance, the strip is in the one that it reaches during approach. The

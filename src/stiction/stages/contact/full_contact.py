@@ -99,7 +99,7 @@ def _both_models(distance, force, strip, hardness):
 
 
 def start(distance: np.ndarray, force: np.ndarray) -> tuple[float, float]:
-    """Distances of a curve without force and of its largest attraction, from which `elements.separation` begins [m]."""
+    """Distances of a curve without force and of its largest attraction, from which a separation begins [m]."""
     return forcelaw.limit_distance(distance, force, 0.0), forcelaw.extremum(distance, force)[0]
 
 

@@ -50,7 +50,7 @@ class Ground:
 
     model: ChaosModel  #: of the force laws of strips
     laws: np.ndarray  #: sample of these (k, 4) [SI]
-    tips: tuple[np.ndarray, np.ndarray] | None  #: slopes and forces of tips, see `curves.tip_forces`; none for a bridge
+    tips: tuple[np.ndarray, np.ndarray] | None  #: slopes [-] and forces [N/m] of tips; none for a bridge
 
 
 def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settings: BeamSettings) -> Ground:
