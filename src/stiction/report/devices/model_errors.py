@@ -14,7 +14,7 @@ from stiction.stages.devices.releases import EITHER, FORCE
 
 
 def of_device(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: float, shape: str) -> dict[str, Any]:
-    """Change by full contact of a device in an end state; nothing without datasets of stage device_model_error by device."""
+    """Change of a device by full contact, in an end state; nothing without datasets of stage device_model_error."""
     if not errors:
         return {}
     error = errors[device]
