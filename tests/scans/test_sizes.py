@@ -86,6 +86,17 @@ def test_the_order_of_the_files_has_no_effect():
     assert found.inspection.fit.slope == of_all().inspection.fit.slope
 
 
+def test_of_equal_sides_the_finer_scans_are_first_whatever_the_order_of_the_files():
+    coarse = tuple(dataclasses.replace(scan, heights=scan.heights[::2, ::2]) for scan in MIDDLE)
+    for scans in ((*coarse, *MIDDLE), (*MIDDLE, *coarse)):
+        assert inspect(scans, Settings()).largest.frame.shape == MIDDLE[0].heights.shape
+
+
+def test_directions_are_compared_where_aliases_of_the_large_scans_do_not_reach():
+    errors = [found.sector_errors for found in (of_large(), of_all())]
+    np.testing.assert_allclose(errors[1], errors[0], rtol=0.05, err_msg="equal numbers of waves")
+
+
 def test_sizes_that_contradict_each_other_are_named():
     assert np.all(of_all().agreement[1] > UNLIKELY)
     assert not any("differ" in flag or "times the spectrum" in flag for flag in of_all().flags)

@@ -123,14 +123,8 @@ def estimate(
     residuals = []
     for number in range(_ROUNDS):
         drawn = _drawn(found, model, lambda k, number=number: stream(seed, "estimate", surface, number, k), model_scans)
-        of_sizes = [
-            maps.moments - part.bias(model.moments, len(maps.names))
-            for maps, part in zip(found.counted, drawn, strict=False)
-        ]
+        of_sizes, heights = _unbiased(found, drawn, model)
         values = found.averaged(of_sizes)
-        heights = found.averaged(
-            [maps.quantiles - part.levelled_off.mean(axis=0) for maps, part in zip(found.counted, drawn, strict=False)]
-        )
         residuals.append(_residual(nearest, drawn[0].quantiles, moments(drawn[0].powers)))
         model, nearest = _model(found, values, heights, farthest)
     largest, count = found.largest, len(found.largest.names)
@@ -142,7 +136,8 @@ def estimate(
     by_tiles = np.sqrt(found.propagated([tile_errors(maps.levelled, settings.tiles) ** 2 for maps in found.counted]))
     fitness = goodness(_residual(nearest, largest.quantiles, largest.moments), np.vstack(residuals), count)
     described = nearest is not None and not fitness[1] < UNLIKELY
-    sectors, sector_errors = spectra.sectors(largest.periodogram, found.rings, found.reach.low, found.reach.high)
+    resolved = found.reach.low, min(found.reach.high, largest.reach.high)
+    sectors, sector_errors = spectra.sectors(largest.periodogram, found.rings, *resolved)
     return SurfaceEstimate(
         inspection=found,
         moments=values,
@@ -161,6 +156,13 @@ def estimate(
         **_summits(found, drawn),
         line_jump=max(line_jump(z, maps.frame.pixel) for maps in found.sizes for z in maps.levelled),
     )
+
+
+def _unbiased(found, drawn, model):
+    """Moments of every size, and quantiles of all together, less what levelling and the finite size change."""
+    counted = list(zip(found.counted, drawn, strict=False))
+    of_sizes = [maps.moments - part.bias(model.moments, len(maps.names)) for maps, part in counted]
+    return of_sizes, found.averaged([maps.quantiles - part.levelled_off.mean(axis=0) for maps, part in counted])
 
 
 def _drawn(found, model, rng, fewest):

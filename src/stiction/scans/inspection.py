@@ -243,14 +243,22 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
 
 
 def by_size(scans: Sequence[Scan]) -> list[dict[int, Scan]]:
-    """Scans that are alike in size and number of points together, by their numbers; the largest size first."""
+    """Scans that are alike in size and number of points together, by their numbers.
+
+    The largest size is first, and of equal sizes that with more points.
+    """
     groups = []
     for number, scan in enumerate(scans):
         group = next((group for group in groups if _alike(scan, next(iter(group.values())))), None)
         if group is None:
             groups.append(group := {})
         group[number] = scan
-    return sorted(groups, key=lambda group: -min(next(iter(group.values())).size))
+    return sorted(groups, key=lambda group: _extent(next(iter(group.values()))), reverse=True)
+
+
+def _extent(scan):
+    """Shorter side of a scan and number of its points, by which sizes are in order."""
+    return min(scan.size), scan.heights.size
 
 
 def _alike(one, other):
