@@ -52,7 +52,7 @@ WRONG_VALUES = [
     ("beam: {scatter: -0.01}", "beam.scatter", "-0.01", "at least 0 and below 0.2"),
     ("beam: {scatter: 0.2}", "beam.scatter", "0.2", "below 0.2"),
     (f"devices: {{C1: {CANTILEVER[:-1]}, chart: {{thicknesses_um: [3], humidities: [dry, 0.9]}}}}}}",
-     "devices.C1.chart.humidities[0]", "0.0", "above 0 and below 1: relative humidity, as a fraction of 1; dry air is"),
+     "devices.C1.chart.humidities[0]", "'dry'", "above 0 and below 1: relative humidity, as a fraction of 1; dry air"),
     ("figures: {humidity: 1.0}", "figures.humidity", "1.0", "at least 0 and below 1 or dry"),
     ("studies: {sensitivity: {step: 0}}", "studies.sensitivity.step", "0", "at least 0.001 and at most 0.5"),
     ("studies: {sensitivity: {step: 1.0e-12}}", "studies.sensitivity.step", "1e-12", "far above single precision"),
@@ -155,7 +155,7 @@ WRONG_RELATIONS = [
      "must be at least 0.2903: in drier air, at 300 K and contact angles of 0 and 0 degrees, the film between the "
      "surfaces is thinner than 3 molecules, 0.84 nm, which are no liquid"),
     ("figures: {humidity: 0.01}", "figures.humidity", "0.01", "must be at least 0.2903"),
-    ("pairs: {b: {humidities: [dry, 0.29]}}\nattraction: {reach: all}", "pairs.b.humidities", "[0.0, 0.29]",
+    ("pairs: {b: {humidities: [dry, 0.29]}}\nattraction: {reach: all}", "pairs.b.humidities", "['dry', 0.29]",
      "which are no liquid; results for dry air and for the driest air that is allowed bracket those between"),
     ("pairs: {b: {humidities: [dry, 0.6]}}", "attraction.reach", "'touching'",
      "must be all for pair b, in dry air: without attraction across gaps, energies in dry air are 5 to 30 times too"),

@@ -4,6 +4,7 @@ Dry air has the humidity 0 in the code. It has no water at all, which is not a f
 """
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 #: Word for the humidity of dry air in configurations, and the end of the names of its cases and contacts.
@@ -59,6 +60,23 @@ def in_numbers(value: Any, key: str = "humidity", levels: int = _LEVELS) -> Any:
     if isinstance(value, list) and levels:
         return [in_numbers(inner, key, levels - 1) for inner in value]
     return 0.0 if value == DRY and key in _HUMIDITIES else value
+
+
+def in_words(value: Any, path: Sequence[str | int]) -> Any:
+    """Value of a key, for messages: humidities of 0 are those that a user calls dry.
+
+    Examples
+    --------
+    >>> in_words([0.0, 0.45], ("pairs", "b", "humidities")), in_words(0.0, ("pairs", "b", "humidities", 0))
+    (['dry', 0.45], 'dry')
+    >>> in_words([0.0, 1.0], ("devices", "C1", "shares"))
+    [0.0, 1.0]
+    """
+    if not any(key in _HUMIDITIES for key in path):
+        return value
+    if isinstance(value, list):
+        return [in_words(one, path) for one in value]
+    return DRY if type(value) is float and value == 0 else value
 
 
 def air(humidity: float) -> str:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from stiction.config.cases import in_words
 from stiction.config.messages import Problem, dotted, shown
 
 
@@ -103,7 +104,7 @@ class Keys:
         path = _path(key)
         if path[0] == "surfaces" and path[1] in self.files:
             return (*path[:2], "scans", "files"), [Path(file).name for file in self.files[path[1]]]
-        return path, self._value(path)
+        return path, in_words(self._value(path), path)
 
     def _value(self, path):
         value = self.config

@@ -13,6 +13,7 @@ from functools import cache
 
 import yaml
 
+from stiction.config.cases import in_words
 from stiction.config.units import from_si, to_si
 
 
@@ -83,7 +84,8 @@ def _explained(error, schema):
     if error.validator == "additionalProperties":
         known = list(error.schema["properties"])
         return [Problem((*path, key), _unknown(key, value[key], known)) for key in value if key not in known]
-    return [Problem(path, f"is {shown(value)}, must be {_allowed(error.schema)}{_hint(path, value, error.schema)}")]
+    stated = shown(in_words(value, path))
+    return [Problem(path, f"is {stated}, must be {_allowed(error.schema)}{_hint(path, value, error.schema)}")]
 
 
 def _entry(schema, path):
