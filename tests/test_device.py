@@ -51,7 +51,7 @@ def test_results_are_computed_once(device):
 
 def test_warnings_are_those_of_all_shapes_and_that_plasticity_is_not_checked(device):
     found = device.safe_lengths(0.88)
-    assert device.warnings(found) == [limits.plastic_contact(np.nan)]
+    assert device.warnings(found) == [limits.plastic_contact(np.nan, np.nan)]
     length = float(found.safe_length.sel(shape="S-shape").min())
     warnings = device.warnings(found.assign(safe_length=found.safe_length * 100e-6 / length))
     assert warnings[0] == limits.large_rotation(10e-6, 100e-6)
@@ -77,7 +77,7 @@ def test_a_stopper_has_its_whole_area_and_the_forces_of_its_stage():
     found = stopper.forces()
     pulls = curves.pull_offs(stopper.contact, 0.5, Water(300.0))
     np.testing.assert_allclose(found.pull_off.sel(humidity=0.5), 9e-12 * pulls, rtol=1e-12)
-    assert stopper.warnings(found) == [limits.plastic_contact(np.nan)]
+    assert stopper.warnings(found) == [limits.plastic_contact(np.nan, np.nan)]
 
 
 def test_a_stopper_on_very_rough_surfaces_does_not_stick_and_a_smooth_one_does():

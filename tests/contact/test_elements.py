@@ -289,6 +289,14 @@ def test_full_contact_tends_to_the_sum_over_summits_as_the_water_floods_everythi
     assert distances[-1] < 0.005 < 0.2 < distances[0]
 
 
+def test_the_largest_attraction_of_a_film_that_floods_everything_is_its_tension_and_is_found_before_the_film_ends():
+    """The force is the same over most of the 51 nm of the film, in which the search must not walk on."""
+    height, tension = film(0.98, 300.0)
+    found = separation(space_of(), rough(), Adhesion(height, tension), by_summits(0, 0.98)[2])
+    assert found.pull_off == pytest.approx(tension, rel=0.01)  # of the parabola through three distances
+    assert found.states < 15
+
+
 # What is refused
 
 

@@ -15,8 +15,8 @@ WORDS = tuple(one.words for one in PROPERTIES.values())
 CASES = [
     (limits.arcs_of_elements, (0.42, 1.5 * UM), "42 %.*1.5 µm.*under `devices`", (0.0, 1.5 * UM)),
     (limits.cut_off_mean, (0.58, 1400 * UM, 1500 * UM), "58 %.*1400 µm.*1500 µm", (1.0, 700 * UM, 1500 * UM)),
-    (limits.plastic_contact, (0.58,), "58 %.*2 %", (0.02,)),
-    (limits.plastic_contact, (np.nan,), "was not checked.*distance_nm", (0.0,)),
+    (limits.plastic_contact, (0.58, 1.04e8), "58 %.*2 %.* with 104 MPa", (0.02, 1.04e8)),
+    (limits.plastic_contact, (np.nan, np.nan), "was not checked.*distance_nm", (0.0, 3e7)),
     (limits.default_material, ("gold", ("hardness",)), "4 properties of gold.*Hamaker constant", ("polysilicon", ())),
     (
         limits.default_material,
@@ -72,7 +72,7 @@ def test_every_limit_is_tested():
         (lambda x: limits.wide_beam(x, 1.0, 1.0, 1.0), 10 / 6),
         (lambda x: limits.stubby_beam(1 / x, 1.0), 1 / 20),
         (lambda x: limits.filled_gap(1 / x, 0.3, 0.7), 1 / 20),
-        (lambda x: limits.plastic_contact(x), 0.02),
+        (lambda x: limits.plastic_contact(x, 3e7), 0.02),
         (lambda x: limits.stretched_bridge(x, 1.0), 0.5),
         (lambda x: limits.thin_film(4 * WATER_MOLECULE / x), 1.0),
         (lambda x: limits.wide_meniscus(x, (0.3, 0.6)), 0.1 / 5),

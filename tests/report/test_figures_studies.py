@@ -67,7 +67,7 @@ VARIANTS = {
 def plasticity(share):
     columns = {name: RNG.random(300) * 1e-9 for name in ("interference", "radius")}
     columns |= {"stress": RNG.random(300) * 1e10, "strip": np.arange(300) // 100}
-    return study_plasticity.layout(columns, (share, 0.1 * share), 2e-9)
+    return study_plasticity.layout(columns, (share, 0.1 * share), 2e-9, 5e7)
 
 
 def sizes():

@@ -64,7 +64,7 @@ def published(count):
 
 def stresses():
     columns = {"interference": 1e-9 * RNG.random(99), "radius": 1e-7 * RNG.random(99), "stress": 1e10 * RNG.random(99)}
-    return study_plasticity.layout(columns | {"strip": np.arange(99) // 33}, (0.052, 0.0117), 2.25e-9)
+    return study_plasticity.layout(columns | {"strip": np.arange(99) // 33}, (0.052, 0.0117), 2.25e-9, 5e7)
 
 
 def sizes(count):

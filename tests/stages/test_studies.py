@@ -217,6 +217,18 @@ def test_stress_of_every_touching_summit_is_that_of_eq_14():
     assert float(found.separation) == pytest.approx(5.7e-9)
 
 
+def test_the_mean_pressure_is_that_of_the_contact_at_the_same_distance_without_attraction():
+    """Both sum the spheres of Hertz over the summits of the same strips, one of them over the nodes of a grid."""
+    settings = small.settings_of(plasticity, job_settings(small.PLAN, "studies/plasticity/b"))
+    found = plasticity.compute(small.surfaces(), "b", settings)
+    of_pair = replace(small.settings_of(stage_contact, job_settings(small.PLAN, "contact/b_NG")), van_der_waals="none")
+    there = stage_contact.compute(small.surfaces(), "b", "NG", of_pair, range(settings.strips))
+    pressure = float(there.solid_pressure.mean("sample").interp(distance=settings.distance))
+    assert float(found.pressure) == pytest.approx(pressure, rel=0.01)
+    closer = plasticity.compute(small.surfaces(), "b", replace(settings, distance=0.9 * settings.distance))
+    assert float(closer.pressure) > 1.2 * pressure
+
+
 @pytest.mark.parametrize("gigapascals", [400, 700])
 def test_the_plastic_share_is_that_of_the_area_above_the_onset(gigapascals):
     settings = small.settings_of(plasticity, job_settings(small.PLAN, "studies/plasticity/b"))

@@ -411,7 +411,7 @@ class Plan:
         of_paper = [name for name in self.config["studies"] if name != "full_contact"]
         wanted = self.config["run"].get("studies", of_paper)
         needed = {"sensitivity": [self.figure_pair]} if self.pairs else {}
-        needed |= dict.fromkeys(("full_contact", "variants"), self.pairs)
+        needed |= dict.fromkeys(("full_contact", "asperities", "pressing", "variants"), self.pairs)
         return [name for name in wanted if name not in needed or any(map(self.humid, needed[name]))]
 
     @property

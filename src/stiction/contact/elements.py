@@ -278,10 +278,11 @@ def at_rest(space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, start: tu
 def _beyond_extremum(at, state, step, end):
     """Distances and forces, in steps, beyond the largest attraction and a distance; state a step before the former."""
     curve, before = [(state.distance, state.force)], state
-    lowest = state.force
-    while state.distance < end or state.force <= lowest:
+    lowest, falls = state.force, True
+    while falls or state.distance < end:
         last, state = state, at(state.distance + step, state)
-        if state.force < lowest:
+        falls = state.force < lowest  # not where a film floods everything and the force no longer changes
+        if falls:
             lowest, before = state.force, last
         curve.append((state.distance, state.force))
         _refuse_after(len(curve))

@@ -27,8 +27,8 @@ SLENDER = 20.0
 PLATE = 10.0
 #: Largest gap of a bridge, in thicknesses, for which its stretching lets bridges come free that are up to 5 % longer.
 STRETCH = 0.5
-#: What plastic contact does to beams and to stoppers.
-SHORTER, STRONGER = "beams stick at shorter lengths", "stoppers hold more"
+#: What plastic contact does to beams and to stoppers that were pressed as hard.
+SHORTER, STRONGER = "beams that were pressed stick at shorter lengths", "stoppers that were pressed hold more"
 #: Relevant to stiction, but not in the model at any setting.
 NOT_MODELLED = (
     "Not in the model: drying after release, the time that water needs to condense, electric charge and voltage, wear, "
@@ -57,18 +57,19 @@ def cut_off_mean(share: float, mean: float, length: float) -> str | None:
     )
 
 
-def plastic_contact(share: float, effect: str = SHORTER) -> str | None:
-    """Plastic contact, which makes surfaces stick more than the elastic model predicts; NaN if it was not studied.
+def plastic_contact(share: float, pressure: float, effect: str = SHORTER) -> str | None:
+    """Contact that is plastic under a mean pressure of the surfaces; NaN if it was not studied.
 
-    ``effect`` says what this does to the device, `SHORTER` or `STRONGER`.
+    ``effect`` says what this does to a device that was pressed, `SHORTER` or `STRONGER`. Adhesion alone presses less.
     """
     if math.isnan(share):
         return "Whether the contact is plastic was not checked: give its distance in studies.plasticity.distance_nm."
     if share <= PLASTIC:
         return None
     return (
-        f"{100 * share:.2g} % of the contact area is plastic, more than {100 * PLASTIC:.2g} %: {effect} than the "
-        "elastic model predicts, which is the unsafe side."
+        f"{100 * share:.2g} % of the area in contact is plastic, more than {100 * PLASTIC:.2g} %, when the surfaces "
+        f"are pressed together with {pressure / 1e6:.3g} MPa: {effect} than the elastic model predicts, which is the "
+        "unsafe side. The study pressing says by how much, and from which pressure on."
     )
 
 

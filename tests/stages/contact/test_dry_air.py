@@ -150,7 +150,7 @@ def test_surfaces_that_water_does_not_wet_are_dry_at_any_humidity():
     assert [plan.in_air("b", humidity) for humidity in (0.0, 0.44)] == ["b_dry", "b_dry"]
     assert water_of("b_dry", plan).film(0.44) == (0.0, 0.0)
     assert (plan.humid_pairs, plan.humid_cases, plan.studied_cases) == ([], [], [])
-    assert not {"sensitivity", "full_contact", "variants"} & set(plan.studies)
+    assert not {"sensitivity", "full_contact", "asperities", "pressing", "variants"} & set(plan.studies)
     assert {"orders", "mesh"} < set(plan.studies)
 
 

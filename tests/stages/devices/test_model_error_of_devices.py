@@ -6,6 +6,9 @@ from ground import safe_with_tips
 from test_pages import CANTILEVER, STOPPER, safe
 from test_tables_budget import BUDGETS, STOPPERS
 
+from stiction.config.files import load
+from stiction.config.plan import Plan
+from stiction.plan.graph import Graph
 from stiction.report.devices import model_errors, pages, tables_budget, tables_devices
 from stiction.stages.devices import model_error
 from stiction.stages.devices.releases import EITHER, FORCE, S_SHAPE
@@ -103,3 +106,33 @@ def test_sentences_say_what_full_contact_leaves_out_and_whether_it_has_been_appl
     assert "safe side" not in applied
     unknown = model_errors.sentences("D", {"D": error((FORCE,), [np.nan, np.nan])})
     assert "is not known at these humidities" in unknown[0]
+
+
+# Pairs in dry air alone
+
+
+DRY = {
+    "attraction": {"reach": "all"},
+    "run": {"pairs": ["a"], "studies": ["full_contact"]},
+    "pairs": {"b": {"humidities": ["dry"]}},
+    "devices": {
+        name: {"kind": "stopper", "pair": pair, "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.6]}
+        for name, pair in (("S1", "a"), ("S2", "b"))
+    },
+}
+
+
+def test_a_device_whose_pair_is_in_dry_air_alone_is_left_out_of_the_error_of_the_model():
+    graph = Graph(Plan(load(DRY)))
+    for table in ("tables/stoppers.csv", "devices/S2.html", "devices/S1.html"):
+        named = graph.job(table).inputs["errors"]
+        assert "S2" not in named
+        assert ("S1" in named) == (table != "devices/S2.html")
+
+
+def test_what_is_left_out_is_said_and_is_empty_in_the_tables():
+    (said,) = model_errors.sentences("S3", ERRORS)
+    assert said.startswith("The error of the model is not known: full elastic contact needs a humidity")
+    assert model_errors.sentences("S3", {}) == [said]
+    assert model_errors.sentences("S3", None) == []
+    assert np.isnan(model_errors.of_device(ERRORS, "S3", 0.67, FORCE)["model_error_percent"])

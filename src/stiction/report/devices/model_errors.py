@@ -17,8 +17,8 @@ def of_device(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: fl
     """Change of a device by full contact, in an end state; nothing without datasets of stage device_model_error."""
     if not errors:
         return {}
-    error = errors[device]
-    known = shape in error["shape"] and humidity in error.humidity
+    error = errors.get(device)
+    known = error is not None and shape in error["shape"] and humidity in error.humidity
     return change(error.sel(shape=shape, humidity=humidity) if known else None, "factor")
 
 
@@ -29,10 +29,12 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
     ----------
     device : str
     errors : dict or None
-        Device to the dataset of stage device_model_error.
+        Device to the dataset of stage device_model_error, as far as its pair has humid air.
     """
-    if not errors:
+    if errors is None:
         return []
+    if device not in errors:
+        return ["The error of the model is not known: full elastic contact needs a humidity of the pair above dry air."]
     error = errors[device]
     shape = str(error["shape"].values[0])
     what = "pull-off force" if shape == FORCE else f"lengths held by the {END_STATES[shape].by}"
@@ -78,5 +80,9 @@ def _listed(humidities):
 
 
 def of_devices(plan: Any, *devices: str) -> dict[str, Any]:
-    """Errors of some devices, as inputs of a stage; none unless they are wanted."""
-    return {"errors": by_name("devices/model_error", devices)} if plan.states_model_error else {}
+    """Errors of some devices, as inputs of a stage; none unless they are wanted.
+
+    Devices on pairs in dry air alone are left out: full contact is computed where water condenses.
+    """
+    humid = [name for name in devices if plan.humid(plan.config["devices"][name]["pair"])]
+    return {"errors": by_name("devices/model_error", humid)} if plan.states_model_error else {}

@@ -22,6 +22,9 @@ from stiction.stages.beams.releases import ended, stuck_lengths
 Warnings = dict[str, list[str]]
 #: Names of materials, each with the properties that are stated.
 Materials = Sequence[tuple[str, Sequence[str]]]
+#: Plastic share of the contact area of a pair [-], and the mean pressure of its surfaces at which it is plastic [Pa].
+Plastic = tuple[float, float]
+NOT_STUDIED = (np.nan, np.nan)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,15 +50,17 @@ def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
     return limits.given(*warnings)
 
 
-def contact_warnings(plastic: float, materials: Materials, effect: str = limits.SHORTER) -> list[str | None]:
+def contact_warnings(plastic: Plastic, materials: Materials, effect: str = limits.SHORTER) -> list[str | None]:
     """Warnings, or None, about the contact of a pair."""
     about = (limit(*material) for material in materials for limit in (limits.default_material, limits.spacer))
-    return [limits.plastic_contact(plastic, effect), *about]
+    return [limits.plastic_contact(*plastic, effect), *about]
 
 
-def plastic_share(plasticity: Mapping[str, xr.Dataset], pair: str) -> float:
-    """Plastic share of the contact area of a pair from the datasets of study plasticity; NaN if there is none."""
-    return float(plasticity[pair].plastic_share) if pair in plasticity else np.nan
+def plastic_contact(plasticity: Mapping[str, xr.Dataset], pair: str) -> Plastic:
+    """How plastic the contact of a pair is, from the datasets of study plasticity."""
+    if pair not in plasticity:
+        return NOT_STUDIED
+    return float(plasticity[pair].plastic_share), float(plasticity[pair].pressure)
 
 
 def of_pairs(
@@ -79,7 +84,7 @@ def of_pairs(
     found = {
         f"pair {pair}": limits.given(
             _without_water(pair, beams, settings.water[pair]),
-            *contact_warnings(plastic_share(plasticity, pair), materials[pair]),
+            *contact_warnings(plastic_contact(plasticity, pair), materials[pair]),
         )
         for pair in settings.pairs
     }

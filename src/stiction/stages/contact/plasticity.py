@@ -9,14 +9,13 @@ import xarray as xr
 from stiction.analysis import plasticity
 from stiction.constants import HARDNESS
 from stiction.contact import solids
-from stiction.contact.asperity import hertz_maximum_stress
+from stiction.contact.asperity import hertz_force, hertz_maximum_stress
 from stiction.devices.materials import ELASTIC
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import pairs
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
 from stiction.stages.surfaces.rough_surfaces import both, of_pair
-from stiction.surface.summits import find_summits
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,28 +27,34 @@ class Settings(pairs.Settings):
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
-    """Find the touching summits of all strips and the share of their contact area that yields."""
+    """Find the touching summits of all strips, the share of their contact area that yields, and the mean pressure."""
     both = surface_pair(surfaces, "NG", settings)
     streams = streams_of_sides(settings.seed, pair)
     found = []
     for k in progress(range(settings.strips), "strips"):
-        height, curvature, _ = find_summits(both.draw(*streams(k)), both.beam.grid.spacing * both.every)
+        height, curvature, area_of_strip, _ = both.summits(both.draw(*streams(k)))
         interference, radius = plasticity.touching(height, curvature, settings.distance)
         found.append((interference, radius, np.full(len(radius), k)))
     interference, radius, strip = np.hstack(found)
     materials = bodies(settings)
-    stress = hertz_maximum_stress(interference, radius, solids.composite_modulus(*materials))
+    modulus = solids.composite_modulus(*materials)
+    stress = hertz_maximum_stress(interference, radius, modulus)
     area = plasticity.contact_area(interference, radius)
     hardness = solids.softer_hardness(*materials)
     share = plasticity.plastic_share(area, stress, strip.astype(int), settings.strips, hardness)
     summits = {"interference": interference, "radius": radius, "stress": stress, "strip": strip.astype(int)}
-    return layout(summits, share, settings.distance, hardness)
+    pressure = hertz_force(interference, radius, modulus).sum() / (settings.strips * area_of_strip)
+    return layout(summits, share, settings.distance, pressure, hardness)
 
 
 def layout(
-    summits: dict[str, np.ndarray], share: tuple[float, float], distance: float, hardness: float = HARDNESS
+    summits: dict[str, np.ndarray],
+    share: tuple[float, float],
+    distance: float,
+    pressure: float,
+    hardness: float = HARDNESS,
 ) -> xr.Dataset:
-    """Stress of every touching summit and the share of the contact area that yields.
+    """Stress of every touching summit, the share of the contact area that yields, and the pressure at which it does.
 
     Parameters
     ----------
@@ -59,6 +64,8 @@ def layout(
         A_P / A and its standard error [-].
     distance : float
         Between the mean planes [m].
+    pressure : float
+        Mean of the surfaces at the distance, without attraction [Pa].
     hardness : float
         Of the softer body [Pa].
     """
@@ -71,6 +78,7 @@ def layout(
             "plastic_share": ((), share[0], {"units": "1", "long_name": "A_P / A"}),
             "plastic_share_error": ((), share[1], {"units": "1"}),
             "separation": ((), distance, {"units": "m"}),
+            "pressure": ((), pressure, {"units": "Pa", "long_name": "mean pressure of the surfaces"}),
             "hardness": ((), hardness, {"units": "Pa"}),
         }
     )

@@ -7,7 +7,6 @@ from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
 import xarray as xr
 
 from stiction.config.cases import air, case_id
@@ -18,11 +17,13 @@ from stiction.plan.names import by_case, by_name
 from stiction.plan.stage import File, Stage, select
 from stiction.run.atomic import save_text
 from stiction.stages.beams.pair_warnings import (
+    NOT_STUDIED,
     Materials,
+    Plastic,
     Warnings,
     as_markdown,
     contact_warnings,
-    plastic_share,
+    plastic_contact,
 )
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import DesignedBeam, section_of_beam
@@ -48,7 +49,9 @@ class OfStopper:
     materials: Materials = ()  #: of its pair
 
 
-def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan, humidity: float = 0.0) -> dict[str, list[str]]:
+def of_device(
+    found: xr.Dataset, of: OfDevice, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0
+) -> dict[str, list[str]]:
     """Warnings about a device at a humidity, by the shape in which it sticks.
 
     Each shape is checked at the shortest of its lengths, where slopes are largest.
@@ -58,8 +61,8 @@ def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan, humidity
     found : Dataset
         Of stage safe_lengths.
     of : OfDevice
-    plastic : float
-        Plastic share of the contact area; NaN if it was not studied [-].
+    plastic : tuple of 2 floats
+        Plastic share of the contact area [-], and the pressure at which it is plastic [Pa].
     humidity : float
         At which no water condensing is worth a sentence; in dry air it is not [-].
     """
@@ -72,7 +75,7 @@ def of_device(found: xr.Dataset, of: OfDevice, plastic: float = np.nan, humidity
 
 
 def of_chart(
-    found: Sequence[xr.Dataset], of: OfDevice, plastic: float = np.nan
+    found: Sequence[xr.Dataset], of: OfDevice, plastic: Plastic = NOT_STUDIED
 ) -> dict[tuple[float, float, str], list[str]]:
     """Warnings about the chart of a device by thickness [m], gap [m] and shape.
 
@@ -132,8 +135,8 @@ class OfDevices(NamedTuple):
     patches: dict[str, list[str]]  #: of stoppers, by name
 
 
-def of_stopper(of: OfStopper, plastic: float = np.nan) -> list[str]:
-    """Warnings about a stopper; the plastic share of its contact area is NaN if it was not studied [-]."""
+def of_stopper(of: OfStopper, plastic: Plastic = NOT_STUDIED) -> list[str]:
+    """Warnings about a stopper; parameters as of `of_device`."""
     return limits.given(*_of_water(of), *contact_warnings(plastic, of.materials, limits.STRONGER))
 
 
@@ -186,16 +189,16 @@ def _of_one_device(data, _at, settings):
     """Warnings about a device: about its lengths, its curves and its patch, each with what follows its name."""
     if "stopper" in settings:
         of = in_si(OfStopper, settings["stopper"])
-        return [], [], [[[], of_stopper(of, plastic_share(data["plasticity"], of.pair))]]
+        return [], [], [[[], of_stopper(of, plastic_contact(data["plasticity"], of.pair))]]
     of = in_si(OfDevice, settings["beam"])
-    share = plastic_share(data["plasticity"], of.device.pair)
+    plastic = plastic_contact(data["plasticity"], of.device.pair)
     lengths = [
         [[humidity, shape], sentences]
         for (_, humidity), dataset in data["lengths"].items()
-        for shape, sentences in of_device(dataset, of, share, humidity).items()
+        for shape, sentences in of_device(dataset, of, plastic, humidity).items()
     ]
     charts = list(data["charts"].values())
-    curves = [[curve, sentences] for curve, sentences in of_chart(charts, of, share).items()] if charts else []
+    curves = [[curve, sentences] for curve, sentences in of_chart(charts, of, plastic).items()] if charts else []
     return lengths, curves, []
 
 
