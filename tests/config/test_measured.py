@@ -16,7 +16,8 @@ from plans import job_settings
 from published import SURFACES
 from written_scans import BAD, SIDE, bad_files, etched, scans_of, write
 
-from stiction.config import files, measured
+from stiction.config import files, measured, memory
+from stiction.config.designs import Designs
 from stiction.config.merging import merged
 from stiction.config.plan import Plan
 from stiction.config.units import in_si
@@ -461,6 +462,18 @@ def checked(config, kept):
     done = subprocess.run(words, input=json.dumps(config), capture_output=True, text=True, check=True)
     assert done.stderr == ""
     return done.stdout.split()
+
+
+def test_tips_on_scanned_surfaces_are_those_on_surfaces_of_their_preliminary_rms(folder):
+    sizes = {"thickness_um": 2.6, "gap_um": 20, "width_um": 2, "humidities": [0.67]}
+    beams = {"devices": {"C1": {"kind": "cantilever", "pair": "b"} | sizes}}
+    config = files.load(configured(*both(folder)), beams)
+    found, _ = measured.preliminary_estimates(config)
+    numbers = measured.with_preliminary_estimates(config, found)
+    assert Designs(config).tips("C1") == Designs(numbers).tips("C1")
+    assert memory.of_job(config) == memory.of_job(numbers)
+    rough = merged(numbers, {"surfaces": {"Etched": {"rms_nm": 100}}})
+    assert Designs(config).tips("C1").length < Designs(rough).tips("C1").length
 
 
 @pytest.mark.slow

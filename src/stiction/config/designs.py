@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 from typing import NamedTuple
 
@@ -11,7 +12,7 @@ from stiction.beam.cantilever import Beam
 from stiction.config import arrays
 from stiction.config.cases import case_id, in_any_air
 from stiction.config.kinds import Kind, kind_of
-from stiction.config.measured import is_measured, quantities
+from stiction.config.measured import is_measured, preliminary_estimates, quantities
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.meniscus import flooded_energy, meniscus_height
@@ -198,10 +199,20 @@ class Designs:
         """
         section = self.devices[device]
         wettest = max(section["humidities"] + section.get("chart", {}).get("humidities", []))
-        rms = [self.config["surfaces"][self.config["pairs"][section["pair"]][side]]["rms_nm"] for side in SIDES]
+        rms = [self._rms(self.config["pairs"][section["pair"]][side]) for side in SIDES]
         film = float(meniscus_height(wettest, self.config["water"]["temperature_K"])) if wettest else 0.0
         least = from_si(film, "nm") + 3 * math.hypot(*rms)
         return round(2 ** (math.ceil(4 * math.log2(least)) / 4), 3)
+
+    def _rms(self, surface):
+        """Standard deviation of the heights of a surface, preliminary if it is described by scans [nm]."""
+        entry = self.config["surfaces"][surface]
+        return (self._preliminary[surface] if is_measured(entry) else entry)["rms_nm"]
+
+    @cached_property
+    def _preliminary(self):
+        """Preliminary numbers of the measured surfaces."""
+        return preliminary_estimates(self.config)[0]
 
     # Budgets
 
