@@ -4,7 +4,8 @@
 
 Errors are generated from the syntax tree of a module and sampled by a hash of the error and its function, so that an
 edit of one function leaves the sample of all others as it is. Each error is made in a copy of the project, where tests
-run until the first fails: those named after the module, then those that import it.
+run until the first fails: those named after the module, those that import it, and those of its folder that import a
+module which imports it. Tests that found an error before come first.
 
 Not generated are errors that no test should notice: in texts, messages and what raises or logs them, in annotations,
 decorators, imports and ``__all__``, in resources, precision and looks (``RESOURCES``, ``INVISIBLE``), and in calls and
@@ -15,19 +16,21 @@ import argparse
 import ast
 import copy
 import hashlib
+import multiprocessing
 import os
 import shutil
-import subprocess
+import signal
 import sys
 import tempfile
-import time
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from queue import Queue
 from typing import NamedTuple
 
 import pytest
+from numba.core.config import reload_config
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "src" / "stiction"
@@ -35,6 +38,19 @@ PACKAGE = ROOT / "src" / "stiction"
 REQUIRED = 0.97
 #: A mutant counts as caught if its tests take this many times as long as without it, and at least that long [s].
 PATIENCE = 4, 60
+#: Processes of tests start from one that has imported the libraries.
+PROCESSES = multiprocessing.get_context("forkserver")
+LIBRARIES = [
+    "numba",
+    "scipy.stats",
+    "scipy.optimize",
+    "scipy.signal",
+    "xarray",
+    "netCDF4",
+    "matplotlib.pyplot",
+    "hypothesis",
+]
+PROCESSES.set_forkserver_preload(LIBRARIES)
 FAST, SLOW = "not slow and not cluster and not browser", "slow and not cluster and not browser"
 
 #: Operators and the one that each is replaced by.
@@ -279,8 +295,45 @@ def rounds(module):
     named = sorted({*own.glob(f"test_{name}*.py"), *own.glob(f"test_*_{name}.py")})
     using = [path for path in sorted(tests.rglob("test_*.py")) if module in imported(path) and path not in named]
     using.sort(key=lambda path: path.parent != own)
-    found = [(named, FAST), (named, SLOW), (using, FAST)] if named else [(using, FAST), (using, SLOW)]
+    others = {name for name in modules() if module in imported(path_of(name))}
+    near = [path for path in sorted(own.glob("test_*.py")) if others & imported(path) and path not in [*named, *using]]
+    found = [(named, FAST), (using, FAST), (near, FAST), (named or using, SLOW)]
     return [([str(path.relative_to(ROOT)) for path in paths], marks) for paths, marks in found if paths]
+
+
+class Watch:
+    """Plugin of pytest: tests that found errors before come first; what fails, and the time of each test [s]."""
+
+    def __init__(self, found):
+        self.found, self.failed, self.seconds = found, "", {}
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_collection_modifyitems(self, items):
+        items.sort(key=lambda item: -self.found.get(item.nodeid, 0))
+
+    def pytest_collectreport(self, report):
+        self.failed = self.failed or report.failed and report.nodeid
+
+    def pytest_runtest_logreport(self, report):
+        self.seconds[report.nodeid] = self.seconds.get(report.nodeid, 0) + report.duration
+        self.failed = self.failed or report.failed and report.nodeid
+
+
+def run_tests(connection, folder, cache, arguments, found, changed):
+    """Run pytest in a process that has imported all libraries, but not the package, and send what it has seen."""
+    os.setsid()
+    os.chdir(folder)
+    os.environ |= {"NUMBA_CACHE_DIR": str(cache), "PYTHONPATH": str(folder / "src"), "PYTHONDONTWRITEBYTECODE": "1"}
+    sys.path.insert(0, str(folder / "src"))
+    reload_config()
+    sys.dont_write_bytecode = changed  # a mutant may have the size and the second of the one before
+    with Path(os.devnull).open("w") as nowhere:
+        os.dup2(nowhere.fileno(), 1)
+        os.dup2(nowhere.fileno(), 2)
+    watch = Watch(found)
+    code = pytest.main(["-x", "--tb=no", "-p", "no:cacheprovider", *arguments], plugins=[watch])
+    passed = code in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED)
+    connection.send(("" if passed else watch.failed or f"pytest ended with {code}", watch.seconds))
 
 
 class Copy:
@@ -288,35 +341,48 @@ class Copy:
 
     def __init__(self, folder):
         self.folder, self.warm, self.cache = folder / "project", folder / "warm", folder / "cache"
+        self.found, self.seconds = {}, {}
         left_out = shutil.ignore_patterns("__pycache__", ".*", "results", "benchmarks", "_build")
         shutil.copytree(ROOT, self.folder, ignore=left_out)
+        self.warm.mkdir()
 
-    def failure(self, module, cache, which, limit=None):
-        """Run tests of a module, at most for a time [s]; the first that fails, empty if all pass."""
-        paths, marks = which
-        command = [sys.executable, "-B", "-m", "pytest", "-x", "--tb=no", "-p", "no:cacheprovider", "-m", marks, *paths]
-        command.append(str(path_of(module).relative_to(ROOT)))
-        environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), "OMP_NUM_THREADS": "1"}
-        environment["PYTHONPATH"] = str(self.folder / "src")
-        options = {"cwd": self.folder, "env": environment, "capture_output": True, "text": True, "timeout": limit}
+    def failure(self, paths, marks, cache, limit=None):
+        """Run tests, at most for a time [s]: the first that fails, empty if all pass, and the time of each."""
+        ours, theirs = PROCESSES.Pipe(duplex=False)
+        arguments = theirs, self.folder, cache, ["-m", marks, *paths], self.found, cache != self.warm
+        process = PROCESSES.Process(target=run_tests, args=arguments)
+        process.start()
+        theirs.close()
         try:
-            done = subprocess.run(command, **options)
-        except subprocess.TimeoutExpired:
-            return "its tests do not end"
-        if done.returncode in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):
-            return ""
-        lines = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
-        return lines[0] if lines else f"pytest ended with {done.returncode}"
+            return ours.recv() if ours.poll(limit) else ("its tests do not end", {})
+        except EOFError:
+            return "its tests break off", {}
+        finally:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.join()
 
-    def failure_with(self, mutant, which, limit):
-        """The same with a mutant in place."""
+    def time_without(self, module, paths, marks):
+        """Time of tests without a mutant [s], with which all must pass; the first time they fill the cache."""
+        if new := [path for path in paths if (path, marks) not in self.seconds]:
+            failed, seconds = self.failure(new, marks, self.warm)
+            if failed:
+                raise RuntimeError(f"the tests of {module} fail without a mutant: {failed}")
+            for path in new:
+                self.seconds[path, marks] = sum(seconds[test] for test in seconds if test.startswith(f"{path}::"))
+        return sum(self.seconds[path, marks] for path in paths)
+
+    def failure_with(self, mutant, paths, marks, limit):
+        """First test that fails with a mutant."""
         path = self.folder / path_of(mutant.module).relative_to(ROOT)
         text, times = path.read_bytes(), path.stat()
         shutil.rmtree(self.cache, ignore_errors=True)
-        shutil.copytree(self.warm, self.cache)
+        shutil.copytree(self.warm, self.cache, copy_function=os.link)  # Numba replaces its files as a whole
         try:
             path.write_bytes(mutated(text, mutant))
-            return self.failure(mutant.module, self.cache, which, limit)
+            failed, _ = self.failure(paths, marks, self.cache, limit)
+            self.found[failed] = self.found.get(failed, 0) + 1
+            return failed
         finally:
             path.write_bytes(text)
             os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
@@ -329,16 +395,14 @@ def mutated(text, mutant):
 
 def caught(module, mutants, copies):
     """Mutants of a module and the test that fails with each, empty if none does; without a mutant, all must pass."""
-    project, failures, missed = copies.get(), {}, mutants
+    project, failures, missed = copies.get(), dict.fromkeys(mutants, ""), mutants
     try:
-        for which in rounds(module):
-            start = time.monotonic()
-            if failed := project.failure(module, project.warm, which):
-                raise RuntimeError(f"the tests of {module} fail without a mutant: {failed}")
-            project.warm.mkdir(exist_ok=True)
-            limit = max(PATIENCE[0] * (time.monotonic() - start), PATIENCE[1])
-            failures |= {mutant: project.failure_with(mutant, which, limit) for mutant in missed}
-            missed = [mutant for mutant in missed if not failures[mutant]]
+        for paths, marks in rounds(module):
+            paths = [*paths, str(path_of(module).relative_to(ROOT))]
+            if seconds := project.time_without(module, paths, marks):
+                limit = max(PATIENCE[0] * seconds, PATIENCE[1])
+                failures |= {mutant: project.failure_with(mutant, paths, marks, limit) for mutant in missed}
+                missed = [mutant for mutant in missed if not failures[mutant]]
             if not missed:
                 break
         return failures
@@ -349,6 +413,7 @@ def caught(module, mutants, copies):
 def run(mutants):
     """Mutants that no test catches; each mutant is printed when its module is done."""
     names, survivors = sorted({mutant.module for mutant in mutants}), []
+    os.environ["OMP_NUM_THREADS"] = "1"
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
         copies = Queue()
         for worker in range(os.cpu_count()):

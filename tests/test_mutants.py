@@ -75,9 +75,11 @@ def test_every_module_has_tests(module):
 
 
 def test_mutants_are_valid_code():
-    for mutant in mutants.sample(["surface.maxent", "beam.release", "config.relations"], 100):
-        text = mutants.path_of(mutant.module).read_bytes()
-        assert ast.dump(ast.parse(mutants.mutated(text, mutant))) != ast.dump(ast.parse(text)), mutant
+    for module in ("surface.maxent", "beam.release", "config.conditions"):
+        text = mutants.path_of(module).read_bytes()
+        tree = ast.dump(ast.parse(text))
+        for mutant in mutants.sample([module], 30):
+            assert ast.dump(ast.parse(mutants.mutated(text, mutant))) != tree, mutant
 
 
 def test_the_sample_is_reproducible_and_in_proportion():
@@ -122,4 +124,4 @@ def test_a_project_whose_tests_miss_one_of_its_errors(tmp_path, monkeypatch):
     copies.put(mutants.Copy(tmp_path.parent / f"{tmp_path.name}-copy"))
     errors = [mutant for mutant in mutants.mutants_of("f") if mutant.new in ("(x)", "(2)")]
     found = {mutant.new: test for mutant, test in mutants.caught("f", errors, copies).items()}
-    assert (found["(x)"], found["(2)"][:6]) == ("", "FAILED")
+    assert found == {"(x)": "", "(2)": "tests/test_f.py::test_f"}
