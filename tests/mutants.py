@@ -30,7 +30,6 @@ from queue import Queue
 from typing import NamedTuple
 
 import pytest
-from numba.core.config import reload_config
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "src" / "stiction"
@@ -50,7 +49,6 @@ LIBRARIES = [
     "matplotlib.pyplot",
     "hypothesis",
 ]
-PROCESSES.set_forkserver_preload(LIBRARIES)
 FAST, SLOW = "not slow and not cluster and not browser", "slow and not cluster and not browser"
 
 #: Operators and the one that each is replaced by.
@@ -321,6 +319,8 @@ class Watch:
 
 def run_tests(connection, folder, cache, arguments, found, changed):
     """Run pytest in a process that has imported all libraries, but not the package, and send what it has seen."""
+    from numba.core.config import reload_config
+
     os.setsid()
     os.chdir(folder)
     os.environ |= {"NUMBA_CACHE_DIR": str(cache), "PYTHONPATH": str(folder / "src"), "PYTHONDONTWRITEBYTECODE": "1"}
@@ -414,6 +414,7 @@ def run(mutants):
     """Mutants that no test catches; each mutant is printed when its module is done."""
     names, survivors = sorted({mutant.module for mutant in mutants}), []
     os.environ["OMP_NUM_THREADS"] = "1"
+    PROCESSES.set_forkserver_preload(LIBRARIES)
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
         copies = Queue()
         for worker in range(os.cpu_count()):

@@ -1,4 +1,5 @@
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -12,18 +13,22 @@ from stiction.stages.contact.pairs import bodies
 from stiction.stages.laws import forces
 
 SETTINGS = small.settings_of(full_contact, job_settings(small.PLAN, "studies/full_contact/b"))
-STUDY = full_contact.compute(small.surfaces(), "b", SETTINGS)
+
+
+@cache
+def study():
+    return full_contact.compute(small.surfaces(), "b", SETTINGS)
 
 
 def test_the_humidities_are_the_lowest_the_middle_and_the_highest_of_the_pair():
     assert SETTINGS.humidities == (0.44, 0.67, 0.92)
-    assert_array_equal(STUDY.humidity, SETTINGS.humidities)
-    assert float(STUDY.spacing) == 10e-9
+    assert_array_equal(study().humidity, SETTINGS.humidities)
+    assert float(study().spacing) == 10e-9
 
 
 def test_the_sum_over_summits_is_that_of_the_first_samples_of_the_contact():
     of_case = forces.vectors(small.forces_of_case())[0][:2]
-    there = STUDY.sel(humidity=small.HUMIDITY)
+    there = study().sel(humidity=small.HUMIDITY)
     np.testing.assert_allclose(there.summit_energy, of_case[:, 0], rtol=1e-12)
     np.testing.assert_allclose(there.summit_pull_off, of_case[:, 1], rtol=1e-12)
     assert not np.allclose(there.adhesion_energy, of_case[:, 0], rtol=1e-3)
@@ -31,34 +36,36 @@ def test_the_sum_over_summits_is_that_of_the_first_samples_of_the_contact():
 
 def test_a_sample_does_not_depend_on_the_others():
     alone = full_contact.compute(small.surfaces(), "b", replace(SETTINGS, strips=1))
-    assert alone.equals(STUDY.isel(sample=slice(1)))
+    assert alone.equals(study().isel(sample=slice(1)))
 
 
 def test_both_models_agree_in_wet_air_and_not_in_dry_air():
-    ratio = (STUDY.adhesion_energy.mean("sample") / STUDY.summit_energy.mean("sample")).values
+    ratio = (study().adhesion_energy.mean("sample") / study().summit_energy.mean("sample")).values
     assert abs(ratio[2] - 1) < 0.05 < abs(ratio[0] - 1)
 
 
 def test_shares_count_the_elements_in_contact_above_a_pressure():
-    assert np.all((STUDY.hardness_share >= 0) & (STUDY.hardness_share <= STUDY.onset_share) & (STUDY.onset_share <= 1))
-    assert np.all((STUDY.contact_share > 0) & (STUDY.contact_share < 0.1))
+    assert np.all(
+        (study().hardness_share >= 0) & (study().hardness_share <= study().onset_share) & (study().onset_share <= 1)
+    )
+    assert np.all((study().contact_share > 0) & (study().contact_share < 0.1))
     soft = replace(bodies(SETTINGS)[0], hardness=3e9)
     yielding = replace(SETTINGS, strips=1, materials={"beam": soft}, humidities=(0.67,))
     found = full_contact.compute(small.surfaces(), "b", yielding).isel(sample=0, humidity=0)
     assert float(found.onset_share) > float(found.hardness_share) > 0
-    assert float(found.adhesion_energy) == float(STUDY.adhesion_energy[0, 1])
+    assert float(found.adhesion_energy) == float(study().adhesion_energy[0, 1])
 
 
 def test_states_are_in_equilibrium():
-    assert float(STUDY.residual.max()) <= 5 * elements.TOLERANCE
-    assert float(STUDY.states.max()) < elements.STATES
+    assert float(study().residual.max()) <= 5 * elements.TOLERANCE
+    assert float(study().states.max()) < elements.STATES
 
 
 def test_without_van_der_waals_forces_both_models_adhere_less():
     none = replace(SETTINGS, strips=1, van_der_waals="none", humidities=(0.67,))
     found = full_contact.compute(small.surfaces(), "b", none)
     for name in ("adhesion_energy", "summit_energy"):
-        assert float(found[name][0, 0]) < 0.97 * float(STUDY[name][0, 1])
+        assert float(found[name][0, 0]) < 0.97 * float(study()[name][0, 1])
 
 
 def test_a_grid_too_coarse_for_soft_solids_is_refused_in_one_sentence():

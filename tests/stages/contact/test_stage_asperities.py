@@ -1,4 +1,5 @@
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -12,17 +13,21 @@ from stiction.contact.environment import Gaps
 from stiction.plan.graph import Results
 from stiction.stages.contact import asperities, curves, full_contact
 
-STUDY = Results.of(small.PLAN.config)["studies/asperities/b"]
 HUMIDITIES = small.PLAN.config["pairs"]["b"]["humidities"]
 
 
+@cache
+def study():
+    return Results.of(small.PLAN.config)["studies/asperities/b"]
+
+
 def readings():
-    return {(of["reading"], of["attraction"], of["spacing"]): e for of, e in asperities.energies_of_readings(STUDY)}
+    return {(of["reading"], of["attraction"], of["spacing"]): e for of, e in asperities.energies_of_readings(study())}
 
 
 def test_the_first_reading_is_that_of_the_contact_and_of_full_contact():
     """All three are the same strips, drawn with the same random numbers."""
-    (labels, found), *_ = asperities.energies_of_readings(STUDY)
+    (labels, found), *_ = asperities.energies_of_readings(study())
     assert labels == {"reading": "summit", "attraction": "water", "spacing": 1e-8}
     water = small.settings_of(full_contact, job_settings(small.PLAN, "studies/full_contact/b")).water
     for k, humidity in enumerate(HUMIDITIES):
@@ -59,8 +64,8 @@ def test_readings_agree_as_the_water_floods_everything():
 
 
 def test_the_cost_is_that_of_the_first_reading():
-    assert asperities.cost(STUDY, 1e-8, "summit", "water") == 1
-    assert asperities.cost(STUDY, 1e-8, "shape", "none") > 0
+    assert asperities.cost(study(), 1e-8, "summit", "water") == 1
+    assert asperities.cost(study(), 1e-8, "shape", "none") > 0
 
 
 def test_without_attraction_nothing_is_compared_twice():
@@ -100,6 +105,6 @@ def test_the_settings_are_what_the_energies_depend_on(change, same):
 
 
 def test_the_dataset_is_labelled():
-    assert STUDY.adhesion_energy.units == "J m-2"
-    assert_array_equal(STUDY.humidity, HUMIDITIES)
-    assert_allclose(STUDY.spacing, [1e-8, 5e-9])
+    assert study().adhesion_energy.units == "J m-2"
+    assert_array_equal(study().humidity, HUMIDITIES)
+    assert_allclose(study().spacing, [1e-8, 5e-9])
