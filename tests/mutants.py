@@ -39,7 +39,7 @@ REQUIRED = 0.97
 PATIENCE = 4, 60
 #: Processes of tests start from one that has imported the libraries.
 PROCESSES = multiprocessing.get_context("forkserver")
-LIBRARIES = "numba scipy.stats scipy.optimize scipy.signal xarray netCDF4 matplotlib.pyplot".split()
+LIBRARIES = ["numba", "scipy.stats", "scipy.optimize", "scipy.signal", "xarray", "netCDF4", "matplotlib.pyplot"]
 FAST, SLOW = "not slow and not cluster and not browser", "slow and not cluster and not browser"
 
 #: Operators and the one that each is replaced by.

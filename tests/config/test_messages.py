@@ -199,7 +199,7 @@ def test_a_long_value_is_cut_off_in_a_message():
     assert "w" * 90 in line
 
 
-FUZZ = settings(max_examples=250, suppress_health_check=[HealthCheck.too_slow])
+FUZZ = settings(max_examples=120, suppress_health_check=[HealthCheck.too_slow])
 JUNK = st.recursive(
     st.one_of(
         st.none(),

@@ -51,8 +51,10 @@ def test_inputs_come_by_key_in_an_order_or_alone(files, tmp_path, monkeypatch):
 
     seen, stage = {}, Stage.writing("sums", "sums", message="", compute=compute)
     inputs = {"all": [files["a"], files["b"]], "row": [files["b"], files["a"]], "one": files["B2"], "text": "plain.csv"}
+    inputs["named"] = files["B2"]
     structure = {
         "all": ["forces", [["a", 0.4], ["b", 0.5]]],
+        "named": ["heights", ["B2"]],
         "row": ["forces", True],
         "one": ["heights", None],
         "text": [None, None],
@@ -60,6 +62,7 @@ def test_inputs_come_by_key_in_an_order_or_alone(files, tmp_path, monkeypatch):
     }
     run(monkeypatch, stage, inputs, structure, {"dataset": str(tmp_path / "sums.nc")})
     assert {key: float(one.x[0]) for key, one in seen["all"].items()} == {("a", 0.4): 1, ("b", 0.5): 2}
+    assert [*seen["named"]] == ["B2"]
     assert [float(one.x[0]) for one in seen["row"]] == [2, 1]
     assert (float(seen["one"].x[0]), seen["text"], seen["none"]) == (3, "plain.csv", {})
     assert float(storage.load(tmp_path / "sums.nc", "sums").x[0]) == 20

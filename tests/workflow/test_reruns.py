@@ -170,7 +170,7 @@ MATRIX = [
     ("order of humidities", "pairs: {a: {humidities: [0.8, 0.6]}}", "", (), ""),
 ]  # fmt: skip
 #: One change of each part of the workflow; the other rows are slow tests.
-FAST = {"kurtosis of one surface", "water", "number of beams", "a device added"}
+FAST = {"kurtosis of one surface", "water", "a device added"}
 ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name not in FAST)) for name, *row in MATRIX]
 
 
@@ -272,10 +272,6 @@ def known(rerun):
     return RULES & set(rerun.values())
 
 
-def test_an_unchanged_tree_reruns_nothing(tree):
-    assert tree.rerun() == {}
-
-
 @pytest.mark.parametrize(("overlay", "met", "spared", "stay"), ROWS)
 def test_a_setting_reruns_the_rules_it_affects_and_their_readers_and_no_others(tree, overlay, met, spared, stay):
     rerun = tree.rerun(overlay=overlay)
@@ -309,24 +305,20 @@ def test_adding_a_humidity_to_the_pair_of_the_figures_draws_no_surface_either(tr
     assert not drawing & known(rerun)
 
 
-def test_neither_the_number_of_cores_nor_the_order_of_keys_reruns_anything(tree):
+def test_number_of_cores_order_of_keys_comments_docstrings_and_touched_files_rerun_nothing(tree):
     def backwards(value):
         return {key: backwards(value[key]) for key in reversed(value)} if isinstance(value, dict) else value
 
     path = tree.folder / "config.yaml"
     path.write_text(yaml.safe_dump(backwards(yaml.safe_load(path.read_text())), sort_keys=False))
     assert path.read_text().startswith("studies:")
-    assert tree.rerun("--cores", "7", "--set-threads", "beams=3") == {}
-
-
-def test_comments_docstrings_and_touched_files_rerun_nothing(tree):
     for path in [*tree.folder.rglob("*.py"), *tree.folder.rglob("*.smk"), tree.folder / "config.yaml"]:
         tree.append(path, "\n\n# A remark.\n")
         if path.suffix == ".py" and path.read_text().startswith('"""'):
             path.write_text(path.read_text().replace('"""', '"""In other words: ', 1))
     for path in tree.folder.glob("src/stiction/report/resources/*"):
         path.touch()
-    assert tree.rerun() == {}
+    assert tree.rerun("--cores", "7", "--set-threads", "beams=3") == {}
 
 
 @pytest.mark.parametrize(
