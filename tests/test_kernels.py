@@ -100,7 +100,7 @@ def stored(folder):
 
 
 @pytest.mark.parametrize("place", ["next to the sources", "folder of the user", "chosen folder"])
-def test_a_change_of_a_called_kernel_changes_the_results_of_the_next_process(toy, place):
+def test_changes_of_what_a_kernel_calls_and_no_others_change_the_results_of_the_next_process(toy, place):
     chosen = {"NUMBA_CACHE_DIR": str(toy.parent / "chosen")} if place == "chosen folder" else {}
     if place == "folder of the user":
         (toy / "__pycache__").touch()  # no folder, so that nothing can be written there, not even by root
@@ -108,7 +108,9 @@ def test_a_change_of_a_called_kernel_changes_the_results_of_the_next_process(toy
     assert called(toy, **chosen) == (21, True)
     before = stored(folder)
     assert len(before) == 6
+    edit(toy, "other", "1.0", "7.0")  # which no kernel imports
     assert called(toy, **chosen) == (21, False)
+    assert stored(folder) == before
     edit(toy, "called", "FACTOR * x", "FACTOR + x")
     assert called(toy, **chosen) == (13, True)
     after = stored(folder)
@@ -124,28 +126,14 @@ def test_numba_alone_returns_old_results_after_such_a_change(toy):
     assert process.communicate()[0].split()[1] == "21.0"
 
 
-def test_a_change_of_a_constant_and_of_the_name_of_a_type_compile_again(toy):
-    assert called(toy) == (21, True)
-    edit(toy, "constants", "2.0", "3.0")
-    assert called(toy) == (31, True)
-    edit(toy, "called", "_Mesh", "_Grid")
-    assert called(toy) == (31, True)
-
-
-def test_a_module_that_a_kernel_does_not_import_compiles_nothing(toy):
-    called(toy)
-    before = stored(toy)
-    edit(toy, "other", "1.0", "7.0")
-    assert called(toy) == (21, False)
-    assert stored(toy) == before
-
-
 def test_processes_that_start_at_once_after_a_change_have_the_new_results(toy):
-    called(toy)
+    assert called(toy) == (21, True)
     edit(toy, "constants", "2.0", "3.0")
     processes = [start(toy) for _ in range(3)]
     assert [process.communicate()[0].split()[:2] for process in processes] == [["31.0", "31.0"]] * 3
     assert called(toy) == (31, False)
+    edit(toy, "called", "_Mesh", "_Grid")
+    assert called(toy) == (31, True), "the name of a type"
 
 
 def test_sources_of_a_kernel_are_the_imports_in_its_syntax_tree():
