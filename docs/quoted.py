@@ -11,11 +11,11 @@ import pandas as pd
 
 from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP
 from stiction.config.files import paper
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.devices.arcs import arc_length
 from stiction.devices.chart import flooded_energy
 from stiction.devices.limits import FILMS
+from stiction.plan.plan import Plan
 from stiction.report.checks import MESH_OFF_OF_PAPER, RESOLVED
 from stiction.report.format import MISSING, TO_MJ, TO_UM, number, with_error
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections

@@ -26,11 +26,10 @@ from PIL import Image
 
 from stiction.analysis.convergence import sampling_distance
 from stiction.beam.foundation import foundation_length
-from stiction.config.cases import pair_of
 from stiction.config.files import paper
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
+from stiction.plan.plan import Plan
 from stiction.report.format import TO_UM, with_error
 from stiction.run.storage import load
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
@@ -275,8 +274,8 @@ def meshes(results):
     """Elements and strips of the beams in foundation lengths, over all cases; size of one stored sample of contact."""
     plan, lengths = Plan(paper()), []
     for case, model in plan.laws:
-        pair, (samples, limit) = pair_of(case), vectors(load(results / "forces" / f"{case}_{model}.nc", "forces"))
-        beam = cantilever(in_si(Cantilevers, sections(plan, pair)), pair)
+        samples, limit = vectors(load(results / "forces" / f"{case}_{model}.nc", "forces"))
+        beam = cantilever(in_si(Cantilevers, sections(plan, case.pair)), case.pair)
         laws = forcelaw.coefficients(samples[forcelaw.admissible(samples, limit)], limit)
         lengths.append(foundation_length(beam, laws))
     strip = in_si(StripLength, {"strip_length_um": plan.config["sampling"]["strip_length_um"]}).strip_length

@@ -4,9 +4,10 @@ from functools import cache
 
 from plans import job_settings
 
+from stiction.config.cases import Case
 from stiction.config.files import load
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
+from stiction.plan.plan import Plan
 from stiction.stages.contact import contact
 from stiction.stages.laws import chaos, forces
 from stiction.stages.surfaces import heights, spectrum
@@ -37,7 +38,7 @@ PLAN = Plan(
     )
 )
 SEED = PLAN.config["seed"]
-CASE, HUMIDITY = "b_rh067", 0.67
+CASE, HUMIDITY = Case("b_rh067"), 0.67
 
 
 def settings_of(module, plain):

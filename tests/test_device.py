@@ -5,11 +5,11 @@ import pytest
 import xarray as xr
 
 import stiction
-from stiction.config.plan import Plan
 from stiction.contact.environment import Water
 from stiction.devices import limits
 from stiction.models import MOMENT_QUANTITIES
 from stiction.plan.graph import Graph, Results
+from stiction.plan.plan import Plan
 from stiction.stages.contact import curves
 
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 10, "width_um": 20, "humidities": [0.88]}

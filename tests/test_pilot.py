@@ -21,15 +21,15 @@ from written_scans import etched, scans_of
 from stiction import pilot
 from stiction.chaos.model import draw_laws
 from stiction.config import measured
-from stiction.config.designs import Patch
+from stiction.config.device_plan import Patch
 from stiction.config.files import normalised
 from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.contact.environment import ForceCurves
 from stiction.contact.forcelaw import coefficients
 from stiction.device import Device
+from stiction.plan.plan import Plan
 from stiction.run.disk_cache import DiskCache
 from stiction.stages.contact import curves
 from stiction.stages.devices import cracks

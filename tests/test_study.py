@@ -10,8 +10,8 @@ from stiction.chaos.model import Truncation
 from stiction.config.cases import case_id
 from stiction.config.files import load
 from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
+from stiction.plan.plan import Plan
 from stiction.stages.beams import releases, variant_beams
 from stiction.stages.contact import pairs, variant_contact, variant_summits
 from stiction.stages.laws import chaos
@@ -32,10 +32,10 @@ def under(config, name):
     """Dataset of study variant of pair b at one humidity, with the samples and beams of the main line."""
     sizes = {"variants": {"samples": 40, "beams": 3}}
     plan = Plan(merged(config, {"pairs": {"b": {"humidities": [HUMIDITY]}}, "studies": sizes}))
-    plain = plan.variant_summits("b", name)
+    plain = plan.variants.summits("b", name)
     settings = [in_si(variant_summits.Settings, merged(plain["base"], changes)) for changes in ({}, plain["changes"])]
     summits = variant_summits.compute({}, "b", *settings)
-    found = variant_contact.compute(summits, in_si(variant_contact.Settings, plan.variant_contact("b", name)))
+    found = variant_contact.compute(summits, in_si(variant_contact.Settings, plan.variants.solids("b", name)))
     case = case_id("b", HUMIDITY)
     return variant_beams.compute(
         found, case, in_si(variant_beams.Settings, job_settings(plan, f"studies/variants/{case}_{name}"))
@@ -52,7 +52,7 @@ def test_crack_length_of_the_mean_energy_is_the_published_one(study, humidity, p
 
 def test_a_finer_grid_gives_the_same_surfaces():
     plan = Plan(CONFIG)
-    plain = plan.variant_summits("b", "base")["base"]
+    plain = plan.variants.summits("b", "base")["base"]
     base = in_si(variant_summits.Settings, plain)
     surfaces = variant_summits.surfaces_of(base.pairs["b"], base.surfaces, base.sampling.spacing, {})
     finer = in_si(variant_summits.Settings, merged(plain, {"sampling": {"spacing_nm": 5}}))

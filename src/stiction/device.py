@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import xarray as xr
 
 from stiction.config.cases import case_id
-from stiction.config.designs import Designs
+from stiction.config.device_plan import DevicePlan
 from stiction.config.kinds import KINDS, Kind
 from stiction.config.units import in_si
 from stiction.plan.graph import Results
@@ -52,7 +52,7 @@ class Device:
         ValueError
             If the configuration has no such device.
         """
-        devices = Designs(config).devices
+        devices = DevicePlan(config).sections
         if name not in devices:
             raise ValueError(f"there is no device {name}; the configuration has {', '.join(devices) or 'none'}")
         device = cls(name, Results.of(config))
@@ -103,13 +103,13 @@ class Device:
 
         The first call draws the surfaces with every uncertain input changed, a few minutes.
         """
-        self._must_state("uncertainty", self.name in self._plan.designs.budgeted)
+        self._must_state("uncertainty", self.name in self._plan.devices.budgeted)
         return self._result("budget", humidity)
 
     def tip_budget(self, humidity: float | str) -> xr.Dataset:
         """As `budget`, of the length that the tip of a cantilever holds."""
         self._must_be(lambda kind: kind.has_tip)
-        self._must_state("uncertainty", self.name in self._plan.designs.budgeted)
+        self._must_state("uncertainty", self.name in self._plan.devices.budgeted)
         return self._result("budget", humidity, "_tip")
 
     def roughness(self) -> xr.Dataset:

@@ -24,15 +24,15 @@ import numpy as np
 from stiction.beam.resolution import longest
 from stiction.config.arrays import DATA
 from stiction.config.cases import case_id
-from stiction.config.designs import Patch, patch
+from stiction.config.device_plan import Patch, patch
 from stiction.config.measured import is_measured, with_preliminary_estimates
 from stiction.config.messages import Problem, dotted, shown
-from stiction.config.plan import Plan
 from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
 from stiction.contact import forcelaw
 from stiction.contact.environment import ForceCurves, Water, force_curves
 from stiction.contact.pair import contacts_of_samples
 from stiction.models import SURFACE_MODELS
+from stiction.plan.plan import Plan
 from stiction.plan.stage import At, select
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.contact.pairs import Settings, streams_of_sides, surface_pair
@@ -91,12 +91,12 @@ def problems(
 
     def samples(patch, model, humidity):
         """First samples of a patch, whose solids attract each other through the air of a humidity."""
-        return of_patch(patch._replace(pair=plan.in_air(patch.pair, humidity)), model)
+        return of_patch(patch._replace(pair=plan.air.contact(patch.pair, humidity)), model)
 
     guessed, found = _guessed(config), {}
     for use in chain(_pairs(plan), _devices(plan, "devices"), _devices(plan.of_test_beams, "test_beams")):
         given = [guessed[name] for name in dict.fromkeys(plan.sides(use.patch.pair)) if name in guessed]
-        given += ["contact.model = 'full'"] * plan.is_corrected()
+        given += ["contact.model = 'full'"] * plan.variants.is_corrected()
         for path, message in _refusals(use, samples, preliminary=bool(given)):
             end = f" (preliminary, given {', '.join(given)})" if given else ""
             value = shown(reduce(getitem, path, config))
@@ -141,20 +141,20 @@ def _pairs(plan):
 
 def _refined(plan, pair, humidities):
     """Those at which the elements of the beams of a pair follow their force laws."""
-    return [humidity for humidity in humidities if not plan.has_mesh_of_paper(case_id(pair, humidity))]
+    return [humidity for humidity in humidities if not plan.paper.has_mesh(case_id(pair, humidity))]
 
 
 def _devices(plan, section):
     """Patches of devices, also along the axes of their charts and of the worst humidity of stoppers."""
-    designs = plan.designs
-    for name, device in designs.devices.items():
-        own, ground = (section, name), designs.ground(name)
+    devices = plan.devices
+    for name, device in devices.sections.items():
+        own, ground = (section, name), devices.ground(name)
         use = partial(Use, ground, ("NG",), pair=(*own, "pair"))
         air = (
             *own,
             "humidities" if section == "devices" else next(key for key in DATA if key in plan.config[section][name]),
         )
-        if not designs.kind(name).is_beam:
+        if not devices.kind(name).is_beam:
             yield use(device["humidities"], size=(*own, "contact_um"), air=air)
             sought = plan.config["design"]["worst_humidities"], ("design", "worst_humidities")
             if any(device["humidities"]):
@@ -167,7 +167,7 @@ def _devices(plan, section):
                 "gap_um": chart.get("gaps_um", [device["gap_um"]])[0],
             }
             keys = [(*own, "chart", key) for key in ("humidities", "thicknesses_um")]
-            sizes.append((designs.axis(name), *keys, thinnest))
+            sizes.append((devices.axis(name), *keys, thinnest))
         for humidities, of_air, key, size in sizes:
             beam = in_si(DesignedBeam, section_of_beam(plan, name) | size)
             yield use(
@@ -287,7 +287,7 @@ class Samples:
     def at(self, humidity: float, law: bool, preliminary: bool) -> dict[str, Any]:
         """What they show at a humidity, see `shown_by`."""
         entries = [self._entry(name) for name in self.plan.sides(self.patch.pair)]
-        water = self.plan.water(self.patch.pair)
+        water = self.plan.air.water(self.patch.pair)
         settings = [self.patch, self.model, entries, self.plan.config["character"], self._settings]
         return self.remember(
             [*self.code, *settings, water, humidity, law, preliminary],

@@ -72,7 +72,7 @@ class PairStudy:
 
     def _contact_at(self, humidity):
         """Contact at a humidity, which differs in dry air alone."""
-        return self.results[f"contact/{self._plan.in_air(self.name, humidity)}_{self.model}"]
+        return self.results[f"contact/{self._plan.air.contact(self.name, humidity)}_{self.model}"]
 
     @property
     def surfaces(self) -> SurfacePair:
@@ -84,7 +84,7 @@ class PairStudy:
     def energies(self, humidity: float | str) -> np.ndarray:
         """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
         humidity = in_numbers(humidity)
-        water = in_si(Water, self._plan.water(self._plan.in_air(self.name, humidity)))
+        water = in_si(Water, self._plan.air.water(self._plan.air.contact(self.name, humidity)))
         if named := corrections.of_pair(self._plan, self.name, model=self.model):
             water = replace(water, correction=corrections.correction(self.results[named["model_error"]]))
         return curves.energies(self._contact_at(humidity), humidity, water)

@@ -21,10 +21,10 @@ from scipy import fft  # noqa: E402
 from stiction.beam.montecarlo import Experiment, simulate  # noqa: E402
 from stiction.chaos import model as chaos  # noqa: E402
 from stiction.config import files  # noqa: E402
-from stiction.config.plan import Plan  # noqa: E402
 from stiction.config.units import in_si  # noqa: E402
 from stiction.contact.environment import Water  # noqa: E402
 from stiction.contact.meniscus import film  # noqa: E402
+from stiction.plan.plan import Plan  # noqa: E402
 from stiction.scans.estimate import estimate  # noqa: E402
 from stiction.scans.levelling import Levelling  # noqa: E402
 from stiction.scans.model_scans import draw_model_scans  # noqa: E402
@@ -82,7 +82,7 @@ def force_rows():
     """Force curves of one case and their parameters; the few samples drawn are repeated."""
     study, samples = PairStudy.of(CONFIG, "b"), 5000
     contact = study.contact.isel(sample=np.arange(samples) % study.contact.sizes["sample"])
-    settings = forces.Settings(in_si(Water, Plan(CONFIG).water("b")), 0.67)
+    settings = forces.Settings(in_si(Water, Plan(CONFIG).air.water("b")), 0.67)
     water = film(settings.humidity, settings.water.temperature)
     yield side_by_side(
         f"forces of one case, {samples} samples",

@@ -19,13 +19,13 @@ from stiction.beam.equilibrium import STEP, allowed_imbalance, distances, hermit
 from stiction.beam.resolution import resolved
 from stiction.config.cases import air
 from stiction.config.files import load
-from stiction.config.plan import Plan
 from stiction.config.units import in_si, to_si
 from stiction.contact import forcelaw
 from stiction.contact.environment import Water, force_curves
 from stiction.errors import NotConverged
 from stiction.estimates import mean_with_error
 from stiction.plan.graph import Results
+from stiction.plan.plan import Plan
 from stiction.report.format import TO_MJ, with_error
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.contact.contact import tables
@@ -174,7 +174,7 @@ def row(pair, humidity, reach, samples, beams):
     config = load(strip | sizes | medium)
     plan = Plan(config)
     contact = Results.of(config)[f"contact/{pair}_NG"]
-    curves, step, laws = sampled(contact, humidity, in_si(Water, plan.water(pair)))
+    curves, step, laws = sampled(contact, humidity, in_si(Water, plan.air.water(pair)))
     one = cantilever(in_si(Cantilevers, sections(plan, pair)), pair)
     beam, strips = resolved_beam(one, to_si(STRIP, "um"), laws)
     rng, energies = stream(config["seed"], "tails", pair), forcelaw.energy(laws)

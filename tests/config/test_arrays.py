@@ -10,8 +10,8 @@ from test_messages import UNITS
 
 from stiction.config.files import load
 from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
 from stiction.report import published
 
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
@@ -127,11 +127,11 @@ def test_counts_have_budgets_of_beams_and_tips_on_the_contacts_of_the_device():
 
 def test_tips_of_counted_beams_are_drawn_with_their_own_slopes():
     thin = Plan(load(merged(SECTIONS, {"test_beams": {"first": {"stuck": COUNTS}}})))
-    tips = thin.of_test_beams.designs.tips("first")
-    assert tips != thin.designs.tips("C1")
-    assert thin.designs.tilt(tips)["slopes"] == list(thin.of_test_beams.designs._slopes("first"))
+    tips = thin.of_test_beams.devices.tips("first")
+    assert tips != thin.devices.tips("C1")
+    assert thin.devices.tilt(tips)["slopes"] == list(thin.of_test_beams.devices._slopes("first"))
     with pytest.raises(KeyError, match="no device has tips"):
-        PLAN.designs.tilt(tips)  # beams that were not counted need no tips
+        PLAN.devices.tilt(tips)  # beams that were not counted need no tips
 
 
 def test_what_is_shared_has_one_uncertainty():
@@ -186,7 +186,7 @@ def test_only_devices_with_test_beams_have_them_in_their_jobs():
     graph = Graph(PLAN)
     assert "test_beams" in graph.job("devices/C1.html").inputs
     assert "test_beams" not in graph.job("devices/C2.html").inputs
-    assert PLAN.designs.tested == ["C1"]
+    assert PLAN.devices.tested == ["C1"]
     assert set(graph.job("devices/test_beams/C1").inputs["test_beams"]) == {("first", 0.44), ("first", 0.67)}
 
 

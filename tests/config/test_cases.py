@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stiction.config.cases import CASE, PAIR_IN_AIR, case_id, humidity_of, in_any_air, in_dry_air, in_numbers, pair_of
+from stiction.config.cases import CASE, PAIR_IN_AIR, Case, PairInAir, case_id, in_numbers
 
 
 @pytest.mark.parametrize(
@@ -16,18 +16,18 @@ from stiction.config.cases import CASE, PAIR_IN_AIR, case_id, humidity_of, in_an
 )
 def test_a_case_is_named_after_its_pair_and_the_decimals_of_its_humidity(humidity, case):
     assert case_id("b", humidity) == case
-    assert (pair_of(case), humidity_of(case)) == ("b", humidity)
+    assert (Case(case).pair, Case(case).humidity) == ("b", humidity)
 
 
 @pytest.mark.parametrize("name", ["b", "Mine2", "rh0"])
 def test_the_pair_of_a_case_may_have_any_name(name):
-    assert pair_of(case_id(name, 0.67)) == name
+    assert case_id(name, 0.67).pair == case_id(name, 0.67).device == name
 
 
 @given(st.integers(1, 9999))
 def test_every_humidity_of_four_decimals_is_recovered_from_its_case_name(tenthousandths):
     humidity = tenthousandths / 10000
-    assert humidity_of(case_id("b", humidity)) == humidity
+    assert case_id("b", humidity).humidity == humidity
 
 
 @pytest.mark.parametrize("humidity", [1, -0.5, 0.67512, 0.1 + 0.2, 1e-5, math.nan, 67])
@@ -38,11 +38,11 @@ def test_a_humidity_without_a_valid_case_name_is_rejected(humidity):
 
 @pytest.mark.parametrize("name", ["b", "Mine2", "dry"])
 def test_the_case_of_dry_air_has_the_humidity_zero_and_the_name_of_its_contact(name):
-    assert case_id(name, "dry") == case_id(name, 0.0) == in_dry_air(name) == in_dry_air(in_dry_air(name))
-    assert (pair_of(case_id(name, 0)), humidity_of(case_id(name, 0))) == (name, 0.0)
-    assert in_any_air(in_dry_air(name)) == in_any_air(name) == name
-    assert re.fullmatch(PAIR_IN_AIR, in_dry_air(name))
-    assert re.fullmatch(CASE, in_dry_air(name))
+    assert case_id(name, "dry") == case_id(name, 0.0) == PairInAir.in_dry_air(name)
+    assert (case_id(name, 0).pair, case_id(name, 0).humidity) == (name, 0.0)
+    assert PairInAir.in_dry_air(name).pair == PairInAir(name).pair == name
+    assert re.fullmatch(PAIR_IN_AIR, PairInAir.in_dry_air(name))
+    assert re.fullmatch(CASE, PairInAir.in_dry_air(name))
 
 
 def test_the_word_dry_stands_for_the_number_zero_where_a_humidity_stands_and_nowhere_else():
@@ -82,4 +82,4 @@ def test_the_word_dry_stands_for_the_number_zero_where_a_humidity_stands_and_now
 )
 def test_an_invalid_case_name_is_rejected(case):
     with pytest.raises(ValueError, match="must be like b_rh067"):
-        humidity_of(case)
+        Case(case).humidity  # noqa: B018

@@ -17,12 +17,13 @@ from published import SURFACES
 from written_scans import BAD, SIDE, bad_files, etched, scans_of, write
 
 from stiction.config import files, measured, memory
-from stiction.config.designs import Designs
+from stiction.config.cases import Case
+from stiction.config.device_plan import DevicePlan
 from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.config.validation import validate
 from stiction.errors import ScanError
+from stiction.plan.plan import Plan
 from stiction.scans import estimate
 from stiction.scans.levelling import LEVELS, LINES, Levelling
 from stiction.scans.quantiles import measured_density
@@ -155,10 +156,10 @@ def test_a_configuration_with_good_scans_is_valid_and_its_surfaces_are_shifted_l
     assert plan.with_summits == ["Sub1"]
     assert plan.shifted_moments == ["rms", "skewness", "kurtosis"]
     assert Plan(files.load(etched(*both(folder), heights="measured"))).shifted_moments == ["rms"]
-    assert plan.paper_pairs == []
-    assert not plan.has_mesh_of_paper("b_rh067")
-    assert plan.variant_summits("b", "psd_identified")["base"]["surfaces"]["Sub1"]["psd"] == "identified"
-    assert "Etched" not in plan.variant_summits("b", "psd_identified")["base"]["surfaces"]
+    assert plan.paper.pairs == []
+    assert not plan.paper.has_mesh(Case("b_rh067"))
+    assert plan.variants.summits("b", "psd_identified")["base"]["surfaces"]["Sub1"]["psd"] == "identified"
+    assert "Etched" not in plan.variants.summits("b", "psd_identified")["base"]["surfaces"]
     assert job_settings(plan, "tables/table_1.csv")["measured"].keys() == {"Sub1"}
     assert job_settings(plan, "checks.csv")["targets"].keys() == {"Sub1"}
 
@@ -470,10 +471,10 @@ def test_tips_on_scanned_surfaces_are_those_on_surfaces_of_their_preliminary_rms
     config = files.load(configured(*both(folder)), beams)
     found, _ = measured.preliminary_estimates(config)
     numbers = measured.with_preliminary_estimates(config, found)
-    assert Designs(config).tips("C1") == Designs(numbers).tips("C1")
+    assert DevicePlan(config).tips("C1") == DevicePlan(numbers).tips("C1")
     assert memory.of_job(config) == memory.of_job(numbers)
     rough = merged(numbers, {"surfaces": {"Etched": {"rms_nm": 100}}})
-    assert Designs(config).tips("C1").length < Designs(rough).tips("C1").length
+    assert DevicePlan(config).tips("C1").length < DevicePlan(rough).tips("C1").length
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ import yaml
 from configurations import PAPER, ROOT, changed
 
 from stiction.config import memory
-from stiction.config.designs import Designs
+from stiction.config.device_plan import DevicePlan
 
 DRAWING = """
 import sys
@@ -98,7 +98,7 @@ devices: {D1: {kind: cantilever, pair: b, thickness_um: 2.6, gap_um: 20, width_u
 
 def test_long_wedges_at_tips_count_for_the_memory_of_fields():
     flat = changed(TIPS.replace("gap_um: 20", "gap_um: 0.5").replace("thickness_um: 2.6", "thickness_um: 80"))
-    length = Designs(flat).tips("D1").length / 1000
+    length = DevicePlan(flat).tips("D1").length / 1000
     assert length > 20
     assert memory._of_largest_field(flat) >= memory.of_field(length + 1, 3, 10)
 

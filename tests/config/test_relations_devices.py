@@ -13,14 +13,14 @@ from plans import job_settings
 from test_messages import UNITS
 
 from stiction.config import memory
-from stiction.config.designs import Designs
+from stiction.config.device_plan import DevicePlan
 from stiction.config.files import load, normalised
 from stiction.config.kinds import KEYS
 from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import meniscus_height
+from stiction.plan.plan import Plan
 from stiction.stages.beams import pair_warnings
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.contact import contact
@@ -290,57 +290,58 @@ def test_the_normal_form_sorts_the_humidities_of_devices():
 
 
 def test_a_configuration_without_devices_has_no_cases():
-    none = Designs(load())
+    none = DevicePlan(load())
     assert (none.cases, none.charted, none.pressed_pairs) == ([], [], [])
 
 
 def test_cases_are_beams_at_their_humidities():
-    designs = Designs(load({"devices": DEVICES}))
-    assert designs.cases == ["C1_rh044", "C1_rh067", "R1_rh067"]
-    assert designs.stoppers == ["S1"]
-    assert designs.charted == ["C1"]
-    assert designs.pressed_pairs == ["b"]
+    devices = DevicePlan(load({"devices": DEVICES}))
+    assert devices.cases == ["C1_rh044", "C1_rh067", "R1_rh067"]
+    assert devices.stoppers == ["S1"]
+    assert devices.charted == ["C1"]
+    assert devices.pressed_pairs == ["b"]
     other = {"pairs": {"d": PAPER["pairs"]["b"]}, "devices": {"C1": C1 | {"pair": "d"}}}
-    assert Designs(load(other)).pressed_pairs == []
+    assert DevicePlan(load(other)).pressed_pairs == []
 
 
 def test_strips_equal_to_those_of_the_main_line_share_their_contact():
-    designs = Designs(load({"devices": {"C1": C1, "C2": C1 | {"width_um": 20}, "C3": C1 | {"strip_um": 1.2}}}))
-    assert [designs.has_strips_of_pair(name) for name in ("C1", "C2", "C3")] == [True, False, False]
-    assert designs.ground("C2").name == "b_1500x20000"
-    assert designs.ground("C3").name == "b_1200x30000"
+    devices = DevicePlan(load({"devices": {"C1": C1, "C2": C1 | {"width_um": 20}, "C3": C1 | {"strip_um": 1.2}}}))
+    assert [devices.has_strips_of_pair(name) for name in ("C1", "C2", "C3")] == [True, False, False]
+    assert devices.ground("C2").name == "b_1500x20000"
+    assert devices.ground("C3").name == "b_1200x30000"
 
 
 def test_the_strip_of_a_tip_holds_the_wedge_of_the_flattest_beam_and_its_film():
-    designs = Designs(load({"devices": {"C1": C1, "C2": C1 | {"width_um": 20}, "C3": C1 | {"gap_um": 5}}}))
+    devices = DevicePlan(load({"devices": {"C1": C1, "C2": C1 | {"width_um": 20}, "C3": C1 | {"gap_um": 5}}}))
     for name in ("C1", "C2", "C3"):
-        tips = designs.tips(name)
-        tilt = designs.tilt(tips)
+        tips = devices.tips(name)
+        tilt = devices.tilt(tips)
         assert 0 <= tips.length * tilt["slopes"][0] - tilt["reach_nm"] < 10 * tilt["slopes"][0] + 0.1
         film = float(meniscus_height(max(C1["humidities"]), 300))
         assert 1e9 * film + 3 * np.hypot(3.4, 0.17) <= tilt["reach_nm"] < 1.2 * (1e9 * film + 10.3)
-    assert designs.tips("C1") == designs.tips("C2")._replace(width=30000)
-    assert designs.tips("C3").length > 1.5 * designs.tips("C1").length
+    assert devices.tips("C1") == devices.tips("C2")._replace(width=30000)
+    assert devices.tips("C3").length > 1.5 * devices.tips("C1").length
 
 
 def test_slopes_of_tips_cover_charts_and_devices_share_strips_of_one_length():
     alone, charted = (
-        Designs(load({"devices": {"C1": C1 | chart}})) for chart in ({}, {"chart": CHART | {"thicknesses_um": [2, 6]}})
+        DevicePlan(load({"devices": {"C1": C1 | chart}}))
+        for chart in ({}, {"chart": CHART | {"thicknesses_um": [2, 6]}})
     )
     few, many = (found.tilt(found.tips("C1"))["slopes"] for found in (alone, charted))
     assert set(few) < set(many)
     assert many[0] < few[0] / 1.6
-    both = Designs(load({"devices": {"C1": C1, "C2": C1 | {"thickness_um": 2.59}}}))
+    both = DevicePlan(load({"devices": {"C1": C1, "C2": C1 | {"thickness_um": 2.59}}}))
     assert both.tips("C1") == both.tips("C2")
     assert both.tilt(both.tips("C1"))["edge"] == "rounded"
     assert set(both.tilt(both.tips("C1"))["slopes"]) >= set(few)
 
 
 def test_the_axis_of_a_chart_has_names_and_ends():
-    designs = Designs(load({"devices": DEVICES, "design": {"chart_points": 8}}))
-    axis = designs.axis("C1")
+    devices = DevicePlan(load({"devices": DEVICES, "design": {"chart_points": 8}}))
+    axis = devices.axis("C1")
     assert (axis[0], axis[-1], len(axis)) == (0.4, 0.9, 8)
-    assert designs.chart_cases("C1")[1] == "C1_rh04714"
+    assert devices.chart_cases("C1")[1] == "C1_rh04714"
 
 
 # Settings
@@ -353,7 +354,7 @@ JOBS = {
     chart: job_settings(PLAN, "devices/chart/C1_rh067"),
     contact: job_settings(
         PLAN,
-        f"devices/contact/tips/{Designs(PLAN.config).tips('C1').name}",
+        f"devices/contact/tips/{DevicePlan(PLAN.config).tips('C1').name}",
     ),
 }
 
@@ -382,7 +383,7 @@ def test_settings_in_si_are_those_of_the_device():
 
 def test_materials_reach_contact_forces_and_beams_and_nothing_changes_without_them():
     found = in_si(contact.Settings, JOBS[contact])
-    assert found.sampling.strip_length == pytest.approx(1e-9 * Designs(PLAN.config).tips("C1").length)
+    assert found.sampling.strip_length == pytest.approx(1e-9 * DevicePlan(PLAN.config).tips("C1").length)
     assert found.contact.samples == PAPER["design"]["beams"]
     assert found.materials["beam"].hamaker_constant == pytest.approx({"water": 2.5e-19, "dry": 4e-19})
     assert found.materials["substrate"].young_modulus == pytest.approx(164e9)

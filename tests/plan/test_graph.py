@@ -7,9 +7,9 @@ import pytest
 import yaml
 
 from stiction.config.files import load
-from stiction.config.plan import Plan
 from stiction.config.relations import schema
 from stiction.plan.graph import Graph, stages
+from stiction.plan.plan import Plan
 from stiction.plan.planner import Planner
 from stiction.plan.stage import File, Stage
 
@@ -49,11 +49,11 @@ def wanted_files(plan):
 def reached():
     """All jobs behind the files that the targets want, by the first name of each."""
     wanted = wanted_files(PLAN)
-    wanted += [f"devices/{stage}/{case}" for stage in ("safe_lengths", "cracks") for case in PLAN.designs.cases]
-    wanted += [f"devices/chart/{case}" for name in PLAN.designs.charted for case in PLAN.designs.chart_cases(name)]
-    wanted += [f"devices/stoppers/{name}" for name in PLAN.designs.stoppers]
-    wanted += [f"devices/budget/{name}" for name in PLAN.designs.budgets()]
-    wanted += [f"devices/model_error/{name}" for name in PLAN.designs.devices]
+    wanted += [f"devices/{stage}/{case}" for stage in ("safe_lengths", "cracks") for case in PLAN.devices.cases]
+    wanted += [f"devices/chart/{case}" for name in PLAN.devices.charted for case in PLAN.devices.chart_cases(name)]
+    wanted += [f"devices/stoppers/{name}" for name in PLAN.devices.stoppers]
+    wanted += [f"devices/budget/{name}" for name in PLAN.devices.budgets()]
+    wanted += [f"devices/model_error/{name}" for name in PLAN.devices.sections]
     wanted += [f"studies/model_error/{pair}" for pair in PLAN.pairs]
     return behind(GRAPH, wanted)
 
@@ -185,7 +185,7 @@ def test_a_repeated_plan_needs_no_declaration_and_a_change_of_the_configuration_
 def test_what_is_kept_depends_on_declarations_and_plans_although_fingerprints_leave_them_out(planner):
     reached = {name for code in planner._codes.values() for name in code}
     assert {
-        f"stiction.{name}" for name in ("plan.stage", "plan.names", "stages.devices.patch_settings", "config.plan")
+        f"stiction.{name}" for name in ("plan.stage", "plan.names", "stages.devices.patch_settings", "plan.plan")
     } <= reached
 
 

@@ -3,11 +3,11 @@
 import pytest
 from plans import job_settings
 
-from stiction.config.designs import Designs
+from stiction.config.device_plan import DevicePlan
 from stiction.config.files import load
 from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
+from stiction.plan.plan import Plan
 from stiction.stages.beams.cantilevers import Cantilevers, sections
 from stiction.stages.contact import contact
 
@@ -18,7 +18,7 @@ def test_settings_of_contact_do_not_depend_on_humidity_gap_and_chunks():
     other = {"pairs": {"b": {"humidities": [0.5], "gap_um": 10}}, "contact": {"chunks": 7}}
     dry = Plan(load(other | {"water": {"temperature_K": 310}}))
     assert job_settings(dry, "contact/b_NG") == job_settings(PLAN, "contact/b_NG")
-    assert dry.variant_summits("b", "base") == PLAN.variant_summits("b", "base")
+    assert dry.variants.summits("b", "base") == PLAN.variants.summits("b", "base")
     assert job_settings(dry, "studies/plasticity/b") == job_settings(PLAN, "studies/plasticity/b")
 
 
@@ -84,7 +84,7 @@ def test_a_solid_counts_as_polysilicon_if_its_modulus_is_near_that_of_the_paper(
 
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 2, "humidities": [0.67]}
 C1 = {"devices": {"C1": BEAM}}
-TIPS = Designs(load(C1)).tips("C1").name
+TIPS = DevicePlan(load(C1)).tips("C1").name
 #: Beginnings of the names of contacts with less and more of a property, on a patch and at the tips of a device.
 CHANGED = ("devices/contact/{}/b_3000x2000", f"devices/contact/tips/{{}}/{TIPS}")
 GLASS = {"poisson_ratio": 0.2, "hamaker_constant_zJ": {"water": 5, "dry": 65}}

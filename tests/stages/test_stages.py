@@ -14,10 +14,10 @@ from stiction.beam.montecarlo import Experiment, release_beam
 from stiction.beam.resolution import resolved
 from stiction.chaos.model import draw, draw_laws, fit, fit_report
 from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.contact.environment import Water
 from stiction.contact.forcelaw import parametrise
 from stiction.models import FIELD
+from stiction.plan.plan import Plan
 from stiction.run import storage
 from stiction.stages.beams import beams, releases
 from stiction.stages.beams.cantilevers import cantilever, strips_along

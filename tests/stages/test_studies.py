@@ -17,7 +17,7 @@ from stiction.beam.foundation import ELEMENT, foundation_length
 from stiction.beam.montecarlo import Experiment, release_beam
 from stiction.beam.resolution import resolved
 from stiction.chaos.model import draw_laws, fit, resample_laws, truncated
-from stiction.config.cases import case_id
+from stiction.config.cases import Case, case_id
 from stiction.config.merging import merged
 from stiction.contact.asperity import reduced_modulus
 from stiction.contact.environment import Water
@@ -496,7 +496,7 @@ def test_a_variant_has_the_first_samples_of_a_larger_contact():
 def test_elements_of_a_variant_and_of_resampled_beams_follow_the_laws_if_asked():
     settings = small.settings_of(variant_beams, job_settings(small.PLAN, "studies/variants/b_rh080_base"))
     base, finer = (
-        variant_beams.compute(small.contact_of_pair(), "b_rh080", replace(settings, refined=refined))
+        variant_beams.compute(small.contact_of_pair(), Case("b_rh080"), replace(settings, refined=refined))
         for refined in (False, True)
     )
     assert np.all(finer.crack_length != base.crack_length)
@@ -536,22 +536,22 @@ def test_cases_of_a_pair_are_joined_from_dry_to_humid():
 
 def contact_under(variant, samples=3):
     """Contact of pair b under a variant."""
-    plain = small.PLAN.variant_summits("b", variant)
+    plain = small.PLAN.variants.summits("b", variant)
     base, changed = (small.settings_of(variant_summits, merged(plain["base"], c)) for c in ({}, plain["changes"]))
     fewer = replace(changed, contact=replace(changed.contact, samples=samples))
-    solids = small.settings_of(variant_contact, small.PLAN.variant_contact("b", variant))
+    solids = small.settings_of(variant_contact, small.PLAN.variants.solids("b", variant))
     return variant_contact.compute(variant_summits.compute({}, "b", base, fewer), solids)
 
 
 @pytest.mark.parametrize("variant", ["asperity_island", "base"])
 def test_the_contact_of_islands_under_a_variant_is_that_of_pairs_of_its_settings(variant):
     """If the asperities of the base are islands, those of all its variants are found in this way."""
-    plain = small.PLAN.variant_summits("b", variant)
-    solids = {"solids": small.PLAN.variant_contact("b", variant)}
+    plain = small.PLAN.variants.summits("b", variant)
+    solids = {"solids": small.PLAN.variants.solids("b", variant)}
     plain = merged(plain, {"base": {"contact": {"samples": 3}}}) | solids
     at, data = SimpleNamespace(pair="b", variant=variant), {"identifications": {}, "heights": {}, "spectrum": {}}
     found = stage_of(variant_islands).compute(data, at, plain)
-    changed = merged(job_settings(small.PLAN, "contact/b_NG"), small.PLAN.variants[variant])
+    changed = merged(job_settings(small.PLAN, "contact/b_NG"), small.PLAN.variants.changes[variant])
     settings = small.settings_of(stage_contact, merged(changed, {"contact": {"samples": 3}}))
     plain_way = stage_contact.compute(small.surfaces(), "b", "NG", settings)
     for name in found:
@@ -578,7 +578,7 @@ def test_the_contact_of_the_base_variant_is_that_of_the_pair():
     ["van_der_waals_none", *(pytest.param(name, marks=pytest.mark.slow) for name in ("poisson_ratio_0.28", "every_2"))],
 )
 def test_the_contact_of_a_variant_is_that_of_pairs_of_its_settings(variant):
-    plain = merged(job_settings(small.PLAN, "contact/b_NG"), small.PLAN.variants[variant])
+    plain = merged(job_settings(small.PLAN, "contact/b_NG"), small.PLAN.variants.changes[variant])
     settings = small.settings_of(stage_contact, merged(plain, {"contact": {"samples": 3}}))
     plain_way = stage_contact.compute(small.surfaces(), "b", "NG", settings)
     found = contact_under(variant)
@@ -588,7 +588,7 @@ def test_the_contact_of_a_variant_is_that_of_pairs_of_its_settings(variant):
 
 
 def test_a_measured_surface_is_the_same_under_every_variant():
-    plain = small.PLAN.variant_summits("b", "base")
+    plain = small.PLAN.variants.summits("b", "base")
     base = small.settings_of(variant_summits, plain["base"])
     described = {name: entry for name, entry in base.surfaces.items() if name != "B2"}
     changed = replace(base, contact=replace(base.contact, samples=3))

@@ -21,8 +21,8 @@ from planner import Planner
 from stiction.config.files import normalised, paper
 from stiction.config.measured import resolve_scan_paths
 from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.plan.graph import Graph, stages
+from stiction.plan.plan import Plan
 from stiction.run import storage
 
 #: Two pairs, one figure case, so that every rule has few jobs.

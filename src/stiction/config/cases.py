@@ -11,7 +11,7 @@ from typing import Any
 DRY, _OF_DRY = "dry", "_dry"
 #: Pattern of a case in paths: name of the pair, two to four decimals of the relative humidity, or dry.
 CASE = "[A-Za-z][A-Za-z0-9]*_(?:rh0[0-9]{2,4}|dry)"
-#: Pattern of a pair whose contact is computed, in dry air where its name says so.
+#: Pattern of a `PairInAir` in paths.
 PAIR_IN_AIR = "[A-Za-z][A-Za-z0-9]*(?:_dry)?"
 #: Why dry air is refused without attraction across gaps, as the end of a sentence.
 TOO_LITTLE = "without attraction across gaps, energies in dry air are 5 to 30 times too small, which is the unsafe side"
@@ -23,7 +23,69 @@ _LEVELS = 5
 NAMEABLE = "have at most 4 decimals, because the names of files contain them"
 
 
-def case_id(pair: str, humidity: float | str) -> str:
+class PairInAir(str):
+    """Name of the contact of a pair: that of the pair, or one of its own in air in which the summits differ.
+
+    Examples
+    --------
+    >>> humid, dry = PairInAir("b"), PairInAir.in_dry_air("b")
+    >>> dry, dry.pair, dry.medium, humid.pair, humid.medium
+    ('b_dry', 'b', 'dry', 'b', None)
+    """
+
+    @classmethod
+    def in_dry_air(cls, pair: str) -> "PairInAir":
+        """Contact of a pair in dry air, whose summits attract each other through air."""
+        return cls(pair + _OF_DRY)
+
+    @property
+    def pair(self) -> str:
+        """Name of the pair."""
+        return self.removesuffix(_OF_DRY)
+
+    @property
+    def medium(self) -> str | None:
+        """Medium through which its summits attract each other, if not that of the configuration."""
+        return DRY if self.endswith(_OF_DRY) else None
+
+
+class Case(str):
+    """Name of a pair, or of a device, at a relative humidity or in dry air, from `case_id`.
+
+    Its parts raise a ValueError if `case_id` returns no such name.
+
+    Examples
+    --------
+    >>> Case("b_rh067").pair, Case("b_rh067").humidity, Case("C1_dry").device, Case("C1_dry").humidity
+    ('b', 0.67, 'C1', 0.0)
+    """
+
+    @property
+    def pair(self) -> str:
+        """Name of its pair."""
+        return self._parts[0]
+
+    device = pair  #: name of its device, in cases of devices
+
+    @property
+    def humidity(self) -> float:
+        """Relative humidity [-]."""
+        return self._parts[1]
+
+    @property
+    def _parts(self):
+        """Pair and humidity, the inverse of `case_id`."""
+        pair, _, digits = self.removesuffix(_OF_DRY).partition("_rh0")
+        valid = re.fullmatch(CASE, self)
+        humidity = float(f"0.{digits or 0}") if valid else 0.0
+        if not valid or case_id(pair, humidity) != self:
+            raise ValueError(
+                f"{str(self)!r} is not a case, must be like b_rh067 for pair b at relative humidity 0.67, or b_dry"
+            )
+        return pair, humidity
+
+
+def case_id(pair: str, humidity: float | str) -> Case:
     """Name of the case of a pair at a relative humidity [-], or in dry air, safe in paths and wildcards.
 
     Raises
@@ -38,11 +100,11 @@ def case_id(pair: str, humidity: float | str) -> str:
     """
     humidity = in_numbers(humidity)
     if humidity == 0:
-        return pair + _OF_DRY
+        return Case(pair + _OF_DRY)
     text = decimals(humidity)
     if not (0 < humidity < 1 and text):
         raise ValueError(f"humidity {humidity} of pair {pair} must be dry, or above 0, below 1 and {NAMEABLE}")
-    return f"{pair}_rh{text.replace('.', '')}"
+    return Case(f"{pair}_rh{text.replace('.', '')}")
 
 
 def in_numbers(value: Any, key: str = "humidity", levels: int = _LEVELS) -> Any:
@@ -88,64 +150,6 @@ def air(humidity: float) -> str:
     ('RH 0.67', 'dry')
     """
     return f"RH {humidity:g}" if humidity else DRY
-
-
-def in_dry_air(pair: str) -> str:
-    """Name of the contact of a pair in dry air, whose summits attract each other through air.
-
-    Examples
-    --------
-    >>> in_dry_air("b"), in_dry_air("b_dry"), in_any_air("b_dry"), in_any_air("b"), is_in_dry_air("b_dry")
-    ('b_dry', 'b_dry', 'b', 'b', True)
-    """
-    return in_any_air(pair) + _OF_DRY
-
-
-def in_any_air(pair: str) -> str:
-    """Name of a pair from that of its contact, see `in_dry_air`."""
-    return pair.removesuffix(_OF_DRY)
-
-
-def is_in_dry_air(pair: str) -> bool:
-    """Whether a name is that of the contact of a pair in dry air."""
-    return pair.endswith(_OF_DRY)
-
-
-def humidity_of(case: str) -> float:
-    """Relative humidity [-] of a case.
-
-    Raises
-    ------
-    ValueError
-        If `case_id` returns no such name.
-
-    Examples
-    --------
-    >>> humidity_of("b_rh067"), humidity_of("b_dry")
-    (0.67, 0.0)
-    """
-    return _parted(case)[1]
-
-
-def pair_of(case: str) -> str:
-    """Name of the pair of a case; raises the errors of `humidity_of`.
-
-    Examples
-    --------
-    >>> pair_of("b_rh067")
-    'b'
-    """
-    return _parted(case)[0]
-
-
-def _parted(case):
-    """Pair and humidity of a case, the inverse of `case_id`."""
-    pair, _, digits = case.removesuffix(_OF_DRY).partition("_rh0")
-    valid = re.fullmatch(CASE, case)
-    humidity = float(f"0.{digits or 0}") if valid else 0.0
-    if not valid or case_id(pair, humidity) != case:
-        raise ValueError(f"{case!r} is not a case, must be like b_rh067 for pair b at relative humidity 0.67, or b_dry")
-    return pair, humidity
 
 
 def decimals(humidity: float) -> str | None:

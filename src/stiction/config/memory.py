@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from stiction.config.designs import Designs
+from stiction.config.device_plan import DevicePlan
 from stiction.config.kinds import kind_of
 from stiction.config.units import NM_PER_UM, from_si
 from stiction.models import FIELD
@@ -53,10 +53,10 @@ def _of_largest_field(config):
     drawn = [((FIELD_UM, FIELD_UM), spacing), ((patch, patch), spacing)]
     strip = sampling["strip_length_um"] + margin, config["beam"]["width_um"] + margin
     drawn += [(strip, at) for at in (spacing, *others)]
-    designs = Designs(config)
-    tips = [designs.tips(name) for name in designs.with_tips]
+    devices = DevicePlan(config)
+    tips = [devices.tips(name) for name in devices.with_tips]
     drawn += [((tip.length / NM_PER_UM + margin, tip.width / NM_PER_UM + margin), spacing) for tip in tips]
-    for device in designs.devices.values():
+    for device in devices.sections.values():
         length, width = patch_of(device, sampling)
         drawn += [((length + margin, width + margin), at) for at in spacings_of(device, spacing, others)]
     return max(of_field(*side, at) for side, at in drawn)

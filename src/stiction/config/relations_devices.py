@@ -11,8 +11,9 @@ import numpy as np
 from stiction.config import memory
 from stiction.config.arrays import DATA, shared_uncertainty
 from stiction.config.conditions import Relations
-from stiction.config.designs import Designs, hamaker_constant
+from stiction.config.device_plan import DevicePlan
 from stiction.config.kinds import COMMON, KEYS, KINDS, ROUGHNESSES, kind_of
+from stiction.config.materials import hamaker_constant
 from stiction.config.relations import (
     Meeting,
     above_zero,
@@ -103,13 +104,13 @@ def asperities_of_devices_are_summits(config):
 def tips_fit_into_memory(config):
     """The fields of the strips that hold the tips of a cantilever fit into the memory of a job."""
     sections = ("devices", "pairs", "surfaces", "materials", "solid", "water", "sampling", "contact")
-    designs = Designs({section: config[section] for section in sections})
+    devices = DevicePlan({section: config[section] for section in sections})
     margin, spacing, strip = (config["sampling"][key] for key in ("margin_um", "spacing_nm", "strip_length_um"))
     for name, _ in config.entries("devices", "gap_um"):
-        if not designs.kind(name).has_tip:
+        if not devices.kind(name).has_tip:
             continue
         try:
-            length, width = (side / NM_PER_UM for side in designs.tips(name)[1:])
+            length, width = (side / NM_PER_UM for side in devices.tips(name)[1:])
         except (KeyError, ValueError, ArithmeticError):
             continue  # other relations report what is missing or out of range
         refusal = field_too_large(length + margin, width + margin, spacing)

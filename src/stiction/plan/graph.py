@@ -9,7 +9,7 @@ from typing import Any
 
 import xarray as xr
 
-from stiction.config.plan import Plan
+from stiction.plan.plan import Plan
 from stiction.plan.stage import FOLDERS, WILDCARDS, At, File, Names, Stage, declared, expression
 
 _PACKAGE = Path(__file__).parents[1]

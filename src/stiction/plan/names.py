@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable
 
-from stiction.config.cases import humidity_of, pair_of
+from stiction.config.cases import Case
 
-#: A case: pair, relative humidity [-] and model.
-Case = tuple[str, float, str]
+#: A case with its model: pair, relative humidity [-] and model.
+Outcome = tuple[str, float, str]
 
 
 def by_name(folder: str, names: Iterable[str], end: str = "") -> dict[str, str]:
@@ -27,7 +27,7 @@ def by_case(folder: str, cases: Iterable[str], end: str = "") -> dict[tuple[str,
     >>> by_case("chaos", ["b_rh067"], "_NG")
     {('b', 0.67): 'chaos/b_rh067_NG'}
     """
-    return {(pair_of(case), humidity_of(case)): f"{folder}/{case}{end}" for case in cases}
+    return {(case.pair, case.humidity): f"{folder}/{case}{end}" for case in map(Case, cases)}
 
 
 def by_outcome(folder: str, outcomes: Iterable[tuple[str, str]]) -> dict[tuple[str, float, str], str]:
@@ -38,7 +38,8 @@ def by_outcome(folder: str, outcomes: Iterable[tuple[str, str]]) -> dict[tuple[s
     >>> by_outcome("beams", [("b_rh067", "GEO")])
     {('b', 0.67, 'GEO'): 'beams/b_rh067_GEO'}
     """
-    return {(pair_of(case), humidity_of(case), model): f"{folder}/{case}_{model}" for case, model in outcomes}
+    datasets = {(Case(case), model): f"{folder}/{case}_{model}" for case, model in outcomes}
+    return {(case.pair, case.humidity, model): file for (case, model), file in datasets.items()}
 
 
 def by_model(folder: str, names: Iterable[str], models: Iterable[str]) -> dict[tuple[str, str], str]:

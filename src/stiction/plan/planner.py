@@ -12,7 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from stiction.config.plan import Plan
+from stiction.plan.plan import Plan
 from stiction.plan.stage import FOLDERS, WILDCARDS, At, expression
 from stiction.run.atomic import DataError, save_text
 from stiction.run.fingerprint import PACKAGE, fingerprint
@@ -62,7 +62,7 @@ class Planner:
         """Hash of everything that determines the jobs: code, configuration and files of scans."""
         folders = (*FOLDERS, "plan")  # fingerprints leave out declarations, which decide here
         code = {str(path): self._code(str(path)) for name in folders for path in sorted((PACKAGE / name).rglob("*.py"))}
-        scans = [Path(file) for surface in self.plan.scanned for file in self.plan.scan_files(surface).values()]
+        scans = [Path(file) for surface in self.plan.scans.surfaces for file in self.plan.scans.files(surface).values()]
         states = [(str(file), file.stat().st_mtime_ns, file.stat().st_size) for file in scans]
         text = json.dumps([code, self.plan.config, states, dict(self.plan.preliminary)], sort_keys=True, default=str)
         return hashlib.sha256(text.encode()).hexdigest()

@@ -14,7 +14,7 @@ from importlib import import_module
 from types import SimpleNamespace
 from typing import Any, get_args, get_origin, get_type_hints
 
-from stiction.config.cases import CASE, PAIR_IN_AIR
+from stiction.config.cases import CASE, PAIR_IN_AIR, Case, PairInAir
 from stiction.config.units import in_si, without_unit
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import (
@@ -47,8 +47,22 @@ WILDCARDS = {
     "length": "[0-9]+",
     "width": "[0-9]+",
 }
-#: Values of the wildcards of one job.
-At = SimpleNamespace
+#: What a wildcard is, if it is more than a text.
+_KINDS = {"case": Case, "pair": PairInAir}
+
+
+class At(SimpleNamespace):
+    """Values of the wildcards of one job.
+
+    Examples
+    --------
+    >>> At(case="b_rh067", model="NG").case.humidity
+    0.67
+    """
+
+    def __init__(self, **wildcards: str):
+        known = {name: kind(wildcards[name]) for name, kind in _KINDS.items() if name in wildcards}
+        super().__init__(**wildcards | known)
 
 
 class File(str):
@@ -94,7 +108,7 @@ class Shown:
 class Stage:
     """What the jobs of a stage write, read and compute.
 
-    ``inputs`` and ``settings`` are functions of the plan of a configuration (`stiction.config.plan.Plan`) and of the
+    ``inputs`` and ``settings`` are functions of the plan of a configuration (`stiction.plan.plan.Plan`) and of the
     wildcards of a job. ``compute`` takes the data of the inputs, structured as ``inputs`` structures their names, the
     wildcards and the settings.
     """

@@ -27,7 +27,7 @@ from stiction.contact.forcelaw import admissible, coefficients, energy
 from stiction.errors import NotConverged
 from stiction.estimates import jackknife, mean_with_error
 from stiction.models import MOMENT_KEYS, SURFACE_MODELS, surface_model
-from stiction.plan.names import Case, by_case, by_model, by_name, by_outcome
+from stiction.plan.names import Outcome, by_case, by_model, by_name, by_outcome
 from stiction.plan.stage import File, Stage, chosen, select
 from stiction.report.format import TO_MJ, TO_NM, TO_UM, number, with_error
 from stiction.report.tables_surfaces import surface_statistics
@@ -340,7 +340,7 @@ def of_identifications(identifications: Mapping[str, xr.Dataset]) -> Iterator[Ch
 
 
 def of_force_laws(
-    forces: Mapping[Case, xr.Dataset], chaoses: Mapping[Case, xr.Dataset], flooded: Mapping[str, Flooded]
+    forces: Mapping[Outcome, xr.Dataset], chaoses: Mapping[Outcome, xr.Dataset], flooded: Mapping[str, Flooded]
 ) -> Iterator[Check]:
     """All checks of single cases: samples, chaos model and rejection.
 
@@ -359,7 +359,7 @@ def of_force_laws(
         yield few_draws_rejected(case, chaos, samples, REJECTED if key[2] == "NG" else 1.0)
 
 
-def of_trends(forces: Mapping[Case, xr.Dataset], skewed: Collection[str]) -> Iterator[Check]:
+def of_trends(forces: Mapping[Outcome, xr.Dataset], skewed: Collection[str]) -> Iterator[Check]:
     """All comparisons between cases; no trend leads to dry air.
 
     Parameters
@@ -385,8 +385,8 @@ def of_trends(forces: Mapping[Case, xr.Dataset], skewed: Collection[str]) -> Ite
 
 
 def of_beams(
-    outcomes: Mapping[Case, xr.Dataset],
-    forces: Mapping[Case, xr.Dataset],
+    outcomes: Mapping[Outcome, xr.Dataset],
+    forces: Mapping[Outcome, xr.Dataset],
     beams: Mapping[str, Beam],
     strip: float,
     on_mesh_of_paper: Collection[str],
@@ -412,7 +412,7 @@ def of_beams(
         yield from crack_is_resolved(case, released, laws, beam, strip, accuracy)
 
 
-def of_resampling(outcomes: Mapping[Case, xr.Dataset], resampled: Mapping[Case, xr.Dataset]) -> Iterator[Check]:
+def of_resampling(outcomes: Mapping[Outcome, xr.Dataset], resampled: Mapping[Outcome, xr.Dataset]) -> Iterator[Check]:
     """Effect of the chaos model on crack lengths, of cases in which at least two beams stick.
 
     Parameters
@@ -492,7 +492,7 @@ def _skewed(plan):
     The claim that negative skewness increases adhesion applies to the pairs of the paper only.
     """
     surfaces = plan.config["surfaces"]
-    skewness = {pair: [surfaces[name]["skewness"] for name in plan.sides(pair)] for pair in plan.paper_pairs}
+    skewness = {pair: [surfaces[name]["skewness"] for name in plan.sides(pair)] for pair in plan.paper.pairs}
     return [pair for pair, values in skewness.items() if max(values) <= 0 > min(values)]
 
 
@@ -524,11 +524,11 @@ STAGES = (
                 "targets": {name: chosen(plan.config["surfaces"][name], MOMENT_KEYS) for name in plan.described},
                 "skewed": _skewed(plan),
                 "flooded": {
-                    pair: {"water": plan.water(pair), "hamaker_constant_zJ": plan.hamaker_constant(pair)}
+                    pair: {"water": plan.air.water(pair), "hamaker_constant_zJ": plan.air.hamaker_constant(pair)}
                     for pair in plan.pairs
                 },
                 "sampling": select(StripLength, plan.config["sampling"]),
-                "on_mesh_of_paper": [case for case in plan.cases if plan.has_mesh_of_paper(case)],
+                "on_mesh_of_paper": [case for case in plan.cases if plan.paper.has_mesh(case)],
             }
             | sections(plan, *plan.pairs)
         ),

@@ -319,8 +319,8 @@ STAGES = (
             "published": published.file("table_3"),
         },
         settings=lambda plan, at: (
-            {"of_paper": plan.paper_pairs}
-            | {"water": {pair: plan.water(pair) for pair in plan.pairs}}
+            {"of_paper": plan.paper.pairs}
+            | {"water": {pair: plan.air.water(pair) for pair in plan.pairs}}
             | sections(plan, *plan.pairs)
         ),
         compute=_adhesion_energies,

@@ -497,7 +497,7 @@ STAGES = (
         settings=lambda plan, at: {
             "pair": plan.figure_pair,
             "moments": plan.shifted_moments,
-            "of_paper": plan.paper_pairs,
+            "of_paper": plan.paper.pairs,
         },
         compute=_sensitivities,
     ),
@@ -540,10 +540,10 @@ STAGES = (
         "Table III under other model choices",
         study="variants",
         inputs=lambda plan, at: {
-            "studies": by_outcome("studies/variants", plan.studied_cases),
+            "studies": by_outcome("studies/variants", plan.variants.cases),
             "published": published.file("table_3"),
         },
-        settings=lambda plan, at: {"of_paper": plan.paper_pairs},
+        settings=lambda plan, at: {"of_paper": plan.paper.pairs},
         compute=_variants,
     ),
 )

@@ -8,8 +8,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.analysis import variants as comparison
-from stiction.config.plan import CORRECTED
-from stiction.plan.names import Case, by_case, by_name, by_outcome
+from stiction.plan.names import Outcome, by_case, by_name, by_outcome
+from stiction.plan.variants import CORRECTED
 from stiction.report import published
 from stiction.report.beside import change, marked
 from stiction.report.format import UM, as_published, percent, signed, with_error
@@ -44,7 +44,7 @@ def _rows(
     errors: Mapping[str, xr.Dataset],
     beams: Mapping[tuple[str, float], xr.Dataset],
     published: pd.DataFrame,
-    variants: Mapping[Case, xr.Dataset] | None = None,
+    variants: Mapping[Outcome, xr.Dataset] | None = None,
 ) -> list[dict]:
     """One row for each pair and humidity; the ratio of the energies is NaN where full contact was not computed.
 
@@ -183,10 +183,10 @@ def _stage(kind, name, shows, draw, **declared):
             "published": published.file("table_3"),
             "variants": by_outcome(
                 "studies/variants",
-                [(case, name) for case, of in plan.studied_cases if of == CORRECTED for name in ("base", of)],
+                [(case, name) for case, of in plan.variants.cases if of == CORRECTED for name in ("base", of)],
             ),
         },
-        settings=lambda plan, at: {"of_paper": plan.paper_pairs},
+        settings=lambda plan, at: {"of_paper": plan.paper.pairs},
         compute=lambda data, at, settings: draw(
             data["errors"], data["beams"], published.compared(data, settings), data["variants"]
         ),

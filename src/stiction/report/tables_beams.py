@@ -12,7 +12,7 @@ from stiction.contact.environment import Water
 from stiction.contact.forcelaw import admissible
 from stiction.estimates import mean_on_shared_samples, mean_with_error
 from stiction.models import surface_model
-from stiction.plan.names import Case, by_case, by_name, by_outcome
+from stiction.plan.names import Outcome, by_case, by_name, by_outcome
 from stiction.report import beside, published
 from stiction.report.format import TO_MJ, UM, as_published, error_alone, number, percent, signed, with_error
 from stiction.report.published import value
@@ -30,8 +30,8 @@ _PUBLISHED = {"NG": ("ng", "ng_std"), "GEO": ("geo", "geo_std")}
 
 
 def table_3(
-    beams: Mapping[Case, xr.Dataset],
-    forces: Mapping[Case, xr.Dataset],
+    beams: Mapping[Outcome, xr.Dataset],
+    forces: Mapping[Outcome, xr.Dataset],
     published: pd.DataFrame,
     by_scans: Mapping[tuple[str, float], float] | None = None,
     warnings: Sequence[str] = (),
@@ -166,7 +166,7 @@ _TABLE_3 = PAIR | {
 # Fit by Eq. (12), Fig. 5
 
 
-def fit_quality(fits: Mapping[Case, xr.Dataset]) -> Table:
+def fit_quality(fits: Mapping[Outcome, xr.Dataset]) -> Table:
     """Relative errors of curve and energy by Eq. (12) over all samples, one row per case and model.
 
     Parameters
@@ -284,8 +284,8 @@ STAGES = (
             | beside.of_pairs(plan)
         ),
         settings=lambda plan, at: {
-            "of_paper": plan.paper_pairs,
-            "water": {pair: plan.water(pair) for pair in plan.pairs},
+            "of_paper": plan.paper.pairs,
+            "water": {pair: plan.air.water(pair) for pair in plan.pairs},
         },
         compute=_table_3,
         targets=("tables", "measured"),

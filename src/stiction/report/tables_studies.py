@@ -200,7 +200,7 @@ STAGES = (
             "studies": {name: f"studies/sensitivity/{plan.figure_pair}_{name}" for name in plan.shifted_moments},
             "published": published.file("sensitivity"),
         },
-        settings=lambda plan, at: {"pair": plan.figure_pair, "of_paper": plan.paper_pairs},
+        settings=lambda plan, at: {"pair": plan.figure_pair, "of_paper": plan.paper.pairs},
         compute=lambda data, at, settings: sensitivity(
             data["studies"], settings["pair"], published.compared(data, settings)
         ),
@@ -212,10 +212,10 @@ STAGES = (
         "variants",
         "Table III under other model choices",
         inputs=lambda plan, at: {
-            "studies": by_outcome("studies/variants", plan.studied_cases),
+            "studies": by_outcome("studies/variants", plan.variants.cases),
             "published": published.file("table_3"),
         },
-        settings=lambda plan, at: {"of_paper": plan.paper_pairs},
+        settings=lambda plan, at: {"of_paper": plan.paper.pairs},
         compute=lambda data, at, settings: variants(by_pair(data["studies"]), published.compared(data, settings)),
         study="variants",
         targets=("figures", "study_figures"),

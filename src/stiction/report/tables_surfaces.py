@@ -205,7 +205,7 @@ STAGES = (
             "characters": by_model("character", plan.surfaces, SURFACE_MODELS[::-1]),
             "published": published.file("table_1"),
         },
-        settings=lambda plan, at: {"measured": _measured(plan), "of_paper": plan.paper_surfaces},
+        settings=lambda plan, at: {"measured": _measured(plan), "of_paper": plan.paper.surfaces},
         compute=_table_1,
         targets=("tables",),
     ),
@@ -220,7 +220,7 @@ STAGES = (
         },
         settings=lambda plan, at: {
             "sources": {name: plan.config["surfaces"][name]["psd"] for name in plan.with_summits},
-            "of_paper": plan.paper_surfaces,
+            "of_paper": plan.paper.surfaces,
         },
         compute=lambda data, at, settings: table_2(
             data["identifications"], data["spectra"], published.compared(data, settings), settings["sources"]

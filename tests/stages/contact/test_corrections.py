@@ -9,10 +9,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
 
 from stiction.config.files import load
-from stiction.config.plan import Plan
 from stiction.contact.correction import Correction
 from stiction.contact.environment import Water
 from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
 from stiction.stages.beams import variant_beams
 from stiction.stages.contact import contact, corrections, curves, full_contact
 from stiction.stages.contact import model_error as stage_model_error

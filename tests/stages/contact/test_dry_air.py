@@ -9,12 +9,12 @@ from plans import job_settings
 from small import surfaces
 
 from stiction.config.files import load
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.contact.environment import Water, flooded_law
 from stiction.contact.vanderwaals import attraction
 from stiction.estimates import mean_with_error
 from stiction.plan.graph import Results
+from stiction.plan.plan import Plan
 from stiction.stages.contact import contact
 from stiction.stages.contact.curves import energies, pull_offs
 from stiction.stages.laws import forces
@@ -32,7 +32,7 @@ PLAN = Plan(load(SIZES, ACROSS))
 
 
 def water_of(pair, plan=PLAN):
-    return in_si(Water, plan.water(pair))
+    return in_si(Water, plan.air.water(pair))
 
 
 def contact_of(pair, plan=PLAN, of=surfaces):
@@ -84,7 +84,7 @@ def test_summits_that_attract_through_water_would_hold_dry_surfaces_too_strongly
 
 
 def test_flats_in_dry_air_need_the_work_of_eq_10_and_no_rough_surface_needs_as_much(dry):
-    constant = PLAN.hamaker_constant("b_dry") * 1e-21
+    constant = PLAN.air.hamaker_constant("b_dry") * 1e-21
     energy, pull = flooded_law(0.0, water_of("b_dry"), constant)
     assert energy == pytest.approx(attraction("dry").work_of_adhesion, rel=1e-12)
     assert np.all(energies(dry, 0.0, water_of("b_dry")) < energy)
@@ -126,7 +126,7 @@ def test_humid_cases_are_as_without_dry_air():
     for name in ("contact/b_NG", "forces/b_rh044_NG", "chaos/b_rh067_NG", "beams/b_rh044_GEO", "humidity/b_NG"):
         assert job_settings(PLAN, name) == job_settings(without, name)
     assert [case for case in PLAN.cases if case != "b_dry"] == without.cases
-    assert PLAN.studied_cases == without.studied_cases
+    assert PLAN.variants.cases == without.variants.cases
 
 
 def test_a_case_in_dry_air_has_the_contact_in_dry_air():
@@ -140,16 +140,16 @@ def test_a_case_in_dry_air_has_the_contact_in_dry_air():
 
 def test_one_contact_is_enough_if_summits_attract_through_air_at_any_humidity():
     plan = Plan(load(SIZES, ACROSS, {"van_der_waals": "dry"}))
-    assert (plan.in_air("b", 0.0), plan.in_air("b", 0.44)) == ("b", "b")
+    assert (plan.air.contact("b", 0.0), plan.air.contact("b", 0.44)) == ("b", "b")
 
 
 def test_surfaces_that_water_does_not_wet_are_dry_at_any_humidity():
     plan = Plan(load(SIZES, ACROSS, WAX))
     settings = [job_settings(plan, f"forces/{case}_NG") for case in ("b_dry", "b_rh044")]
     assert settings[0] | {"humidity": 0.44} == settings[1]
-    assert [plan.in_air("b", humidity) for humidity in (0.0, 0.44)] == ["b_dry", "b_dry"]
+    assert [plan.air.contact("b", humidity) for humidity in (0.0, 0.44)] == ["b_dry", "b_dry"]
     assert water_of("b_dry", plan).film(0.44) == (0.0, 0.0)
-    assert (plan.humid_pairs, plan.humid_cases, plan.studied_cases) == ([], [], [])
+    assert (plan.humid_pairs, plan.humid_cases, plan.variants.cases) == ([], [], [])
     assert not {"sensitivity", "full_contact", "asperities", "pressing", "variants"} & set(plan.studies)
     assert {"orders", "mesh"} < set(plan.studies)
 
@@ -166,4 +166,4 @@ def test_a_study_of_a_pair_takes_the_word_and_the_number(dry):
 def test_dry_air_without_attraction_across_gaps_is_refused_with_its_error():
     plan = Plan(load(SIZES))
     with pytest.raises(ValueError, match=r"pair b in dry air needs attraction.reach: all: .* 5 to 30 times too small"):
-        plan.in_air("b", 0.0)
+        plan.air.contact("b", 0.0)

@@ -14,8 +14,8 @@ from written_scans import etched, scans_of
 from stiction.analysis.shifts import ORDERS
 from stiction.config.files import load
 from stiction.config.measured import quantities as measured_quantities
-from stiction.config.plan import Plan
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
+from stiction.plan.plan import Plan
 from stiction.scans.histogram import EDGES, histogram
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.moments import mode_covariance, overlap_integrals
@@ -52,7 +52,7 @@ def estimated(plan):
         warnings.simplefilter("ignore", UserWarning)
         read = [
             scan.compute(path, small.settings_of(scan, job_settings(plan, f"scan/Etched_{number}")))
-            for number, path in plan.scan_files("Etched").items()
+            for number, path in plan.scans.files("Etched").items()
         ]
         return estimate.compute(read, "Etched", small.settings_of(estimate, job_settings(plan, "estimate/Etched")))
 
@@ -125,7 +125,7 @@ def test_the_contact_of_a_choice_has_no_more_samples_than_that_of_the_pair_with_
 
 
 def test_the_estimate_keeps_the_levelled_map_and_the_histogram(plan, estimated):
-    files = plan.scan_files("Etched").items()
+    files = plan.scans.files("Etched").items()
     wanted = {n: small.settings_of(scan, job_settings(plan, f"scan/Etched_{n}")) for n, _ in files}
     read = [scan.scan_of(scan.compute(path, wanted[n])) for n, path in files]
     levelled = [level(one.heights, Levelling()) for one in read]
@@ -152,7 +152,7 @@ def test_quantities_of_the_plan_are_those_of_the_surface_and_have_errors(files, 
     assert own == measured_quantities(plan.config["surfaces"]["Etched"]) == names + SPECTRUM_QUANTITIES
     assert sorted(plan.quantities("Etched")) == sorted({*own, *MODE_QUANTITIES[1:]})
     assert plan.quantities("Sub1") == MOMENT_QUANTITIES + SPECTRUM_QUANTITIES
-    assert (plan.scanned_pairs, plan.scanned_sides("b")) == (["b"], ["Etched"])
+    assert (plan.scanned_pairs, plan.scans.sides("b")) == (["b"], ["Etched"])
     errors = scan_uncertainty.errors_of(estimated, plan.quantities("Etched"))
     assert errors.names == names
     assert errors.scans == 2

@@ -8,9 +8,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
 
 from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.contact.environment import Gaps
 from stiction.plan.graph import Results
+from stiction.plan.plan import Plan
 from stiction.stages.contact import asperities, curves, full_contact
 
 HUMIDITIES = small.PLAN.config["pairs"]["b"]["humidities"]

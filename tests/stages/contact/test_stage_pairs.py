@@ -6,10 +6,10 @@ from published import SPACING, SURFACES
 from scipy.constants import pi
 
 from stiction.config.files import load
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.asperity import HertzAsperity
+from stiction.plan.plan import Plan
 from stiction.stages.contact import contact, pairs
 from stiction.stages.contact.variant_summits import Sides, Surface, surfaces_of
 from stiction.stages.surfaces import heights, spectrum

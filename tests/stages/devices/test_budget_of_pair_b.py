@@ -8,12 +8,12 @@ from plans import job_settings, surface_datasets
 
 from stiction.config.files import load
 from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.devices.budget import Budget
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES
+from stiction.plan.plan import Plan
 from stiction.stages.contact import contact, curves, slope_contact
 from stiction.stages.devices import budget
 from stiction.stages.devices import uncertain_inputs as inputs

@@ -3,10 +3,11 @@
 import pytest
 from plans import job_settings
 
+from stiction.config.cases import Case
 from stiction.config.files import load
-from stiction.config.plan import Plan
 from stiction.models import SIDES
 from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
 from stiction.stages.devices import choice_contacts, contacts, patch_settings, slope_contacts
 
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 20, "humidities": [0.67]}
@@ -17,7 +18,7 @@ GRAPH = Graph(PLAN)
 
 def of_budget(contacts_of):
     """Names of all contacts of a budget."""
-    groups = contacts_of(PLAN, "C1_rh067").values()
+    groups = contacts_of(PLAN, Case("C1_rh067")).values()
     return [name for group in groups for name in ([group] if isinstance(group, str) else group.values())]
 
 
@@ -34,7 +35,7 @@ def test_the_contacts_of_tips_have_as_many_samples_as_beams_and_a_tilt_and_those
         settings = job_settings(PLAN, name)
         assert settings["contact"]["samples"] == 700
         assert settings["tilt"]["slopes"]
-    for name in patch_settings.contacts_of_budget(PLAN, "C1_rh067")["less"].values():
+    for name in patch_settings.contacts_of_budget(PLAN, Case("C1_rh067"))["less"].values():
         settings = job_settings(PLAN, name)
         assert settings["contact"]["samples"] == 300
         assert "tilt" not in settings
@@ -44,10 +45,10 @@ def test_the_contacts_of_tips_have_as_many_samples_as_beams_and_a_tilt_and_those
 def test_less_and_more_of_a_property_change_it_in_both_bodies_of_polysilicon_by_opposite_steps():
     solid = PLAN.config["solid"]["young_modulus_GPa"]
     less, more = (
-        job_settings(PLAN, patch_settings.contacts_of_budget(PLAN, "C1_rh067")[f"solids_{side}"]["modulus"])
+        job_settings(PLAN, patch_settings.contacts_of_budget(PLAN, Case("C1_rh067"))[f"solids_{side}"]["modulus"])
         for side in ("less", "more")
     )
     assert less["solid"]["young_modulus_GPa"] + more["solid"]["young_modulus_GPa"] == pytest.approx(2 * solid)
     assert less["solid"]["young_modulus_GPa"] < solid
-    hamaker = patch_settings.contacts_of_budget(PLAN, "C1_rh067")["solids_less"]["hamaker_constant"]
+    hamaker = patch_settings.contacts_of_budget(PLAN, Case("C1_rh067"))["solids_less"]["hamaker_constant"]
     assert job_settings(PLAN, hamaker)["materials"].keys() == set(SIDES)

@@ -12,8 +12,8 @@ from test_device_outputs import charted
 from test_tables_budget import BEAM, budget_dataset
 
 from stiction.beam.energy import arrest_length
+from stiction.config.cases import Case
 from stiction.config.files import load
-from stiction.config.plan import Plan
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.environment import Gaps, Water, flooded_law
 from stiction.contact.vanderwaals import attraction
@@ -21,6 +21,7 @@ from stiction.device import Device
 from stiction.devices.arcs import arc_length
 from stiction.devices.bridges import least_length
 from stiction.plan.graph import Graph, Results
+from stiction.plan.plan import Plan
 from stiction.report.devices import figures_budget, figures_devices, pages, tables_budget, tables_devices
 from stiction.stages.contact import contact, curves
 from stiction.stages.devices import stoppers
@@ -81,7 +82,7 @@ def _files(inputs):
 
 def test_humid_air_is_as_without_dry_air():
     humid = plan_of([0.67])
-    tips = f"devices/contact/tips/{humid.designs.tips('C1').name}"
+    tips = f"devices/contact/tips/{humid.devices.tips('C1').name}"
     for name in (
         "cracks/C1_rh067",
         "safe_lengths/C1_rh067",
@@ -96,15 +97,15 @@ def test_humid_air_is_as_without_dry_air():
 
 
 def test_choices_of_the_medium_are_none_in_dry_air():
-    dry, humid = (PLAN.choices_of_device(case) for case in ("C1_dry", "C1_rh067"))
+    dry, humid = (PLAN.variants.choices_of_device(Case(case)) for case in ("C1_dry", "C1_rh067"))
     assert dry == humid  # across gaps, other media are left out anyway
     assert not [name for name in dry if name.startswith("van_der_waals")]
     assert [name for name in dry if name.startswith("poisson_ratio")]
 
 
 def test_a_chart_has_dry_air_beside_its_axis_if_the_device_states_it():
-    assert PLAN.designs.chart_cases("C1") == ["C1_dry", "C1_rh050", "C1_rh070", "C1_rh090"]
-    assert plan_of([0.67]).designs.chart_cases("C1") == ["C1_rh050", "C1_rh070", "C1_rh090"]
+    assert PLAN.devices.chart_cases("C1") == ["C1_dry", "C1_rh050", "C1_rh070", "C1_rh090"]
+    assert plan_of([0.67]).devices.chart_cases("C1") == ["C1_rh050", "C1_rh070", "C1_rh090"]
 
 
 def test_a_device_of_surfaces_that_water_does_not_wet_is_dry_at_any_humidity():

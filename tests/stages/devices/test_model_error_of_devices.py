@@ -7,8 +7,8 @@ from test_pages import CANTILEVER, STOPPER, safe
 from test_tables_budget import BUDGETS, STOPPERS
 
 from stiction.config.files import load
-from stiction.config.plan import Plan
 from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
 from stiction.report.devices import model_errors, pages, tables_budget, tables_devices
 from stiction.stages.devices import model_error
 from stiction.stages.devices.releases import EITHER, FORCE, S_SHAPE

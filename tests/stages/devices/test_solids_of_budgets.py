@@ -9,10 +9,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
 
 from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.devices.materials import OF_CONTACT
+from stiction.plan.plan import Plan
 from stiction.stages.contact import contact
 from stiction.stages.devices import budget
 from stiction.stages.devices.uncertain_inputs import Uncertainty

@@ -7,8 +7,8 @@ from matplotlib.lines import Line2D
 from numpy.testing import assert_allclose
 
 from stiction.config.files import load
-from stiction.config.plan import Plan
 from stiction.contact.environment import Water
+from stiction.plan.plan import Plan
 from stiction.report.devices import figures_budget, tables_budget
 from stiction.report.style import DOUBLE, legend_below, panels, save, styled
 from stiction.stages.devices import budget as study_budget
@@ -101,7 +101,7 @@ def test_the_text_names_what_to_measure_better():
 @pytest.mark.parametrize("medium", ["water", "dry"])
 def test_every_choice_of_the_model_has_a_label_in_words(medium):
     config = {"van_der_waals": medium, "studies": {"variants": {"van_der_waals": ["water", "dry", "none"]}}}
-    choices = Plan(load(config)).choices("b")
+    choices = Plan(load(config)).variants.choices("b")
     labels = [tables_budget.choice_label(name) for name in choices]
     assert len(set(labels)) == len(choices) > 5
     assert {"spectrum from summits", "1 in 2 grid points", "grid of 5 nm", "Poisson's ratio 0.18"} < set(labels)

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from plans import job_settings, surface_datasets
 
-from stiction.config.designs import Designs
+from stiction.config.device_plan import DevicePlan
 from stiction.config.files import load
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.contact import tilted
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import flooded_energy
 from stiction.devices import arcs, risk
+from stiction.plan.plan import Plan
 from stiction.stages.contact import contact, curves
 from stiction.stages.devices.releases import DesignedBeam
 from stiction.streams import stream
@@ -35,7 +35,7 @@ def settings(number, edge="rounded"):
     plan = Plan(load({"devices": {"C1": C1}, "design": {"beams": 200, "tip_edge": edge}}))
     plain = job_settings(
         plan,
-        f"devices/contact/tips/{Designs(plan.config).tips('C1').name}",
+        f"devices/contact/tips/{DevicePlan(plan.config).tips('C1').name}",
     )
     plain["contact"] |= {"samples": number}
     return plan, plain

@@ -10,13 +10,13 @@ from ground import C1, R1, UM, safe_with_tips, safe_without_tips
 from plans import job_settings
 
 from stiction.config.files import load
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import film, surface_energy
 from stiction.devices import limits
 from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE

@@ -16,8 +16,8 @@ from published import SURFACES
 from stiction.analysis.shifts import ORDERS
 from stiction.analysis.variants import relative_shift
 from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
+from stiction.plan.plan import Plan
 from stiction.scans.estimate import Settings as Evaluation
 from stiction.scans.model_scans import SurfaceModel
 from stiction.scans.moments import mode_covariance

@@ -5,9 +5,9 @@ import pytest
 import xarray as xr
 
 import stiction
-from stiction.config.plan import Plan
 from stiction.contact.environment import Water
 from stiction.plan.graph import Graph, Results
+from stiction.plan.plan import Plan
 from stiction.report.devices import figures_roughness, tables_roughness
 from stiction.report.style import png
 from stiction.stages.roughness import curves

@@ -229,7 +229,7 @@ def _stage(kind, name, shows, draw, **declared):
             "beams": by_case("beams", plan.humid_cases, "_NG"),
             "published": published.file("table_3"),
         },
-        settings=lambda plan, at: {"of_paper": plan.paper_pairs},
+        settings=lambda plan, at: {"of_paper": plan.paper.pairs},
         compute=lambda data, at, settings: draw(
             data["studies"], data["full"], data["beams"], published.compared(data, settings)
         ),

@@ -205,11 +205,11 @@ STAGES = (
         "pull-off force of stoppers",
         "Devices",
         inputs=lambda plan, at: {
-            "stoppers": by_name("devices/stoppers", plan.designs.stoppers),
-            "warnings": device_warnings.files_of(*plan.designs.stoppers),
+            "stoppers": by_name("devices/stoppers", plan.devices.stoppers),
+            "warnings": device_warnings.files_of(*plan.devices.stoppers),
         },
         compute=lambda data, at, settings: stoppers(data["stoppers"], device_warnings.read(data["warnings"]).patches),
-        jobs=lambda plan: [{}] if plan.designs.stoppers else [],
+        jobs=lambda plan: [{}] if plan.devices.stoppers else [],
         targets=("devices",),
     ),
     figure_stage(
@@ -220,7 +220,7 @@ STAGES = (
         caption="budget",
         inputs=lambda plan, at: {"budgets": budgets_of(plan, at.device)},
         compute=lambda data, at, settings: budget(data["budgets"]),
-        jobs=lambda plan: [{"device": name} for name in plan.designs.budgeted],
+        jobs=lambda plan: [{"device": name} for name in plan.devices.budgeted],
         targets=("devices",),
     ),
 )

@@ -211,11 +211,11 @@ STAGES = (
         "share of stuck beams over their length",
         "Devices",
         inputs=lambda plan, at: {
-            "lengths": by_case("devices/safe_lengths", plan.designs.cases),
-            "warnings": device_warnings.files_of(*plan.designs.beams),
+            "lengths": by_case("devices/safe_lengths", plan.devices.cases),
+            "warnings": device_warnings.files_of(*plan.devices.beams),
         },
         compute=lambda data, at, settings: risk(data["lengths"], device_warnings.read(data["warnings"]).lengths),
-        jobs=lambda plan: [{}] if plan.designs.cases else [],
+        jobs=lambda plan: [{}] if plan.devices.cases else [],
         targets=("devices",),
     ),
     figure_stage(
@@ -223,9 +223,9 @@ STAGES = (
         "chart",
         "safe length over the relative humidity",
         "Devices",
-        inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.designs.charted)},
+        inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.charted)},
         compute=lambda data, at, settings: chart(data["charts"], device_warnings.read(data["warnings"]).curves),
-        jobs=lambda plan: [{}] if plan.designs.charted else [],
+        jobs=lambda plan: [{}] if plan.devices.charted else [],
         targets=("devices",),
     ),
 )

@@ -112,7 +112,7 @@ STAGES = (
         caption="test_beams",
         inputs=lambda plan, at: {"test_beams": f"devices/test_beams/{at.device}"},
         compute=lambda data, at, settings: test_beams(data["test_beams"]),
-        jobs=lambda plan: [{"device": name} for name in plan.designs.tested],
+        jobs=lambda plan: [{"device": name} for name in plan.devices.tested],
         targets=("devices",),
     ),
 )

@@ -79,7 +79,7 @@ STAGES = (
         caption="roughness",
         inputs=lambda plan, at: {"roughness": f"devices/roughness/{at.device}"},
         compute=lambda data, at, settings: roughness(data["roughness"]),
-        jobs=lambda plan: [{"device": name} for name in plan.designs.roughened],
+        jobs=lambda plan: [{"device": name} for name in plan.devices.roughened],
         targets=("devices",),
     ),
 )

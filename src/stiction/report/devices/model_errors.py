@@ -84,5 +84,5 @@ def of_devices(plan: Any, *devices: str) -> dict[str, Any]:
 
     Devices on pairs in dry air alone are left out: full contact is computed where water condenses.
     """
-    humid = [name for name in devices if plan.humid(plan.config["devices"][name]["pair"])]
+    humid = [name for name in devices if plan.air.humid(plan.config["devices"][name]["pair"])]
     return {"errors": by_name("devices/model_error", humid)} if plan.states_model_error else {}

@@ -514,15 +514,15 @@ def _side_by_side(cells):
 
 def _inputs(plan, at):
     """Everything that the page of a device shows."""
-    designs, section = plan.designs, plan.config["devices"][at.device]
+    devices, section = plan.devices, plan.config["devices"][at.device]
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
-    budgets = budgets_of(plan, at.device) if at.device in designs.budgeted else {}
+    budgets = budgets_of(plan, at.device) if at.device in devices.budgeted else {}
     own = {"budgets": {key[1:]: name for key, name in budgets.items()}, "warnings": device_warnings.files_of(at.device)}
     own |= model_errors.of_devices(plan, at.device)
     own |= {key: f"devices/{key}/{at.device}" for key in ("test_beams", "roughness") if key in section}
-    if not designs.kind(at.device).is_beam:
+    if not devices.kind(at.device).is_beam:
         return own | {"stopper": f"devices/stoppers/{at.device}", "style": File(STYLE)}
-    charts = designs.chart_cases(at.device) if at.device in designs.charted else []
+    charts = devices.chart_cases(at.device) if at.device in devices.charted else []
     return own | {
         "safe_lengths": {key[1]: name for key, name in by_case("devices/safe_lengths", cases).items()},
         "charts": {key[1]: name for key, name in by_case("devices/chart", charts).items()},
@@ -560,7 +560,7 @@ STAGES = (
         save=lambda page, paths: save_text(page.html, paths["html"]),
         shown=Shown(file="html", title="{device}: what to build", category="Devices"),
         message="Page of device {device}.",
-        jobs=lambda plan: [{"device": name} for name in plan.designs.devices],
+        jobs=lambda plan: [{"device": name} for name in plan.devices.sections],
         targets=("devices",),
     ),
 )

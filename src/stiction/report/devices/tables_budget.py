@@ -274,15 +274,15 @@ STAGES = (
         "P(stuck) of stoppers",
         inputs=lambda plan, at: (
             {
-                "stoppers": by_name("devices/stoppers", plan.designs.stoppers),
-                "warnings": device_warnings.files_of(*plan.designs.stoppers),
+                "stoppers": by_name("devices/stoppers", plan.devices.stoppers),
+                "warnings": device_warnings.files_of(*plan.devices.stoppers),
             }
-            | model_errors.of_devices(plan, *plan.designs.stoppers)
+            | model_errors.of_devices(plan, *plan.devices.stoppers)
         ),
         compute=lambda data, at, settings: stoppers(
             data["stoppers"], device_warnings.read(data["warnings"]).patches, data.get("errors")
         ),
-        jobs=lambda plan: [{}] if plan.designs.stoppers else [],
+        jobs=lambda plan: [{}] if plan.devices.stoppers else [],
         targets=("devices",),
     ),
     table_stage(
@@ -290,11 +290,11 @@ STAGES = (
         "budget",
         "uncertainty of devices, and what to measure better",
         inputs=lambda plan, at: (
-            {"budgets": budgets_of(plan, *plan.designs.budgeted)}
-            | model_errors.of_devices(plan, *plan.designs.budgeted)
+            {"budgets": budgets_of(plan, *plan.devices.budgeted)}
+            | model_errors.of_devices(plan, *plan.devices.budgeted)
         ),
         compute=lambda data, at, settings: budget(data["budgets"], data.get("errors")),
-        jobs=lambda plan: [{}] if plan.designs.budgeted else [],
+        jobs=lambda plan: [{}] if plan.devices.budgeted else [],
         targets=("devices",),
     ),
 )

@@ -176,24 +176,24 @@ STAGES = (
         "lengths of beams that come free",
         inputs=lambda plan, at: (
             {
-                "lengths": by_case("devices/safe_lengths", plan.designs.cases),
-                "warnings": device_warnings.files_of(*plan.designs.beams),
+                "lengths": by_case("devices/safe_lengths", plan.devices.cases),
+                "warnings": device_warnings.files_of(*plan.devices.beams),
             }
-            | model_errors.of_devices(plan, *plan.designs.beams)
+            | model_errors.of_devices(plan, *plan.devices.beams)
         ),
         compute=lambda data, at, settings: safe_lengths(
             data["lengths"], device_warnings.read(data["warnings"]).lengths, data.get("errors")
         ),
-        jobs=lambda plan: [{}] if plan.designs.cases else [],
+        jobs=lambda plan: [{}] if plan.devices.cases else [],
         targets=("devices",),
     ),
     table_stage(
         "table_chart",
         "chart",
         "safe length over the relative humidity",
-        inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.designs.charted)},
+        inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.charted)},
         compute=lambda data, at, settings: chart(data["charts"], device_warnings.read(data["warnings"]).curves),
-        jobs=lambda plan: [{}] if plan.designs.charted else [],
+        jobs=lambda plan: [{}] if plan.devices.charted else [],
         targets=("devices",),
     ),
 )

@@ -341,9 +341,9 @@ STAGES = (
         "table_test_beams",
         "test_beams",
         "what test beams say about devices",
-        inputs=lambda plan, at: {"test_beams": by_name("devices/test_beams", plan.designs.tested)},
+        inputs=lambda plan, at: {"test_beams": by_name("devices/test_beams", plan.devices.tested)},
         compute=lambda data, at, settings: test_beams(data["test_beams"]),
-        jobs=lambda plan: [{}] if plan.designs.tested else [],
+        jobs=lambda plan: [{}] if plan.devices.tested else [],
         targets=("devices",),
     ),
 )

@@ -213,9 +213,9 @@ STAGES = (
         "table_roughness",
         "roughness",
         "how rough a surface must be",
-        inputs=lambda plan, at: {"roughness": by_name("devices/roughness", plan.designs.roughened)},
+        inputs=lambda plan, at: {"roughness": by_name("devices/roughness", plan.devices.roughened)},
         compute=lambda data, at, settings: roughness(data["roughness"]),
-        jobs=lambda plan: [{}] if plan.designs.roughened else [],
+        jobs=lambda plan: [{}] if plan.devices.roughened else [],
         targets=("devices",),
     ),
 )

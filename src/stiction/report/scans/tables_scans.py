@@ -144,16 +144,16 @@ STAGES = (
         "scans",
         "scans of the measured surfaces",
         inputs=lambda plan, at: {
-            "estimates": by_name("estimate", plan.scanned),
-            "spectra": by_name("spectrum", plan.scanned),
-            "scans": {(name, k): f"scan/{name}_{k}" for name in plan.scanned for k in plan.scan_files(name)},
+            "estimates": by_name("estimate", plan.scans.surfaces),
+            "spectra": by_name("spectrum", plan.scans.surfaces),
+            "scans": {(name, k): f"scan/{name}_{k}" for name in plan.scans.surfaces for k in plan.scans.files(name)},
         },
         compute=lambda data, at, settings: scans(
             data["estimates"],
             data["spectra"],
             {name: [scan for key, scan in data["scans"].items() if key[0] == name] for name in data["estimates"]},
         ),
-        jobs=lambda plan: [{}] if plan.scanned else [],
+        jobs=lambda plan: [{}] if plan.scans.surfaces else [],
         targets=("tables", "measured", "scans"),
     ),
     table_stage(

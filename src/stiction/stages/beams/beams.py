@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import pair_of
+from stiction.config.cases import Case
 from stiction.models import surface_model
 from stiction.plan.stage import Stage
 from stiction.stages.beams import releases
@@ -19,22 +19,22 @@ _KEPT = 100
 Settings = releases.Settings
 
 
-def compute(chaos: xr.Dataset, case: str, settings: Settings, threads: int = 1) -> xr.Dataset:
+def compute(chaos: xr.Dataset, case: Case, settings: Settings, threads: int = 1) -> xr.Dataset:
     """Release all beams of a case; models NG and GEO have the same force laws.
 
     Parameters
     ----------
     chaos : Dataset
         Dataset of stage chaos.
-    case : str
-        Name of the case, part of the addresses of random numbers.
+    case : Case
+        Part of the addresses of random numbers.
     settings : Settings
     threads : int
         Number of beams computed in parallel; it does not affect the results.
     """
     columns = releases.released(chaos_model(chaos), case, settings, threads, shapes=_KEPT)
     elements = columns["deflection"].shape[1] - 1
-    return layout(columns, replace(cantilever(settings, pair_of(case)), elements=elements).nodes)
+    return layout(columns, replace(cantilever(settings, case.pair), elements=elements).nodes)
 
 
 def layout(columns: dict[str, np.ndarray], nodes: np.ndarray) -> xr.Dataset:

@@ -157,10 +157,10 @@ STAGES = (
         settings=lambda plan, at: {
             "pairs": {
                 "sampling": select(StripLength, plan.config["sampling"]),
-                "water": {pair: plan.water(pair) for pair in plan.pairs},
+                "water": {pair: plan.air.water(pair) for pair in plan.pairs},
             }
             | sections(plan, *plan.pairs),
-            "materials": {pair: plan.stated_properties(pair) for pair in plan.pairs},
+            "materials": {pair: plan.materials.in_words(pair) for pair in plan.pairs},
         },
         compute=_of_pairs,
         save=lambda page, paths: save_text(page, paths["markdown"]),

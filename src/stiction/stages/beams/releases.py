@@ -15,7 +15,7 @@ from stiction.beam.montecarlo import Experiment, released_beams
 from stiction.beam.release import EndState
 from stiction.beam.resolution import resolved
 from stiction.chaos.model import ChaosModel, draw_laws
-from stiction.config.cases import pair_of
+from stiction.config.cases import Case
 from stiction.plan.stage import select
 from stiction.stages.beams import cantilevers
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, strips_along
@@ -50,14 +50,14 @@ def without_scatter(settings: OnStrips, samples: int) -> Settings:
     return Settings(**common, samples=samples, scatter=0)
 
 
-def released(model: ChaosModel, case: str, settings: Settings, threads: int = 1, shapes: int = 0) -> dict:
+def released(model: ChaosModel, case: Case, settings: Settings, threads: int = 1, shapes: int = 0) -> dict:
     """Release beams of a case on force laws drawn from a chaos model; arrays of `stiction.beam.montecarlo.columns`."""
     address = partial(stream, settings.seed, "beams", case)
     return released_on(partial(draw_laws, model), case, settings, address, threads, shapes)
 
 
 def released_on(
-    draw: Callable, case: str, settings: Settings, address: Callable, threads: int = 1, shapes: int = 0
+    draw: Callable, case: Case, settings: Settings, address: Callable, threads: int = 1, shapes: int = 0
 ) -> dict:
     """Release beams of a case on force laws drawn by ``draw(n, rng)``; ``address(k)`` returns the stream of beam k.
 
@@ -66,7 +66,7 @@ def released_on(
     ValueError
         If the strips are too long for the force laws.
     """
-    beam, strips = cantilever(settings, pair_of(case)), strips_along(settings.beam, settings.sampling)
+    beam, strips = cantilever(settings, case.pair), strips_along(settings.beam, settings.sampling)
     if settings.refined:
         beam = _resolved(beam, strips, draw(_LAWS, address("mesh")), case)
     experiment = Experiment(beam, strips, draw, settings.scatter)
@@ -97,8 +97,8 @@ def stuck_energies(beams: xr.Dataset) -> np.ndarray:
     return beams.adhesion_energy.values[ended(beams, "S-shape")]
 
 
-def sections(plan: Any, case: str) -> dict[str, Any]:
+def sections(plan: Any, case: Case) -> dict[str, Any]:
     """Sections of the configuration on which the beams of a case depend, apart from their number."""
     strips = select(StripLength, plan.config["sampling"])
-    nominal = {"seed": plan.config["seed"], "sampling": strips} | cantilevers.sections(plan, pair_of(case))
-    return nominal | ({} if plan.has_mesh_of_paper(case) else {"refined": True})
+    nominal = {"seed": plan.config["seed"], "sampling": strips} | cantilevers.sections(plan, case.pair)
+    return nominal | ({} if plan.paper.has_mesh(case) else {"refined": True})

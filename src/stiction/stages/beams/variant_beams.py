@@ -8,7 +8,7 @@ import xarray as xr
 
 from stiction.analysis.variants import Variant
 from stiction.chaos.model import Truncation, fit
-from stiction.config.cases import humidity_of, pair_of
+from stiction.config.cases import Case
 from stiction.contact.environment import Water
 from stiction.plan.stage import Stage
 from stiction.stages.beams import releases
@@ -25,13 +25,12 @@ class Settings(releases.OnStrips):
     chaos: Truncation
 
 
-def compute(contact: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
+def compute(contact: xr.Dataset, case: Case, settings: Settings) -> xr.Dataset:
     """Run the stages after contact at the humidity of a case; model NG, nominal dimensions."""
-    humidity = humidity_of(case)
-    vectors, limit = curves.vectors(first(contact, settings.samples), humidity, settings.water)
+    vectors, limit = curves.vectors(first(contact, settings.samples), case.humidity, settings.water)
     model = fit(vectors, limit, settings.chaos.order, settings.chaos.dimension_tolerance)
     beams = releases.without_scatter(settings, settings.beam.samples)
-    return layout([humidity], [vectors[:, 0]], [releases.released(model, case, beams)])
+    return layout([case.humidity], [vectors[:, 0]], [releases.released(model, case, beams)])
 
 
 def layout(humidities: Sequence[float], energies: Sequence, beams: Sequence[dict]) -> xr.Dataset:
@@ -77,19 +76,19 @@ def _inputs(plan, at):
 
     That of the base is the contact of the main line, unless the variants have more samples.
     """
-    pair, shared = pair_of(at.case), plan.contact_under(at.variant)
-    other = f"studies/variants/{'islands' if plan.has_islands(shared) else 'contact'}/{pair}_{shared}"
-    of_main_line = shared == "base" and plan.has_samples_of_variants
+    pair, shared = at.case.pair, plan.variants.contact_under(at.variant)
+    other = f"studies/variants/{'islands' if plan.variants.has_islands(shared) else 'contact'}/{pair}_{shared}"
+    of_main_line = shared == "base" and plan.variants.has_samples
     return {"contact": f"contact/{pair}_NG" if of_main_line else other} | corrections.of_pair(plan, pair, at.variant)
 
 
 def _settings(plan, at):
     """Stages after contact under a variant: samples of the contact, water, force laws and beams without scatter."""
     study = plan.config["studies"]["variants"]
-    water = plan.water(pair_of(at.case), at.variant)
+    water = plan.variants.water(at.case.pair, at.variant)
     laws = {"chaos": plan.config["chaos"], "water": water, "samples": study["samples"]}
     nominal = releases.sections(plan, at.case)
-    beam = nominal["beam"] | {"samples": study["beams"]} | plan.finer_beams.get(at.variant, {})
+    beam = nominal["beam"] | {"samples": study["beams"]} | plan.variants.finer_beams.get(at.variant, {})
     return nominal | laws | {"beam": beam}
 
 

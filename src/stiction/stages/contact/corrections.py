@@ -24,7 +24,8 @@ def of_pair(plan: Any, pair: str, variant: str = "base", model: str = "NG") -> d
 
     Those of Gaussian heights do, for which full contact is not computed.
     """
-    return {"model_error": f"studies/model_error/{pair}"} if plan.is_corrected(variant) and model == "NG" else {}
+    is_corrected = plan.variants.is_corrected(variant) and model == "NG"
+    return {"model_error": f"studies/model_error/{pair}"} if is_corrected else {}
 
 
 def corrected(settings: S, data: Mapping[str, Any]) -> S:

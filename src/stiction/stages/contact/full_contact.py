@@ -143,10 +143,10 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
 
     ASSUME: attraction across gaps is left out, so that both models have the same forces.
     """
-    all_of_pair = sorted(plan.humid(at.pair))
+    all_of_pair = sorted(plan.air.humid(at.pair))
     chosen = dict.fromkeys(all_of_pair[k] for k in (0, (len(all_of_pair) - 1) // 2, -1))
     study = {"humidities": list(chosen), "strips": plan.config["studies"]["full_contact"]["samples"]}
-    water = {key: value for key, value in plan.water(at.pair).items() if key != "gaps"}
+    water = {key: value for key, value in plan.air.water(at.pair).items() if key != "gaps"}
     seen = plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None)
     return select(Settings, seen | study | {"water": water})
 

@@ -74,7 +74,7 @@ STAGES = (
         inputs=lambda plan, at: {"study": f"studies/full_contact/{at.pair}"},
         settings=lambda plan, at: (
             {"humidities": plan.config["pairs"][at.pair]["humidities"]}
-            | ({"applied": True} if plan.is_corrected() else {})
+            | ({"applied": True} if plan.variants.is_corrected() else {})
         ),
         kind=Settings,
         compute=lambda data, at, settings: compute(data["study"], settings),

@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import in_any_air
+from stiction.config.cases import PairInAir
 from stiction.contact.asperity import Asperity
 from stiction.contact.pair import Definition, EquivalentSurface, SurfacePair
 from stiction.contact.solids import Solid, asperity_between
@@ -109,4 +109,4 @@ def surface_pairs(
 
 def streams_of_sides(seed: int, pair: str) -> Callable[[int], tuple[np.random.Generator, ...]]:
     """Streams of the two surfaces of one sample of a pair, in any air: ``(sample) -> (beam, substrate)``."""
-    return lambda sample: tuple(stream(seed, "contact", in_any_air(pair), side, sample) for side in SIDES)
+    return lambda sample: tuple(stream(seed, "contact", PairInAir(pair).pair, side, sample) for side in SIDES)

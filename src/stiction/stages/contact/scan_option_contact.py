@@ -88,7 +88,7 @@ def other(source: Source, choice: str) -> Source:
 
 def _settings(plan, at):
     """As those of the contact, with the samples of the slopes, at most its own, and sources of measured surfaces."""
-    entries = {name: plan.config["surfaces"][name] for name in plan.scanned_sides(at.pair)}
+    entries = {name: plan.config["surfaces"][name] for name in plan.scans.sides(at.pair)}
     sources = {name: select(Source, entry) for name, entry in entries.items()}
     return select(Settings, plan.seen_by(at.pair, samples=plan.samples_of_slopes) | {"sources": sources})
 
@@ -98,7 +98,7 @@ STAGES = (
         "choice_contact",
         "studies/choices/{pair}_{choice}",
         inputs=lambda plan, at: (
-            of_pair(plan, at.pair) | {"estimates": {name: f"estimate/{name}" for name in plan.scanned_sides(at.pair)}}
+            of_pair(plan, at.pair) | {"estimates": {name: f"estimate/{name}" for name in plan.scans.sides(at.pair)}}
         ),
         settings=_settings,
         kind=Settings,

@@ -34,9 +34,9 @@ CONTACT = Stage.writing(
     "variant_contact",
     "studies/variants/contact/{pair}_{variant}",
     inputs=lambda plan, at: {
-        "summits": f"studies/variants/summits/{at.pair}_{plan.summits_under(at.pair, at.variant)}"
+        "summits": f"studies/variants/summits/{at.pair}_{plan.variants.with_summits_of(at.pair, at.variant)}"
     },
-    settings=lambda plan, at: plan.variant_contact(at.pair, at.variant),
+    settings=lambda plan, at: plan.variants.solids(at.pair, at.variant),
     kind=Settings,
     compute=lambda data, at, settings: compute(data["summits"], settings),
     label="contact",

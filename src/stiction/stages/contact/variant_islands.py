@@ -27,7 +27,7 @@ def compute(surfaces: tuple, solids: variant_contact.Settings) -> xr.Dataset:
 
 def _settings(plan, at):
     """Surfaces and solids of a pair under a variant."""
-    return plan.variant_summits(at.pair, at.variant) | {"solids": plan.variant_contact(at.pair, at.variant)}
+    return plan.variants.summits(at.pair, at.variant) | {"solids": plan.variants.solids(at.pair, at.variant)}
 
 
 STAGES = (

@@ -184,8 +184,8 @@ def distances(dataset: xr.Dataset) -> DistanceGrid:
 
 def inputs(plan: Any, at: At) -> dict[str, dict[str, str]]:
     """Identifications of the surfaces under a variant, and datasets of the measured surfaces of the pair."""
-    identified = plan.variant_summits(at.pair, at.variant)["identified"]
-    measured = plan.scanned_sides(at.pair)
+    identified = plan.variants.summits(at.pair, at.variant)["identified"]
+    measured = plan.scans.sides(at.pair)
     return {"identifications": {name: f"identification/{name}" for name in identified}} | {
         stage: {name: f"{stage}/{name}" for name in measured} for stage in ("heights", "spectrum")
     }
@@ -202,7 +202,7 @@ SUMMITS = Stage.writing(
     "variant_summits",
     "studies/variants/summits/{pair}_{variant}",
     inputs=inputs,
-    settings=lambda plan, at: plan.variant_summits(at.pair, at.variant),
+    settings=lambda plan, at: plan.variants.summits(at.pair, at.variant),
     compute=lambda data, at, settings: compute(*arguments(data, at, settings)),
     message="Summits of pair {pair} under variant {variant}.",
     cluster=True,

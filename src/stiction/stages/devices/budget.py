@@ -16,7 +16,7 @@ import xarray as xr
 
 from stiction.beam.cantilever import Beam
 from stiction.config import arrays
-from stiction.config.cases import case_id, humidity_of, pair_of
+from stiction.config.cases import Case, case_id
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.devices import arcs
@@ -331,35 +331,35 @@ def response_of(dataset: xr.Dataset) -> tuple[str, float]:
 
 def _inputs(plan, device):
     """Datasets of the surfaces of a device with uncertain quantities, and estimates of those described by scans."""
-    names = dict.fromkeys(surface for surface, _ in plan.designs.quantities(device))
-    scanned = plan.scanned_sides(plan.config["devices"][device]["pair"])
+    names = dict.fromkeys(surface for surface, _ in plan.devices.quantities(device))
+    scanned = plan.scans.sides(plan.config["devices"][device]["pair"])
     described = {stage: {name: f"{stage}/{name}" for name in names} for stage in ("heights", "spectrum")}
     return described | {"estimates": {name: f"estimate/{name}" for name in scanned}}
 
 
 def _settings(plan, at):
     """Settings of a budget, the quantities of its surfaces and its variants of the model."""
-    name, designs = pair_of(at.case), plan.designs
+    name, devices = at.case.device, plan.devices
     section = plan.config["devices"][name]
-    pair = plan.in_air_of_device(at.case)
-    own = {"uncertainty": section.get("uncertainty", {}), "humidity": humidity_of(at.case)}
-    own |= chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(pair)
-    if "hamaker_constant" in designs.uncertain_solids(name):
-        own |= {"hamaker_constant_zJ": plan.beam_hamaker_constant(pair)}
-    if designs.kind(name).is_beam:
+    pair = plan.contact_of_device(at.case)
+    own = {"uncertainty": section.get("uncertainty", {}), "humidity": at.case.humidity}
+    own |= chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.materials.beam_modulus(pair)
+    if "hamaker_constant" in devices.uncertain_solids(name):
+        own |= {"hamaker_constant_zJ": plan.air.beam_hamaker_constant(pair)}
+    if devices.kind(name).is_beam:
         own |= {"device": section_of_beam(plan, name, pair), "beams": plan.config["design"]["budget_beams"]}
     else:
         own |= chosen(section, ["contact_um"])
-    own |= {"seed": plan.config["seed"], "water": plan.water(pair), "surfaces": plan.sides(pair)}
-    quantities = list(map(list, designs.quantities(name)))
-    return {"budget": own, "quantities": quantities, "choices": plan.choices_of_device(at.case)}
+    own |= {"seed": plan.config["seed"], "water": plan.air.water(pair), "surfaces": plan.sides(pair)}
+    quantities = list(map(list, devices.quantities(name)))
+    return {"budget": own, "quantities": quantities, "choices": plan.variants.choices_of_device(at.case)}
 
 
 def _settings_of_tips(plan, at, share=None):
     """As `_settings`, of the length that a share of the tips of a cantilever hold, by default the middle one."""
     settings, shares = _settings(plan, at), plan.config["design"]["shares"]
     own = {key: value for key, value in settings["budget"].items() if key != "beams"}
-    choices = plan.choices_of_solids(plan.in_air_of_device(at.case))
+    choices = plan.variants.choices_of_solids(plan.contact_of_device(at.case))
     return settings | {"budget": own | {"share": share or shares[len(shares) // 2]}, "choices": choices}
 
 
@@ -375,10 +375,10 @@ def _computed(data, _at, settings):
 
 def budgets_of(plan: Any, *devices: str) -> dict[tuple, str]:
     """Datasets of the budgets of devices by name and humidity, and ``tip`` if they are of tips."""
-    names = plan.designs.budgets(*devices) if devices else []
-    cases = {name: name.removesuffix("_tip") for name in names}
+    names = plan.devices.budgets(*devices) if devices else []
+    cases = {name: Case(name.removesuffix("_tip")) for name in names}
     return {
-        (pair_of(case), humidity_of(case), *(["tip"] if name != case else [])): f"devices/budget/{name}"
+        (case.device, case.humidity, *(["tip"] if name != case else [])): f"devices/budget/{name}"
         for name, case in cases.items()
     }
 
@@ -386,7 +386,7 @@ def budgets_of(plan: Any, *devices: str) -> dict[tuple, str]:
 BUDGET = Stage.writing(
     "budget",
     "devices/budget/{case}",
-    inputs=lambda plan, at: _inputs(plan, pair_of(at.case)) | contacts_of_budget(plan, at.case),
+    inputs=lambda plan, at: _inputs(plan, at.case.device) | contacts_of_budget(plan, at.case),
     settings=_settings,
     compute=_computed,
     message="Budget of {case}.",
@@ -410,7 +410,7 @@ def _inputs_of_test_beams(contacts):
     """As those of a cantilever, or of its tips; other choices of the model are left out."""
 
     def inputs(plan, at):
-        plan, name = plan.of_test_beams, pair_of(at.case)
+        plan, name = plan.of_test_beams, at.case.device
         return _inputs(plan, name) | contacts(plan, at.case) | {"choices": {}}
 
     return inputs
@@ -421,7 +421,7 @@ STAGES = (
     BUDGET.on(
         "tip_budget",
         "devices/budget/{case}_tip",
-        inputs=lambda plan, at: _inputs(plan, pair_of(at.case)) | contacts_of_tip_budget(plan, at.case),
+        inputs=lambda plan, at: _inputs(plan, at.case.device) | contacts_of_tip_budget(plan, at.case),
         settings=_settings_of_tips,
         label="budget",
         message="Budget of the tips of {case}.",

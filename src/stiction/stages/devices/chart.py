@@ -13,7 +13,6 @@ import numpy as np
 import xarray as xr
 
 from stiction.chaos.model import Truncation
-from stiction.config.cases import pair_of
 from stiction.contact.environment import Water
 from stiction.devices.chart import checked_power_law
 from stiction.plan.names import by_case
@@ -153,14 +152,14 @@ def layout(found: Filled, rms: float, settings: Settings) -> xr.Dataset:
 
 def _settings(plan, at):
     """As those of the cracks and the safe lengths, for all thicknesses and gaps of the chart of a device."""
-    section = plan.config["devices"][pair_of(at.case)]
+    section = plan.config["devices"][at.case.device]
     sizes = {"gaps_um": [section["gap_um"]]} | chosen(section["chart"], ("thicknesses_um", "gaps_um"))
     return select(Settings, settings_of_beam(plan, at.case) | sizes)
 
 
 def charts(plan: Any) -> dict[str, dict]:
     """Datasets of all charts by device and humidity, as inputs of a stage."""
-    cases = [case for name in plan.designs.charted for case in plan.designs.chart_cases(name)]
+    cases = [case for name in plan.devices.charted for case in plan.devices.chart_cases(name)]
     return {"charts": by_case("devices/chart", cases)}
 
 
@@ -169,7 +168,7 @@ STAGES = (
         "chart",
         "devices/chart/{case}",
         inputs=lambda plan, at: (
-            {"contact": contact_of(plan, at.case)} | tips_of(plan, at.case) | corrections_of(plan, pair_of(at.case))
+            {"contact": contact_of(plan, at.case)} | tips_of(plan, at.case) | corrections_of(plan, at.case.device)
         ),
         settings=_settings,
         kind=Settings,

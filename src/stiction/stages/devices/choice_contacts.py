@@ -1,6 +1,5 @@
 """Contacts of the patch of a device under other choices of the model."""
 
-from stiction.config.cases import in_any_air
 from stiction.stages.contact.variant_contact import CONTACT
 from stiction.stages.contact.variant_summits import SUMMITS
 from stiction.stages.devices.patch_settings import FOLDER, of_choice_summits
@@ -17,8 +16,8 @@ STAGES = (
         "device_choice_contact",
         FOLDER + "/choices/{pair}_{length}x{width}_{variant}",
         inputs=lambda plan, at: {
-            "summits": f"{FOLDER}/summits/{in_any_air(at.pair)}_{at.length}x{at.width}_"
-            + plan.summits_under(at.pair, at.variant)
+            "summits": f"{FOLDER}/summits/{at.pair.pair}_{at.length}x{at.width}_"
+            + plan.variants.with_summits_of(at.pair, at.variant)
         },
         message="Contact of pair {pair}, {length} x {width} nm, under variant {variant}.",
     ),

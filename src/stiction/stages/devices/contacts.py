@@ -48,7 +48,7 @@ STAGES = (
     _stage(
         "tip_choice_contact",
         "tips/choices/{pair}_{length}x{width}_{variant}",
-        lambda plan, at: patch_settings.of_tips(plan, at) | plan.variant_contact(at.pair, at.variant),
+        lambda plan, at: patch_settings.of_tips(plan, at) | plan.variants.solids(at.pair, at.variant),
         f"{_PATCH}, {_AT_TIPS}, under variant {{variant}}",
     ),
 )

@@ -15,7 +15,6 @@ import xarray as xr
 from stiction.beam.cantilever import Beam
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
-from stiction.config.cases import pair_of
 from stiction.contact import forcelaw
 from stiction.contact.environment import Water
 from stiction.plan.stage import Stage, select
@@ -118,7 +117,7 @@ STAGES = (
     Stage.writing(
         "cracks",
         "devices/cracks/{case}",
-        inputs=lambda plan, at: {"contact": contact_of(plan, at.case)} | corrections_of(plan, pair_of(at.case)),
+        inputs=lambda plan, at: {"contact": contact_of(plan, at.case)} | corrections_of(plan, at.case.device),
         settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
         kind=Settings,
         compute=lambda data, at, settings: compute(data["contact"], corrected(settings, data)),

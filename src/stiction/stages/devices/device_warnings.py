@@ -166,23 +166,23 @@ def subjects(warnings: OfDevices) -> Warnings:
 
 def _inputs(plan, at):
     """Everything that the warnings about a device are about."""
-    designs, humidities = plan.designs, plan.config["devices"][at.device]["humidities"]
-    cases = [case_id(at.device, humidity) for humidity in humidities] if at.device in designs.beams else []
-    charts = designs.chart_cases(at.device) if at.device in designs.charted else []
+    devices, humidities = plan.devices, plan.config["devices"][at.device]["humidities"]
+    cases = [case_id(at.device, humidity) for humidity in humidities] if at.device in devices.beams else []
+    charts = devices.chart_cases(at.device) if at.device in devices.charted else []
     return {
         "lengths": by_case("devices/safe_lengths", cases),
         "charts": by_case("devices/chart", charts),
-        "plasticity": by_name("studies/plasticity", designs.pressed(at.device)),
+        "plasticity": by_name("studies/plasticity", devices.pressed(at.device)),
     }
 
 
 def _settings(plan, at):
     """A device, its pair and the stated properties of its materials."""
     section = plan.config["devices"][at.device]
-    own = {"materials": plan.stated_properties(section["pair"])} | plan.config["design"]
-    if plan.designs.kind(at.device).is_beam:
+    own = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
+    if plan.devices.kind(at.device).is_beam:
         return {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}
-    return {"stopper": select(OfStopper, section | own | {"water": plan.water(section["pair"])})}
+    return {"stopper": select(OfStopper, section | own | {"water": plan.air.water(section["pair"])})}
 
 
 def _of_one_device(data, _at, settings):
@@ -220,11 +220,11 @@ STAGES = (
     Stage(
         name="device_limits",
         files={"markdown": "devices/warnings.md"},
-        inputs=lambda plan, at: {"warnings": files_of(*plan.designs.devices)},
+        inputs=lambda plan, at: {"warnings": files_of(*plan.devices.sections)},
         compute=lambda data, at, settings: as_markdown(subjects(read(data["warnings"]))),
         save=lambda page, paths: save_text(page, paths["markdown"]),
         message="Where the results of devices are beyond the model.",
-        jobs=lambda plan: [{}] if plan.designs.devices else [],
+        jobs=lambda plan: [{}] if plan.devices.sections else [],
         targets=("devices",),
     ),
 )

@@ -508,8 +508,8 @@ def _settings(plan, at):
     for name in data["crack_lengths"]:
         data["crack_lengths"][name]["length_um"] = arrays[name]["length_um"]
     for name in data["stuck"]:
-        data["stuck"][name]["water"] = plan.water(plan.of_test_beams.in_air_of_device(_counted_case(arrays, name)))
-    is_beam = plan.designs.kind(at.device).is_beam
+        data["stuck"][name]["water"] = plan.air.water(plan.of_test_beams.contact_of_device(_counted_case(arrays, name)))
+    is_beam = plan.devices.kind(at.device).is_beam
     return (
         data
         | ({"device": section_of_beam(plan, at.device)} if is_beam else {})
@@ -522,7 +522,7 @@ def _settings(plan, at):
 
 def _predicted(plan, device):
     """Safe lengths of a beam by humidity, or forces of a stopper."""
-    if not plan.designs.kind(device).is_beam:
+    if not plan.devices.kind(device).is_beam:
         return f"devices/stoppers/{device}"
     stated = plan.config["devices"][device]["humidities"]
     return {humidity: f"devices/safe_lengths/{case_id(device, humidity)}" for humidity in stated}

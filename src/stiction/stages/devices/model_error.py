@@ -86,9 +86,9 @@ def layout(
 def _settings(plan, at):
     """Humidities of a device, and its dimensions."""
     section = plan.config["devices"][at.device]
-    own = {"device": section_of_beam(plan, at.device)} if plan.designs.kind(at.device).is_beam else {}
-    applied = {"applied": True} if plan.is_corrected() else {}
-    gaps = {"across_gaps": True} if "gaps" in plan.water(section["pair"]) else {}
+    own = {"device": section_of_beam(plan, at.device)} if plan.devices.kind(at.device).is_beam else {}
+    applied = {"applied": True} if plan.variants.is_corrected() else {}
+    gaps = {"across_gaps": True} if "gaps" in plan.air.water(section["pair"]) else {}
     return select(Settings, {"humidities": section["humidities"]} | own | applied | gaps)
 
 

@@ -5,8 +5,9 @@ Separate from the stages that compute these contacts, so that no other stage dep
 
 from typing import Any
 
-from stiction.config.cases import pair_of
-from stiction.config.designs import OF_TIPS, Patch, hamaker_constants
+from stiction.config.cases import Case
+from stiction.config.device_plan import OF_TIPS, Patch
+from stiction.config.materials import hamaker_constants
 from stiction.config.merging import merged
 from stiction.config.units import NM_PER_UM
 from stiction.devices.materials import OF_CONTACT
@@ -19,23 +20,23 @@ from stiction.stages.contact.pairs import Settings
 FOLDER = "devices/contact"
 
 
-def contact_of(plan: Any, case: str) -> str:
+def contact_of(plan: Any, case: Case) -> str:
     """Contact of the patch on which a device sticks at a humidity: that of its pair in the main line if it is equal."""
-    if plan.designs.has_strips_of_pair(pair_of(case)):
-        return f"contact/{plan.in_air_of_device(case)}_NG"
-    return f"{FOLDER}/{_in_its_air(plan, case, plan.designs.ground).name}"
+    if plan.devices.has_strips_of_pair(case.device):
+        return f"contact/{plan.contact_of_device(case)}_NG"
+    return f"{FOLDER}/{_in_its_air(plan, case, plan.devices.ground).name}"
 
 
 def _in_its_air(plan, case, patch_of):
-    """Patch of a device with the name of its pair in the air of a case, see `stiction.config.plan.Plan.in_air`."""
-    return patch_of(pair_of(case))._replace(pair=plan.in_air_of_device(case))
+    """Patch of a device with the name of its pair in the air of a case, see `stiction.plan.air.Air`."""
+    return patch_of(case.device)._replace(pair=plan.contact_of_device(case))
 
 
-def tips_of(plan: Any, case: str) -> dict[str, str]:
+def tips_of(plan: Any, case: Case) -> dict[str, str]:
     """Contact of the strips that hold the tips of a cantilever at a humidity; none for a bridge."""
-    if not plan.designs.kind(pair_of(case)).has_tip:
+    if not plan.devices.kind(case.device).has_tip:
         return {}
-    return {"tips": f"{FOLDER}/tips/{_in_its_air(plan, case, plan.designs.tips).name}"}
+    return {"tips": f"{FOLDER}/tips/{_in_its_air(plan, case, plan.devices.tips).name}"}
 
 
 def corrections_of(plan: Any, device: str) -> dict[str, str]:
@@ -43,23 +44,24 @@ def corrections_of(plan: Any, device: str) -> dict[str, str]:
     return of_pair(plan, plan.config["devices"][device]["pair"])
 
 
-def contacts_of_budget(plan: Any, case: str) -> dict[str, Any]:
+def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:
     """Contact of the patch of a device, with less and more of every uncertain input, and under other choices."""
-    designs, device = plan.designs, pair_of(case)
-    patch = _in_its_air(plan, case, designs.ground)
+    devices, device = plan.devices, case.device
+    patch = _in_its_air(plan, case, devices.ground)
     shared = f"studies/slopes/contact/{patch.pair}"
-    slopes = shared if designs.has_strips_of_pair(device) else f"{FOLDER}/slopes/{patch.name}"
-    contacts = {"contact": contact_of(plan, case)} | corrections_of(plan, device)
-    return contacts | _changed(plan, device, slopes, f"{FOLDER}/{{}}/{patch.name}", plan.choices_of_device(case))
+    slopes = shared if devices.has_strips_of_pair(device) else f"{FOLDER}/slopes/{patch.name}"
+    contacts, choices = {"contact": contact_of(plan, case)}, plan.variants.choices_of_device(case)
+    changed = _changed(plan, device, slopes, f"{FOLDER}/{{}}/{patch.name}", choices)
+    return contacts | corrections_of(plan, device) | changed
 
 
-def contacts_of_tip_budget(plan: Any, case: str) -> dict[str, Any]:
+def contacts_of_tip_budget(plan: Any, case: Case) -> dict[str, Any]:
     """As `contacts_of_budget`, of the tips of a cantilever."""
-    tips = _in_its_air(plan, case, plan.designs.tips)
-    folder, choices = f"{FOLDER}/tips", plan.choices_of_solids(tips.pair)
+    tips = _in_its_air(plan, case, plan.devices.tips)
+    folder, choices = f"{FOLDER}/tips", plan.variants.choices_of_solids(tips.pair)
     contacts = {"contact": f"{folder}/{tips.name}"}
     changed = f"{folder}/slopes/{tips.name}", f"{folder}/{{}}/{tips.name}"
-    return contacts | _changed(plan, pair_of(case), *changed, choices)
+    return contacts | _changed(plan, case.device, *changed, choices)
 
 
 def _changed(plan, device, slopes, changed, choices):
@@ -67,8 +69,8 @@ def _changed(plan, device, slopes, changed, choices):
 
     ``slopes`` begins the names of those with a shifted quantity of a surface, ``changed`` those of all others.
     """
-    designs = plan.designs
-    quantities, solids = designs.quantities(device), designs.uncertain_solids(device)
+    devices = plan.devices
+    quantities, solids = devices.quantities(device), devices.uncertain_solids(device)
     shifted = {side: {key: f"{slopes}_{key[0]}_{key[1]}_{side}" for key in quantities} for side in SHIFTS}
     uncertain = {f"solids_{side}": {name: f"{changed.format(name)}_{side}" for name in solids} for side in SHIFTS}
     return shifted | uncertain | {"choices": {name: f"{changed.format('choices')}_{name}" for name in choices}}
@@ -97,7 +99,7 @@ def of_tips(plan: Any, at: At) -> dict[str, Any]:
     settings = on_patch(plan, at, plan.config["design"]["beams"])
     step = {"distance_step_nm": OF_TIPS * settings["contact"]["distance_step_nm"]}
     tips = Patch(at.pair, int(at.length), int(at.width))
-    return settings | {"contact": settings["contact"] | step, "tilt": plan.designs.tilt(tips)}
+    return settings | {"contact": settings["contact"] | step, "tilt": plan.devices.tilt(tips)}
 
 
 def of_slopes(plan: Any, at: At) -> dict[str, Any]:
@@ -127,5 +129,5 @@ def _with_less_or_more(material, name, side):
 
 def of_choice_summits(plan: Any, at: At) -> dict[str, Any]:
     """Summits of the patch of a device under a variant of the model."""
-    settings, size = plan.variant_summits(at.pair, at.variant), on_patch(plan, at, plan.samples_of_slopes)
+    settings, size = plan.variants.summits(at.pair, at.variant), on_patch(plan, at, plan.samples_of_slopes)
     return settings | {"base": merged(settings["base"], {key: size[key] for key in ("sampling", "beam", "contact")})}

@@ -22,7 +22,7 @@ from stiction.beam.montecarlo import Experiment, released_beams
 from stiction.beam.release import EndState
 from stiction.beam.resolution import longest, resolved
 from stiction.chaos.model import ChaosModel, Truncation, fit
-from stiction.config.cases import humidity_of, pair_of
+from stiction.config.cases import Case
 from stiction.config.units import from_si
 from stiction.contact import forcelaw
 from stiction.devices.bridges import half_of_bridge, held_lengths, least_length, longest_strip, middle_zone
@@ -196,17 +196,17 @@ BEAMS = {
 }
 
 
-def settings_of_beam(plan: Any, case: str) -> dict[str, Any]:
+def settings_of_beam(plan: Any, case: Case) -> dict[str, Any]:
     """A device at a humidity: force laws, dimensions and number of beams; more than any one stage needs."""
-    pair = plan.in_air_of_device(case)
-    own = {"device": section_of_beam(plan, pair_of(case), pair), "humidity": humidity_of(case)}
+    pair = plan.contact_of_device(case)
+    own = {"device": section_of_beam(plan, case.device, pair), "humidity": case.humidity}
     return plan.seen_by(pair) | plan.config["design"] | own
 
 
-def section_of_beam(plan: Any, name: str, in_air: str | None = None) -> dict[str, Any]:
-    """Kind, pair and dimensions of a beam, length of its strips, and its solids in the air that its pair names."""
+def section_of_beam(plan: Any, name: str, contact: str | None = None) -> dict[str, Any]:
+    """Kind, pair and dimensions of a beam, length of its strips, and its solids in the air of a contact."""
     section = plan.config["devices"][name]
-    modulus = chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.beam_modulus(section["pair"])
-    constant = plan.hamaker_constant(in_air or section["pair"])
-    solids = {} if plan.designs.kind(name).has_tip else {"hamaker_constant_zJ": constant}
-    return select(DesignedBeam, section | modulus | solids, strip_um=plan.designs.strip(name))
+    modulus = chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.materials.beam_modulus(section["pair"])
+    constant = plan.air.hamaker_constant(contact or section["pair"])
+    solids = {} if plan.devices.kind(name).has_tip else {"hamaker_constant_zJ": constant}
+    return select(DesignedBeam, section | modulus | solids, strip_um=plan.devices.strip(name))

@@ -171,8 +171,8 @@ def shares_stuck(dataset: xr.Dataset) -> Sequence[tuple[float, float, float, flo
 def _settings(plan, at):
     """Water, patch, restoring force and humidities of a stopper, and its fine axis of humidities."""
     section = plan.config["devices"][at.device]
-    pair = plan.in_air(section["pair"], max(section["humidities"]))
-    return select(Settings, plan.config["design"] | section | {"water": plan.water(pair)})
+    pair = plan.air.contact(section["pair"], max(section["humidities"]))
+    return select(Settings, plan.config["design"] | section | {"water": plan.air.water(pair)})
 
 
 def _inputs(plan, at):

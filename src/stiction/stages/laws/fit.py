@@ -49,7 +49,7 @@ STAGES = (
         "fit",
         "fit/{case}_{model}",
         inputs=lambda plan, at: {
-            "contact": f"contact/{plan.in_air_of(at.case)}_{at.model}",
+            "contact": f"contact/{plan.contact(at.case)}_{at.model}",
             "forces": f"forces/{at.case}_{at.model}",
         },
         settings=lambda plan, at: select(Settings, plan.at(at.case)),

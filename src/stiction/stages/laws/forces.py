@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import pair_of
 from stiction.contact.environment import Water
 from stiction.contact.forcelaw import admissible
 from stiction.plan.stage import Stage, select
@@ -111,8 +110,8 @@ STAGES = (
         "forces",
         "forces/{case}_{model}",
         inputs=lambda plan, at: (
-            {"contact": f"contact/{plan.in_air_of(at.case)}_{at.model}"}
-            | corrections.of_pair(plan, pair_of(at.case), model=at.model)
+            {"contact": f"contact/{plan.contact(at.case)}_{at.model}"}
+            | corrections.of_pair(plan, at.case.pair, model=at.model)
         ),
         settings=lambda plan, at: select(Settings, plan.at(at.case)),
         kind=Settings,

@@ -55,7 +55,7 @@ def layout(humidity: np.ndarray, probabilities: np.ndarray, energies: np.ndarray
 
 def _settings(plan, at):
     """Water and humidity axis of a pair."""
-    humidities = plan.humid(at.pair)
+    humidities = plan.air.humid(at.pair)
     axis = {"points": plan.config["figures"]["humidity_points"], "range": [min(humidities), max(humidities)]}
     return select(Settings, plan.seen_by(at.pair) | axis)
 

@@ -220,7 +220,7 @@ def pair_errors(dataset: xr.Dataset) -> dict[float, float]:
 
 def _inputs(plan, at):
     """Slopes and estimates of the measured surfaces of a pair, its contact, and that under other evaluations."""
-    surfaces = plan.scanned_sides(at.pair)
+    surfaces = plan.scans.sides(at.pair)
     return {
         "slopes": {name: f"studies/slopes/{at.pair}_{name}" for name in surfaces},
         "estimates": {name: f"estimate/{name}" for name in surfaces},

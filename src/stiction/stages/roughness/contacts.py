@@ -88,22 +88,22 @@ def varied(plan: Any, device: str) -> Varied:
 def contacts_of(plan: Any, device: str, number: int) -> dict[str, str]:
     """Names of the contacts of a point: of the patch of a device and of the tips of a cantilever."""
     name = f"roughness/{device}_{number}"
-    tips = {"tips": f"{FOLDER}/tips/{name}"} if plan.designs.kind(device).has_tip else {}
+    tips = {"tips": f"{FOLDER}/tips/{name}"} if plan.devices.kind(device).has_tip else {}
     return {"contact": f"{FOLDER}/{name}"} | tips
 
 
 def _of_patch(plan, device):
     """Settings of the contact of the patch of a device, with as many stoppers as its share of stuck ones needs."""
-    ground, share = plan.designs.ground(device), plan.config["devices"][device]["requirement"]["share"]
+    ground, share = plan.devices.ground(device), plan.config["devices"][device]["requirement"]["share"]
     samples = plan.config["contact"]["samples"]
-    if not plan.designs.kind(device).is_beam:
+    if not plan.devices.kind(device).is_beam:
         samples = max(samples, samples_for(share))
     return patch_settings.on_patch(plan, At(**ground._asdict()), samples)
 
 
 def _of_tips(plan, device):
     """Settings of the contact of the tips of a cantilever."""
-    return patch_settings.of_tips(plan, At(**plan.designs.tips(device)._asdict()))
+    return patch_settings.of_tips(plan, At(**plan.devices.tips(device)._asdict()))
 
 
 def _stage(name, folder, contact, words):

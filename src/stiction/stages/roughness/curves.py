@@ -241,8 +241,8 @@ def _rows(dimension, rows, *names):
 def _settings(plan, at):
     """What is required of a device, and everything that its length or force depends on apart from the contact."""
     section = plan.config["devices"][at.device]
-    own = plan.config["design"] | section | section["requirement"] | {"water": plan.water(section["pair"])}
-    if not plan.designs.kind(at.device).is_beam:
+    own = plan.config["design"] | section | section["requirement"] | {"water": plan.air.water(section["pair"])}
+    if not plan.devices.kind(at.device).is_beam:
         return select(OfStopper, own)
     common = {key: plan.config[key] for key in ("seed", "chaos")}
     return select(OfBeam, own | common | {"device": section_of_beam(plan, at.device)})

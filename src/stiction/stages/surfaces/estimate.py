@@ -305,9 +305,9 @@ STAGES = (
     Stage.writing(
         "estimate",
         "estimate/{surface}",
-        surfaces=lambda plan: plan.scanned,
-        inputs=lambda plan, at: {"scans": [f"scan/{at.surface}_{number}" for number in plan.scan_files(at.surface)]},
-        settings=lambda plan, at: plan.estimate(at.surface),
+        surfaces=lambda plan: plan.scans.surfaces,
+        inputs=lambda plan, at: {"scans": [f"scan/{at.surface}_{number}" for number in plan.scans.files(at.surface)]},
+        settings=lambda plan, at: plan.scans.estimate(at.surface),
         kind=Settings,
         compute=lambda data, at, settings: compute(data["scans"], at.surface, settings),
         message="Estimate surface {surface} from its scans.",

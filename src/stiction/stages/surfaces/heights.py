@@ -133,7 +133,7 @@ STAGES = (
     Stage.writing(
         "heights",
         "heights/{surface}",
-        surfaces=lambda plan: plan.unscanned,
+        surfaces=lambda plan: plan.scans.others,
         settings=lambda plan, at: select(Settings, plan.config["surfaces"][at.surface]),
         kind=Settings,
         compute=lambda data, at, settings: compute(settings),

@@ -44,7 +44,7 @@ STAGES = (
     Stage.writing(
         "heights_of_scans",
         "heights/{surface}",
-        surfaces=lambda plan: plan.scanned,
+        surfaces=lambda plan: plan.scans.surfaces,
         inputs=lambda plan, at: {"estimate": f"estimate/{at.surface}"},
         settings=lambda plan, at: select(Settings, plan.config["surfaces"][at.surface], surface=at.surface),
         kind=Settings,

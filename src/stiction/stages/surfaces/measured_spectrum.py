@@ -90,7 +90,7 @@ STAGES = (
     Stage.writing(
         "spectrum_of_scans",
         "spectrum/{surface}",
-        surfaces=lambda plan: plan.scanned,
+        surfaces=lambda plan: plan.scans.surfaces,
         inputs=lambda plan, at: {stage: f"{stage}/{at.surface}" for stage in ("estimate", "heights")},
         settings=_settings,
         kind=Settings,

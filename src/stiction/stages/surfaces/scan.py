@@ -74,10 +74,10 @@ STAGES = (
     Stage.writing(
         "scan",
         "scan/{surface}_{number}",
-        surfaces=lambda plan: plan.scanned,
+        surfaces=lambda plan: plan.scans.surfaces,
         # The content of the file is among the settings; the folder of the file does not affect the result.
-        inputs=lambda plan, at: {"file": File(plan.scan_path(at.surface, at.number))},
-        settings=lambda plan, at: plan.scan(at.surface, at.number),
+        inputs=lambda plan, at: {"file": File(plan.scans.path(at.surface, at.number))},
+        settings=lambda plan, at: plan.scans.scan(at.surface, at.number),
         kind=Settings,
         compute=lambda data, at, settings: compute(data["file"], settings),
         libraries=("SurfaceTopography",),

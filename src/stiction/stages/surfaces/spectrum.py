@@ -147,7 +147,7 @@ STAGES = (
     Stage.writing(
         "spectrum",
         "spectrum/{surface}",
-        surfaces=lambda plan: plan.unscanned,
+        surfaces=lambda plan: plan.scans.others,
         inputs=_inputs,
         settings=_settings,
         kind=Settings,

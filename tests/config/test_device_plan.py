@@ -7,14 +7,14 @@ import pytest
 from configurations import PAPER, problems
 from plans import job_settings
 
-from stiction.config.designs import Designs, patch
+from stiction.config.device_plan import DevicePlan, patch
 from stiction.config.files import load
 from stiction.config.merging import merged
-from stiction.config.plan import Plan
 from stiction.config.units import in_si
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
 from stiction.stages.contact import contact, slope_contact
 from stiction.stages.contact import variant_summits as summits
 from stiction.stages.devices import budget, stoppers
@@ -32,12 +32,12 @@ def plan(**changes):
     return Plan(load({"devices": DEVICES}, changes))
 
 
-def designs(**changes):
-    return Designs(plan(**changes).config)
+def planned(**changes):
+    return DevicePlan(plan(**changes).config)
 
 
 PLAN = plan()
-PATCH, TIP = "b_3000x2000", Designs(PLAN.config).tips("C1").name
+PATCH, TIP = "b_3000x2000", DevicePlan(PLAN.config).tips("C1").name
 #: Settings in SI, and those of a job.
 JOBS = [
     (stoppers.Settings, job_settings(PLAN, "devices/stoppers/S1")),
@@ -69,49 +69,49 @@ def test_a_stage_takes_exactly_the_settings_of_its_jobs(kind, settings):
 
 
 def test_a_stopper_sticks_with_its_whole_area_and_a_beam_with_its_strips():
-    found = designs()
+    found = planned()
     assert found.ground("S1") == patch("b", 3, 2)
     assert found.ground("C1") == patch("b", 1.5, 30)
     assert found.has_strips_of_pair("C1")
     assert not found.has_strips_of_pair("S1")
-    assert designs(devices={"S1": {"contact_um": [1.5, 30]}}).has_strips_of_pair("S1")
+    assert planned(devices={"S1": {"contact_um": [1.5, 30]}}).has_strips_of_pair("S1")
     assert found.stoppers == ["S1"]
 
 
 def test_only_devices_with_an_uncertain_input_have_a_budget_and_cantilevers_one_of_their_tips():
-    found = designs()
+    found = planned()
     assert found.budgeted == ["C1", "S1"]
     assert found.budgets() == ["C1_rh067", "C1_rh067_tip", "S1_rh044", "S1_rh090"]
     assert found.budgets("C2") == ["C2_rh067", "C2_rh067_tip"]
-    assert designs(devices={"S1": {"uncertainty": {"humidity": 0}}}).budgeted == ["C1"]
+    assert planned(devices={"S1": {"uncertainty": {"humidity": 0}}}).budgeted == ["C1"]
 
 
 def test_a_device_on_scans_has_a_budget_without_a_stated_uncertainty():
     scanned = {"scans": {"files": ["a.npy"]}, "heights": "moments", "psd": "fitted"}
-    found = Designs(merged(PLAN.config, {"surfaces": {"B2": scanned}}))
+    found = DevicePlan(merged(PLAN.config, {"surfaces": {"B2": scanned}}))
     assert found.budgeted == ["C1", "C2", "S1"]
     assert found.quantities("C2") == [("B2", quantity) for quantity in MOMENT_QUANTITIES + SPECTRUM_QUANTITIES]
     assert budget.of_job(job_settings(PLAN, "devices/budget/C2_rh067")["budget"]).uncertainty == inputs.Uncertainty()
 
 
 def test_heights_are_uncertain_if_a_scan_is_stated():
-    found = designs()
+    found = planned()
     assert found.quantities("C1") == [(name, quantity) for name in ("B2", "Sub1") for quantity in MOMENT_QUANTITIES]
     assert found.quantities("S1") == []
-    same = designs(pairs={"b": {"substrate": "B2"}})
+    same = planned(pairs={"b": {"substrate": "B2"}})
     assert {name for name, _ in same.quantities("C1")} == {"B2"}
 
 
 def test_choices_of_the_model_change_the_contact_and_leave_the_mesh():
-    found = PLAN.choices("b")
+    found = PLAN.variants.choices("b")
     assert {"van_der_waals_dry", "psd_identified", "spacing_nm_5"} < set(found)
-    assert not set(found) & {"base", *PLAN.finer_beams}
+    assert not set(found) & {"base", *PLAN.variants.finer_beams}
     identified = plan(surfaces={name: {"psd": "identified"} for name in ("B2", "Sub1")})
-    assert "psd_identified" not in identified.choices("b")
+    assert "psd_identified" not in identified.variants.choices("b")
 
 
 def test_choices_of_solids_leave_the_surfaces_as_they_are():
-    found = PLAN.choices_of_solids("b")
+    found = PLAN.variants.choices_of_solids("b")
     assert found == [f"van_der_waals_{medium}" for medium in ("dry", "none")] + [
         "poisson_ratio_0.18",
         "poisson_ratio_0.28",
@@ -127,7 +127,10 @@ def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_tips_as_beams():
     of_beam = job_settings(PLAN, "devices/budget/C1_rh067")
     assert found["budget"].pop("share") == 1e-3
     assert found["budget"] == {key: value for key, value in of_beam["budget"].items() if key != "beams"}
-    assert (found["quantities"], found["choices"]) == (of_beam["quantities"], PLAN.choices_of_solids("b"))
+    assert (found["quantities"], found["choices"]) == (
+        of_beam["quantities"],
+        PLAN.variants.choices_of_solids("b"),
+    )
     number = PLAN.config["design"]["beams"]
     for name in OF_CONTACT:
         tips, strips = (job_settings(PLAN, f"devices/contact/{folder}{name}/{TIP}_less") for folder in ("tips/", ""))

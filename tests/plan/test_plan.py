@@ -2,9 +2,10 @@
 
 import pytest
 
+from stiction.config.cases import Case
 from stiction.config.files import load
-from stiction.config.plan import Plan
 from stiction.models import surface_model
+from stiction.plan.plan import Plan
 
 PAPER = Plan(load())
 #: A pair like the paper's pair a under another name.
@@ -52,65 +53,65 @@ def test_a_moment_that_is_zero_has_no_sensitivity():
 def test_every_model_choice_is_a_variant_and_the_base_comes_first():
     names = "base van_der_waals_dry van_der_waals_none psd_identified every_2 spacing_nm_5"
     numbers = "poisson_ratio_0.18 poisson_ratio_0.28 strips_per_element_2"
-    assert list(PAPER.variants) == [*names.split(), *numbers.split()]
-    assert PAPER.variants["spacing_nm_5"] == {"sampling": {"spacing_nm": 5}}
-    assert PAPER.variants["strips_per_element_2"] == {"beam": {"elements": 500}}
-    assert len(PAPER.studied) == 27
+    assert list(PAPER.variants.changes) == [*names.split(), *numbers.split()]
+    assert PAPER.variants.changes["spacing_nm_5"] == {"sampling": {"spacing_nm": 5}}
+    assert PAPER.variants.changes["strips_per_element_2"] == {"beam": {"elements": 500}}
+    assert len(PAPER.variants.pairs) == 27
 
 
 def test_a_variant_that_changes_nothing_about_a_pair_is_left_out():
     identified = plan(surfaces={name: {"psd": "identified"} for name in PAPER.surfaces})
-    assert ("a", "psd_identified") not in identified.studied
-    assert ("a", "base") in identified.studied
-    assert ("a", "psd_identified") in PAPER.studied
-    assert "strips_per_element_5" not in plan(studies={"variants": {"strips_per_element": [5]}}).variants
+    assert ("a", "psd_identified") not in identified.variants.pairs
+    assert ("a", "base") in identified.variants.pairs
+    assert ("a", "psd_identified") in PAPER.variants.pairs
+    assert "strips_per_element_5" not in plan(studies={"variants": {"strips_per_element": [5]}}).variants.changes
 
 
 def test_a_variant_uses_an_identified_spectrum_only_where_summits_were_measured():
-    settings = PAPER.variant_summits("a", "psd_identified")
+    settings = PAPER.variants.summits("a", "psd_identified")
     assert settings["identified"] == ["B1", "Sub1"]
     assert "published_psd" not in settings["base"]["surfaces"]["B1"]
-    assert PAPER.variant_summits("a", "base")["identified"] == []
+    assert PAPER.variants.summits("a", "base")["identified"] == []
 
 
 def test_variants_of_the_solids_share_the_summits_of_the_base_and_no_others_do():
-    shared = {name for name in PAPER.variants if PAPER.summits_under("b", name) == "base"}
+    shared = {name for name in PAPER.variants.changes if PAPER.variants.with_summits_of("b", name) == "base"}
     solids = {"van_der_waals_dry", "van_der_waals_none", "poisson_ratio_0.18", "poisson_ratio_0.28"}
-    assert shared == {"base", *solids, *PAPER.finer_beams}
-    assert PAPER.summits_under("b", "every_2") == "every_2"
-    assert PAPER.variant_contact("b", "poisson_ratio_0.18")["solid"]["poisson_ratio"] == 0.18
-    assert PAPER.variant_contact("b", "base") == {key: PAPER.config[key] for key in ("solid", "van_der_waals")}
+    assert shared == {"base", *solids, *PAPER.variants.finer_beams}
+    assert PAPER.variants.with_summits_of("b", "every_2") == "every_2"
+    assert PAPER.variants.solids("b", "poisson_ratio_0.18")["solid"]["poisson_ratio"] == 0.18
+    assert PAPER.variants.solids("b", "base") == {key: PAPER.config[key] for key in ("solid", "van_der_waals")}
 
 
 def test_a_variant_of_the_solid_changes_what_a_material_does_not_state_and_nothing_else():
     oxide = {"materials": {"Oxide": {"young_modulus_GPa": 70}}, "surfaces": {"Sub1": {"material": "Oxide"}}}
-    found = plan(**oxide).variant_contact("b", "poisson_ratio_0.18")["materials"]
+    found = plan(**oxide).variants.solids("b", "poisson_ratio_0.18")["materials"]
     assert [found[side]["poisson_ratio"] for side in ("beam", "substrate")] == [0.18, 0.18]
     assert [found[side]["young_modulus_GPa"] for side in ("beam", "substrate")] == [164, 70]
-    assert "poisson_ratio_0.18" in plan(**oxide).choices("b")
+    assert "poisson_ratio_0.18" in plan(**oxide).variants.choices("b")
     stated = {"materials": {"Oxide": {"poisson_ratio": 0.17}}}
     whole = plan(**stated, surfaces={name: {"material": "Oxide"} for name in ("B2", "Sub1")})
-    changing = {name for name in PAPER.choices("b") if not name.startswith("poisson_ratio")}
-    assert set(whole.choices("b")) == changing
-    others = {"base", *PAPER.finer_beams}
-    assert {variant for pair, variant in whole.studied if pair == "b"} == changing | others
-    assert ("c", "poisson_ratio_0.18") in whole.studied
+    changing = {name for name in PAPER.variants.choices("b") if not name.startswith("poisson_ratio")}
+    assert set(whole.variants.choices("b")) == changing
+    others = {"base", *PAPER.variants.finer_beams}
+    assert {variant for pair, variant in whole.variants.pairs if pair == "b"} == changing | others
+    assert ("c", "poisson_ratio_0.18") in whole.variants.pairs
 
 
 def test_the_choices_of_a_pair_do_not_depend_on_the_pairs_that_run():
-    assert plan(run={"pairs": ["c"]}).choices("b") == PAPER.choices("b")
-    assert "psd_identified" in PAPER.choices("b")
+    assert plan(run={"pairs": ["c"]}).variants.choices("b") == PAPER.variants.choices("b")
+    assert "psd_identified" in PAPER.variants.choices("b")
 
 
 def test_devices_have_summits_under_all_choices_of_the_model():
     wanted = plan(studies={"variants": {"asperity": ["island"]}})
-    assert "asperity_island" in wanted.variants
-    assert wanted.choices("b") == PAPER.choices("b")
-    assert wanted.has_islands("asperity_island")
-    assert not wanted.has_islands("base")
+    assert "asperity_island" in wanted.variants.changes
+    assert wanted.variants.choices("b") == PAPER.variants.choices("b")
+    assert wanted.variants.has_islands("asperity_island")
+    assert not wanted.variants.has_islands("base")
     of_islands = plan(contact={"asperity": "island"}, studies={"variants": {"asperity": ["summit"]}})
-    assert of_islands.has_islands("every_2")
-    assert not of_islands.has_islands("asperity_summit")
+    assert of_islands.variants.has_islands("every_2")
+    assert not of_islands.variants.has_islands("asperity_summit")
 
 
 @pytest.mark.parametrize(
@@ -129,13 +130,13 @@ def test_devices_have_summits_under_all_choices_of_the_model():
     ],
 )
 def test_only_pairs_of_the_paper_are_compared_with_published_values(changes, known):
-    assert plan(**changes).paper_pairs == known
+    assert plan(**changes).paper.pairs == known
 
 
 def test_a_redefined_surface_is_not_one_of_the_paper():
-    assert PAPER.paper_surfaces == PAPER.surfaces
-    assert plan(surfaces={"Sub1": {"rms_nm": 0.2}}).paper_surfaces == ["B1", "B2", "Sub2"]
-    assert plan(surfaces={"B1": {"published_psd": {"floor_nm4": 0.9}}}).paper_surfaces == ["B2", "Sub1", "Sub2"]
+    assert PAPER.paper.surfaces == PAPER.surfaces
+    assert plan(surfaces={"Sub1": {"rms_nm": 0.2}}).paper.surfaces == ["B1", "B2", "Sub2"]
+    assert plan(surfaces={"B1": {"published_psd": {"floor_nm4": 0.9}}}).paper.surfaces == ["B2", "Sub1", "Sub2"]
 
 
 def test_cases_are_those_of_the_pairs_that_run():
@@ -146,14 +147,14 @@ def test_a_surface_without_summits_keeps_its_published_spectrum_under_every_vari
     known = PAPER.config["surfaces"]["B1"]
     bare = {key: known[key] for key in ("rms_nm", "skewness", "kurtosis", "psd", "published_psd")}
     mine = plan(run={"pairs": ["mine"]}, surfaces={"Bare": bare}, pairs={"mine": LIKE_A | {"beam": "Bare"}})
-    settings = mine.variant_summits("mine", "psd_identified")
+    settings = mine.variants.summits("mine", "psd_identified")
     assert settings["base"]["surfaces"]["Bare"]["psd"] == "published"
     assert settings["identified"] == ["Sub1"]
 
 
 @pytest.mark.parametrize(("samples", "enough"), [(599, False), (600, True), (5000, True)])
 def test_the_main_line_has_the_samples_of_the_variants_if_it_has_as_many(samples, enough):
-    assert plan(contact={"samples": samples}, chaos={"order": 1}).has_samples_of_variants is enough
+    assert plan(contact={"samples": samples}, chaos={"order": 1}).variants.has_samples is enough
 
 
 @pytest.mark.parametrize(
@@ -181,14 +182,14 @@ def test_the_main_line_has_the_samples_of_the_variants_if_it_has_as_many(samples
 def test_only_beams_and_strips_of_the_paper_have_its_mesh(changes, known):
     found = plan(**changes)
     cases = {"a": "a_rh090", "b": "b_rh092", "c": "c_rh090"}
-    assert "".join(pair for pair, case in cases.items() if found.has_mesh_of_paper(case)) == known
+    assert "".join(pair for pair, case in cases.items() if found.paper.has_mesh(Case(case))) == known
 
 
 def test_the_mesh_of_the_paper_ends_at_its_highest_humidity_and_its_own_pairs():
     mine = plan(pairs={"mine": LIKE_A})
-    assert PAPER.has_mesh_of_paper("b_rh065")
-    assert not PAPER.has_mesh_of_paper("b_rh093")
-    assert not mine.has_mesh_of_paper("mine_rh050")
+    assert PAPER.paper.has_mesh(Case("b_rh065"))
+    assert not PAPER.paper.has_mesh(Case("b_rh093"))
+    assert not mine.paper.has_mesh(Case("mine_rh050"))
 
 
 def test_moments_are_shifted_from_feasible_ones():
@@ -199,10 +200,10 @@ def test_moments_are_shifted_from_feasible_ones():
 
 def test_only_attraction_across_gaps_changes_the_water_of_a_pair_and_nothing_else_of_its_contact():
     across = plan(attraction={"reach": "all"})
-    assert plan(attraction={"wavelength_nm": 50}).water("b") == PAPER.water("b") == {"temperature_K": 300}
+    assert plan(attraction={"wavelength_nm": 50}).air.water("b") == PAPER.air.water("b") == {"temperature_K": 300}
     gaps = {"hamaker_constant_zJ": {"water": 97.5, "dry": 186.5}, "summits": "water", "wavelength_nm": 100}
-    assert across.water("b") == {"temperature_K": 300, "gaps": gaps}
-    unretarded = plan(attraction={"reach": "all", "retarded": False}).water("b")["gaps"]
+    assert across.air.water("b") == {"temperature_K": 300, "gaps": gaps}
+    unretarded = plan(attraction={"reach": "all", "retarded": False}).air.water("b")["gaps"]
     assert unretarded == {key: gaps[key] for key in ("hamaker_constant_zJ", "summits")}
     contact = {key: PAPER.seen_by("b")[key] for key in ("solid", "van_der_waals", "contact", "surfaces")}
     assert {key: across.seen_by("b")[key] for key in contact} == contact
@@ -212,31 +213,33 @@ def test_coatings_of_both_surfaces_keep_solids_apart_in_the_gaps_and_each_its_ow
     bodies = {"Thin": {"coating_nm": 1.2}, "Thick": {"coating_nm": 2.0, "contact_angle_deg": 30}}
     sides = {"B2": {"material": "Thin"}, "Sub1": {"material": "Thick"}}
     coated = plan(materials=bodies, surfaces=sides, attraction={"reach": "all"})
-    assert coated.water("b")["gaps"]["spacer_nm"] == 3.2
+    assert coated.air.water("b")["gaps"]["spacer_nm"] == 3.2
     assert {side: body["coating_nm"] for side, body in coated.seen_by("b")["materials"].items()} == {
         "beam": 1.2,
         "substrate": 2.0,
     }
     assert coated.seen_by("b")["materials"]["beam"]["young_modulus_GPa"] == 164
-    assert coated.water("c") == plan(attraction={"reach": "all"}).water("c")
+    assert coated.air.water("c") == plan(attraction={"reach": "all"}).air.water("c")
     none = plan(
         materials={"Thin": {"coating_nm": 0}}, surfaces={"B2": {"material": "Thin"}}, attraction={"reach": "all"}
     )
-    assert none.water("b") == plan(attraction={"reach": "all"}).water("b")
-    assert coated.stated_properties("b") == [["Thin", ["coating"]], ["Thick", ["coating", "contact angle"]]]
-    assert none.stated_properties("b") == [["Thin", []]]
+    assert none.air.water("b") == plan(attraction={"reach": "all"}).air.water("b")
+    assert coated.materials.in_words("b") == [["Thin", ["coating"]], ["Thick", ["coating", "contact angle"]]]
+    assert none.materials.in_words("b") == [["Thin", []]]
 
 
 def test_attraction_across_gaps_is_a_variant_on_the_contact_of_the_base():
     varied = plan(studies={"variants": {"reach": ["all"]}})
-    assert ("b", "reach_all") in varied.studied
-    assert ("b", "reach_all") not in plan(attraction={"reach": "all"}, studies={"variants": {"reach": ["all"]}}).studied
-    assert varied.contact_under("reach_all") == "base"
-    assert varied.water("b", "reach_all") == plan(attraction={"reach": "all"}).water("b")
-    assert "reach_all" not in varied.choices("b")
-    dry = plan(attraction={"reach": "all"}).water("b", "van_der_waals_dry")["gaps"]
+    assert ("b", "reach_all") in varied.variants.pairs
+    assert ("b", "reach_all") not in plan(
+        attraction={"reach": "all"}, studies={"variants": {"reach": ["all"]}}
+    ).variants.pairs
+    assert varied.variants.contact_under("reach_all") == "base"
+    assert varied.variants.water("b", "reach_all") == plan(attraction={"reach": "all"}).air.water("b")
+    assert "reach_all" not in varied.variants.choices("b")
+    dry = plan(attraction={"reach": "all"}).variants.water("b", "van_der_waals_dry")["gaps"]
     assert dry["summits"] == "dry"
-    assert "gaps" not in plan(attraction={"reach": "all"}).water("b", "van_der_waals_none")
+    assert "gaps" not in plan(attraction={"reach": "all"}).variants.water("b", "van_der_waals_none")
 
 
 def test_the_error_of_the_model_is_stated_where_its_study_is_named_and_nowhere_else():
@@ -245,22 +248,22 @@ def test_the_error_of_the_model_is_stated_where_its_study_is_named_and_nowhere_e
     assert "full_contact" not in PAPER.studies
     assert named.states_model_error
     assert plan(contact={"model": "full"}).states_model_error
-    assert [name for name in named.variants if name not in PAPER.variants] == ["contact_full"]
+    assert [name for name in named.variants.changes if name not in PAPER.variants.changes] == ["contact_full"]
 
 
 def test_full_elastic_contact_is_a_variant_on_the_contact_of_the_base():
     named = plan(run={"studies": ["full_contact"]})
-    assert named.contact_under("contact_full") == "base"
-    assert ("b", "contact_full") in named.studied
-    assert [name for name in named.variants if named.is_corrected(name)] == ["contact_full"]
-    assert named.summits_under("b", "contact_full") == "base"
-    assert named.choices("b") == PAPER.choices("b")
+    assert named.variants.contact_under("contact_full") == "base"
+    assert ("b", "contact_full") in named.variants.pairs
+    assert [name for name in named.variants.changes if named.variants.is_corrected(name)] == ["contact_full"]
+    assert named.variants.with_summits_of("b", "contact_full") == "base"
+    assert named.variants.choices("b") == PAPER.variants.choices("b")
     corrected = plan(run={"studies": ["full_contact"]}, contact={"model": "full"})
-    assert ("b", "contact_full") not in corrected.studied
+    assert ("b", "contact_full") not in corrected.variants.pairs
 
 
 def test_budgets_leave_out_choices_of_the_medium_if_solids_attract_each_other_across_gaps():
     across = plan(attraction={"reach": "all"})
-    media = {name for name in PAPER.choices("b") if name.startswith("van_der_waals")}
+    media = {name for name in PAPER.variants.choices("b") if name.startswith("van_der_waals")}
     assert media == {"van_der_waals_dry", "van_der_waals_none"}
-    assert set(PAPER.choices("b")) - set(across.choices("b")) == media
+    assert set(PAPER.variants.choices("b")) - set(across.variants.choices("b")) == media

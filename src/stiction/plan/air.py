@@ -1,0 +1,93 @@
+"""The air around the pairs of a configuration: where water condenses, and what the solids attract each other through.
+
+The one module that decides which contacts a pair has in its airs. Their names, and the words of a user for its
+humidities, are in `stiction.config.cases`.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from stiction.config.cases import TOO_LITTLE, PairInAir
+from stiction.config.materials import hamaker_constant, hamaker_constants
+from stiction.config.units import to_si
+from stiction.contact.meniscus import is_wetted
+from stiction.devices.materials import COATING
+from stiction.plan.materials import Materials
+
+
+@dataclass(frozen=True)
+class Air:
+    """Contacts of the pairs at the humidities of a configuration, and the forces in them."""
+
+    config: dict  #: complete and valid
+
+    @property
+    def _materials(self):
+        return Materials(self.config)
+
+    def contact(self, pair: str, humidity: float) -> PairInAir:
+        """Contact of a pair at a humidity: that in dry air where no water condenses.
+
+        Its summits attract each other through air. One contact is enough if they do so at any humidity.
+
+        Raises
+        ------
+        ValueError
+            If no water condenses and attraction does not reach across gaps.
+        """
+        if humidity > 0 and self.is_wetted(pair):
+            return PairInAir(pair)
+        if self.config["attraction"]["reach"] == "touching":
+            raise ValueError(f"pair {pair} in dry air needs attraction.reach: all: {TOO_LITTLE}")
+        return PairInAir(pair) if self.config["van_der_waals"] == "dry" else PairInAir.in_dry_air(pair)
+
+    def is_wetted(self, pair: str) -> bool:
+        """Whether water condenses between the surfaces of a pair at some humidity."""
+        return is_wetted(tuple(to_si(angle, "deg") for angle in self._contact_angles(pair)))
+
+    def humid(self, pair: str) -> list[float]:
+        """Humidities of a pair at which water condenses: studies over the humidity leave out dry air."""
+        return [rh for rh in self.config["pairs"][pair]["humidities"] if rh > 0 and self.is_wetted(pair)]
+
+    def around(self, contact: str, config: dict | None = None) -> dict[str, Any]:
+        """Configuration in which the summits of a contact attract each other through its own medium."""
+        medium, config = PairInAir(contact).medium, config or self.config
+        return config | {"van_der_waals": medium} if medium else config
+
+    def water(self, contact: str, config: dict | None = None) -> dict[str, Any]:
+        """Section ``water`` of a contact: with the contact angles if one is not zero, and the attraction across gaps.
+
+        Another configuration may be given for the attraction, such as that of a variant.
+        """
+        angles = self._contact_angles(contact)
+        gaps = self._gaps(contact, self.around(contact, config))
+        return self.config["water"] | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
+
+    def _contact_angles(self, pair):
+        """PairInAir angles on both surfaces of a pair [°]."""
+        return [material.get("contact_angle_deg", 0) for material in self._materials.stated(pair)]
+
+    def _gaps(self, pair, config):
+        """Attraction across the gaps between the solids of a pair, if there is any."""
+        reach, summits = config["attraction"], config["van_der_waals"]
+        if reach["reach"] == "touching" or summits == "none":
+            return {}
+        constants = {medium: self._hamaker_constant(pair, medium) for medium in (summits, "dry")}
+        retarded = {"wavelength_nm": reach["wavelength_nm"]} if reach["retarded"] else {}
+        spacer = sum(material.get(COATING, 0) for material in self._materials.stated(pair))
+        coated = {"spacer_nm": spacer} if spacer else {}
+        return {"gaps": {"hamaker_constant_zJ": constants, "summits": summits} | retarded | coated}
+
+    def _hamaker_constant(self, pair, medium):
+        """Hamaker constant of the two bodies of a pair through a medium [zJ]."""
+        return math.sqrt(math.prod(hamaker_constants(one)[medium] for one in self._materials.stated(pair)))
+
+    def hamaker_constant(self, contact: str) -> float:
+        """That of the two bodies of a contact, zero without van der Waals forces [zJ]."""
+        medium = self.around(contact)["van_der_waals"]
+        return 0.0 if medium == "none" else self._hamaker_constant(contact, medium)
+
+    def beam_hamaker_constant(self, pair: str) -> float:
+        """That of two bodies like the beam of a pair, through the medium between the solids [zJ]."""
+        return hamaker_constant(self._materials.stated(pair)[0], self.config["van_der_waals"])

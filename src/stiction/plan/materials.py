@@ -1,0 +1,58 @@
+"""What the surfaces of the pairs of a configuration are made of, as the jobs of a pair see it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from stiction.config.cases import PairInAir
+from stiction.config.files import paper
+from stiction.config.materials import material_of
+from stiction.devices.materials import COATED, COATING, PROPERTIES
+from stiction.models import SIDES
+from stiction.plan.stage import chosen
+
+#: ASSUME: a solid is polysilicon if its Young's modulus differs from that of the paper by no more than this share.
+_POLYSILICON = 0.1
+
+
+@dataclass(frozen=True)
+class Materials:
+    """Materials of both surfaces of a pair, named by itself or by its contact in some air."""
+
+    config: dict  #: complete and valid
+
+    def sides(self, pair: str) -> list[str]:
+        """Names of the surfaces of a pair, that of the beam first."""
+        return [self.config["pairs"][PairInAir(pair).pair][side] for side in SIDES]
+
+    def stated(self, pair: str) -> list[dict]:
+        """Stated properties of the materials of both surfaces of a pair."""
+        return [material_of(self.config, surface) for surface in self.sides(pair)]
+
+    def settings(self, pair: str, properties: Sequence[str], solid: dict | None = None) -> dict[str, dict]:
+        """Some properties of the materials of a pair by side; empty if those of section solid and polysilicon hold.
+
+        What a material does not state is taken from section ``solid``, by default that of the configuration.
+        """
+        stated = [chosen(material, properties) for material in self.stated(pair)]
+        if not any(stated):
+            return {}
+        others = solid or self.config["solid"]
+        return {"materials": {side: others | material for side, material in zip(SIDES, stated, strict=True)}}
+
+    def in_words(self, pair: str) -> list:
+        """Names of the materials of a pair, each with its stated properties in words; section solid if it is one."""
+        named, solid = self.config.get("materials", {}), self.config["solid"]
+        words = {one.key: one.words for one in PROPERTIES.values()} | {COATING: COATED}
+        if abs(solid["young_modulus_GPa"] / paper()["solid"]["young_modulus_GPa"] - 1) > _POLYSILICON:
+            named = named | {"the solid": solid}
+        surfaces = self.config["surfaces"]
+        used = dict.fromkeys(surfaces[surface].get("material", "the solid") for surface in self.sides(pair))
+        return [
+            [name, [words[key] for key, value in named[name].items() if key != COATING or value]]
+            for name in used
+            if name in named
+        ]
+
+    def beam_modulus(self, pair: str) -> dict:
+        """Young's modulus of the beam of a pair if its material states one, otherwise empty."""
+        return chosen(self.stated(pair)[0], ["young_modulus_GPa"])

@@ -1,0 +1,91 @@
+"""Parts of a configuration that are those of the paper, so that published values can be compared with results."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from stiction.config.cases import Case
+from stiction.config.files import paper
+
+#: Keys of the measured statistics of a surface: moments of the heights and summit statistics.
+MOMENTS = ("rms_nm", "skewness", "kurtosis")
+SUMMITS = ("mean_summit_radius_um", "summit_density_per_um2")
+#: Keys that define the beam that the paper measured and simulated.
+_OF_BEAM = {"beam": ("length_um", "width_um", "thickness_um"), "solid": ("young_modulus_GPa",)}
+#: Keys that define the mesh of the paper and, with Young's modulus and the force laws, how fine it is; it has no width.
+_OF_MESH = {"beam": ("length_um", "thickness_um", "elements"), "sampling": ("strip_length_um",)}
+
+
+def _same(section, other, only=None, but=()):
+    """Whether two sections agree in some keys, by default in all; ``False`` if the other section is ``None``."""
+    if other is None:
+        return False
+    keys = only or {*section, *other} - set(but)
+    return all(section.get(key) == other.get(key) for key in keys)
+
+
+@dataclass(frozen=True)
+class PaperCase:
+    """What a plan shares with the case study of the paper."""
+
+    plan: Any  #: a `stiction.plan.plan.Plan`
+
+    @property
+    def config(self) -> dict:
+        """Configuration of the plan."""
+        return self.plan.config
+
+    @cached_property
+    def surfaces(self) -> list[str]:
+        """Surfaces of the paper: measured statistics and published spectrum as in its case study."""
+        known = paper()["surfaces"]
+        own = self.config["surfaces"]
+        return [name for name in self.plan.surfaces if _same(own[name], known.get(name), but=["psd"])]
+
+    @cached_property
+    def pairs(self) -> list[str]:
+        """Pairs of the paper: same surfaces, gap and beam."""
+        if not self._has(_OF_BEAM):
+            return []
+        return [
+            pair
+            for pair in self.plan.pairs
+            if _same(self.config["pairs"][pair], paper()["pairs"].get(pair), but=["humidities"])
+            and set(self.plan.sides(pair)) <= set(self.surfaces)
+        ]
+
+    def has_mesh(self, case: Case) -> bool:
+        """Whether the beams of a case have the elements of the paper, whatever their force laws.
+
+        ASSUME: the mesh of the paper belongs to its beam, strips and pairs, up to the highest humidity of each pair. It
+        is kept under other model choices, so that variants differ by their choice alone.
+        """
+        return case.humidity <= self._highest_on_mesh.get(case.pair, 0)
+
+    @cached_property
+    def _highest_on_mesh(self):
+        """Highest humidity of the paper of each pair whose beams may have the elements of the paper."""
+        if not self._has(_OF_MESH):
+            return {}
+        return {
+            pair: max(of_paper["humidities"])
+            for pair, of_paper in paper()["pairs"].items()
+            if _same(of_paper, self.config["pairs"].get(pair), but=["humidities"])
+            and self._has_modulus(pair)
+            and all(self._has_heights(name) for name in self.plan.sides(pair))
+        }
+
+    def _has(self, sections):
+        """Whether some keys of sections have the values of the paper."""
+        return all(_same(self.config[section], paper()[section], only=keys) for section, keys in sections.items())
+
+    def _has_modulus(self, pair):
+        """Whether the beam of a pair has the Young's modulus of the paper."""
+        solid = self.config["solid"] | self.plan.materials.beam_modulus(pair)
+        return _same(solid, paper()["solid"], only=["young_modulus_GPa"])
+
+    def _has_heights(self, surface):
+        """Whether a surface has the moments of the paper, and the published spectrum or the summits that give it."""
+        entry = self.config["surfaces"][surface]
+        spectrum = ["published_psd"] if entry["psd"] == "published" else SUMMITS
+        return _same(entry, paper()["surfaces"].get(surface), only=[*MOMENTS, *spectrum])

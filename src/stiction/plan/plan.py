@@ -1,0 +1,255 @@
+"""Plan of a configuration: the surfaces, cases, variants and figures to be computed.
+
+The rules of the workflow and the library use the same plan and therefore the same cases. Densities are imported where
+they are needed, because a repeated plan takes what it needs of them from `stiction.run.disk_cache`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+from stiction.config.arrays import as_cantilevers
+from stiction.config.cases import Case, PairInAir, case_id
+from stiction.config.device_plan import DevicePlan
+from stiction.config.measured import is_measured, preliminary_estimates, quantities
+from stiction.devices.materials import ELASTIC
+from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SURFACE_MODELS
+from stiction.plan.air import Air
+from stiction.plan.materials import Materials
+from stiction.plan.paper import SUMMITS, PaperCase
+from stiction.plan.scans import Scans
+from stiction.plan.stage import chosen
+from stiction.plan.variants import Variants
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Names of everything that is computed for one configuration."""
+
+    config: dict  #: complete, valid and in normal form
+    preliminary: dict[str, dict] = field(default_factory=dict)  #: numbers of measured surfaces, computed if missing
+
+    @cached_property
+    def devices(self) -> DevicePlan:
+        """Plan of the devices."""
+        return DevicePlan(self.config)
+
+    @cached_property
+    def materials(self) -> Materials:
+        """Materials of the pairs."""
+        return Materials(self.config)
+
+    @cached_property
+    def air(self) -> Air:
+        """Air around the pairs."""
+        return Air(self.config)
+
+    @cached_property
+    def scans(self) -> Scans:
+        """Surfaces described by scans."""
+        return Scans(self.config)
+
+    @cached_property
+    def paper(self) -> PaperCase:
+        """What is as in the paper."""
+        return PaperCase(self)
+
+    @cached_property
+    def variants(self) -> Variants:
+        """Variants of the model."""
+        return Variants(self)
+
+    @cached_property
+    def of_test_beams(self) -> "Plan":
+        """Plan in which the arrays of test beams are the devices."""
+        return replace(self, config=self.config | {"devices": as_cantilevers(self.config)})
+
+    @property
+    def pairs(self) -> list[str]:
+        """Pairs that run."""
+        return self.config["run"]["pairs"]
+
+    def sides(self, pair: str) -> list[str]:
+        """As `Materials.sides`."""
+        return self.materials.sides(pair)
+
+    def contact(self, case: Case) -> PairInAir:
+        """Contact of the pair of a case."""
+        return self.air.contact(case.pair, case.humidity)
+
+    def contact_of_device(self, case: Case) -> PairInAir:
+        """As `contact`, of a case of a device."""
+        return self.air.contact(self.config["devices"][case.device]["pair"], case.humidity)
+
+    @cached_property
+    def surfaces(self) -> list[str]:
+        """Surfaces of the pairs that run, in the order of the configuration."""
+        used = {name for pair in self.pairs for name in self.sides(pair)}
+        return [name for name in self.config["surfaces"] if name in used]
+
+    # The configuration as the jobs of a pair see it
+
+    def seen_by(self, pair: str, properties: Sequence[str] = ELASTIC, **contact: Any) -> dict[str, Any]:
+        """Configuration with the surfaces, the water and some properties of the materials of a pair.
+
+        Keys of section ``contact`` may be given; those that are ``None`` are left out.
+        """
+        changed = {key: value for key, value in (self.config["contact"] | contact).items() if value is not None}
+        own = {"surfaces": self.sides(pair), "water": self.air.water(pair), "contact": changed}
+        others = {key: value for key, value in self.air.around(pair).items() if key != "materials"}
+        return others | own | self.materials.settings(pair, properties)
+
+    def at(self, case: Case) -> dict[str, Any]:
+        """As `seen_by`, with the humidity of a case."""
+        return self.seen_by(self.contact(case)) | {"humidity": case.humidity}
+
+    def over_humidities(self, pair: str) -> dict[str, Any]:
+        """As `seen_by`, with the humidities of a pair."""
+        return self.seen_by(pair) | {"humidities": self.air.humid(pair)}
+
+    @property
+    def humid_pairs(self) -> list[str]:
+        """Pairs that run between whose surfaces water condenses at some humidity."""
+        return [pair for pair in self.pairs if self.air.humid(pair)]
+
+    @property
+    def humid_cases(self) -> list[Case]:
+        """Those of `cases` in which water condenses."""
+        return [case_id(pair, humidity) for pair in self.pairs for humidity in self.air.humid(pair)]
+
+    @property
+    def samples_of_slopes(self) -> int:
+        """Number of samples of a contact that is compared with the first samples of the contact itself."""
+        return min(self.config["studies"]["slopes"]["samples"], self.config["contact"]["samples"])
+
+    @property
+    def estimated(self) -> list[str]:
+        """Surfaces of the pairs that run that are described by scans."""
+        return [name for name in self.surfaces if name in self.scans.surfaces]
+
+    @property
+    def described(self) -> list[str]:
+        """Surfaces of the pairs that run that are described by numbers."""
+        return [name for name in self.surfaces if name not in self.scans.surfaces]
+
+    @cached_property
+    def scanned_pairs(self) -> list[str]:
+        """Pairs with a surface described by scans, between whose surfaces water condenses."""
+        return [pair for pair in self.humid_pairs if self.scans.sides(pair)]
+
+    def quantities(self, surface: str) -> tuple[str, ...]:
+        """Quantities of a surface that have slopes, see `stiction.analysis.shifts`; those of scans include modes."""
+        modes = MODE_QUANTITIES[1:] if surface in self.scans.surfaces else ()
+        return tuple(dict.fromkeys((*quantities(self.config["surfaces"][surface]), *modes)))
+
+    @cached_property
+    def with_summits(self) -> list[str]:
+        """Surfaces with measured summits, whose spectrum can therefore be identified."""
+        return [name for name in self.surfaces if self.has_summits(name)]
+
+    def has_summits(self, surface: str) -> bool:
+        """Whether the summits of a surface are given."""
+        return all(key in self.config["surfaces"][surface] for key in SUMMITS)
+
+    @cached_property
+    def cases(self) -> list[Case]:
+        """Every pair at each of its humidities."""
+        return [case_id(pair, humidity) for pair in self.pairs for humidity in self.config["pairs"][pair]["humidities"]]
+
+    @cached_property
+    def laws(self) -> list[tuple[Case, str]]:
+        """Case and model of all force laws."""
+        return [(case, model) for case in self.cases for model in SURFACE_MODELS]
+
+    @cached_property
+    def outcomes(self) -> list[tuple[Case, str]]:
+        """Case and model of all beams."""
+        return [(case, model) for case in self.cases for model in BEAM_MODELS]
+
+    # Figures that show one pair, one case or one humidity
+
+    @property
+    def figure_pair(self) -> str:
+        """Pair of the figures: that of the configuration if it runs, otherwise the first that runs."""
+        wanted = self.config["figures"]["pair"]
+        return wanted if wanted in self.pairs else self.pairs[0]
+
+    @property
+    def figure_case(self) -> Case:
+        """Case of the figures: their pair at their humidity."""
+        return case_id(self.figure_pair, self.config["figures"]["humidity"])
+
+    @property
+    def figure_cases(self) -> dict[str, Case]:
+        """Case of every pair at the humidity of the figures, by pair."""
+        return {pair: case_id(pair, self.config["figures"]["humidity"]) for pair in self.pairs}
+
+    @property
+    def figure_surface(self) -> str:
+        """Surface of the beam in the pair of the figures."""
+        return self.config["pairs"][self.figure_pair]["beam"]
+
+    @property
+    def figure_outcomes(self) -> list[tuple[Case, str]]:
+        """Case and model of the beams of the pair of the figures on non-Gaussian surfaces."""
+        return [(case, model) for case, model in self.outcomes if case.pair == self.figure_pair and model != "G"]
+
+    @property
+    def other_surfaces(self) -> list[str]:
+        """All surfaces except that of the figures."""
+        return [name for name in self.surfaces if name != self.figure_surface]
+
+    # Studies
+
+    @property
+    def studies(self) -> list[str]:
+        """Studies that run, by their section: by default those of the paper.
+
+        Those over the humidity need pairs that water wets.
+        """
+        of_paper = [name for name in self.config["studies"] if name != "full_contact"]
+        wanted = self.config["run"].get("studies", of_paper)
+        needed = {"sensitivity": [self.figure_pair]} if self.pairs else {}
+        needed |= dict.fromkeys(("full_contact", "asperities", "pressing", "variants"), self.pairs)
+        return [name for name in wanted if name not in needed or any(map(self.air.humid, needed[name]))]
+
+    @property
+    def states_model_error(self) -> bool:
+        """Whether the error of the model is stated beside every prediction."""
+        return "full_contact" in self.studies or self.variants.is_corrected()
+
+    @property
+    def pressed_pairs(self) -> list[str]:
+        """Pairs whose plasticity is studied."""
+        known = self.config["studies"]["plasticity"]["distance_nm"]
+        return [pair for pair in self.pairs if pair in known and "plasticity" in self.studies]
+
+    @cached_property
+    def shifted_moments(self) -> list[str]:
+        """Moments of the surface of the figures for which a sensitivity is computed: those that can be shifted."""
+        return ["rms", *filter(self._can_be_shifted, ("skewness", "kurtosis"))] if self.pairs else []
+
+    def _can_be_shifted(self, moment):
+        """Whether surfaces with the moment slightly decreased and slightly increased exist."""
+        from stiction.analysis.sensitivity import shifted
+        from stiction.surface.feasible import is_feasible
+
+        shape = self._feasible_shape(self.figure_surface)
+        if shape is None:
+            return False
+        at = shifted(shape[moment], self.config["studies"]["sensitivity"]["step"])
+        exists = all(is_feasible(**shape | {moment: value}) for value in at)
+        return at[0] * at[1] > 0 and exists
+
+    def _feasible_shape(self, surface):
+        """Skewness and kurtosis of the maximum-entropy density of a surface; ``None`` if its heights are measured."""
+        from stiction.surface.feasible import nearest_feasible
+
+        entry, names = self.config["surfaces"][surface], ("skewness", "kurtosis")
+        if not is_measured(entry):
+            return chosen(nearest_feasible(**chosen(entry, names))._asdict(), names)
+        if entry["heights"] == "measured":
+            return None
+        known = self.preliminary or preliminary_estimates(self.config)[0]
+        return dict(zip(names, known[surface]["feasible"], strict=True))

@@ -1,0 +1,167 @@
+"""Variants of a configuration: one changed model choice each, where the paper leaves the choice open."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from stiction.config.cases import Case, PairInAir, case_id
+from stiction.config.merging import merged
+from stiction.devices.materials import ELASTIC
+from stiction.models import SIDES
+from stiction.plan.paper import MOMENTS
+from stiction.plan.stage import chosen
+
+#: Key that a variant changes, and its section; the source of the spectrum is a key of each surface.
+_CHANGED = {
+    **{"van_der_waals": None, "psd": None, "asperity": "contact", "every": "contact", "spacing_nm": "sampling"},
+    **{"poisson_ratio": "solid", "reach": "attraction"},
+}
+#: Sections of the solids, which do not affect the summits.
+_SOLIDS = ("solid", "van_der_waals")
+#: Variant that corrects the base case to full elastic contact.
+CORRECTED = "contact_full"
+
+
+@dataclass(frozen=True)
+class Variants:
+    """Variants of a plan, and what each of them changes."""
+
+    plan: Any  #: a `stiction.plan.plan.Plan`
+
+    @property
+    def config(self) -> dict:
+        """Configuration of the plan."""
+        return self.plan.config
+
+    def is_corrected(self, variant: str = "base") -> bool:
+        """Whether predictions are corrected to full elastic contact."""
+        return (self.config["contact"] | self.changes[variant].get("contact", {})).get("model") == "full"
+
+    @cached_property
+    def finer_beams(self) -> dict[str, dict]:
+        """Changes of the variants that refine only the mesh; surfaces and contact are those of the base."""
+        length, strip = self.config["beam"]["length_um"], self.config["sampling"]["strip_length_um"]
+        strips = self.config["studies"]["variants"]["strips_per_element"]
+        meshes = {f"strips_per_element_{n}": round(length / (strip * n)) for n in strips}
+        same = self.config["beam"]["elements"]
+        return {name: {"elements": elements} for name, elements in meshes.items() if elements != same}
+
+    @cached_property
+    def changes(self) -> dict[str, dict]:
+        """Changes of every variant, ``base`` first."""
+        wanted = self.config["studies"]["variants"]
+        changes = {
+            f"{key}_{value}": {section: {key: value}} if section else {key: value}
+            for key, section in _CHANGED.items()
+            for value in wanted.get(key, [])
+        }
+        full = {CORRECTED: {"contact": {"model": "full"}}} if "full_contact" in self.plan.studies else {}
+        return {"base": {}} | changes | {name: {"beam": mesh} for name, mesh in self.finer_beams.items()} | full
+
+    def surface(self, variant: str, surface: str) -> dict:
+        """Description of a surface under a variant, from which it is drawn."""
+        entry, psd = self.config["surfaces"][surface], self._psd_under(variant, surface)
+        used = [*MOMENTS, "published_psd"] if psd == "published" else MOMENTS
+        return chosen(entry, used) | {"psd": psd}
+
+    def water(self, pair: str, variant: str) -> dict:
+        """Section ``water`` of a pair under a variant."""
+        return self.plan.air.water(pair, merged(self.config, self.changes[variant]))
+
+    def _psd_under(self, variant, surface):
+        """Source of the spectrum of a surface: that of the variant where available, otherwise unchanged."""
+        entry = self.config["surfaces"][surface]
+        known = {"published": "published_psd" in entry, "identified": self.plan.has_summits(surface)}
+        wanted = self.changes[variant].get("psd", entry["psd"])
+        return wanted if known[wanted] else entry["psd"]
+
+    def summits(self, pair: str, variant: str) -> dict:
+        """Settings of the summits of a pair without the variant, and the changes of the variant.
+
+        A measured surface is that of the base: no variant changes its heights or its spectrum.
+        """
+        pair, scanned = PairInAir(pair).pair, self.plan.scans.surfaces
+        contact = chosen(self.config["contact"], ("distance_step_nm", "every", "asperity"))
+        base = chosen(self.config, ("seed", "sampling")) | {
+            "contact": contact | {"samples": self.config["studies"]["variants"]["samples"]},
+            "beam": chosen(self.config["beam"], ["width_um"]),
+            "pairs": {pair: chosen(self.config["pairs"][pair], SIDES)},
+            "surfaces": {name: self.surface(variant, name) for name in self.plan.sides(pair) if name not in scanned},
+        }
+        changes = {} if variant == CORRECTED else chosen(self.changes[variant], ("sampling", "contact"))
+        identified = sorted(name for name, entry in base["surfaces"].items() if entry["psd"] == "identified")
+        return {"base": base, "changes": changes, "identified": identified}
+
+    def solids(self, pair: str, variant: str) -> dict:
+        """Solids of a pair under a variant: the settings of the contact, given the summits."""
+        found = merged(chosen(self.config, _SOLIDS), chosen(self.changes[variant], _SOLIDS))
+        return self.plan.air.around(pair, found) | self.plan.materials.settings(pair, ELASTIC, found["solid"])
+
+    def with_summits_of(self, pair: str, variant: str) -> str:
+        """First variant with the same summits of a pair: solids do not change them."""
+        wanted = self._all_summits(pair, variant)
+        return next(name for name in self.changes if self._all_summits(pair, name) == wanted)
+
+    def has_islands(self, variant: str) -> bool:
+        """Whether the asperities are islands under a variant; their contact depends on more than the summits."""
+        changed = self.changes[variant].get("contact", {})
+        return (self.config["contact"] | changed).get("asperity") == "island"
+
+    def contact_under(self, variant: str) -> str:
+        """Variant whose contact a variant has: that of the base if only what follows from it differs."""
+        after = variant in self.finer_beams or variant == CORRECTED or "attraction" in self.changes[variant]
+        return "base" if after else variant
+
+    @property
+    def has_samples(self) -> bool:
+        """Whether the first samples of the main line are those of the base of the variants."""
+        return self.config["contact"]["samples"] >= self.config["studies"]["variants"]["samples"]
+
+    def _all_summits(self, pair, variant):
+        """Settings of the summits of a pair under a variant."""
+        found = self.summits(pair, variant)
+        return merged(found["base"], found["changes"])
+
+    def _under(self, pair, variant):
+        """All settings that distinguish the variants of a pair."""
+        contact = self.solids(pair, variant)
+        if "materials" in contact:  # of both sides, with all properties of section solid
+            del contact["solid"]
+        after = self.water(pair, variant), self.finer_beams.get(variant), self.is_corrected(variant)
+        return self._all_summits(pair, variant), contact, *after
+
+    def choices(self, pair: str) -> list[str]:
+        """Variants that change the contact of a pair, which need not run; devices have summits under all of them.
+
+        Those with other forces across gaps are left out: a budget has the same water under all of its choices.
+        """
+        contacts = [
+            name for name in self.changes if self.contact_under(name) == name != "base" and not self.has_islands(name)
+        ]
+        contacts = [name for name in contacts if self.water(pair, name) == self.water(pair, "base")]
+        return [name for name in contacts if self._under(pair, name) != self._under(pair, "base")]
+
+    def choices_of_solids(self, pair: str) -> list[str]:
+        """Those of `choices` that leave the surfaces as they are, on patches of any size."""
+        return [name for name in self.choices(pair) if self.with_summits_of(pair, name) == "base"]
+
+    def choices_of_device(self, case: Case) -> list[str]:
+        """Those of `choices` for a device at a humidity: short strips have those of the solids alone."""
+        of_pair = self.choices_of_solids if self.plan.devices.kind(case.device).has_short_strips else self.choices
+        return of_pair(self.plan.contact_of_device(case))
+
+    @cached_property
+    def pairs(self) -> list[tuple[str, str]]:
+        """Pairs and their variants, without those that change nothing for the pair."""
+        return [
+            (pair, variant)
+            for pair in self.plan.humid_pairs
+            for variant in self.changes
+            if variant == "base" or self._under(pair, variant) != self._under(pair, "base")
+        ]
+
+    @property
+    def cases(self) -> list[tuple[Case, str]]:
+        """Cases of the pairs and their variants."""
+        humid = self.plan.air.humid
+        return [(case_id(pair, humidity), variant) for pair, variant in self.pairs for humidity in humid(pair)]
