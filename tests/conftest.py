@@ -5,6 +5,7 @@ import gc
 import os
 from pathlib import Path
 
+import pytest
 from hypothesis import settings
 
 # Nearly everything that a collection of thousands of tests creates remains; looking for garbage takes a quarter of it.
@@ -42,3 +43,15 @@ def pytest_collection_modifyitems(items):
     first = ["test_reruns.py", "test_run.py", "test_surface_estimate.py", "test_resume.py", "test_scan_uncertainty.py"]
     first += ["test_feasible.py", "test_messages.py", "test_study.py", "test_device.py"]
     items.sort(key=lambda item: (item.path.name not in first, item.path.parent.name != "workflow"))
+
+
+@pytest.fixture
+def through_a_file(tmp_path):
+    """The dataset that comes back from the file of another."""
+    from stiction.run import storage
+
+    def through(dataset):
+        storage.save(dataset, tmp_path / "name.nc", "stage", {})
+        return storage.load(tmp_path / "name.nc", "stage")
+
+    return through

@@ -205,7 +205,9 @@ def invisible(node):
 
 
 def arranges(node, child):
-    """Whether a child is a number given to the call of a drawing or of a part of it, such as ``axes[0].set_xlim``."""
+    """Whether a child is a number given to the call of a drawing or a part of it, or a look in a dictionary."""
+    if isinstance(node, ast.Dict) and child in node.values:
+        return getattr(node.keys[node.values.index(child)], "value", None) in INVISIBLE
     number = child.value if isinstance(child, ast.keyword) else child
     if not (isinstance(node, ast.Call) and isinstance(number, ast.Constant | ast.Tuple | ast.UnaryOp)):
         return False

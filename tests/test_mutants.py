@@ -28,6 +28,7 @@ INVISIBLE = [
     '__all__ = ["a", "b"][:1]',
     "raise ValueError(1 + 2)",
     'text = f"{1 + x:.3g}"',
+    'band = {"color": name, "linewidth": 0}',
     "from math import sin",
     "warn(1 + 2, 3)",
     "bars.set_xlim(0.9 * low, high)",

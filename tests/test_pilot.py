@@ -165,7 +165,7 @@ def test_a_patch_that_does_not_resist_is_refused_with_the_forces_of_its_weakest_
 
 def test_strips_are_allowed_as_the_jobs_allow_them_within_the_error_of_the_samples():
     config = configured(
-        B, f"contact: {{samples: 300}}\nchaos: {{order: 4}}\ndevices: {{D: {{{BEAM}, thickness_um: 1}}}}"
+        B, f"contact: {{samples: 300}}\nchaos: {{order: 4}}\ndevices: {{D: {{{BEAM}, thickness_um: 1, width_um: 10}}}}"
     )
     (line,) = map(str, pilot.problems(config, {}, "code", REMEMBER))
     thickness, longest, error, enough = map(float, re.search(LENGTHS, line).groups())
@@ -221,7 +221,8 @@ def test_the_samples_are_the_first_ones_of_the_run(model):
 
 
 def test_answers_are_remembered_until_something_changes_on_which_they_depend(tmp_path):
-    config, kept = configured(B, "contact: {samples: 5}\nchaos: {order: 1}"), tmp_path / "pilot.json"
+    config = configured(B, "contact: {samples: 5}\nchaos: {order: 1}\nbeam: {width_um: 10}")
+    kept = tmp_path / "pilot.json"
 
     def drawn(config, code="code"):
         """Number of contacts that are computed."""

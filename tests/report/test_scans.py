@@ -166,6 +166,12 @@ def test_the_spectrum_is_grey_beyond_its_reach_and_shows_the_fit():
     rings, reach, fit = (of(estimated()) for of in (stage_estimate.rings, stage_estimate.reach, stage_estimate.fit))
     assert_allclose(measured[0], 1e-6 * rings.wavenumber[rings.wavenumber > 0])
     assert_allclose(measured[1], 1e36 * rings.density[rings.wavenumber > 0])
+    modes = rings.modes[rings.wavenumber > 0]
+    (band,) = (collection.get_paths()[0].vertices for collection in axes.collections)
+    for wavenumber, density, number in zip(*measured, modes, strict=True):
+        ends = band[band[:, 0] == wavenumber, 1]
+        # A standard error, but no more than the axis of logarithms shows.
+        assert_allclose([ends.min(), ends.max()], density * np.array([max(1 - number**-0.5, 0.1), 1 + number**-0.5]))
     assert_allclose(slow, [1e-6 * estimated().slow_wavenumber[1:], 1e36 * estimated().slow_density[1:]])
     inside = fitted[0] < 1e-6 * reach.nyquist
     assert_allclose(fitted[1][inside], 1e36 * fit.spectrum(reach.nyquist)(1e6 * fitted[0][inside]), rtol=1e-9)

@@ -18,7 +18,6 @@ from stiction.contact.environment import Water
 from stiction.contact.forcelaw import parametrise
 from stiction.models import FIELD
 from stiction.plan.plan import Plan
-from stiction.run import storage
 from stiction.stages.beams import beams, releases
 from stiction.stages.beams.cantilevers import cantilever, strips_along
 from stiction.stages.contact import curves
@@ -34,17 +33,6 @@ from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum, corre
 from stiction.surface.summits import find_summits
 
 B2 = SURFACES["B2"]
-
-
-@pytest.fixture
-def through_a_file(tmp_path):
-    """The dataset that comes back from the file of another."""
-
-    def through(dataset):
-        storage.save(dataset, tmp_path / "name.nc", "stage", {})
-        return storage.load(tmp_path / "name.nc", "stage")
-
-    return through
 
 
 # Heights and spectrum

@@ -111,3 +111,10 @@ def overlay(tmp_path):
         return path
 
     return write
+
+
+@pytest.fixture
+def tree(done):
+    """Source tree with all results up to date, which the module defines, restored after the test."""
+    yield done
+    done.git("checkout", "--force", "main")

@@ -152,13 +152,6 @@ def done(tmp_path_factory):
     tree.planner.close()
 
 
-@pytest.fixture
-def tree(done):
-    """Source tree, restored after the test."""
-    yield done
-    done.git("checkout", "--force", "main")
-
-
 def test_an_unchanged_tree_reruns_nothing(tree):
     assert tree.rerun() == {}
 

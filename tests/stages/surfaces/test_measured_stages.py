@@ -13,7 +13,6 @@ from written_scans import SIDE, scans_of, write
 
 from stiction.analysis.shifts import ORDERS
 from stiction.errors import ScanError
-from stiction.run import storage
 from stiction.scans import estimate as evaluation
 from stiction.scans.histogram import histogram, histogram_errors
 from stiction.scans.moments import mode_covariance
@@ -31,17 +30,6 @@ from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 B2 = SURFACES["B2"]
 SETTINGS = estimate.Settings(3, evaluation.Settings(), 8)
 USE = Use("Etched", 1.5e-6, 1e-6)
-
-
-@pytest.fixture
-def through_a_file(tmp_path):
-    """The dataset that comes back from the file of another."""
-
-    def through(dataset):
-        storage.save(dataset, tmp_path / "name.nc", "stage", {})
-        return storage.load(tmp_path / "name.nc", "stage")
-
-    return through
 
 
 def dataset_of(drawn, notes=()):
