@@ -44,6 +44,7 @@ RELAXATION = 1.4
 ENERGY_LEFT = 1e-3
 #: Most turns of the attraction, displacements in each, and distances in the search for one state.
 TURNS, STEPS, STATES = 100, 1000, 40
+_UNSETTLED = "full elastic contact does not settle, with surfaces too smooth or a solid too soft for the grid"
 
 
 @dataclass(frozen=True)
@@ -163,7 +164,7 @@ def equilibrium(
         if left <= SETTLED and before <= 5 * TOLERANCE:
             return State(distance, pressure, attraction, gap, turn, hardness)
         attraction = attraction + np.float32(RELAXATION) * change
-    raise NotConverged("full elastic contact: change of the attraction", left, SETTLED, TURNS)
+    raise NotConverged(f"{_UNSETTLED}: change of the attraction", left, SETTLED, TURNS)
 
 
 def _supported(space, undeformed, pressure, attraction, share, hardness):
@@ -185,7 +186,7 @@ def _supported(space, undeformed, pressure, attraction, share, hardness):
         after = undeformed + space.displacement(traction)
         step = _next_step(pressure, gap, descended, after, hardness) or first_step
         pressure, gap, left = descended, after, _residual(descended, after, hardness)
-    raise NotConverged("full elastic contact: gap of an element in contact [m]", left, TOLERANCE, STEPS)
+    raise NotConverged(f"{_UNSETTLED}: gap of an element in contact [m]", left, TOLERANCE, STEPS)
 
 
 @kernel
