@@ -134,7 +134,7 @@ def attraction(table):
 def sealed(safe_lengths, stoppers):
     """``sealed_rms17_beam``, ``sealed_rms17_tip``: safe length in dry air, p = 0.001, beam or either holds [µm].
 
-    ``sealed_bare``, ``sealed_bare_stuck``: pull-off force of a stopper [µN], and P(stuck) [%].
+    ``sealed_bare``, ``sealed_bare_stuck``: pull-off force of a stopper [µN], and P(stuck) [%]; so on for each stopper.
     """
     found = {}
     for row in safe_lengths[np.isclose(safe_lengths.share, 1e-3)].itertuples():

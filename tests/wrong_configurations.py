@@ -224,6 +224,10 @@ WRONG_RELATIONS = [
      "must be touching if van_der_waals is none"),
     (COATED + "pairs: {a: {gap_um: 0.19, humidities: [0.45]}}", "pairs.a.gap_um", "0.19",
      "above the thickness of the coatings of both surfaces, 200 nm"),
+    ("materials: {SAM: {coating_hamaker_constant_zJ: {water: 4, dry: 50}}}",
+     "materials.SAM.coating_hamaker_constant_zJ", "{'water': 4, 'dry': 50}", "must come with a thickness coating_nm"),
+    ("materials: {SAM: {coating_nm: 1, coating_hamaker_constant_zJ: {water: 4, dry: 190}}}",
+     "materials.SAM.coating_hamaker_constant_zJ.dry", "190", "at most that of the material itself, 186.5 zJ"),
     (COATED + "devices: {C1: {kind: cantilever, pair: a, thickness_um: 2.6, gap_um: 0.19, width_um: 30, "
      "humidities: [0.45]}}", "devices.C1.gap_um", "0.19", "coatings of both surfaces, 200 nm"),
     ("materials: {Gold: {contact_angle_deg: 40}}\nsurfaces: {B1: {material: gold}}", "surfaces.B1.material", "'gold'",
@@ -265,6 +269,10 @@ WRONG_RELATIONS = [
      "within the humidities of pair b, to which the correction"),
     (f"contact: {{model: full}}\npairs: {{b: {{humidities: [0.5, 0.7]}}}}\ndevices: {{C1: {CANTILEVER}}}",
      "devices.C1.humidities", "[0.5, 0.8]", "within the humidities of pair b"),
+    ("materials: {SAM: {coating_nm: 1, coating_hamaker_constant_zJ: {water: 4, dry: 50}}}\n"
+     "surfaces: {B2: {material: SAM}}\n" + UNCERTAIN + "hamaker_constant_zJ: 9}}}",
+     "devices.C1.uncertainty.hamaker_constant_zJ", "9",
+     "must be left out if the material states coating_hamaker_constant_zJ"),
     ("attraction: {reach: all}\n" + UNCERTAIN + "hamaker_constant_zJ: 9}}}",
      "devices.C1.uncertainty.hamaker_constant_zJ", "9", "must be left out if attraction.reach is all"),
 ]  # fmt: skip

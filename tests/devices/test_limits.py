@@ -6,7 +6,7 @@ from beams import PAPER
 
 from stiction.constants import WATER_MOLECULE
 from stiction.devices import limits
-from stiction.devices.materials import PROPERTIES
+from stiction.devices.materials import OF_COATINGS, PROPERTIES
 
 UM, NM = 1e-6, 1e-9
 
@@ -26,6 +26,12 @@ CASES = [
     ),
     (limits.default_material, ("gold", ()), "5 properties of gold", ("gold", WORDS)),
     (limits.spacer, ("FDTS", ("contact angle", "coating")), "coating of FDTS.* on the unsafe side", ("gold", WORDS)),
+    (
+        limits.spacer,
+        ("FDTS", ("coating",)),
+        "coating_hamaker_constant_zJ includes it",
+        ("FDTS", tuple(OF_COATINGS.values())),
+    ),
     (limits.thin_film, (1 * NM,), "1 nm high, thinner than 4 molecules, 1.12 nm", (1.13 * NM,)),
     (limits.thin_film, (1 * NM,), "Results for dry air and for the next humidity above bracket it", (0.0,)),
     (

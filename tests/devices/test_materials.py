@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from stiction.devices.materials import ELASTIC, PROPERTIES, Step
+from stiction.devices.materials import ELASTIC, OF_COATINGS, PROPERTIES, Step
 
 
 @pytest.mark.parametrize("value", [0.3, 1e-19, 164e9])
@@ -24,7 +24,7 @@ def test_ends_of_an_absolute_step_differ_by_it_where_the_value_is_zero_too(value
 
 
 def test_contact_depends_on_elasticity_and_attraction_and_neither_on_hardness_nor_on_water():
-    assert ELASTIC == ("young_modulus_GPa", "poisson_ratio", "hamaker_constant_zJ", "coating_nm")
+    assert ("young_modulus_GPa", "poisson_ratio", "hamaker_constant_zJ", *OF_COATINGS) == ELASTIC
 
 
 def test_a_property_named_after_someone_has_no_article():

@@ -4,6 +4,8 @@ import pytest
 
 from stiction.config.cases import Case
 from stiction.config.files import load
+from stiction.config.units import in_si
+from stiction.contact.environment import Water
 from stiction.models import surface_model
 from stiction.plan.plan import Plan
 
@@ -226,6 +228,23 @@ def test_coatings_of_both_surfaces_keep_solids_apart_in_the_gaps_and_each_its_ow
     assert none.air.water("b") == plan(attraction={"reach": "all"}).air.water("b")
     assert coated.materials.in_words("b") == [["Thin", ["coating"]], ["Thick", ["coating", "contact angle"]]]
     assert none.materials.in_words("b") == [["Thin", []]]
+
+
+def test_coatings_that_attract_are_stated_for_the_gaps_and_for_the_summits_and_change_nothing_else():
+    own = {"coating_hamaker_constant_zJ": {"water": 4, "dry": 50}}
+
+    def coated(**more):
+        sides = {"B2": {"material": "SAM"}, "Sub1": {"material": "SAM"}}
+        return plan(materials={"SAM": {"coating_nm": 1.2, **more}}, surfaces=sides, attraction={"reach": "all"})
+
+    spacer, attracts = coated(), coated(**own)
+    gaps = attracts.air.water("b")["gaps"]
+    assert gaps.pop("bodies") == {side: {"coating_nm": 1.2, **own} for side in ("beam", "substrate")}
+    assert gaps == spacer.air.water("b")["gaps"]
+    assert attracts.seen_by("b")["materials"]["beam"] == spacer.seen_by("b")["materials"]["beam"] | own
+    assert attracts.materials.in_words("b") == [["SAM", ["Hamaker constant of the coating", "coating"]]]
+    less, more = (in_si(Water, one.air.water("b")).gaps.through("dry").work(5e-9) for one in (spacer, attracts))
+    assert more > 1.2 * less
 
 
 def test_attraction_across_gaps_is_a_variant_on_the_contact_of_the_base():

@@ -18,11 +18,12 @@ import yaml
 from stiction.config import memory
 from stiction.config.cases import NAMEABLE, TOO_LITTLE, decimals
 from stiction.config.conditions import Keys, Relations
+from stiction.config.materials import hamaker_constants
 from stiction.config.messages import did_you_mean, duplicates, shown
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, in_si, to_si
 from stiction.contact.meniscus import dry_air, meniscus_height
 from stiction.devices import limits
-from stiction.devices.materials import COATING
+from stiction.devices.materials import COATING, COATING_ATTRACTION
 from stiction.errors import NotConverged
 from stiction.models import SIDES
 from stiction.numbers import is_multiple
@@ -432,6 +433,19 @@ def not_apart(gap: float, humidities: float | list, meeting: Meeting) -> str | N
         f"must be at least {least:.4g} µm, {limits.FILMS} times the sum of the height of the water film, "
         f"{from_si(height, 'nm'):.5g} nm, and the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
     )
+
+
+@relation
+def coatings_attract_less_than_their_solids(config):
+    """The Hamaker constant of a coating is at most that of its material, and it has a thickness."""
+    key = COATING_ATTRACTION
+    for name, own in config.entries("materials", key):
+        material, path = config["materials"][name], f"materials.{name}.{key}"
+        if not material.get(COATING):
+            yield path, "must come with a thickness coating_nm above 0"
+        for medium, constant in hamaker_constants(material).items():
+            if own[medium] > constant:
+                yield f"{path}.{medium}", f"must be at most that of the material itself, {constant:g} zJ"
 
 
 @relation

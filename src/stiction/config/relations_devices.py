@@ -36,7 +36,7 @@ from stiction.config.relations import (
     without_unique_names,
 )
 from stiction.config.units import NM_PER_UM
-from stiction.devices.materials import OF_CONTACT
+from stiction.devices.materials import COATING_ATTRACTION, OF_CONTACT
 from stiction.surface.feasible import largest_kurtosis
 
 #: Relations between the keys of devices.
@@ -308,12 +308,15 @@ def uncertain_hamaker_constants_stay_positive(config):
 
 @relation
 def uncertain_hamaker_constants_are_those_of_summits(config):
-    """The budget changes the Hamaker constant of the summits alone, and that across gaps would have to follow."""
+    """The budget changes that of the summits alone, and those across gaps and of coatings would have to follow."""
     key = "uncertainty.hamaker_constant_zJ"
     for name, deviation in config.entries("devices", key):
         if deviation and config["attraction.reach"] == "all":
             message = "must be left out if attraction.reach is all"
             yield f"devices.{name}.{key}", message, "attraction.reach"
+        if deviation and COATING_ATTRACTION in _material(config, name):
+            message = f"must be left out if the material states {COATING_ATTRACTION}"
+            yield f"devices.{name}.{key}", message
 
 
 @relation

@@ -4,7 +4,7 @@ The contact of the solids does not depend on it. Force curves at any humidity fo
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import NamedTuple
 
@@ -13,6 +13,7 @@ import numpy as np
 from stiction.contact import forcelaw, gaps, vanderwaals
 from stiction.contact.correction import Correction
 from stiction.contact.meniscus import film
+from stiction.contact.solids import Solid, attraction_between, interfaces
 
 
 @dataclass(frozen=True)
@@ -23,18 +24,29 @@ class Gaps:
     summits: str  #: medium through which the summits attract, whose work is not counted again
     wavelength: float = np.inf  #: of the retardation [m]
     spacer: float = 0.0  #: thickness of both coatings [m]
+    bodies: dict[str, Solid] = field(default_factory=dict)  #: both solids by side, where coatings attract as well
 
-    def through(self, medium: str) -> gaps.FlatAttraction:
+    def through(self, medium: str) -> gaps.FlatAttraction | gaps.LayeredFlats:
         """Attraction of flats through a medium."""
-        return gaps.FlatAttraction(self.hamaker_constant[medium], self.wavelength, self.spacer)
+        if not self.bodies:
+            return gaps.FlatAttraction(self.hamaker_constant[medium], self.wavelength, self.spacer)
+        pairs = interfaces(*self.bodies.values(), medium)
+        return gaps.LayeredFlats(tuple(gaps.FlatAttraction(each, self.wavelength, apart) for each, apart in pairs))
 
     def work(self, gap: float | np.ndarray, height: float) -> float | np.ndarray:
         """Work of two flats beyond that of the summits [J m⁻²], at gaps [m] and under a film of a height [m].
 
         If the summits attract through dry air, so do the solids across the film.
         """
-        counted = vanderwaals.attraction(self.summits, self.hamaker_constant[self.summits], self.spacer)
-        return gaps.work_across_film(gap, height, self.through(self.summits), self.through("dry")) - counted.work(gap)
+        across = gaps.work_across_film(gap, height, self.through(self.summits), self.through("dry"))
+        return across - self._counted.work(gap)
+
+    @property
+    def _counted(self):
+        """Attraction of the summits."""
+        if self.bodies:
+            return attraction_between(*self.bodies.values(), self.summits)
+        return vanderwaals.attraction(self.summits, self.hamaker_constant[self.summits], self.spacer)
 
 
 @dataclass(frozen=True)

@@ -62,8 +62,24 @@ class FlatAttraction:
         return scale * (near**2 / (1 + RETARDATION * gap / self.wavelength) - near**8 / 4)
 
 
+@dataclass(frozen=True)
+class LayeredFlats:
+    """Attraction of coated flats: all pairs of their interfaces, `stiction.contact.solids.interfaces`, added up."""
+
+    pairs: tuple[FlatAttraction, ...]
+
+    @property
+    def largest_pressure(self) -> float:
+        """Bound of the tension between the flats at any gap, positive [Pa]."""
+        return sum(pair.largest_pressure for pair in self.pairs)
+
+    def work(self, gap: float | np.ndarray) -> float | np.ndarray:
+        """Work per area to separate the flats from a gap to infinity [J m⁻²]; gap >= 0 [m], any shape."""
+        return sum(pair.work(gap) for pair in self.pairs)
+
+
 def work_across_film(
-    gap: float | np.ndarray, height: float, wet: FlatAttraction, dry: FlatAttraction
+    gap: float | np.ndarray, height: float, wet: FlatAttraction | LayeredFlats, dry: FlatAttraction | LayeredFlats
 ) -> float | np.ndarray:
     """Work to separate flats from a gap [m] with water in gaps up to the ``height`` [m] and air beyond [J m⁻²]."""
     return np.where(gap < height, wet.work(gap) + (dry.work(height) - wet.work(height)), dry.work(gap))

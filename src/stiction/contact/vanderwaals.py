@@ -1,7 +1,8 @@
 """Van der Waals attraction of two half spaces as a Dugdale stress (Sec. III-A1).
 
 ASSUME: the attraction acts through water, which surrounds the touching summits; the medium is a setting and one of the
-variants. Coatings keep the solids apart, attract no more than the medium and are as stiff and as hard as the solids.
+variants. Coatings keep the solids apart and are as stiff and as hard as they; without a Hamaker constant of their own,
+they attract no more than the medium.
 """
 
 from dataclasses import dataclass
@@ -64,6 +65,33 @@ class DugdaleAttraction:
     def work(self, gap: float | np.ndarray) -> float | np.ndarray:
         """Work per area to separate the flats from a gap >= 0 to infinity [J m⁻²]; gap [m], any shape."""
         return self.work_of_adhesion * np.maximum(1 - gap / self.range, 0.0)
+
+
+@dataclass(frozen=True)
+class LayeredAttraction:
+    """Attraction of coated half spaces: all pairs of their interfaces, `stiction.contact.solids.interfaces`, added up.
+
+    A constant stress again, the tangent of the work where the coatings touch.
+    """
+
+    pairs: tuple[DugdaleAttraction, ...]
+
+    @property
+    def work_of_adhesion(self) -> float:
+        """Work per area to separate the half spaces [J m⁻²]."""
+        return sum(pair.work_of_adhesion for pair in self.pairs)
+
+    @property
+    def stress(self) -> float:
+        """Tension within the range, positive [Pa]."""
+        return sum(pair.stress for pair in self.pairs)
+
+    @property
+    def range(self) -> float:
+        """Distance beyond which the stress vanishes [m]."""
+        return self.work_of_adhesion / self.stress
+
+    work = DugdaleAttraction.work
 
 
 def attraction(through: str, hamaker_constant: float | None = None, spacer: float = 0.0) -> DugdaleAttraction | None:

@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 
 from stiction.constants import WATER_MOLECULE
-from stiction.devices.materials import COATED, PROPERTIES
+from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
 
 #: Largest plastic share of the contact area. Pair c has 58 %, and its beams stick at 72 % of the predicted length.
 PLASTIC = 0.02
@@ -87,12 +87,13 @@ def default_material(name: str, stated: Sequence[str]) -> str | None:
 
 
 def spacer(name: str, stated: Sequence[str]) -> str | None:
-    """A coating, whose own attraction is not in the model; ``stated`` lists inputs of its material that are given."""
-    if COATED not in stated:
+    """A coating whose own attraction is left out; ``stated`` lists inputs of its material that are given."""
+    if OF_COATINGS[COATING] not in stated or OF_COATINGS[COATING_ATTRACTION] in stated:
         return None
     return (
         f"The coating of {name} counts as a spacer that attracts no more than the air or water around it. Real "
-        "coatings attract, so that this result is on the unsafe side; the one without coating_nm is on the safe side."
+        "coatings attract, so that this result is on the unsafe side; the one without coating_nm is on the safe side. "
+        f"{COATING_ATTRACTION} includes it."
     )
 
 

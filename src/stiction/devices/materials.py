@@ -47,8 +47,9 @@ PROPERTIES = {
     "hamaker_constant": Property("hamaker_constant_zJ", "Hamaker constant", Step(0.2)),
     "contact_angle": Property("contact_angle_deg", "contact angle"),
 }
-#: Thickness of a coating, which only some materials have, and the word for it.
-COATING, COATED = "coating_nm", "coating"
+#: Properties of a coating, which only some materials have, in words: its thickness, and the attraction of its own.
+COATING, COATING_ATTRACTION = "coating_nm", "coating_hamaker_constant_zJ"
+OF_COATINGS = {COATING: "coating", COATING_ATTRACTION: "Hamaker constant of the coating"}
 #: Those on which contact depends and that may be uncertain, and the keys of all on which it depends.
 OF_CONTACT = {name: one for name, one in PROPERTIES.items() if one.step}
-ELASTIC = (*(one.key for one in OF_CONTACT.values()), COATING)
+ELASTIC = (*(one.key for one in OF_CONTACT.values()), *OF_COATINGS)

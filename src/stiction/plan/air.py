@@ -12,8 +12,10 @@ from stiction.config.cases import TOO_LITTLE, PairInAir
 from stiction.config.materials import hamaker_constant, hamaker_constants
 from stiction.config.units import to_si
 from stiction.contact.meniscus import is_wetted
-from stiction.devices.materials import COATING
+from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS
+from stiction.models import SIDES
 from stiction.plan.materials import Materials
+from stiction.plan.stage import chosen
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ class Air:
         return self.config["water"] | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
 
     def _contact_angles(self, pair):
-        """PairInAir angles on both surfaces of a pair [°]."""
+        """Contact angles on both surfaces of a pair [°]."""
         return [material.get("contact_angle_deg", 0) for material in self._materials.stated(pair)]
 
     def _gaps(self, pair, config):
@@ -75,8 +77,12 @@ class Air:
             return {}
         constants = {medium: self._hamaker_constant(pair, medium) for medium in (summits, "dry")}
         retarded = {"wavelength_nm": reach["wavelength_nm"]} if reach["retarded"] else {}
-        spacer = sum(material.get(COATING, 0) for material in self._materials.stated(pair))
+        stated = self._materials.stated(pair)
+        spacer = sum(material.get(COATING, 0) for material in stated)
         coated = {"spacer_nm": spacer} if spacer else {}
+        if any(COATING_ATTRACTION in material for material in stated):
+            bodies = (chosen(material, ("hamaker_constant_zJ", *OF_COATINGS)) for material in stated)
+            coated["bodies"] = dict(zip(SIDES, bodies, strict=True))
         return {"gaps": {"hamaker_constant_zJ": constants, "summits": summits} | retarded | coated}
 
     def _hamaker_constant(self, pair, medium):

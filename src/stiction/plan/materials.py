@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from stiction.config.cases import PairInAir
 from stiction.config.files import paper
 from stiction.config.materials import material_of
-from stiction.devices.materials import COATED, COATING, PROPERTIES
+from stiction.devices.materials import COATING, OF_COATINGS, PROPERTIES
 from stiction.models import SIDES
 from stiction.plan.stage import chosen
 
@@ -42,7 +42,7 @@ class Materials:
     def in_words(self, pair: str) -> list:
         """Names of the materials of a pair, each with its stated properties in words; section solid if it is one."""
         named, solid = self.config.get("materials", {}), self.config["solid"]
-        words = {one.key: one.words for one in PROPERTIES.values()} | {COATING: COATED}
+        words = {one.key: one.words for one in PROPERTIES.values()} | OF_COATINGS
         if abs(solid["young_modulus_GPa"] / paper()["solid"]["young_modulus_GPa"] - 1) > _POLYSILICON:
             named = named | {"the solid": solid}
         surfaces = self.config["surfaces"]
