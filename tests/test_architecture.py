@@ -14,7 +14,15 @@ ORDER = [
     *("constants", "errors", "streams", "estimates", "numbers", "models", "progress", "regular", "kernels"),
     *("surface", "scans", "contact", "chaos", "beam", "analysis", "devices"),
     *("run", "config", "plan"),
-    *("stages.surfaces", "stages.contact", "stages.laws", "stages.beams", "stages.devices", "stages.roughness"),
+    *(
+        "stages.surfaces",
+        "stages.contact",
+        "stages.laws",
+        "stages.beams",
+        "stages.devices",
+        "stages.roughness",
+        "stages.test_beams",
+    ),
     *("pilot", "study", "device", "report", "command"),
 ]
 

@@ -121,12 +121,20 @@ class Device:
         return self.results[f"devices/roughness/{self.name}"]
 
     def test_beams(self) -> xr.Dataset:
-        """What its test beams say about its inputs and lengths; dataset of `stiction.stages.devices.inference`.
+        """What its test beams say about its inputs and lengths; dataset of `stiction.stages.test_beams.inference`.
 
         The first call computes the budgets of device and test beams, a few minutes.
         """
         self._must_state("test_beams", self._section.get("test_beams"))
         return self.results[f"devices/test_beams/{self.name}"]
+
+    def test_beams_again(self) -> xr.Dataset:
+        """As `test_beams`, with lengths or forces computed again at the inputs that the test beams suggest.
+
+        Dataset of `stiction.stages.test_beams.rerun`.
+        """
+        self._must_state("test_beams", self._section.get("test_beams"))
+        return self.results[f"devices/test_beams/rerun/{self.name}"]
 
     def warnings(self, found: xr.Dataset) -> list[str]:
         """Where a result of `safe_lengths` or `forces` is beyond the limits of the model, one sentence each.

@@ -178,7 +178,7 @@ def test_bridges_and_stoppers_use_test_beams_as_well():
     assert graph.job("devices/test_beams/S1").inputs["predicted"] == "devices/stoppers/S1"
     assert set(graph.job("devices/test_beams/R1").inputs["predicted"]) == {0.67}
     for name in devices:
-        assert graph.job(f"devices/{name}.html").inputs["test_beams"] == f"devices/test_beams/{name}"
+        assert graph.job(f"devices/{name}.html").inputs["test_beams"] == f"devices/test_beams/rerun/{name}"
         assert set(graph.job(f"devices/test_beams/{name}").inputs["budgets"]) == {(name, 0.67)}
 
 

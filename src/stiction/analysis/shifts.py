@@ -11,6 +11,7 @@ The plateau of the spectrum is not among the quantities, because the rms alone s
 changed one would renumber the waves, so that both surfaces would not have the same random numbers any more.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import factorial
 
@@ -88,6 +89,26 @@ def with_value(surface: Description, quantity: str, value: float) -> Description
     if quantity == "skewness":
         return replace(surface, skewness=value, kurtosis=min(surface.kurtosis, largest_kurtosis(abs(value))))
     return replace(surface, rms=value)
+
+
+def moved(surface: Description, errors: Mapping[str, float]) -> Description:
+    """A surface whose quantities err by amounts, in the units of `bracketed`.
+
+    ASSUME: modes are added one after the other, which differs from their sum at second order. A kurtosis and a corner
+    that no surface has come with their largest value.
+    """
+    found = replace(surface, rms=float(np.exp(np.log(surface.rms) + errors["rms"]))) if "rms" in errors else surface
+    if "skewness" in errors or "kurtosis" in errors:
+        skewness, kurtosis = (getattr(surface, name) + errors.get(name, 0.0) for name in ("skewness", "kurtosis"))
+        found = replace(found, skewness=skewness, kurtosis=min(kurtosis, largest_kurtosis(abs(skewness))))
+    for name in MODE_QUANTITIES[1:]:
+        if name in errors:
+            found = _mode(found, errors[name], ORDERS[MODE_QUANTITIES.index(name) - 1])[1]
+    if "corner" in errors or "slope" in errors:
+        shape = surface.spectrum
+        corner = min(shape.corner * np.exp(errors.get("corner", 0.0)), shape.cutoff * np.exp(-STEPS["corner"]))
+        found = replace(found, spectrum=_bent(shape, float(corner), errors.get("slope", 0.0)))
+    return found
 
 
 def _around(value, step, largest=np.inf):

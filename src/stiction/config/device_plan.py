@@ -11,7 +11,7 @@ import numpy as np
 from stiction.beam.cantilever import Beam
 from stiction.config import arrays
 from stiction.config.cases import PairInAir, case_id
-from stiction.config.kinds import Kind, kind_of
+from stiction.config.kinds import ROUGHNESSES, Kind, kind_of
 from stiction.config.materials import material_of
 from stiction.config.measured import is_measured, preliminary_estimates, quantities
 from stiction.config.units import NM_PER_UM, from_si, to_si
@@ -199,6 +199,11 @@ class DevicePlan:
     def roughened(self) -> list[str]:
         """Devices that are computed over the roughness of a surface."""
         return [name for name, device in self.sections.items() if "roughness" in device]
+
+    @property
+    def mapped(self) -> list[str]:
+        """Those of `roughened` that are computed over two quantities."""
+        return [name for name in self.roughened if len(ROUGHNESSES.keys() & self.sections[name]["roughness"]) > 1]
 
     @property
     def budgeted(self) -> list[str]:

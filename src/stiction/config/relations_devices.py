@@ -420,11 +420,11 @@ def requirements_are_those_of_the_kind(config):
 
 @relation
 def varied_surfaces_are_in_the_pair(config):
-    """One quantity of one of the surfaces that meet is varied."""
+    """One or two quantities of one of the surfaces that meet are varied."""
     for name, roughness, pair in config.entries("devices", "roughness", "pair"):
         stated = [key for key in ROUGHNESSES if key in roughness]
-        if len(stated) != 1:
-            message = f"must have one of {', '.join(ROUGHNESSES)}, and has {' and '.join(stated) or 'none'}"
+        if len(stated) not in (1, 2):
+            message = f"must have one or two of {', '.join(ROUGHNESSES)}, and has {', '.join(stated) or 'none'}"
             yield f"devices.{name}.roughness", message
         if _sides(config, name) and roughness["surface"] not in (sides := surfaces_of(pair, config)):
             message = f"must be a surface of pair {pair}, {' or '.join(dict.fromkeys(sides))}"

@@ -18,6 +18,16 @@ class Step:
             return (1 - self.size) * value, (1 + self.size) * value
         return value - self.size, value + self.size
 
+    def moved(self, value: float, by: float) -> float:
+        """An input of this value that errs by an amount, in its logarithm if the step is relative.
+
+        Examples
+        --------
+        >>> Step(0.05).moved(2.0, np.log(1.5)), Step(0.05, relative=False).moved(2.0, 0.5)
+        (3.0, 2.5)
+        """
+        return float(value * np.exp(by)) if self.relative else value + by
+
     @property
     def difference(self) -> float:
         """Of the logarithm of the input between both ends, or of the input."""

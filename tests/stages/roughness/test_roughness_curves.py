@@ -11,7 +11,7 @@ from stiction.plan.plan import Plan
 from stiction.report.devices import figures_roughness, tables_roughness
 from stiction.report.style import png
 from stiction.stages.roughness import curves
-from stiction.stages.roughness.contacts import POINTS, Varied
+from stiction.stages.roughness.contacts import CURVES, POINTS, Varied
 
 SAMPLES, SHARE = 200, 0.05
 S1 = {"kind": "stopper", "pair": "b", "contact_um": [1, 1], "restoring_force_uN": 3, "humidities": [0.45, 0.6]}
@@ -118,6 +118,7 @@ def point(rms, refused="", force=None):
 
 
 RANGE = np.geomspace(1e-9, 8e-9, POINTS - 1)
+RANGE8 = [*RANGE, 3.4e-9]
 
 
 def test_page_and_table_say_which_roughness_suffices_with_its_error():
@@ -146,12 +147,82 @@ def test_none_and_all_of_a_range_are_answers(force, said):
     assert said in sentence
 
 
+def test_a_stopper_that_is_held_most_inside_the_range_has_a_worst_roughness():
+    forces = 4e-6 * np.exp(-(np.log(RANGE / 2e-9) ** 2))
+    found = curves.joined([*map(point, RANGE, [""] * len(RANGE), forces), point(3.4e-9, force=3e-6)], "rms_nm", "B2")
+    (sentence,) = tables_roughness.answers(found)
+    assert "The worst rms of B2 is inside this range, near 2 nm: less and more of it hold less." in sentence
+    (monotone,) = tables_roughness.answers(curves.joined([*map(point, RANGE), point(3.4e-9)], "rms_nm", "B2"))
+    assert "worst" not in monotone
+
+
 def test_what_cannot_be_computed_is_named_with_its_reason_and_leaves_the_rest():
     points = [point(RANGE[0], "too smooth", np.nan), *map(point, RANGE[1:]), point(3.4e-9)]
     sentence, refusal = tables_roughness.answers(curves.joined(points, "rms_nm", "B2"))
     assert "where the rms of B2 is 4.13 to 8 nm" in sentence
     assert "computed for 1.41 to 8 nm" in sentence
     assert refusal == "Not computed at a rms of B2 of 1 nm (RH 0.6): too smooth."
+
+
+# Two quantities
+
+
+FEW = {"contact": {"samples": 60}, "chaos": {"order": 1}}
+MAP = FEW | {"devices": {"S1": {"humidities": [0.6], "roughness": {"skewness": [-1, 0.2]}}}}
+
+
+@pytest.fixture(scope="module")
+def mapped():
+    return stiction.Device("S1", Results.of(stiction.load(SECTIONS, MAP)))
+
+
+def test_the_curve_of_a_map_at_the_given_second_quantity_is_that_of_one_quantity_bit_for_bit(mapped):
+    plain = stiction.load(SECTIONS, FEW, {"devices": {"S1": {"humidities": [0.6]}}})
+    alone = stiction.Device("S1", Results.of(plain)).roughness()
+    found = mapped.roughness()
+    (row,) = [one for one in curves.curves_of(found) if one.other == found.other_given]
+    own = row[list(alone.variables)].drop_vars(["other"], errors="ignore")
+    xr.testing.assert_equal(own, alone)
+    assert not alone.estimate.equals(curves.curves_of(found)[0].estimate.drop_vars("other"))
+
+
+def test_every_other_curve_of_a_map_is_that_of_a_surface_with_this_second_quantity(mapped):
+    found = mapped.roughness()
+    skewness = float(found.other[0])
+    assert skewness == -1
+    surface = FEW | {"surfaces": {"B2": {"skewness": skewness}}, "devices": {"S1": {"humidities": [0.6]}}}
+    forces = stiction.Device("S1", Results.of(stiction.load(SECTIONS, surface))).forces().pull_off[0].values
+    one = found.sel(other=skewness, roughness=float(found.given), humidity=0.6, shape="force")
+    np.testing.assert_allclose(one.estimate, curves.safe_force(forces, SHARE)[1], rtol=1e-5)
+
+
+def test_peaks_of_a_skewed_surface_keep_stoppers_apart(mapped):
+    found = mapped.roughness().sel(roughness=float(mapped.roughness().given), humidity=0.6, shape="force")
+    assert found.other.values.tolist() == sorted(found.other.values)
+    assert np.all(np.diff(found.estimate) < 0)  # the more positive the skewness, the more peaks and the less valleys
+
+
+def test_a_map_is_told_curve_by_curve_and_drawn(mapped):
+    found = mapped.roughness()
+    said = tables_roughness.answers(found)
+    assert len(said) == found.sizes["other"] == CURVES
+    assert said[0].startswith(
+        "At a skewness of B2 of -1: For a restoring force of 3 µN, at a relative humidity of 0.6, "
+    )
+    assert sum(", as given: " in sentence for sentence in said) == 1
+    table = tables_roughness.roughness({"S1": found})
+    assert len(table.frame) == POINTS * CURVES
+    assert "and" in table.cells
+    for drawn in (figures_roughness.roughness_map, figures_roughness.roughness):
+        assert png(drawn(found))[:4] == b"\x89PNG"
+
+
+def test_a_second_value_that_is_the_given_one_is_there_once():
+    points = [point(rms).assign(other=value, other_given=0.0) for value in (0, -1, -0.5, 1e-14, 1) for rms in RANGE8]
+    points[:POINTS] = [point(rms) for rms in RANGE8]
+    found = curves.mapped(points, "B2", "rms_nm", "skewness")
+    assert found.other.values.tolist() == [-1, -0.5, 0, 1]
+    assert [len(one.crossing) for one in curves.curves_of(found)] == [1] * 4
 
 
 @pytest.mark.slow

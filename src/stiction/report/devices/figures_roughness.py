@@ -2,17 +2,22 @@
 
 import numpy as np
 import xarray as xr
+from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 
 from stiction.config.kinds import ROUGHNESSES
+from stiction.devices.roughness import margins
 from stiction.report.devices.tables_roughness import in_unit, labelled
 from stiction.report.format import TO_UM
 from stiction.report.style import DOUBLE, SINGLE, figure_stage, letter, panels, plain_log, shades, styled
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import FORCE
+from stiction.stages.roughness.curves import curves_of
 
 #: Lightest colour of a curve; half width of an interval that holds 95 %, in standard errors.
 _LIGHTEST, _INTERVAL = 0.25, 1.96
+#: What meets a requirement with confidence, and what is expected to.
+_VALUES = ("safe", "estimate")
 
 
 @styled
@@ -22,8 +27,9 @@ def roughness(found: xr.Dataset) -> Figure:
     Parameters
     ----------
     found : Dataset
-        Of stage roughness of one device.
+        Of stage roughness of one device; of a map, the curve with the second quantity as given is drawn.
     """
+    found = next(one for one in curves_of(found) if "other" not in one.coords or one.other == one.other_given)
     shapes = list(map(str, found["shape"].values))
     figure, axes = panels(1, len(shapes), (min(DOUBLE, 1.3 * SINGLE * len(shapes)), 3.0))
     what = ROUGHNESSES[found.attrs["key"]]
@@ -70,6 +76,48 @@ def _crossings(panel, found, subject, colour):
         panel.errorbar(at, height, xerr=error, fmt="o", color=colour, fillstyle="none", zorder=3)
 
 
+@styled
+def roughness_map(found: xr.Dataset) -> Figure:
+    """Margin over what is required, and lines where it is met, over two quantities; panels by humidity and end state.
+
+    Parameters
+    ----------
+    found : Dataset
+        Of stage roughness of one device with two quantities.
+    """
+    humidities, shapes = found.humidity.values, list(map(str, found["shape"].values))
+    size = min(DOUBLE, 1.3 * SINGLE * len(shapes)), 2.8 * len(humidities)
+    figure, axes = panels(len(humidities), len(shapes), size)
+    more_is_better = found.required.attrs["units"] == "m"
+    margin = "length / required" if more_is_better else "restoring force / required"
+    x, y = in_unit(found, found.roughness.values), in_unit(found, found.other.values, "other_key")
+    for row, humidity in zip(axes, humidities, strict=True):
+        for panel, shape in zip(row, shapes, strict=True):
+            one = found.sel(humidity=humidity, shape=shape).transpose("other", "roughness", ...)
+            safe, estimate = (margins(one[name].values, float(found.required), more_is_better) for name in _VALUES)
+            colours = panel.contourf(
+                x, y, np.ma.masked_invalid(estimate / np.log(10)), 12, cmap="RdBu", norm=CenteredNorm()
+            )
+            figure.colorbar(colours, ax=panel, label=f"lg ({margin})")
+            for values, line in ((estimate, "-"), (safe, "--")):
+                if np.nanmin(values) < 0 < np.nanmax(values):
+                    panel.contour(x, y, np.ma.masked_invalid(values), [0], colors="black", linestyles=line)
+            panel.plot(*map(np.ravel, np.meshgrid(x, y)), ".", color="0.3", markersize=2)
+            panel.plot(in_unit(found, float(found.given)), in_unit(found, float(found.other_given), "other_key"), "k+")
+            _axes(panel, found)
+            panel.set_title(f"{END_STATES[shape].by}, RH {humidity:g}")
+    return figure
+
+
+def _axes(panel, found):
+    """Scales and labels of both quantities."""
+    panel.set(xlabel=labelled(found), ylabel=labelled(found, "other_key"))
+    for axis, scale, key in ((panel.xaxis, panel.set_xscale, "key"), (panel.yaxis, panel.set_yscale, "other_key")):
+        if ROUGHNESSES[found.attrs[key]].logarithmic:
+            scale("log")
+            plain_log(axis)
+
+
 STAGES = (
     figure_stage(
         "figure_roughness",
@@ -80,6 +128,17 @@ STAGES = (
         inputs=lambda plan, at: {"roughness": f"devices/roughness/{at.device}"},
         compute=lambda data, at, settings: roughness(data["roughness"]),
         jobs=lambda plan: [{"device": name} for name in plan.devices.roughened],
+        targets=("devices",),
+    ),
+    figure_stage(
+        "figure_roughness_map",
+        "roughness_map_{device}",
+        "how rough the surfaces of {device} must be, over two quantities",
+        "Devices",
+        caption="roughness_map",
+        inputs=lambda plan, at: {"roughness": f"devices/roughness/{at.device}"},
+        compute=lambda data, at, settings: roughness_map(data["roughness"]),
+        jobs=lambda plan: [{"device": name} for name in plan.devices.mapped],
         targets=("devices",),
     ),
 )

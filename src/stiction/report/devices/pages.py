@@ -131,6 +131,12 @@ def _words(words):
 # Devices
 
 
+#: What a map over two quantities shows.
+_OF_MAPS = (
+    "Blue: the requirement is met, by the factor of which the decimal logarithm is shown. Solid line: the estimate "
+    "meets it; dashed: the safe value does, with a confidence of 95 %. Dots: computed points; cross: the surface as it "
+    "is given.",
+)
 #: Keys of a surface, what they are called and their unit.
 _OF_SURFACES = {
     "rms_nm": ("rms", " nm"),
@@ -223,7 +229,7 @@ def of_beam(
     warnings : dict
         Where the model ends: ``lengths`` and ``curves`` of `stiction.stages.devices.device_warnings.OfDevices`.
     test_beams, roughness : Dataset, optional
-        Of the stages of these names.
+        Of stages test_beams_rerun and roughness.
     errors : dict, optional
         Name of the device to the dataset of stage device_model_error.
     """
@@ -487,7 +493,7 @@ def _sure(name, budgets, errors):
 def _of_test_beams(name, found):
     """Section on what the test beams of a device say."""
     said = [tables_inference.explained(found), *tables_inference.combinations(found), tables_inference.advised(found)]
-    said += tables_inference.stuck(found)
+    said += [tables_inference.again(found), *tables_inference.stuck(found)]
     cells = tables_inference.test_beams({name: found}).cells.drop(columns="device")
     return Section("What the test beams say", said, cells, figures_inference.test_beams(found))
 
@@ -497,8 +503,12 @@ def _how_rough(name, found):
     if found is None:
         return []
     cells = tables_roughness.roughness({name: found}).cells.drop(columns="device")
-    said = [*tables_roughness.answers(found), tables_roughness.FORM]
-    return [Section("How rough must it be?", said, cells, figures_roughness.roughness(found))]
+    of_map = "other" in found.dims
+    said = [*tables_roughness.answers(found), tables_roughness.FORM_OF_MAPS if of_map else tables_roughness.FORM]
+    sections = [Section("How rough must it be?", said, cells, figures_roughness.roughness(found))]
+    if of_map:
+        sections.append(Section("Over two quantities", _OF_MAPS, None, figures_roughness.roughness_map(found)))
+    return sections
 
 
 def _side_by_side(cells):
@@ -519,7 +529,8 @@ def _inputs(plan, at):
     budgets = budgets_of(plan, at.device) if at.device in devices.budgeted else {}
     own = {"budgets": {key[1:]: name for key, name in budgets.items()}, "warnings": device_warnings.files_of(at.device)}
     own |= model_errors.of_devices(plan, at.device)
-    own |= {key: f"devices/{key}/{at.device}" for key in ("test_beams", "roughness") if key in section}
+    asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
+    own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
     if not devices.kind(at.device).is_beam:
         return own | {"stopper": f"devices/stoppers/{at.device}", "style": File(STYLE)}
     charts = devices.chart_cases(at.device) if at.device in devices.charted else []

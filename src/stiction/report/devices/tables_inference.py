@@ -10,8 +10,8 @@ from stiction.devices import inference
 from stiction.plan.names import by_name
 from stiction.report.format import TO_UM, humidity_text, number, with_error
 from stiction.report.tables import DEVICE, Table, table_stage, with_list
-from stiction.stages.devices.inference import OWN, SHAPES
 from stiction.stages.devices.releases import ARC, EITHER, FORCE, MIDDLE, S_SHAPE
+from stiction.stages.test_beams.inference import OWN, SHAPES
 
 #: p value below which data count as not explained; number of standard deviations beyond which an input counts as wrong;
 #: ratio of dimensions beyond which a prediction counts as extrapolated. ASSUME: a factor of two.
@@ -22,6 +22,8 @@ ADHESION = 0.1
 #: Combinations whose standard deviation falls to less than this part count as determined; inputs with a correlation of
 #: less than this part of the largest one are not named.
 DETERMINED, NAMED = 0.5, 0.25
+#: Standard errors beyond which the linear update and its rerun count as different.
+DIFFERENT = 3.0
 _MORE = {True: "more", False: "less"}
 #: Ways in which devices are held, that of the shortest devices first.
 _WEAKEST = (ARC, MIDDLE, FORCE, S_SHAPE)
@@ -117,6 +119,30 @@ def _built(found, response):
         yield most * (1 + doubt) if response == FORCE else least * max(1 - doubt, 0.0)
 
 
+def again(found: xr.Dataset) -> str:
+    """How the linear update compares with results that were computed again at its inputs."""
+    if found.attrs["refused"]:
+        return f"At the inputs that the test beams suggest, nothing can be computed again: {found.attrs['refused']}."
+    return (
+        f"Computed again at the inputs that the test beams suggest, which differ from the stated ones, the results "
+        f"change as in the linear update: {', '.join(map(_change, _again(found)))}. Errors of the model and lengths "
+        "that tips hold are left out."
+    )
+
+
+def _again(found):
+    """Each result that was computed again."""
+    return [found.isel(again=k) for k in range(found.sizes["again"])]
+
+
+def _change(one):
+    """Both changes of a result in words."""
+    linear, rerun = (
+        with_error(100 * float(one[name]), 100 * float(one[f"{name}_error"])) for name in ("linear", "rerun")
+    )
+    return f"{one['again'].values}: {rerun} % (linear {linear} %)"
+
+
 def stuck(found: xr.Dataset) -> list[str]:
     """P(stuck) of the devices before and after the measurement at every humidity, for all that the inputs may be."""
     shape = SHAPES[min(map(str, found.response.values), key=_WEAKEST.index)]
@@ -148,13 +174,20 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     Parameters
     ----------
     datasets : dict
-        Device to the dataset of stage test_beams.
+        Device to the dataset of stage test_beams_rerun.
     """
     rows = [row for device, found in datasets.items() for row in _rows(device, found)]
     sentences = [
         f"{device}: {sentence}"
         for device, found in datasets.items()
-        for sentence in [explained(found), *combinations(found), advised(found), *stuck(found), *warnings(found)]
+        for sentence in [
+            explained(found),
+            *combinations(found),
+            advised(found),
+            again(found),
+            *stuck(found),
+            *warnings(found),
+        ]
     ]
     caption = (
         "Test beams: measured crack lengths with the standard errors of their means, counts of stuck beams, and "
@@ -260,7 +293,7 @@ _COLUMNS = DEVICE | {
 
 def warnings(found: xr.Dataset) -> list[str]:
     """What the test beams contradict, and where the prediction goes beyond them, in sentences with numbers."""
-    return [*_contradictions(found), *_moved(found), *_extrapolated(found)]
+    return [*_contradictions(found), *_moved(found), *_nonlinear(found), *_extrapolated(found)]
 
 
 def _contradictions(found):
@@ -296,6 +329,19 @@ def _moved(found):
     for datum, rest in zip(found.datum.values, found.datum_rest.values, strict=True):
         if abs(rest) > LARGE * found.attrs["rest"]:
             yield f"{datum}: {100 * rest:+.2g} % of the length are left to errors of the model at this humidity alone."
+
+
+def _nonlinear(found):
+    """Results that change otherwise than in the linear update."""
+    for one in _again(found):
+        apart = float(one.rerun - one.linear)
+        error = float(np.hypot(one.linear_error, one.rerun_error))
+        if abs(apart) > DIFFERENT * error:
+            difference = with_error(100 * apart, 100 * error)
+            yield (
+                f"The update is not linear enough: {_change(one)}, which differ by {difference} %. State the inputs "
+                "that the test beams suggest, and compute the device again with them."
+            )
 
 
 def _extrapolated(found):
@@ -341,7 +387,7 @@ STAGES = (
         "table_test_beams",
         "test_beams",
         "what test beams say about devices",
-        inputs=lambda plan, at: {"test_beams": by_name("devices/test_beams", plan.devices.tested)},
+        inputs=lambda plan, at: {"test_beams": by_name("devices/test_beams/rerun", plan.devices.tested)},
         compute=lambda data, at, settings: test_beams(data["test_beams"]),
         jobs=lambda plan: [{}] if plan.devices.tested else [],
         targets=("devices",),

@@ -12,50 +12,76 @@ from stiction.report.format import UM, with_error
 from stiction.report.tables import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import FORCE
+from stiction.stages.roughness.curves import curves_of
 
+#: Standard errors beyond which two forces count as different.
+LARGE = 3
 #: What stays while one quantity is varied.
 FORM = (
     "One quantity of one surface is varied. The form of its heights and the shape of its spectrum stay; a process that "
     "changes one of them usually changes all."
 )
+#: The same of a map.
+FORM_OF_MAPS = FORM.replace("One quantity of one surface is", "Two quantities of one surface are")
 
 
 # Sentences
 
 
-def in_unit(found: xr.Dataset, values: float | np.ndarray) -> float | np.ndarray:
-    """Values of the varied quantity in the unit of its key."""
-    key = found.attrs["key"]
-    unit = key.removeprefix(without_unit(key)).removeprefix("_")
+def in_unit(found: xr.Dataset, values: float | np.ndarray, key: str = "key") -> float | np.ndarray:
+    """Values of a varied quantity in the unit of its key, which is an attribute: ``key`` or ``other_key``."""
+    name = found.attrs[key]
+    unit = name.removeprefix(without_unit(name)).removeprefix("_")
     return from_si(values, unit) if unit else values
 
 
-def name_of(found: xr.Dataset) -> str:
-    """The varied quantity in words.
+def name_of(found: xr.Dataset, key: str = "key") -> str:
+    """A varied quantity in words.
 
     Examples
     --------
     >>> name_of(xr.Dataset(attrs={"key": "rms_nm", "surface": "B2"}))
     'rms of B2'
     """
-    return f"{ROUGHNESSES[found.attrs['key']].words} of {found.attrs['surface']}"
+    return f"{ROUGHNESSES[found.attrs[key]].words} of {found.attrs['surface']}"
 
 
-def labelled(found: xr.Dataset) -> str:
-    """The varied quantity with its unit, for axes and tables.
+def labelled(found: xr.Dataset, key: str = "key") -> str:
+    """A varied quantity with its unit, for axes and tables.
 
     Examples
     --------
     >>> labelled(xr.Dataset(attrs={"key": "rms_nm", "surface": "B2"}))
     'rms of B2 [nm]'
     """
-    return f"{name_of(found)} [{_unit(found).strip() or '–'}]"
+    return f"{name_of(found, key)} [{_unit(found, key).strip() or '–'}]"
 
 
 def answers(found: xr.Dataset) -> list[str]:
-    """Which roughness suffices, one sentence for each humidity and end state, and why some is not computed."""
-    subjects = [(float(h), str(shape)) for h in found.humidity.values for shape in found["shape"].values]
-    return [_answer(found, *subject) for subject in subjects] + _refusals(found)
+    """Which roughness suffices, one sentence for each humidity and end state, and why some is not computed.
+
+    Those of a map are about each of its curves.
+    """
+    return [_at_other(curve) + sentence for curve in curves_of(found) for sentence in _answers(curve)]
+
+
+def _answers(curve):
+    """As `answers`, of one curve."""
+    subjects = [(float(h), str(shape)) for h in curve.humidity.values for shape in curve["shape"].values]
+    return [_answer(curve, *subject) for subject in subjects] + _refusals(curve)
+
+
+def _at_other(curve):
+    """Beginning of the sentences on a curve of a map; nothing for others."""
+    if "other" not in curve.coords:
+        return ""
+    key, given = "other_key", "" if _is_changed(curve) else ", as given"
+    return f"At a {name_of(curve, key)} of {_shown(curve, curve.other, key)}{_unit(curve, key)}{given}: "
+
+
+def _is_changed(curve):
+    """Whether the second quantity of a curve is another one than that of the surface."""
+    return "other" in curve.coords and float(curve.other) != float(curve.other_given)
 
 
 def _answer(found, humidity, shape):
@@ -70,7 +96,8 @@ def _answer(found, humidity, shape):
     ]
     exactly = f"; exactly {_share(found)} sticks at {' and at '.join(places)}" if places else ""
     enough = _enough(found, found.sel(humidity=humidity, shape=shape), _rows(found, "range", humidity, shape))
-    return f"For {wanted}, at a relative humidity of {humidity:g}, {enough}{exactly}. {_given(found, humidity, shape)}"
+    more = _worst(found, humidity, shape) + _given(found, humidity, shape)
+    return f"For {wanted}, at a relative humidity of {humidity:g}, {enough}{exactly}. {more}"
 
 
 def _enough(found, curve, rows):
@@ -88,14 +115,29 @@ def _enough(found, curve, rows):
     return f"at most {share} sticks where the {name} is {' or '.join(ranges)} ({sure}; computed for {whole})"
 
 
+def _worst(found, humidity, shape):
+    """Where a stopper is held most if this is inside the range, beyond the errors of both ends."""
+    known = found.sel(humidity=humidity, shape=shape).dropna("roughness", subset=["estimate"])
+    forces, errors = known.estimate.values, known.error.values
+    if shape != FORCE or not len(forces):
+        return ""
+    most = int(np.argmax(forces))
+    apart = [forces[most] - forces[end] > LARGE * np.hypot(errors[most], errors[end]) for end in (0, -1)]
+    if not all(apart):
+        return ""
+    place = f"{_shown(found, known.roughness[most])}{_unit(found)}"
+    return f"The worst {name_of(found)} is inside this range, near {place}: less and more of it hold less. "
+
+
 def _given(found, humidity, shape):
     """P(stuck) on the surfaces as they are given, if it is known."""
     given = found.sel(humidity=humidity, shape=shape, roughness=float(found.given))
     stuck, low, high = (100 * given.stuck.values).tolist()
+    where = f"At the given {name_of(found)}" if _is_changed(found) else "On the surfaces as they are given"
     if np.isnan(stuck):
-        return "On the surfaces as they are given, it is not computed."
+        return f"{where}, it is not computed."
     place = f"{_shown(found, float(found.given))}{_unit(found)}"
-    return f"On the surfaces as they are given, at {place}, {stuck:.3g} % ({low:.3g} to {high:.3g} %) stick."
+    return f"{where}, at {place}, {stuck:.3g} % ({low:.3g} to {high:.3g} %) stick."
 
 
 def _rows(found, dimension, humidity, shape):
@@ -105,9 +147,9 @@ def _rows(found, dimension, humidity, shape):
     return [found.isel({dimension: k}) for k in np.flatnonzero(own)]
 
 
-def _shown(found, value):
-    """A value of the varied quantity as text."""
-    return f"{in_unit(found, float(value)):.3g}"
+def _shown(found, value, key="key"):
+    """A value of a varied quantity as text."""
+    return f"{in_unit(found, float(value), key):.3g}"
 
 
 def _range(found, low, high):
@@ -131,9 +173,9 @@ def _refusals(found):
     return [f"Not computed at a {name_of(found)} of {', '.join(at)}: {reason}." for reason, at in places.items()]
 
 
-def _unit(found):
-    """Unit of the varied quantity with a space before it, or nothing."""
-    return ROUGHNESSES[found.attrs["key"]].unit
+def _unit(found, key="key"):
+    """Unit of a varied quantity with a space before it, or nothing."""
+    return ROUGHNESSES[found.attrs[key]].unit
 
 
 def _required_unit(found):
@@ -152,19 +194,25 @@ def roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
     datasets : dict
         Device to the dataset of stage roughness.
     """
-    rows = [row for device, found in datasets.items() for row in _points(device, found)]
+    rows = [row for device, found in datasets.items() for curve in curves_of(found) for row in _points(device, curve)]
     sentences = [f"{device}: {sentence}" for device, found in datasets.items() for sentence in answers(found)]
+    of_maps = any("other" in row for row in rows)
     caption = (
         "Safe length of a beam, or safe restoring force of a stopper, over the roughness of a surface: with a "
         "confidence of 95 % given the drawn surfaces, at most a share p sticks. Estimate: where a share p sticks, ± "
         "standard error due to the numbers of devices and of drawn surfaces. P(stuck): at the required length or "
-        f"force, with its 95 % band. {FORM} Devices: number of simulated devices at every roughness."
+        f"force, with its 95 % band. {FORM_OF_MAPS if of_maps else FORM} Devices: number of simulated devices at every "
+        "roughness."
     )
-    return Table.of(rows, with_list(caption, sentences), _COLUMNS)
+    columns = {name: one for name, one in _COLUMNS.items() if of_maps or name not in _OF_MAPS}
+    return Table.of(rows, with_list(caption, sentences), columns)
 
 
 def _points(device, found):
-    """Numbers of one device."""
+    """Numbers of one curve of a device."""
+    other = {}
+    if "other" in found.coords:
+        other = {"other": labelled(found, "other_key"), "other_value": float(in_unit(found, found.other, "other_key"))}
     for humidity in found.humidity.values:
         for shape in map(str, found["shape"].values):
             for value in found.roughness.values:
@@ -186,7 +234,7 @@ def _points(device, found):
                     "stuck_low_percent": low,
                     "stuck_high_percent": high,
                     "devices": int(found.samples),
-                }
+                } | other
 
 
 def _stuck(stuck, low, high):
@@ -194,10 +242,17 @@ def _stuck(stuck, low, high):
     return "–" if np.isnan(stuck) else f"{stuck:.3g} ({low:.3g} to {high:.3g})"
 
 
+def _second(name, value):
+    """Value of a second quantity, if there is one."""
+    return f"{name}: {value:.3g}" if isinstance(name, str) else ""
+
+
+_OF_MAPS = ("and",)
 _COLUMNS = DEVICE | {
     "held by": (str, "held_by"),
     "varied": (str, "varied"),
     "value": (".3g", "value"),
+    "and": (_second, "other", "other_value"),
     "p": ("g", "share"),
     "unit": (str, "unit"),
     "safe": (".4g", "safe"),

@@ -23,7 +23,7 @@ from stiction.devices import arcs
 from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.stoppers import pull_off_force
 from stiction.devices.tail import TAIL, fit_tail
-from stiction.plan.stage import Stage, chosen
+from stiction.plan.stage import At, Stage, chosen
 from stiction.progress import progress
 from stiction.stages.contact import curves
 from stiction.stages.contact.contact import first
@@ -337,7 +337,7 @@ def _inputs(plan, device):
     return described | {"estimates": {name: f"estimate/{name}" for name in scanned}}
 
 
-def _settings(plan, at):
+def settings_of(plan: Any, at: At) -> dict[str, Any]:
     """Settings of a budget, the quantities of its surfaces and its variants of the model."""
     name, devices = at.case.device, plan.devices
     section = plan.config["devices"][name]
@@ -356,8 +356,8 @@ def _settings(plan, at):
 
 
 def _settings_of_tips(plan, at, share=None):
-    """As `_settings`, of the length that a share of the tips of a cantilever hold, by default the middle one."""
-    settings, shares = _settings(plan, at), plan.config["design"]["shares"]
+    """As `settings_of`, of the length that a share of the tips of a cantilever hold, by default the middle one."""
+    settings, shares = settings_of(plan, at), plan.config["design"]["shares"]
     own = {key: value for key, value in settings["budget"].items() if key != "beams"}
     choices = plan.variants.choices_of_solids(plan.contact_of_device(at.case))
     return settings | {"budget": own | {"share": share or shares[len(shares) // 2]}, "choices": choices}
@@ -387,7 +387,7 @@ BUDGET = Stage.writing(
     "budget",
     "devices/budget/{case}",
     inputs=lambda plan, at: _inputs(plan, at.case.device) | contacts_of_budget(plan, at.case),
-    settings=_settings,
+    settings=settings_of,
     compute=_computed,
     message="Budget of {case}.",
     cluster=True,
@@ -430,7 +430,7 @@ STAGES = (
         "test_beam_budget",
         OF_ARRAYS + "/{case}",
         inputs=_inputs_of_test_beams(contacts_of_budget),
-        settings=lambda plan, at: _settings(plan.of_test_beams, at) | {"choices": []},
+        settings=lambda plan, at: settings_of(plan.of_test_beams, at) | {"choices": []},
         label="budget",
         message="Budget of test beams {case}.",
     ),

@@ -7,7 +7,7 @@ from stiction.plan.stage import Stage
 from stiction.stages.contact.contact import compute
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices import patch_settings
-from stiction.stages.devices.patch_settings import FOLDER
+from stiction.stages.devices.patch_settings import FOLDER, less_or_more
 from stiction.stages.surfaces.rough_surfaces import both, of_pair
 
 
@@ -35,14 +35,18 @@ STAGES = (
         "solid_contact",
         "{solid_property}/{pair}_{length}x{width}_{side}",
         lambda plan, at: patch_settings.with_property(
-            patch_settings.on_patch(plan, at, plan.samples_of_slopes), at.solid_property, at.side
+            patch_settings.on_patch(plan, at, plan.samples_of_slopes),
+            at.solid_property,
+            less_or_more(at.solid_property, at.side),
         ),
         f"{_PATCH}, with {{side}} {{solid_property}} of the solids",
     ),
     _stage(
         "tip_solid_contact",
         "tips/{solid_property}/{pair}_{length}x{width}_{side}",
-        lambda plan, at: patch_settings.with_property(patch_settings.of_tips(plan, at), at.solid_property, at.side),
+        lambda plan, at: patch_settings.with_property(
+            patch_settings.of_tips(plan, at), at.solid_property, less_or_more(at.solid_property, at.side)
+        ),
         f"{_PATCH}, {_AT_TIPS}, with {{side}} {{solid_property}} of the solids",
     ),
     _stage(

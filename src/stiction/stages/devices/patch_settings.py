@@ -3,6 +3,7 @@
 Separate from the stages that compute these contacts, so that no other stage depends on their code.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 from stiction.config.cases import Case
@@ -24,7 +25,12 @@ def contact_of(plan: Any, case: Case) -> str:
     """Contact of the patch on which a device sticks at a humidity: that of its pair in the main line if it is equal."""
     if plan.devices.has_strips_of_pair(case.device):
         return f"contact/{plan.contact_of_device(case)}_NG"
-    return f"{FOLDER}/{_in_its_air(plan, case, plan.devices.ground).name}"
+    return f"{FOLDER}/{patch_of(plan, case).name}"
+
+
+def patch_of(plan: Any, case: Case) -> Patch:
+    """Patch on which a device sticks, with the name of its pair in the air of a case."""
+    return _in_its_air(plan, case, plan.devices.ground)
 
 
 def _in_its_air(plan, case, patch_of):
@@ -47,7 +53,7 @@ def corrections_of(plan: Any, device: str) -> dict[str, str]:
 def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:
     """Contact of the patch of a device, with less and more of every uncertain input, and under other choices."""
     devices, device = plan.devices, case.device
-    patch = _in_its_air(plan, case, devices.ground)
+    patch = patch_of(plan, case)
     shared = f"studies/slopes/contact/{patch.pair}"
     slopes = shared if devices.has_strips_of_pair(device) else f"{FOLDER}/slopes/{patch.name}"
     contacts, choices = {"contact": contact_of(plan, case)}, plan.variants.choices_of_device(case)
@@ -107,24 +113,34 @@ def of_slopes(plan: Any, at: At) -> dict[str, Any]:
     return on_patch(plan, at, plan.config["studies"]["slopes"]["samples"])
 
 
-def with_property(settings: dict[str, Any], name: str, side: str) -> dict[str, Any]:
-    """Settings of a contact with less or more of a property of the beam's material, in both bodies of it."""
+def of_rerun(plan: Any, patch: Patch) -> dict[str, Any]:
+    """Contact that is compared with the first samples of that of a patch."""
+    return on_patch(plan, At(**patch._asdict()), plan.samples_of_slopes)
+
+
+def with_property(settings: dict[str, Any], name: str, change: Callable[[float], float]) -> dict[str, Any]:
+    """Settings of a contact with another value of a property of the beam's material, in both bodies of it."""
     key, solid = OF_CONTACT[name].key, settings["solid"]
     if "materials" not in settings and key in solid:
-        return settings | {"solid": _with_less_or_more(solid, name, side)}
+        return settings | {"solid": _with_other(solid, name, change)}
     bodies = settings.get("materials", dict.fromkeys(SIDES, solid))
-    of_beam = _with_less_or_more(bodies["beam"], name, side)
+    of_beam = _with_other(bodies["beam"], name, change)
     changed = {body: of_beam if material == bodies["beam"] else material for body, material in bodies.items()}
     return settings | {"materials": changed}
 
 
-def _with_less_or_more(material, name, side):
-    """Material with less or more of a property; of its Hamaker constants through all media by the same factor."""
-    changed, end = OF_CONTACT[name], SHIFTS.index(side)
-    value = (material | {"hamaker_constant_zJ": hamaker_constants(material)})[changed.key]
+def less_or_more(name: str, side: str) -> Callable[[float], float]:
+    """Change of a property to less or more of it, as in `with_property`."""
+    return lambda value: OF_CONTACT[name].step.ends(value)[SHIFTS.index(side)]
+
+
+def _with_other(material, name, change):
+    """Material with another value of a property; of its Hamaker constants through all media by the same factor."""
+    key = OF_CONTACT[name].key
+    value = (material | {"hamaker_constant_zJ": hamaker_constants(material)})[key]
     if isinstance(value, dict):
-        return material | {changed.key: {medium: changed.step.ends(one)[end] for medium, one in value.items()}}
-    return material | {changed.key: changed.step.ends(value)[end]}
+        return material | {key: {medium: change(one) for medium, one in value.items()}}
+    return material | {key: change(value)}
 
 
 def of_choice_summits(plan: Any, at: At) -> dict[str, Any]:

@@ -88,6 +88,11 @@ class Varied:
         relative = deviation / value if self.step and self.step.relative else deviation
         return Input(self.name, self.group or f"the {self.name}", states, step), relative
 
+    def moved(self, state: State, by: float) -> State:
+        """State whose input errs by an amount, in its logarithm if its step is relative."""
+        value = self.value(state)
+        return self.changed(state, self.step.moved(value, by) if self.step else max(value + by, self.least))
+
 
 def _size(name, step=None, least=-np.inf):
     """Dimension, or stress, of a beam."""
@@ -176,6 +181,18 @@ def uncertain(
     blocks += of_numbers(state, OF_AIR, stated) if state.water.film(state.humidity)[0] else ()
     inputs = [entry for block in blocks for entry in block.inputs]
     return inputs, block_diag(np.empty((0, 0)), *(block.covariance for block in blocks))
+
+
+def changed(state: State, errors: Mapping[str, float]) -> State:
+    """State whose dimensions, air and modulus of the beam err, by the names of the inputs; its contact stays."""
+    for one in (*OF_BEAMS, *OF_AIR):
+        if one.name in errors:
+            state = one.moved(state, errors[one.name])
+    modulus = OF_CONTACT["modulus"]
+    if modulus.words in errors and state.device:
+        stiffer = modulus.step.moved(state.device.young_modulus, errors[modulus.words])
+        state = replace(state, device=replace(state.device, young_modulus=stiffer))
+    return state
 
 
 def countable(sizes: Sequence[str], settings: Settings) -> list[str]:

@@ -25,10 +25,12 @@ from stiction.stages.surfaces.rough_surfaces import both, of_pair
 
 #: Points of a curve, the last of which has the surface as it is given.
 POINTS = 8
+#: Curves of a map over two quantities, the first of which has the second quantity as it is given.
+CURVES = 5
 
 
 class Varied(NamedTuple):
-    """What is varied: section ``roughness`` of a device."""
+    """A quantity that is varied: one key of section ``roughness`` of a device."""
 
     surface: str
     key: str  #: of `stiction.config.kinds.ROUGHNESSES`
@@ -37,10 +39,20 @@ class Varied(NamedTuple):
 
     def value(self, number: int) -> float | None:
         """Value of a point in the unit of the key, ``None`` as it is given; evenly spaced, or by equal factors."""
-        if number == POINTS - 1:
-            return None
+        return None if number == POINTS - 1 else self._spaced(number, POINTS - 1)
+
+    def of_curve(self, number: int) -> float | None:
+        """As `value`, of a curve of a map."""
+        return None if number == 0 else self._spaced(number - 1, CURVES - 1)
+
+    def _spaced(self, number, count):
         spaced = np.geomspace if ROUGHNESSES[self.key].logarithmic else np.linspace
-        return float(spaced(self.low, self.high, POINTS - 1)[number].round(9))
+        return float(spaced(self.low, self.high, count)[number].round(9))
+
+    def named(self, name: str, value: float | None) -> dict[str, float | None]:
+        """A value by a name with the unit of the key."""
+        unit = self.key.removeprefix(without_unit(self.key))
+        return {name + unit * (value is not None): value}
 
 
 @dataclass(frozen=True)
@@ -52,10 +64,12 @@ class Settings:
     surface: str  #: the one that is changed; on both sides of the pair if both have it
     quantity: str  #: rms, skewness or corner
     value: float | None  #: [SI]; none for the surface as it is given
+    other: str = ""  #: another quantity that is changed as well
+    other_value: float | None = None  #: [SI]
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Settings) -> xr.Dataset:
-    """Dataset of stage contact with the value of the quantity as a further variable.
+    """Dataset of stage contact with the value of the quantity, and of another one with that as given, as variables.
 
     Parameters
     ----------
@@ -64,13 +78,20 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Setting
     settings : Settings
     """
     names = settings.contact.surfaces
-    changed = description(*surfaces[names.index(settings.surface)])
-    if settings.value is not None:
-        changed = with_value(changed, settings.quantity, settings.value)
+    given = changed = description(*surfaces[names.index(settings.surface)])
+    wanted = {settings.quantity: settings.value, settings.other: settings.other_value}
+    for quantity, value in wanted.items():
+        if value is not None:
+            changed = with_value(changed, quantity, value)
+    if changed is not given:
         drawn = drawn_as(changed, settings.contact.sampling.spacing)
         surfaces = [drawn if name == settings.surface else same for name, same in zip(names, surfaces, strict=True)]
     contact = stage_contact.compute(surfaces, settings.pair, "NG", settings.contact)
-    return contact.assign(roughness=float(value_of(changed, settings.quantity)))
+    contact = contact.assign(roughness=float(value_of(changed, settings.quantity)))
+    if not settings.other:
+        return contact
+    both = {"other": changed, "other_given": given}
+    return contact.assign({name: float(value_of(one, settings.other)) for name, one in both.items()})
 
 
 def roughness_of(contact: xr.Dataset) -> float:
@@ -78,11 +99,15 @@ def roughness_of(contact: xr.Dataset) -> float:
     return float(contact.roughness)
 
 
-def varied(plan: Any, device: str) -> Varied:
-    """What is varied of the surfaces of a device."""
+def varied(plan: Any, device: str) -> list[Varied]:
+    """What is varied of the surfaces of a device: along its curves and, for a map, from curve to curve."""
     section = plan.config["devices"][device]["roughness"]
-    key = next(key for key in ROUGHNESSES if key in section)
-    return Varied(section["surface"], key, *section[key])
+    return [Varied(section["surface"], key, *section[key]) for key in ROUGHNESSES if key in section]
+
+
+def points_of(plan: Any, device: str) -> range:
+    """Numbers of the points of a device, curve by curve."""
+    return range(POINTS * (CURVES if len(varied(plan, device)) > 1 else 1))
 
 
 def contacts_of(plan: Any, device: str, number: int) -> dict[str, str]:
@@ -110,13 +135,18 @@ def _stage(name, folder, contact, words):
     """Stage of one contact of a point; ``contact`` gives its settings by plan and device."""
 
     def settings(plan, at):
-        what = varied(plan, at.device)
-        value, unit = what.value(int(at.number)), what.key.removeprefix(without_unit(what.key))
-        if value is not None and what.key in plan.config["surfaces"][what.surface]:
-            surfaces = {what.surface: {what.key: value}}  # on which the reach of tips depends
-            plan = replace(plan, config=merged(plan.config, {"surfaces": surfaces}))
-        own = {"surface": what.surface, "quantity": without_unit(what.key), "value" + unit * (value is not None): value}
-        return {"contact": contact(plan, at.device), "pair": plan.config["devices"][at.device]["pair"]} | own
+        what, *others = varied(plan, at.device)
+        curve, point = divmod(int(at.number), POINTS)
+        values = [(what, what.value(point)), *((other, other.of_curve(curve)) for other in others)]
+        own = plan.config["surfaces"][what.surface]
+        surface = {one.key: value for one, value in values if value is not None and one.key in own}
+        if surface:  # on which the reach of tips depends
+            plan = replace(plan, config=merged(plan.config, {"surfaces": {what.surface: surface}}))
+        found = {"contact": contact(plan, at.device), "pair": plan.config["devices"][at.device]["pair"]}
+        found |= {"surface": what.surface, "quantity": without_unit(what.key)} | what.named("value", values[0][1])
+        for other, value in values[1:] if curve else ():
+            found |= {"other": without_unit(other.key)} | other.named("other_value", value)
+        return found
 
     return Stage.writing(
         name,

@@ -26,8 +26,12 @@ from stiction.stages.contact.corrections import corrected
 from stiction.stages.devices import sticking, stoppers
 from stiction.stages.devices.patch_settings import corrections_of
 from stiction.stages.devices.releases import FORCE, DesignedBeam, section_of_beam
-from stiction.stages.roughness.contacts import POINTS, contacts_of, roughness_of, varied
+from stiction.stages.roughness.contacts import POINTS, contacts_of, points_of, roughness_of, varied
 
+#: Value of a second quantity of a point of a map, and that of the surface as it is given.
+OTHERS = ("other", "other_given")
+#: Dimensions of what is found on a curve.
+_TABLES = ("crossing", "range")
 #: Groups of the samples whose scatter gives the error of a length due to their number.
 GROUPS = 20
 
@@ -148,7 +152,8 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: OfBeam | OfS
         except (ValueError, NotConverged) as reason:
             found.append([Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)] * len(settings.shapes))
             refused.append(str(reason))
-    return layout(found, refused, roughness_of(contact), contact.sizes["sample"], settings)
+    point = layout(found, refused, roughness_of(contact), contact.sizes["sample"], settings)
+    return point.assign({name: contact[name] for name in OTHERS if name in contact})
 
 
 def layout(
@@ -216,6 +221,45 @@ def joined(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Dataset:
     return curve.assign(_rows("crossing", places, "place", "error") | _rows("range", ranges, "low", "high"))
 
 
+def mapped(points: Sequence[xr.Dataset], surface: str, key: str, other: str = "") -> xr.Dataset:
+    """Curve of a device, or, over a second quantity ``other``, all curves along a dimension of this name.
+
+    The first curve has the second quantity as it is given; others at the same value are left out.
+    """
+    first, *more = [
+        joined([one.drop_vars(OTHERS, errors="ignore") for one in points[k : k + POINTS]], key, surface)
+        for k in range(0, len(points), POINTS)
+    ]
+    if not more:
+        return first
+    given = float(points[-1].other_given)
+    curves = {given: first}
+    for value, curve in zip((float(one.other) for one in points[POINTS::POINTS]), more, strict=True):
+        if not np.isclose(value, given, rtol=1e-6, atol=1e-12):
+            curves[value] = curve
+    values = sorted(curves)
+    alone = [curves[value].drop_dims(["crossing", "range"]) for value in values]
+    over = [name for name in first.data_vars if "roughness" in first[name].dims]
+    grid = xr.concat(alone, "other", data_vars=over, coords="minimal", compat="equals", join="exact")
+    grid = grid.assign_coords(other=values).assign(other_given=given)
+    rows = [xr.concat([_rows_of(curves[value], name, value) for value in values], name) for name in _TABLES]
+    return xr.merge([grid, *rows], combine_attrs="override").assign_attrs(other_key=other)
+
+
+def _rows_of(curve, name, value):
+    """Crossings or ranges of a curve, with its value of the second quantity."""
+    own = curve[[one for one in curve.data_vars if name in curve[one].dims]]
+    return own.drop_attrs().assign({f"{name}_other": (name, np.full(own.sizes[name], value))})
+
+
+def curves_of(found: xr.Dataset) -> list[xr.Dataset]:
+    """Curve of a device, or all curves of its map, each with its value of the second quantity as ``other``."""
+    if "other" not in found.dims:
+        return [found]
+    own = [{name: np.flatnonzero(found[f"{name}_other"] == value) for name in _TABLES} for value in found.other]
+    return [found.sel(other=value).isel(rows) for value, rows in zip(found.other.values, own, strict=True)]
+
+
 def _margins(one, name):
     """Margins of a curve over what is required, and their standard errors."""
     more_is_better = one.required.attrs["units"] == "m"
@@ -250,8 +294,8 @@ def _settings(plan, at):
 
 def _what(plan, device):
     """What is varied, and of which surface."""
-    found = varied(plan, device)
-    return {"key": found.key, "surface": found.surface}
+    found, *others = varied(plan, device)
+    return {"key": found.key, "surface": found.surface} | ({"other": others[0].key} if others else {})
 
 
 STAGES = (
@@ -272,10 +316,10 @@ STAGES = (
         "roughness",
         "devices/roughness/{device}",
         inputs=lambda plan, at: {
-            "points": [f"devices/roughness/points/{at.device}_{number}" for number in range(POINTS)]
+            "points": [f"devices/roughness/points/{at.device}_{number}" for number in points_of(plan, at.device)]
         },
         settings=lambda plan, at: _what(plan, at.device),
-        compute=lambda data, at, settings: joined(data["points"], **settings),
+        compute=lambda data, at, settings: mapped(data["points"], **settings),
         message="Roughness that device {device} needs.",
     ),
 )

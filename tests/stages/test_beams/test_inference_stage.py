@@ -18,9 +18,10 @@ from stiction.devices.inference import FACTOR, SLOPE, Discrepancy, expected_shar
 from stiction.report.devices import figures_inference, tables_inference
 from stiction.run import storage
 from stiction.stages.contact import curves
-from stiction.stages.devices import inference
-from stiction.stages.devices.inference import CrackLengths, Settings, Stuck
 from stiction.stages.devices.releases import ARC, EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam
+from stiction.stages.test_beams import inference
+from stiction.stages.test_beams.inference import CrackLengths, Settings, Stuck
+from stiction.stages.test_beams.rerun import with_reruns
 
 UM = 1e-6
 DEVICE = DesignedBeam("cantilever", "b", 2.6 * UM, 20 * UM, 30 * UM, 164e9, 1.5 * UM)
@@ -88,7 +89,8 @@ def computed(
         slopes |= {(name, rh, "tip"): budget(array, rh, ARC) for name in names for rh in stuck.humidity}
     found = [dict.fromkeys(names, data) if data else {} for data in (lengths if len(means) else None, stuck)]
     settings = Settings(stated, dict.fromkeys(names, array), *found, DEVICE)
-    return inference.compute(budgets(), slopes, safe_lengths(), *[dict.fromkeys(names)] * 2, settings)
+    found = inference.compute(budgets(), slopes, safe_lengths(), *[dict.fromkeys(names)] * 2, settings)
+    return with_reruns(found)
 
 
 def as_computed(factor=1.0, humidities=HUMIDITIES):
@@ -240,7 +242,8 @@ def of_other(response, predicted, device, slopes):
     lengths = CrackLengths(1500 * UM, HUMIDITIES, tuple(means), tuple(SCATTER * np.array(means)), (2000,) * 3)
     settings = Settings(Discrepancy(0.0, 0.0, 1e-3), {"arrayA": ARRAY}, {"arrayA": lengths}, {}, device)
     beams = {("arrayA", rh): budget(ARRAY, rh) for rh in HUMIDITIES}
-    return inference.compute({("R1", 0.67): own}, beams, predicted, {}, {}, settings)
+    found = inference.compute({("R1", 0.67): own}, beams, predicted, {}, {}, settings)
+    return with_reruns(found)
 
 
 def of_bridge():

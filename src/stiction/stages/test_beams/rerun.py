@@ -1,0 +1,184 @@
+"""Stage test_beams_rerun: test beams and their device computed again, with the inputs that the test beams suggest.
+
+The update of stage test_beams is linear in the inputs. Here, surfaces, solids, air and dimensions are those of its
+result, with the random numbers of the slopes. Lengths that tips hold are left out: they need a contact of their own.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stiction.analysis.shifts import moved
+from stiction.config.cases import PairInAir, case_id
+from stiction.config.units import in_si
+from stiction.devices.materials import OF_CONTACT
+from stiction.errors import NotConverged
+from stiction.plan.stage import At, Stage
+from stiction.stages.contact import contact as stage_contact
+from stiction.stages.contact.contact import first
+from stiction.stages.contact.corrections import corrected, of_pair
+from stiction.stages.contact.pairs import Settings
+from stiction.stages.devices import budget as stage_budget
+from stiction.stages.devices.budget import AnyBudget, budgets_of, budgets_of_arrays, effect, of_job
+from stiction.stages.devices.patch_settings import contact_of, of_rerun, patch_of, with_property
+from stiction.stages.devices.uncertain_inputs import changed
+from stiction.stages.surfaces.descriptions import description, drawn_as
+from stiction.stages.test_beams.inference import Result
+
+#: Changes of ln l, or ln F, of a result, and their standard errors [-].
+NUMBERS = ("linear", "linear_error", "rerun", "rerun_error")
+
+
+def compute(
+    found: xr.Dataset,
+    budgets: Mapping[tuple[str, float], xr.Dataset],
+    patches: Sequence[str],
+    contacts: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
+    settings: Sequence[AnyBudget],
+) -> xr.Dataset:
+    """The update of stage test_beams, with the linear changes of some results and those found by computing them again.
+
+    Parameters
+    ----------
+    found : Dataset
+        Of stage test_beams.
+    budgets : dict
+        Device or array, and humidity, to the dataset of its budget.
+    patches : sequence
+        Name of the patch of each of them.
+    contacts : dict
+        Patch to the contact with the stated inputs and to that of its first samples with the errors of the update.
+    settings : sequence
+        Of each budget.
+    """
+    errors, names, rows = errors_of(found), [], []
+    for (key, budget), patch, own in zip(budgets.items(), patches, settings, strict=True):
+        result = Result(*key, budget, None)
+        names.append(result.condition)
+        rows.append(compared(result, *contacts[patch], errors, own))
+    return with_reruns(found, names, rows)
+
+
+def errors_of(found: xr.Dataset) -> dict[str, float]:
+    """Expected errors of all inputs after the measurement, by their names."""
+    return dict(zip(map(str, found.input.values), found["shift"].values.tolist(), strict=True))
+
+
+def compared(
+    result: Result, contact: xr.Dataset, moved_contact: xr.Dataset, errors: Mapping[str, float], settings: AnyBudget
+) -> tuple[float, ...]:
+    """Change of ln l, or ln F, by the errors of the inputs: linear and computed again, with standard errors [-].
+
+    ASSUME: slopes err independently.
+    """
+    budget = result.budget
+    own = dict(zip(map(str, budget.input.values), (errors[name] for name in result.names), strict=True))
+    shifts = np.array(list(own.values()))
+    linear = float(budget.slope.values @ shifts), float(np.linalg.norm(budget.slope_error.values * shifts))
+    state = settings.state(first(contact, moved_contact.sizes["sample"]))
+    return *linear, *effect(state, changed(replace(state, contact=moved_contact), own), settings.responder(state))
+
+
+def at_mean(
+    surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset]], pair: str, plain: dict[str, Any], errors: Mapping[str, float]
+) -> xr.Dataset:
+    """Contact of a pair whose surfaces and solids err.
+
+    Parameters
+    ----------
+    surfaces : dict
+        Name to the datasets (heights, spectrum).
+    pair : str
+        Name of the pair, part of the addresses of random numbers.
+    plain : dict
+        Settings of the contact with the stated inputs, as of a job.
+    errors : dict
+        Input, such as ``rms of B2``, to its error.
+    """
+    for name, one in OF_CONTACT.items():
+        if one.words in errors:
+            plain = with_property(plain, name, partial(one.step.moved, by=errors[one.words]))
+    settings, drawn = in_si(Settings, plain), {}
+    for name in settings.surfaces:
+        surface = description(*surfaces[name])
+        own = {key: errors[f"{key} of {name}"] for key in surface.quantities if f"{key} of {name}" in errors}
+        drawn[name] = drawn_as(moved(surface, own), settings.sampling.spacing) if own else surfaces[name]
+    return stage_contact.compute([drawn[name] for name in settings.surfaces], pair, "NG", settings)
+
+
+def with_reruns(
+    found: xr.Dataset, names: Sequence[str] = (), rows: Sequence[Sequence[float]] = (), refused: str = ""
+) -> xr.Dataset:
+    """Dataset of an update with its reruns, or with the reason why there are none."""
+    columns = np.reshape(rows, (-1, len(NUMBERS))).T
+    numbers = {name: ("again", column, {"units": "1"}) for name, column in zip(NUMBERS, columns, strict=True)}
+    return found.assign(numbers).assign_coords(again=np.array(names, str)).assign_attrs(refused=refused)
+
+
+# Stage
+
+
+def _cases(plan, device):
+    """Plan and case of all budgets of a device and its test beams that are not of tips, by their names and humidity."""
+    both = (plan, budgets_of(plan, device)), (plan.of_test_beams, budgets_of_arrays(plan, device))
+    return {key: (of, case_id(*key), name) for of, found in both for key, name in found.items() if len(key) == 2}
+
+
+def _inputs(plan, at):
+    """The update, the budgets, and the surfaces and contacts with the stated inputs."""
+    cases = _cases(plan, at.device)
+    patches = {patch_of(of, case): (of, case) for of, case, _ in cases.values()}
+    sides = dict.fromkeys(side for patch in patches for side in plan.sides(patch.pair))
+    ratios = {patch.name: of_pair(plan, PairInAir(patch.pair).pair).get("model_error") for patch in patches}
+    return {
+        "found": f"devices/test_beams/{at.device}",
+        "budgets": {key: name for key, (*_, name) in cases.items()},
+        "contacts": {patch.name: contact_of(of, case) for patch, (of, case) in patches.items()},
+        "model_errors": {name: ratio for name, ratio in ratios.items() if ratio},
+        "heights": {side: f"heights/{side}" for side in sides},
+        "spectrum": {side: f"spectrum/{side}" for side in sides},
+    }
+
+
+def _settings(plan, at):
+    """Settings of every budget with the name of its patch, and those of every contact."""
+    cases = _cases(plan, at.device).values()
+    patches = [patch_of(of, case) for of, case, _ in cases]
+    return {
+        "budgets": [stage_budget.settings_of(of, At(case=case))["budget"] for of, case, _ in cases],
+        "patches": [patch.name for patch in patches],
+        "contacts": {patch.name: [str(patch.pair), of_rerun(plan, patch)] for patch in patches},
+    }
+
+
+def _computed(data, _at, settings):
+    """Contacts with the errors of the update, and everything that is computed again; or the reason why it is not."""
+    found, surfaces = data["found"], {name: (one, data["spectrum"][name]) for name, one in data["heights"].items()}
+    errors, contacts, model_errors = errors_of(found), {}, data["model_errors"]
+    wanted = [
+        corrected(of_job(plain), {"model_error": model_errors[patch]} if patch in model_errors else {})
+        for plain, patch in zip(settings["budgets"], settings["patches"], strict=True)
+    ]
+    try:
+        for name, (pair, plain) in settings["contacts"].items():
+            contacts[name] = data["contacts"][name], at_mean(surfaces, pair, plain, errors)
+        return compute(found, data["budgets"], settings["patches"], contacts, wanted)
+    except (ValueError, NotConverged) as reason:
+        return with_reruns(found, refused=str(reason))
+
+
+STAGES = (
+    Stage.writing(
+        "test_beams_rerun",
+        "devices/test_beams/rerun/{device}",
+        inputs=_inputs,
+        settings=_settings,
+        compute=_computed,
+        message="Device {device} at the inputs that its test beams suggest.",
+        cluster=True,
+    ),
+)
