@@ -5,6 +5,7 @@
 #   make run CONFIG=mine.yaml    your own surfaces, pairs and beams; the file changes single keys of config.yaml
 #   make example    crack lengths from drawn scans, compared with the true values (1 to 2 minutes), in runs/example/
 #   make example-beams   a device with and without drawn test beams, beside the truth, in runs/example-beams/
+#   make measured-beams   what the beams that the paper measured say as test beams (4 minutes), in runs/measured-beams/
 #   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (4 to 10 minutes),
 #                   in runs/devices/results/
 #   make model-error    Table III under full elastic contact, after make paper (3 minutes on two cores; takes CONFIG=... too)
@@ -45,7 +46,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-beams devices model-error asperities pressing sealed tails attraction figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-beams measured-beams devices model-error asperities pressing sealed tails attraction figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -71,6 +72,9 @@ example-beams: $(VENV)/ready
 	cp examples/drawn_beams/mine.yaml runs/example-beams/
 	$(STICTION) devices runs/example-beams/mine.yaml --directory runs/example-beams -- $(ARGS)
 	$(BIN)/python examples/drawn_beams/compare.py runs/example-beams
+
+measured-beams: $(VENV)/ready
+	$(BIN)/python examples/measured_beams.py runs/measured-beams
 
 devices: $(VENV)/ready
 	$(STICTION) devices $(CONFIG) --directory runs/devices -- $(ARGS)

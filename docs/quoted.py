@@ -42,6 +42,7 @@ def numbers(tables):
     found |= model_errors(tables["model_error"]) | attraction(tables["attraction"])
     found |= readings(tables["asperities"]) | pressing(tables["pressing"])
     found |= sealed(tables["sealed_safe_lengths"], tables["sealed_stoppers"])
+    found |= measured_beams(tables["measured_beams"])
     found |= studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
     return (
         found
@@ -50,6 +51,11 @@ def numbers(tables):
         | constants()
         | nearly_gaussian()
     )
+
+
+def measured_beams(frame):
+    """``beams_b_slope``: what the crack lengths of the paper say as test beams, by pair and name."""
+    return {f"beams_{row.pair}_{row.name}": str(row.text) for row in frame.itertuples(index=False)}
 
 
 def crack_lengths(table_3):

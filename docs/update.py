@@ -2,8 +2,8 @@
 
 1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
    and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``,
-   ``make devices``, ``make sealed``, ``make attraction`` and ``stiction devices examples/roughness.yaml --directory
-   runs/roughness`` in folders of ``runs`` beside the folder.
+   ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction`` and ``stiction devices
+   examples/roughness.yaml --directory runs/roughness`` in folders of ``runs`` beside the folder.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
 3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted, and the schema
    for editors from that of the configuration.
@@ -69,6 +69,8 @@ EXAMPLE_TABLES = {
 EXAMPLE_PICTURES = {"results/figures/surface_sheet_Etched": 1400, "prediction": 700}
 #: Table and picture of ``make example-beams``.
 DRAWN_BEAMS = "drawn_beams"
+#: Numbers and table of ``make measured-beams``.
+MEASURED_BEAMS = "measured_beams"
 #: Tables and pictures of ``make devices``; pictures by their width [pixels].
 DEVICE_TABLES = ("safe_lengths", "stoppers", "budget")
 DEVICE_PICTURES = {"risk": 1000, "chart": 1200, "stoppers": 700, "budget_C1": 1000}
@@ -101,6 +103,7 @@ def main(results):
         *((results, partial(unfinished_study, name), partial(collect_study, name)) for name in OWN_STUDIES),
         (runs / "example", unfinished_example, collect_example),
         (runs / "example-beams", partial(unfinished_example, target="devices"), collect_beams),
+        (runs / "measured-beams", unfinished_measured, collect_measured),
         (runs / "devices", partial(unfinished_devices, "devices", "budget"), collect_devices),
         (runs / "roughness", partial(unfinished_devices, "roughness", ROUGHNESS), collect_roughness),
         (runs / "sealed", partial(unfinished_devices, "sealed", "stoppers"), collect_sealed),
@@ -146,6 +149,11 @@ def unfinished_example(folder, target="measured"):
     if up_to_date(folder.resolve(), target, "--configfile", *configs):
         return ""
     return f"{folder} is not up to date with the code, see make {folder.name}"
+
+
+def unfinished_measured(folder):
+    """Why a folder does not hold the numbers of ``make measured-beams``; empty if it does, of whatever code."""
+    return "" if (folder / "measured.csv").exists() else f"{folder} holds no finished run"
 
 
 def unfinished_devices(example, table, folder):
@@ -214,6 +222,12 @@ def collect_beams(folder):
     for kind in ("csv", "md"):
         shutil.copyfile(folder / f"prediction.{kind}", DOCS / "tables" / f"{DRAWN_BEAMS}.{kind}")
     shrink(folder / "prediction.png", DOCS / "pictures" / f"{DRAWN_BEAMS}.png", 700)
+
+
+def collect_measured(folder):
+    """Copy numbers and table of the test beams that the paper measured."""
+    for kind in ("csv", "md"):
+        shutil.copyfile(folder / f"measured.{kind}", DOCS / "tables" / f"{MEASURED_BEAMS}.{kind}")
 
 
 def collect_devices(folder):
@@ -338,6 +352,7 @@ def quoted_numbers():
             *TABLES,
             *OWN_STUDIES,
             ATTRACTION,
+            MEASURED_BEAMS,
             *(f"sealed_{name}" for name in SEALED_TABLES),
             *DEVICE_TABLES,
             "example_scans",

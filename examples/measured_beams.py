@@ -1,0 +1,212 @@
+"""What the crack lengths that the paper measured say as test beams: ``python measured_beams.py FOLDER``.
+
+Computes the budgets of the test beams of ``test_beams.yaml`` alone, without the tips of its devices. Writes
+``measured.csv``, all numbers of the chapter by pair and name, and ``measured.md``, its table.
+"""
+
+import sys
+from dataclasses import dataclass, replace
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+import stiction
+from stiction.config.units import in_si
+from stiction.devices import inference
+from stiction.plan.graph import Results
+from stiction.report.format import TO_UM, with_error
+from stiction.stages.test_beams import inference as stage
+
+#: Fewer samples and beams than in config.yaml. Computed lengths then have standard errors of about 0.5 %, far below the
+#: differences from the measured ones.
+FEW = {"contact": {"samples": 1000}, "chaos": {"order": 6}, "design": {"budget_beams": 100}}
+#: Devices of the example by the pair of their test beams.
+DEVICES = {"a": "onA", "b": "onB", "c": "onC"}
+#: Rows of the table by the names of their numbers.
+ROWS = {
+    "rms": "rms of ln(measured / computed) [%]",
+    "p_of_inputs": "p value, inputs alone",
+    "p": "p value, inputs and model",
+    "factor": "factor of the model",
+    "slope": "slope of the model",
+    "halves": "every second humidity from the others: rms error [%]",
+    "halves_of_factor": "the same with a factor, but no slope [%]",
+    "p_of_factor": "p value with a factor, but no slope",
+}
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Test beams of one pair."""
+
+    beams: list  #: results of stage test_beams
+    settings: stage.Settings
+
+    @classmethod
+    def of(cls, results, device):
+        """Those of a device."""
+        job = results.graph.job(f"devices/test_beams/{device}")
+        settings = in_si(stage.Settings, job.settings)
+        budgets = {key: results[name] for key, name in job.inputs["test_beams"].items()}
+        return cls([stage.Result(*key, one, settings.arrays[key[0]]) for key, one in budgets.items()], settings)
+
+    @property
+    def everyone(self):
+        """Places of all beams."""
+        return range(len(self.beams))
+
+    def prior(self, others=(), slope=True, fitted=None):
+        """Prior of inputs and model, and responses of beams and others; the slope is about the fitted beams."""
+        stated = self.settings.discrepancy if slope else replace(self.settings.discrepancy, slope=0.0)
+        results = [*self.beams, *others]
+        prior, responses = stage.with_discrepancy(stage.common_inputs(results), self.beams, others, stated)
+        reduced = np.array([one.reduced for one in results])
+        middle = reduced[list(self.everyone if fitted is None else fitted)].mean()
+        responses[:, prior.names.index(inference.SLOPE)] = reduced - middle
+        return prior, responses
+
+    def data(self, responses):
+        """Measured crack lengths beside the computed ones."""
+        return stage.measured(self.beams, responses, self.settings.crack_lengths)
+
+    def errors(self, fitted, slope=True):
+        """Differences of the other beams from what the fitted ones predict, and their standard deviations [-]."""
+        prior, responses = self.prior(slope=slope, fitted=fitted)
+        data, others = self.data(responses), [k for k in self.everyone if k not in fitted]
+        known = inference.given(prior, part(data, list(fitted)))
+        shift, deviation = known.of(data.responses[others])
+        return data.differences[others] - shift, np.hypot(deviation, data.errors[others])
+
+
+def main(folder):
+    """Write numbers and table."""
+    results = Results.of(stiction.load(Path(__file__).with_name("test_beams.yaml"), FEW))
+    write({pair: Measured.of(results, device) for pair, device in DEVICES.items()}, folder)
+
+
+def write(pairs, folder):
+    """Numbers and table of all pairs."""
+    found = {pair: of_pair(one) for pair, one in pairs.items()} | {"ab": from_one_to_another(pairs["a"], pairs["b"])}
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = [{"pair": pair, "name": name, "text": text} for pair, of in found.items() for name, text in of.items()]
+    pd.DataFrame(rows).to_csv(folder / "measured.csv", index=False, lineterminator="\n")
+    cells = {"": ROWS.values()} | {f"pair {pair}": [found[pair][name] for name in ROWS] for pair in pairs}
+    (folder / "measured.md").write_text(
+        pd.DataFrame(cells).to_markdown(index=False, disable_numparse=True) + "\n", encoding="utf-8"
+    )
+
+
+def of_pair(one):
+    """Numbers of a pair as text by name."""
+    prior, responses = one.prior()
+    data, (without, its_responses) = one.data(responses), one.prior(slope=False)
+    known = inference.given(prior, data)
+    factor, slope = (known.names.index(name) for name in (inference.FACTOR, inference.SLOPE))
+    halves = [range(0, 6, 2), range(1, 6, 2)]
+    found = {
+        "rms": percent(data.differences),
+        "p": f"{inference.p_value(prior, data):.2f}",
+        "factor": with_error(np.exp(known.mean[factor]), np.exp(known.mean[factor]) * known.deviations[factor]),
+        "slope": with_error(known.mean[slope], known.deviations[slope]),
+        "slopes": f"{abs(known.mean[slope]) / prior.deviations[slope]:.1f}",
+        "halves": percent(predicted(one, halves)[0]),
+        "halves_stated": percent(predicted(one, halves)[1]),
+        "halves_of_factor": percent(predicted(one, halves, slope=False)[0]),
+        "p_of_factor": f"{inference.p_value(without, one.data(its_responses)):.1g}",
+        "median": percent(np.median([rms(one.errors(half)[0]) for half in combinations(one.everyone, 3)])),
+        "singles": percent(predicted(one, combinations(one.everyone, 5))[0]),
+    }
+    return found | of_inputs_alone(one) | of_line(one, data) | lengths(one)
+
+
+def of_inputs_alone(one):
+    """What would have to be wrong if the model were exact, in standard uncertainties."""
+    prior, responses = one.prior()
+    inputs, count = stage.common_inputs(one.beams), len(prior.names) - 2 - len(one.beams)
+    data = replace(one.data(responses), responses=responses[: len(one.beams), :count])
+    best = inference.given(inputs, data)
+    moved = dict(zip(inputs.names, np.abs(best.mean) / inputs.deviations, strict=True))
+    numbers = {
+        "humidity": moved["humidity"],
+        "temperature": moved["temperature"],
+        "modulus": moved["Young's modulus"],
+        "gap": next(value for name, value in moved.items() if name.startswith("gap of")),
+    }
+    left = {"p_of_inputs": f"{inference.p_value(inputs, data):.0e}", "left": percent(residuals(data, best))}
+    return left | {f"{name}_alone": f"{value:.1f}" for name, value in numbers.items()}
+
+
+def of_line(one, data):
+    """Scatter of ln(measured / computed) around the best straight line in ln l."""
+    reduced = np.array([beam.reduced for beam in one.beams])
+    away = data.differences - np.polyval(np.polyfit(reduced, data.differences, 1), reduced)
+    most = {f"line_{round(100 * beam.humidity)}": f"{100 * at:+.1f}" for beam, at in zip(one.beams, away, strict=True)}
+    return {"line": f"{100 * np.sqrt(np.sum(away**2) / (len(away) - 2)):.1f}"} | most
+
+
+def lengths(one):
+    """Lengths of equal beams of another device before and after, whose dimensions and rests are its own [µm]."""
+    others = [one_of._replace(owner="C1") for one_of in one.beams]
+    prior, responses = one.prior(others)
+    known, device = inference.given(prior, one.data(responses)), responses[len(one.beams) :]
+    found = {}
+    for beam, row, error, difference in zip(
+        one.beams, device, one.data(responses).errors, one.data(responses).differences, strict=True
+    ):
+        computed, (shift, after), (_, before) = TO_UM * float(beam.budget.centre), known.of(row), prior.of(row)
+        measured, updated, end = computed * np.exp(difference), computed * np.exp(shift), round(100 * beam.humidity)
+        found |= {
+            f"measured_{end}": with_error(measured, measured * error),
+            f"before_{end}": with_error(computed, computed * before),
+            f"after_{end}": with_error(updated, updated * after),
+        }
+    return found
+
+
+def from_one_to_another(one, other):
+    """Errors at the humidities of another pair after the test beams of one, without and with a slope of the model."""
+    found = {}
+    for name, slope in (("slope", True), ("factor", False)):
+        prior, responses = one.prior(other.beams, slope)
+        theirs = other.data(responses[len(one.beams) :])
+        shift, deviation = inference.given(prior, one.data(responses)).of(theirs.responses)
+        away = theirs.differences - shift
+        found[f"rms_of_{name}"] = percent(away)
+        if slope:
+            stated = np.hypot(deviation, theirs.errors)
+            found |= {"stated": percent(stated), "most": f"{np.abs(away / stated).max():.1f}"}
+    return found
+
+
+# Numbers
+
+
+def predicted(one, halves, slope=True):
+    """Errors of all beams that are predicted from several choices of the fitted ones, and their deviations [-]."""
+    return np.concatenate([one.errors(half, slope) for half in halves], axis=1)
+
+
+def part(data, places):
+    """Some of the measured lengths."""
+    return replace(data, **{name: getattr(data, name)[places] for name in ("responses", "differences", "errors")})
+
+
+def residuals(data, known):
+    """What the known errors of the inputs leave of the differences [-]."""
+    return data.differences - data.responses @ known.mean
+
+
+def rms(values):
+    """Root of the mean square."""
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def percent(values):
+    """Root of the mean square in percent."""
+    return f"{100 * rms(values):.1f}"
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
