@@ -124,9 +124,9 @@ def again(found: xr.Dataset) -> str:
     if found.attrs["refused"]:
         return f"At the inputs that the test beams suggest, nothing can be computed again: {found.attrs['refused']}."
     return (
-        f"Computed again at the inputs that the test beams suggest, which differ from the stated ones, the results "
-        f"change as in the linear update: {', '.join(map(_change, _again(found)))}. Errors of the model and lengths "
-        "that tips hold are left out."
+        "Computed again at the inputs that the test beams suggest, the results change by (in brackets: by the linear "
+        f"update) {', '.join(map(_change, _again(found)))}. Errors of the model and lengths that tips hold are left "
+        "out."
     )
 
 
