@@ -8,7 +8,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from stiction.beam import equilibrium
 from stiction.beam.cantilever import Beam
 from stiction.beam.equilibrium import distances, equilibrate, hermite
-from stiction.beam.release import crack_length, holding_load, release, s_shape
+from stiction.beam.release import crack_length, holding_load, release, released_beam, s_shape
+from stiction.contact.forcelaw import energy
 from stiction.errors import NotConverged
 
 
@@ -148,10 +149,30 @@ def test_the_crack_only_opens():
     cracks = []
     for steps in range(0, 600, 40):
         u = (start * [1, PAPER.element_length]).ravel()
-        equilibrium._relax(u, laws, mesh, 0.0, steps)
+        equilibrium._relax(u, laws, mesh, PAPER.elements, 0.0, steps)
         cracks.append(crack_length(PAPER, laws, u.reshape(-1, 2) / [1, PAPER.element_length]))
     assert cracks[-1] > 2 * cracks[0]
     assert np.all(np.diff(cracks) > -1e-12)
+
+
+def test_no_place_of_arrest_is_passed_because_the_beam_ahead_of_the_crack_is_held(monkeypatch):
+    beam, cracks = replace(PAPER, elements=1000), {}
+    for ahead in (
+        equilibrium.AHEAD,
+        np.inf,
+        0.0,
+    ):  # foundation lengths that move with the front: all of them at infinity
+        monkeypatch.setattr(equilibrium, "AHEAD", ahead)
+        cracks[ahead] = [released_crack(beam, seed) for seed in range(12)]
+    whole = cracks.pop(np.inf)
+    held = cracks.pop(0.0)  # only six elements
+    assert_allclose(list(cracks.values()), [whole], rtol=1e-7)
+    assert sum(np.array(held) > 1.02 * np.array(whole)) >= 3
+
+
+def released_crack(beam, seed):
+    laws = scattered_laws(np.random.default_rng(seed), 2000, 3.0, 1e-3, 3e5)
+    return released_beam(beam, laws, energy(laws).mean()).crack_length
 
 
 def test_an_equilibrium_that_is_not_reached_is_an_error():

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.beam.cantilever import Beam
+from stiction.beam.foundation import foundation_length
 from stiction.beam.tension import SLACK, add_open_part_in_tension, add_tension, fill_open_part_in_tension
 from stiction.errors import NotConverged
 from stiction.kernels import kernel
@@ -25,8 +26,9 @@ MAX_ITERATIONS = 20_000
 REACH = 30.0
 #: Largest change of a distance in one step, as a share of the length 1/a of its law; more where the point is far off.
 STEP = 0.6
-#: Elements ahead of the crack front that move with it in every step; the others follow in every WHOLE-th step.
-AHEAD, WHOLE = 6, 64
+#: The beam that moves with the crack front in every step reaches this many foundation lengths and this many elements
+#: ahead of it; the rest follows in every WHOLE-th step. A beam held closer to the front passes places of arrest.
+AHEAD, AHEAD_ELEMENTS, WHOLE = 12.0, 6, 64
 
 
 @dataclass(frozen=True)
@@ -252,23 +254,24 @@ def _fill_open_part(u, mesh, first):
 
 
 @kernel
-def _relax(u, laws, mesh, tolerance, max_iterations):
+def _relax(u, laws, mesh, ahead, tolerance, max_iterations):
     """Relax the beam to its next equilibrium, in place; returns the largest unbalanced force [N] and the Newton steps.
 
     Dashpots at the contact points make the beam creep downhill, so that the crack cannot jump over a place of arrest.
     Their viscosity [N/m] keeps the tangent positive definite and the steps short, and vanishes where it is not needed:
     the last steps are plain Newton. The open part of the crack is condensed; elements far ahead of the crack front are
-    updated only in every WHOLE-th step.
+    updated only in every WHOLE-th step, those beyond ``ahead`` elements.
     """
     elements, points = u.size // 2 - 1, mesh.points_per_element
     system = System(np.zeros((u.size + 3, 4)), np.zeros(u.size + 3), np.full(laws.shape[0], -1.0))
     steepest = 0.5 * np.max(laws[:, 0] * laws[:, 3]) * mesh.area if laws.size else 0.0
-    viscosity, first, front, residual, settled = steepest, 0, 0, np.inf, False
+    viscosity, first, front, residual, arrested = steepest, 0, 0, np.inf, False
     for iteration in range(max_iterations):
         first = _open(u, laws, mesh, first)
-        front = _front(system.stretch, points, max(first, front), elements)
-        whole = settled or iteration % WHOLE == 0
-        window = (first, elements if whole else min(front + AHEAD, elements))
+        reached, front = front, _front(system.stretch, points, max(first, front), elements)
+        arrested = arrested and front == reached
+        whole = arrested or iteration % WHOLE == 0
+        window = (first, elements if whole else min(front + ahead, elements))
         residual = _assemble(u, laws, system, mesh, window, viscosity)
         settled = residual <= tolerance
         if settled and whole:
@@ -276,7 +279,9 @@ def _relax(u, laws, mesh, tolerance, max_iterations):
             if _open(u, laws, mesh, 0) >= first:
                 return residual, iteration
             first = 0  # the crack has closed again
-        elif not settled:
+        elif settled:
+            arrested = True  # from now on the whole beam moves, until its front moves on
+        else:
             move = newton_step(u, laws, system, mesh, window)
             viscosity = max(viscosity, 0.01 * steepest * (move > 1)) * min(max(move, 0.25), 4.0)
     return residual, max_iterations
@@ -308,6 +313,14 @@ def mesh_of(beam: Beam, laws: np.ndarray, load: float, tip_force: float) -> Mesh
     return Mesh(
         functions, points, stiffness, float(beam.gap), area, float(load) * l_e, float(tip_force), beam.decay * l_e
     )
+
+
+def _ahead(beam, laws):
+    """Number of elements ahead of the crack front that move with it in every step."""
+    if not np.any(laws[:, 0] * laws[:, 2]):  # nothing holds the beam
+        return beam.elements
+    reach = np.ceil(AHEAD * foundation_length(beam, laws) / beam.element_length)
+    return int(min(max(reach, AHEAD_ELEMENTS), beam.elements))
 
 
 def allowed_imbalance(beam: Beam, pull: float) -> float:
@@ -349,7 +362,7 @@ def equilibrate(
     tolerance = allowed_imbalance(beam, laws[:, 0].mean() * mesh.area if len(laws) else 0.0)
     scale = np.array([1, beam.element_length])
     u = (np.asarray(start, float) * scale).ravel()
-    imbalance, iterations = _relax(u, laws, mesh, tolerance, max_iterations)
+    imbalance, iterations = _relax(u, laws, mesh, _ahead(beam, laws), tolerance, max_iterations)
     if not imbalance <= tolerance:
         raise NotConverged("equilibrium of the beam [N]", imbalance, tolerance, iterations)
     return Equilibrium(u.reshape(-1, 2) / scale, imbalance, iterations)
