@@ -36,6 +36,7 @@ devices:
   C1: {kind: cantilever, pair: b, thickness_um: 2.6, gap_um: 20, width_um: 30, humidities: [0.7],
        chart: {thicknesses_um: [2.6, 3], humidities: [0.6, 0.8]}}
   R1: {kind: bridge, pair: b, thickness_um: 2, gap_um: 2, width_um: 20, residual_stress_MPa: 50, humidities: [0.7]}
+studies: {pressing: {distance_nm: {a: 2, b: 4}}}
 """
 STUDIES = (
     "correlation",
@@ -45,8 +46,7 @@ STUDIES = (
     "sensitivity/b_rms",
     "plasticity/a",
     "plasticity/b",
-    "full_contact/a",
-    "full_contact/b",
+    *(f"{study}/{pair}" for study in ("full_contact", "asperities", "pressing") for pair in "ab"),
 )
 VARIANTS = (
     "resampling/a_rh060",
@@ -59,10 +59,10 @@ TARGETS = ["all", *(f"results/studies/{name}.nc" for name in STUDIES + VARIANTS)
 
 #: Rules, and the rules that read their outputs, listed by hand.
 READ_BY = {
-    "heights": "identification spectrum iteration character contact_chunk sensitivity_contact plasticity full_contact table_1 checks"
+    "heights": "identification spectrum iteration character contact_chunk sensitivity_contact plasticity full_contact pressed table_1 checks"
     " device_contact tip_contact",
     "identification": "table_2 variant_summits checks",
-    "spectrum": "iteration character contact_chunk table_2 correlation sensitivity_contact plasticity full_contact checks"
+    "spectrum": "iteration character contact_chunk table_2 correlation sensitivity_contact plasticity full_contact pressed checks"
     " device_contact tip_contact",
     "character": "table_1 checks",
     "contact_chunk": "contact",
@@ -83,7 +83,7 @@ READ_BY = {
     "resampling": "checks",
     "checks": "verdict",
 }
-RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())
+RULES = {*READ_BY, *" ".join(READ_BY.values()).split(), "readings"}
 #: Rules whose files are about all pairs, or about a device with all that it meets.
 SHARED = {"table_3", "device_warnings", "table_safe_lengths", "table_chart"}
 #: Rules of pair b only.
@@ -96,51 +96,51 @@ OF_FIGURE |= OF_DEVICES
 #: Description of a change; overlay; rules that it affects directly, whose readers rerun as well; rules excepted because
 #: their files do not depend on it; pattern of files that must not rerun.
 MATRIX = [
-    ("kurtosis of one surface", "surfaces: {B1: {kurtosis: 4.5}}", "heights table_1 variant_summits", OF_FIGURE, "B2|Sub1|/b_"),
+    ("kurtosis of one surface", "surfaces: {B1: {kurtosis: 4.5}}", "heights table_1 variant_summits readings", OF_FIGURE, "B2|Sub1|/b_"),
     # The surface, hence its pair, is no longer the paper's: published values leave the tables.
     ("radius of its summits", "surfaces: {B1: {mean_summit_radius_um: 0.42}}", "identification table_1 table_3 checks",
      (), "B2|/b_|a_rh0.0_base"),
     # The elements of its beams follow the force laws, under every variant.
-    ("its published spectrum", "surfaces: {B1: {published_psd: {floor_nm4: 0.9}}}", "spectrum variant_summits",
+    ("its published spectrum", "surfaces: {B1: {published_psd: {floor_nm4: 0.9}}}", "spectrum variant_summits readings",
      OF_FIGURE, "B2|Sub1|/b_|(summits|contact)/a_psd_identified"),
-    ("source of its spectrum", "surfaces: {B1: {psd: identified}}", "spectrum variant_summits", OF_FIGURE,
+    ("source of its spectrum", "surfaces: {B1: {psd: identified}}", "spectrum variant_summits readings", OF_FIGURE,
      "B2|/b_|psd_identified"),
     ("surface in a pair", "pairs: {a: {beam: B2}}",
-     "table_1 table_2 correlation contact_chunk plasticity full_contact variant_summits checks", OF_FIGURE,
+     "table_1 table_2 correlation contact_chunk plasticity full_contact pressed variant_summits readings checks", OF_FIGURE,
      "heights|spectrum|/b_"),
     ("gap of one pair", "pairs: {a: {gap_um: 19}}", "beams resampling variant checks", (), "/b_"),
-    ("one humidity added", "pairs: {a: {humidities: [0.6, 0.7, 0.8]}}", "full_contact forces variant table_3 checks", OF_FIGURE,
+    ("one humidity added", "pairs: {a: {humidities: [0.6, 0.7, 0.8]}}", "full_contact pressed readings forces variant table_3 checks", OF_FIGURE,
      "/b_|/a_rh060|/a_rh080"),
-    ("one humidity removed", "pairs: {a: {humidities: [0.6]}}", "full_contact humidity table_3 checks model_limits", (), "/b_|/a_rh"),
+    ("one humidity removed", "pairs: {a: {humidities: [0.6]}}", "full_contact pressed readings humidity table_3 checks model_limits", (), "/b_|/a_rh"),
     ("seed", "seed: 2",
-     "identification iteration character contact_chunk chaos beams sensitivity_contact plasticity full_contact orders resampling "
+     "identification iteration character contact_chunk chaos beams sensitivity_contact plasticity full_contact pressed readings orders resampling "
      "variant_summits device_contact tip_contact cracks safe_lengths chart", (), ""),
     ("van der Waals model", "van_der_waals: dry",
-     "contact_chunk sensitivity_contact plasticity full_contact variant_contact device_contact tip_contact", (), "variants/summits"),
+     "contact_chunk sensitivity_contact plasticity full_contact pressed readings variant_contact device_contact tip_contact", (), "variants/summits"),
     ("elasticity", "solid: {young_modulus_GPa: 160}",
-     "contact_chunk beams mesh resampling sensitivity_contact plasticity full_contact variant_contact variant checks device_contact "
+     "contact_chunk beams mesh resampling sensitivity_contact plasticity full_contact pressed readings variant_contact variant checks device_contact "
      "tip_contact cracks safe_lengths chart", (), "variants/summits"),
-    ("grid of surfaces", "sampling: {spacing_nm: 5}", "identification spectrum variant_summits", (), "heights"),
+    ("grid of surfaces", "sampling: {spacing_nm: 5}", "identification spectrum variant_summits readings", (), "heights"),
     ("length of strips", "sampling: {strip_length_um: 2.5}\ndevices: {R1: {thickness_um: 3}}",
-     "character contact_chunk beams resampling sensitivity_contact plasticity full_contact variant_summits checks cracks "
+     "character contact_chunk beams resampling sensitivity_contact plasticity full_contact pressed variant_summits readings checks cracks "
      "safe_lengths chart", (),
      "heights|identification|spectrum|tips"),
     ("strips of Table I", "character: {strips: 50}", "character", (), "contact|forces"),
     ("spacing of Table I", "character: {spacing_nm: 10}", "identification character", (), "results/contact|forces"),
     ("patches of identification", "identification: {patches: 4}", "identification", (), "spectrum|_base"),
-    ("water", "water: {temperature_K: 310}", "full_contact forces humidity sensitivity variant cracks safe_lengths chart", (), "results/contact"),
+    ("water", "water: {temperature_K: 310}", "full_contact pressed readings forces humidity sensitivity variant cracks safe_lengths chart", (), "results/contact"),
     ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (),
      "studies/(sens|plas|variants/(contact|summits))|psd_identified|tips"),
     ("distance step", "contact: {distance_step_nm: 0.1}",
-     "contact_chunk sensitivity_contact plasticity full_contact variant_summits device_contact tip_contact", (), "spectrum"),
+     "contact_chunk sensitivity_contact plasticity full_contact pressed variant_summits readings device_contact tip_contact", (), "spectrum"),
     ("chaos order", "chaos: {order: 6}", "chaos variant cracks chart", (), "forces"),
     ("beam thickness", "beam: {thickness_um: 2.5}", "beams resampling mesh variant checks", (), "chaos"),
-    ("beam width", "beam: {width_um: 24}", "character contact_chunk beams resampling mesh sensitivity_contact plasticity full_contact variant_summits checks model_limits device_contact",
+    ("beam width", "beam: {width_um: 24}", "character contact_chunk beams resampling mesh sensitivity_contact plasticity full_contact pressed variant_summits readings checks model_limits device_contact",
      (), "heights|spectrum|tips|R1"),
     ("number of beams", "beam: {samples: 500}", "beams", (), "chaos|studies"),
     ("scatter of beams", "beam: {scatter: 0.03}", "beams", (), "chaos|studies|beams/.*_N?G.nc"),
     ("humidity of the figures", "pairs: {b: {humidities: [0.6, 0.8]}}\nfigures: {humidity: 0.6}",
-     "full_contact forces humidity table_3 checks sample_sizes orders mesh sensitivity variant", (),
+     "full_contact pressed readings forces humidity table_3 checks sample_sizes orders mesh sensitivity variant", (),
      "results/contact|/b_rh080|/a_"),
     ("chunks", "contact: {chunks: 7}", "", (), ""),
     ("points along the humidity", "figures: {humidity_points: 5}", "humidity", (), ""),
@@ -149,6 +149,9 @@ MATRIX = [
      "orders: {draws: 1000}, mesh: {strips_um: [7.5]}}",
      "sensitivity_contact plasticity sample_sizes orders mesh", (), "variants"),
     ("study: full contact", "studies: {full_contact: {samples: 5}}", "full_contact", (), ""),
+    ("study: readings of an asperity", "studies: {asperities: {samples: 50}}", "readings", (), ""),
+    ("study: pressing", "studies: {pressing: {steps: 3}}", "pressed", (), ""),
+    ("study: how close one pair is pressed", "studies: {pressing: {distance_nm: {b: 3}}}", "pressed", (), "pressing/a"),
     ("study: resampling", "studies: {resampling: {beams: 5}}", "resampling", (), ""),
     ("study: variants", "studies: {variants: {samples: 500}}", "variant_summits", (), ""),
     ("study: a Poisson's ratio added", "studies: {variants: {poisson_ratio: [0.18, 0.28, 0.3]}}", "variant_contact",
@@ -165,7 +168,7 @@ MATRIX = [
     ("uncertainty of a device", "devices: {C1: {uncertainty: {gap_um: 1}}}", "", (), ""),
     ("beams of devices", "design: {beams: 300}", "tip_contact cracks chart", (), "results/contact"),
     ("contact angle of a body", "materials: {Wet: {contact_angle_deg: 20}}\nsurfaces: {B2: {material: Wet}}",
-     "full_contact forces humidity sensitivity variant cracks safe_lengths chart table_1 table_2 table_3 checks model_limits",
+     "full_contact pressed readings forces humidity sensitivity variant cracks safe_lengths chart table_1 table_2 table_3 checks model_limits",
      (), "results/contact/|/a_"),
     ("order of humidities", "pairs: {a: {humidities: [0.8, 0.6]}}", "", (), ""),
 ]  # fmt: skip
@@ -258,6 +261,13 @@ def done(tmp_path_factory):
     tree = Tree(tmp_path_factory.mktemp("tree"), tmp_path_factory.mktemp("scratch"))
     yield tree
     tree.planner.close()
+
+
+@pytest.fixture
+def tree(done):
+    """Source tree, restored after the test."""
+    yield done
+    done.git("checkout", "--force", "main")
 
 
 def known(rerun):
@@ -406,15 +416,26 @@ SPOT_ROWS = [
 LAYOUTS = {
     "stages/surfaces/heights": {
         "heights",
-        *["identification", "spectrum", "iteration", "character", "contact_chunk", "plasticity", "full_contact"],
+        *[
+            "identification",
+            "spectrum",
+            "iteration",
+            "character",
+            "contact_chunk",
+            "plasticity",
+            "full_contact",
+            "pressed",
+        ],
     }
-    | {"sensitivity_contact", "variant_summits"},
+    | {"sensitivity_contact", "variant_summits", "readings"},
     "stages/surfaces/identification": {"identification"},
-    "stages/surfaces/spectrum": {"spectrum", "sensitivity_contact", "variant_summits"},
+    "stages/surfaces/spectrum": {"spectrum", "sensitivity_contact", "variant_summits", "readings"},
     "stages/surfaces/character": {"character", "table_2"},  # in one module with Table I, which reads it
     "stages/contact/contact": {
         "contact_chunk",
         "full_contact",
+        "pressed",
+        "readings",
         "sensitivity_contact",
         "variant_contact",
         "device_contact",
@@ -429,13 +450,15 @@ LAYOUTS = {
     "stages/laws/humidity": {"humidity"},
     "stages/laws/sensitivity": {"sensitivity"},
     "stages/contact/plasticity": {"plasticity"},
-    "stages/contact/full_contact": {"full_contact"},
+    "stages/contact/full_contact": {"full_contact", "pressed"},
+    "stages/contact/pressing": {"pressed"},
+    "stages/contact/asperities": {"readings"},
     "stages/laws/sample_sizes": {"sample_sizes"},
     "stages/laws/orders": {"orders"},
     "stages/beams/mesh": {"mesh"},
     "stages/surfaces/correlation": {"correlation"},
     "stages/beams/resampling": {"resampling"},
-    "stages/contact/variant_summits": {"variant_summits"},
+    "stages/contact/variant_summits": {"variant_summits", "readings"},
     "stages/beams/variant_beams": {"variant"},
     "stages/devices/cracks": {"cracks", "safe_lengths"},
     "stages/devices/safe_lengths": {"safe_lengths"},
