@@ -46,7 +46,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-beams measured-beams devices model-error asperities pressing sealed tails deformed attraction figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-beams measured-beams devices model-error asperities pressing sealed tails full-contact-times deformed attraction figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -95,6 +95,10 @@ tails: $(VENV)/ready
 # Attraction across the gaps of deformed surfaces, in full elastic contact: three minutes of one core.
 deformed: $(VENV)/ready
 	$(BIN)/python tests/benchmarks/deformed.py $(ARGS) | tee docs/tables/deformed.md
+
+# Full elastic contact and its floor: two minutes of one core.
+full-contact-times: $(VENV)/ready
+	$(BIN)/python tests/benchmarks/full_contact.py | tee docs/tables/full_contact_times.md
 
 attraction: $(VENV)/ready
 	$(STICTION) run $(or $(CONFIG),examples/attraction.yaml) --directory runs/attraction -- results/tables/variants.csv $(ARGS)
