@@ -91,16 +91,9 @@ class _Wrong(ValueError):
 
 
 def with_files(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
-    """Configuration in which means and counts take the place of files in a folder, if another mapping names the same.
+    """Configuration, which need not be valid, with means and counts instead of the files that the content names.
 
-    Parameters
-    ----------
-    config : dict
-        Configuration, which need not be valid.
-    named : mapping
-        Content of a configuration file.
-    folder : path
-        Folder of this file.
+    ``named`` is the content of a configuration file, and ``folder`` the folder of this file.
 
     Raises
     ------

@@ -60,17 +60,7 @@ def complete(entry: dict[str, Any]) -> dict[str, Any]:
 
 
 def resolve_scan_paths(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
-    """Configuration whose files of scans are in a folder, if they are those that another mapping names.
-
-    Parameters
-    ----------
-    config : dict
-        Configuration, which need not be valid.
-    named : mapping
-        Content of a configuration file.
-    folder : path
-        Folder of this file.
-    """
+    """Configuration, which need not be valid, whose scans are in the folder of the file whose content names them."""
     files = {name: _files(entry) for name, entry in _surfaces(named).items()}
     found = {
         name: entry for name, entry in _surfaces(config).items() if _files(entry) and _files(entry) == files.get(name)

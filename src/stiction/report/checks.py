@@ -413,13 +413,7 @@ def of_beams(
 
 
 def of_resampling(outcomes: Mapping[Outcome, xr.Dataset], resampled: Mapping[Outcome, xr.Dataset]) -> Iterator[Check]:
-    """Effect of the chaos model on crack lengths, of cases in which at least two beams stick.
-
-    Parameters
-    ----------
-    outcomes, resampled : dict
-        (pair, humidity, model) to the datasets of stage beams and, for model NG, of study resampling.
-    """
+    """Effect of the chaos model on crack lengths, of cases in which at least two beams stick."""
     for key, reference in resampled.items():
         if min(len(stuck_lengths(beams)) for beams in (outcomes[key], reference)) >= 2:
             yield chaos_keeps_crack_length(_case(*key), outcomes[key], reference)

@@ -46,19 +46,7 @@ def _rows(
     published: pd.DataFrame,
     variants: Mapping[Outcome, xr.Dataset] | None = None,
 ) -> list[dict]:
-    """One row for each pair and humidity; the ratio of the energies is NaN where full contact was not computed.
-
-    Parameters
-    ----------
-    errors : dict
-        Pair to the dataset of stage pair_model_error.
-    beams : dict
-        (pair, humidity) to the dataset of stage beams, model NG.
-    published : pandas.DataFrame
-        Table III as published, rows of the paper's own pairs.
-    variants : dict, optional
-        (pair, humidity, variant) to the dataset of stage variant, without and with a correction of the force laws.
-    """
+    """One row for each pair and humidity; the ratio of the energies is NaN where full contact was not computed."""
     found = []
     for (pair, humidity), released in beams.items():
         case = {"pair": pair, "relative_humidity": humidity}

@@ -167,13 +167,7 @@ _TABLE_3 = PAIR | {
 
 
 def fit_quality(fits: Mapping[Outcome, xr.Dataset]) -> Table:
-    """Relative errors of curve and energy by Eq. (12) over all samples, one row per case and model.
-
-    Parameters
-    ----------
-    fits : dict
-        (pair, humidity, model) to the dataset of stage fit.
-    """
+    """Relative errors of curve and energy by Eq. (12) over all samples, one row per case and model."""
     caption = (
         "Fit by Eq. (12): relative error of the curve for d ≥ d_limit, mean ± standard error, and of the energy ē."
     )
@@ -218,11 +212,6 @@ def resampling(
     """Crack lengths of model NG under laws drawn from the chaos model and from the samples themselves.
 
     Both use the same pairs of surfaces, so that the standard error of their difference is that of the beams alone.
-
-    Parameters
-    ----------
-    beams, resampled : dict
-        (pair, humidity) to the datasets of stage beams and of study resampling.
     """
     caption = (
         "Effect of the chaos model on the crack length, model NG: mean under laws drawn from it, and under laws of the "

@@ -44,16 +44,7 @@ def variant_label(name: str) -> str:
 
 
 def sensitivity(datasets: Mapping[str, xr.Dataset], pair: str, published: pd.DataFrame) -> Table:
-    """Fig. 13 in numbers.
-
-    Parameters
-    ----------
-    datasets : dict
-        Moment to the dataset of study sensitivity.
-    pair : str
-    published : pandas.DataFrame
-        The published slopes of the mean, rows of the paper's own pairs.
-    """
+    """Fig. 13 in numbers."""
     frame = pd.DataFrame([row for moment in datasets for row in _slopes(datasets[moment], pair, moment, published)])
     caption = (
         "Fig. 13: normalised sensitivity (|x|/y) dy/dx of mean and standard deviation y of the meso-scale adhesion "

@@ -45,17 +45,7 @@ def _rows(
     beams: Mapping[tuple[str, float], xr.Dataset],
     published: pd.DataFrame,
 ) -> list[dict]:
-    """One row for each pair, reading, grid, attraction and humidity.
-
-    Parameters
-    ----------
-    studies, full : dict
-        Pair to the dataset of study asperities and to that of study full_contact.
-    beams : dict
-        (pair, humidity) to the dataset of stage beams, model NG.
-    published : pandas.DataFrame
-        Table III as published, rows of the paper's own pairs.
-    """
+    """One row for each pair, reading, grid, attraction and humidity."""
     found = []
     for pair, study in studies.items():
         humidities, base = study.humidity.values, None

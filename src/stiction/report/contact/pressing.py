@@ -32,13 +32,7 @@ _CAPTION = (
 
 
 def _rows(studies: Mapping[str, xr.Dataset]) -> Iterator[dict]:
-    """One row for each pair, press and humidity; the first press is adhesion alone, without pressure.
-
-    Parameters
-    ----------
-    studies : dict
-        Pair to the dataset of study pressing.
-    """
+    """One row for each pair, press and humidity; the first press is adhesion alone, without pressure."""
     for pair, study in studies.items():
         fresh = study.fresh_energy.values
         after = [study.adhered_energy.values, *study.pressed_energy.transpose("step", "sample", "humidity").values]

@@ -117,13 +117,7 @@ def _force_over_humidity(panel, dataset):
 
 @styled
 def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
-    """Tornado of a device: effect of each measurement and their total; beside it, choices of the model.
-
-    Parameters
-    ----------
-    datasets : dict
-        Device, humidity and, for tips, more to the dataset of stage budget.
-    """
+    """Tornado of a device: effect of each measurement and their total; beside it, choices of the model."""
     parts = {}
     for (_, humidity, *_), dataset in datasets.items():
         parts.setdefault(response_text(dataset), {})[humidity] = dataset

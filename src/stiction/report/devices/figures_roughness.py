@@ -24,10 +24,7 @@ _VALUES = ("safe", "estimate")
 def roughness(found: xr.Dataset) -> Figure:
     """Estimate with its band of 95 %, safe value and crossings with the required one; a panel for each end state.
 
-    Parameters
-    ----------
-    found : Dataset
-        Of stage roughness of one device; of a map, the curve with the second quantity as given is drawn.
+    Of a map, the curve with the second quantity as given is drawn.
     """
     found = next(one for one in curves_of(found) if "other" not in one.coords or one.other == one.other_given)
     shapes = list(map(str, found["shape"].values))

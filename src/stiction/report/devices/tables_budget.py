@@ -163,13 +163,6 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
     """Uncertainty of every device: effect of each measurement, total, scatter, choices of the model.
 
     The numbers hold every input with its slope; the text is by measurement, with a sentence on what to measure better.
-
-    Parameters
-    ----------
-    datasets : dict
-        Device, humidity and, for tips, more to the dataset of stage budget.
-    errors : dict, optional
-        Device to the dataset of stage device_model_error.
     """
     frame = pd.DataFrame(
         [

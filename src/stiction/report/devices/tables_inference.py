@@ -169,13 +169,7 @@ def _percent(share):
 
 
 def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
-    """Test beams and the lengths of their devices, before and after the measurement.
-
-    Parameters
-    ----------
-    datasets : dict
-        Device to the dataset of stage test_beams_rerun.
-    """
+    """Test beams and the lengths of their devices, before and after the measurement."""
     rows = [row for device, found in datasets.items() for row in _rows(device, found)]
     sentences = [
         f"{device}: {sentence}"

@@ -187,13 +187,7 @@ def _required_unit(found):
 
 
 def roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
-    """Lengths or forces over the roughness, one row per device, humidity, end state and roughness.
-
-    Parameters
-    ----------
-    datasets : dict
-        Device to the dataset of stage roughness.
-    """
+    """Lengths or forces over the roughness, one row per device, humidity, end state and roughness."""
     rows = [row for device, found in datasets.items() for curve in curves_of(found) for row in _points(device, curve)]
     sentences = [f"{device}: {sentence}" for device, found in datasets.items() for sentence in answers(found)]
     of_maps = any("other" in row for row in rows)

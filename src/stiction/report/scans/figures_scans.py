@@ -27,15 +27,7 @@ _LINE, _LINE_HEIGHT, _PANELS = 150, 0.125, 5.92
 
 @styled
 def surface_sheet(name: str, estimate: xr.Dataset, spectrum: xr.Dataset) -> Figure:
-    """Sheet of one measured surface: the measured quantities, their errors, and the model drawn from them.
-
-    Parameters
-    ----------
-    name : str
-        Of the surface.
-    estimate, spectrum : Dataset
-        Of stages estimate and spectrum.
-    """
+    """Sheet of one measured surface: the measured quantities, their errors, and the model drawn from them."""
     lines = _lines([*stage_estimate.flags(estimate), *measured_spectrum.flags(spectrum)])
     figure, axes = panels(2, 2, (DOUBLE, _PANELS + _LINE_HEIGHT * len(lines)))
     _map(figure, axes[0, 0], estimate)

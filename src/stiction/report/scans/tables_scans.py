@@ -24,15 +24,7 @@ def scans(
     spectra: Mapping[str, xr.Dataset],
     maps: Mapping[str, Sequence[xr.Dataset]],
 ) -> Table:
-    """Scans of the measured surfaces, one row per file.
-
-    Parameters
-    ----------
-    estimates, spectra : dict
-        Surface to its datasets of stages estimate and spectrum.
-    maps : dict
-        Surface to the datasets of stage scan of its files, in the order of the configuration.
-    """
+    """Scans of the measured surfaces, one row per file."""
     limits = {
         name: [*stage_estimate.flags(estimate), *measured_spectrum.flags(spectra[name])]
         for name, estimate in estimates.items()
@@ -76,13 +68,7 @@ _SCANS = {name: (str, name) for name in ("surface", "file", "channel")} | {
 
 
 def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
-    """Standard errors due to finite scans: a row per pair, humidity and surface, and one for all surfaces.
-
-    Parameters
-    ----------
-    studies : dict
-        Pair to the dataset of study scan_uncertainty.
-    """
+    """Standard errors due to finite scans: a row per pair, humidity and surface, and one for all surfaces."""
     rows = [
         row for pair, study in studies.items() for k in range(study.sizes["humidity"]) for row in _rows(pair, study, k)
     ]

@@ -26,16 +26,7 @@ class Settings(pairs.Settings):
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> list[xr.Dataset]:
-    """Contact with less and with more of each moment, in this order; all samples have the same random numbers.
-
-    Parameters
-    ----------
-    surfaces : sequence
-        Datasets (heights, spectrum) of the surfaces of beam and substrate.
-    pair : str
-        Name of the pair, part of the addresses of random numbers.
-    settings : Settings
-    """
+    """Contact with less and with more of each moment, in this order; all samples have the same random numbers."""
     beam, substrate = surfaces
     surface = description(*beam)
     # ASSUME: the spectrum of the heights keeps its shape when a moment changes.

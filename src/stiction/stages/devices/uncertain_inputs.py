@@ -259,16 +259,7 @@ def around(value: float, deviation: float, least: float = -np.inf) -> tuple[floa
 def covariances(
     surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset]], estimates: Mapping[str, xr.Dataset], settings: Settings
 ) -> dict[str, Known]:
-    """What is known of the quantities of every uncertain surface.
-
-    Parameters
-    ----------
-    surfaces : dict
-        Surface to its datasets of stages heights and spectrum.
-    estimates : dict
-        Surface to its dataset of stage estimate, of the surfaces described by scans.
-    settings : Settings
-    """
+    """What is known of the quantities of every uncertain surface."""
     return {
         name: of_scans(estimates[name], described[0])
         if name in estimates
@@ -281,11 +272,6 @@ def of_scans(estimate: xr.Dataset, heights_of: xr.Dataset) -> Known:
     """Covariance of the quantities of a surface described by scans.
 
     ASSUME: the errors of heights and spectrum are independent.
-
-    Parameters
-    ----------
-    estimate, heights_of : Dataset
-        Of stages estimate and heights.
     """
     measured = isinstance(heights.density(heights_of, "NG"), MeasuredDensity)
     found = errors_of(estimate, MODE_QUANTITIES if measured else MOMENT_QUANTITIES)

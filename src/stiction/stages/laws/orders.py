@@ -32,12 +32,6 @@ class Settings:
 def compute(forces: xr.Dataset, model: xr.Dataset, settings: Settings) -> xr.Dataset:
     """Draw from the model truncated at each order; compare the marginals with the kernel density and the samples.
 
-    Parameters
-    ----------
-    forces, model : Dataset
-        Datasets of stages forces and chaos of one case.
-    settings : Settings
-
     Returns
     -------
     Dataset

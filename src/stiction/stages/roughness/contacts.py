@@ -69,14 +69,7 @@ class Settings:
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Settings) -> xr.Dataset:
-    """Dataset of stage contact with the value of the quantity, and of another one with that as given, as variables.
-
-    Parameters
-    ----------
-    surfaces : sequence
-        Datasets (heights, spectrum) of the surfaces of beam and substrate.
-    settings : Settings
-    """
+    """Dataset of stage contact with the value of the quantity, and of another one with that as given, as variables."""
     names = settings.contact.surfaces
     given = changed = description(*surfaces[names.index(settings.surface)])
     wanted = {settings.quantity: settings.value, settings.other: settings.other_value}

@@ -41,18 +41,7 @@ class Settings:
 
 
 def compute(heights: xr.Dataset, spectrum: xr.Dataset, surface: str, model: str, settings: Settings) -> xr.Dataset:
-    """Draw strips and store their moments and summits; draw periodic fields and store their spectra and a patch.
-
-    Parameters
-    ----------
-    heights, spectrum : Dataset
-        Datasets of the stages of these names.
-    surface : str
-        Name of the surface, part of the addresses of random numbers.
-    model : str
-        ``NG`` or ``G``.
-    settings : Settings
-    """
+    """Draw strips and store their moments and summits; draw periodic fields and store their spectra and a patch."""
     grid = settings.sampling.strips(settings.beam.width)
     drawn = rough_surface(heights, spectrum, model, grid)
     strips, summits = _strips(drawn, surface, settings)

@@ -55,14 +55,6 @@ class Settings:
 def compute(scans: Sequence[xr.Dataset], surface: str, settings: Settings) -> xr.Dataset:
     """Estimate a surface from its scans; a warning states each limit of the estimate.
 
-    Parameters
-    ----------
-    scans : sequence of Dataset
-        Datasets of stage scan.
-    surface : str
-        Name of the surface, part of the addresses of random numbers.
-    settings : Settings
-
     Raises
     ------
     ScanError

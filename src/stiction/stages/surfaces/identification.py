@@ -43,14 +43,6 @@ class Settings:
 def compute(heights: xr.Dataset, surface: str, settings: Settings) -> xr.Dataset:
     """Parameters of Eq. (7), simulated summit statistics and their targets.
 
-    Parameters
-    ----------
-    heights : Dataset
-        Dataset of stage heights.
-    surface : str
-        Name of the surface, part of the addresses of random numbers.
-    settings : Settings
-
     Raises
     ------
     ValueError

@@ -36,16 +36,7 @@ class Settings:
 
 
 def compute(heights: xr.Dataset, spectrum: xr.Dataset, surface: str, settings: Settings) -> xr.Dataset:
-    """Run the number of iterations of the settings; store all spectra, of unit variance, and their misfits.
-
-    Parameters
-    ----------
-    heights, spectrum : Dataset
-        Datasets of the stages of these names.
-    surface : str
-        Name of the surface, part of the address of random numbers.
-    settings : Settings
-    """
+    """Run the number of iterations of the settings; store all spectra, of unit variance, and their misfits."""
     target, wanted = parameters.spectrum_of(spectrum), settings.iteration
     translation = Translation(density(heights, "NG"))
     grid = StripGrid.periodic(FIELD, settings.spacing)

@@ -30,12 +30,6 @@ def compute(estimate: xr.Dataset, heights: xr.Dataset, settings: Settings) -> xr
 
     ASSUME: with ``cut`` there is no roughness that the scans do not show, as in the identification from summits.
 
-    Parameters
-    ----------
-    estimate, heights : Dataset
-        Datasets of stages estimate and heights.
-    settings : Settings
-
     Raises
     ------
     ValueError
