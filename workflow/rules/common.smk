@@ -5,7 +5,7 @@ from functools import cache
 
 from snakemake.logging import logger
 
-from stiction.config import arrays, files, measured, memory, messages
+from stiction.config import arrays, files, measured, memory, merging, messages
 from stiction.plan.planner import Planner
 from stiction.plan.stage import WILDCARDS
 from stiction.run import provenance, run_lock, snakemake_patches, stale_results
@@ -55,6 +55,7 @@ try:
     for file in contents:  # files of scans and of test beams are relative to the first match
         config.update(measured.resolve_scan_paths(config, contents[file], file.parent))
         config.update(arrays.with_files(config, contents[file], file.parent))
+    config.update(merging.expanded(config))
     scanned = measured.has_scans(config)
     preliminary = validated() if scanned else remember(["valid", config, rules_of_the_configuration()], validated)
 except messages.ConfigError as error:

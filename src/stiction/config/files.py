@@ -7,7 +7,7 @@ from pathlib import Path
 from stiction.config import arrays
 from stiction.config.cases import in_numbers
 from stiction.config.measured import complete, resolve_scan_paths
-from stiction.config.merging import merged
+from stiction.config.merging import expanded, merged
 from stiction.config.reading import read
 
 #: Configuration of the paper: a copy of ``config.yaml`` in the root folder, which users may edit.
@@ -40,7 +40,7 @@ def load(*overlays: str | Path | Mapping) -> dict:
         arrays.with_files(overlay, overlay, Path()) if isinstance(overlay, Mapping) else located(overlay)
         for overlay in overlays
     )
-    config = functools.reduce(merged, changes, read(PAPER))
+    config = expanded(functools.reduce(merged, changes, read(PAPER)))
     validate(config)
     return normalised(config)
 

@@ -1,0 +1,137 @@
+"""Values of one key side by side (section ``compare``): tables and figures of the numbers of all copies of an entry."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from stiction.config.merging import values
+from stiction.plan.stage import File
+from stiction.report.format import humidity_text, number, with_error
+from stiction.report.style import DOUBLE, SINGLE, dashes, figure_stage, letter, marker, panels, styled
+from stiction.report.tables import HUMIDITY, Columns, Table, table_stage
+
+
+class Source(NamedTuple):
+    """What is compared of a table of the results."""
+
+    table: str
+    subject: str  #: column with the names of pairs or devices
+    panels: str  #: column whose values have panels of their own in the figure
+    words: str  #: the compared number
+    numbers: tuple[str, str]  #: its column, and that of its standard error
+    more: Columns  #: further columns for reading
+    target: str  #: that wants the comparison
+
+
+SOURCES = (
+    Source(
+        *("table_3", "pair", "model", "mean crack length [µm]", ("crack_length_um", "crack_length_se_um")),
+        more={"model": (str, "model")},
+        target="tables",
+    ),
+    Source(
+        *("safe_lengths", "device", "held_by", "length that a share p holds [µm]", ("estimate_um", "estimate_se_um")),
+        more={"held by": (str, "held_by"), "p": ("g", "share"), "safe length [µm]": (".1f", "safe_length_um")},
+        target="devices",
+    ),
+    Source(
+        *("stoppers", "device", "device", "pull-off force [µN]", ("pull_off_uN", "pull_off_se_uN")),
+        more={"P(stuck) [%]": (lambda share: number(100 * share, ".3g"), "share_stuck")},
+        target="devices",
+    ),
+)
+
+
+def rows(table: pd.DataFrame, source: Source, ends: Mapping[str, float]) -> pd.DataFrame:
+    """Rows of all copies under the names of their originals, with the compared value; values increase.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Numbers of a table of the results.
+    source : Source
+    ends : dict
+        End of the names of copies to their value, see `stiction.config.merging.values`.
+    """
+    table = table.dropna(subset="relative_humidity")  # a stopper also has its worst values in any air
+    if "estimate_se_beams_um" in table:
+        errors = table[["estimate_se_beams_um", "estimate_se_surfaces_um"]].fillna(0)
+        table = table.assign(estimate_se_um=(errors**2).sum(axis=1) ** 0.5)
+    names = table[source.subject].astype(str)
+    copies = {end: table[names.str.endswith(end)] for end in ends}
+    found = [
+        one.assign(**{source.subject: names[one.index].str.removesuffix(end), "value": ends[end]})
+        for end, one in copies.items()
+    ]
+    order = [source.subject, "relative_humidity", source.panels, *(["share"] if "share" in table else []), "value"]
+    return pd.concat(found).sort_values(list(dict.fromkeys(order)))
+
+
+def compared(table: pd.DataFrame, source: Source, key: str, ends: Mapping[str, float]) -> Table:
+    """Numbers of all copies, those of different values below each other."""
+    caption = (
+        f"The {source.words.partition(' [')[0]} for values of {key}, ± standard error. The copies have random numbers "
+        "of their own: the standard error of a difference is the root of the sum of the squares."
+    )
+    columns = {source.subject: (str, source.subject)} | HUMIDITY | source.more
+    columns |= {key: ("g", "value"), source.words: (with_error, *source.numbers)}
+    return Table.of(rows(table, source, ends).to_dict("records"), caption, columns)
+
+
+@styled
+def drawn(table: pd.DataFrame, source: Source, key: str, ends: Mapping[str, float]) -> Figure:
+    """The compared number over the values of a key: a line for each humidity, of the middle one of the shares."""
+    frame = rows(table, source, ends)
+    if "share" in frame:
+        shares = sorted(set(frame.share))
+        frame = frame[frame.share == shares[len(shares) // 2]]
+    parts = dict(list(frame.groupby(list(dict.fromkeys([source.subject, source.panels])), sort=False)))
+    figure, axes = panels(1, len(parts), (min(DOUBLE, SINGLE * len(parts)), 3.0))
+    for panel, part in zip(axes[0], parts.values(), strict=True):
+        for k, (humidity, line) in enumerate(part.groupby("relative_humidity")):
+            at, error = line.sort_values("value"), source.numbers[1]
+            style = {"color": f"C{k}", "linestyle": dashes(k), "marker": marker(k), "capsize": 2}
+            panel.errorbar(at.value, at[source.numbers[0]], at[error], label=f"RH {humidity_text(humidity)}", **style)
+        panel.set(xlabel=key)
+        panel.legend()
+    axes[0, 0].set_ylabel(source.words if "share" not in frame else f"{source.words}, p = {frame.share.iloc[0]:g}")
+    letter(axes, [", ".join(name) for name in parts])
+    return figure
+
+
+def _stages(source):
+    """Table and figure of one comparison."""
+    name = f"compared_{source.table}"
+
+    def jobs(plan):
+        subjects = plan.pairs if source.subject == "pair" else _devices(plan, source)
+        return [{}] if any(one.endswith(tuple(values(plan.config))) for one in subjects) else []
+
+    def settings(plan, _at):
+        return {"key": next(iter(plan.config.get("compare", {})), ""), "ends": values(plan.config)}
+
+    declared = {
+        "inputs": lambda plan, at: {"table": File(f"results/tables/{source.table}.csv")},
+        "settings": settings,
+        "jobs": jobs,
+        "targets": (source.target,),
+    }
+    shows = f"{source.words.partition(' [')[0]} for values of one key"
+
+    def made(show):
+        return lambda data, at, settings: show(pd.read_csv(data["table"]), source, settings["key"], settings["ends"])
+
+    return (
+        table_stage(f"table_{name}", name, shows, compute=made(compared), **declared),
+        figure_stage(f"figure_{name}", name, shows, "Comparison", caption="compared", compute=made(drawn), **declared),
+    )
+
+
+def _devices(plan, source):
+    """Devices with rows in a table."""
+    return plan.devices.stoppers if source.table == "stoppers" else plan.devices.beams
+
+
+STAGES = tuple(stage for source in SOURCES for stage in _stages(source))

@@ -1,0 +1,99 @@
+"""Values of one key side by side: every copy has the settings of the configuration with this single value."""
+
+import json
+
+import pytest
+
+from stiction.config import merging
+from stiction.config.files import load
+from stiction.config.messages import ConfigError
+from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
+
+S1 = {"kind": "stopper", "pair": "b", "contact_um": [3, 2], "restoring_force_uN": 20, "humidities": [0.5]}
+C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.5]}
+ARRAY = {"pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "length_um": 1500}
+ARRAY |= {"crack_lengths": [{"humidity": 0.5, "mean_um": 900, "std_um": 30, "beams": 9}]}
+BASE = {
+    "run": {"pairs": ["a", "b"]},
+    "materials": {"Oxide": {"young_modulus_GPa": 70}},
+    "surfaces": {"Sub1": {"material": "Oxide"}},
+    "test_beams": {"T": ARRAY},
+    "devices": {"S1": S1, "C1": C1 | {"test_beams": ["T"], "uncertainty": {"humidity": 0.01}}},
+}
+SECTIONS = ("materials", "surfaces", "pairs", "test_beams", "devices")
+#: Compared key, two of its values, and the end of the copies of the second.
+KEYS = {
+    "surfaces.B2.rms_nm": (3, 4.5, "Rms4p5"),
+    "surfaces.B2.published_psd.corner_rad_per_um": (16, 18, "Corner18"),
+    "materials.Oxide.young_modulus_GPa": (60, 80, "YoungModulus80"),
+    "pairs.b.gap_um": (10, 12, "Gap12"),
+    "devices.C1.thickness_um": (2, 3, "Thickness3"),
+}
+
+
+def single(path, value):
+    """Configuration with one value of a key."""
+    change = value
+    for key in reversed(path.split(".")):
+        change = {key: change}
+    return load(BASE, change)
+
+
+def settings(config, end=""):
+    """Settings of jobs about pair b and the devices, as text without an end of names."""
+    graph = Graph(Plan(config))
+    names = [f"heights/B2{end}", f"forces/b{end}_rh067_NG", f"beams/b{end}_rh067_GEO", f"devices/stoppers/S1{end}"]
+    names += [f"devices/safe_lengths/C1{end}_rh050", f"devices/budget/C1{end}_rh050", f"devices/test_beams/C1{end}"]
+    return [json.dumps(graph.job(name).settings, sort_keys=True).replace(end or "?", "") for name in names]
+
+
+@pytest.mark.parametrize("path", KEYS)
+def test_copies_are_the_entries_of_single_values(path):
+    first, second, end = KEYS[path]
+    found, alone = load(BASE, {"compare": {path: [first, second]}}), single(path, second)
+    copies = {
+        (section, name.removesuffix(end)): json.loads(json.dumps(entry).replace(end, ""))
+        for section in SECTIONS
+        for name, entry in found[section].items()
+        if name.endswith(end)
+    }
+    assert copies
+    assert copies == {(section, name): alone[section][name] for section, name in copies}
+    other = single(path, first)
+    assert any(copies[section, name] != other[section][name] for section, name in copies)
+
+
+def test_jobs_of_copies_have_the_settings_of_single_values():
+    path = "surfaces.B2.rms_nm"
+    found = load(BASE, {"compare": {path: [3, 4.5]}})
+    assert settings(found, "Rms4p5") == settings(single(path, 4.5))
+    assert settings(found, "Rms3") == settings(single(path, 3))
+    assert settings(found, "Rms3") != settings(single(path, 4.5))
+
+
+def test_copies_take_the_place_of_what_runs_and_of_nothing_else():
+    found = load(BASE, {"compare": {"surfaces.B2.rms_nm": [3, 4.5]}})
+    assert found["run"]["pairs"] == ["a", "bRms3", "bRms4p5"]
+    assert sorted(found["devices"]) == ["C1Rms3", "C1Rms4p5", "S1Rms3", "S1Rms4p5"]
+    assert found["studies"]["plasticity"]["distance_nm"]["bRms3"] == found["studies"]["plasticity"]["distance_nm"]["b"]
+    of_device = load(BASE, {"compare": {"devices.C1.thickness_um": [2, 3]}})
+    assert of_device["run"]["pairs"] == ["a", "b"]
+    assert sorted(of_device["devices"]) == ["C1Thickness2", "C1Thickness3", "S1"]
+
+
+@pytest.mark.parametrize("path", ["beam.thickness_um", "surfaces.B9.rms_nm", "surfaces.B2", "run.pairs.b"])
+def test_a_key_of_no_entry_is_refused(path):
+    with pytest.raises(ConfigError, match=f"^compare.{path} is no key of an entry that exists, must be one of "):
+        load(BASE, {"compare": {path: [1, 2]}})
+
+
+@pytest.mark.parametrize("compare", [[1], {}, {"surfaces.B2.rms_nm": [1]}, {"surfaces.B2.rms_nm": [2, 2]}])
+def test_what_is_no_list_of_different_values_is_refused(compare):
+    with pytest.raises(ConfigError, match="^compare"):
+        load(BASE, {"compare": compare})
+
+
+def test_without_the_section_nothing_changes():
+    config = load(BASE)
+    assert merging.expanded(config) is config

@@ -1,0 +1,58 @@
+"""Values of one key side by side: rows of the copies alone, by their originals, with errors of both kinds."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stiction.report.compared import SOURCES, compared, drawn, rows
+
+ENDS = {"Rms3": 3, "Rms10": 10}
+TABLE_3, LENGTHS, STOPPERS = SOURCES
+BEAMS = pd.DataFrame(
+    [
+        {
+            "pair": pair,
+            "relative_humidity": humidity,
+            "model": "NG",
+            "crack_length_um": length,
+            "crack_length_se_um": 2.0,
+        }
+        for pair, length in {"bRms10": 900.0, "bRms3": 600.0, "a": 500.0}.items()
+        for humidity in (0.67, 0.44)
+    ]
+)
+SAFE = pd.DataFrame(
+    {
+        "device": ["C1Rms3", "C1Rms10"],
+        "relative_humidity": 0.67,
+        "held_by": "beam",
+        "share": 0.001,
+        "safe_length_um": [90.0, 190.0],
+        "estimate_um": [100.0, 200.0],
+        "estimate_se_beams_um": [3.0, 6.0],
+        "estimate_se_surfaces_um": [4.0, np.nan],
+    }
+)
+
+
+def test_rows_are_those_of_copies_under_the_names_of_their_originals():
+    found = rows(BEAMS, TABLE_3, ENDS)
+    assert list(found.pair) == 4 * ["b"]
+    assert list(zip(found.relative_humidity, found.value, found.crack_length_um, strict=True)) == [
+        *((0.44, 3, 600), (0.44, 10, 900), (0.67, 3, 600), (0.67, 10, 900)),
+    ]
+
+
+def test_errors_of_beams_and_of_surfaces_are_combined():
+    assert list(rows(SAFE, LENGTHS, ENDS).estimate_se_um) == pytest.approx([5, 6])
+    cells = compared(SAFE, LENGTHS, "surfaces.B2.rms_nm", ENDS).cells
+    assert list(cells["surfaces.B2.rms_nm"]) == ["3", "10"]
+    assert list(cells["length that a share p holds [µm]"]) == ["100.0 ± 5.0", "200.0 ± 6.0"]
+
+
+def test_the_figure_has_a_line_over_the_values_for_each_humidity():
+    (panel,) = drawn(BEAMS, TABLE_3, "surfaces.B2.rms_nm", ENDS).axes
+    lines = [container.lines[0] for container in panel.containers]
+    assert [list(line.get_xdata()) for line in lines] == 2 * [[3, 10]]
+    assert [list(line.get_ydata()) for line in lines] == 2 * [[600, 900]]
+    assert panel.get_xlabel() == "surfaces.B2.rms_nm"
