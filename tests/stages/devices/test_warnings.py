@@ -83,6 +83,7 @@ def test_only_pairs_with_plastic_contact_are_said_to_be_plastic():
     found = about_pairs(cases, PLASTIC)
     assert {subject for subject, sentences in found.items() if sentences} == {"pair c", "pair b, RH 0.67, G"}
     assert found["pair c"][0].startswith("58 % of the area in contact is plastic")
+    assert "pressed together with 104 MPa" in found["pair c"][0]
 
 
 def test_pairs_whose_plasticity_was_not_studied_are_said_to_be_unchecked():
