@@ -17,7 +17,7 @@ WRONG = [
     ("beam: {thicknes_um: 2.5}", "beam.thicknes_um", "2.5", "did you mean thickness_um?"),
     ("pairs: {c: {beam: B3}}", "pairs.c.beam", "'B3'", "must be one of B1, B2, Sub1, Sub2"),
     ("van_der_waals: wet", "van_der_waals", "'wet'", "must be one of"),
-    ("run: {pairs: []}", "run.pairs", "[]", "at least one"),
+    ("run: {pairs: []}", "run.pairs", "[]", "must name a pair"),
 ]
 
 
