@@ -64,12 +64,13 @@ def test_what_every_command_asks_of_snakemake(asked, words, passed, files):
     assert options(asked) == (passed, files)
 
 
-def test_the_folder_of_a_run_and_the_report_in_it(asked, tmp_path):
+def test_the_folder_of_a_run_and_the_report_in_it(asked, tmp_path, capsys):
     (tmp_path / "here" / "results").mkdir(parents=True)
     assert main(["report", "--directory", "here"]) == 2, "nothing to report yet"
     assert asked == []
     finished(tmp_path / "here" / "results")
     assert main(["report", "--directory", "here"]) == 0
+    assert capsys.readouterr().out.endswith("The report is one file: here/results/report.html.\n")
     assert "686 ± 16" in (tmp_path / "here" / FRONT).read_text()
     found, _ = options(asked)
     style, guide = (ROOT / "workflow" / "report" / name for name in ("style.css", "guide.yaml"))

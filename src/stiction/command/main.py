@@ -198,7 +198,10 @@ def _report(arguments):
     page.write_text(front.front_page(results), encoding="utf-8")
     files = launch.WORKFLOW / "workflow" / "report"
     options = ("--report-stylesheet", str(files / "style.css"), "--report-metadata", str(files / "guide.yaml"))
-    return _run(arguments, "--report", "results/report.html", *options)
+    ended = _run(arguments, "--report", "results/report.html", *options)
+    if ended == Status.DONE and not arguments.dry_run:
+        _say(f"The report is one file: {results / 'report.html'}.")
+    return ended
 
 
 def _explain(arguments):
