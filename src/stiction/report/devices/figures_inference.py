@@ -22,7 +22,7 @@ _INTERVAL = 1.96
 
 @styled
 def test_beams(found: xr.Dataset) -> Figure:
-    """Measured crack lengths of each array with bands of 95 % before and after, and inputs in standard errors."""
+    """Measured crack lengths with bands of 95 % before and after, and inputs in units of their standard uncertainty."""
     arrays = list(dict.fromkeys(map(str, found.array.values)))
     uncertain = found.isel(input=np.flatnonzero(found.prior_deviation.values > 0))
     height = max(2.4, _ROW * uncertain.sizes["input"] + _AROUND)
