@@ -58,6 +58,20 @@ def test_a_paraboloid_is_hertz_and_the_error_falls_with_the_grid(spacing, allowe
     np.testing.assert_allclose(found[deep], expected, rtol=2 * allowed)
 
 
+def test_a_fitted_paraboloid_is_hertz_on_the_coarsest_grid():
+    """From 0.7 nm on, where islands have five points and more; spheres of their area miss this by far."""
+    by_area, radius, top = pair(), 4e-7, 5e-9
+    fitted = dataclasses.replace(by_area, definition=Definition.FITTED)
+    heights = caps((0, 0, top), radius=radius)
+    (at, found), (_, others) = (force(each, heights) for each in (fitted, by_area))
+    deep = top - at > 0.7e-9
+    expected = hertz_force(top - at, radius, POLYSILICON)
+    np.testing.assert_allclose(found[deep], expected[deep], rtol=1e-4)
+    assert np.abs(others[deep] / expected[deep] - 1).max() > 0.05
+    few = (at < top) & (top - at < 0.1e-9)
+    np.testing.assert_array_equal(found[few], others[few])  # too few points: by their area
+
+
 @pytest.mark.parametrize("solid", [NONE, WATER])
 def test_an_island_of_one_point_that_just_touches_is_a_summit(solid):
     islands, radius = pair(solid=solid), 1e-7

@@ -15,12 +15,12 @@ PUBLISHED = pd.DataFrame({"pair": "a", "relative_humidity": HUMIDITIES, "ng": [7
 def study(strips=6, shapes=3):
     """Energies of readings: islands adhere less than summits by 20 %, without attraction by 30 % less."""
     base = np.random.default_rng(1).uniform(1e-4, 2e-4, strips)[:, None] * [1.0, 10.0, 100.0]
-    found = np.full((2, 3, strips, 2, 3), np.nan)
-    for i, j, k in np.ndindex(2, 3, 2):
-        if j < 2 or i == 0:
-            found[i, j, :, k] = base * (1, 0.8, 0.6)[j] * (1, 0.7)[k] * (1, 0.9)[i]
-    found[:, 2, shapes:] = np.nan
-    seconds = np.where(np.isnan(found[..., 0]), np.nan, 0.01 * np.arange(1, 4)[None, :, None, None])
+    found = np.full((2, 4, strips, 2, 3), np.nan)
+    for i, j, k in np.ndindex(2, 4, 2):
+        if j < 3 or i == 0:
+            found[i, j, :, k] = base * (1, 0.8, 0.9, 0.6)[j] * (1, 0.7)[k] * (1, 0.9)[i]
+    found[:, 3, shapes:] = np.nan
+    seconds = np.where(np.isnan(found[..., 0]), np.nan, 0.01 * np.arange(1, 5)[None, :, None, None])
     return layout(found, seconds, [1e-8, 5e-9], ["water", "none"], HUMIDITIES), base
 
 
@@ -42,7 +42,7 @@ def row(frame, reading, vdw="water", spacing=10.0, humidity=0.5):
 
 def test_numbers_of_each_reading():
     frame = asperities.table(*DATA, PUBLISHED).frame
-    assert len(frame) == 3 * (2 * 2 * 2 + 2)
+    assert len(frame) == 3 * (3 * 2 * 2 + 2)
     island = row(frame, "island")
     assert island.change_percent == pytest.approx(100 * (0.8**-0.25 - 1))
     assert island.crack_length_um == pytest.approx(600 * 0.8**-0.25)
@@ -61,7 +61,7 @@ def test_the_base_does_not_change_and_every_reading_has_a_line():
     table = asperities.table(*DATA, PUBLISHED)
     assert row(table.frame, "summit").change_percent == 0
     assert list(table.cells.asperity) == [*np.repeat(READINGS, 2)[:-1]] * 2
-    assert list(table.cells["grid [nm]"]) == ["10", "5", "10", "5", "10"] * 2
+    assert list(table.cells["grid [nm]"]) == ["10", "5", "10", "5", "10", "5", "10"] * 2
 
 
 def test_pairs_that_were_not_published_have_no_deviation_from_print():
@@ -90,5 +90,6 @@ def test_the_figure_has_all_curves_and_equal_bytes(published):
     assert len(figure.axes) == 2
     labels = figure.legends[0].texts
     known = {"summit, 10 nm", "summit, 5 nm", "island, 10 nm", "island, 5 nm", "shape, 10 nm", "full contact"}
+    known |= {"fitted, 10 nm", "fitted, 5 nm"}
     assert {text.get_text() for text in labels} == known | ({"published"} if len(published) else set())
     assert style.png(figure) == style.png(asperities.figure(*DATA, published))

@@ -80,6 +80,47 @@ def test_island_of_a_paraboloid_has_its_area_top_and_curvature(spacing):
     assert np.abs(np.mean(found.points / circle) - 1) < 0.03 * (spacing / 5e-9)
 
 
+@pytest.mark.parametrize("place", [(0.0, 0.0), (3.3e-9, -1.2e-9)])
+def test_a_paraboloid_is_fitted_exactly_on_any_grid_from_five_points_on(place):
+    radius, top = 4e-7, 4e-9
+    z = caps((*place, top), radius=radius, spacing=10e-9)
+    found = find_islands(z, 10e-9, STEP, (1, 40), fitted=True)
+    enough = found.points >= 5
+    assert 0 < np.sum(~enough) < np.sum(enough)
+    np.testing.assert_allclose(found.fits[enough], [[top, 1 / radius]] * enough.sum(), rtol=1e-5)
+    assert np.all(np.isnan(found.fits[~enough]))
+    assert find_islands(z, 10e-9, STEP, (1, 40)).fits.shape == (0, 2)
+
+
+def test_fits_of_a_rough_surface_are_those_of_linear_least_squares():
+    z = SURFACES["B1"].on(StripGrid(0.6e-6, 3e-6, SPACING, margin=1e-6)).draw(stream(1))
+    numbers = (2, int(z.max() / (5 * STEP)) + 2)
+    found = find_islands(z, SPACING, 5 * STEP, numbers, fitted=True)
+    expected = {}
+    for level in range(*numbers):
+        labels, count = ndimage.label(z >= level * 5 * STEP, EIGHT)
+        for n in range(1, count + 1):
+            rows, columns = np.nonzero(labels == n)
+            expected[level, float(z[rows, columns].max())] = by_least_squares(
+                SPACING * rows, SPACING * columns, z[rows, columns]
+            )
+    fits = np.array([expected[each] for each in zip(found.levels.tolist(), found.tops.tolist(), strict=True)])
+    assert 40 < np.isfinite(fits[:, 0]).sum() < 0.9 * len(fits)
+    np.testing.assert_allclose(found.fits, fits, rtol=1e-4)
+
+
+def by_least_squares(x, y, z):
+    """Top and curvature of the paraboloid of revolution through these points, NaN if it is none."""
+    x, y, z = x - x.mean(), y - y.mean(), z.astype(float)
+    terms = np.stack([np.ones(len(x)), x / SPACING, y / SPACING, (x**2 + y**2) / SPACING**2], axis=1)
+    (a, b, c, e), _, rank, _ = np.linalg.lstsq(terms, z / STEP, rcond=1e-6)
+    if len(z) < 5 or rank < 4 or e >= 0:
+        return np.nan, np.nan
+    places = -SPACING * b / (2 * e), -SPACING * c / (2 * e)
+    inside = all(k.min() <= place <= k.max() for k, place in zip((x, y), places, strict=True))
+    return (STEP * (a - (b**2 + c**2) / (4 * e)), -2 * e * STEP / SPACING**2) if inside else (np.nan, np.nan)
+
+
 def test_two_paraboloids_are_one_island_below_their_saddle_and_two_above_it():
     radius, half, high, low = 4e-7, 60e-9, 8.03e-9, 6.97e-9
     found = find_islands(

@@ -55,6 +55,7 @@ class Definition(StrEnum):
 
     SUMMIT = "summit"  #: a point higher than its eight neighbours, with its curvature there
     ISLAND = "island"  #: a connected part of the surface above the flat, with its area
+    FITTED = "fitted"  #: the same, by least squares
 
 
 class Summits(NamedTuple):
@@ -103,7 +104,7 @@ class EquivalentSurface:
 
     def asperities(self, heights: np.ndarray) -> Summits:
         """Asperities of one equivalent surface z (n1, n2) [m], by the chosen definition."""
-        return self.islands(heights) if self.definition == Definition.ISLAND else self.summits(heights)
+        return self.summits(heights) if self.definition == Definition.SUMMIT else self.islands(heights)
 
     def summits(self, heights: np.ndarray) -> Summits:
         """Summits of one equivalent surface z (n1, n2) [m].
@@ -126,21 +127,25 @@ class EquivalentSurface:
         point of a grid, by about the depth of a cap of one cell. An island of one point that just touches is a summit,
         and so is an asperity that does not touch yet; for large islands s is negligible.
         ASSUME: below the rms of the heights, where islands are about to become one, they keep their spheres from there.
+        ASSUME: fitted by least squares, an island without a fit (see `find_islands`) has the sphere of its area.
         """
         summits, grid, rms = self.summits(heights), self.distances, float(np.hypot(self.beam.rms, self.substrate.rms))
         stride = max(round(rms / (LEVELS_PER_RMS * grid.step)), 1)
         levels = DistanceGrid(stride * grid.step, 0, -(-grid.above // stride))
         lowest = min(int(np.ceil(rms / levels.step)), levels.above - 1)
-        found = find_islands(heights, self.spacing, levels.step, (lowest, levels.above))
+        by_fit, numbers = self.definition == Definition.FITTED, (lowest, levels.above)
+        found = find_islands(heights, self.spacing, levels.step, numbers, fitted=by_fit)
         overlap = found.tops - found.levels * levels.step
-        curvatures = (found.curvatures + 2 * np.pi * overlap / self.spacing**2) / found.points
+        spheres = np.stack([found.tops, (found.curvatures + 2 * np.pi * overlap / self.spacing**2) / found.points], 1)
+        if by_fit:
+            spheres = np.where(np.isfinite(found.fits), found.fits, spheres)
         first = np.where(found.levels == lowest, 0, found.levels * stride)
         touching = Ranges(first, np.minimum((found.levels + 1) * stride, self._lost(found.tops)))
         high = summits.tops >= lowest * levels.step
         apart = Ranges(self._lost(summits.tops[high]), np.full(high.sum(), grid.above))
         return Summits(
-            np.append(found.tops, summits.tops[high]),
-            np.append(curvatures, summits.curvatures[high]),
+            np.append(spheres[:, 0], summits.tops[high]),
+            np.append(spheres[:, 1], summits.curvatures[high]),
             summits.area,
             Ranges(*map(np.append, touching, apart)),
         )

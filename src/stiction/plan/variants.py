@@ -105,7 +105,7 @@ class Variants:
     def has_islands(self, variant: str) -> bool:
         """Whether the asperities are islands under a variant; their contact depends on more than the summits."""
         changed = self.changes[variant].get("contact", {})
-        return (self.config["contact"] | changed).get("asperity") == "island"
+        return (self.config["contact"] | changed).get("asperity", "summit") != "summit"
 
     def contact_under(self, variant: str) -> str:
         """Variant whose contact a variant has: that of the base if only what follows from it differs."""

@@ -25,9 +25,14 @@ class Islands(NamedTuple):
     tops: np.ndarray  #: height of the highest point, (m,) float64 [m]
     curvatures: np.ndarray  #: mean curvature of the surface there, (m,) float64 [m⁻¹]
     points: np.ndarray  #: number of points, (m,) int32
+    #: Top [m] and curvature [m⁻¹] of the paraboloid of revolution fitted to all points by least squares (m, 2) float64.
+    #: NaN for fewer than five points, a paraboloid that opens upwards, and one with its top outside the island's box.
+    fits: np.ndarray
 
 
-def find_islands(heights: np.ndarray, spacing: float, step: float, numbers: tuple[int, int]) -> Islands:
+def find_islands(
+    heights: np.ndarray, spacing: float, step: float, numbers: tuple[int, int], *, fitted: bool = False
+) -> Islands:
     """Find the islands of a surface above the levels ``step * arange(*numbers)``.
 
     Islands whose highest point lies on the edge of the surface, where it may not be a summit, are left out.
@@ -42,12 +47,14 @@ def find_islands(heights: np.ndarray, spacing: float, step: float, numbers: tupl
         Of the levels [m].
     numbers : tuple of 2 ints
         Of the first level and the one behind the last.
+    fitted : bool
+        Whether paraboloids are fitted; ``fits`` is empty otherwise, (0, 2).
     """
     z = np.ascontiguousarray(heights, np.float32)
     places, ends = _from_the_highest(z, step, numbers)
-    levels, summits, points = _grown(z, places, ends)
+    levels, summits, points, fits = _grown(z, places, ends, fitted)
     tops, curvatures = _shapes(z, spacing, summits)
-    return Islands(levels + numbers[0], tops, curvatures, points)
+    return Islands(levels + numbers[0], tops, curvatures, points, fits / [1, spacing**2])
 
 
 @kernel
@@ -86,11 +93,11 @@ def _root(parents, k):
 
 
 @kernel
-def _grown(z, places, ends):
-    """Level, place of the highest point and number of points of every island at every level.
+def _grown(z, places, ends, fitted):
+    """Level, place of the highest point and number of points of every island at every level, and their `_fit`.
 
     Points are known by their ranks, the positions in ``places``. The parent of a point is one of its island that is at
-    least as high; the root of an island is its highest point.
+    least as high; the root of an island is its highest point. The points of an island follow each other in a ring.
     """
     rows, columns = z.shape
     ranks = np.full((rows + 2) * (columns + 2), -1, np.int32)  # with a frame, whose points never appear
@@ -98,32 +105,43 @@ def _grown(z, places, ends):
     heights = z.ravel()[places]
     parents, points = np.arange(places.size).astype(np.int32), np.ones(places.size, np.int32)
     roots, islands = np.empty(places.size, np.int32), 0
-    listed, found = np.empty((_SPACE, 3), np.int32), 0
+    ring = np.arange(places.size).astype(np.int32)
+    listed, fits, found = np.empty((_SPACE, 3), np.int32), np.empty((_SPACE if fitted else 0, 2)), 0
     for level in range(ends.size - 2, -1, -1):
         for rank in range(ends[level + 1], ends[level]):
             place = places[rank] + columns + 3 + 2 * (places[rank] // columns)
             ranks[place] = rank
-            _join(ranks, place, around, heights, parents, points)
+            _join(ranks, place, around, heights, parents, points, ring)
             roots[islands] = rank
             islands += 1
-        kept = 0
-        for n in range(islands):
-            if parents[roots[n]] == roots[n]:
-                roots[kept] = roots[n]
-                kept += 1
-        islands = kept
+        islands = _keep_roots(roots, islands, parents)
         if found + islands > len(listed):
-            listed = np.concatenate((listed, np.empty((max(len(listed), islands), 3), np.int32)))
+            more = max(len(listed), islands)
+            listed = np.concatenate((listed, np.empty((more, 3), np.int32)))
+            fits = np.concatenate((fits, np.empty((more if fitted else 0, 2))))
         for root in roots[:islands]:
             i, j = places[root] // columns, places[root] % columns
             if 0 < i < rows - 1 and 0 < j < columns - 1:
                 listed[found, 0], listed[found, 1], listed[found, 2] = level, places[root], points[root]
+                if fitted:
+                    fits[found] = _fit(root, ring, places, heights, columns)
                 found += 1
-    return listed[:found, 0].copy(), listed[:found, 1].copy(), listed[:found, 2].copy()
+    return listed[:found, 0].copy(), listed[:found, 1].copy(), listed[:found, 2].copy(), fits[:found].copy()
+
+
+@kernel
+def _keep_roots(roots, islands, parents):
+    """Drop the islands that were joined with a higher one, in place; returns the number of those left."""
+    kept = 0
+    for n in range(islands):
+        if parents[roots[n]] == roots[n]:
+            roots[kept] = roots[n]
+            kept += 1
+    return kept
 
 
 @kernel(inline="always")
-def _join(ranks, place, around, heights, parents, points):
+def _join(ranks, place, around, heights, parents, points, ring):
     """Join the point at a place with the islands of its neighbours."""
     root, before = ranks[place], ranks[place + around[-1]] >= 0
     for n in range(around.size):
@@ -136,7 +154,54 @@ def _join(ranks, place, around, heights, parents, points):
                     root, other = other, root
                 parents[other] = root
                 points[root] += points[other]
+                ring[root], ring[other] = ring[other], ring[root]
         before = rank >= 0
+
+
+@kernel
+def _fit(root, ring, places, heights, columns):
+    """Top and curvature of z = a + b x + c y + e (x² + y²) fitted to an island; lengths in spacings, NaN for no fit."""
+    sums, box = _sums(root, ring, places, heights, columns)
+    if sums[0, 0] < 5 or not _eliminate(sums):
+        return np.nan, np.nan
+    e = sums[3, 4] / sums[3, 3]
+    c = (sums[2, 4] - sums[2, 3] * e) / sums[2, 2]
+    b = (sums[1, 4] - sums[1, 2] * c - sums[1, 3] * e) / sums[1, 1]
+    a = (sums[0, 4] - sums[0, 1] * b - sums[0, 2] * c - sums[0, 3] * e) / sums[0, 0]
+    top = np.array([-b, -c]) / (2 * e)
+    if e >= 0 or np.any(top < box[0]) or np.any(top > box[1]):
+        return np.nan, np.nan
+    return heights[root] + a - (b**2 + c**2) / (4 * e), -2 * e
+
+
+@kernel
+def _sums(root, ring, places, heights, columns):
+    """Sums over an island of all products of 1, x, y, x² + y² and z, from its highest point, and its box in x, y."""
+    sums, box, each, rank = np.zeros((5, 5)), np.zeros((2, 2)), np.ones(5), root
+    while True:
+        each[1] = places[rank] // columns - places[root] // columns
+        each[2] = places[rank] % columns - places[root] % columns
+        each[3] = each[1] ** 2 + each[2] ** 2
+        each[4] = np.float64(heights[rank]) - heights[root]
+        box[0], box[1] = np.minimum(box[0], each[1:3]), np.maximum(box[1], each[1:3])
+        for i in range(5):
+            for j in range(i, 5):
+                sums[i, j] += each[i] * each[j]
+        rank = ring[rank]
+        if rank == root:
+            return sums, box
+
+
+@kernel
+def _eliminate(sums):
+    """Bring normal equations to triangular form, in place; returns False if they have no unique solution."""
+    for i in range(4):
+        if not sums[i, i] > 1e-9 * sums[0, 0]:
+            return False
+        for j in range(i + 1, 4):
+            for k in range(j, 5):
+                sums[j, k] -= sums[i, j] * sums[i, k] / sums[i, i]
+    return True
 
 
 @kernel

@@ -39,7 +39,10 @@ def test_the_first_reading_is_that_of_the_contact_and_of_full_contact():
 def test_every_reading_is_computed_and_islands_of_true_shape_on_the_grid_of_the_contact():
     found = readings()
     spheres = {
-        (reading, medium, h) for reading in ("summit", "island") for medium in ("water", "none") for h in (1e-8, 5e-9)
+        (reading, medium, h)
+        for reading in ("summit", "island", "fitted")
+        for medium in ("water", "none")
+        for h in (1e-8, 5e-9)
     }
     assert set(found) == spheres | {("shape", "water", 1e-8), ("shape", "none", 1e-8)}
     for (reading, *_), energies in found.items():

@@ -34,8 +34,9 @@ _CAPTION = (
     "energies of the same strips to the power -1/4: change against spheres on summits, on the grid of the contact and "
     "with attraction of the solids, at the lowest and at the highest humidity; root mean square over the humidities of "
     "the deviation from the published length, and from that under full elastic contact where it was computed; "
-    "processor time of a strip over that of spheres on summits; ± standard error over strips. Shape: every island "
-    "with its true shape, solved alone. vdW: the medium through which the solids attract, or none."
+    "processor time of a strip over that of spheres on summits; ± standard error over strips. Island: a sphere of the "
+    "area of every island; fitted: a sphere by least squares; shape: every island with its true shape, solved alone. "
+    "vdW: the medium through which the solids attract, or none."
 )
 
 
@@ -163,6 +164,7 @@ _ROUNDING = 1e-10
 _STYLES = {
     "summit": {"color": "#0072B2", "marker": "o"},
     "island": {"color": "#009E73", "marker": "s"},
+    "fitted": {"color": "#E69F00", "marker": "v"},
     "shape": {"color": "#CC79A7", "marker": "^"},
 }
 

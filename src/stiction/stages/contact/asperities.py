@@ -1,7 +1,7 @@
 """Study asperities: adhesion energies of the same strips under several readings of what an asperity is."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from time import process_time
 from typing import NamedTuple
@@ -16,7 +16,7 @@ from stiction.contact.asperity import Asperity
 from stiction.contact.elements import Adhesion
 from stiction.contact.environment import Water
 from stiction.contact.halfspace import HalfSpace
-from stiction.contact.pair import EquivalentSurface
+from stiction.contact.pair import Definition, EquivalentSurface
 from stiction.contact.pair import solid_pressure as pressure_of_spheres
 from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.plan.stage import At, Stage
@@ -24,8 +24,8 @@ from stiction.progress import progress
 from stiction.stages.contact import variant_contact, variant_summits
 from stiction.stages.contact.pairs import bodies, streams_of_sides
 
-#: A sphere on every summit, a sphere of the area of every island, every island with its true shape.
-READINGS = ("summit", "island", "shape")
+#: A sphere on every summit, one of the area of every island, one fitted to it; every island with its true shape.
+READINGS = (*map(str, Definition), "shape")
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class _Medium(NamedTuple):
 def _pressure(strip, surface, reading, medium):
     """Pressure of the solids of a strip under a reading."""
     if reading != "shape":
-        spheres = surface.summits(strip.heights) if reading == "summit" else surface.islands(strip.heights)
+        spheres = replace(surface, definition=Definition(reading)).asperities(strip.heights)
         return pressure_of_spheres(medium.sphere, spheres, strip.grid)
     space = HalfSpace(strip.heights.shape, surface.spacing, medium.modulus)
     attraction = Adhesion.of((0.0, 0.0), medium.attraction, space)
