@@ -56,3 +56,6 @@ def test_the_figure_has_a_line_over_the_values_for_each_humidity():
     assert [list(line.get_xdata()) for line in lines] == 2 * [[3, 10]]
     assert [list(line.get_ydata()) for line in lines] == 2 * [[600, 900]]
     assert panel.get_xlabel() == "surfaces.B2.rms_nm"
+    assert [text.get_text() for text in panel.get_legend().get_texts()] == ["RH 0.44", "RH 0.67"]
+    (panel,) = drawn(BEAMS.replace({"relative_humidity": {0.44: 0.0}}), TABLE_3, "surfaces.B2.rms_nm", ENDS).axes
+    assert [text.get_text() for text in panel.get_legend().get_texts()] == ["dry", "RH 0.67"]

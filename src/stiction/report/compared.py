@@ -6,9 +6,10 @@ from typing import NamedTuple
 import pandas as pd
 from matplotlib.figure import Figure
 
+from stiction.config.cases import air
 from stiction.config.merging import values
 from stiction.plan.stage import File
-from stiction.report.format import humidity_text, number, with_error
+from stiction.report.format import number, with_error
 from stiction.report.style import DOUBLE, SINGLE, dashes, figure_stage, letter, marker, panels, styled
 from stiction.report.tables import HUMIDITY, Columns, Table, table_stage
 
@@ -93,7 +94,7 @@ def drawn(table: pd.DataFrame, source: Source, key: str, ends: Mapping[str, floa
         for k, (humidity, line) in enumerate(part.groupby("relative_humidity")):
             at, error = line.sort_values("value"), source.numbers[1]
             style = {"color": f"C{k}", "linestyle": dashes(k), "marker": marker(k), "capsize": 2}
-            panel.errorbar(at.value, at[source.numbers[0]], at[error], label=f"RH {humidity_text(humidity)}", **style)
+            panel.errorbar(at.value, at[source.numbers[0]], at[error], label=air(humidity), **style)
         panel.set(xlabel=key)
         panel.legend()
     axes[0, 0].set_ylabel(source.words if "share" not in frame else f"{source.words}, p = {frame.share.iloc[0]:g}")

@@ -1,5 +1,7 @@
 """Units of tables and axes, and numbers as text: with a standard error, as a deviation, or alone."""
 
+from collections.abc import Collection
+
 import numpy as np
 
 from stiction.config.cases import DRY
@@ -47,6 +49,20 @@ def humidity_text(value: float) -> str:
     ('0.67', 'dry', '–')
     """
     return number(value, "g") if value else DRY
+
+
+def airs(humidities: Collection[float]) -> str:
+    """Where a device is, for the end of a sentence.
+
+    Examples
+    --------
+    >>> airs([0.0, 0.45, 0.67]), airs([0.67]), airs([0.0])
+    ('in dry air and at relative humidities of 0.45, 0.67', 'at a relative humidity of 0.67', 'in dry air')
+    """
+    humid = [f"{humidity:g}" for humidity in humidities if humidity > 0]
+    dry = ["in dry air"] if len(humid) < len(humidities) else []
+    wet = f"{'relative humidities' if len(humid) > 1 else 'a relative humidity'} of {', '.join(humid)}"
+    return " and ".join(dry + [f"at {wet}"] * bool(humid))
 
 
 def with_error(value: float, error: float, sign: str = "") -> str:

@@ -114,6 +114,13 @@ def test_the_length_to_build_is_the_least_less_twice_the_uncertainty():
     assert f"is reduced by {200 * total:.2g} %" in sentence
 
 
+def test_sentences_on_safe_forces_begin_with_the_humidities_of_the_stopper():
+    found = STOPPERS["S1"]
+    assert pages.safe_force_sentences(found)[0].startswith("At all these humidities, a restoring force of")
+    single = pages.safe_force_sentences(found.sel(humidity=[0.67]))
+    assert single[0].startswith("At a relative humidity of 0.67, a restoring force of")
+
+
 def test_budgets_of_bridges_are_not_those_of_tips():
     found = {0.67: safe("bridge")}
     budgets = {(0.67,): budget_dataset(1.0), (0.67, "tip"): budget_dataset(5.0, TIPS)}

@@ -325,7 +325,10 @@ def test_pages_state_what_follows_for_bridges_and_stoppers(found, built, stuck, 
     found = found()
     assert tables_inference.built(found).startswith(built)
     (sentence,) = tables_inference.stuck(found)
+    assert sentence.startswith(f"At a relative humidity of {float(found.humidity[0]):g}, ")
     assert stuck in sentence
+    (in_dry_air,) = tables_inference.stuck(found.assign_coords(humidity=[0.0]))
+    assert in_dry_air.startswith("In dry air, ")
     frame = tables_inference.test_beams({"R1": found}).frame
     assert frame.part.str.contains("safe|stuck").sum() == rows
     assert figures_inference.test_beams(found).axes
@@ -476,6 +479,13 @@ def test_the_combination_that_one_length_determines_names_its_inputs():
     assert f"more {FACTOR}" in sentence
     assert "more rms of B2" in sentence
     assert "thickness of C1" not in sentence
+    assert "They do not tell these apart" in sentence
+    largest = abs(found.correlation).max("input")
+    (single,) = tables_inference.combinations(
+        found.assign(correlation=found.correlation.where(abs(found.correlation) == largest, 0.0))
+    )
+    assert "It is mostly this input" in single
+    assert "apart" not in single
 
 
 def test_the_table_has_data_lengths_safe_lengths_and_inputs():

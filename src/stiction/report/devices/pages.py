@@ -1,7 +1,7 @@
 """Pages of single devices for the report: the answer in words, tables, figures, warnings and terms."""
 
 import base64
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 
@@ -26,7 +26,7 @@ from stiction.report.devices import (
     tables_inference,
     tables_roughness,
 )
-from stiction.report.format import MISSING, UM, UN, humidity_text
+from stiction.report.format import MISSING, UM, UN, airs, humidity_text
 from stiction.report.style import STYLE, png
 from stiction.run.atomic import save_text
 from stiction.stages.beams import pair_warnings
@@ -306,25 +306,13 @@ def _facts_of(section):
         (name, unit), value = KEYS[key], section[key]
         values = value if isinstance(value, list) else [value]
         found[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
-    return found | {"relative humidities": ", ".join(map(humidity_text, section["humidities"]))}
-
-
-def airs(humidities: Iterable[float]) -> str:
-    """Where a device is, for the end of a sentence.
-
-    Examples
-    --------
-    >>> airs([0.0, 0.45, 0.67]), airs([0.67]), airs([0.0])
-    ('in dry air and at relative humidities of 0.45, 0.67', 'at relative humidities of 0.67', 'in dry air')
-    """
-    humid = [f"{humidity:g}" for humidity in humidities if humidity > 0]
-    places = {"in dry air": len(humid) < len(list(humidities)), f"at relative humidities of {', '.join(humid)}": humid}
-    return " and ".join(words for words, is_one in places.items() if is_one)
+    name = "relative humidities" if len(section["humidities"]) > 1 else "relative humidity"
+    return found | {name: ", ".join(map(humidity_text, section["humidities"]))}
 
 
 def _at(humidity):
     """One humidity, for the beginning of a sentence."""
-    return f"At a relative humidity of {humidity:g}" if humidity else "In dry air"
+    return airs([humidity]).capitalize()
 
 
 def described(surface: Mapping) -> str:
@@ -443,7 +431,7 @@ def safe_force_sentences(found: xr.Dataset) -> list[str]:
     For the shares that its patches can bound.
     """
     stated = found.safe_force.sel(part="safe").max("humidity")
-    where = "At all these humidities" if ends(found) else "In dry air"
+    where = "At all these humidities" if found.sizes["humidity"] > 1 else _at(float(found.humidity[0]))
     return [
         f"{where}, a restoring force of {float(force) / UN:.3g} µN leaves at most 1 in "
         f"{1 / float(force.share):g} stuck (95 % confidence)"

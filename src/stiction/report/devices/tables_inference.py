@@ -8,7 +8,7 @@ import xarray as xr
 from stiction.config.cases import DRY
 from stiction.devices import inference
 from stiction.plan.names import by_name
-from stiction.report.format import TO_UM, humidity_text, number, with_error
+from stiction.report.format import TO_UM, airs, humidity_text, number, with_error
 from stiction.report.tables import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.releases import ARC, EITHER, FORCE, MIDDLE, S_SHAPE
 from stiction.stages.test_beams.inference import OWN, SHAPES
@@ -58,9 +58,10 @@ def combinations(found: xr.Dataset) -> list[str]:
                 i for i in np.argsort(-np.abs(correlations)) if abs(correlations[i]) >= NAMED * max(abs(correlations))
             ]
             listed = [f"{_MORE[correlations[i] > 0]} {names[i]} ({correlations[i]:+.2f})" for i in used]
+            apart = "They do not tell these apart" if len(used) > 1 else "It is mostly this input"
             sentences.append(
                 f"The test beams determine one combination of the inputs {1 / remaining:.2g} times better than before: "
-                f"{', '.join(listed)}. They do not tell these apart (in brackets: correlation with the combination)."
+                f"{', '.join(listed)}. {apart} (in brackets: correlation with the combination)."
             )
     return sentences or ["The test beams determine no combination of the inputs twice as well as before."]
 
@@ -144,7 +145,7 @@ def _change(one):
 
 
 def stuck(found: xr.Dataset) -> list[str]:
-    """P(stuck) of the devices before and after the measurement at every humidity, for all that the inputs may be."""
+    """P(stuck) before and after the measurement at every humidity, averaged over the uncertainty of the inputs."""
     shape = SHAPES[min(map(str, found.response.values), key=_WEAKEST.index)]
     chosen = found.sel(shape=shape)
     if "share" in chosen.expected_stuck.dims:
@@ -153,9 +154,9 @@ def stuck(found: xr.Dataset) -> list[str]:
     for one in (chosen.sel(humidity=humidity) for humidity in found.humidity.values):
         size = "at its restoring force" if shape == FORCE else f"of {TO_UM * float(one.safe):.0f} µm, the safe length,"
         sentences.append(
-            f"At a relative humidity of {float(one.humidity):g}, {_percent(one.expected_stuck)} of the devices {size} "
-            f"are expected to stick without the test beams and {_percent(one.updated_stuck)} with them, for all "
-            "that the inputs may be."
+            f"{airs([float(one.humidity)]).capitalize()}, {_percent(one.expected_stuck)} of the devices {size} are "
+            f"expected to stick without the test beams and {_percent(one.updated_stuck)} with them, averaged over the "
+            "uncertainty of the inputs."
         )
     return sentences
 
@@ -169,7 +170,7 @@ def _percent(share):
 
 
 def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
-    """Test beams and the lengths of their devices, before and after the measurement."""
+    """Test beams and the lengths of their devices, by name of the device, before and after the measurement."""
     rows = [row for device, found in datasets.items() for row in _rows(device, found)]
     sentences = [
         f"{device}: {sentence}"

@@ -475,7 +475,7 @@ def _of_shapes(found, name):
 
 
 def _shares(found, sizes, share):
-    """P(stuck) of devices of some sizes, expected before and after the measurement for all that the inputs may be."""
+    """P(stuck) of some sizes before and after the measurement, averaged over the uncertainty of the inputs."""
     shift, before, after = (_of_shapes(found, f"result_{name}") for name in ("shift", "before", "after"))
     stacked = sizes.stack(at=sizes.dims)
     expected = {"expected_stuck": [], "updated_stuck": []}
