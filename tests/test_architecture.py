@@ -212,6 +212,13 @@ def test_public_functions_have_annotations_and_a_docstring():
             assert ast.get_docstring(function), f"{path}: {function.name} has no docstring"
 
 
+def test_sources_have_no_control_characters():
+    """Such as the form feed that a formula gets in place of the backslash of ``\\frac``."""
+    for path in FILES:
+        found = {character for character in path.read_text(encoding="utf-8") if character < " "} - {"\n"}
+        assert not found, f"{path}: {found}"
+
+
 def test_importing_a_folder_runs_no_code():
     # Otherwise importing a module would run code that is not part of the fingerprint of its importer.
     for path in PACKAGE.glob("*/__init__.py"):

@@ -92,9 +92,9 @@ def interfaces(first: Solid, second: Solid, medium: str) -> tuple[tuple[float, f
     that of the coating, :math:`A_{232}`, and that between coating and solid, :math:`(\sqrt{A_{131}} -
     \sqrt{A_{232}})^2`, a distance t below. Equal coatings on equal solids thus have
 
-    .. math:: U(g) = rac{1}{12 \pi} iggl( rac{A_{232}}{D^2}
-              + rac{2 \sqrt{A_{232}} (\sqrt{A_{131}} - \sqrt{A_{232}})}{(D + t)^2}
-              + rac{(\sqrt{A_{131}} - \sqrt{A_{232}})^2}{(D + 2t)^2} iggr), \quad D = D_0 + g
+    .. math:: U(g) = \frac{1}{12 \pi} \biggl( \frac{A_{232}}{D^2}
+              + \frac{2 \sqrt{A_{232}} (\sqrt{A_{131}} - \sqrt{A_{232}})}{(D + t)^2}
+              + \frac{(\sqrt{A_{131}} - \sqrt{A_{232}})^2}{(D + 2t)^2} \biggr), \quad D = D_0 + g
 
     ASSUME: a coating attracts no more than its solid through the same medium, and retardation and repulsion are those
     of one wavelength and one molecular distance. Then all terms attract, and the truth is between a spacer and no

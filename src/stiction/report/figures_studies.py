@@ -100,7 +100,7 @@ def _beside(panel, text, place):
 
 @styled
 def summit_stresses(datasets: Mapping[str, xr.Dataset]) -> Figure:
-    """Figure 16: largest stress of the touching summits."""
+    """Figure 16: largest stress of the touching summits, by pair."""
     figure, axes, lines = columns_of_panels(len(datasets), 1, _width, 2.6, sharey=True)
     axes = axes[:, 0]
     onsets = [TO_GPA * ONSET * float(found.hardness) for found in datasets.values()]

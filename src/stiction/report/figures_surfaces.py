@@ -38,7 +38,10 @@ _DECADES = 6
 
 @styled
 def height_densities(heights: Mapping[str, xr.Dataset]) -> Figure:
-    """Figure 7: maximum-entropy density of the heights and the Gaussian one, linear above and logarithmic below."""
+    """Figure 7: maximum-entropy density of the heights and the Gaussian one, linear above and logarithmic below.
+
+    The datasets are by surface, each in a column.
+    """
     figure, columns, lines = columns_of_panels(len(heights), 2, _width, 3.4, sharex="col")
     for column, dataset in zip(columns, heights.values(), strict=True):
         for panel in column:
@@ -70,7 +73,7 @@ def _width(columns):
 
 @styled
 def elevation_maps(characters: Mapping[str, xr.Dataset]) -> Figure:
-    """Figure 8: a piece of every simulated surface, seen from above."""
+    """Figure 8: a piece of every simulated surface, by its name, seen from above."""
     columns = min(2, len(characters))
     rows = -(-len(characters) // columns)
     figure, axes = panels(rows, columns, (SINGLE * columns, 2.9 * rows))
@@ -87,7 +90,10 @@ def elevation_maps(characters: Mapping[str, xr.Dataset]) -> Figure:
 
 @styled
 def profiles(name: str, characters: Mapping[str, xr.Dataset]) -> Figure:
-    """Figure 9: one profile of a Gaussian and of a non-Gaussian surface made from the same random numbers."""
+    """Figure 9: one profile of a Gaussian and of a non-Gaussian surface made from the same random numbers.
+
+    ``name`` is that of the surface; its datasets are by model, G and NG.
+    """
     figure, axes = panels(2, 1, (SINGLE, 2.8), sharex=True, sharey=True)
     for (panel,), model in zip(axes, SURFACE_MODELS, strict=True):
         dataset = characters[model]
@@ -109,7 +115,10 @@ _CLOSED = {"color": "black", "linestyle": "--", "linewidth": 0.8, "label": "clos
 
 @styled
 def spectra(surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Dataset]]) -> Figure:
-    """Figure 10: target spectrum, closed form and iterative algorithm; ratio to the target; error by iteration."""
+    """Figure 10: target spectrum, closed form and iterative algorithm; ratio to the target; error by iteration.
+
+    Each surface has its datasets of stages heights, spectrum, character (non-Gaussian) and iteration, in this order.
+    """
     figure, columns, lines = columns_of_panels(len(surfaces), 3, _width, 5.4, height_ratios=[1.3, 1, 1])
     for column, datasets in zip(columns, surfaces.values(), strict=True):
         _spectra(column[0], *datasets)
@@ -176,7 +185,10 @@ def _misfits(panel, iteration):
 
 @styled
 def summits(characters: Mapping[str, Mapping[str, xr.Dataset]]) -> Figure:
-    """Figure 11: joint density of heights and radii of summits, Gaussian on the left, non-Gaussian on the right."""
+    """Figure 11: joint density of heights and radii of summits, Gaussian on the left, non-Gaussian on the right.
+
+    The datasets are by surface, and for each of them by model, G and NG.
+    """
     figure, axes = panels(len(characters), 2, (1.4 * SINGLE, 2.2 * len(characters)), sharex="row", sharey="row")
     for row, models in zip(axes, characters.values(), strict=True):
         points = [_summits(models[model]) for model in SURFACE_MODELS]

@@ -212,6 +212,7 @@ def resampling(
     """Crack lengths of model NG under laws drawn from the chaos model and from the samples themselves.
 
     Both use the same pairs of surfaces, so that the standard error of their difference is that of the beams alone.
+    Datasets are by pair and humidity.
     """
     caption = (
         "Effect of the chaos model on the crack length, model NG: mean under laws drawn from it, and under laws of the "

@@ -44,7 +44,7 @@ def variant_label(name: str) -> str:
 
 
 def sensitivity(datasets: Mapping[str, xr.Dataset], pair: str, published: pd.DataFrame) -> Table:
-    """Fig. 13 in numbers."""
+    """Fig. 13 of a pair in numbers, beside the published slopes of the mean; datasets by shifted moment."""
     frame = pd.DataFrame([row for moment in datasets for row in _slopes(datasets[moment], pair, moment, published)])
     caption = (
         "Fig. 13: normalised sensitivity (|x|/y) dy/dx of mean and standard deviation y of the meso-scale adhesion "

@@ -117,7 +117,10 @@ def _force_over_humidity(panel, dataset):
 
 @styled
 def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
-    """Tornado of a device: effect of each measurement and their total; beside it, choices of the model."""
+    """Tornado of a device: effect of each measurement and their total; beside it, choices of the model.
+
+    The budgets are by device, humidity and, for those of tips, ``tip``.
+    """
     parts = {}
     for (_, humidity, *_), dataset in datasets.items():
         parts.setdefault(response_text(dataset), {})[humidity] = dataset

@@ -115,27 +115,27 @@ def _axes(panel, found):
             plain_log(axis)
 
 
+def _stage(name, shows, draw, devices):
+    """Stage that draws a figure of each of some devices of a plan."""
+    return figure_stage(
+        f"figure_{name}",
+        f"{name}_{{device}}",
+        shows,
+        "Devices",
+        caption=name,
+        inputs=lambda plan, at: {"roughness": f"devices/roughness/{at.device}"},
+        compute=lambda data, at, settings: draw(data["roughness"]),
+        jobs=lambda plan: [{"device": device} for device in devices(plan)],
+        targets=("devices",),
+    )
+
+
 STAGES = (
-    figure_stage(
-        "figure_roughness",
-        "roughness_{device}",
-        "how rough the surfaces of {device} must be",
-        "Devices",
-        caption="roughness",
-        inputs=lambda plan, at: {"roughness": f"devices/roughness/{at.device}"},
-        compute=lambda data, at, settings: roughness(data["roughness"]),
-        jobs=lambda plan: [{"device": name} for name in plan.devices.roughened],
-        targets=("devices",),
-    ),
-    figure_stage(
-        "figure_roughness_map",
-        "roughness_map_{device}",
+    _stage("roughness", "how rough the surfaces of {device} must be", roughness, lambda plan: plan.devices.roughened),
+    _stage(
+        "roughness_map",
         "how rough the surfaces of {device} must be, over two quantities",
-        "Devices",
-        caption="roughness_map",
-        inputs=lambda plan, at: {"roughness": f"devices/roughness/{at.device}"},
-        compute=lambda data, at, settings: roughness_map(data["roughness"]),
-        jobs=lambda plan: [{"device": name} for name in plan.devices.mapped],
-        targets=("devices",),
+        roughness_map,
+        lambda plan: plan.devices.mapped,
     ),
 )

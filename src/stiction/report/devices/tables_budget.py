@@ -163,6 +163,7 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
     """Uncertainty of every device: effect of each measurement, total, scatter, choices of the model.
 
     The numbers hold every input with its slope; the text is by measurement, with a sentence on what to measure better.
+    The budgets are by device, humidity and, for those of tips, ``tip``; the errors of the model by device.
     """
     frame = pd.DataFrame(
         [

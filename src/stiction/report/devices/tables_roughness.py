@@ -187,7 +187,10 @@ def _required_unit(found):
 
 
 def roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
-    """Lengths or forces over the roughness, one row per device, humidity, end state and roughness."""
+    """Lengths or forces of devices over the roughness: a row per device, humidity, end state and roughness.
+
+    The datasets are by name of the device.
+    """
     rows = [row for device, found in datasets.items() for curve in curves_of(found) for row in _points(device, curve)]
     sentences = [f"{device}: {sentence}" for device, found in datasets.items() for sentence in answers(found)]
     of_maps = any("other" in row for row in rows)

@@ -24,7 +24,10 @@ def scans(
     spectra: Mapping[str, xr.Dataset],
     maps: Mapping[str, Sequence[xr.Dataset]],
 ) -> Table:
-    """Scans of the measured surfaces, one row per file."""
+    """Scans of the measured surfaces, one row per file.
+
+    All datasets are by surface; the maps of a surface are in the order of its files in the configuration.
+    """
     limits = {
         name: [*stage_estimate.flags(estimate), *measured_spectrum.flags(spectra[name])]
         for name, estimate in estimates.items()
@@ -68,7 +71,10 @@ _SCANS = {name: (str, name) for name in ("surface", "file", "channel")} | {
 
 
 def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
-    """Standard errors due to finite scans: a row per pair, humidity and surface, and one for all surfaces."""
+    """Standard errors due to finite scans: a row per pair, humidity and surface, and one for all surfaces.
+
+    The studies are by pair.
+    """
     rows = [
         row for pair, study in studies.items() for k in range(study.sizes["humidity"]) for row in _rows(pair, study, k)
     ]

@@ -83,8 +83,8 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Setting
     contact = contact.assign(roughness=float(value_of(changed, settings.quantity)))
     if not settings.other:
         return contact
-    both = {"other": changed, "other_given": given}
-    return contact.assign({name: float(value_of(one, settings.other)) for name, one in both.items()})
+    others = {"other": changed, "other_given": given}
+    return contact.assign({name: float(value_of(surface, settings.other)) for name, surface in others.items()})
 
 
 def roughness_of(contact: xr.Dataset) -> float:
