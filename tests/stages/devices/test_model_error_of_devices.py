@@ -85,9 +85,17 @@ def test_a_page_says_by_how_much_and_which_side_is_safe():
     [
         (S_SHAPE, [1.1, 1.1], "is on the safe side"),
         (S_SHAPE, [1.1, 0.985], "is on the safe side"),  # within two standard errors
-        (S_SHAPE, [1.1, 0.9], "is not on the safe side of it at 0.67: shorten the lengths by 10 %"),
+        (
+            S_SHAPE,
+            [1.1, 0.9],
+            "is not on the safe side of it at a relative humidity of 0.67: shorten the lengths by 10 %",
+        ),
         (FORCE, [0.7, 0.9], "is on the safe side"),
-        (FORCE, [1.2, 0.9], "is not on the safe side of it at 0.44: raise the restoring force by 20 %"),
+        (
+            FORCE,
+            [1.2, 0.9],
+            "is not on the safe side of it at a relative humidity of 0.44: raise the restoring force by 20 %",
+        ),
     ],
 )
 def test_longer_beams_and_smaller_forces_are_on_the_safe_side(shape, factor, said):
@@ -101,11 +109,13 @@ def test_sentences_say_what_full_contact_leaves_out_and_whether_it_has_been_appl
     )
     assert "which is in neither model" in plain
     assert "that this prediction contains" in across
-    assert "It is not known at 0.67." in plain
+    assert "It is not known at a relative humidity of 0.67." in plain
     assert "has changed the lengths" in applied
     assert "safe side" not in applied
     unknown = model_errors.sentences("D", {"D": error((FORCE,), [np.nan, np.nan])})
-    assert "is not known at these humidities" in unknown[0]
+    assert "is not known at relative humidities of 0.44, 0.67, beyond the humidities of the pair." in unknown[0]
+    dry = error((FORCE,), [np.nan, 1.1]).assign_coords(humidity=[0.0, 0.67])
+    assert "It is not known in dry air." in model_errors.sentences("D", {"D": dry})
 
 
 # Pairs in dry air alone

@@ -8,7 +8,7 @@ import xarray as xr
 
 from stiction.plan.names import by_name
 from stiction.report.beside import change
-from stiction.report.format import humidity_text, signed
+from stiction.report.format import airs, signed
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import EITHER, FORCE
 
@@ -34,19 +34,22 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
     if errors is None:
         return []
     if device not in errors:
-        return ["The error of the model is not known: full elastic contact needs a humidity of the pair above dry air."]
+        return [
+            "The error of the model is not known: full elastic contact needs a humidity of the pair at which water "
+            "condenses."
+        ]
     error = errors[device]
     shape = str(error["shape"].values[0])
     what = "pull-off force" if shape == FORCE else f"lengths held by the {END_STATES[shape].by}"
     rows = {float(humidity): of_device(errors, device, humidity, shape) for humidity in error.humidity.values}
     known = {humidity: row for humidity, row in rows.items() if np.isfinite(row["model_error_percent"])}
     if not known:
-        return [f"The model's error in the {what} is not known at these humidities, which are not those of the pair."]
-    by = [f"{_percent(row)} at a relative humidity of {humidity:g}" for humidity, row in known.items()]
+        return [f"The model's error in the {what} is not known {airs(rows)}, beyond the humidities of the pair."]
+    by = [f"{_percent(row)} {airs([humidity])}" for humidity, row in known.items()]
     does = "has changed" if error.applied else "would change"
     said = [f"Full elastic contact of the surfaces {does} the {what} by {', '.join(by)}."]
     if len(known) < len(rows):
-        said.append(f"It is not known at {_listed(humidity for humidity in rows if humidity not in known)}.")
+        said.append(f"It is not known {airs([humidity for humidity in rows if humidity not in known])}.")
     if EITHER in error["shape"]:
         said.append("It is not known for what the tip holds.")
     said += [] if error.applied else [_safe_side(known, -1 if shape == FORCE else 1)]
@@ -72,11 +75,7 @@ def _safe_side(known, sign):
     if not unsafe:
         return "What is stated is on the safe side of it, or does not differ by more than twice its standard error."
     mend = "shorten the lengths" if sign > 0 else "raise the restoring force"
-    return f"What is stated is not on the safe side of it at {_listed(unsafe)}: {mend} by {max(unsafe.values()):.2g} %."
-
-
-def _listed(humidities):
-    return ", ".join(map(humidity_text, humidities))
+    return f"What is stated is not on the safe side of it {airs(unsafe)}: {mend} by {max(unsafe.values()):.2g} %."
 
 
 def of_devices(plan: Any, *devices: str) -> dict[str, Any]:
