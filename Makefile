@@ -11,7 +11,7 @@
 #   make model-error    Table III under full elastic contact, after make paper (3 minutes on two cores; takes CONFIG=... too)
 #   make sealed     devices in dry nitrogen, bare and coated (3 minutes on two cores), in runs/sealed/results/
 #   make attraction     Table III with attraction across gaps (3 minutes on two cores), in runs/attraction/results/
-#   make asperities     Table III with other readings of an asperity, after make paper (10 minutes on two cores)
+#   make asperities     Table III with other readings of an asperity, after make paper (6 minutes on two cores)
 #   make pressing       how much more a pair sticks after its surfaces were pressed (2 minutes on two cores)
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
