@@ -127,7 +127,7 @@ class EquivalentSurface:
         point of a grid, by about the depth of a cap of one cell. An island of one point that just touches is a summit,
         and so is an asperity that does not touch yet; for large islands s is negligible.
         ASSUME: below the rms of the heights, where islands are about to become one, they keep their spheres from there.
-        ASSUME: fitted by least squares, an island without a fit (see `find_islands`) has the sphere of its area.
+        ASSUME: fitted by least squares, an island without a fit has the sphere of its area.
         """
         summits, grid, rms = self.summits(heights), self.distances, float(np.hypot(self.beam.rms, self.substrate.rms))
         stride = max(round(rms / (LEVELS_PER_RMS * grid.step)), 1)

@@ -71,7 +71,7 @@ class Plan:
         return self.config["run"]["pairs"]
 
     def sides(self, pair: str) -> list[str]:
-        """As `Materials.sides`."""
+        """As `stiction.plan.materials.Materials.sides`."""
         return self.materials.sides(pair)
 
     def contact(self, case: Case) -> PairInAir:
