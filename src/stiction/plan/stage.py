@@ -83,6 +83,28 @@ def _once(plan) -> list[dict]:
     return [{}] if plan.pairs else []
 
 
+def without_wildcards(file: str) -> str:
+    """Name of a file without its wildcards.
+
+    Examples
+    --------
+    >>> without_wildcards("budget_{device}")
+    'budget'
+    """
+    return re.sub(r"_?\{\w+\}", "", file)
+
+
+def named(kind: str, file: str) -> str:
+    """Name of the stage of a ``table`` or ``figure`` with a file of this name.
+
+    Examples
+    --------
+    >>> named("figure", "figure_05"), named("figure", "budget_{device}")
+    ('figure_05', 'figure_budget')
+    """
+    return f"{kind}_{without_wildcards(file).removeprefix(f'{kind}_')}"
+
+
 def titled(name: str, shows: str) -> str:
     """Title of a table or figure in the report.
 

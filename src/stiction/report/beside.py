@@ -13,12 +13,8 @@ from stiction.report.format import MISSING, signed
 def change(error: xr.Dataset | None, factor: str = "length_factor") -> dict[str, Any]:
     """Numbers of a row: by how much full contact changes a prediction, and whether this is interpolated.
 
-    Parameters
-    ----------
-    error : Dataset or None
-        One humidity of a dataset of stage pair_model_error or device_model_error; ``None`` if the error is not known.
-    factor : str
-        Variable of the factor of the prediction.
+    The error is one humidity of a dataset of stage pair_model_error or device_model_error, ``None`` if it is not known;
+    ``factor`` is the variable with the factor of the prediction.
     """
     if error is None:
         return {"model_error_percent": np.nan, "model_error_se_percent": np.nan, "interpolated": False}

@@ -132,17 +132,9 @@ def heights_are_as_measured(case: str, heights: xr.Dataset) -> Check:
 def moments_meet_targets(
     case: str, character: xr.Dataset, targets: Mapping[str, float], defect: float
 ) -> Iterator[Check]:
-    """Rms, skewness and kurtosis of drawn surfaces, one check each.
+    """Rms, skewness and kurtosis of drawn surfaces, one check each: dataset of stage character, targets by their keys.
 
-    Parameters
-    ----------
-    case : str
-    character : xarray.Dataset
-        Stage character.
-    targets : dict
-        rms_nm, skewness and kurtosis.
-    defect : float
-        Share of the variance that no Gaussian field provides within the band of the spectrum [-].
+    The ``defect`` is the share of the variance that no Gaussian field provides within the band of the spectrum [-].
     """
     values, errors = surface_statistics(character)
     # The error of few strips is itself uncertain: allow a deviation as improbable as 4 standard errors of many strips.
@@ -232,19 +224,8 @@ def few_draws_rejected(case: str, chaos: xr.Dataset, forces: xr.Dataset, limit: 
 
 
 def beams_are_in_equilibrium(case: str, outcomes: xr.Dataset, limit: float, beam: Beam, strip: float) -> Check:
-    """Every beam is in equilibrium.
-
-    Parameters
-    ----------
-    case
-    outcomes
-        Stage beams.
-    limit
-        Largest pull-off pressure f_limit [Pa].
-    beam
-        Nominal dimensions.
-    strip
-        Length of a strip [m].
+    """Every beam is in equilibrium: dataset of stage beams, largest pull-off pressure f_limit [Pa], length of a strip
+    [m].
     """
     allowed = allowed_imbalance(beam, limit * beam.width * strip)
     unbalanced = int(np.sum(~(outcomes.imbalance.values <= allowed)))
@@ -262,17 +243,8 @@ def crack_is_resolved(
     strongest strip; it is at least that of a beam too stiff to follow single strips. There is no check if fewer than
     two beams end S-shaped, or if the beam on uniform ground does not.
 
-    Parameters
-    ----------
-    case
-    outcomes, forces
-        Stages beams and forces.
-    beam
-        Nominal dimensions, and the elements in use.
-    strip
-        Length of a strip [m].
-    accuracy
-        Allowed relative error of a crack length [-].
+    The datasets are those of stages beams and forces. The beam has the elements in use; length of a strip [m], allowed
+    relative error of a crack length [-].
     """
     stuck = stuck_energies(outcomes)
     if len(stuck) < 2:
@@ -310,19 +282,10 @@ def of_surfaces(
     targets: Mapping[str, Mapping],
     defects: Mapping[str, float],
 ) -> Iterator[Check]:
-    """All checks of drawn surfaces.
+    """All checks of drawn surfaces: datasets of stages heights, by surface, and character, by surface and model.
 
-    Parameters
-    ----------
-    heights : dict
-        Surface to the dataset of stage heights.
-    characters : dict
-        (surface, model) to the dataset of stage character.
-    targets : dict
-        Surface to rms_nm, skewness and kurtosis as given; feasible ones replace the last two. Surfaces described by
-        scans have the rms of their heights.
-    defects : dict
-        Surface to the share of the variance that no Gaussian field provides.
+    The targets by surface are rms_nm, skewness and kurtosis as given, of which feasible ones replace the last two;
+    surfaces described by scans have the rms of their heights. The defects are as in `moments_meet_targets`.
     """
     for surface, found in heights.items():
         yield heights_are_as_measured(surface, found)
@@ -342,15 +305,7 @@ def of_identifications(identifications: Mapping[str, xr.Dataset]) -> Iterator[Ch
 def of_force_laws(
     forces: Mapping[Outcome, xr.Dataset], chaoses: Mapping[Outcome, xr.Dataset], flooded: Mapping[str, Flooded]
 ) -> Iterator[Check]:
-    """All checks of single cases: samples, chaos model and rejection.
-
-    Parameters
-    ----------
-    forces, chaoses : dict
-        (pair, humidity, model) to the datasets of stages forces and chaos.
-    flooded : dict
-        Pair to what bounds its energies.
-    """
+    """All checks of single cases: samples, chaos model and rejection; ``flooded`` bounds the energies of each pair."""
     for key, samples in forces.items():
         case, chaos = _case(*key), chaoses[key]
         yield vectors_are_possible(case, samples)
@@ -362,12 +317,7 @@ def of_force_laws(
 def of_trends(forces: Mapping[Outcome, xr.Dataset], skewed: Collection[str]) -> Iterator[Check]:
     """All comparisons between cases; no trend leads to dry air.
 
-    Parameters
-    ----------
-    forces : dict
-        (pair, humidity, model) to the dataset of stage forces.
-    skewed : collection of str
-        Pairs of the paper of which no surface is skewed positively and at least one negatively.
+    Of the ``skewed`` pairs, which are the paper's, no surface is skewed positively and at least one negatively.
     """
     for pair, model in sorted({(pair, model) for pair, _, model in forces}):
         rising = sorted(humidity for p, humidity, m in forces if (p, m) == (pair, model) and humidity > 0)
@@ -391,18 +341,9 @@ def of_beams(
     strip: float,
     on_mesh_of_paper: Collection[str],
 ) -> Iterator[Check]:
-    """Equilibrium, mesh and energy of the beams of every case.
+    """Equilibrium, mesh and energy of the beams of every case; model GEO shares the forces of NG.
 
-    Parameters
-    ----------
-    outcomes, forces : dict
-        (pair, humidity, model) to the datasets of stages beams and forces; model GEO shares the forces of NG.
-    beams : dict
-        Pair to its nominal beam.
-    strip : float
-        Length of a strip [m].
-    on_mesh_of_paper : collection of str
-        Names of the cases whose beams have the mesh of the paper.
+    The nominal beams are by pair; length of a strip [m], names of the cases whose beams have the mesh of the paper.
     """
     for (pair, humidity, model), released in outcomes.items():
         case, laws = _case(pair, humidity, model), forces[pair, humidity, surface_model(model)]

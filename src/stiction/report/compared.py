@@ -48,13 +48,7 @@ SOURCES = (
 def rows(table: pd.DataFrame, source: Source, ends: Mapping[str, float]) -> pd.DataFrame:
     """Rows of all copies under the names of their originals, with the compared value; values increase.
 
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        Numbers of a table of the results.
-    source : Source
-    ends : dict
-        End of the names of copies to their value, see `stiction.config.merging.values`.
+    ``ends`` maps the end of the names of copies to their value, see `stiction.config.merging.values`.
     """
     table = table.dropna(subset="relative_humidity")  # a stopper also has its worst values in any air
     if "estimate_se_beams_um" in table:
@@ -125,8 +119,8 @@ def _stages(source):
         return lambda data, at, settings: show(pd.read_csv(data["table"]), source, settings["key"], settings["ends"])
 
     return (
-        table_stage(f"table_{name}", name, shows, compute=made(compared), **declared),
-        figure_stage(f"figure_{name}", name, shows, "Comparison", caption="compared", compute=made(drawn), **declared),
+        table_stage(name, shows, compute=made(compared), **declared),
+        figure_stage(name, shows, "Comparison", caption="compared", compute=made(drawn), **declared),
     )
 
 

@@ -301,7 +301,6 @@ _CATEGORY = "Beams (Secs. IV and V)"
 STAGES = (
     figure_stage(
         "figure_14",
-        "figure_14",
         "shapes and crack lengths of beams",
         _CATEGORY,
         inputs=lambda plan, at: {"beams": f"beams/{plan.figure_case}_NG"},
@@ -309,7 +308,6 @@ STAGES = (
         targets=("figures",),
     ),
     figure_stage(
-        "figure_15",
         "figure_15",
         "adhesion energy over the relative humidity",
         _CATEGORY,

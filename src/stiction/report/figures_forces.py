@@ -37,13 +37,7 @@ def typical(fit: xr.Dataset, kept: int) -> int:
 
 @styled
 def fitted_curve(forces: xr.Dataset, fit: xr.Dataset) -> Figure:
-    """Figure 5: a typical force curve, its law by Eq. (12) and the four components of v, Eq. (11).
-
-    Parameters
-    ----------
-    forces, fit : Dataset
-        Stages forces and fit of one case.
-    """
+    """Figure 5: a typical force curve of a case, its law by Eq. (12) and the four components of v, Eq. (11)."""
     k = typical(fit, forces.sizes["curve"])
     samples, limit = stage_forces.vectors_of_curves(forces)
     vector = samples[k]
@@ -90,10 +84,7 @@ def _components(panel, vector, limit):
 def force_curves(pairs: Mapping[str, tuple[xr.Dataset, xr.Dataset, np.ndarray]]) -> Figure:
     """Figure 12: force curves of Gaussian and of non-Gaussian surfaces, and those that the chaos model generates.
 
-    Parameters
-    ----------
-    pairs : dict
-        Pair to the datasets of stage forces for models G and NG, and the generated laws (n, 4).
+    Each pair has its datasets of stage forces for models G and NG, and the generated laws (n, 4).
     """
     figure, axes = panels(len(pairs), 3, (DOUBLE, 1.9 * len(pairs) + 0.2), sharex="row", sharey="row")
     for row, (gaussian, other, laws) in zip(axes, pairs.values(), strict=True):
@@ -158,7 +149,6 @@ _CATEGORY = "Contact forces (Sec. III)"
 STAGES = (
     figure_stage(
         "figure_05",
-        "figure_05",
         "a force curve, its force law and its parameters",
         _CATEGORY,
         inputs=lambda plan, at: {stage: f"{stage}/{plan.figure_case}_NG" for stage in ("forces", "fit")},
@@ -166,7 +156,6 @@ STAGES = (
         targets=("figures",),
     ),
     figure_stage(
-        "figure_12",
         "figure_12",
         "computed and generated force curves",
         _CATEGORY,

@@ -41,20 +41,10 @@ def overview(
     released: Mapping[tuple[float, str], xr.Dataset],
     published: pd.DataFrame,
 ) -> Figure:
-    """From surface to crack length: (a) surface, (b) force curves, (c) shapes of beams, (d) crack lengths.
+    """From surface to crack length: (a) surface, (b) force curves, (c) shapes of beams, (d) crack lengths of a pair.
 
-    Parameters
-    ----------
-    pair : str
-        The pair of panel (d).
-    character
-        Stage character of a simulated surface.
-    forces, beams
-        Stages forces and beams of one case.
-    released : dict
-        (humidity, model) to the dataset of stage beams of the pair; models NG, GEO or both.
-    published
-        Table III as published, rows of the paper's own pairs.
+    ``released`` has the datasets of stage beams of the pair by humidity and model, NG, GEO or both; the others are of
+    one surface or case. Table III is as published, rows of the paper's own pairs.
     """
     figure, (axes,) = panels(1, 4, _SIZE, width_ratios=(1.5, 1, 1, 1.12))
     surface, curves, shapes, lengths = axes
@@ -147,7 +137,6 @@ def _lengths(panel, released, published):
 
 STAGES = (
     figure_stage(
-        "figure_overview",
         "overview",
         "from surfaces to crack lengths",
         "Beams (Secs. IV and V)",

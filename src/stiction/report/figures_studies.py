@@ -59,14 +59,9 @@ _DEVIATIONS = "change of $l_s$ against base", "deviation of $l_s$ from published
 
 @styled
 def sensitivities(datasets: Mapping[str, xr.Dataset], published: Mapping[tuple[str, float], float]) -> Figure:
-    """Figure 13: sensitivity of the adhesion energy to the moments of a surface.
+    """Figure 13: sensitivity of the adhesion energy to the moments of a surface, by moment.
 
-    Parameters
-    ----------
-    datasets : dict
-        Moment to the dataset of study sensitivity.
-    published : dict
-        (moment, humidity) to the published slope of the mean, if there is one for this pair.
+    The published slopes of the mean are by moment and humidity, if there are some for this pair.
     """
     figure, (axes,) = panels(1, 2, (DOUBLE, 2.6), sharex=True)
     statistics = ("mean", "standard deviation")
@@ -155,14 +150,8 @@ def sample_convergence(
 ) -> Figure:
     """Figure 17: convergence in the number of samples and of coordinates.
 
-    Parameters
-    ----------
-    sizes : Dataset
-        Study sample_sizes.
-    dimension_errors : dict
-        (pair, humidity) to Err^DR for 1 ... 4 coordinates [-].
-    tolerance : float
-        Largest Err^DR allowed in the model [-].
+    ``dimension_errors`` are Err^DR for 1 ... 4 coordinates by pair and humidity, and ``tolerance`` the largest one that
+    the model allows [-].
     """
     figure, (axes,) = panels(1, 3, (DOUBLE, 2.4), width_ratios=(1.3, 1, 1))
     _densities(axes[0], sizes)
@@ -222,13 +211,7 @@ def _dimension_errors(panel, dimension_errors):
 
 @styled
 def order_convergence(orders: xr.Dataset) -> Figure:
-    """Figure 18: marginals of the chaos model for polynomials of increasing order.
-
-    Parameters
-    ----------
-    orders : Dataset
-        Study orders.
-    """
+    """Figure 18: marginals of the chaos model for polynomials of increasing order."""
     etas = orders.eta.values[:3]
     lines = len(etas) // 2 + 1
     figure, axes = panels(lines, 2, (DOUBLE, 2.2 * lines))
@@ -270,13 +253,7 @@ def _order_distances(panel, orders):
 
 @styled
 def mesh_convergence(mesh: xr.Dataset, correlation: xr.Dataset) -> Figure:
-    """Figure 19: law of the ground, convergence of the mesh, autocorrelation of the surfaces.
-
-    Parameters
-    ----------
-    mesh, correlation : Dataset
-        Studies of these names.
-    """
+    """Figure 19: law of the ground, convergence of the mesh, autocorrelation of the surfaces."""
     figure, (axes,) = panels(1, 3, (DOUBLE, 2.9), width_ratios=(1, 1.4, 1))
     _ground(axes[0], mesh)
     _meshes(axes[1], mesh)
@@ -347,14 +324,8 @@ def _small_differences(panel, excess, lengths):
 def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataFrame) -> Figure:
     """Crack lengths under several variants of the model, compared with the base, the paper and what was measured.
 
-    More choices than there are colours continue in further panels below, each group of choices with its legend.
-
-    Parameters
-    ----------
-    datasets : dict
-        (pair, variant) to the dataset of study variants; every pair has every variant.
-    published : pandas.DataFrame
-        Table III as published, rows of the paper's own pairs.
+    More choices than there are colours continue in further panels below, each group of choices with its legend. The
+    datasets are by pair and variant, and every pair has every variant; Table III has the rows of the paper's own pairs.
     """
     pairs, names = (list(dict.fromkeys(parts)) for parts in zip(*datasets, strict=True))
     count = 2 if published.pair.isin(pairs).any() else 1
@@ -470,7 +441,6 @@ def _variants(data, _at, settings):
 def _study(name, shows, **declared):
     """Figure of a study."""
     return figure_stage(
-        name if name.startswith("figure") else f"figure_{name}",
         name,
         shows,
         "Sensitivity, appendices, model choices",

@@ -225,10 +225,9 @@ def _of_surfaces(data):
     return {name: tuple(data[stage][name] for stage in data if stage != "style") for name in data["heights"]}
 
 
-def _figure_11(name, file, shows, surfaces):
+def _figure_11(file, shows, surfaces):
     """Figure 11 of some surfaces."""
     return figure_stage(
-        name,
         file,
         shows,
         _CATEGORY,
@@ -249,7 +248,6 @@ _CATEGORY = "Surfaces (Sec. II)"
 STAGES = (
     figure_stage(
         "figure_07",
-        "figure_07",
         "densities of the heights",
         _CATEGORY,
         inputs=lambda plan, at: {"heights": by_name("heights", plan.surfaces)},
@@ -258,7 +256,6 @@ STAGES = (
     ),
     figure_stage(
         "figure_08",
-        "figure_08",
         "simulated surfaces",
         _CATEGORY,
         inputs=lambda plan, at: {"characters": by_name("character", plan.surfaces, "_NG")},
@@ -266,7 +263,6 @@ STAGES = (
         targets=("figures",),
     ),
     figure_stage(
-        "figure_09",
         "figure_09",
         "Gaussian and non-Gaussian profile",
         _CATEGORY,
@@ -278,7 +274,6 @@ STAGES = (
         targets=("figures",),
     ),
     figure_stage(
-        "figure_10",
         "figure_10",
         "spectra of simulated surfaces",
         _CATEGORY,
@@ -292,9 +287,8 @@ STAGES = (
         study="iteration",
         targets=("figures",),
     ),
-    _figure_11("figure_11", "figure_11", "heights and radii of summits", lambda plan: [plan.figure_surface]),
+    _figure_11("figure_11", "heights and radii of summits", lambda plan: [plan.figure_surface]),
     _figure_11(
-        "figure_11_supplement",
         "figure_11_supplement",
         "heights and radii of summits, other surfaces",
         lambda plan: plan.other_surfaces,

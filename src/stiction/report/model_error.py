@@ -159,10 +159,9 @@ def _panels(column, rows):
     humidity_axis(column[0])
 
 
-def _stage(kind, name, shows, draw, **declared):
+def _stage(kind, shows, draw, **declared):
     """Table or figure of the error of the model."""
     return kind(
-        name,
         "model_error",
         shows,
         inputs=lambda plan, at: {
@@ -185,10 +184,9 @@ def _stage(kind, name, shows, draw, **declared):
 
 
 STAGES = (
-    _stage(table_stage, "table_model_error", "Table III under full elastic contact", table),
+    _stage(table_stage, "Table III under full elastic contact", table),
     _stage(
         figure_stage,
-        "figure_model_error",
         "crack lengths under full elastic contact",
         figure,
         category="Sensitivity, appendices, model choices",

@@ -23,7 +23,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from stiction.config.cases import DRY
-from stiction.plan.stage import File, Shown, Stage, titled
+from stiction.plan.stage import File, Shown, Stage, named, titled, without_wildcards
 from stiction.run.atomic import save_bytes
 
 STYLE = Path(__file__).with_name("stiction.mplstyle")
@@ -150,12 +150,7 @@ def _columns(part, count, rows, shared):
 def legends(figure: Figure, options: Mapping[Axes, dict], most: int = 6) -> None:
     """A legend in each panel with at most ``most`` curves, and one below the figure for the curves of all other panels.
 
-    Parameters
-    ----------
-    figure : Figure
-    options : dict
-        Panel to the options of its legend.
-    most : int
+    Panels come with the options of their legends.
     """
     crowded = [panel for panel in options if len(handles(panel)[0]) > most]
     for panel, chosen in options.items():
@@ -282,15 +277,16 @@ def save(figure: Figure, *paths: str | Path) -> None:
 
 
 def figure_stage(
-    name: str, file: str, shows: str, category: str, inputs: Callable, caption: str | None = None, **declared: Any
+    file: str, shows: str, category: str, inputs: Callable, name: str = "", caption: str = "", **declared: Any
 ) -> Stage:
     """Stage that draws a figure and writes it as PDF and PNG; ``shows`` ends its title in the report."""
+    caption = caption or without_wildcards(file)
     return Stage(
-        name=name,
+        name=name or named("figure", file),
         files={key: f"figures/{file}.{key}" for key in ("pdf", "png")},
         inputs=lambda plan, at: {**inputs(plan, at), "style": File(STYLE)},
         save=lambda figure, paths: save(figure, *paths.values()),
-        shown=Shown(file="png", title=titled(file, shows), category=category, caption=caption or file),
+        shown=Shown(file="png", title=titled(file, shows), category=category, caption=caption),
         message=f"{titled(file, shows)}.",
         **declared,
     )

@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from stiction.plan.stage import Shown, Stage, titled
+from stiction.plan.stage import Shown, Stage, named, titled
 from stiction.report.format import humidity_text, number
 from stiction.run.atomic import save_text
 
@@ -99,8 +99,9 @@ def save(table: Table, paths: Mapping[str, str]) -> None:
         save_text(getattr(table, key), path)
 
 
-def table_stage(name: str, file: str, shows: str, **declared: Any) -> Stage:
+def table_stage(file: str, shows: str, name: str = "", **declared: Any) -> Stage:
     """Stage that makes a `Table` and writes it into files of a name; ``shows`` ends its title in the report."""
     files = {key: f"tables/{file}.{end}" for key, end in (("csv", "csv"), ("markdown", "md"), ("html", "html"))}
     shown = Shown(file="html", title=titled(file, shows), category="Tables")
-    return Stage(name=name, files=files, save=save, shown=shown, message=f"{titled(file, shows)}.", **declared)
+    name, message = name or named("table", file), f"{titled(file, shows)}."
+    return Stage(name=name, files=files, save=save, shown=shown, message=message, **declared)

@@ -37,20 +37,11 @@ def table_3(
     warnings: Sequence[str] = (),
     errors: Mapping[str, xr.Dataset] | None = None,
 ) -> Table:
-    """Table III: crack lengths and adhesion energies of released beams.
+    """Table III: crack lengths and adhesion energies of released beams; beams of model GEO have the forces of NG.
 
-    Parameters
-    ----------
-    beams, forces : dict
-        (pair, humidity, model) to the datasets of stages beams and forces; beams of model GEO have the forces of NG.
-    published : pandas.DataFrame
-        The published table, rows of the paper's own pairs.
-    by_scans : dict, optional
-        (pair, humidity) to the relative standard error of ē due to finite scans, of pairs with measured surfaces.
-    warnings : sequence of str, optional
-        Sentences about single cases.
-    errors : dict, optional
-        Pair to the dataset of stage pair_model_error.
+    The published table has the rows of the paper's own pairs. ``by_scans`` are relative standard errors of ē due to
+    finite scans, by pair and humidity, of pairs with measured surfaces; warnings are sentences about single cases;
+    errors of the model are by pair.
     """
     rows = [_row_3(key, beams[key], forces[*key[:2], surface_model(key[2])], published) for key in beams]
     if by_scans:
@@ -262,7 +253,6 @@ def _table_3(data, _at, settings):
 STAGES = (
     table_stage(
         "table_3",
-        "table_3",
         "crack lengths and adhesion energies",
         inputs=lambda plan, at: (
             {
@@ -282,14 +272,13 @@ STAGES = (
     ),
     table_stage(
         "fit_quality",
-        "fit_quality",
         "fit of the force curves by Eq. (12)",
+        name="fit_quality",
         inputs=lambda plan, at: {"fits": by_outcome("fit", plan.laws)},
         compute=lambda data, at, settings: fit_quality(data["fits"]),
         targets=("figures",),
     ),
     table_stage(
-        "table_resampling",
         "resampling",
         "effect of the chaos model on the crack length",
         inputs=lambda plan, at: {

@@ -77,15 +77,9 @@ def _slopes(dataset, pair, moment, published):
 def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataFrame) -> Table:
     """Table III, model NG, under other model choices: one row of numbers per pair, variant and humidity.
 
-    The text for reading summarises each variant: its effect at the lowest and highest humidity, and the deviation
-    over all humidities.
-
-    Parameters
-    ----------
-    datasets : dict
-        (pair, variant) to the dataset of study variants; each pair has the variant ``base``.
-    published : pandas.DataFrame
-        Table III as published, rows of the paper's own pairs.
+    The text for reading summarises each variant: its effect at the lowest and highest humidity, and the deviation over
+    all humidities. The datasets are by pair and variant, ``base`` among them; Table III has the rows of the paper's own
+    pairs.
     """
     frame = pd.DataFrame([row for key in datasets for row in _rows(key, datasets, published)])
     groups = dict(list(frame.groupby(["pair", "variant"], sort=False)))
@@ -184,7 +178,6 @@ def _rms_deviation(group, column):
 
 STAGES = (
     table_stage(
-        "table_sensitivity",
         "sensitivity",
         "sensitivity to the moments of a surface",
         inputs=lambda plan, at: {
@@ -199,7 +192,6 @@ STAGES = (
         targets=("figures", "study_figures"),
     ),
     table_stage(
-        "table_variants",
         "variants",
         "Table III under other model choices",
         inputs=lambda plan, at: {

@@ -53,18 +53,10 @@ def table_1(
     published: pd.DataFrame,
     substitutions: Mapping[str, str],
 ) -> Table:
-    """Table I: simulated statistics of the surfaces.
+    """Table I: simulated statistics of the surfaces, by surface and model, beside measured (AFM) and published ones.
 
-    Parameters
-    ----------
-    characters : dict
-        (surface, model) to the dataset of stage character.
-    measured : dict
-        Surface to the measured statistics (AFM), by the keys of the configuration.
-    published : pandas.DataFrame
-        The published table, rows of the paper's own surfaces.
-    substitutions : dict
-        Surface to the sentence of `stiction.stages.surfaces.heights.substitution`.
+    Measured statistics have the keys of the configuration; published rows are of the paper's own surfaces. The
+    ``substitutions`` are the sentences of `stiction.stages.surfaces.heights.substitution` by surface.
     """
     rows = [_row_1(*key, characters[key], measured[key[0]], published) for key in characters]
     notes = (f" {surface}: {sentence}." for surface, sentence in substitutions.items() if sentence)
@@ -113,17 +105,8 @@ def table_2(
     """Table II: published and identified parameters of Eq. (7), and deviations of their surfaces from the target.
 
     The rms of published parameters is that of the spectrum alone; radius and density are those of surfaces that were
-    not used to identify it.
-
-    Parameters
-    ----------
-    identifications, spectra : dict
-        Surface to the datasets of stages identification and spectrum.
-    published : pandas.DataFrame
-        The published table, with corrected plateaus, rows of the paper's own surfaces.
-    sources : dict
-        Surface to the source of the spectrum in use, whose defect is in ``spectra``: ``published`` or
-        ``identified``.
+    not used to identify it. Published plateaus are the corrected ones, in rows of the paper's own surfaces. The
+    sources, ``published`` or ``identified``, are of the spectra in use, whose defect is shown.
     """
     defects = {surface: {source: 100 * float(spectra[surface].defect)} for surface, source in sources.items()}
     rows_of = (_rows_2(surface, found, published, defects[surface]) for surface, found in identifications.items())
@@ -197,7 +180,6 @@ def _measured(plan):
 STAGES = (
     table_stage(
         "table_1",
-        "table_1",
         "statistics of the surfaces",
         inputs=lambda plan, at: {
             "estimates": by_name("estimate", plan.estimated),
@@ -210,7 +192,6 @@ STAGES = (
         targets=("tables",),
     ),
     table_stage(
-        "table_2",
         "table_2",
         "spectra and their identification",
         inputs=lambda plan, at: {

@@ -209,10 +209,9 @@ def _panel(panel, rows, full):
     panel.axhline(0, color="0.6", linewidth=0.6, zorder=0)
 
 
-def _stage(kind, name, shows, draw, **declared):
+def _stage(kind, shows, draw, **declared):
     """Table or figure of the readings of an asperity."""
     return kind(
-        name,
         "asperities",
         shows,
         inputs=lambda plan, at: {
@@ -232,9 +231,8 @@ def _stage(kind, name, shows, draw, **declared):
 
 
 STAGES = (
-    _stage(table_stage, "table_asperities", "Table III under several readings of an asperity", table),
+    _stage(table_stage, "Table III under several readings of an asperity", table),
     table_stage(
-        "table_model_error_parts",
         "model_error_parts",
         "parts of the error of the model",
         inputs=lambda plan, at: {
@@ -247,7 +245,6 @@ STAGES = (
     ),
     _stage(
         figure_stage,
-        "figure_asperities",
         "crack lengths under several readings of an asperity",
         figure,
         category="Sensitivity, appendices, model choices",

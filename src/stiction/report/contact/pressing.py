@@ -105,10 +105,9 @@ def _pairs(plan):
     return [pair for pair in plan.humid_pairs if pair in known]
 
 
-def _stage(kind, name, shows, draw, **declared):
+def _stage(kind, shows, draw, **declared):
     """Table or figure of study pressing."""
     return kind(
-        name,
         "pressing",
         shows,
         inputs=lambda plan, at: {"studies": by_name("studies/pressing", _pairs(plan))},
@@ -121,10 +120,9 @@ def _stage(kind, name, shows, draw, **declared):
 
 
 STAGES = (
-    _stage(table_stage, "table_pressing", "adhesion after surfaces were pressed together", table),
+    _stage(table_stage, "adhesion after surfaces were pressed together", table),
     _stage(
         figure_stage,
-        "figure_pressing",
         "adhesion after surfaces were pressed together",
         figure,
         category="Sensitivity, appendices, model choices",

@@ -44,12 +44,7 @@ _ROW, _AROUND, _LEGEND, _FILLED = 0.22, 0.62, 0.3, 0.8
 def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence[str]]) -> Figure:
     """Stoppers: P(stuck) over the restoring force, and pull-off force over the humidity; a column for each.
 
-    Parameters
-    ----------
-    datasets : dict
-        Device to the dataset of stage stoppers.
-    warnings : dict
-        Device to sentences, which the table of stoppers contains.
+    Datasets and the sentences of warnings, which the table of stoppers contains, are by device.
     """
     figure, columns, lines = columns_of_panels(len(datasets), 2, lambda n: min(DOUBLE, SINGLE * n), 5.0)
     for column, dataset in zip(columns, datasets.values(), strict=True):
@@ -197,7 +192,6 @@ def _tornado(panel, rows: Mapping[str, Sequence[tuple]]):
 
 STAGES = (
     figure_stage(
-        "figure_stoppers",
         "stoppers",
         "pull-off force of stoppers",
         "Devices",
@@ -210,11 +204,9 @@ STAGES = (
         targets=("devices",),
     ),
     figure_stage(
-        "figure_budget",
         "budget_{device}",
         "uncertainty of {device}",
         "Devices",
-        caption="budget",
         inputs=lambda plan, at: {"budgets": budgets_of(plan, at.device)},
         compute=lambda data, at, settings: budget(data["budgets"]),
         jobs=lambda plan: [{"device": name} for name in plan.devices.budgeted],

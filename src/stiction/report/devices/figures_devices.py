@@ -59,12 +59,7 @@ def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[str]], table: 
 def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, str], list]) -> Figure:
     """Share of stuck beams over their length, with bands of 95 % and safe lengths, one panel for each device.
 
-    Parameters
-    ----------
-    found : dict
-        Name and humidity to the dataset of stage safe_lengths.
-    warnings : dict
-        Name, humidity and shape to sentences, whose numbers mark the curves.
+    The numbers of the warnings, which are by name, humidity and shape, mark the curves.
     """
     names = list(dict.fromkeys(name for name, _ in found))
     _, numbers = numbered(warnings)
@@ -129,14 +124,8 @@ def chart(
     """Safe length over the relative humidity for the middle one of the shares.
 
     Each device, gap and shape has a panel: a tip holds beams that are so much shorter that one axis would hide them.
-    Dry air is beside the axis.
-
-    Parameters
-    ----------
-    found : dict
-        Name and humidity to the dataset of stage chart.
-    warnings : dict
-        Name, thickness [m], gap [m] and shape to sentences, whose numbers mark the curves; may be empty.
+    Dry air is beside the axis. The numbers of the warnings, by name, thickness [m], gap [m] and shape, mark the curves;
+    there may be none.
     """
     _, numbers = numbered(warnings)
     devices = {}
@@ -206,7 +195,6 @@ def _parts(whole, lines):
 
 STAGES = (
     figure_stage(
-        "figure_risk",
         "risk",
         "share of stuck beams over their length",
         "Devices",
@@ -219,7 +207,6 @@ STAGES = (
         targets=("devices",),
     ),
     figure_stage(
-        "figure_chart",
         "chart",
         "safe length over the relative humidity",
         "Devices",

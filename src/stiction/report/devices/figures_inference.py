@@ -99,11 +99,9 @@ def _inputs(panel, found):
 
 STAGES = (
     figure_stage(
-        "figure_test_beams",
         "test_beams_{device}",
         "what test beams say about {device}",
         "Devices",
-        caption="test_beams",
         inputs=lambda plan, at: {"test_beams": f"devices/test_beams/{at.device}"},
         compute=lambda data, at, settings: test_beams(data["test_beams"]),
         jobs=lambda plan: [{"device": name} for name in plan.devices.tested],

@@ -75,12 +75,9 @@ def _crossings(panel, found, subject, colour):
 
 @styled
 def roughness_map(found: xr.Dataset) -> Figure:
-    """Margin over what is required, and lines where it is met, over two quantities; panels by humidity and end state.
+    """Margin over what is required, and lines where it is met, over the two quantities of a dataset of stage roughness.
 
-    Parameters
-    ----------
-    found : Dataset
-        Of stage roughness of one device with two quantities.
+    The panels are by humidity and end state.
     """
     humidities, shapes = found.humidity.values, list(map(str, found["shape"].values))
     size = min(DOUBLE, 1.3 * SINGLE * len(shapes)), 2.8 * len(humidities)
@@ -118,11 +115,9 @@ def _axes(panel, found):
 def _stage(name, shows, draw, devices):
     """Stage that draws a figure of each of some devices of a plan."""
     return figure_stage(
-        f"figure_{name}",
         f"{name}_{{device}}",
         shows,
         "Devices",
-        caption=name,
         inputs=lambda plan, at: {"roughness": f"devices/roughness/{at.device}"},
         compute=lambda data, at, settings: draw(data["roughness"]),
         jobs=lambda plan: [{"device": device} for device in devices(plan)],

@@ -25,11 +25,7 @@ def of_device(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: fl
 def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]:
     """What full contact changes of a device in words, and which side of it is safe; none without errors.
 
-    Parameters
-    ----------
-    device : str
-    errors : dict or None
-        Device to the dataset of stage device_model_error, as far as its pair has humid air.
+    The errors are known of devices whose pair has humid air.
     """
     if errors is None:
         return []

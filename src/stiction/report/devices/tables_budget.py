@@ -58,17 +58,7 @@ def stoppers(
     warnings: Mapping[str, Sequence[str]],
     errors: Mapping[str, xr.Dataset] | None = None,
 ) -> Table:
-    """Stoppers: pull-off force, P(stuck), restoring force needed, worst humidity.
-
-    Parameters
-    ----------
-    datasets : dict
-        Device to the dataset of stage stoppers.
-    warnings : dict
-        Device to sentences.
-    errors : dict, optional
-        Device to the dataset of stage device_model_error.
-    """
+    """Stoppers: pull-off force, P(stuck), restoring force needed, worst humidity; everything is by device."""
     rows = [row for device, dataset in datasets.items() for row in _of_stopper(device, dataset)]
     rows = [row | model_errors.of_device(errors, row["device"], row["relative_humidity"], FORCE) for row in rows]
     rows = [row | {"warnings": " ".join(warnings[row["device"]])} for row in rows]
@@ -263,7 +253,6 @@ _BUDGET = DEVICE | {
 
 STAGES = (
     table_stage(
-        "table_stoppers",
         "stoppers",
         "P(stuck) of stoppers",
         inputs=lambda plan, at: (
@@ -280,7 +269,6 @@ STAGES = (
         targets=("devices",),
     ),
     table_stage(
-        "table_budget",
         "budget",
         "uncertainty of devices, and what to measure better",
         inputs=lambda plan, at: (

@@ -44,17 +44,7 @@ def safe_lengths(
     warnings: Mapping[tuple[str, float, str], list],
     errors: Mapping[str, xr.Dataset] | None = None,
 ) -> Table:
-    """Safe lengths of all beams, one row per device, humidity, shape and share.
-
-    Parameters
-    ----------
-    found : dict
-        Name and humidity to the dataset of stage safe_lengths.
-    warnings : dict
-        Name, humidity and shape to sentences.
-    errors : dict, optional
-        Name to the dataset of stage device_model_error.
-    """
+    """Safe lengths of all beams, one row per device, humidity, shape and share; errors of the model are by device."""
     rows, marks = [], []
     numbers = numbered(warnings)[1]
     for (device, humidity), dataset in found.items():
@@ -120,12 +110,7 @@ def chart(
 ) -> Table:
     """Safe lengths along the axes of all charts, curve by curve; a line of text has the lengths of all shares.
 
-    Parameters
-    ----------
-    found : dict
-        Name and humidity to the dataset of stage chart.
-    warnings : dict
-        Name, thickness [m], gap [m] and shape to sentences.
+    Warnings are by name, thickness [m], gap [m] and shape.
     """
     numbers = numbered(warnings)[1]
     rows, cells = [], []
@@ -171,7 +156,6 @@ def _beam_as_text(beam, lengths):
 
 STAGES = (
     table_stage(
-        "table_safe_lengths",
         "safe_lengths",
         "lengths of beams that come free",
         inputs=lambda plan, at: (
@@ -188,7 +172,6 @@ STAGES = (
         targets=("devices",),
     ),
     table_stage(
-        "table_chart",
         "chart",
         "safe length over the relative humidity",
         inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.charted)},

@@ -379,7 +379,6 @@ def _beyond_in_adhesion(found):
 
 STAGES = (
     table_stage(
-        "table_test_beams",
         "test_beams",
         "what test beams say about devices",
         inputs=lambda plan, at: {"test_beams": by_name("devices/test_beams/rerun", plan.devices.tested)},

@@ -262,7 +262,6 @@ _COLUMNS = DEVICE | {
 
 STAGES = (
     table_stage(
-        "table_roughness",
         "roughness",
         "how rough a surface must be",
         inputs=lambda plan, at: {"roughness": by_name("devices/roughness", plan.devices.roughened)},

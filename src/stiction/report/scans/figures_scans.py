@@ -163,11 +163,10 @@ def _summits(panel, estimate):
 
 STAGES = (
     figure_stage(
-        "surface_sheet",
         "surface_sheet_{surface}",
         "scans of {surface}",
         "Surfaces (Sec. II)",
-        caption="surface_sheet",
+        name="surface_sheet",
         inputs=lambda plan, at: {stage: f"{stage}/{at.surface}" for stage in ("estimate", "spectrum")},
         compute=lambda data, at, settings: surface_sheet(at.surface, data["estimate"], data["spectrum"]),
         jobs=lambda plan: [{"surface": name} for name in plan.scans.surfaces],

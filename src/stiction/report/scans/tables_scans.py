@@ -132,7 +132,6 @@ def _of_choices(rows):
 
 STAGES = (
     table_stage(
-        "table_scans",
         "scans",
         "scans of the measured surfaces",
         inputs=lambda plan, at: {
@@ -149,7 +148,6 @@ STAGES = (
         targets=("tables", "measured", "scans"),
     ),
     table_stage(
-        "table_scan_uncertainty",
         "scan_uncertainty",
         "uncertainty due to finite scans",
         inputs=lambda plan, at: {"studies": by_name("studies/scan_uncertainty", plan.scanned_pairs)},
