@@ -22,15 +22,8 @@ Settings = releases.Settings
 def compute(chaos: xr.Dataset, case: Case, settings: Settings, threads: int = 1) -> xr.Dataset:
     """Release all beams of a case; models NG and GEO have the same force laws.
 
-    Parameters
-    ----------
-    chaos : Dataset
-        Dataset of stage chaos.
-    case : Case
-        Part of the addresses of random numbers.
-    settings : Settings
-    threads : int
-        Number of beams computed in parallel; it does not affect the results.
+    The name of the case is part of the addresses of random numbers; ``threads``, the number of beams computed in
+    parallel, does not affect the results.
     """
     columns = releases.released(chaos_model(chaos), case, settings, threads, shapes=_KEPT)
     elements = columns["deflection"].shape[1] - 1
@@ -40,12 +33,7 @@ def compute(chaos: xr.Dataset, case: Case, settings: Settings, threads: int = 1)
 def layout(columns: dict[str, np.ndarray], nodes: np.ndarray) -> xr.Dataset:
     """Dataset of the end state of every beam of a case and of the shapes of the first beams.
 
-    Parameters
-    ----------
-    columns : dict
-        Arrays of `stiction.beam.montecarlo.columns`.
-    nodes : (n,) array
-        Nominal positions of the nodes [m].
+    From the arrays of `stiction.beam.montecarlo.columns` and the nominal positions of the nodes (n,) [m].
     """
     flags = {"flag_values": np.arange(3, dtype=np.int8), "flag_meanings": " ".join(releases.STATES)}
     energy = {"units": "J m-2", "long_name": "apparent adhesion energy of a beam, Eq. (13), S-shape only"}

@@ -70,15 +70,8 @@ def layout(
 ) -> xr.Dataset:
     """Crack length and energy on uniform ground for meshes of increasing fineness.
 
-    Parameters
-    ----------
-    meshes : sequence of pairs
-        Length of the elements and distance of the contact points [m].
-    arrests : sequence of Arrest
-    law : (4,) array
-        Force law of the ground, Eq. (12) [SI].
-    curve : tuple
-        Distance (n_d,) [m] and force (n_d,) [Pa] of the sample that the force law approximates.
+    Each mesh has a length of the elements and a distance of the contact points [m]. The law of the ground (4,) [SI]
+    approximates a sample with these distances [m] and forces [Pa], (n_d,) each.
     """
     elements, points = np.transpose(meshes)
     distance, force = curve

@@ -69,17 +69,9 @@ def of_pairs(
     materials: Mapping[str, Materials],
     settings: OfPairs,
 ) -> Warnings:
-    """Warnings about the main line.
+    """Warnings about the main line; plasticity is that of the pairs for which it was studied.
 
-    Parameters
-    ----------
-    beams : dict
-        Pair, humidity and model to the dataset of stage beams.
-    plasticity : dict
-        Pair to the dataset of study plasticity, as far as it was studied.
-    materials : dict
-        Pair to the names of its materials, each with the properties that are stated.
-    settings : OfPairs
+    Each pair has the names of its materials, each with the properties that are stated.
     """
     found = {
         f"pair {pair}": limits.given(
@@ -106,12 +98,7 @@ def _without_water(pair, cases, water):
 def of_films(cases: Collection[tuple[str, float, str]], water: Mapping[str, Water]) -> list[str]:
     """Warnings about pairs that no water wets, and about films that are hardly a liquid, at each humidity of a pair.
 
-    Parameters
-    ----------
-    cases : collection of tuple
-        Pair, humidity and model.
-    water : dict
-        Pair to its water.
+    The cases are pair, humidity and model.
     """
     found = {f"Pair {pair}": _without_water(pair, cases, one) for pair, one in water.items()}
     for pair, humidity, _ in cases:

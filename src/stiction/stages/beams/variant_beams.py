@@ -34,16 +34,10 @@ def compute(contact: xr.Dataset, case: Case, settings: Settings) -> xr.Dataset:
 
 
 def layout(humidities: Sequence[float], energies: Sequence, beams: Sequence[dict]) -> xr.Dataset:
-    """Dataset of the crack lengths of a pair under one variant, at some humidities.
+    """Dataset of the crack lengths of a pair under one variant, at some humidities [-].
 
-    Parameters
-    ----------
-    humidities : sequence
-        Relative humidities RH [-].
-    energies : (n_rh, m) array
-        Adhesion energies of the sampled pairs [J m⁻²].
-    beams : sequence of n_rh dicts
-        Arrays of :func:`stiction.beam.montecarlo.columns`.
+    The energies of the sampled pairs are (n_rh, m) [J m⁻²], the beams of each humidity arrays of
+    :func:`stiction.beam.montecarlo.columns`.
     """
     return xr.Dataset(
         {

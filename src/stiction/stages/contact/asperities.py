@@ -107,18 +107,9 @@ def layout(
 ) -> xr.Dataset:
     """Dataset of the energies of all strips and of the time of a strip.
 
-    Parameters
-    ----------
-    energies : (n_grid, n_reading, n, n_attraction, n_humidity) array
-        e, NaN where it was not computed [J m⁻²].
-    seconds : (n_grid, n_reading, n, n_attraction) array
-        At all humidities, without drawing the strip [s].
-    spacings : sequence of float
-        Of the grids [m].
-    attractions : sequence of str
-        Media.
-    humidities : sequence of float
-        [-]
+    Energies e are (n_grid, n_reading, n, n_attraction, n_humidity), NaN where not computed [J m⁻²]; seconds, without
+    the last axis, are those at all humidities without drawing the strip [s]. Spacings of the grids [m]; attractions are
+    media.
     """
     over = ("spacing", "reading", "sample", "attraction")
     return xr.Dataset(

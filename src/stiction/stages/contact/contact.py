@@ -22,17 +22,9 @@ def compute(
 ) -> xr.Dataset:
     """Draw surface pairs and compute p_s(sample, distance) and A(sample, height), in single precision.
 
-    Parameters
-    ----------
-    surfaces : sequence
-        Datasets (heights, spectrum) of the surfaces of beam and substrate.
-    pair : str
-        Name of the pair, part of the addresses of random numbers.
-    model : str
-        ``NG``, or ``G`` for surfaces with Gaussian heights.
-    settings : Settings
-    samples : range, optional
-        Indices of the samples; all by default.
+    The two surfaces are datasets (heights, spectrum), that of the beam first; the name of the pair is part of the
+    addresses of random numbers. Model ``G`` has Gaussian heights, ``NG`` those of the surfaces. All samples are drawn
+    by default.
     """
     return compute_each([surfaces], pair, model, settings, samples)[0]
 
@@ -59,13 +51,8 @@ def compute_each(
 def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceGrid, samples: range) -> xr.Dataset:
     """Dataset of p_s(sample, distance) and A(sample, height), independent of humidity; float32.
 
-    Parameters
-    ----------
-    solid_pressure, bearing_area : (n, n_solid), (n, n_bearing) arrays
-        Solid pressure p_s [Pa] and bearing area A [-]; of tips (n, n_slopes, n_solid) and so on.
-    grid : DistanceGrid
-    samples : range
-        Indices of the samples within the study.
+    Solid pressures p_s are (n, n_solid) [Pa] and bearing areas A (n, n_bearing) [-], those of tips (n, n_slopes,
+    n_solid) and so on; ``samples`` are their numbers within the study.
     """
     over = ("sample", "slope") if np.ndim(solid_pressure) == 3 else ("sample",)
     return xr.Dataset(

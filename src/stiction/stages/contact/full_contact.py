@@ -104,16 +104,9 @@ def start(distance: np.ndarray, force: np.ndarray) -> tuple[float, float]:
 
 
 def layout(values: np.ndarray, humidities: Sequence[float], spacing: float) -> xr.Dataset:
-    """Variables of every sample at every humidity.
+    """Variables (n, n_humidity, n_variables) of every sample at every humidity, in the order of this module [SI].
 
-    Parameters
-    ----------
-    values : (n, n_humidity, n_variables) array
-        In the order of the variables of this module [SI].
-    humidities : sequence of float
-        [-]
-    spacing : float
-        Of the elements [m].
+    Spacing of the elements [m].
     """
     columns = {
         name: (("sample", "humidity"), values[..., i], {"units": unit, "long_name": meaning})

@@ -43,20 +43,10 @@ def layout(
     strips: int,
     applied: bool = False,
 ) -> xr.Dataset:
-    """Dataset of ratios and factors with their standard errors.
+    """Dataset of ratios and factors, by name, with their standard errors, (k,) each [-].
 
-    Parameters
-    ----------
-    found : dict
-        Name to values and standard errors, (k,) each [-].
-    at : (k,) array
-        Increasing humidities [-].
-    computed : sequence of float
-        Humidities at which full contact was computed [-].
-    strips : int
-        Number of strips.
-    applied : bool
-        Whether the predictions are corrected.
+    They are at increasing humidities; full contact was ``computed`` at some of them, on a number of strips. ``applied``
+    says whether the predictions are corrected.
     """
     columns = {name: values for name, (values, _) in found.items()}
     columns |= {f"{name}_error": errors for name, (_, errors) in found.items()}

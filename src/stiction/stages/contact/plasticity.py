@@ -56,18 +56,9 @@ def layout(
 ) -> xr.Dataset:
     """Stress of every touching summit, the share of the contact area that yields, and the pressure at which it does.
 
-    Parameters
-    ----------
-    summits : dict
-        interference [m], radius [m], stress [Pa], strip, (n,) each.
-    share : tuple
-        A_P / A and its standard error [-].
-    distance : float
-        Between the mean planes [m].
-    pressure : float
-        Mean of the surfaces at the distance, without attraction [Pa].
-    hardness : float
-        Of the softer body [Pa].
+    The summits have an interference [m], radius [m], stress [Pa] and strip, (n,) each; the share A_P / A comes with its
+    standard error [-]. At the distance of the mean planes [m], the pressure is the mean of the surfaces without
+    attraction [Pa]; the hardness is that of the softer body [Pa].
     """
     units = {"interference": "m", "radius": "m", "stress": "Pa"}
     columns = {name: ("summit", np.asarray(summits[name], np.float32), {"units": unit}) for name, unit in units.items()}

@@ -104,14 +104,8 @@ def _of_press(state):
 def layout(energies: np.ndarray, presses: np.ndarray, humidities: Sequence[float]) -> xr.Dataset:
     """Energies of every strip, and the states to which it was pressed.
 
-    Parameters
-    ----------
-    energies : (n, 2 + n_steps, n_humidity) array
-        Fresh, after adhesion alone, and after each press [J m⁻²].
-    presses : (n, n_steps, n_variables) array
-        In the order of the variables of this module [SI].
-    humidities : sequence of float
-        [-]
+    Energies (n, 2 + n_steps, n_humidity) are those of fresh strips, after adhesion alone, and after each press [J m⁻²];
+    presses (n, n_steps, n_variables) are in the order of the variables of this module [SI].
     """
     units = {"units": "J m-2"}
     columns = {

@@ -39,21 +39,10 @@ def compute(
     choice: str,
     settings: Settings,
 ) -> xr.Dataset:
-    """Contact with the other value of a choice, for all measured surfaces of the pair.
+    """Contact with the other value of a choice, for all measured surfaces of the pair; surfaces as in stage contact.
 
-    Samples have the random numbers of the base; another cut-off gives another surface nevertheless.
-
-    Parameters
-    ----------
-    surfaces : sequence
-        Datasets (heights, spectrum) of the surfaces of beam and substrate.
-    estimates : dict
-        Measured surface to its dataset of stage estimate.
-    pair : str
-        Name of the pair, part of the addresses of random numbers.
-    choice : str
-        Key of `stiction.models.ALTERNATIVES_OF_SCANS`.
-    settings : Settings
+    Samples have the random numbers of the base; another cut-off gives another surface nevertheless. The estimates are
+    by measured surface, the choice is a key of `stiction.models.ALTERNATIVES_OF_SCANS`.
     """
     both = [
         as_is if name not in estimates else _otherwise(name, estimates[name], choice, settings)

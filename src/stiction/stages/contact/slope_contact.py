@@ -28,19 +28,9 @@ def compute(
 ) -> list[xr.Dataset]:
     """Contact with less and with more of a quantity, in this order; the samples have the same random numbers.
 
-    Parameters
-    ----------
-    surfaces : sequence
-        Datasets (heights, spectrum) of the surfaces of beam and substrate.
-    pair : str
-        Name of the pair, part of the addresses of random numbers.
-    surface : str
-        Name of the surface whose quantity is shifted; on both sides of the pair if both have this surface.
-    quantity : str
-        Key of `stiction.analysis.shifts.STEPS`.
-    settings : Settings
-    estimate : Dataset, optional
-        Of stage estimate: the heights of the surface are the measured ones, around which their modes are shifted.
+    The two surfaces and the pair are as in stage contact. The named surface has the quantity, a key of
+    `stiction.analysis.shifts.STEPS`, shifted; on both sides of the pair if both have this surface. With an estimate,
+    its heights are the measured ones, around which their modes are shifted.
     """
     heights, spectrum = surfaces[settings.surfaces.index(surface)]
     if estimate is not None:

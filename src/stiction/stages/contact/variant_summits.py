@@ -80,15 +80,8 @@ def equivalent_under(
 ) -> EquivalentSurface:
     """Surfaces under the changed settings, the same as those of the base, even if drawn on a different grid.
 
-    Parameters
-    ----------
-    identifications : dict
-        Datasets of stage identification by name, of the surfaces whose spectrum is identified.
-    pair : str
-    base, changed : Settings
-        Settings without and with the change of the variant.
-    measured : dict, optional
-        Datasets (heights, spectrum) of the surfaces described by scans, by name.
+    Identifications are by surface whose spectrum is identified; ``measured`` has the datasets (heights, spectrum) of
+    the surfaces described by scans.
 
     Raises
     ------
@@ -112,17 +105,7 @@ def surfaces_of(
 ) -> list[tuple[xr.Dataset, xr.Dataset]]:
     """Datasets (heights, spectrum) of the surfaces of beam and substrate, computed by their stages.
 
-    Parameters
-    ----------
-    sides : Sides
-    surfaces : dict
-        Descriptions of the surfaces without scans by name.
-    spacing : float
-        Of the grid of the surfaces [m].
-    identifications : dict
-        Datasets of stage identification by name, of the surfaces whose spectrum is identified.
-    measured : dict, optional
-        Datasets (heights, spectrum) of the surfaces described by scans, by name.
+    ``surfaces`` describes those without scans by name; spacing of the grid [m]; the others as in `equivalent_under`.
     """
     known = measured or {}
     return [
@@ -139,15 +122,8 @@ def _datasets(surface, spacing, identification):
 
 
 def layout(summits: Sequence[Summits], bearing_areas: Sequence[np.ndarray], grid: DistanceGrid) -> xr.Dataset:
-    """Dataset of the summits above the mean plane and of the bearing areas of all samples.
-
-    Parameters
-    ----------
-    summits : sequence
-        Of each sample, found in equal areas.
-    bearing_areas : sequence of (n_bearing,) arrays
-        A at ``grid.bearing`` [-].
-    grid : DistanceGrid
+    """Dataset of the summits above the mean plane of all samples, found in equal areas, and of their bearing areas A
+    [-].
     """
     above = [one.tops > 0 for one in summits]
     tops, curvatures = (

@@ -139,20 +139,9 @@ def compute(
 ) -> xr.Dataset:
     """Slopes of all uncertain inputs of a device at a humidity, their covariance, scatter, and other model choices.
 
-    Parameters
-    ----------
-    contact : Dataset
-        Contact of the device, or of its tips.
-    shifted : dict
-        (surface, quantity) to the contact with less and with more of it.
-    solids : dict
-        Uncertain property of the solids to the contact with less and with more of it, by its step in
-        `stiction.devices.materials.PROPERTIES`.
-    choices : dict
-        Name of the choice to the contact under it; with fewer samples than ``contact``, that of the first ones.
-    known : dict
-        Surface to what is known of its quantities, those of ``shifted``.
-    settings : BeamBudget, TipBudget or PatchBudget
+    The contact is that of the device, or of its tips; ``shifted``, ``solids`` and ``known`` are as in
+    `stiction.stages.devices.uncertain_inputs.uncertain`. A contact under a choice of the model that has fewer samples
+    is that of the first ones.
     """
     state = settings.state(contact)
     respond = settings.responder(state)
@@ -192,19 +181,10 @@ def _held(lengths, share):
 def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, address: Callable) -> Responses:
     """Crack lengths, or lengths of held bridges, of the same beams at several states, on resampled force laws.
 
-    ASSUME: for a cantilever, the two foundation lengths that hold its crack are left out, 1 % of the length.
+    Finite elements resolve the ``mesh`` of all beams, with this number of strips; ``address(k)`` is the stream of beam
+    k.
 
-    Parameters
-    ----------
-    states : sequence of State
-    mesh : Beam
-        Length and elements of the part of all beams that finite elements resolve.
-    strips : int
-        Number of force laws along a beam.
-    number : int
-        Number of beams.
-    address : callable
-        ``address(k)`` is the stream of beam k.
+    ASSUME: for a cantilever, the two foundation lengths that hold its crack are left out, 1 % of the length.
     """
     laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water) for state in states])
 
@@ -270,18 +250,9 @@ def layout(
 ) -> xr.Dataset:
     """Dataset of the budget of a device at one humidity.
 
-    Parameters
-    ----------
-    inputs : sequence of k Input
-    slopes : (k, 2) array
-        d ln y / dx and standard error.
-    covariance : (k, k) array
-        Of the errors of the inputs.
-    devices : Responses
-        Lengths or forces of n devices at the stated inputs.
-    effects : dict
-        Choice of the model to its relative effect and standard error [-].
-    settings : BeamBudget, TipBudget or PatchBudget
+    Slopes d ln y / dx of k inputs with their standard errors (k, 2), covariance of the errors of the inputs (k, k),
+    lengths or forces of all devices at the stated inputs, and relative effects of other choices of the model, each with
+    its standard error [-].
     """
     names = [entry.name for entry in inputs]
     groups = [entry.group for entry in inputs]

@@ -72,12 +72,8 @@ def filled(
 ) -> Filled:
     """Lengths of beams of all sizes: computed by finite elements where a power law is not good enough.
 
-    Parameters
-    ----------
-    thicknesses, gaps : sequences
-        Increasing [m]; the sizes are their products, in this order.
-    by_elements : callable
-        Lengths of beams of a thickness and a gap by finite elements, array of any shape [m].
+    The sizes are the products of increasing thicknesses and gaps, in this order [m]; ``by_elements`` gives lengths of
+    beams of one size by finite elements, of any shape [m].
     """
     sizes = np.array(list(product(thicknesses, gaps)))
     corner, test = corners_and_tests(len(thicknesses), len(gaps))
@@ -116,15 +112,8 @@ def _power_laws(sizes, found, test):
 
 
 def layout(found: Filled, rms: float, settings: Settings) -> xr.Dataset:
-    """Dataset of safe lengths over thickness and gap at one humidity.
-
-    Parameters
-    ----------
-    found : Filled
-        Lengths (sizes, shapes, shares) [m].
-    rms : float
-        Of the sum of both surfaces [m].
-    settings : Settings
+    """Dataset of safe lengths (sizes, shapes, shares) [m] over thickness and gap at one humidity; rms of both surfaces
+    [m].
     """
     grid, size = (len(settings.thicknesses), len(settings.gaps)), ("thickness", "gap")
     shapes = list(settings.device.opening.shapes)

@@ -75,20 +75,9 @@ def layout(
 ) -> xr.Dataset:
     """Dataset of the lengths at which the cracks of a device stop at a humidity.
 
-    Parameters
-    ----------
-    opening : Opening
-        How the device opens, with the name of the lengths.
-    arrested : (n,) array
-        Lengths with all samples of contact, as from `stiction.stages.devices.releases.arrests` [m].
-    of_group : sequence of (n,) arrays
-        The same with each group of the samples alone.
-    beam : Beam
-        The part that finite elements resolve.
-    laws : (k, 4) array
-        Sample of the force laws [SI].
-    rms : float
-        Of the sum of both surfaces [m].
+    Lengths with all samples of contact (n,), as from `stiction.stages.devices.releases.arrests`, and with each group of
+    them alone [m]; the part of the device that finite elements resolve; a sample (k, 4) of the force laws [SI]; rms of
+    the sum of both surfaces [m].
     """
     name, note = opening.length, {"units": "m", "long_name": opening.words}
     lengths = {

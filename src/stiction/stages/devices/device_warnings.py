@@ -52,19 +52,10 @@ class OfStopper:
 def of_device(
     found: xr.Dataset, of: OfDevice, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0
 ) -> dict[str, list[str]]:
-    """Warnings about a device at a humidity, by the shape in which it sticks.
+    """Warnings about a device at a humidity, by the shape in which it sticks; dataset of stage safe_lengths.
 
-    Each shape is checked at the shortest of its lengths, where slopes are largest.
-
-    Parameters
-    ----------
-    found : Dataset
-        Of stage safe_lengths.
-    of : OfDevice
-    plastic : tuple of 2 floats
-        Plastic share of the contact area [-], and the pressure at which it is plastic [Pa].
-    humidity : float
-        At which no water condensing is worth a sentence; in dry air it is not [-].
+    Each shape is checked at the shortest of its lengths, where slopes are largest. That no water condenses is worth a
+    sentence at a humidity, but not in dry air.
     """
     shortest = found.safe_length.min("share")
     without = limits.given(limits.no_water(float(found.film), humidity))
@@ -77,16 +68,9 @@ def of_device(
 def of_chart(
     found: Sequence[xr.Dataset], of: OfDevice, plastic: Plastic = NOT_STUDIED
 ) -> dict[tuple[float, float, str], list[str]]:
-    """Warnings about the chart of a device by thickness [m], gap [m] and shape.
+    """Warnings about the chart of a device by thickness [m], gap [m] and shape; a dataset of stage chart per humidity.
 
     Each curve is checked at its shortest length.
-
-    Parameters
-    ----------
-    found : sequence
-        Datasets of stage chart, one for each humidity.
-    of, plastic
-        As in `of_device`.
     """
     warnings = {}
     for thickness, gap, shape in curves(found[0]):

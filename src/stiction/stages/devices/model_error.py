@@ -25,16 +25,10 @@ class Settings:
 def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.ndarray:
     """Length at which a beam sticks [m], or pull-off pressure of a stopper [Pa], at each humidity (h,).
 
+    The means are those of the energy e [J m⁻²] and of the largest attraction f_max [Pa], (h, 2).
+
     ASSUME: the strips of the pair give the ratios of a patch of any size, and a safe length changes like the length on
     the mean contact. What tips hold is not known: their strips are tilted, on which full contact is not computed.
-
-    Parameters
-    ----------
-    shape : str
-        End state.
-    means : (h, 2) array
-        Mean energy e [J m⁻²] and mean largest attraction f_max [Pa].
-    device : DesignedBeam or None
     """
     if shape == FORCE:
         return means[:, 1]
@@ -59,16 +53,9 @@ def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
 def layout(
     values: np.ndarray, errors: np.ndarray, shapes: Sequence[str], settings: Settings, computed: np.ndarray
 ) -> xr.Dataset:
-    """Dataset of the factors and their standard errors, (shapes, humidities) each [-].
+    """Dataset of the factors and their standard errors by end state, (shapes, humidities) each [-].
 
-    Parameters
-    ----------
-    values, errors : arrays
-    shapes : sequence of str
-        End states.
-    settings : Settings
-    computed : (h,) array
-        Humidities at which full contact was computed [-].
+    Full contact was ``computed`` at these humidities [-].
     """
     names = ("shape", "humidity")
     return xr.Dataset(

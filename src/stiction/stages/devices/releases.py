@@ -118,17 +118,8 @@ def arrests(
 ) -> np.ndarray:
     """Crack lengths of cantilevers, infinite if not S-shaped, or of the shortest bridges that are held (n,) [m].
 
-    Parameters
-    ----------
-    device : DesignedBeam
-    ground : tuple
-        Part of the device that finite elements resolve and its number of strips, from `Opening.resolved`.
-    draw : callable
-        ``draw(n, rng)`` gives n force laws (n, 4) [SI].
-    number : int
-        Number n of devices.
-    address : callable
-        ``address(k)`` is the stream of device k.
+    The ground is the part of the device that finite elements resolve and its number of strips, from `Opening.resolved`;
+    ``draw(n, rng)`` gives n force laws (n, 4) [SI], and ``address(k)`` the stream of device k.
     """
     return device.opening.arrests(*ground, draw, number, address)
 

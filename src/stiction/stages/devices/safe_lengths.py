@@ -32,16 +32,7 @@ class Settings:
 
 
 def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
-    """P(stuck) and safe lengths.
-
-    Parameters
-    ----------
-    cracks : Dataset
-        Of stage cracks.
-    tips : Dataset or None
-        Contact of the tips, one for each beam; ``None`` for a bridge.
-    settings : Settings
-    """
+    """P(stuck) and safe lengths; each beam has one of the tips, and a bridge has none."""
     found, of_group, foundation = stage_cracks.lengths(cracks)
     device, held = settings.device, None
     if tips is not None:
@@ -63,19 +54,10 @@ def layout(
     rms: float,
     settings: Settings,
 ) -> xr.Dataset:
-    """Dataset of P(stuck) and of the safe lengths.
+    """Dataset of P(stuck) and of the safe lengths, by shape.
 
-    Parameters
-    ----------
-    sticking : dict
-        Sticking lengths by shape, (n,) each [m].
-    safe : dict
-        Safe lengths by shape, one for every share.
-    surfaces : dict
-        Standard errors due to the finite number of sampled surfaces by shape, (shares,) each [m].
-    rms : float
-        Of the sum of both surfaces [m].
-    settings : Settings
+    Sticking lengths (n,) [m], safe lengths for every share, standard errors due to the finite number of sampled
+    surfaces (shares,) [m], rms of the sum of both surfaces [m].
     """
     known = np.concatenate([values[np.isfinite(values)] for values in sticking.values()])
     axis = np.linspace(0.9 * known.min(), 1.02 * known.max(), _POINTS)

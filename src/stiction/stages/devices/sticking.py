@@ -92,15 +92,8 @@ def sticking_lengths(
 ) -> dict[str, np.ndarray]:
     """Sticking lengths of devices by shape, (n,) each [m].
 
-    Parameters
-    ----------
-    cracks : (n,) array
-        Crack lengths, infinite for beams that are not S-shaped, or lengths of bridges that their middle holds [m].
-    foundation : float
-        Foundation length [m].
-    device : DesignedBeam
-    held : (n,) array or None
-        Longest arcs that come free [m]; ``None`` without a tip.
+    Crack lengths (n,) are infinite for beams that are not S-shaped, or those of bridges that their middle holds [m];
+    foundation length [m]; ``held`` are the longest arcs that come free (n,) [m], ``None`` without a tip.
     """
     if held is None:
         return dict.fromkeys(device.opening.shapes, cracks)

@@ -49,13 +49,7 @@ def forces(contact: xr.Dataset, humidity: float, settings: Settings) -> np.ndarr
 def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = None) -> xr.Dataset:
     """Pull-off forces at the humidities of the device and along a fine axis, P(stuck) and the worst humidity.
 
-    Parameters
-    ----------
-    contact : Dataset
-        In the wettest air of the device.
-    settings : Settings
-    dry : Dataset, optional
-        Contact in dry air, if that is one of the humidities of the device.
+    The contact is that in the wettest air of the device, and in dry air if that is one of its humidities.
     """
     axis = axis_of(settings)
     contacts = {float(h): dry if h == 0 and dry is not None else contact for h in (*settings.humidities, *axis)}
@@ -83,15 +77,8 @@ def fine_axis(low: float, high: float) -> np.ndarray:
 def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.ndarray) -> xr.Dataset:
     """Dataset of the pull-off forces of a stopper.
 
-    Parameters
-    ----------
-    settings : Settings
-    chosen : (n_rh, m) array
-        Pull-off forces at the humidities of the device [N].
-    axis : (n,) array
-        Humidities of the fine axis, which dry air may precede [-].
-    along : (n, m) array
-        Pull-off forces along it [N].
+    Forces at the humidities of the device (n_rh, m), and along (n, m) a fine axis of humidities, which dry air may
+    precede (n,) [N], [-].
     """
     newton, none = {"units": "N"}, {"units": "1"}
     worst, worst_error = _worst(axis, along)

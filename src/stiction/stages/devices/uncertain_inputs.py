@@ -162,18 +162,9 @@ def uncertain(
 ) -> tuple[list[Input], np.ndarray]:
     """All uncertain inputs and the covariance of their errors; where no water condenses, those of the air are none.
 
-    Parameters
-    ----------
-    state : State
-        At the stated values of all inputs.
-    shifted : dict
-        (surface, quantity) to the contact with less and with more of it.
-    solids : dict
-        Uncertain property of the solids to the contact with less and with more of it, by its step in
-        `stiction.devices.materials.PROPERTIES`.
-    known : dict
-        Surface to what is known of its quantities, those of ``shifted``.
-    settings : Settings
+    The state has the stated values of all inputs. There are contacts with less and with more of each quantity of a
+    surface, by both, and of each uncertain property of the solids, by its step in
+    `stiction.devices.materials.PROPERTIES`; ``known`` is what is known of the quantities of each surface.
     """
     stated = settings.uncertainty
     blocks = [of_surface(state, name, shifted, measured) for name, measured in known.items()]
@@ -279,15 +270,7 @@ def of_scans(estimate: xr.Dataset, heights_of: xr.Dataset) -> Known:
 
 
 def of_one_scan(heights_of: xr.Dataset, spectrum_of: xr.Dataset, side: float) -> Known:
-    """Covariance of rms, skewness and kurtosis of a surface, measured on one square scan.
-
-    Parameters
-    ----------
-    heights_of, spectrum_of : Dataset
-        Of stages heights and spectrum.
-    side : float
-        [m]
-    """
+    """Covariance of rms, skewness and kurtosis of a surface, measured on one square scan of this side [m]."""
     translation = Translation(heights.density(heights_of, "NG"))
     underlying = spectrum.underlying(spectrum_of, "NG")
     reach = np.pi / float(spectrum_of.wavenumber[1] - spectrum_of.wavenumber[0])  # half of the period of its field

@@ -25,15 +25,8 @@ class Settings:
 
 
 def compute(forces: xr.Dataset, case: str, model: str, settings: Settings) -> xr.Dataset:
-    """Fit the chaos model and compare draws from it with its input.
-
-    Parameters
-    ----------
-    forces : Dataset
-        Dataset of stage forces.
-    case, model : str
-        Parts of the addresses of random numbers.
-    settings : Settings
+    """Fit the chaos model and compare draws from it with its input; case and model are parts of the addresses of
+    streams.
     """
     samples, limit = vectors(forces)
     fitted = chaos.fit(samples, limit, settings.chaos.order, settings.chaos.dimension_tolerance)
@@ -45,13 +38,8 @@ def compute(forces: xr.Dataset, case: str, model: str, settings: Settings) -> xr
 def layout(model: ChaosModel, report: tuple[np.ndarray, np.ndarray], rejected: float) -> xr.Dataset:
     """Dataset of the chaos model of the vector v of one case and of its comparison with the input.
 
-    Parameters
-    ----------
-    model : ChaosModel
-    report : tuple
-        Statistics (3, 4, 4) and correlations (3, 4, 4) by source: input, kernel density, chaos.
-    rejected : float
-        Share of draws that are rejected because they have no force law [-].
+    The report has statistics and correlations by source, input, kernel density and chaos, (3, 4, 4) each; ``rejected``
+    is the share of draws without a force law [-].
     """
     coordinates = model.coordinates
     statistics, correlations = report

@@ -24,14 +24,7 @@ def compute(contact: xr.Dataset, forces: xr.Dataset, settings: Settings) -> xr.D
 def layout(samples: np.ndarray, errors: tuple[np.ndarray, np.ndarray], total: int) -> xr.Dataset:
     """Dataset of the relative errors of Eq. (12) with respect to the curves of the samples that have a force law.
 
-    Parameters
-    ----------
-    samples : (n,) array
-        Indices of the samples with a force law, out of ``total``.
-    errors : tuple
-        Errors of the curve and of the adhesion energy, (n,) each [-].
-    total : int
-        Number of all samples.
+    Numbers of these samples (n,), out of ``total``, and errors of the curve and of the adhesion energy, (n,) each [-].
     """
     names = {"curve_error": "of the curve for d >= d_limit, root mean square", "energy_error": "of the adhesion energy"}
     columns = zip(names.items(), errors, strict=True)

@@ -47,18 +47,10 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
 
 
 def layout(vectors: np.ndarray, limit: float, distance: np.ndarray, curves: Sequence[np.ndarray]) -> xr.Dataset:
-    """Dataset of the vectors v(sample, component) of Eq. (11), f_limit, and the first few curves.
+    """Dataset of the vectors v(sample, component) of Eq. (11) and f_limit, (n, 4) [SI] and [Pa], and the first few
+    curves.
 
-    Parameters
-    ----------
-    vectors : (n, 4) array
-        Vectors v [SI].
-    limit : float
-        Pressure f_limit [Pa].
-    distance : (n_d,) array
-        Distance d [m].
-    curves : (k, n_d) array
-        Forces of the first k samples [Pa].
+    Distances (n_d,) [m] and forces of the first samples (k, n_d) [Pa].
     """
     named = {
         name: ("sample", vectors[:, i], {"units": unit, "long_name": f"{name.replace('_', ' ')} of a sample, Eq. (11)"})

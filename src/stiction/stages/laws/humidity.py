@@ -34,14 +34,7 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
 def layout(humidity: np.ndarray, probabilities: np.ndarray, energies: np.ndarray) -> xr.Dataset:
     """Dataset of the distribution of the adhesion energy e over the samples, along the relative humidity.
 
-    Parameters
-    ----------
-    humidity : (n,) array
-        Relative humidity RH [-].
-    probabilities : (k,) array
-        Probabilities of the stored quantiles [-].
-    energies : (n, m) array
-        Adhesion energies e of all samples [J m⁻²].
+    Humidities (n,) [-], probabilities of the stored quantiles (k,) [-], energies of all samples (n, m) [J m⁻²].
     """
     unit = {"units": "J m-2"}
     return xr.Dataset(

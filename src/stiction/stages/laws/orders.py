@@ -66,20 +66,10 @@ def layout(
 ) -> xr.Dataset:
     """Marginals of η drawn from polynomials of increasing order.
 
-    Parameters
-    ----------
-    edges : (n + 1,) array
-        Edges of the bins of η [-].
-    input_density : (N_g, n) array
-        Marginal densities of the samples [-].
-    densities : (N_d, N_g, n) array
-        Marginal densities of the draws, for total orders 1 ... N_d [-].
-    distances : (2, N_d, N_g) array
-        Kolmogorov distance of the draws to the kernel density and to the samples [-].
-    sizes : tuple of int
-        Number m of samples, and number of draws.
-    converged : (N_g,) sequence
-        Lowest order from which on a marginal is indistinguishable from the kernel density with m draws; 0 if none.
+    Edges of the bins (n + 1,), marginal densities of the samples (N_g, n) and of the draws for orders 1 ... N_d (N_d,
+    N_g, n), Kolmogorov distances of the draws to the kernel density and to the samples (2, N_d, N_g) [-]; numbers of
+    samples and of draws; lowest order from which on a marginal is indistinguishable from the kernel density with as
+    many draws as samples, 0 if none (N_g,).
     """
     count = len(densities)
     return xr.Dataset(

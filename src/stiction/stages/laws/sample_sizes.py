@@ -35,16 +35,8 @@ def compute(forces: xr.Dataset, settings: Settings) -> xr.Dataset:
 def layout(energy: np.ndarray, density: Sequence, sizes: Sequence[int], distances: Sequence) -> xr.Dataset:
     """Convergence of the density of ē in the number of samples.
 
-    Parameters
-    ----------
-    energy : (n_e,) array
-        Energies at which the density is given [J m⁻²].
-    density : (n_m, n_e) array
-        Densities of ē [m² J⁻¹].
-    sizes : (n_m,) sequence
-        Numbers of samples.
-    distances : (n_m, 2) array
-        Kolmogorov distance to all samples and its standard error [-].
+    Densities (n_m, n_e) [m² J⁻¹] at energies (n_e,) [J m⁻²] for numbers of samples (n_m,), and their Kolmogorov
+    distance to that of all samples with its standard error (n_m, 2) [-].
     """
     values, errors = np.transpose(distances)
     return xr.Dataset(

@@ -75,17 +75,8 @@ def compute(
 ) -> xr.Dataset:
     """Relative standard errors of ē by surface and part, the scans that would be sufficient, and the effect of choices.
 
-    Parameters
-    ----------
-    slopes : dict
-        Surface to its dataset of study slopes.
-    errors : dict
-        Surface to the errors of its estimate.
-    base : Dataset
-        Contact of the pair, of as many samples at least as those of the choices.
-    choices : dict
-        Key of `stiction.models.ALTERNATIVES_OF_SCANS` to the contact with its other value.
-    settings : Settings
+    Slopes and errors of the estimates are by surface. The base is the contact of the pair, of as many samples at least
+    as those of the choices, keys of `stiction.models.ALTERNATIVES_OF_SCANS` with the contact under the other value.
     """
 
     def of_all(of_one):
@@ -137,19 +128,9 @@ def layout(
     scans: Sequence[int],
     choices: Mapping[str, Sequence[tuple[float, float]]],
 ) -> xr.Dataset:
-    """Dataset of the relative errors of ē.
+    """Dataset of the relative errors of ē, with the number of scans of each surface.
 
-    Parameters
-    ----------
-    surfaces : sequence
-        Names.
-    humidities : sequence
-        Relative humidities RH [-].
-    found : Uncertainty
-    scans : sequence
-        Number of scans of each surface.
-    choices : dict
-        Choice to the relative change of ē and its standard error due to sampling, (n_rh, 2) [-].
+    Each choice has the relative change of ē and its standard error due to sampling, (n_rh, 2) [-].
     """
     total = found.parts[:, -1]
     pair, form = np.linalg.norm(total, axis=0), np.linalg.norm(found.form, axis=0)

@@ -34,16 +34,7 @@ def compute(contacts: Sequence[xr.Dataset], settings: Settings) -> xr.Dataset:
 def layout(energies: np.ndarray, at: Sequence[float], estimate: tuple, humidities: Sequence[float]) -> xr.Dataset:
     """Adhesion energies at two values of one moment, and sensitivities of their mean and standard deviation.
 
-    Parameters
-    ----------
-    energies : (2, n_rh, m) array
-        Adhesion energies e [J m⁻²].
-    at : (2,) array
-        Values of the moment [SI].
-    estimate : tuple
-        Normalised slopes and standard errors, (2, n_rh) each [-].
-    humidities : sequence
-        Relative humidities RH [-].
+    Energies e (2, n_rh, m) [J m⁻²] at two values [SI]; normalised slopes and standard errors, (2, n_rh) each [-].
     """
     slopes, errors = estimate
     return xr.Dataset(

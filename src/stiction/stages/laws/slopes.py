@@ -25,11 +25,7 @@ class Settings:
 def compute(contacts: Mapping[str, Sequence[xr.Dataset]], settings: Settings) -> xr.Dataset:
     """Slopes of ln ē by central differences.
 
-    Parameters
-    ----------
-    contacts : dict
-        Quantity, key of `stiction.analysis.shifts.STEPS`, to the contact with less and with more of it.
-    settings : Settings
+    Each quantity, a key of `stiction.analysis.shifts.STEPS`, has the contact with less and with more of it.
     """
     found = np.array([[_slope(*both, h, settings.water) for h in settings.humidities] for both in contacts.values()])
     return layout(list(contacts), settings.humidities, *np.moveaxis(found, -1, 0))

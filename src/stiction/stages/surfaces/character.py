@@ -57,17 +57,9 @@ def layout(
 ) -> xr.Dataset:
     """Dataset of the statistics of simulated surfaces.
 
-    Parameters
-    ----------
-    strips : dict
-        Per strip: powers of the heights (n, 4) [m^k], summit_density (n,) [m⁻²], mean_curvature (n,) [m⁻¹], NaN in a
-        strip without a summit.
-    fields : tuple
-        Wave numbers (n_ζ,) [rad m⁻¹] and periodograms of periodic fields (n_f, n_ζ) [m⁴].
-    summits : tuple
-        Heights [m] and curvatures [m⁻¹] of some summits, (n_s,) each.
-    patch : tuple
-        Spacing [m] and heights [m] of one patch, (n_x, n_y).
+    Strips have powers of the heights (n, 4) [m^k], summit_density (n,) [m⁻²] and mean_curvature (n,) [m⁻¹], NaN in a
+    strip without a summit. Periodic fields have wave numbers (n_ζ,) [rad m⁻¹] and periodograms (n_f, n_ζ) [m⁴], some
+    summits heights [m] and curvatures [m⁻¹], (n_s,) each, and one patch a spacing [m] and heights (n_x, n_y) [m].
     """
     wavenumber, periodogram = fields
     spacing, heights = patch

@@ -30,17 +30,8 @@ def compute(spectra: Mapping[str, xr.Dataset], settings: Settings) -> xr.Dataset
 
 
 def layout(surfaces: Sequence[str], lag: np.ndarray, correlations: Sequence, lengths: Sequence[float]) -> xr.Dataset:
-    """Normalised autocorrelation of surfaces and their correlation lengths.
-
-    Parameters
-    ----------
-    surfaces : sequence of str
-    lag : (n,) array
-        Distance [m].
-    correlations : (n_s, n) array
-        Normalised autocorrelation [-].
-    lengths : (n_s,) array
-        Correlation lengths [m].
+    """Normalised autocorrelation of surfaces (n_s, n) [-] over the distance (n,), and their correlation lengths (n_s,)
+    [m].
     """
     return xr.Dataset(
         {

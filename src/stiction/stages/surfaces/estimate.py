@@ -68,14 +68,7 @@ def compute(scans: Sequence[xr.Dataset], surface: str, settings: Settings) -> xr
 
 
 def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
-    """Dataset of an estimate.
-
-    Parameters
-    ----------
-    found : SurfaceEstimate
-    notes : sequence of str
-        Sentences on the files, stored after those on the estimate.
-    """
+    """Dataset of an estimate; the notes on the files follow the sentences on the estimate."""
     return xr.Dataset(
         _moments(found) | _spectrum(found) | _heights(found) | _summits(found) | _scans(found, notes),
         coords={

@@ -44,16 +44,10 @@ def compute(settings: Settings) -> xr.Dataset:
 
 
 def layout(density: Density, moments: Settings, measured: Moments | None = None) -> xr.Dataset:
-    """Dataset of the height density of one surface.
+    """Dataset of the height density of one surface and its moments.
 
-    Parameters
-    ----------
-    density : Density
-        Maximum-entropy or measured density.
-    moments : Settings
-        Moments of this density.
-    measured : Moments, optional
-        Measured moments, and the distance of those of a maximum-entropy density from them; by default there is none.
+    ``measured`` are measured moments, and the distance of those of a maximum-entropy density from them; by default
+    there are none.
     """
     z = np.linspace(-6, 6, 601)
     form = _measured_form if isinstance(density, MeasuredDensity) else _maximum_entropy

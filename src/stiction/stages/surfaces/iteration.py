@@ -55,15 +55,9 @@ def compute(heights: xr.Dataset, spectrum: xr.Dataset, surface: str, settings: S
 def layout(rings: tuple, steps: tuple, misfits: dict) -> xr.Dataset:
     """Dataset of the spectra of the algorithm of Fig. 4, of unit variance, and of their misfits to the target.
 
-    Parameters
-    ----------
-    rings : tuple
-        Wave numbers (n,) [rad m⁻¹] and the target on them (n,) [m²].
-    steps : tuple
-        Per iteration: Gaussian spectra (k, n) and periodograms of translated fields (k, fields, n) [m²].
-    misfits : dict
-        Mean error |ln(s / s_Z)| of a ring: misfit of the estimated spectra (k,), sampling_misfit of exact spectra
-        (k,), closed_form_misfit [-].
+    Wave numbers (n,) [rad m⁻¹] with the target (n,) [m²]; per iteration, Gaussian spectra (k, n) and periodograms of
+    translated fields (k, fields, n) [m²]; mean errors |ln(s / s_Z)| of a ring: misfit of the estimated spectra (k,),
+    sampling_misfit of exact spectra (k,), closed_form_misfit [-].
     """
     (wavenumber, target), (underlying, periodogram) = rings, steps
     unit, mean = {"units": "m2"}, {"units": "1", "long_name": "mean error |ln(s / s_Z)| of a ring"}

@@ -52,11 +52,7 @@ def compute(estimate: xr.Dataset, heights: xr.Dataset, settings: Settings) -> xr
 def cutoff_and_clipping(end: float, settings: Settings) -> tuple[float, str]:
     """Cut-off [rad m⁻¹], and a sentence if the grid cuts the measured spectrum off; empty if it does not.
 
-    Parameters
-    ----------
-    end : float
-        Of the measured spectrum, the Nyquist wave number of the scans at most [rad m⁻¹].
-    settings : Settings
+    The measured spectrum ends at the Nyquist wave number of the scans at most [rad m⁻¹].
     """
     grid = np.pi / settings.spacing
     if end <= grid:

@@ -127,17 +127,9 @@ def compute(
 ) -> xr.Dataset:
     """Inputs, lengths and safe lengths, or forces, of a device before and after its test beams were measured.
 
-    Parameters
-    ----------
-    budgets : dict
-        Device, humidity and, for tips, more to the dataset of its budget.
-    test_beams : dict
-        Array, humidity and, for tips, more to the dataset of its budget.
-    predicted : dict or Dataset
-        Humidity to the dataset of stage safe_lengths of a beam, or the dataset of stage stoppers.
-    grounds, tips : dict
-        Array with counts to the contact on which its beams stick, and to that of their tips.
-    settings : Settings
+    Budgets are by device or array, humidity and, for tips, more. What is predicted are the datasets of stage
+    safe_lengths of a beam by humidity, or that of stage stoppers. ``grounds`` and ``tips`` are the contacts on which
+    the beams of an array with counts stick, and those of their tips.
     """
     of_arrays = [Result(*key[:2], one, settings.arrays[key[0]]) for key, one in test_beams.items()]
     beams, of_tips = ([one for one in of_arrays if (one.response == ARC) == is_tip] for is_tip in (False, True))
@@ -220,15 +212,8 @@ def counted(
     ASSUME: beams were counted whose tips had touched the substrate, and may be held by them. Crack lengths are
     lognormal.
 
-    Parameters
-    ----------
-    results : sequence of n Result
-        Of beams and tips of test beams.
-    responses : (n or more, k) array
-    found : dict
-        Array to its counts.
-    grounds, tips : dict
-        Array to the contact on which its beams stick, and to that of their tips.
+    The results (n) are those of beams and tips of test beams, the first ones with responses (n or more, k); counts and
+    contacts, as in `compute`, are by array.
     """
     places = {(one.owner, one.humidity, one.response): place for place, one in enumerate(results)}
     rows, lengths, scores = [], [], []

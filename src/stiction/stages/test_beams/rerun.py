@@ -42,18 +42,8 @@ def compute(
 ) -> xr.Dataset:
     """The update of stage test_beams, with the linear changes of some results and those found by computing them again.
 
-    Parameters
-    ----------
-    found : Dataset
-        Of stage test_beams.
-    budgets : dict
-        Device or array, and humidity, to the dataset of its budget.
-    patches : sequence
-        Name of the patch of each of them.
-    contacts : dict
-        Patch to the contact with the stated inputs and to that of its first samples with the errors of the update.
-    settings : sequence
-        Of each budget.
+    The budgets are by device or array, and humidity; each has the name of its patch and its settings. A patch has the
+    contact with the stated inputs and that of its first samples with the errors of the update.
     """
     errors, names, rows = errors_of(found), [], []
     for (key, budget), patch, own in zip(budgets.items(), patches, settings, strict=True):
@@ -86,18 +76,10 @@ def compared(
 def at_mean(
     surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset]], pair: str, plain: dict[str, Any], errors: Mapping[str, float]
 ) -> xr.Dataset:
-    """Contact of a pair whose surfaces and solids err.
+    """Contact of a pair whose surfaces and solids err, by the name of the input, such as ``rms of B2``.
 
-    Parameters
-    ----------
-    surfaces : dict
-        Name to the datasets (heights, spectrum).
-    pair : str
-        Name of the pair, part of the addresses of random numbers.
-    plain : dict
-        Settings of the contact with the stated inputs, as of a job.
-    errors : dict
-        Input, such as ``rms of B2``, to its error.
+    The surfaces are datasets (heights, spectrum) by name; ``plain`` has the settings of the contact with the stated
+    inputs, as of a job. The name of the pair is part of the addresses of random numbers.
     """
     for name, one in OF_CONTACT.items():
         if one.words in errors:
