@@ -73,7 +73,7 @@ def energies(space, heights, adhesion, curve, water):
     more, beyond = undeformed(heights, distance, force, across.work)
     found = [forcelaw.adhesion_energy(distance, force), forcelaw.adhesion_energy(distance, more, beyond)]
     for each, of_summits in ((adhesion, force), (across, more)):
-        state, _ = elements.at_rest(space, heights, each, full_contact.start(distance, of_summits))
+        state, _ = elements.at_rest(space, heights, each, (distance, of_summits))
         found.append(-state.energy(heights, each))
     return found
 

@@ -44,7 +44,7 @@ def row(results, pair):
         counted = Counted(space.shape, space.spacing, space.modulus)
         start = time.process_time()
         for adhesion, curve in cases:
-            separation(counted, heights, adhesion, full_contact.start(*curve))
+            separation(counted, heights, adhesion, curve)
         taken.append(time.process_time() - start)
         start = time.process_time()
         for _ in range(counted.number):

@@ -166,16 +166,18 @@ def adhesion_at(humidity, space=None):
 
 
 def by_summits(number, humidity):
-    """Energy, largest attraction, and distances without force and of the largest attraction of the sum over summits."""
+    """Energy, largest attraction, and distances and forces of the sum over summits."""
     solid, bearing = PAIR.contact(rough(number))
     starts = PAIR.distances.solid[0], PAIR.distances.bearing[0]
     distance, curve = forcelaw.humid_curves(solid[None], bearing[None], starts, PAIR.step, film(humidity, 300.0))
-    far, pull_off = forcelaw.extremum(distance, curve(0))
-    return (
-        forcelaw.adhesion_energy(distance, curve(0)),
-        pull_off,
-        (forcelaw.limit_distance(distance, curve(0), 0.0), far),
-    )
+    _, pull_off = forcelaw.extremum(distance, curve(0))
+    return forcelaw.adhesion_energy(distance, curve(0)), pull_off, (distance, curve(0))
+
+
+def other_model(at_rest, farthest):
+    """Distances and forces of a curve without force at a distance and with the largest attraction at another."""
+    step = farthest - at_rest
+    return at_rest + step * np.arange(-1, 3), np.array([1.0, 0.0, -1.0, -0.5])
 
 
 @cache
@@ -272,7 +274,7 @@ def test_rigid_surfaces_touch_at_one_point_and_have_the_energy_of_the_gap_there(
     height, tension = film(0.8, 300.0)
     space, adhesion = space_of(modulus=1e3 * E), Adhesion(height, tension)
     top = float(rough().max())
-    found = separation(space, rough(), adhesion, (top - 0.03 * NM, top + 0.03 * NM))
+    found = separation(space, rough(), adhesion, other_model(top - 0.03 * NM, top + 0.03 * NM))
     expected = tension * np.clip(height - (top - rough().astype(float)), 0, None).mean()
     assert found.adhesion_energy == pytest.approx(expected, rel=0.01)
     assert np.sum(found.closed.pressure > 0) < 10
@@ -309,4 +311,4 @@ def test_elements_too_large_for_van_der_waals_forces_are_refused():
 def test_surfaces_too_smooth_to_resist_the_adhesion_are_refused():
     smooth = (1e-3 * rough()).astype(np.float32)
     with pytest.raises((ValueError, NotConverged), match="full elastic contact .* too smooth or .* too soft"):
-        separation(space_of(), smooth, adhesion_at(0.9), (0.05 * NM, 1 * NM))
+        separation(space_of(), smooth, adhesion_at(0.9), other_model(0.05 * NM, 1 * NM))

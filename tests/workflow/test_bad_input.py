@@ -88,8 +88,8 @@ def test_a_read_only_folder_is_reported(planner, tmp_path):
 
 
 def made(folder, *arguments):
-    """Run make in a folder, without the variables of the make process that runs the tests."""
-    environment = {key: value for key, value in os.environ.items() if not key.startswith("MAKE")}
+    """Run make in a folder, without the variables of the make process that runs the tests, such as ARGS=-x."""
+    environment = {key: value for key, value in os.environ.items() if not key.startswith(("MAKE", "ARGS", "CONFIG"))}
     words = ["make", "-C", folder, *arguments]
     return subprocess.run(words, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 

@@ -26,7 +26,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stiction.contact.forcelaw import extremum
+from stiction.contact.forcelaw import extremum, limit_distance
 from stiction.contact.halfspace import OWN_DISPLACEMENT, HalfSpace
 from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.errors import NotConverged
@@ -44,6 +44,8 @@ RELAXATION = 1.4
 ENERGY_LEFT = 1e-3
 #: Most turns of the attraction, displacements in each, and distances in the search for one state.
 TURNS, STEPS, STATES = 100, 1000, 40
+#: Distances [m] and forces [Pa] of another model, (n,) each.
+Curve = tuple[np.ndarray, np.ndarray]
 _UNSETTLED = "full elastic contact does not settle, with surfaces too smooth or a solid too soft for the grid"
 
 
@@ -183,9 +185,9 @@ def _supported(space, undeformed, pressure, attraction, share, hardness):
         if left <= max(TOLERANCE, share * first):
             return pressure, gap, first
         descended, traction = _descended(pressure, gap, attraction, np.float32(step), hardness)
-        after = undeformed + space.displacement(traction)
-        step = _next_step(pressure, gap, descended, after, hardness) or first_step
-        pressure, gap, left = descended, after, _residual(descended, after, hardness)
+        displacement = space.displacement(traction)
+        after, step, left = _moved(pressure, gap, descended, undeformed, displacement, hardness)
+        pressure, gap, step = descended, after, step or first_step
     raise NotConverged(f"{_UNSETTLED}: gap of an element in contact [m]", left, TOLERANCE, STEPS)
 
 
@@ -200,35 +202,53 @@ def _descended(pressure, gap, attraction, step, hardness):
     return descended, traction
 
 
+# Sums and maxima are taken along each column first, so that the compiler can take those of several columns at once.
 @kernel
-def _next_step(pressure, gap, descended, after, hardness):
-    r"""Step of Barzilai and Borwein after a step, over elements in contact or overlap; 0 if there are none [Pa m⁻¹].
+def _moved(pressure, gap, descended, undeformed, displacement, hardness):
+    r"""Gap after a step (n1, n2) [m], the next step of Barzilai and Borwein [Pa m⁻¹], and the residual [m].
 
-    Elements that overlap at the hardness stay as they are.
+    The next step is over elements in contact or overlap, and 0 if there are none. Elements that overlap at the hardness
+    stay as they are.
 
     .. math:: \alpha = \frac{\Delta p \cdot \Delta g}{\Delta g \cdot \Delta g}
     """
-    mixed = square = 0.0
+    after, columns, none = np.empty_like(gap), gap.shape[1], np.float32(0)
+    mixed, square, largest = np.zeros(columns), np.zeros(columns), np.zeros(columns, np.float32)
     for i in range(gap.shape[0]):
-        for j in range(gap.shape[1]):
-            if (descended[i, j] > 0 or after[i, j] < 0) and not (descended[i, j] == hardness and after[i, j] < 0):
-                change = np.float64(after[i, j] - gap[i, j])
-                mixed += (descended[i, j] - pressure[i, j]) * change
-                square += change * change
-    return mixed / square if mixed > 0 else 0.0
+        for j in range(columns):
+            now, carried = undeformed[i, j] + displacement[i, j], descended[i, j]
+            yields, overlaps = carried == hardness, now < 0
+            moves = overlaps & (not yields) | (carried > 0) & (not overlaps)
+            change = np.float64(now - gap[i, j] if moves else none)
+            mixed[j] += (carried - pressure[i, j]) * change
+            square[j] += change * change
+            largest[j] = _larger(largest[j], _error(carried, now, hardness))
+            after[i, j] = now
+    slope = mixed.sum()
+    return after, slope / square.sum() if slope > 0 else 0.0, largest.max()
 
 
 @kernel
 def _residual(pressure, gap, hardness):
     """Largest gap of an element in contact, and overlap of one that is not at the hardness [m]."""
-    largest = np.float32(0)
+    largest = np.zeros(gap.shape[1], np.float32)
     for i in range(gap.shape[0]):
         for j in range(gap.shape[1]):
-            if pressure[i, j] > 0:
-                largest = max(largest, gap[i, j])
-            if pressure[i, j] < hardness:
-                largest = max(largest, -gap[i, j])
-    return largest
+            largest[j] = _larger(largest[j], _error(pressure[i, j], gap[i, j], hardness))
+    return largest.max()
+
+
+@kernel(inline="always")
+def _error(pressure, gap, hardness):
+    """Gap of an element in contact, or overlap of one that is not at the hardness, else 0 [m]."""
+    none = np.float32(0)
+    return _larger(gap if pressure > 0 else none, -gap if pressure < hardness else none)
+
+
+@kernel(inline="always")
+def _larger(first, second):
+    """The larger of two numbers; unlike max, which looks for NaN, without a branch."""
+    return first if first > second else second
 
 
 @dataclass(frozen=True)
@@ -241,39 +261,45 @@ class Separation:
     states: int  #: number of distances
 
 
-def separation(space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, start: tuple[float, float]) -> Separation:
+def separation(space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, curve: Curve) -> Separation:
     """Adhesion energy and largest attraction of a strip of heights z (n1, n2) float32 [m].
 
     Parameters
     ----------
-    start : tuple of 2 floats
-        Distances without force and of the largest attraction of another model, from which the search begins. A third of
-        their difference is the step between distances, and a third of that near the largest attraction [m].
+    curve : tuple of 2 (n,) arrays
+        Distances and forces of another model, which lead to the distance without force [m], [Pa]. A third of the
+        difference between its distances without force and of the largest attraction is the step between distances, and
+        a third of that near the largest attraction.
 
     Raises
     ------
     ValueError
         If no distance without force is found, or no largest attraction.
     """
-    step = (start[1] - start[0]) / 3
 
     def at(distance, before):
         return equilibrium(space, heights, distance, adhesion, before)
 
-    closed, states = at_rest(space, heights, adhesion, start)
-    coarse, before = _beyond_extremum(at, closed, step, start[1])
+    closed, states = at_rest(space, heights, adhesion, curve)
+    (far, _), step = extremum(*curve), _step(curve)
+    coarse, before = _beyond_extremum(at, closed, step, far)
     fine, _ = _beyond_extremum(at, before, step / 3, before.distance + step)
     _, pull_off = extremum(*np.transpose(fine))
     return Separation(-closed.energy(heights, adhesion), pull_off, closed, states + len(coarse) + len(fine) - 2)
 
 
-def at_rest(space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, start: tuple[float, float]) -> tuple[State, int]:
+def at_rest(space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, curve: Curve) -> tuple[State, int]:
     """State without force, which has the adhesion energy, and the number of states; parameters of `separation`."""
 
     def at(distance, before):
         return equilibrium(space, heights, distance, adhesion, before)
 
-    return _without_force(at, start[0], (start[1] - start[0]) / 3, lambda state: state.energy(heights, adhesion))
+    return _without_force(at, curve, lambda state: state.energy(heights, adhesion))
+
+
+def _step(curve):
+    """Step between distances [m]."""
+    return (extremum(*curve)[0] - limit_distance(*curve, 0.0)) / 3
 
 
 def _beyond_extremum(at, state, step, end):
@@ -290,24 +316,33 @@ def _beyond_extremum(at, state, step, end):
     return curve, before
 
 
-def _without_force(at, distance, step, energy):
-    """State without force near a distance [m], and number of states; ``at(distance, before)`` is a state after another.
+def _without_force(at, curve, energy):
+    """State without force, and number of states; ``at(distance, before)`` is a state after another.
 
-    Steps lead to a change of sign, and secants to a force too small to change the energy.
+    The curve of another model, shifted to the force of a state, leads to a change of sign, and secants to a force too
+    small to change the energy.
     """
-    state, ends, number = at(distance, None), {}, 1
+    state, ends, number = at(limit_distance(*curve, 0.0), None), {}, 1
     while True:
-        repels = state.force > 0
-        ends[repels] = state
+        ends[state.force > 0], last = state, state
         if len(ends) == 2:
             width, drop = ends[False].distance - ends[True].distance, ends[True].force - ends[False].force
-            if 0.5 * state.force**2 * width / drop <= ENERGY_LEFT * abs(energy(state)):
-                return state, number
             distance = ends[True].distance + width * ends[True].force / drop
         else:
-            distance = state.distance + (step if repels else -step)
+            distance = state.distance + _shift(curve, state.force)
         state, number = at(distance, state), number + 1
+        stiffness = (last.force - state.force) / (state.distance - last.distance)
+        if 0.5 * state.force**2 <= ENERGY_LEFT * abs(energy(state)) * stiffness:
+            return state, number
         _refuse_after(number)
+
+
+def _shift(curve, force):
+    """Distance between a force and none in the curve of another model [m]; a step where the curve has no such force."""
+    try:
+        return limit_distance(*curve, 0.0) - limit_distance(*curve, force)
+    except ValueError:
+        return np.sign(force) * _step(curve)
 
 
 def _refuse_after(states):

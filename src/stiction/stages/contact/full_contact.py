@@ -60,7 +60,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
 
 def strips(
     surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings
-) -> Iterator[tuple[HalfSpace, np.ndarray, list[tuple[elements.Adhesion, tuple[np.ndarray, np.ndarray]]]]]:
+) -> Iterator[tuple[HalfSpace, np.ndarray, list[tuple[elements.Adhesion, elements.Curve]]]]:
     """Strips one after the other: elements, heights z (n1, n2) [m], and for each humidity the attraction and the curve.
 
     The curve is that of the sum over summits: distances [m] and forces [Pa].
@@ -82,7 +82,7 @@ def strips(
 
 def _both_models(distance, force, strip, hardness):
     """Variables of one strip at one humidity; ``distance``, ``force``: curve of the sum over summits."""
-    found = elements.separation(*strip, start(distance, force))
+    found = elements.separation(*strip, (distance, force))
     pressure = found.closed.pressure
     touching = pressure[pressure > 0] / hardness
     shares = [float((touching > level).sum() / max(touching.size, 1)) for level in (ONSET, 1)]
@@ -96,11 +96,6 @@ def _both_models(distance, force, strip, hardness):
         found.closed.residual,
         found.states,
     ]
-
-
-def start(distance: np.ndarray, force: np.ndarray) -> tuple[float, float]:
-    """Distances of a curve without force and of its largest attraction, from which a separation begins [m]."""
-    return forcelaw.limit_distance(distance, force, 0.0), forcelaw.extremum(distance, force)[0]
 
 
 def layout(values: np.ndarray, humidities: Sequence[float], spacing: float) -> xr.Dataset:

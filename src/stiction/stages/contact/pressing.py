@@ -53,28 +53,27 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
 
 def _of_strip(space, heights, cases, shares, closest, hardness):
     """Energies (2 + n_steps, n_humidity) and variables of the presses (n_steps, n_variables) of one strip."""
-    starts = [(adhesion, full_contact.start(*curve)) for adhesion, curve in cases]
-    fresh = [at_rest(space, heights, *each)[0] for each in starts]
-    before = [state.energy(heights, adhesion) for state, (adhesion, _) in zip(fresh, starts, strict=True)]
+    fresh = [at_rest(space, heights, *each)[0] for each in cases]
+    before = [state.energy(heights, adhesion) for state, (adhesion, _) in zip(fresh, cases, strict=True)]
     own = [
         equilibrium(space, heights, state.distance, adhesion, state, hardness).flattening
-        for state, (adhesion, _) in zip(fresh, starts, strict=True)
+        for state, (adhesion, _) in zip(fresh, cases, strict=True)
     ]
     rest = min(state.distance for state in fresh)
     pressed = list(_pressed(space, heights, rest + (closest - rest) * shares, hardness))
     after = [
         [
             _energy(space, heights - by, *each) if by.any() else e
-            for by, each, e in zip(flat, starts, before, strict=True)
+            for by, each, e in zip(flat, cases, before, strict=True)
         ]
-        for flat in (own, *([state.flattening] * len(starts) for state in pressed))
+        for flat in (own, *([state.flattening] * len(cases) for state in pressed))
     ]
     return -np.array([before, *after]), [_of_press(state) for state in pressed]
 
 
-def _energy(space, heights, adhesion, start):
+def _energy(space, heights, adhesion, curve):
     """Energy U of a strip without force [J m⁻²]."""
-    return at_rest(space, heights, adhesion, start)[0].energy(heights, adhesion)
+    return at_rest(space, heights, adhesion, curve)[0].energy(heights, adhesion)
 
 
 def _pressed(space: HalfSpace, heights: np.ndarray, distances: np.ndarray, hardness: float) -> Iterator[State]:
