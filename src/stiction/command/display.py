@@ -13,14 +13,7 @@ _START = "loading; after an installation, compiling for a minute"
 
 
 class Display:
-    """Line about a run.
-
-    Parameters
-    ----------
-    run : Run
-    stream : file
-        On a terminal, the line is drawn again every second until `close`; a file gets a line from time to time.
-    """
+    """Line about a run: drawn again every second on a terminal until `close`; a file gets a line from time to time."""
 
     def __init__(self, run: Run, stream: TextIO):
         self._run, self._stream = run, stream

@@ -42,16 +42,9 @@ def status(run: Run, code: int, stopped: bool) -> Status:
 
 
 def last_lines(run: Run, ended: Status, directory: Path, printed: str = "") -> Iterator[str]:
-    """What a user reads at the end of a run.
+    """What a user reads at the end of a run in a folder.
 
-    Parameters
-    ----------
-    run : Run
-    ended : Status
-    directory : path
-        Folder of the run.
-    printed : str
-        What Snakemake printed last, for errors that it does not report otherwise.
+    ``printed`` is what Snakemake printed last, for errors that it does not report otherwise.
     """
     if ended == Status.STOPPED:
         after = f" after {run.done} of {run.total} jobs" if run.planned else ""

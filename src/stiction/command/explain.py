@@ -22,13 +22,7 @@ _CHANGED = re.compile(r"before: (.*?) now: (.*)", re.DOTALL)
 
 
 def explained(run: Run) -> Iterator[str]:
-    """Lines on what a run would compute and why; the first counts the jobs.
-
-    Parameters
-    ----------
-    run : Run
-        Everything that a dry run has reported.
-    """
+    """Lines on what a run would compute and why, from all that a dry run has reported; the first counts the jobs."""
     jobs = [job for job in run.jobs.values() if job.logs]  # the others only collect files
     if not jobs:
         yield "Nothing would be computed: all results are up to date."

@@ -39,34 +39,19 @@ def require_snakemake() -> None:
 
 
 def words(configs: Sequence[str], directory: str, arguments: Sequence[str]) -> list[str]:
-    """Arguments of Snakemake.
+    """Arguments of Snakemake: files that change single keys of the paper's configuration, and the folder of the run.
 
-    Parameters
-    ----------
-    configs : sequence of str
-        Files that change single keys of the configuration of the paper.
-    directory : str
-        Folder of the run.
-    arguments : sequence of str
-        Targets and further options; they come last, where none of the options before takes them for its values.
+    Targets and further options come last, where none of the options before takes them for its values.
     """
     files = ["--configfile", str(WORKFLOW / "config.yaml"), *configs]
     return [*files, "--directory", directory, "--snakefile", str(WORKFLOW / "Snakefile"), *arguments]
 
 
 def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: bool) -> tuple[int, bool]:
-    """Run Snakemake, which reports to `stiction.command.follow.RUN`.
+    """Run Snakemake in a folder, with arguments from `words`; it reports to `stiction.command.follow.RUN`.
 
-    Parameters
-    ----------
-    arguments : sequence of str
-        See `words`.
-    directory : path
-        Folder of the run.
-    quiet : bool
-        Keep everything that Snakemake and its jobs print as errors in a file.
-    progress : bool
-        Show one line of progress instead.
+    A quiet one keeps in a file everything that Snakemake and its jobs print as errors; ``progress`` shows one line
+    instead.
 
     Returns
     -------

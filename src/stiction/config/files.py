@@ -65,16 +65,11 @@ def paper() -> dict:
 
 
 def normalised(config: dict) -> dict:
-    """Configuration in normal form: equivalent settings are equal, whatever their order in the file.
+    """Complete and valid configuration in normal form: equivalent settings are equal, whatever their order in the file.
 
     Keys are sorted, so that the parameters of a rule do not depend on their order. The humidities of each pair and
     device are sorted as well, so that tables and curves begin with the lowest. Measured surfaces get all their keys.
     Dry air has the humidity 0.
-
-    Parameters
-    ----------
-    config : dict
-        Complete configuration that `stiction.config.validation.validate` accepts.
     """
     config = in_numbers(config)
     named = {section: config[section] for section in ("pairs", "devices") if section in config}

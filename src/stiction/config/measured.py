@@ -118,14 +118,8 @@ def preliminary_estimates(
 ) -> tuple[dict[str, dict], list[Problem]]:
     """Preliminary numbers of the measured surfaces by name, and the problems of those that have none.
 
-    Parameters
-    ----------
-    config : dict
-        Configuration.
-    faults : collection of tuple
-        Keys that are wrong on their own: their surfaces are left out.
-    kept : path, optional
-        Folder in which the numbers are kept between processes.
+    Surfaces with keys that are wrong on their own, the ``faults``, are left out; between processes, the numbers are
+    kept in a folder, if one is named.
     """
     found, problems = {}, []
     if _unusable(faults):

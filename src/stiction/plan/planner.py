@@ -23,18 +23,10 @@ RESULTS, DATASET = "results/", ".nc"
 
 
 class Planner:
-    """Rules and jobs of one configuration.
+    """Rules and jobs of one configuration: complete, valid and in normal form.
 
-    Parameters
-    ----------
-    config : dict
-        Complete, valid and in normal form.
-    preliminary : dict
-        Numbers of measured surfaces, see `stiction.config.measured`.
-    remember : callable
-        Keeps fingerprints, see `stiction.run.disk_cache.DiskCache`.
-    kept : str or Path
-        File in which jobs are kept between plans.
+    Preliminary numbers of measured surfaces are those of `stiction.config.measured`, fingerprints are kept by a
+    `stiction.run.disk_cache.DiskCache`, and jobs between plans in a file.
     """
 
     def __init__(

@@ -25,14 +25,9 @@ class DiskCache:
             self._known = {}
 
     def __call__(self, determined_by: object, compute: Callable[[], Any]) -> Any:
-        """Result that is known, or computed now.
+        """Result that is known, or computed now; if this raises an error, nothing is kept.
 
-        Parameters
-        ----------
-        determined_by : object
-            Plain numbers, strings, lists and dicts that determine the result, its code among them.
-        compute : callable
-            Returns the result, of the same kind; if it raises an error, nothing is kept.
+        Plain numbers, strings, lists and dicts determine the result, which is of the same kind; its code is among them.
         """
         text = json.dumps(determined_by, sort_keys=True, default=str)
         key = hashlib.sha256(text.encode()).hexdigest()

@@ -47,12 +47,7 @@ _PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 
 class Server:
-    """Process that runs scripts in forks of itself; it ends with the process that started it.
-
-    Parameters
-    ----------
-    environment : dict
-        Environment of the process and of all scripts.
+    """Process that runs scripts in forks of itself, all in one environment; it ends with the process that started it.
 
     Raises
     ------
@@ -163,10 +158,7 @@ def preload() -> None:
 def serve(requests: socket.socket) -> str | None:
     """Fork for every request; returns the script in each child, and ``None`` once the other side has closed.
 
-    Parameters
-    ----------
-    requests : socket
-        Each message is the path of a script, with a socket for the exit status.
+    Each request is the path of a script, with a socket for the exit status.
     """
     running = {}  # pipe that a child holds open until it ends: its process and the socket for its status
     server = os.getpid()

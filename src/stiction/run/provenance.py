@@ -27,16 +27,9 @@ LIBRARIES = (
 
 
 def record(path: str | Path, checkout: str | Path, config: dict) -> None:
-    """Append the run that is starting to the record of runs; the file is replaced atomically.
+    """Append the run that is starting to the record of runs, oldest first; the JSON file is replaced atomically.
 
-    Parameters
-    ----------
-    path : path
-        JSON file with a list of runs, oldest first.
-    checkout : path
-        Folder that contains the code.
-    config : dict
-        Complete configuration of the run.
+    ``checkout`` is the folder that contains the code.
 
     Raises
     ------

@@ -23,20 +23,13 @@ def foreign(
 ) -> Iterator[tuple[str, str]]:
     """Datasets that other settings or another study gave, or that cannot be read, each with the reason.
 
-    Parameters
-    ----------
-    paths : iterable of str or Path
-        Files of datasets.
-    expected : callable
-        Settings of the job of a file in this run; ``None`` if no job of this run writes the file.
-    remember : callable
-        Keeps the labels of files that have not changed, see `stiction.run.disk_cache.DiskCache`.
+    ``expected`` gives the settings of the job of a file in this run, ``None`` if no job writes it: such files are left
+    out. A `stiction.run.disk_cache.DiskCache` keeps the labels of files that have not changed.
 
     Yields
     ------
     tuple of str
-        File; and a clause about its content and what this run needs. Files that this run does not write are left
-        out.
+        File; and a clause about its content and what this run needs.
     """
     for path in map(Path, paths):
         if (settings := expected(path.as_posix())) is not None:
@@ -87,16 +80,11 @@ def _value(value):
 
 
 def damaged(logs: str | Path, remember: Callable[[object, Callable[[], Any]], Any]) -> Iterator[tuple[str, str]]:
-    """Files that are no longer as their jobs wrote them, according to the checksums in the logs, each with the reason.
+    """Files that are no longer as their jobs wrote them, according to the checksums in a folder of logs, with the
+    reason.
 
-    Files that are missing and files without a checksum are left out.
-
-    Parameters
-    ----------
-    logs : path
-        Folder of the logs.
-    remember : callable
-        Keeps the checksums of files that have not changed, see `stiction.run.disk_cache.DiskCache`.
+    Files that are missing and files without a checksum are left out. A `stiction.run.disk_cache.DiskCache` keeps the
+    checksums of files that have not changed.
     """
     for path, written in recorded(logs).items():
         file = Path(path)

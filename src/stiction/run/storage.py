@@ -18,16 +18,9 @@ def save(
 ) -> None:
     """Write a dataset atomically, labelled with its stage, its name and the settings from which it was computed.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-    path : str or Path
-    stage : str
-        Name of the stage; :func:`load` checks it, and that the file has the name under which it was written.
-    settings : dict
-        Plain numbers, strings, lists and dicts; neither time nor machine, so that equal settings give equal files.
-    inputs : iterable of str or Path
-        Datasets from which it was computed; their settings become part of the label.
+    :func:`load` checks the stage, and that the file has the name under which it was written. Settings are plain,
+    without time and machine, so that equal ones give equal files; those of the datasets from which it was computed, the
+    ``inputs``, become part of the label.
 
     Raises
     ------
@@ -51,14 +44,7 @@ def _fill(path, size):
 
 
 def load(path: str | Path, stage: str, **parts: slice) -> xr.Dataset:
-    """Read the dataset of a stage into memory.
-
-    Parameters
-    ----------
-    path : str or Path
-    stage : str
-    **parts : slice
-        Part of a dimension to read, for example ``sample=slice(100)``; all of the other dimensions is read.
+    """Read the dataset of a stage into memory, or a part of a dimension, for example ``sample=slice(100)``.
 
     Raises
     ------
