@@ -41,7 +41,7 @@ SAMPLES, HUMIDITIES = (1250, 5000, 20_000), (6, 25, 100)
 
 _CONTACT = """
 import json, sys, time
-from stiction.config import files, jobs
+from stiction.config import files
 from stiction.plan.graph import Results
 from stiction.run.logs import peak_memory
 from stiction.stages.contact import contact

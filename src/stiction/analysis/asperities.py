@@ -9,13 +9,8 @@ from stiction.estimates import jackknife
 def rms_deviation(energies: np.ndarray, others: np.ndarray, relative: float | np.ndarray = 1.0) -> tuple[float, float]:
     """Root mean square deviation of crack lengths from a reference, over humidities, and its jackknife error [-].
 
-    Parameters
-    ----------
-    energies, others : (n, h) arrays
-        Adhesion energies e of the same n strips at h humidities, by two models of the contact [J m⁻²].
-    relative : (h,) array, optional
-        Crack lengths of the other model over those of the reference [-]; the other model itself is the reference by
-        default.
+    Energies e (n, h) are those of the same strips at h humidities by two models of the contact [J m⁻²]. The other model
+    is the reference, unless its crack lengths ``relative`` to those of the reference are given (h,) [-].
     """
 
     def rms(means):

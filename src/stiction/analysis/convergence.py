@@ -19,11 +19,6 @@ KOLMOGOROV_DEVIATION = np.sqrt(np.pi**2 / 12 - KOLMOGOROV_MEAN**2)
 def sampling_distance(*numbers: int) -> float:
     """Expected distance of independent draws from their distribution, or of two sets of draws from each other [-].
 
-    Parameters
-    ----------
-    *numbers : int
-        Number of draws in one set or in each of two.
-
     Examples
     --------
     >>> round(float(sampling_distance(5000)), 4)
@@ -81,17 +76,8 @@ def kernel_estimate(samples: np.ndarray, at: np.ndarray) -> np.ndarray:
 def converged_order(orders: Sequence[int], distances: np.ndarray, samples: int, draws: int) -> int:
     """Smallest order beyond which a marginal is as close as ``samples`` draws from the target; 0 if there is none.
 
-    A marginal is known from draws, whose own distance from it is allowed in addition.
-
-    Parameters
-    ----------
-    orders : (n,) array
-        Increasing.
-    distances : (n,) array
-        Kolmogorov's distance of the marginal from its target at every order [-].
-    samples : int
-    draws : int
-        Number of draws from which the distances were computed.
+    The distances of the marginals of increasing orders from their target are Kolmogorov's (n,) [-]. A marginal is known
+    from draws, whose own distance from it is allowed in addition.
 
     Examples
     --------

@@ -23,18 +23,10 @@ def factors(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Factor of a response under full contact at some humidities, and its jackknife error (k,) each [-].
 
-    That of the means, and not the mean factor, because single strips have ratios that scatter with small energies.
-
-    Parameters
-    ----------
-    response : callable
-        From the means over the strips (h, ...) to what follows from them at each humidity (h,).
-    full, summits : (n, h, ...) arrays
-        Of the same n strips at h humidities, by full contact and by the sum over summits [SI].
-    humidities : (h,) array
-        Increasing [-].
-    at : (k,) array
-        [-]; beyond the computed humidities, the factor is NaN.
+    That of the means, and not the mean factor, because single strips have ratios that scatter with small energies. The
+    response leads from the means over the strips (h, ...) to what follows from them at each humidity (h,). ``full`` and
+    ``summits`` are of the same strips (n, h, ...) by both models [SI], at increasing humidities (h,) [-]; beyond these,
+    the factor is NaN.
     """
     shape = (2, *full.shape[1:])
 

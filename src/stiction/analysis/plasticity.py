@@ -12,12 +12,8 @@ ONSET = 0.6
 def touching(height: np.ndarray, curvature: np.ndarray, distance: float) -> tuple[np.ndarray, np.ndarray]:
     """Summits in contact with a flat: interference δ [m] and radius R [m], (n_touching,) each.
 
-    Parameters
-    ----------
-    height, curvature : (n,) arrays
-        Of all summits [m], [m⁻¹].
-    distance : float
-        Of the flat from the mean plane [m].
+    Heights [m] and curvatures [m⁻¹] are those of all summits (n,), the distance is that of the flat from the mean plane
+    [m].
     """
     reaching = height > distance
     return height[reaching] - distance, 1 / curvature[reaching]
@@ -36,20 +32,10 @@ def yields(stress: float | np.ndarray, hardness: float = HARDNESS) -> bool | np.
 def plastic_share(
     area: np.ndarray, stress: np.ndarray, strip: np.ndarray, strips: int, hardness: float = HARDNESS
 ) -> tuple[float, float]:
-    """Plastic share A_P / A of the contact area, with its jackknife standard error.
+    """Plastic share A_P / A of the contact area, with its jackknife standard error over strips.
 
-    Both are NaN if fewer than two strips have a touching summit.
-
-    Parameters
-    ----------
-    area, stress : (n,) arrays
-        Of all touching summits [m²], [Pa].
-    strip : (n,) int array
-        Number of the strip of each summit, from 0.
-    strips : int
-        Number of strips, the independent samples.
-    hardness : float
-        Of the softer body [Pa].
+    Both are NaN if fewer than two strips have a touching summit. Areas [m²] and stresses [Pa] of all touching summits
+    come with the number of their strip, from 0, (n,) each; the hardness is that of the softer body [Pa].
     """
     if len(np.unique(strip)) < 2:
         return np.nan, np.nan

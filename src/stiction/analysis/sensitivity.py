@@ -44,17 +44,8 @@ def normalised_slope(values: Sequence[np.ndarray], at: Sequence[float]) -> np.nd
 def energy_sensitivity(energies: np.ndarray, at: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
     """Normalised sensitivity of mean and standard deviation of the adhesion energy, with jackknife standard errors.
 
-    Parameters
-    ----------
-    energies : (2, n, ...) array
-        Energies of n samples at the two values of the moment [J m⁻²]; sample k of both has the same random numbers.
-    at : sequence of two floats
-        The two values of the moment.
-
-    Returns
-    -------
-    slopes, errors : (2, ...) arrays
-        Of the mean and of the standard deviation [-].
+    Energies (2, n, ...) are those of n samples at two values of a moment [J m⁻²]; sample k of both has the same random
+    numbers. Slopes and errors of the mean and of the standard deviation are (2, ...) each [-].
     """
     energies = np.asarray(energies, float)
     powers = np.stack([energies, energies**2])

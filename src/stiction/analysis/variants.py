@@ -62,15 +62,10 @@ def relative_shift(values: np.ndarray, base: np.ndarray) -> tuple[float, float]:
 def rms_deviation(
     values: np.ndarray, own: np.ndarray, common: np.ndarray, references: np.ndarray
 ) -> tuple[float, float]:
-    """Root mean square of relative deviations from references (n,), with its standard error [-].
+    """Root mean square of relative deviations of values from references (n,), with its standard error [-].
 
-    Parameters
-    ----------
-    values : (n,) array
-        One per case.
-    own, common : (n,) arrays
-        Standard errors: independent between cases, and from samples that all cases share.
-    references : (n,) array
+    The values have errors of their ``own``, independent between cases, and ``common`` ones from samples that all cases
+    share, (n,) each.
     """
     deviations = np.asarray(values) / references - 1
     rms = np.sqrt(np.mean(deviations**2))
@@ -83,13 +78,9 @@ def removed_share(
 ) -> tuple[float, float]:
     """Share of the mean square deviation of ``base`` from references that ``values`` remove, with its error [-].
 
-    Parameters
-    ----------
-    values, base, references : (n,) arrays
-        One per case.
-    errors : (3, n) array
-        Standard errors: of values - base, common to the cases, so that they add up; of base, independent between cases;
-        of base, common to the cases. An error of the base shifts the values by the same amount.
+    There is one of each per case (n,). The standard errors (3, n) are those of values - base, common to the cases, so
+    that they add up; of base, independent between cases; and of base, common to the cases. An error of the base shifts
+    the values by the same amount.
     """
     before, after = (np.asarray(x) / references - 1 for x in (base, values))
     total, left = np.sum(before**2), np.sum(after**2)

@@ -52,11 +52,12 @@ relation(partial(cases_have_unique_names, section="devices"))
 
 
 @relation
-def strips_of_devices_are_whole_on_the_grid(config):
-    """Both sides of the strips along a beam are multiples of the distance between contact points."""
-    for key in ("strip_um", "width_um"):
-        for name, side in config.entries("devices", key):
-            yield f"devices.{name}.{key}", off_grid(side, *(config[step] for step in _GRID)), *_GRID
+def strips_and_patches_of_devices_are_whole_on_the_grid(config):
+    """Sides of the strips along a beam, and of the area of a stopper, are multiples of the distance between points."""
+    for key in ("strip_um", "width_um", "contact_um"):
+        for name, sides in config.entries("devices", key):
+            refusals = (off_grid(float(side), *(config[step] for step in _GRID)) for side in np.ravel(sides))
+            yield f"devices.{name}.{key}", next(filter(None, refusals), None), *_GRID
 
 
 @relation
@@ -81,14 +82,6 @@ def devices_have_the_keys_of_their_kind(config):
         if missing or strange:
             message = f"with {', '.join(sorted(missing))}" if missing else f"without {', '.join(sorted(strange))}"
             yield f"devices.{name}.kind", f"must come {message}"
-
-
-@relation
-def patches_of_stoppers_are_whole_on_the_grid(config):
-    """Both sides of the area of a stopper are multiples of the distance between contact points."""
-    for name, sides in config.entries("devices", "contact_um"):
-        refusals = (off_grid(side, *(config[step] for step in _GRID)) for side in sides)
-        yield f"devices.{name}.contact_um", next(filter(None, refusals), None), *_GRID
 
 
 @relation

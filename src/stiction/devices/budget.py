@@ -87,16 +87,9 @@ def log_slope(
 ) -> tuple[float, float]:
     """Slope d ln l / dx by a central difference, and its jackknife standard error over groups of devices.
 
-    Parameters
-    ----------
-    length : callable
-        Length of a sample of devices, such as ``np.mean`` of crack lengths, (n,) -> [m].
-    less, more : (n,) arrays
-        Lengths of n devices at both values of the input x [m]; device k of both has the same random numbers.
-    step : float
-        Difference of the two values of x.
-    groups : int
-        Number of groups, each left out once; at most n.
+    ``length`` is that of a sample of devices, such as ``np.mean`` of crack lengths, (n,) -> [m]. Device k has the same
+    random numbers in ``less`` and ``more``, the lengths (n,) at both values of the input x [m], which differ by a step.
+    Each of at most n groups is left out once.
     """
 
     def slope(used):

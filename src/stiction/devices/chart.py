@@ -42,14 +42,9 @@ class PowerLaw:
 
 
 def fit_power_law(thickness: np.ndarray, gap: np.ndarray, length: np.ndarray) -> PowerLaw:
-    """Power law through computed beams, by least squares of the logarithms.
+    """Power law through the dimensions and lengths of computed beams (n,) [m], by least squares of the logarithms.
 
     A power of a dimension that does not vary is zero: the law then holds at this dimension alone.
-
-    Parameters
-    ----------
-    thickness, gap, length : (n,) arrays
-        Of the beams [m].
 
     Raises
     ------

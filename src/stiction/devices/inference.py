@@ -306,14 +306,8 @@ def _signed(values):
 def expected_share(margins: np.ndarray, weights: np.ndarray, shift: float, deviation: float) -> float:
     """P(stuck) of devices if ln of the lengths that stick has a shift that is normal, with a standard deviation [-].
 
-    Parameters
-    ----------
-    margins : (n,) array
-        ln(length of the devices / length that sticks), as computed [-].
-    weights : (n,) array
-        Share of the devices with each of these; the others never stick.
-    shift, deviation : float
-        Of ln of all lengths that stick [-].
+    The margins are ln(length of the devices / length that sticks), as computed, and the weights the shares of the
+    devices with each of these (n,) [-]; the others never stick.
     """
     return float(weights @ ndtr((margins - shift) / max(deviation, np.finfo(float).tiny)))
 
@@ -321,13 +315,8 @@ def expected_share(margins: np.ndarray, weights: np.ndarray, shift: float, devia
 def further_beams(knowledge: Knowledge, target: np.ndarray, response: np.ndarray, error: float) -> float:
     """Standard deviation of a result after the mean length of further test beams is measured [-].
 
-    Parameters
-    ----------
-    knowledge : Knowledge
-    target, response : (k,) array
-        Responses of the result and of the further test beams.
-    error : float
-        Standard error of their ln l [-].
+    The responses of the result, ``target``, and of the further test beams are (k,); the error is that of their ln l
+    [-].
     """
     data = Lengths(response[None], np.zeros(1), np.array([error]))
     return float(given_lengths(knowledge, data).of(target)[1])

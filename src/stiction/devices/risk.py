@@ -50,16 +50,9 @@ def sticking_lengths(crack_lengths: np.ndarray, s_shaped: np.ndarray, foundation
     """Sticking lengths of cantilevers, S-shaped, from long beams (n,) [m]: l_s + 2 l_f.
 
     A beam cut to L has the crack of the long beam if enough of it remains behind the crack to hold it, 7.5 ± 1.5 µm on
-    pair b. Otherwise the crack runs to the tip.
-
-    Parameters
-    ----------
-    crack_lengths : (n,) array
-        Of beams that are much longer [m].
-    s_shaped : (n,) bool
-        Whether each ended S-shaped; the sticking length of others is unknown, beyond their length, and infinite here.
-    foundation : float
-        Foundation length l_f [m].
+    pair b. Otherwise the crack runs to the tip. Crack lengths [m] are those of beams that are much longer; where these
+    did not end S-shaped, the sticking length is unknown, beyond their length, and infinite here. Foundation length l_f
+    [m].
     """
     return np.where(s_shaped, crack_lengths + HOLD * foundation, np.inf)
 
@@ -67,12 +60,8 @@ def sticking_lengths(crack_lengths: np.ndarray, s_shaped: np.ndarray, foundation
 def with_arcs(s_shapes: np.ndarray, arcs: np.ndarray) -> np.ndarray:
     """Sticking lengths of cantilevers in either shape (n,) [m].
 
-    Parameters
-    ----------
-    s_shapes : (n,) array
-        `sticking_lengths` [m].
-    arcs : (n,) array
-        Longest arcs that come free, `stiction.devices.arcs.arc_length`, of n independent tips [m].
+    From `sticking_lengths`, and the longest arcs that come free of n independent tips,
+    `stiction.devices.arcs.arc_length`.
     """
     return np.minimum(s_shapes, arcs)
 
@@ -88,14 +77,9 @@ def upper_bound(stuck: int | np.ndarray, samples: int, confidence: float = CONFI
 
 
 def stuck_share(lengths: np.ndarray, sticking: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """P(stuck) at some lengths, with the lower and the upper end of a pointwise 95 % band, (m,) each [-].
+    """P(stuck) at some lengths (m,) [m], with the lower and the upper end of a pointwise 95 % band, (m,) each [-].
 
-    Parameters
-    ----------
-    lengths : (m,) array
-        [m]
-    sticking : (n,) array
-        Sticking lengths of n devices [m].
+    From sticking lengths of n devices (n,) [m].
     """
     n = len(sticking)
     stuck = np.searchsorted(np.sort(sticking), lengths, side="left")
@@ -135,16 +119,10 @@ def _quantile(ordered, share):
 
 
 def sampled_bound(values: np.ndarray, share: float) -> tuple[float, float, float]:
-    """Value below which a share of all lies: one-sided 95 % lower bound, estimate and its standard error.
+    """Value below which a share of all samples (n,) lies: one-sided 95 % lower bound, estimate and its standard error.
 
-    The bound is an order statistic, without an assumption about the distribution.
-
-    Parameters
-    ----------
-    values : (n,) array
-        Samples, in any unit, which is that of the results.
-    share : float
-        [-]
+    The bound is an order statistic, without an assumption about the distribution. The results have the unit of the
+    samples.
 
     Raises
     ------
@@ -159,18 +137,10 @@ def sampled_bound(values: np.ndarray, share: float) -> tuple[float, float, float
 
 
 def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator) -> SafeLength:
-    """Safe length for one share p of stuck devices.
+    """Safe length for one share p of stuck devices, at most 5 %, from their sticking lengths (n,) [m].
 
-    It is sampled if there are enough devices (`samples_for`), and otherwise comes from the fit of the lowest 5 %.
-
-    Parameters
-    ----------
-    sticking : (n,) array
-        Sticking lengths [m].
-    share : float
-        p, at most the fitted 5 % [-].
-    rng : numpy.random.Generator
-        For the simulated errors of the fit.
+    It is sampled if there are enough devices (`samples_for`), and otherwise comes from the fit of the lowest 5 %, whose
+    errors are simulated.
 
     Raises
     ------
@@ -193,15 +163,11 @@ def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator) ->
 def error_of_surfaces(of_group: np.ndarray) -> float | np.ndarray:
     """Standard error due to the finite number of sampled surfaces, from the scatter between groups of them.
 
-    It contains the error due to the number of devices, divided by the square root of the number of groups. A jackknife
-    would enlarge this part: leaving out a few samples changes the ground slightly, and a crack may then stop at quite
-    another place. The error is NaN where the groups do not differ: tips, one for each beam, are the same in all groups,
-    and their scatter is among the errors due to the number of devices.
-
-    Parameters
-    ----------
-    of_group : (groups, ...) array
-        The length [m], each time computed from one group of the samples alone.
+    The lengths (groups, ...) are each computed from one group of the samples alone. The error contains that due to the
+    number of devices, divided by the square root of the number of groups. A jackknife would enlarge this part: leaving
+    out a few samples changes the ground slightly, and a crack may then stop at quite another place. The error is NaN
+    where the groups do not differ: tips, one for each beam, are the same in all groups, and their scatter is among the
+    errors due to the number of devices.
 
     Raises
     ------

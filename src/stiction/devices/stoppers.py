@@ -19,30 +19,18 @@ def pull_off_force(f_max: float | np.ndarray, area: float) -> float | np.ndarray
 
 
 def stuck_patches(pull_off: np.ndarray, restoring_forces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """P(stuck), the share of patches that hold more than a force, with a pointwise 95 % band, (m,) each [-].
+    """P(stuck), the share of patches that hold more than a force (m,) [N], with a pointwise 95 % band, (m,) each [-].
 
-    Parameters
-    ----------
-    pull_off : (n,) array
-        Pull-off forces of n sampled patches [N].
-    restoring_forces : (m,) array
-        [N]
+    From the pull-off forces of sampled patches (n,) [N].
     """
     return stuck_share(-np.asarray(restoring_forces), -pull_off)
 
 
 def safe_force(pull_off: np.ndarray, share: float) -> tuple[float, float, float]:
-    """Smallest restoring force whose one-sided 95 % upper bound of P(stuck) is at most ``share`` [N].
+    """Smallest restoring force whose one-sided 95 % upper bound of P(stuck) is at most a share p.
 
-    It is an order statistic of the sampled forces, without an assumption about their distribution; a fit of their end,
-    as for lengths of beams, has not been verified.
-
-    Parameters
-    ----------
-    pull_off : (n,) array
-        Pull-off forces [N]; at least `stiction.devices.risk.samples_for` of them.
-    share : float
-        p [-].
+    It is an order statistic of the sampled pull-off forces (n,) [N], without an assumption about their distribution; a
+    fit of their end, as for lengths of beams, has not been verified.
 
     Returns
     -------
@@ -52,7 +40,7 @@ def safe_force(pull_off: np.ndarray, share: float) -> tuple[float, float, float]
     Raises
     ------
     ValueError
-        If there are too few forces for this share.
+        If there are fewer than `stiction.devices.risk.samples_for` forces.
     """
     force, estimate, error = sampled_bound(-np.asarray(pull_off), share)
     return -force, -estimate, error
@@ -61,10 +49,7 @@ def safe_force(pull_off: np.ndarray, share: float) -> tuple[float, float, float]
 def peak(x: np.ndarray, values: np.ndarray) -> float:
     """Place of the largest value, by a parabola through it and its neighbours; an end of ``x`` if it is there.
 
-    Parameters
-    ----------
-    x, values : (n,) arrays
-        Increasing, not necessarily evenly spaced.
+    The places x increase, not necessarily evenly.
     """
     i = int(np.argmax(values))
     if i in (0, len(x) - 1):
@@ -78,12 +63,7 @@ def peak(x: np.ndarray, values: np.ndarray) -> float:
 def worst_humidity(humidities: np.ndarray, pull_off: np.ndarray) -> tuple[float, float]:
     """Humidity of the largest mean pull-off force, with its jackknife standard error [-].
 
-    Parameters
-    ----------
-    humidities : (m,) array
-        A fine axis, increasing [-].
-    pull_off : (n, m) array
-        Pull-off forces of n patches at these humidities [N]; row k is the same patch at all of them.
+    Along a fine axis, increasing (m,) [-]; row k of the forces (n, m) [N] is the same patch at all humidities.
     """
     worst, error = jackknife(lambda mean: peak(humidities, mean), pull_off)
     return float(worst), float(error)

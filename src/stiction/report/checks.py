@@ -224,9 +224,7 @@ def few_draws_rejected(case: str, chaos: xr.Dataset, forces: xr.Dataset, limit: 
 
 
 def beams_are_in_equilibrium(case: str, outcomes: xr.Dataset, limit: float, beam: Beam, strip: float) -> Check:
-    """Every beam is in equilibrium: dataset of stage beams, largest pull-off pressure f_limit [Pa], length of a strip
-    [m].
-    """
+    """Every beam is in equilibrium: dataset of stage beams, pull-off pressure f_limit [Pa], length of a strip [m]."""
     allowed = allowed_imbalance(beam, limit * beam.width * strip)
     unbalanced = int(np.sum(~(outcomes.imbalance.values <= allowed)))
     message = f"{unbalanced} of {outcomes.sizes['sample']} beams have a residual force of more than {allowed:.2g} N"

@@ -21,6 +21,8 @@ from stiction.report.style import (
     DOUBLE,
     OUTLINED,
     SINGLE,
+    STUDIES,
+    at_most_double,
     blocks_of_columns,
     columns_of_panels,
     dashes,
@@ -96,7 +98,7 @@ def _beside(panel, text, place):
 @styled
 def summit_stresses(datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Figure 16: largest stress of the touching summits, by pair."""
-    figure, axes, lines = columns_of_panels(len(datasets), 1, _width, 2.6, sharey=True)
+    figure, axes, lines = columns_of_panels(len(datasets), 1, at_most_double(SINGLE), 2.6, sharey=True)
     axes = axes[:, 0]
     onsets = [TO_GPA * ONSET * float(found.hardness) for found in datasets.values()]
     top = max(
@@ -117,11 +119,6 @@ def summit_stresses(datasets: Mapping[str, xr.Dataset]) -> Figure:
         line[0, 0].set_ylabel(r"largest stress $\sigma_{\max}$ [GPa]")
     figure.colorbar(cells[0], ax=axes, label="summits per cell [–]", pad=0.01, aspect=30).ax.set_ylim(1, None)
     return figure
-
-
-def _width(columns):
-    """Width of a figure with this number of columns [in]."""
-    return min(DOUBLE, SINGLE * columns)
 
 
 def _cells(panel, dataset, counts, top):
@@ -330,7 +327,9 @@ def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataF
     pairs, names = (list(dict.fromkeys(parts)) for parts in zip(*datasets, strict=True))
     count = 2 if published.pair.isin(pairs).any() else 1
     groups = _groups([name for name in names if name != "base"])
-    figure, blocks = blocks_of_columns(len(groups), len(pairs), count, _wider, 1 + 1.8 * count, sharex="col")
+    figure, blocks = blocks_of_columns(
+        len(groups), len(pairs), count, at_most_double(1.3 * SINGLE), 1 + 1.8 * count, sharex="col"
+    )
     for group, (part, columns, lines) in zip(groups, blocks, strict=True):
         for column, pair in zip(columns, pairs, strict=True):
             chosen = {name: datasets[pair, name] for name in ("base", *group)}
@@ -370,11 +369,6 @@ def _column_of_variants(column, datasets, table):
     for panel in column:
         panel.axhline(0, **_ZERO)
     humidity_axis(column[0])
-
-
-def _wider(columns):
-    """Width of the figure of variants with this number of columns [in]."""
-    return min(DOUBLE, 1.3 * SINGLE * columns)
 
 
 def _experiment(panel, table):
@@ -443,7 +437,7 @@ def _study(name, shows, **declared):
     return figure_stage(
         name,
         shows,
-        "Sensitivity, appendices, model choices",
+        STUDIES,
         targets=("figures", "study_figures"),
         **declared,
     )

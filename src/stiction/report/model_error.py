@@ -15,10 +15,11 @@ from stiction.report.beside import change, marked
 from stiction.report.format import UM, as_published, percent, signed, with_error
 from stiction.report.published import value
 from stiction.report.style import (
-    DOUBLE,
     MODELS,
     PUBLISHED,
     SINGLE,
+    STUDIES,
+    at_most_double,
     columns_of_panels,
     figure_stage,
     humidity_axis,
@@ -121,7 +122,7 @@ def figure(*data) -> Figure:
     pairs = list(dict.fromkeys(frame.pair))
     count = 2 if frame.published_um.notna().any() else 1
     figure, columns, lines = columns_of_panels(
-        len(pairs), count, lambda across: min(DOUBLE, 1.3 * SINGLE * across), 0.8 + 1.7 * count, sharex="col"
+        len(pairs), count, at_most_double(1.3 * SINGLE), 0.8 + 1.7 * count, sharex="col"
     )
     for column, pair in zip(columns, pairs, strict=True):
         _panels(column, frame[frame.pair == pair])
@@ -185,10 +186,5 @@ def _stage(kind, shows, draw, **declared):
 
 STAGES = (
     _stage(table_stage, "Table III under full elastic contact", table),
-    _stage(
-        figure_stage,
-        "crack lengths under full elastic contact",
-        figure,
-        category="Sensitivity, appendices, model choices",
-    ),
+    _stage(figure_stage, "crack lengths under full elastic contact", figure, category=STUDIES),
 )

@@ -29,6 +29,10 @@ from stiction.run.atomic import save_bytes
 STYLE = Path(__file__).with_name("stiction.mplstyle")
 #: Widths of one and of two columns of the journal [in].
 SINGLE, DOUBLE = 3.5, 7.16
+#: Category of the figures of studies in the report.
+STUDIES = "Sensitivity, appendices, model choices"
+#: Half width of an interval that holds 95 %, in standard deviations.
+INTERVAL = 1.96
 #: Largest height of a figure of many panels, which are smaller then [in].
 TALLEST = 24.0
 #: Shortest axis of the relative humidity, for figures of a single one [-].
@@ -83,6 +87,11 @@ def panels(rows: int, columns: int, size: tuple[float, float], **shared) -> tupl
     """New figure of ``size`` (width, height) [in] and its axes (rows, columns), ``shared`` as in Figure.subplots."""
     figure = Figure(figsize=size, layout="constrained")
     return figure, figure.subplots(rows, columns, squeeze=False, **shared)
+
+
+def at_most_double(each: float) -> Callable[[int], float]:
+    """Width of a figure by the number of its columns of panels [in], of which each has this one if there is room."""
+    return lambda columns: min(DOUBLE, each * columns)
 
 
 def columns_of_panels(

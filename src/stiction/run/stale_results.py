@@ -80,8 +80,7 @@ def _value(value):
 
 
 def damaged(logs: str | Path, remember: Callable[[object, Callable[[], Any]], Any]) -> Iterator[tuple[str, str]]:
-    """Files that are no longer as their jobs wrote them, according to the checksums in a folder of logs, with the
-    reason.
+    """Files that are no longer as their jobs wrote them by the checksums in a folder of logs, each with the reason.
 
     Files that are missing and files without a checksum are left out. A `stiction.run.disk_cache.DiskCache` keeps the
     checksums of files that have not changed.

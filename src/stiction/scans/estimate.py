@@ -240,17 +240,10 @@ def _quantile_errors(found, drawn):
 
 
 def widened(closed_form: np.ndarray, by_tiles: np.ndarray) -> np.ndarray:
-    """Covariance with the standard errors by tiles where these are larger, and unchanged correlations, (3, 3).
+    """Covariance with the standard errors by tiles (3,) where these are larger, and unchanged correlations, (3, 3).
 
     For heights that four moments do not describe: errors in closed form follow from moments of the density up to the
     eighth, and those of the real heights, which the tiles sample, may be much larger.
-
-    Parameters
-    ----------
-    closed_form : (3, 3) array
-        Covariance.
-    by_tiles : (3,) array
-        Standard errors.
     """
     ratio = np.maximum(by_tiles / np.sqrt(np.diag(closed_form)), 1)
     return closed_form * np.outer(ratio, ratio)

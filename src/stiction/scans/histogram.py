@@ -16,15 +16,10 @@ EDGES = np.linspace(-6, 6, 61)
 
 
 def histogram(scans: Sequence[np.ndarray], measured: np.ndarray, corrected: np.ndarray) -> np.ndarray:
-    """Density of the standardised heights of all scans in the bins of `EDGES`, (60,) [-].
+    """Density of the standardised heights of all scans in the bins of `EDGES`, (60,) [-]; levelled heights [m].
 
-    Parameters
-    ----------
-    scans : sequence of arrays
-        Levelled heights [m].
-    measured, corrected : (49,) arrays
-        Their `stiction.scans.quantiles.quantiles`, and the same without the bias of levelling: all heights between two
-        of them move with these [-].
+    Between two of their `stiction.scans.quantiles.quantiles`, as ``measured`` and without the bias of levelling, (49,)
+    each [-], all heights move with these.
     """
     z = np.concatenate([scan[np.isfinite(scan)] for scan in scans])
     z = (z - z.mean()) / z.std()

@@ -10,17 +10,10 @@ from scipy.sparse.linalg import spsolve
 
 
 def filled(heights: np.ndarray, pixel: tuple[float, float]) -> np.ndarray:
-    """Heights in which Laplace's equation holds at the undefined points, (n1, n2); the others are unchanged [m].
+    """Heights (n1, n2) in which Laplace's equation holds where they were NaN, undefined; the others are unchanged [m].
 
     A filled height is the mean of its four neighbours, weighted by their inverse squared distance, and thus never
-    higher or lower than the rim of its hole.
-
-    Parameters
-    ----------
-    heights : (n1, n2) array
-        NaN where undefined [m].
-    pixel : (2,) tuple
-        Distances of the points [m].
+    higher or lower than the rim of its hole. Distances of the points [m].
     """
     undefined = ~np.isfinite(heights)
     if not undefined.any():

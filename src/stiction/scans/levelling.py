@@ -21,14 +21,7 @@ class Levelling:
 
 
 def level(heights: np.ndarray, levelling: Levelling) -> np.ndarray:
-    """Levelled heights of mean zero, (n1, n2) with NaN where undefined [m].
-
-    Parameters
-    ----------
-    heights : (n1, n2) array
-        Fast axis first, NaN where undefined [m].
-    levelling : Levelling
-    """
+    """Levelled heights of mean zero, (n1, n2) with the fast axis first and NaN where undefined [m]."""
     levelled = heights - _surface(heights, LEVELS[levelling.level])
     degree = LINES[levelling.lines]
     return levelled if degree is None else levelled - _lines(levelled, degree)
@@ -44,12 +37,7 @@ def _surface(heights, degree):
 def polynomial(heights: np.ndarray, degree: int) -> dict[tuple[int, int], float]:
     """Weights of the products P_a P_b of Legendre polynomials in the one that is closest to the defined heights [m].
 
-    Parameters
-    ----------
-    heights : (n1, n2) array
-        Fast axis first, NaN where undefined [m].
-    degree : int
-        Largest sum of the degrees a along the fast and b along the slow axis.
+    Heights as in `level`; the degree is the largest sum of the degrees a along the fast and b along the slow axis.
     """
     along, across = (_legendre(n, degree) for n in heights.shape)
     terms = [(a, b) for a in range(degree + 1) for b in range(degree + 1 - a)]
@@ -77,12 +65,7 @@ def _legendre(points, degree):
 def line_jump(heights: np.ndarray, pixel: tuple[float, float]) -> tuple[float, float]:
     """Typical step across the lines, and along them over about the same distance [m].
 
-    Parameters
-    ----------
-    heights : (n1, n2) array
-        Fast axis first, NaN where undefined [m].
-    pixel : (2,) tuple
-        Distances of the points; the steps are as wide as the larger one [m].
+    Heights as in `level`; the steps are as wide as the larger distance of the points [m].
 
     Returns
     -------

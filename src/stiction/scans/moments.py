@@ -47,12 +47,8 @@ def moments(powers: np.ndarray) -> np.ndarray:
 def influence(powers: np.ndarray, skewness: float, kurtosis: float) -> np.ndarray:
     """Influence functions ψ of (ln rms, skewness, kurtosis), (3, ...) [-].
 
-    Parameters
-    ----------
-    powers : (4, ...) array
-        z, z², z³, z⁴ of standardised heights, or means of them: the functions are linear in the powers [-].
-    skewness, kurtosis : float
-        [-]
+    They are linear in the powers z, z², z³, z⁴ of standardised heights, of which means may be given as well, (4, ...)
+    [-].
     """
     first, second, third, fourth = powers
     spread = second - 1
@@ -112,19 +108,10 @@ def overlap_integrals(underlying: Spectrum, size: tuple[float, float], reach: fl
 
 
 def mode_covariance(translation: Translation, overlaps: np.ndarray, orders: Sequence[int]) -> np.ndarray:
-    """Covariance of ln rms and of the means over a scan of the Hermite polynomials of some orders, (1 + n, 1 + n) [-].
+    """Covariance of ln rms and of the means over a scan of Hermite polynomials of n orders k >= 1, (1 + n, 1 + n) [-].
 
     The means are those that change measured heights, see `stiction.analysis.shifts`. They are uncorrelated and have the
-    variances I_k.
-
-    Parameters
-    ----------
-    translation : Translation
-        Eq. (5), of the standardised heights.
-    overlaps : (24,) array
-        I_1 … I_24.
-    orders : sequence of n
-        Orders k, from 1 on.
+    variances I_k, given as I_1 … I_24; the translation of Eq. (5) is that of the standardised heights.
     """
     _, skewness, kurtosis = moments_of(translation)
     of_rms = hermite_coefficients(influence(_table_powers(translation), skewness, kurtosis)[0])
@@ -137,12 +124,7 @@ def mode_covariance(translation: Translation, overlaps: np.ndarray, orders: Sequ
 def homogeneity(per_scan: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Whether the scatter between scans is that of finite scans of one surface.
 
-    Parameters
-    ----------
-    per_scan : (n, 3) array
-        Moments of every scan.
-    covariance : (3, 3) array
-        Of the moments of one scan.
+    From the moments of every scan (n, 3) and their covariance for one scan (3, 3).
 
     Returns
     -------

@@ -93,11 +93,7 @@ def _correlation(taper):
 def rings(spectrum: Periodogram, inside: np.ndarray | None = None) -> Rings:
     """Means over rings that are one wave number of the shorter side wide, without the rings that have no value.
 
-    Parameters
-    ----------
-    spectrum : Periodogram
-    inside : (n1, n2) bool array, optional
-        Wave numbers included; by default all but those near the slow axis.
+    Wave numbers (n1, n2) that are ``inside`` are included, by default all but those near the slow axis.
     """
     first, second = spectrum.wavenumbers
     radius = np.hypot(first, second)
@@ -113,14 +109,8 @@ def rings(spectrum: Periodogram, inside: np.ndarray | None = None) -> Rings:
 def _correlated(number, count, correlation):
     """Sum of the squared correlations of all pairs of values in the same ring, each with itself included, (rings,).
 
-    Parameters
-    ----------
-    number : (n1, n2) int array
-        Of the ring of each value, -1 for those in none.
-    count : (rings,) int array
-        Number of values in each ring.
-    correlation : (2, 3) array
-        Of `Periodogram`.
+    Each value (n1, n2) has the number of its ring, -1 for none, and each ring a number of values; the correlation (2,
+    3) is that of `Periodogram`.
     """
     total = count.astype(float)
     for i, j in product(range(_CORRELATED + 1), range(-_CORRELATED, _CORRELATED + 1)):
@@ -133,16 +123,8 @@ def _correlated(number, count, correlation):
 def sectors(spectrum: Periodogram, mean: Rings, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
     """Means of the spectrum in sectors relative to the mean of each ring, and their standard errors, (8,) each [-].
 
-    Sector i holds the directions from 22.5° i to 22.5° (i + 1) against the fast axis, and the opposite ones. All are 1
-    on an isotropic surface.
-
-    Parameters
-    ----------
-    spectrum : Periodogram
-    mean : Rings
-        Its rings.
-    low, high : float
-        Range of |ζ| [rad m⁻¹].
+    Sector i holds the directions from 22.5° i to 22.5° (i + 1) against the fast axis, and the opposite ones, between
+    two wave numbers [rad m⁻¹]. All are 1 on an isotropic surface.
     """
     first, second = spectrum.wavenumbers
     radius = np.hypot(first, second)

@@ -38,14 +38,7 @@ def correlation_areas(spectrum: Spectrum, variance: float, area: float) -> float
 
 
 def measured_density(heights: np.ndarray, areas: float) -> MeasuredDensity:
-    """Density of measured quantiles.
-
-    Parameters
-    ----------
-    heights : (49,) array
-        At `SCORES`.
-    areas : float
-        `correlation_areas` of all scans.
+    """Density of measured quantiles (49,) at `SCORES`, of scans with a number of `correlation_areas`.
 
     Raises
     ------
@@ -80,14 +73,8 @@ def feasible(
 ) -> Feasible | None:
     """Maximum-entropy density of measured moments, or of the nearest that have one; ``None`` if none is near.
 
-    Parameters
-    ----------
-    skewness, kurtosis : float
-        [-]
-    covariance : callable
-        Returns the covariance of both, (2, 2); called only if they have no density.
-    largest : float, optional
-        Largest accepted distance, any if it is infinite [standard errors].
+    The covariance of both moments (2, 2) is asked for only if they have no density. The largest accepted distance may
+    be infinite [standard errors].
     """
     try:
         found = (
@@ -123,14 +110,8 @@ def compared_slopes(skewness: float, kurtosis: float) -> np.ndarray:
 def goodness(residual: np.ndarray, model_residuals: np.ndarray, scans: int) -> tuple[float, float]:
     """Whether quantiles deviate from those of the four-moment density by more than finite scans do.
 
-    Parameters
-    ----------
-    residual : (p,) array
-        Measured quantiles of all scans together less those of the density.
-    model_residuals : (n, p) array
-        The same of single scans drawn from the density; rows of ``nan`` are left out.
-    scans : int
-        Number of measured scans.
+    Residuals are quantiles less those of the density: of all measured scans together (p,), and of single scans drawn
+    from the density (n, p), where rows of ``nan`` are left out.
 
     Returns
     -------

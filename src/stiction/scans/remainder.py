@@ -36,22 +36,10 @@ class Remainder:
 def remainders(
     scans: Sequence[np.ndarray], size: tuple[float, float], levelling: Levelling, spectrum: Spectrum, error: float
 ) -> tuple[Remainder, ...]:
-    """Remainders of all stronger levels, the weakest first.
+    """Remainders of all stronger levels, the weakest first, in levelled heights (n1, n2) [m] of scans of one size [m].
 
-    The sum over scans and terms of c² over its variance has an F distribution, because the spectrum is estimated.
-
-    Parameters
-    ----------
-    scans : sequence of (n1, n2) arrays
-        Levelled heights, NaN where undefined [m].
-    size : (2,) tuple
-        Of a scan [m].
-    levelling : Levelling
-        Of these heights. Terms that the levelling of lines removes do not count.
-    spectrum : Spectrum
-        Of the heights [m⁴].
-    error : float
-        Relative standard error of its plateau [-].
+    The sum over scans and terms of c² over its variance has an F distribution, because the spectrum of the heights is
+    estimated; its plateau has this relative standard error [-]. Terms that the levelling of lines removes do not count.
     """
     found = []
     for name, degree in LEVELS.items():
@@ -72,29 +60,14 @@ def _levelled(degree, lines):
 def coefficients(heights: np.ndarray, terms: Sequence[tuple[int, int]]) -> np.ndarray:
     """Coefficients of the orthonormal polynomials P_a P_b in a map (n1, n2), by least squares, (terms,) [m].
 
-    Parameters
-    ----------
-    heights : (n1, n2) array
-        NaN where undefined [m].
-    terms : sequence of (a, b)
-        Degrees along the fast and the slow axis, with equal sums.
+    The terms are degrees (a, b) along the fast and the slow axis, with equal sums; heights are NaN where undefined [m].
     """
     weights = polynomial(heights, sum(terms[0]))
     return np.array([weights[a, b] / np.sqrt((2 * a + 1) * (2 * b + 1)) for a, b in terms])
 
 
 def variances(spectrum: Spectrum, size: tuple[float, float], terms: Sequence[tuple[int, int]]) -> np.ndarray:
-    """Variances of the `coefficients` of a stationary surface, (terms,) [m²].
-
-    Parameters
-    ----------
-    spectrum : Spectrum
-        [m⁴]
-    size : (2,) tuple
-        Of the map [m].
-    terms : sequence of (a, b)
-        Degrees along the fast and the slow axis.
-    """
+    """Variances of the `coefficients` of a stationary surface on a map, (terms,) [m²]; spectrum [m⁴], size [m]."""
     steps = (np.arange(_STEPS * _PER_STEP) + 0.5) / _PER_STEP  # midpoints of one quadrant, in wave numbers 2 π / L
     first, second = (2 * np.pi * steps / length for length in size)
     four_cells = np.prod([4 * np.pi / _PER_STEP / length for length in size])

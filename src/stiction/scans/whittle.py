@@ -44,16 +44,10 @@ class Reach:
 def reach(
     size: tuple[float, float], pixel: tuple[float, float], shortest: float | None = None, tip: float = np.inf
 ) -> Reach:
-    """Reach of a scan.
+    """Reach of a scan with this size and these distances of its points [m].
 
-    Parameters
-    ----------
-    size, pixel : (2,) tuples
-        [m]
-    shortest : float, optional
-        Shortest wavelength used; by default four pixels, half of the Nyquist wave number [m].
-    tip : float
-        Reach of the tip, `tip_reach` [rad m⁻¹].
+    The shortest wavelength used is by default four pixels, half of the Nyquist wave number [m]; ``tip`` is the reach of
+    the tip, `tip_reach` [rad m⁻¹].
     """
     nyquist = np.pi / max(pixel)
     high = 2 * np.pi / (_SHORTEST_WAVE * max(pixel) if shortest is None else shortest)
@@ -61,19 +55,11 @@ def reach(
 
 
 def tip_reach(scans: Sequence[np.ndarray], pixel: float, radius: float) -> float:
-    """Wave number beyond which a tip rounds the surface [rad m⁻¹].
+    """Wave number beyond which a tip of a radius [m] rounds the surface [rad m⁻¹].
 
-    The largest peak curvature h'' over a stencil along the fast axis decreases with the length of the stencil; where it
-    is that of the tip, less a margin, ends the reach.
-
-    Parameters
-    ----------
-    scans : sequence of (n1, n2) arrays
-        Fast axis first [m].
-    pixel : float
-        Along the fast axis [m].
-    radius : float
-        Of the tip [m].
+    The largest peak curvature h'' over a stencil along the fast axis, the first of the scans (n1, n2) [m], decreases
+    with the length of the stencil; where it is that of the tip, less a margin, ends the reach. The pixel is that along
+    this axis [m].
     """
     halves = np.arange(1, (len(scans[0]) - 1) // 4)
     curvature = np.array([max(_peak_curvature(z, half, pixel) for z in scans) for half in halves])
@@ -177,19 +163,10 @@ def _covariance(wavenumber, weight, log_corner, slope):
 
 
 def tabulated(rings: Rings, within: Reach, slope: float, cutoff: float) -> TabulatedSpectrum:
-    """Measured spectrum itself: log-log interpolation of the rings within the reach.
+    """Measured spectrum itself: log-log interpolation of the rings within the reach, up to a cut-off [rad m⁻¹].
 
-    ASSUME: the first ring continues to 0, and the last one to the cut-off as the power law of the fit: rings beyond the
-    reach hold aliases.
-
-    Parameters
-    ----------
-    rings : Rings
-    within : Reach
-    slope : float
-        Exponent of the power law of the fit [-].
-    cutoff : float
-        [rad m⁻¹]
+    ASSUME: the first ring continues to 0, and the last one to the cut-off as the power law of the fit, with this slope:
+    rings beyond the reach hold aliases.
     """
     inside = rings.between(within.low, within.high)
     known, wavenumber = inside.wavenumber, np.linspace(0, cutoff, _POINTS)

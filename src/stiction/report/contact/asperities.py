@@ -14,9 +14,10 @@ from stiction.report import published
 from stiction.report.format import TO_NM, UM, number, percent, signed, with_error
 from stiction.report.published import value
 from stiction.report.style import (
-    DOUBLE,
     PUBLISHED,
     SINGLE,
+    STUDIES,
+    at_most_double,
     columns_of_panels,
     figure_stage,
     handles,
@@ -175,7 +176,7 @@ def figure(*data) -> Figure:
     frame, full = pd.DataFrame(_rows(*data)), data[1]
     pairs, media = (list(dict.fromkeys(frame[column])) for column in ("pair", "vdw"))
     figure, columns, lines = columns_of_panels(
-        len(pairs), len(media), lambda across: min(DOUBLE, 1.3 * SINGLE * across), 1.4 + 1.8 * len(media), sharex="col"
+        len(pairs), len(media), at_most_double(1.3 * SINGLE), 1.4 + 1.8 * len(media), sharex="col"
     )
     for column, pair in zip(columns, pairs, strict=True):
         for panel, medium in zip(column, media, strict=True):
@@ -243,10 +244,5 @@ STAGES = (
         study="asperities",
         targets=("asperities",),
     ),
-    _stage(
-        figure_stage,
-        "crack lengths under several readings of an asperity",
-        figure,
-        category="Sensitivity, appendices, model choices",
-    ),
+    _stage(figure_stage, "crack lengths under several readings of an asperity", figure, category=STUDIES),
 )

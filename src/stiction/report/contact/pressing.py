@@ -11,8 +11,9 @@ from stiction.estimates import jackknife, mean_with_error
 from stiction.plan.names import by_name
 from stiction.report.format import TO_MPA, TO_NM, with_error
 from stiction.report.style import (
-    DOUBLE,
     SINGLE,
+    STUDIES,
+    at_most_double,
     columns_of_panels,
     dashes,
     figure_stage,
@@ -81,7 +82,7 @@ def _line(key, rows):
 def figure(studies: Mapping[str, xr.Dataset]) -> Figure:
     """Ratio of the energies over the mean pressure, for each humidity; parameters as in ``_rows``."""
     frame = pd.DataFrame(_rows(studies))
-    figure, columns, lines = columns_of_panels(len(studies), 1, lambda across: min(DOUBLE, 1.3 * SINGLE * across), 3.0)
+    figure, columns, lines = columns_of_panels(len(studies), 1, at_most_double(1.3 * SINGLE), 3.0)
     for (panel,), pair in zip(columns, studies, strict=True):
         of_pair = frame[frame.pair == pair]
         humidities = of_pair.relative_humidity.unique()
@@ -121,10 +122,5 @@ def _stage(kind, shows, draw, **declared):
 
 STAGES = (
     _stage(table_stage, "adhesion after surfaces were pressed together", table),
-    _stage(
-        figure_stage,
-        "adhesion after surfaces were pressed together",
-        figure,
-        category="Sensitivity, appendices, model choices",
-    ),
+    _stage(figure_stage, "adhesion after surfaces were pressed together", figure, category=STUDIES),
 )

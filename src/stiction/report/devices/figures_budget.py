@@ -16,6 +16,7 @@ from stiction.report.style import (
     DOUBLE,
     OUTLINED,
     SINGLE,
+    at_most_double,
     columns_of_panels,
     dashes,
     figure_stage,
@@ -46,7 +47,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
 
     Datasets and the sentences of warnings, which the table of stoppers contains, are by device.
     """
-    figure, columns, lines = columns_of_panels(len(datasets), 2, lambda n: min(DOUBLE, SINGLE * n), 5.0)
+    figure, columns, lines = columns_of_panels(len(datasets), 2, at_most_double(SINGLE), 5.0)
     for column, dataset in zip(columns, datasets.values(), strict=True):
         _stuck_over_force(column[0], dataset)
         shared = _force_over_humidity(column[1], dataset)

@@ -14,8 +14,8 @@ from stiction.config.cases import air
 from stiction.plan.names import by_case
 from stiction.report.format import TO_UM
 from stiction.report.style import (
-    DOUBLE,
     SINGLE,
+    at_most_double,
     columns_of_panels,
     figure_stage,
     handles,
@@ -41,11 +41,6 @@ _LIGHTEST = 0.25
 _ROOM = 0.05
 
 
-def _width(columns):
-    """Width of a figure with this number of columns [in]."""
-    return min(DOUBLE, 1.5 * SINGLE * columns)
-
-
 def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[str]], table: str) -> None:
     """Say below a figure which table has the warnings, by their numbers, in its caption."""
     if count := len(numbered(warnings)[0]):
@@ -64,7 +59,7 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
     names = list(dict.fromkeys(name for name, _ in found))
     _, numbers = numbered(warnings)
     most = max(sum(device == name for device, _ in found) for name in names)
-    figure, columns, lines = columns_of_panels(len(names), 1, _width, _PANEL + _ENTRY * most)
+    figure, columns, lines = columns_of_panels(len(names), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
     for panel, name in zip(columns[:, 0], names, strict=True):
         cases = {humidity: dataset for (device, humidity), dataset in found.items() if device == name}
         named = []
@@ -136,7 +131,7 @@ def chart(
     placed = {name: places(whole.relative_humidity.values.tolist()) for name, whole in axes.items()}
     subjects = [(name, *one) for name, whole in axes.items() for one in product(whole.gap.values, _shapes_of(whole))]
     most = max(whole.sizes["thickness"] for whole in axes.values()) + 1
-    figure, columns, lines = columns_of_panels(len(subjects), 1, _width, _PANEL + _ENTRY * most)
+    figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
         whole = axes[name].sel(gap=gap, shape=shape)
         marks = [_listed(numbers.get((name, thickness, gap, shape), ())) for thickness in whole.thickness.values]

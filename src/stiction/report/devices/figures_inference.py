@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.report.format import TO_UM
-from stiction.report.style import DOUBLE, figure_stage, humidity_axis, letter, panels, places, styled
+from stiction.report.style import DOUBLE, INTERVAL, figure_stage, humidity_axis, letter, panels, places, styled
 
 #: Colours before and after the measurement.
 _BEFORE, _AFTER = "0.6", "#0072B2"
@@ -16,8 +16,6 @@ _POINT = {"fmt": "o", "color": "black", "markersize": 3}
 _COUNT = {"marker": "D", "color": "black", "markersize": 3, "linestyle": "none", "markerfacecolor": "white"}
 #: Ends of a band at a single humidity, from this [-].
 _ALONE = np.array([-0.01, 0.01])
-#: Half width of an interval that holds 95 %, in standard deviations.
-_INTERVAL = 1.96
 
 
 @styled
@@ -62,12 +60,12 @@ def _lengths(panel, data):
         ("after", computed * np.exp(shift), data.datum_after, _AFTER),
     )
     for name, centre, deviation, colour in cases:
-        reach = np.exp(_INTERVAL * deviation.values)
+        reach = np.exp(INTERVAL * deviation.values)
         for along, order in bands:
             panel.fill_between(along, (centre / reach)[order], (centre * reach)[order], color=colour, alpha=0.25, lw=0)
             entries += panel.plot(along, centre[order], color=colour, label=f"{name} the measurement, 95 %")
     if data.measured.notnull().any():
-        error = _INTERVAL * TO_UM * (data.measured * data.datum_measured_error).values
+        error = INTERVAL * TO_UM * (data.measured * data.datum_measured_error).values
         entries.append(panel.errorbar(humidity, TO_UM * data.measured, yerr=error, **_POINT, label="measured, 95 %"))
     for k in range(data.sizes["count"]):
         at = data.isel(count=k)

@@ -9,13 +9,13 @@ from stiction.config.kinds import ROUGHNESSES
 from stiction.devices.roughness import margins
 from stiction.report.devices.tables_roughness import in_unit, labelled
 from stiction.report.format import TO_UM
-from stiction.report.style import DOUBLE, SINGLE, figure_stage, letter, panels, plain_log, shades, styled
+from stiction.report.style import DOUBLE, INTERVAL, SINGLE, figure_stage, letter, panels, plain_log, shades, styled
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import FORCE
 from stiction.stages.roughness.curves import curves_of
 
-#: Lightest colour of a curve; half width of an interval that holds 95 %, in standard errors.
-_LIGHTEST, _INTERVAL = 0.25, 1.96
+#: Lightest colour of a curve.
+_LIGHTEST = 0.25
 #: What meets a requirement with confidence, and what is expected to.
 _VALUES = ("safe", "estimate")
 
@@ -52,7 +52,7 @@ def roughness(found: xr.Dataset) -> Figure:
 def _curve(panel, one, colour):
     """Estimate of one humidity with its band, and the safe values."""
     x, estimate = in_unit(one, one.roughness.values), TO_UM * one.estimate.values
-    reach = _INTERVAL * TO_UM * one.error.values
+    reach = INTERVAL * TO_UM * one.error.values
     panel.fill_between(x, estimate - reach, estimate + reach, color=colour, alpha=0.2, linewidth=0)
     panel.plot(x, estimate, ".-", color=colour, label=f"RH {float(one.humidity):g}, estimate and 95 % band")
     panel.plot(x, TO_UM * one.safe.values, "_", color=colour, markersize=8, label="safe, 95 % confidence")
@@ -68,7 +68,7 @@ def _crossings(panel, found, subject, colour):
     )
     places, errors = (found[name].values[own.astype(bool)] for name in ("crossing_place", "crossing_error"))
     if len(places):
-        at, error = in_unit(found, places), _INTERVAL * in_unit(found, errors)
+        at, error = in_unit(found, places), INTERVAL * in_unit(found, errors)
         height = np.full(len(at), TO_UM * float(found.required))
         panel.errorbar(at, height, xerr=error, fmt="o", color=colour, fillstyle="none", zorder=3)
 

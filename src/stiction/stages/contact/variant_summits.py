@@ -122,9 +122,7 @@ def _datasets(surface, spacing, identification):
 
 
 def layout(summits: Sequence[Summits], bearing_areas: Sequence[np.ndarray], grid: DistanceGrid) -> xr.Dataset:
-    """Dataset of the summits above the mean plane of all samples, found in equal areas, and of their bearing areas A
-    [-].
-    """
+    """Dataset of the summits above the mean plane of all samples, found in equal areas, and of the bearing areas [-]."""
     above = [one.tops > 0 for one in summits]
     tops, curvatures = (
         np.concatenate([values[kept] for values, kept in zip(column, above, strict=True)])

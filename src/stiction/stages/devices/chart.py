@@ -112,8 +112,9 @@ def _power_laws(sizes, found, test):
 
 
 def layout(found: Filled, rms: float, settings: Settings) -> xr.Dataset:
-    """Dataset of safe lengths (sizes, shapes, shares) [m] over thickness and gap at one humidity; rms of both surfaces
-    [m].
+    """Dataset of safe lengths (sizes, shapes, shares) [m] over thickness and gap at one humidity.
+
+    The rms is that of the sum of both surfaces [m].
     """
     grid, size = (len(settings.thicknesses), len(settings.gaps)), ("thickness", "gap")
     shapes = list(settings.device.opening.shapes)

@@ -25,7 +25,7 @@ class Settings:
 
 
 def compute(forces: xr.Dataset, case: str, model: str, settings: Settings) -> xr.Dataset:
-    """Fit the chaos model and compare draws from it with its input; case and model are parts of the addresses of
+    """Fit the chaos model and compare draws from it with its input; case and model are part of the addresses of
     streams.
     """
     samples, limit = vectors(forces)

@@ -47,10 +47,9 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
 
 
 def layout(vectors: np.ndarray, limit: float, distance: np.ndarray, curves: Sequence[np.ndarray]) -> xr.Dataset:
-    """Dataset of the vectors v(sample, component) of Eq. (11) and f_limit, (n, 4) [SI] and [Pa], and the first few
-    curves.
+    """Dataset of the vectors v(sample, component) of Eq. (11), f_limit, and the first few curves.
 
-    Distances (n_d,) [m] and forces of the first samples (k, n_d) [Pa].
+    Vectors (n, 4) [SI], f_limit [Pa], distances (n_d,) [m] and forces of the first samples (k, n_d) [Pa].
     """
     named = {
         name: ("sample", vectors[:, i], {"units": unit, "long_name": f"{name.replace('_', ' ')} of a sample, Eq. (11)"})
