@@ -122,7 +122,7 @@ def _datasets(surface, spacing, identification):
 
 
 def layout(summits: Sequence[Summits], bearing_areas: Sequence[np.ndarray], grid: DistanceGrid) -> xr.Dataset:
-    """Dataset of the summits above the mean plane of all samples, found in equal areas, and of the bearing areas [-]."""
+    """Dataset of the summits of all samples above the mean plane, found in equal areas, and of their bearing areas."""
     above = [one.tops > 0 for one in summits]
     tops, curvatures = (
         np.concatenate([values[kept] for values, kept in zip(column, above, strict=True)])

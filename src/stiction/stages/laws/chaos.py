@@ -25,8 +25,9 @@ class Settings:
 
 
 def compute(forces: xr.Dataset, case: str, model: str, settings: Settings) -> xr.Dataset:
-    """Fit the chaos model and compare draws from it with its input; case and model are part of the addresses of
-    streams.
+    """Fit the chaos model and compare draws from it with its input.
+
+    Case and model are parts of the addresses of random numbers.
     """
     samples, limit = vectors(forces)
     fitted = chaos.fit(samples, limit, settings.chaos.order, settings.chaos.dimension_tolerance)
