@@ -30,7 +30,7 @@ def compute(spectra: Mapping[str, xr.Dataset], settings: Settings) -> xr.Dataset
 
 
 def layout(surfaces: Sequence[str], lag: np.ndarray, correlations: Sequence, lengths: Sequence[float]) -> xr.Dataset:
-    """Normalised autocorrelation of surfaces (n_s, n) [-] over the distance (n,) [m], and correlation lengths (n_s,)."""
+    """Normalised autocorrelation of surfaces (n_s, n) [-] over the distance, and correlation lengths (n_s,) [m]."""
     return xr.Dataset(
         {
             "autocorrelation": (("surface", "lag"), correlations, {"units": "1"}),
