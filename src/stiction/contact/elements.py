@@ -44,8 +44,6 @@ RELAXATION = 1.4
 ENERGY_LEFT = 1e-3
 #: Most turns of the attraction, displacements in each, and distances in the search for one state.
 TURNS, STEPS, STATES = 100, 1000, 40
-#: Distances [m] and forces [Pa] of another model, (n,) each.
-Curve = tuple[np.ndarray, np.ndarray]
 _UNSETTLED = "full elastic contact does not settle, with surfaces too smooth or a solid too soft for the grid"
 
 
@@ -261,7 +259,9 @@ class Separation:
     states: int  #: number of distances
 
 
-def separation(space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, curve: Curve) -> Separation:
+def separation(
+    space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, curve: tuple[np.ndarray, np.ndarray]
+) -> Separation:
     """Adhesion energy and largest attraction of a strip of heights z (n1, n2) float32 [m].
 
     Parameters
@@ -288,7 +288,9 @@ def separation(space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, curve:
     return Separation(-closed.energy(heights, adhesion), pull_off, closed, states + len(coarse) + len(fine) - 2)
 
 
-def at_rest(space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, curve: Curve) -> tuple[State, int]:
+def at_rest(
+    space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, curve: tuple[np.ndarray, np.ndarray]
+) -> tuple[State, int]:
     """State without force, which has the adhesion energy, and the number of states; parameters of `separation`."""
 
     def at(distance, before):

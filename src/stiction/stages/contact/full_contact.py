@@ -60,7 +60,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
 
 def strips(
     surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings
-) -> Iterator[tuple[HalfSpace, np.ndarray, list[tuple[elements.Adhesion, elements.Curve]]]]:
+) -> Iterator[tuple[HalfSpace, np.ndarray, list[tuple[elements.Adhesion, tuple[np.ndarray, np.ndarray]]]]]:
     """Strips one after the other: elements, heights z (n1, n2) [m], and for each humidity the attraction and the curve.
 
     The curve is that of the sum over summits: distances [m] and forces [Pa].
