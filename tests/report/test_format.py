@@ -41,24 +41,7 @@ def test_value_and_error_have_equal_decimals_and_are_close_to_the_numbers(value,
     assert not re.fullmatch(r"-0\.?0*", number)
 
 
-def test_zero_has_no_minus_sign():
-    assert text.number(-0.04, "+.1f") == "+0.0"
-    assert text.number(-0.0, "g") == "0"
-    assert text.number(-0.06, "+.1f") == "-0.1"
-
-
-def test_a_small_standard_error_is_never_shown_as_zero():
-    assert text.error_alone(0.0417) == "0.042"
-    assert text.error_alone(0.013) == "0.013"
-    assert text.error_alone(np.nan) == "–"
-
-
 def test_units_and_factors_of_axes_are_inverse():
     units = [text.NM, text.UM]
     assert_allclose(np.multiply(units, [text.TO_NM, text.TO_UM]), 1)
     assert_allclose((text.TO_MPA, text.TO_GPA, text.TO_MJ), (1e-6, 1e-9, 1e3))
-
-
-def test_percent_deviation_needs_a_reference():
-    assert_allclose(text.percent(110.0, 100.0), 10)
-    assert np.isnan([text.percent(1.0, 0.0), text.percent(1.0, np.nan)]).all()

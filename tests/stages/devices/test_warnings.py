@@ -376,9 +376,3 @@ def test_subjects_are_named_in_words():
 
 def test_a_page_without_warnings_says_so():
     assert "No result is beyond the limits" in pair_warnings.as_markdown({"pair a": []})
-
-
-def test_sentences_have_the_number_of_their_first_use():
-    sentences, numbers = pair_warnings.numbered({"a": ["x.", "y."], "b": ["z.", "x."]})
-    assert sentences == ["x.", "y.", "z."]
-    assert numbers == {"a": [1, 2], "b": [3, 1]}
