@@ -10,8 +10,9 @@ from stiction.devices import inference
 from stiction.plan.names import by_name
 from stiction.report.format import TO_UM, airs, humidity_text, number, with_error
 from stiction.report.tables import DEVICE, Table, table_stage, with_list
-from stiction.stages.devices.releases import ARC, EITHER, FORCE, MIDDLE, S_SHAPE
-from stiction.stages.test_beams.inference import OWN, SHAPES
+from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.devices.releases import FORCE, S_SHAPE
+from stiction.stages.test_beams.inference import OWN, shape_of
 
 #: p value below which data count as not explained; number of standard deviations beyond which an input counts as wrong;
 #: ratio of dimensions beyond which a prediction counts as extrapolated. ASSUME: a factor of two.
@@ -26,23 +27,9 @@ DETERMINED, NAMED = 0.5, 0.25
 DIFFERENT = 3.0
 _MORE = {True: "more", False: "less"}
 #: Ways in which devices are held, that of the shortest devices first.
-_WEAKEST = (ARC, MIDDLE, FORCE, S_SHAPE)
-#: What the results of a device are, by what its budget is of.
-_RESULTS = {
-    S_SHAPE: "crack length [µm]",
-    ARC: "length held by few tips [µm]",
-    MIDDLE: "length that the middle holds [µm]",
-    FORCE: "mean pull-off force [µN]",
-}
+_WEAKEST = tuple(reversed(END_STATES))
 #: P(stuck) before and after, and its scale.
 _STUCK = ("expected_stuck", "updated_stuck", 100)
-#: What is safe, by shape.
-_SAFE = {
-    S_SHAPE: "safe length, beam",
-    EITHER: "safe length, beam or tip",
-    MIDDLE: "safe length, middle",
-    FORCE: "safe force",
-}
 
 
 # Sentences
@@ -115,7 +102,7 @@ def _built(found, response):
     share = found.share.values[found.sizes["share"] // 2]
     chosen = found.isel(result=np.flatnonzero(found.response.values == response))
     for safe, name in (("safe", "result_before"), ("updated_safe", "result_after")):
-        sizes, doubt = found[safe].sel(share=share, shape=SHAPES[response]), 2 * float(chosen[name].max())
+        sizes, doubt = found[safe].sel(share=share, shape=shape_of(response)), 2 * float(chosen[name].max())
         least, most = (TO_UM * float(size) for size in (sizes.min(), sizes.max()))
         yield most * (1 + doubt) if response == FORCE else least * max(1 - doubt, 0.0)
 
@@ -146,7 +133,7 @@ def _change(one):
 
 def stuck(found: xr.Dataset) -> list[str]:
     """P(stuck) before and after the measurement at every humidity, averaged over the uncertainty of the inputs."""
-    shape = SHAPES[min(map(str, found.response.values), key=_WEAKEST.index)]
+    shape = shape_of(min(map(str, found.response.values), key=_WEAKEST.index))
     chosen = found.sel(shape=shape)
     if "share" in chosen.expected_stuck.dims:
         chosen = chosen.isel(share=found.sizes["share"] // 2)
@@ -225,7 +212,7 @@ def _results(device, found):
         length = TO_UM * float(at.centre)
         numbers = _of_length(length, *(float(at[f"result_{key}"]) for key in ("before", "shift", "after")))
         head = {"device": device, "relative_humidity": float(at.humidity_of_result)}
-        yield head | {"part": _RESULTS[str(at.response.values)], "name": device} | numbers
+        yield head | {"part": END_STATES[str(at.response.values)].result, "name": device} | numbers
 
 
 def _safe_sizes(device, found):
@@ -236,7 +223,7 @@ def _safe_sizes(device, found):
             of_shape, unit = found.sel(humidity=humidity, shape=shape), "µN" if shape == FORCE else "µm"
             for share in found.share.values:
                 at = of_shape.sel(share=share)
-                part = f"{_SAFE[shape]}, p = {share:g}"
+                part = f"{END_STATES[shape].safe}, p = {share:g}"
                 yield head | {"part": f"{part} [{unit}]"} | _both(at, "safe", "updated_safe", TO_UM)
                 if "share" in found.expected_stuck.dims:
                     yield head | {"part": f"stuck at the {part}, before [%]"} | _both(at, *_STUCK)

@@ -18,10 +18,12 @@ class EndState:
     lines: tuple[str, str] = ("", "")  #: styles of the lengths and of their bound in figures
     bound: str = ""  #: what bounds these lengths
     budget: str = ""  #: what the inputs of a budget move
+    result: str = ""  #: the same beside test beams, with its unit
+    safe: str = ""  #: what is safe against it
     terms: Mapping[str, str] = field(default_factory=dict)  #: terms that a page explains
 
 
-#: End states by their name in datasets.
+#: End states by their name in datasets; of those of one device, the longest devices are in the first.
 END_STATES = {
     S_SHAPE: EndState(
         by="beam",
@@ -29,6 +31,8 @@ END_STATES = {
         lines=("--", ":"),
         bound="saturated air",
         budget="mean length at which beams stick (S-shape)",
+        result="crack length [µm]",
+        safe="safe length, beam",
         terms={"Held by the beam": "The beam touches down behind an open crack and stays flat there (S-shape)."},
     ),
     EITHER: EndState(
@@ -36,19 +40,22 @@ END_STATES = {
         legend="held by beam or tip",
         lines=("-", "-."),
         bound="saturated air",
+        safe="safe length, beam or tip",
         terms={
             "Held by the tip": (
                 "Only the free end touches and holds the beam (arc). Shorter beams can be held in this way."
             )
         },
     ),
-    ARC: EndState(by="tip", budget="length that 1 in {} tips hold (arc)"),
+    ARC: EndState(by="tip", budget="length that 1 in {} tips hold (arc)", result="length held by few tips [µm]"),
     MIDDLE: EndState(
         by="middle",
         legend="held by the middle",
         lines=("-", ":"),
         bound="flooded flats",
         budget="mean length at which the middle of bridges holds",
+        result="length that the middle holds [µm]",
+        safe="safe length, middle",
         terms={
             "Held by the middle": (
                 "Both cracks of a bridge have met, and a few micrometres of its middle hold it, where it has no slope. "
@@ -56,5 +63,7 @@ END_STATES = {
             )
         },
     ),
-    FORCE: EndState(by="whole area", budget="mean pull-off force"),
+    FORCE: EndState(
+        by="whole area", budget="mean pull-off force", result="mean pull-off force [µN]", safe="safe force"
+    ),
 }

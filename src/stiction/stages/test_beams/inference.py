@@ -24,14 +24,13 @@ from stiction.plan.stage import Stage
 from stiction.stages.contact import curves
 from stiction.stages.devices.budget import budgets_of, budgets_of_arrays, response_of, shared_laws
 from stiction.stages.devices.patch_settings import contact_of, tips_of
-from stiction.stages.devices.releases import ARC, EITHER, FORCE, LONG, MIDDLE, S_SHAPE, DesignedBeam, section_of_beam
+from stiction.stages.devices.releases import ARC, EITHER, FORCE, LONG, S_SHAPE, DesignedBeam, section_of_beam
+from stiction.stages.devices.uncertain_inputs import OF_BEAMS
 
-#: Inputs that are those of one device or array alone.
-OWN = ("thickness", "gap")
+#: Inputs that are those of one device or array alone: its dimensions.
+OWN = tuple(one.name for one in OF_BEAMS if one.step)
 #: Numbers of further test beams for which the gain is stated.
 FURTHER = (10, 100)
-#: What holds a device, as in its safe lengths, by what its budget is of; lengths in either shape are those of tips.
-SHAPES = {S_SHAPE: S_SHAPE, ARC: EITHER, MIDDLE: MIDDLE, FORCE: FORCE}
 #: Points between the smallest and the largest share for which a safe length is stated.
 _SMALL = 50
 #: What may hold a counted beam.
@@ -76,6 +75,11 @@ class Settings:
     device: DesignedBeam | None = None  #: none of a stopper
 
 
+def shape_of(response: str) -> str:
+    """What holds a device, as in its safe lengths, by what its budget is of: tips give the lengths of either shape."""
+    return EITHER if response == ARC else response
+
+
 class Result(NamedTuple):
     """One length or force with a budget, of the device or of test beams."""
 
@@ -86,7 +90,7 @@ class Result(NamedTuple):
 
     @property
     def response(self) -> str:
-        """What holds it, a key of ``SHAPES``."""
+        """What holds it."""
         return response_of(self.budget)[0]
 
     @property
@@ -448,7 +452,7 @@ def _before_and_after(found, safe):
 
 def _of_shapes(found, name):
     """Numbers of the results of a device by humidity and shape."""
-    shapes = [SHAPES[response] for response in found.response.values]
+    shapes = list(map(shape_of, found.response.values))
     keys = {"humidity": ("result", found.humidity_of_result.values), "shape": ("result", shapes)}
     return (
         found[name]
