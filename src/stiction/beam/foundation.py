@@ -18,12 +18,7 @@ ACCURACY = 0.01
 def decay_length(bending: float, stiffness: float) -> float:
     """Length within which the deflection of a plate on an elastic foundation decays, (4 D / k)^(1/4) [m].
 
-    Parameters
-    ----------
-    bending : float
-        Bending stiffness per width, D = E t³ / 12 [N m].
-    stiffness : float
-        Stiffness of the foundation per area, k [Pa/m].
+    D = E t³ / 12 is the bending stiffness per width [N m], k the stiffness of the foundation per area [Pa/m].
     """
     return float((4 * bending / stiffness) ** 0.25)
 

@@ -62,17 +62,9 @@ def scattered_beam(beam: Beam, scatter: float, rng: np.random.Generator) -> Beam
 
 
 def release_beam(experiment: Experiment, sample: int, rng: np.random.Generator) -> Outcome:
-    """Draw the laws, then the dimensions, of one beam and release it.
+    """Draw the laws, then the dimensions, of one beam, by its number, from its stream and release it.
 
     The laws are drawn first, so that models with and without geometric scatter share them.
-
-    Parameters
-    ----------
-    experiment : Experiment
-    sample : int
-        Number of the beam.
-    rng : numpy.random.Generator
-        Stream of this beam.
 
     Raises
     ------
@@ -98,17 +90,10 @@ def release_beam(experiment: Experiment, sample: int, rng: np.random.Generator) 
 def simulate(
     experiment: Experiment, samples: Iterable[int], stream: Callable[[int], np.random.Generator], threads: int = 1
 ) -> Iterator[Outcome]:
-    """Release many beams; yields their outcomes in the order of ``samples`` as they become available.
+    """Release many beams; yields their outcomes in the order of ``samples``, their numbers, as they become available.
 
-    Parameters
-    ----------
-    experiment : Experiment
-    samples : iterable of int
-        Numbers of the beams, for example one chunk of all.
-    stream : callable
-        ``stream(k)`` is the numpy.random.Generator of beam k.
-    threads : int
-        Number of beams computed at a time; the results do not depend on it.
+    ``stream(k)`` is the numpy.random.Generator of beam k. The results do not depend on the number of threads, in which
+    beams are computed at a time.
     """
     with ThreadPoolExecutor(threads) as pool:
         yield from pool.map(lambda k: _numbered(experiment, k, stream(k)), samples)
@@ -124,13 +109,9 @@ def _numbered(experiment, sample, rng):
 
 
 def columns(outcomes: Sequence[Outcome], shapes: int = 0) -> dict[str, np.ndarray]:
-    """Outcomes as arrays over the samples, of all end states: select by ``state`` before averaging energies.
+    """Outcomes of n beams as arrays, of all end states: select by ``state`` before averaging energies.
 
-    Parameters
-    ----------
-    outcomes : sequence of Outcome, n of them
-    shapes : int
-        Number of beams, counted from the first, whose deflection is kept.
+    The deflections of the first ``shapes`` beams are kept.
 
     Returns
     -------

@@ -134,15 +134,10 @@ def end_state(beam: Beam, laws: np.ndarray, deflection: np.ndarray) -> EndState:
 
 
 def released_beam(beam: Beam, laws: np.ndarray, energy: float) -> ReleasedBeam:
-    """`release` from a start that is well below the crack length that Eq. (13) predicts from an adhesion energy.
+    """`release` from a start that is well below the crack length that Eq. (13) predicts from an adhesion energy [J
+    m⁻²].
 
-    Parameters
-    ----------
-    beam : Beam
-    laws : (points, 4) float64
-        Rows [f_max, d_max, a_left, a_right], SI.
-    energy : float
-        Expected adhesion energy, for example the mean of the laws [J m⁻²].
+    The energy is that which is expected, for example the mean of the laws.
 
     Raises
     ------

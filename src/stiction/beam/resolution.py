@@ -26,13 +26,8 @@ def longest(beam: Beam, laws: np.ndarray) -> tuple[float, float]:
 def resolved(beam: Beam, points: int, laws: np.ndarray) -> Beam:
     """Beam with as many elements as its laws require, and at least its original number.
 
-    Parameters
-    ----------
-    beam : Beam
-    points : int
-        Number of force laws along the beam; every element contains a whole number of them.
-    laws : (n, 4) float64
-        Sample of the force laws [f_max, d_max, a_left, a_right], SI.
+    Every element contains a whole number of the ``points`` along the beam, each with a force law; a sample of these has
+    rows [f_max, d_max, a_left, a_right] (n, 4), SI.
 
     Raises
     ------

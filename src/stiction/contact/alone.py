@@ -102,16 +102,10 @@ class Strip:
 def solid_pressure(strip: Strip, within: _Within, attraction: Adhesion) -> np.ndarray:
     """Pressure of the solids p_s at the last distances of ``grid.solid`` (n,) [Pa], until it exceeds the water's pull.
 
+    ``within`` is `alone` or `together`, and the attraction that of the solids, without a film.
+
     ASSUME: where several states have the same distance, the strip is in the one that it reaches during approach. The
     energies of the pairs of the paper are less than 1 % larger in those that it reaches during separation.
-
-    Parameters
-    ----------
-    strip : Strip
-    within : callable
-        `alone` or `together`.
-    attraction : Adhesion
-        Of the solids, without a film.
     """
     grid, heights = strip.grid, strip.heights.ravel()
     numbers = np.arange(grid.above - 1, -1, -max(round(BETWEEN / grid.step), 1))

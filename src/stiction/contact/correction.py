@@ -6,18 +6,9 @@ import numpy as np
 
 
 def interpolated(ratios: np.ndarray, humidities: np.ndarray, at: float | np.ndarray) -> float | np.ndarray:
-    """Ratios at some humidities, from those at the computed ones; NaN beyond them.
+    """Ratios at some humidities, from those (h,) at the computed ones, which increase; NaN beyond them [-].
 
     ASSUME: between the computed humidities, the logarithm of a ratio is linear in the humidity.
-
-    Parameters
-    ----------
-    ratios : (h,) array
-        [-]
-    humidities : (h,) array
-        Increasing [-].
-    at : float or (k,) array
-        [-]
 
     Examples
     --------

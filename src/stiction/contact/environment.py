@@ -85,15 +85,9 @@ def force_curves(
     humidity: float,
     water: Water,
 ) -> ForceCurves:
-    """Force curves of all samples at a relative humidity.
+    """Force curves of all samples at a relative humidity, from their contact.
 
-    Parameters
-    ----------
-    solid, bearing, starts, step
-        Contact of the samples, see `stiction.contact.forcelaw.humid_curves`.
-    humidity : float
-        Relative humidity [-].
-    water : Water
+    The contact is as in `stiction.contact.forcelaw.humid_curves`.
     """
     layer = water.film(humidity)
     distance, curve = forcelaw.humid_curves(solid, bearing, starts, step, layer)

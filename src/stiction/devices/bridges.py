@@ -61,14 +61,8 @@ def longest_strip(part: Beam, laws: np.ndarray) -> float:
 def middle_zone(part: Beam, strip: float, laws: np.ndarray) -> tuple[Beam, int]:
     """Zone around the middle of a bridge with elements that resolve it, and its number of strips.
 
-    Parameters
-    ----------
-    part : Beam
-        Any part of the bridge, under its tension.
-    strip : float
-        Length of a strip of ground [m].
-    laws : (n, 4) array
-        Sample of the force laws of these strips [SI].
+    From any part of the bridge, under its tension, the length of a strip of ground [m], and a sample of the force laws
+    of these strips (n, 4) [SI].
 
     Raises
     ------
@@ -89,12 +83,8 @@ def middle_zone(part: Beam, strip: float, laws: np.ndarray) -> tuple[Beam, int]:
 def held_length(zone: Beam, laws: np.ndarray) -> float:
     """Length of the shortest bridge that its middle holds [m], infinite if even two cracks on the mean law do not stop.
 
-    Parameters
-    ----------
-    zone : Beam
-        From `middle_zone`.
-    laws : (strips, 4) array
-        Force laws of its strips, from the middle outwards, first to the right [SI].
+    The zone is from `middle_zone`; the force laws of its strips (strips, 4) are ordered from the middle outwards, first
+    to the right [SI].
     """
     strips = len(laws)
     along = np.repeat(laws[outwards(strips)], zone.elements // strips, axis=0)
@@ -109,18 +99,9 @@ def held_lengths(
     number: int,
     stream: Callable[[int], np.random.Generator],
 ) -> np.ndarray:
-    """`held_length` of many bridges on random ground (number,) [m].
+    """`held_length` of a number of bridges on random ground (number,) [m]; zone and strips from `middle_zone`.
 
-    Parameters
-    ----------
-    zone, strips
-        From `middle_zone`.
-    draw_laws : callable
-        ``draw_laws(n, rng)`` gives n force laws (n, 4) [SI].
-    number : int
-        Number of bridges.
-    stream : callable
-        ``stream(k)`` is the numpy.random.Generator of bridge k.
+    ``draw_laws(n, rng)`` gives n force laws (n, 4) [SI], and ``stream(k)`` is the numpy.random.Generator of bridge k.
     """
     return np.array([held_length(zone, draw_laws(strips, stream(k))) for k in progress(range(number), "bridges")])
 

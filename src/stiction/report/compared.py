@@ -101,7 +101,8 @@ def _stages(source):
     name = f"compared_{source.table}"
 
     def jobs(plan):
-        subjects = plan.pairs if source.subject == "pair" else _devices(plan, source)
+        devices = plan.devices.stoppers if source.table == "stoppers" else plan.devices.beams
+        subjects = plan.pairs if source.subject == "pair" else devices
         return [{}] if any(one.endswith(tuple(values(plan.config))) for one in subjects) else []
 
     def settings(plan, _at):
@@ -122,11 +123,6 @@ def _stages(source):
         table_stage(name, shows, compute=made(compared), **declared),
         figure_stage(name, shows, "Comparison", caption="compared", compute=made(drawn), **declared),
     )
-
-
-def _devices(plan, source):
-    """Devices with rows in a table."""
-    return plan.devices.stoppers if source.table == "stoppers" else plan.devices.beams
 
 
 STAGES = tuple(stage for source in SOURCES for stage in _stages(source))

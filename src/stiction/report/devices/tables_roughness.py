@@ -15,7 +15,7 @@ from stiction.stages.devices.releases import FORCE
 from stiction.stages.roughness.curves import curves_of
 
 #: Standard errors beyond which two forces count as different.
-LARGE = 3
+DIFFERENT = 3
 #: What stays while one quantity is varied.
 FORM = (
     "One quantity of one surface is varied. The form of its heights and the shape of its spectrum stay; a process that "
@@ -122,7 +122,7 @@ def _worst(found, humidity, shape):
     if shape != FORCE or not len(forces):
         return ""
     most = int(np.argmax(forces))
-    apart = [forces[most] - forces[end] > LARGE * np.hypot(errors[most], errors[end]) for end in (0, -1)]
+    apart = [forces[most] - forces[end] > DIFFERENT * np.hypot(errors[most], errors[end]) for end in (0, -1)]
     if not all(apart):
         return ""
     place = f"{_shown(found, known.roughness[most])}{_unit(found)}"
@@ -201,7 +201,7 @@ def roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
         f"force, with its 95 % band. {FORM_OF_MAPS if of_maps else FORM} Devices: number of simulated devices at every "
         "roughness."
     )
-    columns = {name: one for name, one in _COLUMNS.items() if of_maps or name not in _OF_MAPS}
+    columns = {name: one for name, one in _COLUMNS.items() if of_maps or name != "and"}
     return Table.of(rows, with_list(caption, sentences), columns)
 
 
@@ -244,7 +244,6 @@ def _second(name, value):
     return f"{name}: {value:.3g}" if isinstance(name, str) else ""
 
 
-_OF_MAPS = ("and",)
 _COLUMNS = DEVICE | {
     "held by": (str, "held_by"),
     "varied": (str, "varied"),

@@ -33,9 +33,9 @@ def patch_of(plan: Any, case: Case) -> Patch:
     return _in_its_air(plan, case, plan.devices.ground)
 
 
-def _in_its_air(plan, case, patch_of):
+def _in_its_air(plan, case, of_device):
     """Patch of a device with the name of its pair in the air of a case, see `stiction.plan.air.Air`."""
-    return patch_of(case.device)._replace(pair=plan.contact_of_device(case))
+    return of_device(case.device)._replace(pair=plan.contact_of_device(case))
 
 
 def tips_of(plan: Any, case: Case) -> dict[str, str]:
