@@ -27,16 +27,19 @@ autosummary_generate = True
 # Otherwise pages of removed modules would remain.
 shutil.rmtree(DOCS / "_api", ignore_errors=True)
 autodoc_member_order = "bysource"
-# Parameters are described in their docstrings, in words.
-autodoc_typehints = "none"
+# Docstrings give shapes and units, annotations the types.
+autodoc_typehints = "signature"
+python_maximum_signature_line_length = 100
 napoleon_google_docstring = False
 napoleon_use_param = False
 napoleon_use_rtype = False
 # Attributes of dataclasses are described once, with their docstring.
 napoleon_use_ivar = True
 default_role = "py:obj"
-nitpick_ignore = [("py:class", "enum.IntEnum"), ("py:class", "callable"), ("py:obj", "ast.dump")]
-nitpick_ignore += [("py:class", f"collections.abc.{name}") for name in ("Callable", "Mapping", "Sequence")]
+nitpick_ignore = [("py:obj", "ast.dump")]
+# Types of other libraries have no pages here; `range` is also the name of attributes.
+nitpick_ignore_regex = [("py:class", r"(?!stiction\.).*"), ("py:class", r"stiction\.[\w.]+\.[A-Z]")]
+suppress_warnings = ["ref.python"]
 # Public names are described where they are defined.
 nitpick_ignore += [("py:obj", f"stiction.{name}") for name in stiction.__all__]
 
