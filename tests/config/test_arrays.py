@@ -50,6 +50,8 @@ def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
     ("changes", "key", "words"),
     [
         ({"datum": {"mean_um": 1600}}, "test_beams.first.crack_lengths", "that at RH 0.67 is 1600 µm"),
+        ({"datum": {"mean_um": 15, "std_um": 1}}, "test_beams.first.crack_lengths", "above the thickness and the gap"),
+        ({"datum": {"std_um": 800}}, "test_beams.first.crack_lengths", "below the means: that at RH 0.67 is 800 µm"),
         ({"datum": {"beams": 1}}, "test_beams.first.crack_lengths[0].beams", "at least 2"),
         ({"datum": {"humidity": 67}}, "test_beams.first.crack_lengths[0].humidity", "as a fraction of 1"),
         ({"datum": {"humidity": 0.2}}, "test_beams.first.crack_lengths", "must be at least 0.2903: in drier air"),
@@ -96,6 +98,7 @@ def test_counts_need_no_crack_lengths_and_may_stand_beside_them():
     ("array", "key", "words"),
     [
         ({**COUNTED, "stuck": [COUNTS[0] | {"stuck": 21}]}, "stuck", "no more stuck beams than there are: 21 of 20"),
+        ({**COUNTED, "stuck": [COUNTS[0] | {"length_um": 20}]}, "stuck", "that at RH 0.67 is 20 µm (given test_beams"),
         ({**COUNTED, "stuck": COUNTS * 2}, "stuck", "beams of 300 µm at RH 0.67 are listed twice"),
         ({**COUNTED, "stuck": [COUNTS[0] | {"humidity": 0.2}]}, "stuck", "must be at least 0.2903: in drier air"),
         ({**COUNTED, "stuck": [COUNTS[0] | {"of": 0}]}, "stuck[0].of", "at least 1"),

@@ -10,6 +10,7 @@ import numpy as np
 
 from stiction.config import memory
 from stiction.config.arrays import DATA, shared_uncertainty
+from stiction.config.cases import air
 from stiction.config.conditions import Relations
 from stiction.config.device_plan import DevicePlan
 from stiction.config.kinds import COMMON, KEYS, KINDS, ROUGHNESSES, kind_of
@@ -145,12 +146,12 @@ def corrections_are_not_extrapolated(config):
 @relation
 def devices_are_apart_from_the_film(config):
     """The gap of a device, and the smallest gap of its chart, are far above the film of water and the peaks."""
-    for gap, air in (("gap_um", "humidities"), ("gap_um", "chart.humidities"), ("chart.gaps_um", "chart.humidities")):
-        for name, gaps, humidities in config.entries("devices", gap, air):
-            if (gap, air) == ("gap_um", "chart.humidities") and "gaps_um" in config["devices"][name]["chart"]:
+    for gap, at in (("gap_um", "humidities"), ("gap_um", "chart.humidities"), ("chart.gaps_um", "chart.humidities")):
+        for name, gaps, humidities in config.entries("devices", gap, at):
+            if (gap, at) == ("gap_um", "chart.humidities") and "gaps_um" in config["devices"][name]["chart"]:
                 continue  # a chart with gaps of its own
             refusal = not_apart(np.min(gaps), humidities, _meeting(config, name))
-            yield f"devices.{name}.{gap}", refusal, f"devices.{name}.{air}", *_air(config, name)
+            yield f"devices.{name}.{gap}", refusal, f"devices.{name}.{at}", *_air(config, name)
 
 
 @relation
@@ -536,14 +537,29 @@ def crack_lengths_have_one_mean_at_a_humidity(config):
 
 @relation
 def cracks_end_on_the_beams(config):
-    """Mean crack lengths are shorter than the beams."""
+    """Mean crack lengths are shorter than the beams, and scatter by less than themselves."""
     for name, data, length in config.entries("test_beams", "crack_lengths", "length_um"):
-        if longer := next((datum for datum in data if datum["mean_um"] >= length), None):
-            message = (
-                f"must have means below the length of the beams: that at RH {longer['humidity']:g} is "
-                f"{longer['mean_um']:g} µm"
-            )
-            yield f"test_beams.{name}.crack_lengths", message, f"test_beams.{name}.length_um"
+        key = f"test_beams.{name}.crack_lengths"
+        if longer := [_at(datum, "mean_um") for datum in data if datum["mean_um"] >= length]:
+            yield key, f"must have means below the length of the beams: {longer[0]}", f"test_beams.{name}.length_um"
+        if wide := [_at(datum, "std_um") for datum in data if datum["std_um"] >= datum["mean_um"]]:
+            yield key, f"must have standard deviations below the means: {wide[0]}"
+
+
+@relation
+def test_beams_are_slender(config):
+    """Cracks and counted beams are longer than beams are thick and deflected; lengths in mm are not."""
+    sizes = "thickness_um", "gap_um"
+    for kind, length in (("crack_lengths", "mean_um"), ("stuck", "length_um")):
+        for name, data, *values in config.entries("test_beams", kind, *sizes):
+            if shorter := [_at(datum, length) for datum in data if datum[length] <= max(values)]:
+                message = f"must have lengths in µm above the thickness and the gap of the beams: {shorter[0]}"
+                yield f"test_beams.{name}.{kind}", message, *(f"test_beams.{name}.{size}" for size in sizes)
+
+
+def _at(datum, key):
+    """A length among the data of an array in words."""
+    return f"that at {air(datum['humidity'])} is {datum[key]:g} µm"
 
 
 @relation
