@@ -1,10 +1,10 @@
-"""Whether legends cover panels, texts or each other."""
+"""Whether legends cover panels, texts or each other, or leave their figure."""
 
 from stiction.report.style import save
 
 
 def covering(figure, tmp_path):
-    """Labels of the first entries of legends that lie on a panel, on a title or label, or on another legend."""
+    """Labels of the first entries of legends that lie on a panel, on a text or another legend, or beyond the figure."""
     save(figure, tmp_path / "figure.png")
     legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()] + figure.legends
     boxes = [axes.bbox for axes in figure.axes] + [text.get_window_extent() for text in _texts(figure)]
@@ -13,6 +13,7 @@ def covering(figure, tmp_path):
         legend.get_texts()[0].get_text()
         for legend, box in drawn
         if any(box.overlaps(other) for other in boxes + [other for one, other in drawn if one is not legend])
+        or not (box.x0 >= 0 and box.x1 <= figure.bbox.width)
     ]
 
 

@@ -174,6 +174,8 @@ def test_the_axis_of_a_chart_is_that_of_its_own_lengths():
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_no_legend_covers_a_panel_a_text_or_another_legend(found, count, tmp_path):
     cases = {(f"C{k}", rh): found["C1", 0.44 if rh == 0.44 else 0.67] for k in range(count) for rh in (0.44, 0.67, 0.9)}
+    bases = np.resize(["sampled", "fitted", "extrapolated"], found["C1", 0.44].basis.shape)
+    cases = {case: one.assign(basis=one.basis.copy(data=bases)) for case, one in cases.items()}
     warned = dict.fromkeys(product(*map(dict.fromkeys, zip(*cases, strict=True)), (S_SHAPE, EITHER)), ["Too wet."])
     assert covering(figures_devices.risk(cases, warned), tmp_path) == []
     axes = {(f"C{k}", rh): charted(rh) for k in range(count) for rh in (0.4, 0.5)}

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from legends import covering
 
 import stiction
 from stiction.contact.environment import Water
@@ -33,6 +34,11 @@ def stopper():
     return stiction.Device("S1", Results.of(CONFIG))
 
 
+@pytest.fixture(scope="module")
+def cantilever():
+    return stiction.Device("C1", Results.of(CONFIG))
+
+
 def forces_at(rms, **changed):
     """Pull-off forces of the stopper on surfaces of an rms [m], at the second humidity (m,) [N]."""
     surfaces = {"surfaces": {"B2": {"rms_nm": 1e9 * rms}}}
@@ -48,13 +54,21 @@ def test_the_curve_of_a_stopper_at_the_given_roughness_is_todays_result(stopper)
     assert float(found.given) == float(stopper.results["heights/B2"].rms)
 
 
-def test_the_curve_of_a_cantilever_at_the_given_roughness_is_todays_result():
-    device = stiction.Device("C1", Results.of(CONFIG))
-    today = device.safe_lengths(0.88).sel(share=0.02)
-    given = device.results[f"devices/roughness/points/C1_{POINTS - 1}"].sel(humidity=0.88)
+def test_the_curve_of_a_cantilever_at_the_given_roughness_is_todays_result(cantilever):
+    today = cantilever.safe_lengths(0.88).sel(share=0.02)
+    given = cantilever.results[f"devices/roughness/points/C1_{POINTS - 1}"].sel(humidity=0.88)
     for name, theirs in (("safe", "safe_length"), ("estimate", "estimate"), ("bound", "flooded_length")):
         np.testing.assert_array_equal(given[name], today[theirs])
     assert np.all(given.error > today.beams_error)
+
+
+def test_the_legend_of_a_cantilever_names_the_bounds_of_beam_and_tip(cantilever, tmp_path):
+    given = cantilever.results[f"devices/roughness/points/C1_{POINTS - 1}"]
+    figure = figures_roughness.roughness(curves.joined([given.assign(roughness=2e-9), given], "rms_nm", "B2"))
+    assert {"saturated air, beam", "saturated air, beam or tip"} < {
+        text.get_text() for text in figure.legends[0].get_texts()
+    }
+    assert covering(figure, tmp_path) == []
 
 
 def test_a_required_roughness_put_back_has_the_share_within_its_error(stopper):
@@ -161,7 +175,7 @@ def test_what_cannot_be_computed_is_named_with_its_reason_and_leaves_the_rest():
     sentence, refusal = tables_roughness.answers(curves.joined(points, "rms_nm", "B2"))
     assert "where the rms of B2 is 4.13 to 8 nm" in sentence
     assert "computed for 1.41 to 8 nm" in sentence
-    assert refusal == "Not computed at a rms of B2 of 1 nm (RH 0.6): too smooth."
+    assert refusal == "Not computed where the rms of B2 is 1 nm (RH 0.6): too smooth."
 
 
 # Two quantities
@@ -207,7 +221,7 @@ def test_a_map_is_told_curve_by_curve_and_drawn(mapped):
     said = tables_roughness.answers(found)
     assert len(said) == found.sizes["other"] == CURVES
     assert said[0].startswith(
-        "At a skewness of B2 of -1: For a restoring force of 3 µN, at a relative humidity of 0.6, "
+        "Where the skewness of B2 is -1: For a restoring force of 3 µN, at a relative humidity of 0.6, "
     )
     assert sum(", as given: " in sentence for sentence in said) == 1
     table = tables_roughness.roughness({"S1": found})

@@ -74,7 +74,7 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
         line[0, 0].set_ylabel("P(stuck) [–]")
     letter_lines(lines, names)
     _explain(columns[0, 0], found)
-    figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=5)
+    figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=5 if len(names) > 1 else 3)
     refer_to_warnings(figure, warnings, "safe_lengths")
     return figure
 

@@ -9,7 +9,18 @@ from stiction.config.kinds import ROUGHNESSES
 from stiction.devices.roughness import margins
 from stiction.report.devices.tables_roughness import in_unit, labelled
 from stiction.report.format import TO_UM
-from stiction.report.style import DOUBLE, INTERVAL, SINGLE, figure_stage, letter, panels, plain_log, shades, styled
+from stiction.report.style import (
+    DOUBLE,
+    INTERVAL,
+    SINGLE,
+    figure_stage,
+    handles,
+    letter,
+    panels,
+    plain_log,
+    shades,
+    styled,
+)
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import FORCE
 from stiction.stages.roughness.curves import curves_of
@@ -45,7 +56,7 @@ def roughness(found: xr.Dataset) -> Figure:
         f"{'restoring force [µN]' if shapes == [FORCE] else 'length [µm]'}, p = {float(found.share):g}"
     )
     letter(axes, [END_STATES[shape].by for shape in shapes])
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2 * len(shapes))
+    figure.legend(*handles(*axes[0]), loc="outside lower center", ncols=2 * len(shapes))
     return figure
 
 
@@ -58,7 +69,9 @@ def _curve(panel, one, colour):
     panel.plot(x, TO_UM * one.safe.values, "_", color=colour, markersize=8, label="safe, 95 % confidence")
     if np.isfinite(one.bound.values).any():
         state = END_STATES[str(one["shape"].values)]
-        panel.plot(x, TO_UM * one.bound.values, state.lines[1], color=colour, linewidth=0.8, label=state.bound)
+        panel.plot(
+            x, TO_UM * one.bound.values, state.lines[1], color=colour, linewidth=0.8, label=f"{state.bound}, {state.by}"
+        )
 
 
 def _crossings(panel, found, subject, colour):

@@ -254,7 +254,7 @@ def _of_length(length, before, shift, after):
 
 def _number(value, deviation):
     """A number, with its standard deviation if it has one."""
-    return number(value, ".1f") if np.isnan(deviation) else with_error(value, deviation)
+    return with_error(value, deviation) if deviation > 0 else number(value, ".1f")
 
 
 def _measured(value, error):

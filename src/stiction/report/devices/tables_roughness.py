@@ -76,7 +76,7 @@ def _at_other(curve):
     if "other" not in curve.coords:
         return ""
     key, given = "other_key", "" if _is_changed(curve) else ", as given"
-    return f"At a {name_of(curve, key)} of {_shown(curve, curve.other, key)}{_unit(curve, key)}{given}: "
+    return f"Where the {name_of(curve, key)} is {_shown(curve, curve.other, key)}{_unit(curve, key)}{given}: "
 
 
 def _is_changed(curve):
@@ -170,7 +170,7 @@ def _refusals(found):
             if reason := str(found.refused.sel(humidity=humidity, roughness=value).values):
                 at = f"{_shown(found, value)}{_unit(found)} (RH {humidity:g})"
                 places.setdefault(reason, []).append(at)
-    return [f"Not computed at a {name_of(found)} of {', '.join(at)}: {reason}." for reason, at in places.items()]
+    return [f"Not computed where the {name_of(found)} is {', '.join(at)}: {reason}." for reason, at in places.items()]
 
 
 def _unit(found, key="key"):
