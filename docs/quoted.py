@@ -42,7 +42,7 @@ def numbers(tables):
     found |= model_errors(tables["model_error"]) | attraction(tables["attraction"])
     found |= readings(tables["asperities"]) | pressing(tables["pressing"])
     found |= sealed(tables["sealed_safe_lengths"], tables["sealed_stoppers"])
-    found |= measured_beams(tables["measured_beams"])
+    found |= measured_beams(tables["measured_beams"]) | said(tables["test_beams"]) | skewed(tables["roughness"])
     found |= studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
     return (
         found
@@ -56,6 +56,18 @@ def numbers(tables):
 def measured_beams(frame):
     """``beams_b_slope``: what the crack lengths of the paper say as test beams, by pair and name."""
     return {f"beams_{row.pair}_{row.name}": str(row.text) for row in frame.itertuples(index=False)}
+
+
+def said(frame):
+    """``onB_build``: sentences of the pages of devices with test beams, by device and name."""
+    return {f"{row.device}_{row.name}": str(row.text) for row in frame.itertuples(index=False)}
+
+
+def skewed(frame):
+    """``skewed_1``: share of stoppers that stick at the given rms, from the least skewness to the largest [%]."""
+    given = frame[(frame.device == "Skewed") & np.isclose(frame.value, paper()["surfaces"]["B2"]["rms_nm"])]
+    shares = given.sort_values("other_value").stuck_percent
+    return {f"skewed_{k}": f"{share:.3g}" for k, share in enumerate(shares, 1)}
 
 
 def crack_lengths(table_3):

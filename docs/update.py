@@ -3,7 +3,7 @@
 1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
    and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``,
    ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction`` and ``stiction devices
-   examples/roughness.yaml --directory runs/roughness`` in folders of ``runs`` beside the folder.
+   examples/NAME.yaml --directory runs/NAME`` with the names roughness and test_beams in folders of ``runs`` beside it.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
 3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted, and the schema
    for editors from that of the configuration.
@@ -30,6 +30,7 @@ from stiction.config.files import paper
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.plan.plan import Plan
+from stiction.report.devices import tables_inference
 from stiction.report.format import TO_UM, with_error
 from stiction.run.storage import load
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
@@ -76,7 +77,15 @@ DEVICE_TABLES = ("safe_lengths", "stoppers", "budget")
 DEVICE_PICTURES = {"risk": 1000, "chart": 1200, "stoppers": 700, "budget_C1": 1000}
 #: Table, and pictures by their width [pixels], of ``make devices CONFIG=examples/roughness.yaml``.
 ROUGHNESS = "roughness"
-ROUGHNESS_PICTURES = {"roughness_Bump": 700, "roughness_Lever": 1000}
+ROUGHNESS_PICTURES = {"roughness_Bump": 700, "roughness_Lever": 1000, "roughness_map_Skewed": 700}
+#: Sentences, and picture with its width [pixels], of ``make devices CONFIG=examples/test_beams.yaml``.
+TEST_BEAMS = "test_beams"
+TEST_BEAMS_SAID = {
+    "build": tables_inference.built,
+    "further": tables_inference.advised,
+    "warned": lambda found: " ".join(tables_inference.warnings(found)),
+}
+TEST_BEAMS_PICTURE = ("test_beams_onB", 1100)
 #: Tables of studies with a command of their own: command, and width of the picture of the same name [pixels] or 0.
 OWN_STUDIES = {
     "model_error": ("make model-error", 1100),
@@ -106,6 +115,7 @@ def main(results):
         (runs / "measured-beams", unfinished_measured, collect_measured),
         (runs / "devices", partial(unfinished_devices, "devices", "budget"), collect_devices),
         (runs / "roughness", partial(unfinished_devices, "roughness", ROUGHNESS), collect_roughness),
+        (runs / "test_beams", partial(unfinished_devices, "test_beams", TEST_BEAMS), collect_test_beams),
         (runs / "sealed", partial(unfinished_devices, "sealed", "stoppers"), collect_sealed),
         (runs / "attraction", unfinished_attraction, collect_attraction),
     ):
@@ -261,6 +271,17 @@ def collect_roughness(folder):
         shrink(folder / "results" / "figures" / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
 
 
+def collect_test_beams(folder):
+    """Sentences of the pages of a run of the example of test beams, by device and name, and one picture."""
+    rows = []
+    for path in sorted((folder / "results" / "devices" / "test_beams" / "rerun").glob("*.nc")):
+        found = load(path, "test_beams_rerun")
+        rows += [{"device": path.stem, "name": name, "text": said(found)} for name, said in TEST_BEAMS_SAID.items()]
+    pd.DataFrame(rows).to_csv(DOCS / "tables" / f"{TEST_BEAMS}.csv", index=False, lineterminator="\n")
+    picture, width = TEST_BEAMS_PICTURE
+    shrink(folder / "results" / "figures" / f"{picture}.png", DOCS / "pictures" / f"{picture}.png", width)
+
+
 def scalars(studies):
     """Single numbers of the studies that have no table: name to text."""
     found = {}
@@ -353,6 +374,8 @@ def quoted_numbers():
             *OWN_STUDIES,
             ATTRACTION,
             MEASURED_BEAMS,
+            ROUGHNESS,
+            TEST_BEAMS,
             *(f"sealed_{name}" for name in SEALED_TABLES),
             *DEVICE_TABLES,
             "example_scans",

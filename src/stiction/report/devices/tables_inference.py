@@ -315,15 +315,18 @@ def _moved(found):
 
 def _nonlinear(found):
     """Results that change otherwise than in the linear update."""
+    different = []
     for one in _again(found):
         apart = float(one.rerun - one.linear)
         error = float(np.hypot(one.linear_error, one.rerun_error))
         if abs(apart) > DIFFERENT * error:
-            difference = with_error(100 * apart, 100 * error)
-            yield (
-                f"The update is not linear enough: {_change(one)}, which differ by {difference} %. State the inputs "
-                "that the test beams suggest, and compute the device again with them."
-            )
+            different.append(f"{with_error(100 * apart, 100 * error)} % ({one['again'].values})")
+    if different:
+        yield (
+            f"The update is not linear: results that were computed again differ from it by {', '.join(different)}. If "
+            "that matters beside their standard uncertainties, state the inputs that the test beams suggest, and "
+            "compute the device again with them."
+        )
 
 
 def _extrapolated(found):
