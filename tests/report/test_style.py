@@ -525,6 +525,16 @@ def test_a_pair_of_one_humidity_shows_its_median_and_stays_within_all_humidities
     assert panel.get_xlim()[0] < 0.99 < panel.get_xlim()[1] <= 1
 
 
+def test_beams_in_dry_air_are_shown_whole_beside_the_axis(pairs, published):
+    beam, beams, axes = pairs["b"]
+    dry = {(0.0, model): found for (humidity, model), found in beams.items() if humidity == 0.5}
+    panel = adhesion_energies({"b": (beam, beams | dry, axes)}, published, EVERY).axes[0]
+    place = panel.get_xticks()[0]
+    assert panel.get_xticklabels()[0].get_text() == "dry"
+    left, right = panel.get_xlim()
+    assert place - left > 0.04 * (right - left)
+
+
 def test_energies_above_that_of_flat_surfaces_are_shown_with_their_deviation(pairs, published):
     beam, beams, axes = pairs["b"]
     strong = {key: found.assign(adhesion_energy=100 * found.adhesion_energy) for key, found in beams.items()}

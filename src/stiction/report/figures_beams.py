@@ -136,6 +136,8 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
                 _released(panel, released, model)
                 if below is None:
                     _labels(panel, released, model, TO_MJ * weakest)
+        # Markers beside their places are no data to the axis.
+        row[0].update_datalim([(place, TO_MJ * weakest) for place in placed.values()], updatey=False)
         row[0].margins(x=0.06)
         humidity_axis(row[0], placed)
         if below is not None:
