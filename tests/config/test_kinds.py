@@ -24,4 +24,4 @@ def test_a_kind_that_cracks_open_has_mechanics_with_a_tip_if_it_has_one(name):
     if kind.is_beam:
         assert kind.has_tip == BEAMS[name].has_tip
         assert {f"{size}_{unit}" for size in BEAMS[name].sizes for unit in ("um", "MPa")} >= set(kind.keys)
-        assert all(END_STATES[shape].by and END_STATES[shape].bound for shape in BEAMS[name].shapes)
+        assert all(END_STATES[shape].by and END_STATES[shape].legend for shape in BEAMS[name].shapes)

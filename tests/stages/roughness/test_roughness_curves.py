@@ -65,7 +65,7 @@ def test_the_curve_of_a_cantilever_at_the_given_roughness_is_todays_result(canti
 def test_the_legend_of_a_cantilever_names_the_bounds_of_beam_and_tip(cantilever, tmp_path):
     given = cantilever.results[f"devices/roughness/points/C1_{POINTS - 1}"]
     figure = figures_roughness.roughness(curves.joined([given.assign(roughness=2e-9), given], "rms_nm", "B2"))
-    assert {"saturated air, beam", "saturated air, beam or tip"} < {
+    assert {"flat surfaces, beam", "flat surfaces, beam or tip"} < {
         text.get_text() for text in figure.legends[0].get_texts()
     }
     assert covering(figure, tmp_path) == []

@@ -174,7 +174,7 @@ def _thicknesses(panel, whole, shape, marks, placed):
         label = f"thickness {TO_UM * thickness:g} µm{mark}"
         named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=label))
     panel.plot([], [], line, color="0.3", label=f"{state.legend}, p = {share:g}")
-    panel.plot([], [], dotted, color="0.3", label=f"{state.legend}, {state.bound}")
+    panel.plot([], [], dotted, color="0.3", label=f"{state.legend}, flat surfaces")
     if not whole.by_elements.all():
         label = f"by a power law, ± {100 * float(whole.power_law_error.max()):.2g} %"
         named.append(Line2D([], [], color="0.3", marker="o", fillstyle="none", linestyle="", label=label))

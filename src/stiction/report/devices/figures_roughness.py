@@ -70,7 +70,7 @@ def _curve(panel, one, colour):
     if np.isfinite(one.bound.values).any():
         state = END_STATES[str(one["shape"].values)]
         panel.plot(
-            x, TO_UM * one.bound.values, state.lines[1], color=colour, linewidth=0.8, label=f"{state.bound}, {state.by}"
+            x, TO_UM * one.bound.values, state.lines[1], color=colour, linewidth=0.8, label=f"flat surfaces, {state.by}"
         )
 
 

@@ -16,7 +16,6 @@ class EndState:
     by: str  #: what holds it, in tables
     legend: str = ""  #: the same in legends
     lines: tuple[str, str] = ("", "")  #: styles of the lengths and of their bound in figures
-    bound: str = ""  #: what bounds these lengths
     budget: str = ""  #: what the inputs of a budget move
     result: str = ""  #: the same beside test beams, with its unit
     safe: str = ""  #: what is safe against it
@@ -29,7 +28,6 @@ END_STATES = {
         by="beam",
         legend="held by the beam",
         lines=("--", ":"),
-        bound="saturated air",
         budget="mean length at which beams stick (S-shape)",
         result="crack length [µm]",
         safe="safe length, beam",
@@ -39,7 +37,6 @@ END_STATES = {
         by="beam or tip",
         legend="held by beam or tip",
         lines=("-", "-."),
-        bound="saturated air",
         safe="safe length, beam or tip",
         terms={
             "Held by the tip": (
@@ -52,7 +49,6 @@ END_STATES = {
         by="middle",
         legend="held by the middle",
         lines=("-", ":"),
-        bound="flooded flats",
         budget="mean length at which the middle of bridges holds",
         result="length that the middle holds [µm]",
         safe="safe length, middle",
