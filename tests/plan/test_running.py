@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from stiction.plan import running
-from stiction.plan.stage import Stage
+from stiction.plan.stage import Shown, Stage
 from stiction.run import labels, storage
 from stiction.run.atomic import DataError
 
@@ -91,6 +91,25 @@ def test_a_stage_with_ends_writes_its_datasets_in_their_order(files, tmp_path, m
     outputs = {end: str(tmp_path / f"two_{end}.nc") for end in ("less", "more")}
     run(monkeypatch, stage, {"one": files["B2"]}, {"one": ["heights", None]}, outputs)
     assert [float(storage.load(path, "two").x[0]) for path in outputs.values()] == [4, 5]
+
+
+def test_a_caption_has_the_settings_of_its_job_and_what_the_figure_adds(files, tmp_path, monkeypatch):
+    drawn = SimpleNamespace(get_label=lambda: "(1) Too wet.")
+    shown = Shown(file="png", title="Sheet: {surface}", category="")
+    (tmp_path / "sheet.rst").write_text("Times {{ snakemake.params.settings['factor'] }}.\n")
+    stage = Stage(name="sheet", files={}, message="", compute=lambda *_: drawn, save=lambda *_: None, shown=shown)
+    inputs = {"one": files["B2"], "caption": str(tmp_path / "sheet.rst")}
+    described = job(stage, inputs, {"one": ["heights", None]}, {})
+    described.output, described.wildcards = Outputs(txt=tmp_path / "sheet.txt"), {"surface": "B2"}
+    monkeypatch.setattr(running, "declared", lambda module: (stage,))
+    running.run(described)
+    assert (tmp_path / "sheet.txt").read_text() == "Sheet: B2\n\nTimes 10.\n\n(1) Too wet.\n"
+
+
+class Outputs(dict):
+    """Files of a job, which Snakemake also gives as attributes."""
+
+    __getattr__ = dict.__getitem__
 
 
 def test_what_is_no_dataset_is_written_by_the_stage_itself(files, monkeypatch):

@@ -63,6 +63,16 @@ def test_the_study_of_a_pair_in_python_gives_the_numbers_of_the_workflow(smoke):
         assert dataset.equals(storage.load(results / f"{file}.nc", file.partition("/")[0])), file
 
 
+def test_beside_every_picture_a_text_explains_it(smoke):
+    pictures = sorted((smoke / "results" / "figures").glob("*.png"))
+    assert len(pictures) > 15
+    for picture in pictures:
+        assert picture.with_suffix(".pdf").exists()
+        title, _, text = picture.with_suffix(".txt").read_text().partition("\n\n")
+        assert ":" in title and "{" not in title + text, picture.name
+        assert len(text.split()) > 5, f"{picture.name}: {text}"
+
+
 def test_a_second_run_has_nothing_to_do(smoke):
     assert "Nothing to be done" in snakemake(smoke, "-n").stdout
 

@@ -120,18 +120,25 @@ def inputs_of(rule):
     def inputs(wildcards):
         files = planner.job(rule["name"], wildcards)["files"]
         written = {file.format(**dict(wildcards)) for file in rule["files"].values()}
-        return files | ({"stale": STALE} if written & unusable().keys() else {})
+        return files | caption_of(rule) | ({"stale": STALE} if written & unusable().keys() else {})
 
     return inputs
+
+
+def caption_of(rule):
+    """Template of the caption of a figure, for the report and for the text beside the figure."""
+    caption = (rule["shown"] or {}).get("caption")
+    return {"caption": str(BASE / "workflow" / "report" / f"{caption}.rst")} if caption else {}
 
 
 def outputs_of(rule):
     """Files of a rule by key."""
     marked = {key: temp(file) if rule["temporary"] else file for key, file in rule["files"].items()}
     if shown := rule["shown"]:
-        caption = {"caption": f"../report/{shown['caption']}.rst"} if shown["caption"] else {}
         labels = {"shows": shown["title"]}
-        marked[shown["file"]] = report(marked[shown["file"]], category=shown["category"], labels=labels, **caption)
+        marked[shown["file"]] = report(
+            marked[shown["file"]], category=shown["category"], labels=labels, **caption_of(rule)
+        )
     return marked
 
 

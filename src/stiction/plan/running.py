@@ -1,10 +1,12 @@
 """Run one job of the workflow: load its inputs, compute, save."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from stiction.plan.stage import At, Stage, declared
 from stiction.run import storage
+from stiction.run.atomic import save_text
 
 
 def run(job: Any) -> None:
@@ -17,10 +19,20 @@ def run(job: Any) -> None:
     result = stage.compute(data, At(**job.wildcards), settings)
     if stage.save is not None:
         stage.save(result, dict(job.output.items()))
+        if template := job.input.get("caption"):
+            save_text(_caption(stage, job, template, result.get_label()), job.output.txt)
         return
     datasets = [path for name, (label, _) in job.params.inputs.items() if label for path in _listed(job.input[name])]
     for dataset, path in zip(result if stage.each else [result], job.output, strict=True):
         storage.save(dataset, path, stage.stage, plain, datasets)
+
+
+def _caption(stage, job, template, more) -> str:
+    """Text beside a figure: its title, its caption as in the report, and what the figure itself adds."""
+    from jinja2 import Template  # comes with Snakemake
+
+    caption = Template(Path(template).read_text(encoding="utf-8")).render(snakemake=job)
+    return "\n\n".join(filter(None, [stage.shown.title.format(**job.wildcards), caption.strip(), more])) + "\n"
 
 
 def _listed(paths) -> list[str]:

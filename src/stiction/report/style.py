@@ -288,13 +288,16 @@ def save(figure: Figure, *paths: str | Path) -> None:
 def figure_stage(
     file: str, shows: str, category: str, inputs: Callable, name: str = "", caption: str = "", **declared: Any
 ) -> Stage:
-    """Stage that draws a figure and writes it as PDF and PNG; ``shows`` ends its title in the report."""
+    """Stage that draws a figure and writes it as PDF and PNG, with its caption; ``shows`` ends its title in the report.
+
+    The text of the caption is in ``workflow/report``; the label of the figure ends it.
+    """
     caption = caption or without_wildcards(file)
     return Stage(
         name=name or named("figure", file),
-        files={key: f"figures/{file}.{key}" for key in ("pdf", "png")},
+        files={key: f"figures/{file}.{key}" for key in ("pdf", "png", "txt")},
         inputs=lambda plan, at: {**inputs(plan, at), "style": File(STYLE)},
-        save=lambda figure, paths: save(figure, *paths.values()),
+        save=lambda figure, paths: save(figure, paths["pdf"], paths["png"]),
         shown=Shown(file="png", title=titled(file, shows), category=category, caption=caption),
         message=f"{titled(file, shows)}.",
         **declared,

@@ -56,7 +56,8 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
         line[1, 0].set_ylabel("pull-off force [µN]")
     letter_lines(lines, list(datasets))
     figure.legend(handles=shared, loc="outside upper center", ncols=2)
-    if any(warnings.values()):
+    if sentences := [f"{name}: {sentence}" for name, found in warnings.items() for sentence in found]:
+        figure.set_label("\n".join(["Warnings:", *sentences]))
         figure.supxlabel("Warnings are written out in results/tables/stoppers.md", fontsize=6, ha="left", x=0.01)
     return figure
 

@@ -26,7 +26,7 @@ from stiction.report.style import (
     shades,
     styled,
 )
-from stiction.stages.beams.pair_warnings import numbered
+from stiction.stages.beams.pair_warnings import numbered, with_numbers
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import charts
 from stiction.stages.devices.end_states import END_STATES
@@ -42,9 +42,10 @@ _ROOM = 0.05
 
 
 def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[str]], table: str) -> None:
-    """Say below a figure which table has the warnings, by their numbers, in its caption."""
-    if count := len(numbered(warnings)[0]):
-        numbers = "(1)" if count == 1 else f"(1) to ({count})"
+    """Say below a figure which table has the warnings, by their numbers, in its caption; its own one has them as well."""
+    if sentences := with_numbers(warnings):
+        numbers = "(1)" if len(sentences) == 1 else f"(1) to ({len(sentences)})"
+        figure.set_label("\n".join(["Warnings:", *sentences]))
         figure.supxlabel(
             f"{numbers}: warnings, written out in results/tables/{table}.md", fontsize=6, ha="left", x=0.01
         )

@@ -248,7 +248,7 @@ def of_beam(
     answer += [safe_sentence(humidity, dataset) for humidity, dataset in found.items()]
     answer += model_errors.sentences(name, errors)
     sections += _how_rough(name, roughness)
-    listed = [f"({k}) {sentence}" for k, sentence in enumerate(pair_warnings.numbered(warnings)[0], 1)]
+    listed = pair_warnings.with_numbers(warnings)
     listed += [] if test_beams is None else tables_inference.warnings(test_beams)
     shapes = next(iter(found.values()))["shape"].values
     held = {term: text for shape in shapes for term, text in END_STATES[str(shape)].terms.items()}

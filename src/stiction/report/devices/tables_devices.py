@@ -12,7 +12,7 @@ from stiction.report import beside
 from stiction.report.devices import model_errors
 from stiction.report.format import UM, error_alone, humidity_text, number
 from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_list
-from stiction.stages.beams.pair_warnings import numbered
+from stiction.stages.beams.pair_warnings import numbered, with_numbers
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import charts
 from stiction.stages.devices.device_warnings import curves
@@ -68,7 +68,7 @@ def _with_dry_air(text, found):
 
 def _caption(text, warnings):
     """Caption with what is not modelled and, below each other, numbered warnings."""
-    listed = [f"({k}) {sentence}" for k, sentence in enumerate(numbered(warnings)[0], 1)]
+    listed = with_numbers(warnings)
     return with_list(" ".join([text, NOT_MODELLED, *(["Warnings:"] if listed else [])]), listed)
 
 

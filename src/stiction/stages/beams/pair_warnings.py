@@ -118,6 +118,11 @@ def numbered(warnings: Mapping[Any, list[str]]) -> tuple[list[str], dict[Any, li
     return sentences, {key: [sentences.index(one) + 1 for one in found] for key, found in warnings.items()}
 
 
+def with_numbers(warnings: Mapping[Any, list[str]]) -> list[str]:
+    """Different sentences, each after its number."""
+    return [f"({k}) {sentence}" for k, sentence in enumerate(numbered(warnings)[0], 1)]
+
+
 def as_markdown(warnings: Warnings) -> str:
     """Warnings as a page, each sentence with all its subjects."""
     sentences, _ = numbered(warnings)
