@@ -69,6 +69,14 @@ def test_a_smooth_flooded_wedge_pulls_with_its_energy_over_its_slope(edge, humid
     assert np.any(np.abs(pulls * slopes / flooded_energy(300.0) - 1) > 0.02 * SPACING / wedges)  # control: not exact
 
 
+def test_a_tip_whose_roughness_follows_its_slope_holds_harder_than_a_flooded_flat_one():
+    found, height, rows = pair(slopes=(0.1,)), film(0.67, 300.0)[0], np.arange(STRIP.shape[0])
+    face = np.where(rows < 20, 0.1 * SPACING * rows, -3 * height) - found.depth  # wet as a whole
+    (rough,) = forces(found, np.tile(face[:, None], STRIP.shape[1]).astype(np.float32))
+    (flat,) = forces(found, np.full(STRIP.shape, -found.depth, np.float32))
+    assert rough > 3 * flat > 2 * flooded_energy(300.0) / 0.1
+
+
 @EDGES
 def test_force_and_wet_area_are_sums_over_summits_and_points(edge):
     heights, found = rough(1), pair(edge)

@@ -181,6 +181,11 @@ class Plan:
         return case_id(self.figure_pair, self.config["figures"]["humidity"])
 
     @property
+    def figure_settings(self) -> dict[str, Any]:
+        """Pair and humidity of the figures, as their captions state them."""
+        return {"pair": self.figure_pair, "humidity": self.config["figures"]["humidity"]}
+
+    @property
     def figure_cases(self) -> dict[str, Case]:
         """Case of every pair at the humidity of the figures, by pair."""
         return {pair: case_id(pair, self.config["figures"]["humidity"]) for pair in self.pairs}

@@ -29,9 +29,9 @@ def run(job: Any) -> None:
 
 def _caption(stage, job, template, more) -> str:
     """Text beside a figure: its title, its caption as in the report, and what the figure itself adds."""
-    from jinja2 import Template  # comes with Snakemake
+    from jinja2 import StrictUndefined, Template  # comes with Snakemake
 
-    caption = Template(Path(template).read_text(encoding="utf-8")).render(snakemake=job)
+    caption = Template(Path(template).read_text(encoding="utf-8"), undefined=StrictUndefined).render(snakemake=job)
     return "\n\n".join(filter(None, [stage.shown.title.format(**job.wildcards), caption.strip(), more])) + "\n"
 
 

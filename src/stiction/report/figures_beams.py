@@ -306,6 +306,7 @@ STAGES = (
         "shapes and crack lengths of beams",
         _CATEGORY,
         inputs=lambda plan, at: {"beams": f"beams/{plan.figure_case}_NG"},
+        settings=lambda plan, at: plan.figure_settings,
         compute=lambda data, at, settings: beam_shapes(data["beams"]),
         targets=("figures",),
     ),

@@ -152,6 +152,7 @@ STAGES = (
         "a force curve, its force law and its parameters",
         _CATEGORY,
         inputs=lambda plan, at: {stage: f"{stage}/{plan.figure_case}_NG" for stage in ("forces", "fit")},
+        settings=lambda plan, at: plan.figure_settings,
         compute=lambda data, at, settings: fitted_curve(data["forces"], data["fit"]),
         targets=("figures",),
     ),

@@ -147,7 +147,7 @@ STAGES = (
             "released": {key[1:]: name for key, name in by_outcome("beams", plan.figure_outcomes).items()},
             "published": published.file("table_3"),
         },
-        settings=lambda plan, at: {"pair": plan.figure_pair, "of_paper": plan.paper.pairs},
+        settings=lambda plan, at: plan.figure_settings | {"of_paper": plan.paper.pairs},
         compute=lambda data, at, settings: overview(
             settings["pair"],
             *(data[stage] for stage in ("character", "forces", "beams", "released")),

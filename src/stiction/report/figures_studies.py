@@ -472,7 +472,7 @@ STAGES = (
         "convergence in samples and coordinates",
         study="sample_shares",
         inputs=lambda plan, at: {"sizes": "studies/sample_sizes", "chaos": by_case("chaos", plan.cases, "_NG")},
-        settings=lambda plan, at: {"tolerance": plan.config["chaos"]["dimension_tolerance"]},
+        settings=lambda plan, at: plan.figure_settings | {"tolerance": plan.config["chaos"]["dimension_tolerance"]},
         compute=lambda data, at, settings: sample_convergence(
             data["sizes"],
             {key: chaos_model(chaos).dimension_error for key, chaos in data["chaos"].items()},
@@ -484,6 +484,7 @@ STAGES = (
         "convergence in the order of the polynomials",
         study="orders",
         inputs=lambda plan, at: {"orders": "studies/orders"},
+        settings=lambda plan, at: plan.figure_settings,
         compute=lambda data, at, settings: order_convergence(data["orders"]),
     ),
     _study(
@@ -491,6 +492,7 @@ STAGES = (
         "convergence of the mesh, autocorrelation",
         study="mesh",
         inputs=lambda plan, at: {"mesh": "studies/mesh", "correlation": "studies/correlation"},
+        settings=lambda plan, at: plan.figure_settings,
         compute=lambda data, at, settings: mesh_convergence(data["mesh"], data["correlation"]),
     ),
     _study(

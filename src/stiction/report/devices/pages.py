@@ -157,8 +157,9 @@ _OF_BEAMS = {
         "beams, tips and bridges on the surfaces of the paper's pair b confirmed; or that line beyond it."
     ),
     "Bound": (
-        "Of a cantilever: the length that sticks where water fills all gaps. Of a bridge: the length below which no "
-        "surfaces hold it at this humidity, not even flooded flats in contact."
+        "Of a cantilever: the length that sticks where water fills all gaps. A single tip may hold a shorter one, "
+        "where its roughness follows its slope. Of a bridge: the length up to which no surfaces hold it at this "
+        "humidity, not even flooded flats in contact."
     ),
 }
 _IN_DRY_AIR = {

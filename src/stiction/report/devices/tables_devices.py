@@ -26,14 +26,16 @@ _SAFE_LENGTHS = (
     "Every beam has its own tip, whose scatter is part of the first. Basis: sampled, by order statistics; fitted, by "
     "a line through the shortest 5 %; extrapolated, beyond what was verified. Bound: for a cantilever, the length that "
     "sticks in saturated air, where water fills all gaps; for a bridge, the length below which even flooded flats in "
-    "contact do not hold its middle at this humidity, on which this bound depends."
+    "contact do not hold its middle at this humidity, on which this bound depends, and up to which it is safe. That of "
+    "a tip bounds tips on average: if roughness follows its slope, a single one holds harder than flooded flats, and "
+    "a line through the lengths of few beams ends below."
 )
 _CHART = (
     "Safe length of beams of the thicknesses and gaps of a chart over the relative humidity: the largest length at "
     "which, with a confidence of 95 % given the drawn surfaces, at most a share p sticks. From: finite elements, or a "
     "power law between them, with its largest error at beams to which it was not fitted. Bound: for a cantilever, the "
     "length that sticks where water fills all gaps; for a bridge, that below which even flooded flats do not hold its "
-    "middle at this humidity. The warnings are about the shortest length of each thickness and gap."
+    "middle at this humidity. A single rough tip may hold a shorter beam than flooded flats do. The warnings are about the shortest length of each thickness and gap."
 )
 #: Ends a caption if a device is in dry air.
 _IN_DRY_AIR = " In dry air, the bound of a cantilever is the length that sticks on flats in contact."

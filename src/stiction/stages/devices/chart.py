@@ -54,8 +54,10 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
 
     def by_elements(thickness, gap):
         """Safe lengths of beams of one size (shapes, shares) [m]."""
-        lengths = sticking.released(_of_size(settings, thickness, gap), met, settings)
-        safe = (sticking.safe_lengths(values, settings) for values in lengths.values())
+        device = _of_size(settings, thickness, gap)
+        lengths = sticking.released(device, met, settings)
+        least = sticking.bound(device, settings.water, settings.humidity)
+        safe = (sticking.safe_lengths(values, settings, least) for values in lengths.values())
         return np.array([[one.length for one in of_shape] for of_shape in safe])
 
     found = filled(settings.thicknesses, settings.gaps, by_elements)

@@ -14,7 +14,7 @@ from stiction.stages.contact import curves
 from stiction.stages.devices import cracks as stage_cracks
 from stiction.stages.devices.patch_settings import tips_of
 from stiction.stages.devices.releases import DesignedBeam, settings_of_beam
-from stiction.stages.devices.sticking import flooded_lengths, safe_lengths, sticking_lengths
+from stiction.stages.devices.sticking import bound, flooded_lengths, safe_lengths, sticking_lengths
 
 #: Points along the axis of the lengths.
 _POINTS = 300
@@ -39,7 +39,8 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
         held = arcs.longest_free(*curves.tip_forces(tips, settings.humidity, settings.water), device.beam)
     sticking = sticking_lengths(found, foundation, device, held)
     groups = [sticking_lengths(one, foundation, device, held) for one in of_group]
-    safe = {shape: safe_lengths(values, settings) for shape, values in sticking.items()}
+    least = bound(device, settings.water, settings.humidity)
+    safe = {shape: safe_lengths(values, settings, least) for shape, values in sticking.items()}
     estimates = {
         shape: [[one.estimate for one in safe_lengths(group[shape], settings)] for group in groups] for shape in safe
     }

@@ -3,7 +3,7 @@
 Separate from stage safe_lengths, so that a change of the dataset of that stage does not rerun charts.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol
 
@@ -71,11 +71,12 @@ def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> dict[
 
 
 def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list[float]:
-    """Bounds of the lengths that stick, one for each end state, by flooded flats [m].
+    """Lengths that stick on flooded flats, one for each end state [m].
 
-    A cantilever has the length that sticks in saturated air or, where no water condenses, that of flats in contact. The
+    A cantilever has the length that sticks in saturated air or, where no water condenses, that of flats in contact.
+    Only that of a beam is a bound: roughness that follows the slope of a tip lets it hold harder than a flat one. The
     worst air of a bridge is not the wettest: it has the length below which its middle comes free of flats in contact at
-    this humidity.
+    this humidity, a bound for any surfaces.
     """
     wet = water.temperature, water.contact_angles
     if not device.opening.has_tip:
@@ -101,6 +102,12 @@ def sticking_lengths(
     return dict(zip(device.opening.shapes, (alone, risk.with_arcs(alone, held)), strict=True))
 
 
-def safe_lengths(sticking: np.ndarray, settings: Settings) -> list[SafeLength]:
-    """Safe length for every share, from sticking lengths (n,) [m]."""
-    return [risk.safe_length(sticking, share, stream(settings.seed, "safe length")) for share in settings.shares]
+def bound(device: DesignedBeam, water: Water, humidity: float) -> float:
+    """Length up to which no surfaces hold a device [m]; 0 with a tip, see `flooded_lengths`."""
+    return 0.0 if device.opening.has_tip else flooded_lengths(device, water, humidity)[0]
+
+
+def safe_lengths(sticking: np.ndarray, settings: Settings, least: float = 0.0) -> list[SafeLength]:
+    """Safe length for every share, from sticking lengths (n,) [m]; at least the `bound` of the device."""
+    found = [risk.safe_length(sticking, share, stream(settings.seed, "safe length")) for share in settings.shares]
+    return [replace(one, length=max(one.length, least)) for one in found]

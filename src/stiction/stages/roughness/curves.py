@@ -79,15 +79,15 @@ class OfBeam:
         met = sticking.ground(contact, tips, humidity, self)
         lengths = sticking.released(self.device, met, self)
         bounds = sticking.flooded_lengths(self.device, self.water, humidity)
-        scatter = self._scatter(contact, humidity)
-        return [self._response(one, bound, scatter) for one, bound in zip(lengths.values(), bounds, strict=True)]
+        numbers = sticking.bound(self.device, self.water, humidity), self._scatter(contact, humidity)
+        return [self._response(one, bound, *numbers) for one, bound in zip(lengths.values(), bounds, strict=True)]
 
-    def _response(self, lengths, bound, scatter):
-        """Response from sticking lengths (n,) [m] and their relative error due to the number of samples."""
+    def _response(self, lengths, bound, least, scatter):
+        """Response from sticking lengths (n,) [m], their bounds and their relative error by the number of samples."""
         stuck = tuple(float(part[0]) for part in risk.stuck_share(np.array([self.length]), lengths))
         if not np.isfinite(lengths).any():
             return Response(np.inf, np.inf, 0.0, bound, stuck)
-        (safe,) = sticking.safe_lengths(lengths, self)
+        (safe,) = sticking.safe_lengths(lengths, self, least)
         error = float(np.hypot(safe.error, scatter * safe.estimate))
         return Response(safe.length, safe.estimate, error, bound, stuck)
 
