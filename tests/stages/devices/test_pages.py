@@ -15,6 +15,8 @@ from stiction.report.devices import pages
 from stiction.report.devices.pages import Page, Section
 from stiction.stages.devices import device_warnings, safe_lengths, sticking
 from stiction.stages.devices.releases import EITHER, S_SHAPE, DesignedBeam
+from stiction.stages.roughness import curves
+from stiction.stages.roughness.curves import OfStopper, Response
 
 CANTILEVER = {
     "kind": "cantilever",
@@ -70,6 +72,21 @@ def test_a_worst_humidity_at_the_end_is_stated_as_one():
     assert pages.worst_sentence(stopper_dataset(peak=1.0)) == (
         "Between relative humidities of 0.4 and 0.9, the stopper holds most at 0.9. "
         "In no air of this range do more than 0 % (0 to 0.918 %) stick."
+    )
+
+
+def test_the_second_sentence_of_a_page_names_the_roughness_that_was_asked_for():
+    asked = OfStopper(water=Water(300.0), humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6)
+    forces = {rms: 1e-6 * (4e-9 / rms) ** 3 for rms in (2e-9, 8e-9, 3.4e-9)}
+    responses = {
+        rms: Response(1.1 * force, force, 0.03 * force, np.nan, (0.1, 0.05, 0.15)) for rms, force in forces.items()
+    }
+    points = [curves.layout([[one]], [""], rms, 400, asked) for rms, one in responses.items()]
+    rough = curves.joined(points, "rms_nm", "B2")
+    said = pages.of_stopper("S1", STOPPER, STOPPERS["S1"], {}, [], roughness=rough).answer[1]
+    assert said == (
+        "For a restoring force of 1 µN, at a relative humidity of 0.6, at most 1 in 20 sticks where the rms of B2 is "
+        "4.13 to 8 nm (95 % confidence, given the drawn surfaces; computed for 2 to 8 nm)."
     )
 
 

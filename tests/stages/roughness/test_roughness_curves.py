@@ -223,7 +223,9 @@ def test_a_map_is_told_curve_by_curve_and_drawn(mapped):
     assert said[0].startswith(
         "Where the skewness of B2 is -1: For a restoring force of 3 µN, at a relative humidity of 0.6, "
     )
-    assert sum(", as given: " in sentence for sentence in said) == 1
+    given = [sentence.partition(", as given: ")[2] for sentence in said if ", as given: " in sentence]
+    assert len(given) == len(tables_roughness.briefly(found)) == 1
+    assert given[0].startswith(tables_roughness.briefly(found)[0].removesuffix("."))
     table = tables_roughness.roughness({"S1": found})
     assert len(table.frame) == POINTS * CURVES
     assert "and" in table.cells

@@ -42,7 +42,7 @@ _ROOM = 0.05
 
 
 def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[str]], table: str) -> None:
-    """Say below a figure which table has the warnings, by their numbers, in its caption; its own one has them as well."""
+    """Say below a figure which table has the warnings, by their numbers, in its caption, and add them to its own."""
     if sentences := with_numbers(warnings):
         numbers = "(1)" if len(sentences) == 1 else f"(1) to ({len(sentences)})"
         figure.set_label("\n".join(["Warnings:", *sentences]))

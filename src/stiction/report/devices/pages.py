@@ -242,7 +242,7 @@ def of_beam(
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets, errors)
-    answer = [build_sentence(found, budgets)]
+    answer = [build_sentence(found, budgets), *_rough_enough(roughness)]
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
         answer.append(tables_inference.built(test_beams))
@@ -277,7 +277,7 @@ def of_stopper(
     table = tables_budget.stoppers({name: found}, {name: []}, errors).cells.drop(columns=["device"])
     sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: found}, {}))]
     sections += [*_sure(name, budgets, errors), *_how_rough(name, roughness)]
-    answer, listed = [verdict(found)], list(warnings)
+    answer, listed = [verdict(found), *_rough_enough(roughness)], list(warnings)
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
         answer.append(tables_inference.built(test_beams))
@@ -485,6 +485,11 @@ def _of_test_beams(name, found):
     said += [tables_inference.again(found), *tables_inference.stuck(found)]
     cells = tables_inference.test_beams({name: found}).cells.drop(columns="device")
     return Section("What the test beams say", said, cells, figures_inference.test_beams(found))
+
+
+def _rough_enough(found):
+    """Which roughness suffices, among the first sentences; nothing if this was not asked."""
+    return [] if found is None else tables_roughness.briefly(found)
 
 
 def _how_rough(name, found):

@@ -35,7 +35,8 @@ _CHART = (
     "which, with a confidence of 95 % given the drawn surfaces, at most a share p sticks. From: finite elements, or a "
     "power law between them, with its largest error at beams to which it was not fitted. Bound: for a cantilever, the "
     "length that sticks where water fills all gaps; for a bridge, that below which even flooded flats do not hold its "
-    "middle at this humidity. A single rough tip may hold a shorter beam than flooded flats do. The warnings are about the shortest length of each thickness and gap."
+    "middle at this humidity. A single rough tip may hold a shorter beam than flooded flats do. The warnings are about "
+    "the shortest length of each thickness and gap."
 )
 #: Ends a caption if a device is in dry air.
 _IN_DRY_AIR = " In dry air, the bound of a cantilever is the length that sticks on flats in contact."

@@ -67,8 +67,18 @@ def answers(found: xr.Dataset) -> list[str]:
 
 def _answers(curve):
     """As `answers`, of one curve."""
-    subjects = [(float(h), str(shape)) for h in curve.humidity.values for shape in curve["shape"].values]
-    return [_answer(curve, *subject) for subject in subjects] + _refusals(curve)
+    return [_answer(curve, *subject) for subject in _subjects(curve)] + _refusals(curve)
+
+
+def briefly(found: xr.Dataset) -> list[str]:
+    """Where which roughness suffices, one sentence for each humidity and end state; of a map, at what is given."""
+    curves = [curve for curve in curves_of(found) if not _is_changed(curve)]
+    return [f"{_enough(curve, *subject)}." for curve in curves for subject in _subjects(curve)]
+
+
+def _subjects(curve):
+    """Humidities and end states of a curve."""
+    return [(float(h), str(shape)) for h in curve.humidity.values for shape in curve["shape"].values]
 
 
 def _at_other(curve):
@@ -86,22 +96,27 @@ def _is_changed(curve):
 
 def _answer(found, humidity, shape):
     """Which roughness suffices at a humidity against one end state."""
-    required = f"{float(found.required) / UM:g} {_required_unit(found)}"
-    wanted = (
-        f"a restoring force of {required}" if shape == FORCE else f"a length of {required} ({END_STATES[shape].by})"
-    )
     places = [
         with_error(in_unit(found, float(row.crossing_place)), in_unit(found, float(row.crossing_error))) + _unit(found)
         for row in _rows(found, "crossing", humidity, shape)
     ]
     exactly = f"; exactly {_share(found)} sticks at {' and at '.join(places)}" if places else ""
-    enough = _enough(found, found.sel(humidity=humidity, shape=shape), _rows(found, "range", humidity, shape))
     more = _worst(found, humidity, shape) + _given(found, humidity, shape)
-    return f"For {wanted}, at a relative humidity of {humidity:g}, {enough}{exactly}. {more}"
+    return f"{_enough(found, humidity, shape)}{exactly}. {more}"
 
 
-def _enough(found, curve, rows):
-    """Where the safe value of a curve meets what is required."""
+def _enough(found, humidity, shape):
+    """Where the safe value at a humidity against one end state meets what is required."""
+    required = f"{float(found.required) / UM:g} {_required_unit(found)}"
+    wanted = (
+        f"a restoring force of {required}" if shape == FORCE else f"a length of {required} ({END_STATES[shape].by})"
+    )
+    where = _where(found, found.sel(humidity=humidity, shape=shape), _rows(found, "range", humidity, shape))
+    return f"For {wanted}, at a relative humidity of {humidity:g}, {where}"
+
+
+def _where(found, curve, rows):
+    """Roughness at which the safe value of a curve meets what is required."""
     known = curve.roughness.values[np.isfinite(curve.safe.values)]
     if not len(known):
         return "nothing is computed"
