@@ -14,7 +14,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property, partial, reduce
-from itertools import chain, count, takewhile
+from itertools import chain
 from operator import getitem
 from pathlib import Path
 from typing import Any
@@ -340,14 +340,12 @@ def shown_by(curves: ForceCurves, law: bool, preliminary: bool = False) -> dict[
         If the criteria of the jobs refuse the curves for another reason, or fewer than two have a force law.
     """
     forces = np.array([curves.curve(k).copy() for k in range(curves.samples)])
-    repulsion, needed = _repulsion(forces), -forces.min() if law else 0.0
+    repulsion, needed = forcelaw.repulsions(forces), -forces.min() if law else 0.0
     resist = repulsion > needed
     if not (resist.any() if preliminary else resist.all()):
-        sizes = takewhile(lambda size: size <= len(forces), (2**n for n in count(1)))
-        together = next((size for size in sizes if np.all(_repulsion(_joined(forces, size)) > needed)), None)
         weakest = int(np.argmin(repulsion))
         weak = {"sample": weakest, "repulsion": max(float(repulsion[weakest]), 0.0), "pull": -float(forces.min())}
-        return {"weak": weak | {"samples": len(forces), "together": together}}
+        return {"weak": weak | {"samples": len(forces), "together": forcelaw.together(forces, needed)}}
     kept = forces[resist]
     if not law:
         forcelaw.pull_offs(curves.distance, kept.__getitem__, len(kept))
@@ -359,14 +357,3 @@ def shown_by(curves: ForceCurves, law: bool, preliminary: bool = False) -> dict[
     if lawful.sum() < 2:
         raise ValueError(f"{lawful.sum()} of {len(kept)} samples have a force law of Eq. (12)")
     return {"laws": laws[lawful].tolist()}
-
-
-def _repulsion(forces):
-    """Largest force of each curve (n, n_d) at smaller distances than its largest attraction (n,) [Pa]."""
-    return np.array([force[: force.argmin()].max(initial=-np.inf) for force in forces])
-
-
-def _joined(forces, size):
-    """Force curves (n, n_d) of patches that are several times as large."""
-    whole = len(forces) // size
-    return forces[: whole * size].reshape(whole, size, -1).mean(axis=1)

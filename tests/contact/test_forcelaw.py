@@ -182,6 +182,20 @@ def test_a_curve_that_lacks_a_parameter_is_an_error_with_the_number_of_the_sampl
         parametrise(distance, lambda k: curves[k], 3)
 
 
+def test_an_error_on_weak_samples_says_which_area_would_do():
+    distance = grid(STEP)
+    strong = pressure(SMOOTH, distance)
+    weak = np.minimum(strong, 1e6)  # less than the largest attraction, 2 MPa
+    for curves, times in (([weak, strong] * 4, 2), ([weak, weak, weak, strong] * 2, 4), ([weak] * 4, None)):
+        means = np.mean(np.reshape(curves, (-1, times or 4, distance.size)), axis=1)
+        if times:
+            parametrise(distance, means.__getitem__, len(means))  # what the message promises
+        with pytest.raises(ValueError, match="does not rise") as caught:
+            parametrise(distance, curves.__getitem__, len(curves))
+        said = [f"As far as these samples show, {times} times the area of the patch would do."] if times else []
+        assert getattr(caught.value, "__notes__", []) == said
+
+
 def test_a_minimum_at_the_end_of_the_grid_is_an_error():
     distance = grid(STEP)
     with pytest.raises(ValueError, match="end of its grid"):

@@ -10,6 +10,7 @@ The threshold ``f_limit`` that defines ``d_limit`` is one number for all samples
 """
 
 from collections.abc import Callable, Sequence
+from contextlib import contextmanager
 
 import numpy as np
 
@@ -265,6 +266,35 @@ def _each_sample(evaluate, curve, samples):
     return np.array(rows)
 
 
+def repulsions(forces: np.ndarray) -> np.ndarray:
+    """Largest force of each curve (n, n_d) at smaller distances than its largest attraction (n,) [Pa]."""
+    return np.array([force[: force.argmin()].max(initial=-np.inf) for force in forces])
+
+
+def together(forces: np.ndarray, needed: float) -> int | None:
+    """How many times the area resists, as far as samples show: of how many every mean curve rises to a force [Pa].
+
+    Curves (n, n_d) [Pa]; the least power of two, ``None`` if not even the mean of most samples rises.
+    """
+    for size in (2**k for k in range(len(forces).bit_length())):
+        whole = len(forces) // size
+        if np.all(repulsions(forces[: whole * size].reshape(whole, size, -1).mean(axis=1)) > needed):
+            return size
+    return None
+
+
+@contextmanager
+def _remedy(curve, samples):
+    """Add to an error about curves that do not resist the adhesion how large a patch would."""
+    try:
+        yield
+    except ValueError as error:
+        forces = np.array([curve(k).copy() for k in range(samples)])
+        if (times := together(forces, -forces.min()) or 1) > 1:
+            error.add_note(f"As far as these samples show, {times} times the area of the patch would do.")
+        raise
+
+
 def parametrise(
     distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int, beyond: np.ndarray | None = None
 ) -> tuple[np.ndarray, float]:
@@ -298,10 +328,13 @@ def parametrise(
         number of the sample.
     """
     beyond = np.zeros(samples) if beyond is None else beyond
-    wells = _each_sample(lambda f, k: (*extremum(distance, f), adhesion_energy(distance, f, beyond[k])), curve, samples)
-    d_max, f_max, e = wells.T
-    f_limit = float(f_max.max())
-    d_limit = _each_sample(lambda f, _: limit_distance(distance, f, f_limit), curve, samples)
+    with _remedy(curve, samples):
+        wells = _each_sample(
+            lambda f, k: (*extremum(distance, f), adhesion_energy(distance, f, beyond[k])), curve, samples
+        )
+        d_max, f_max, e = wells.T
+        f_limit = float(f_max.max())
+        d_limit = _each_sample(lambda f, _: limit_distance(distance, f, f_limit), curve, samples)
     return np.column_stack([e, f_max, d_max, d_limit]), f_limit
 
 
