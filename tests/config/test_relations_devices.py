@@ -124,7 +124,7 @@ WRONG = [
     (
         {"requirement": {"share": 0.1}, "roughness": ROUGH},
         "devices.C1.requirement.share",
-        "above 0 and at most 0.05: share of stuck devices that is allowed",
+        "at least 1e-06 and at most 0.05: share of stuck devices that is allowed",
     ),
     ({"requirement": {"share": 0.001}, "roughness": ROUGH}, "devices.C1.requirement", "must come with length_um"),
     ({"roughness": ROUGH}, "devices.C1.roughness", "must come with requirement"),

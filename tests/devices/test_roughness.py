@@ -41,6 +41,19 @@ def test_a_curve_that_touches_what_is_required_does_not_cross_it():
     assert sufficient(AXIS, margin)[0][0] == 0.0
 
 
+def test_where_nothing_sticks_only_the_computed_points_are_sure():
+    axis, margin = np.arange(5.0), np.array([-0.5, -0.4, LARGEST, LARGEST, 0.5])
+    ((low, high),) = sufficient(axis, margin)
+    assert (round(low, 4), high) == (2, 4)
+    (crossing,) = crossings(axis, margin, np.full(5, 0.01))
+    assert 1 < crossing.place < 2
+    assert crossing.error > 1 / np.sqrt(12)
+    ((low, _),) = sufficient(axis, np.minimum(margin, 0.5))  # control: known margins
+    assert 1 < low < 1.9
+    (crossing,) = crossings(axis, np.minimum(margin, 0.5), np.full(5, 0.01))
+    assert crossing.error < 0.2
+
+
 def test_nothing_is_said_between_points_that_are_not_known():
     margin = np.where(np.arange(8) == 3, np.nan, AXIS - AXIS[3])
     assert crossings(AXIS, margin, np.full(8, 0.1)) == []

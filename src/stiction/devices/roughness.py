@@ -13,6 +13,8 @@ from scipy.interpolate import Akima1DInterpolator, PchipInterpolator
 
 #: Largest margin that is distinguished: a factor of 1000. No device sticks where the margin is infinite.
 LARGEST = np.log(1e3)
+#: Positive margin that is next to none.
+_LEAST = 1e-12
 
 
 @dataclass(frozen=True)
@@ -60,13 +62,17 @@ def crossings(axis: np.ndarray, margin: np.ndarray, errors: np.ndarray) -> list[
         other = Akima1DInterpolator(axis[points], margin[points])
         for place in _zeros(monotone):
             error = np.hypot(np.interp(place, axis[points], errors[points]), other(place))
-            found.append(Crossing(place, float(error / abs(monotone.derivative()(place)))))
+            anywhere = _anywhere(place, axis[points], margin[points])
+            found.append(Crossing(place, float(np.hypot(error / abs(monotone.derivative()(place)), anywhere))))
     return found
 
 
 def sufficient(axis: np.ndarray, margin: np.ndarray) -> list[tuple[float, float]]:
-    """Ranges of the roughness, increasing, in which the margin is not negative; parameters as of `crossings`."""
-    found = []
+    """Ranges of the roughness, increasing, in which the margin is not negative; parameters as of `crossings`.
+
+    Ranges reach a point whose margin is the largest from their inside alone: beside it, the margin may be any.
+    """
+    found, margin = [], np.where(margin >= LARGEST, _LEAST, margin)
     for points in _known(margin):
         monotone, known = PchipInterpolator(axis[points], margin[points]), axis[points]
         ends = np.array([known[0], *_zeros(monotone), known[-1]])
@@ -79,6 +85,13 @@ def _known(margin: np.ndarray) -> list[slice]:
     """Runs of at least two neighbouring points with a margin."""
     runs = np.ma.clump_unmasked(np.ma.masked_invalid(margin))
     return [run for run in runs if run.stop - run.start > 1]
+
+
+def _anywhere(place: float, axis: np.ndarray, margin: np.ndarray) -> float:
+    """Standard deviation of a place that may be anywhere between two points, one of which has the largest margin."""
+    right = np.searchsorted(axis, place)
+    between = slice(right - 1, right + 1)
+    return float(np.ptp(axis[between]) / np.sqrt(12)) if np.abs(margin[between]).max() >= LARGEST else 0.0
 
 
 def _zeros(curve: PchipInterpolator) -> list[float]:

@@ -1,5 +1,7 @@
 """Devices over the roughness of a surface: today's results at the given one, required values put back, limits."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -11,6 +13,7 @@ from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.report.devices import figures_roughness, tables_roughness
 from stiction.report.style import png
+from stiction.stages.devices.releases import S_SHAPE
 from stiction.stages.roughness import curves
 from stiction.stages.roughness.contacts import CURVES, POINTS, Varied
 
@@ -159,6 +162,18 @@ def test_none_and_all_of_a_range_are_answers(force, said):
     points = [point(rms, force=force) for rms in (*RANGE, 3.4e-9)]
     (sentence,) = tables_roughness.answers(curves.joined(points, "rms_nm", "B2"))
     assert said in sentence
+
+
+def test_a_beam_that_sticks_at_no_length_is_an_answer():
+    device = SimpleNamespace(opening=SimpleNamespace(shapes=(S_SHAPE,)))
+    common = {"seed": 1, "chaos": None, "water": None, "humidities": (0.6,), "device": device, "beams": 100}
+    beam = curves.OfBeam(**common, share=SHARE, length=1e-4)
+    never = beam._response(np.full(100, np.inf), 5e-5, 0.0)
+    points = [curves.layout([[never]], [""], rms, 100, beam) for rms in RANGE]
+    (sentence,) = tables_roughness.answers(curves.joined(points, "rms_nm", "B2"))
+    assert "at most 1 in 20 sticks at any rms of B2 of 1 to 8 nm" in sentence
+    assert "at 8 nm, 0 % (0 to " in sentence
+    assert png(figures_roughness.roughness(curves.joined(points, "rms_nm", "B2")))[:4] == b"\x89PNG"
 
 
 def test_a_stopper_that_is_held_most_inside_the_range_has_a_worst_roughness():

@@ -117,7 +117,7 @@ def _enough(found, humidity, shape):
 
 def _where(found, curve, rows):
     """Roughness at which the safe value of a curve meets what is required."""
-    known = curve.roughness.values[np.isfinite(curve.safe.values)]
+    known = curve.roughness.values[curve.safe.notnull().values]
     if not len(known):
         return "nothing is computed"
     name, share, whole = name_of(found), _share(found), _range(found, known[0], known[-1])
