@@ -16,11 +16,11 @@ from snakemake import persistence
 from snakemake.persistence.file import FilePersistence
 from snakemake.scheduling.job_scheduler import JobScheduler
 from snakemake.script import PythonScript
+from test_forkserver import BARE
 
 from stiction.run import forkserver, snakemake_patches
 
 ROOT = forkserver.Path(__file__).parents[2]
-BARE = "from stiction.run import forkserver; forkserver.preload = lambda: None; forkserver.main()"
 SNAKEFILE = """
 import os, sys
 from stiction.run import forkserver, snakemake_patches

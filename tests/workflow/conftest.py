@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from planner import Planner
 
 ROOT = Path(__file__).parents[2]
 SMOKE = ROOT / "workflow" / "smoke.yaml"
@@ -111,6 +112,14 @@ def overlay(tmp_path):
         return path
 
     return write
+
+
+@pytest.fixture(scope="module")
+def planner(tmp_path_factory):
+    """Snakemake in the root folder of the project."""
+    planner = Planner(ROOT, tmp_path_factory.mktemp("printed"))
+    yield planner
+    planner.close()
 
 
 @pytest.fixture

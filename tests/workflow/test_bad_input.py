@@ -8,7 +8,6 @@ from itertools import product
 
 import pytest
 from conftest import ROOT
-from planner import Planner
 from wrong_configurations import WRONG as TABLE
 
 WRONG = [
@@ -19,14 +18,6 @@ WRONG = [
     ("van_der_waals: wet", "van_der_waals", "'wet'", "must be one of"),
     ("run: {pairs: []}", "run.pairs", "[]", "must name a pair"),
 ]
-
-
-@pytest.fixture(scope="module")
-def planner(tmp_path_factory):
-    """Snakemake in the root folder of the project."""
-    planner = Planner(ROOT, tmp_path_factory.mktemp("printed"))
-    yield planner
-    planner.close()
 
 
 ROWS = [*WRONG[:2], *(pytest.param(*row, marks=pytest.mark.slow) for row in [*WRONG[2:], *TABLE])]

@@ -4,9 +4,8 @@ import shutil
 
 import pytest
 import yaml
-from conftest import BEAMS, ROOT, TINY, copied, snakemake
+from conftest import BEAMS, TINY, copied, snakemake
 from numpy.testing import assert_array_equal
-from planner import Planner
 from written_scans import BAD, bad_files, etched, scans_of
 
 from stiction.config.files import load
@@ -75,14 +74,6 @@ def test_nothing_reruns_in_another_folder_with_copied_files_of_equal_content(fin
     shutil.copytree(mine.parent, moved)
     done = snakemake(tmp_path / "run", *TARGETS, "-n", configs=[moved / tiny.name, moved / mine.name])
     assert "Nothing to be done" in done.stdout
-
-
-@pytest.fixture(scope="module")
-def planner(tmp_path_factory):
-    """Snakemake in the root folder of the project."""
-    planner = Planner(ROOT, tmp_path_factory.mktemp("printed"))
-    yield planner
-    planner.close()
 
 
 def test_scans_are_evaluated_without_a_pair(planner, tmp_path):

@@ -263,13 +263,6 @@ def done(tmp_path_factory):
     tree.planner.close()
 
 
-@pytest.fixture
-def tree(done):
-    """Source tree, restored after the test."""
-    yield done
-    done.git("checkout", "--force", "main")
-
-
 def known(rerun):
     """Rules that rerun, without those of figures and further tables, which are never read."""
     return RULES & set(rerun.values())
