@@ -168,7 +168,7 @@ def test_a_beam_that_sticks_at_no_length_is_an_answer():
     device = SimpleNamespace(opening=SimpleNamespace(shapes=(S_SHAPE,)))
     common = {"seed": 1, "chaos": None, "water": None, "humidities": (0.6,), "device": device, "beams": 100}
     beam = curves.OfBeam(**common, share=SHARE, length=1e-4)
-    never = beam._response(np.full(100, np.inf), 5e-5, 0.0)
+    never = beam._response(np.full(100, np.inf), 5e-5, 5e-5, 0.0)
     points = [curves.layout([[never]], [""], rms, 100, beam) for rms in RANGE]
     (sentence,) = tables_roughness.answers(curves.joined(points, "rms_nm", "B2"))
     assert "at most 1 in 20 sticks at any rms of B2 of 1 to 8 nm" in sentence
