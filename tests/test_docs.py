@@ -120,6 +120,12 @@ def test_table_and_picture_of_the_drawn_test_beams_are_copied(tmp_path, monkeypa
     assert made == {"drawn_beams.csv", "drawn_beams.md", "drawn_beams.png"}
 
 
+def test_shares_of_the_map_of_roughness_are_those_at_the_given_rms_by_the_skewness():
+    rows = [("Skewed", 3.4, 0.0, 0.2), ("Skewed", 8.0, -1.0, 1), ("Bump", 3.4, np.nan, 80), ("Skewed", 3.4, -1.0, 100)]
+    frame = pd.DataFrame(rows, columns=["device", "value", "other_value", "stuck_percent"])
+    assert quoted.skewed(frame) == {"skewed_1": "100", "skewed_2": "0.2"}
+
+
 def test_numbers_of_checks_scans_and_timings_are_those_of_their_tables():
     checks = pd.DataFrame(
         {
