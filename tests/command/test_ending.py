@@ -5,7 +5,7 @@ import contextlib
 import pytest
 from test_follow import end, failure, heard, plan, record, start
 
-from stiction.command.ending import Status, last_lines, sentence, status, where_to_look
+from stiction.command.ending import FAULT, Status, last_lines, sentence, status, where_to_look
 from stiction.run.atomic import DataError
 from stiction.run.logs import logged
 
@@ -23,6 +23,8 @@ DONE = heard(plan(beams=2), start(0), start(1, at=70), end(0, 70), end(1, 119))
         (heard(record("no", event="error")), 1, False, Status.REFUSED),
         (heard(plan(beams=2), record("no", event="error")), 1, False, Status.REFUSED),
         (heard(plan(beams=2), record("x", event="error", exception="CalledProcessError")), 1, False, Status.FAILED),
+        (heard(record("'psd'", event="error", exception="KeyError")), 1, False, Status.FAILED),
+        (heard(record("no", event="error", exception="WorkflowError")), 1, False, Status.REFUSED),
         (heard(), 2, False, Status.REFUSED),
         (heard(plan(beams=2), start(0)), 1, False, Status.FAILED),
     ],
@@ -64,6 +66,22 @@ def test_a_failure_ends_with_its_sentence_and_the_path_of_its_log(tmp_path, monk
     assert last == "log: results/logs/a.log"
     log.unlink()
     assert "without a message" in lines(run, Status.FAILED, tmp_path)[1]
+
+
+def test_an_error_of_the_code_says_so_with_its_log_and_a_refusal_does_not(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    planning = heard(
+        record('KeyError in file "a.smk", line 3:\n\'psd\'\n  File "b.py"', event="error", exception="KeyError")
+    )
+    assert lines(planning, Status.FAILED, tmp_path) == ["KeyError: 'psd'", FAULT, "log: .snakemake/printed.log"]
+    for error, expected in ((KeyError("psd"), True), (TypeError("no"), True), (ValueError("no"), False)):
+        log = tmp_path / "results" / "logs" / "a.log"
+        with contextlib.suppress(SystemExit), logged(log):
+            raise error
+        found = lines(heard(plan(beams=1), start(0), failure(0)), Status.FAILED, tmp_path)
+        assert (FAULT in found) == expected
+        assert found[1].startswith(f"{type(error).__name__}: ")
+        assert found[-1] == "log: results/logs/a.log"
 
 
 @pytest.mark.parametrize("text", ["short", "two\nlines", "a: b"])
@@ -110,6 +128,19 @@ def test_where_to_look_counts_warnings_and_names_page_and_table(tmp_path, monkey
     assert first == "Open first: results/figures/overview.png and results/tables/table_3.md."
     fill(results, "devices/S1.html", "devices/C1.html", "tables/stoppers.md")
     assert list(where_to_look(results))[-1] == "Open first: results/devices/C1.html and results/tables/stoppers.md."
+
+
+def test_what_was_asked_for_is_opened_first(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    fill(tmp_path / "results", "figures/overview.png", "tables/table_3.md", "figures/asperities.png")
+    fill(tmp_path / "results", "tables/asperities.md", "figures/compared_table_3.png", "tables/compared_table_3.md")
+    for asked, expected in (
+        (["asperities", "--force"], "results/figures/asperities.png and results/tables/asperities.md"),
+        (["compared_*"], "results/figures/compared_table_3.png and results/tables/compared_table_3.md"),
+        (["figures"], "results/figures/overview.png and results/tables/table_3.md"),
+    ):
+        done = list(last_lines(DONE, Status.DONE, tmp_path, "", asked))
+        assert done[-1] == f"Open first: {expected}."
 
 
 def test_a_finished_run_ends_in_at_most_four_lines(tmp_path):

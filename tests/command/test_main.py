@@ -10,6 +10,7 @@ from test_front import finished
 
 import stiction
 from stiction.command import launch
+from stiction.command.ending import FAULT
 from stiction.command.front import FRONT
 from stiction.command.main import main
 from stiction.config.arrays import beams
@@ -199,6 +200,14 @@ def test_the_help_tells_exit_statuses_and_where_results_are(capsys, words):
     text = capsys.readouterr().out
     assert "3 checks of the results failed" in text
     assert "results/" in text
+
+
+@pytest.mark.usefixtures("asked")
+def test_an_unexpected_error_of_the_command_ends_in_three_lines_and_a_log(capsys, monkeypatch, tmp_path):
+    monkeypatch.setattr(launch, "words", lambda *arguments: {}["psd"])
+    assert main(["run", "mine.yaml"]) == 1
+    assert capsys.readouterr().err.splitlines() == ["KeyError: 'psd'", FAULT, "log: .snakemake/printed.log"]
+    assert "Traceback" in (tmp_path / ".snakemake" / "printed.log").read_text()
 
 
 def test_the_version(capsys):

@@ -82,9 +82,20 @@ def test_copies_take_the_place_of_what_runs_and_of_nothing_else():
     assert sorted(of_device["devices"]) == ["C1Thickness2", "C1Thickness3", "S1"]
 
 
-@pytest.mark.parametrize("path", ["beam.thickness_um", "surfaces.B9.rms_nm", "surfaces.B2", "run.pairs.b"])
-def test_a_key_of_no_entry_is_refused(path):
-    with pytest.raises(ConfigError, match=f"^compare.{path} is no key of an entry that exists, must be one of "):
+@pytest.mark.parametrize(
+    ("path", "entries"),
+    [
+        (
+            "beam.thickness_um",
+            "materials.NAME.KEY with NAME Oxide; surfaces.NAME.KEY with NAME B1 or .*; devices.NAME.KEY",
+        ),
+        ("surfaces.B9.rms_nm", "surfaces.NAME.KEY with NAME B1 or B2 or [^;]*$"),
+        ("devices.C1", "devices.NAME.KEY with NAME S1 or C1$"),
+        ("run.pairs.b", "materials.NAME.KEY"),
+    ],
+)
+def test_a_key_of_no_entry_is_refused_with_the_names_of_entries(path, entries):
+    with pytest.raises(ConfigError, match=f"^compare.{path} is no key of an entry that exists, must be {entries}"):
         load(BASE, {"compare": {path: [1, 2]}})
 
 

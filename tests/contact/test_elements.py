@@ -303,8 +303,12 @@ def test_the_largest_attraction_of_a_film_that_floods_everything_is_its_tension_
 
 
 def test_elements_too_large_for_van_der_waals_forces_are_refused():
-    with pytest.raises(ValueError, match="needs a finer grid"):
+    with pytest.raises(ValueError, match="needs a finer grid") as caught:
         Adhesion.of((1 * NM, 1e7), WATER, HalfSpace((8, 8), 60 * NM, E))
+    enough = float(str(caught.value).rpartition("decrease sampling.spacing_nm to ")[2])
+    assert Adhesion.of((1 * NM, 1e7), WATER, HalfSpace((8, 8), enough * NM, E)).stress > 0
+    with pytest.raises(ValueError, match="needs a finer grid"):
+        Adhesion.of((1 * NM, 1e7), WATER, HalfSpace((8, 8), 1.03 * enough * NM, E))
     assert Adhesion.of((1 * NM, 1e7), None, HalfSpace((8, 8), 60 * NM, E)) == Adhesion(1 * NM, 1e7)
 
 

@@ -3,19 +3,19 @@
 import csv
 import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from enum import IntEnum
 from pathlib import Path
 
 from stiction.command.display import duration
-from stiction.command.follow import Job, Run
+from stiction.command.follow import Job, Run, is_fault
 
 
 class Status(IntEnum):
     """Exit status of the command."""
 
     DONE = 0  #: everything is up to date
-    FAILED = 1  #: a job failed
+    FAILED = 1  #: a job failed, or the command itself
     REFUSED = 2  #: nothing was computed: wrong input, or another run uses the folder
     CHECKS = 3  #: everything was computed, but checks of the results failed
     STOPPED = 130  #: by Ctrl-C
@@ -26,6 +26,10 @@ _VERDICT = "verdict"
 #: Pages and tables of results to open first, the most important one first.
 _PAGES = ("devices/*.html", "figures/overview.png", "figures/surface_sheet_*.png", "figures/*.png")
 _TABLES = ("tables/safe_lengths.md", "tables/stoppers.md", "tables/table_3.md", "tables/scans.md")
+#: Where everything goes that Snakemake and its jobs print, relative to the folder of the run.
+PRINTED = Path(".snakemake", "printed.log")
+#: What to do about an error of the code.
+FAULT = "This is an error of stiction itself: please report it with this log as an issue, see CONTRIBUTING.md."
 #: Head of a line of a traceback that names an error, with the modules of its class.
 _MODULES = re.compile(r"\A(?:\w+\.)+(?=\w+:)")
 
@@ -38,13 +42,17 @@ def status(run: Run, code: int, stopped: bool) -> Status:
         return Status.DONE
     if {job.rule for job in run.failures.values()} == {_VERDICT}:
         return Status.CHECKS
-    return Status.FAILED if run.failures or run.jobs or (run.planned and not run.refusal) else Status.REFUSED
+    failed = run.failures or run.jobs or run.fault or (run.planned and not run.refusal)
+    return Status.FAILED if failed else Status.REFUSED
 
 
-def last_lines(run: Run, ended: Status, directory: Path, printed: str = "") -> Iterator[str]:
+def last_lines(
+    run: Run, ended: Status, directory: Path, printed: str = "", targets: Sequence[str] = ()
+) -> Iterator[str]:
     """What a user reads at the end of a run in a folder.
 
-    ``printed`` is what Snakemake printed last, for errors that it does not report otherwise.
+    ``printed`` is what Snakemake printed last, for errors that it does not report otherwise. Figures and tables with
+    the name of a target, which may contain wildcards of the shell, come first.
     """
     if ended == Status.STOPPED:
         after = f" after {run.done} of {run.total} jobs" if run.planned else ""
@@ -55,9 +63,17 @@ def last_lines(run: Run, ended: Status, directory: Path, printed: str = "") -> I
         yield from _failed(list(run.failures.values()), directory)
     elif ended != Status.DONE:
         yield run.refusal or printed or "Snakemake stopped without a message"
+        if run.fault:
+            yield from fault(directory / PRINTED)
     elif run.planned or run.up_to_date:
         yield _finished(run)
-        yield from where_to_look(_below(directory))
+        yield from where_to_look(_below(directory), targets)
+
+
+def fault(log: Path) -> Iterator[str]:
+    """Last lines after an error of the code."""
+    yield FAULT
+    yield f"log: {os.path.relpath(log)}"
 
 
 def _below(directory):
@@ -72,15 +88,17 @@ def _finished(run):
     return f"Done: {run.done} jobs in {duration(run.last - run.started)}."
 
 
-def where_to_look(results: Path) -> Iterator[str]:
+def where_to_look(results: Path, targets: Sequence[str] = ()) -> Iterator[str]:
     """Verdict, warnings, and the files to open first, of a folder of results."""
     verdict = results / "verdict.txt"
     if verdict.exists():
         yield f"{verdict.read_text(encoding='utf-8').strip()} The numbers are in {results / 'checks.md'}."
-    pages = [results / "warnings.md", results / "devices" / "warnings.md"]
-    if counted := [f"{number} in {page}" for page in pages if (number := _warnings(page))]:
+    listed = [results / "warnings.md", results / "devices" / "warnings.md"]
+    if counted := [f"{number} in {page}" for page in listed if (number := _warnings(page))]:
         yield f"Warnings about results beyond the limits of the model: {', '.join(counted)}."
-    if first := [*_first(results, _PAGES), *_first(results, _TABLES)]:
+    pages = [*(f"figures/{name}.png" for name in targets), *_PAGES]
+    tables = [*(f"tables/{name}.md" for name in targets), *_TABLES]
+    if first := [*_first(results, pages), *_first(results, tables)]:
         yield f"Open first: {' and '.join(map(str, first))}."
 
 
@@ -109,7 +127,12 @@ def _failed(jobs: list[Job], directory: Path) -> Iterator[str]:
     first, logs = jobs[0], list(_existing(jobs[0].logs, directory))
     others = f" (and {len(jobs) - 1} more)" if len(jobs) > 1 else ""
     yield f"failed: {first.message}{others}"
-    yield next(filter(None, map(sentence, logs)), "the job ended without a message: was it killed, or the memory full?")
+    said = next(
+        filter(None, map(sentence, logs)), "the job ended without a message: was it killed, or the memory full?"
+    )
+    yield said
+    if is_fault(said.partition(":")[0], ValueError, RuntimeError):
+        yield FAULT
     yield f"log: {logs[0] if logs else _below(directory) / 'logs'}"
 
 

@@ -3,6 +3,7 @@
 Snakemake reports by records of the standard library's ``logging``, whose attribute ``event`` names the kind of report.
 """
 
+import builtins
 import re
 from collections import Counter
 from collections.abc import Callable
@@ -11,6 +12,19 @@ from logging import WARNING, LogRecord
 
 #: First line of an error of Snakemake, and the places in files that follow the message.
 _ORIGIN = re.compile(r"\A\w+( in rule \S+)?( in file \"[^\n]*)?:\n|(\n  File \"[^\n]*)+\s*\Z")
+
+
+def is_fault(kind: str, *expected: type[Exception]) -> bool:
+    """Whether an exception, by the name of its class, is an error of the code: built in and none that is expected.
+
+    Examples
+    --------
+    >>> is_fault("KeyError"), is_fault("OSError"), is_fault("ConfigError"), is_fault("ValueError", ValueError)
+    (True, False, False, False)
+    """
+    known = getattr(builtins, kind, None)
+    expected = (OSError, MemoryError, *expected)
+    return isinstance(known, type) and issubclass(known, Exception) and not issubclass(known, expected)
 
 
 @dataclass(frozen=True)
@@ -40,6 +54,8 @@ class Run:
         Jobs that failed, by their number.
     refusal : str
         Last error of Snakemake that concerns no job, without its place in a file; empty if there was none.
+    fault : str
+        Class and places of this error if it is one of the code, no refusal; empty otherwise.
     warnings : list of str
         Warnings about the results that are present.
     up_to_date : bool
@@ -59,6 +75,7 @@ class Run:
     seconds: dict[str, list[float]] = field(default_factory=dict)
     failures: dict[int, Job] = field(default_factory=dict)
     refusal: str = ""
+    fault: str = ""
     warnings: list[str] = field(default_factory=list)
     up_to_date: bool = False
     started: float | None = None
@@ -120,8 +137,11 @@ class Run:
 
     def _hear_error(self, record):
         """An error of the run itself; that of a command which a run starts says less than what the command printed."""
-        if getattr(record, "exception", "") != "CalledProcessError":
+        kind = getattr(record, "exception", "")
+        if kind != "CalledProcessError":
             self.refusal = _ORIGIN.sub("", str(record.msg)).strip()
+            self.fault = str(record.msg) if is_fault(kind) else ""
+            self.refusal = f"{kind}: {self.refusal}" if self.fault else self.refusal
 
     def seconds_left(self, now: float) -> float | None:
         """Estimate of the time that the run still takes [s]; ``None`` while too little is known, or when it is over.

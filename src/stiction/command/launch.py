@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TextIO
 
 from stiction.command.display import Display
+from stiction.command.ending import PRINTED
 from stiction.command.follow import RUN
 
 PACKAGE = Path(__file__).parents[1]
@@ -74,6 +75,8 @@ def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: 
             code = _code(cli.main, ["--logger", "stiction", *arguments])
             if display:
                 display.close()
+            if RUN.fault and quiet:
+                sys.stderr.write(f"{RUN.fault}\n")
             return code, bool(stopped)
     finally:
         signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -90,15 +93,11 @@ def _code(program, arguments):
     return 0
 
 
-#: Where everything goes that Snakemake and its jobs print, relative to the folder of the run.
-PRINTED = Path(".snakemake", "printed.log")
-
-
 @contextlib.contextmanager
 def _kept_errors(directory: Path) -> Iterator[TextIO]:
     """Let this process and those that it starts write errors to a file; yields what standard error was before."""
     sys.stderr.flush()
-    with _opened(directory / PRINTED) as file, os.fdopen(os.dup(2), "w") as terminal:
+    with opened(directory / PRINTED) as file, os.fdopen(os.dup(2), "w") as terminal:
         os.dup2(file.fileno(), 2)
         try:
             yield terminal
@@ -107,7 +106,7 @@ def _kept_errors(directory: Path) -> Iterator[TextIO]:
             os.dup2(terminal.fileno(), 2)
 
 
-def _opened(path):
+def opened(path: Path) -> TextIO:
     """New file for what is printed; one without a name if the folder cannot be written, which the run then reports."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -2,20 +2,22 @@
 
 import argparse
 import sys
+import traceback
 from collections.abc import Callable, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from stiction.command import explain, launch
-from stiction.command.ending import Status, last_lines, status
+from stiction.command.ending import PRINTED, Status, fault, last_lines, status
 from stiction.command.follow import RUN
 from stiction.config import reading
 from stiction.config.messages import ConfigError
+from stiction.models import SIDES
 
 _PURPOSE = "From the statistics of two rough surfaces to the crack lengths and safe lengths of MEMS beams that stick."
 _STATUS = """
-exit status: 0 done, 1 a job failed, 2 refused (wrong input, or another run uses the folder),
-3 checks of the results failed, 130 stopped by Ctrl-C. Results are in results/, below the
+exit status: 0 done, 1 a job or stiction itself failed, 2 refused (wrong input, or another run uses
+the folder), 3 checks of the results failed, 130 stopped by Ctrl-C. Results are in results/, below the
 current folder or --directory. Everything after -- is passed to Snakemake.
 """
 
@@ -34,6 +36,13 @@ def main(words: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         _say("stopped; run the same command to continue", sys.stderr)
         return Status.STOPPED
+    except Exception as error:
+        path = Path(arguments.directory) / PRINTED
+        with launch.opened(path) as log:
+            traceback.print_exc(file=log)
+        for line in (f"{type(error).__name__}: {error}", *fault(path)):
+            _say(line, sys.stderr)
+        return Status.FAILED
 
 
 def _say(line, stream=None):
@@ -145,6 +154,12 @@ def _check(arguments):
     named = {f"pair{'s' * (len(pairs) > 1)}": pairs, "devices": devices, "scans of": scanned}
     parts = [f"{what} {', '.join(names)}" for what, names in named.items() if names]
     _say(f"{' '.join(arguments.files)} can run: {' and '.join(parts) or 'nothing'}.")
+    of_pairs = {name: {pair[side] for side in SIDES} for name, pair in config["pairs"].items()}
+    if long := [name for name, device in devices.items() if of_pairs[device["pair"]] & {*scanned}]:
+        _say(
+            f"The budget of {', '.join(long)} draws the measured surfaces again with every quantity changed, which takes "
+            "most of the time. Without it: stiction run FILE -- results/tables/safe_lengths.md (or stoppers.md)"
+        )
     return Status.DONE
 
 
@@ -161,7 +176,9 @@ def _run(arguments, *targets):
     code, stopped = launch.snakemake(words, directory, quiet=not verbose, progress=not dry)
     ended = status(RUN, code, stopped)
     printed = "" if verbose else launch.printed_last(directory)
-    lines = explain.explained(RUN) if dry and not ended else last_lines(RUN, ended, directory, printed)
+    asked = ["compared_*"] * any("compare" in reading.read(file) for file in arguments.files)
+    asked += [Path(word).stem for word in (*targets, *arguments.more)]
+    lines = explain.explained(RUN) if dry and not ended else last_lines(RUN, ended, directory, printed, asked)
     for line in lines:
         _say(line, sys.stderr if ended else None)
     return ended

@@ -61,10 +61,13 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
     (path,) = config["compare"]
     section, _, rest = path.partition(".")
     name, _, keys = rest.partition(".")
-    entries = config.get(section)
-    if section not in _NAMED or not isinstance(entries, dict) or not isinstance(entries.get(name), dict) or not keys:
-        known = ", ".join(f"{one}.NAME.KEY" for one in _NAMED)
-        raise ConfigError(f"compare.{path} is no key of an entry that exists, must be one of {known}")
+    entries = config.get(section) if section in _NAMED else None
+    if not isinstance(entries, dict) or not isinstance(entries.get(name), dict) or not keys:
+        known = {one: config[one] for one in _NAMED if isinstance(config.get(one), dict)}
+        if isinstance(entries, dict):
+            known = {section: entries}
+        listed = "; ".join(f"{one}.NAME.KEY with NAME {' or '.join(map(str, names))}" for one, names in known.items())
+        raise ConfigError(f"compare.{path} is no key of an entry that exists, must be {listed}")
     copied = _affected(config, section, name)
     for end, value in values(config).items():
         config = _with_copies(config, copied, end)

@@ -44,7 +44,10 @@ RELAXATION = 1.4
 ENERGY_LEFT = 1e-3
 #: Most turns of the attraction, displacements in each, and distances in the search for one state.
 TURNS, STEPS, STATES = 100, 1000, 40
-_UNSETTLED = "full elastic contact does not settle, with surfaces too smooth or a solid too soft for the grid"
+_UNSETTLED = (
+    "full elastic contact does not settle, with surfaces too smooth or a solid too soft for the grid: decrease "
+    "sampling.spacing_nm"
+)
 
 
 @dataclass(frozen=True)
@@ -74,9 +77,11 @@ class Adhesion:
             return cls(*film)
         ramp = 2 * OWN_DISPLACEMENT * space.unit * solids.stress
         if ramp > 2 * solids.range:
+            enough = 0.99e9 * space.spacing * 2 * solids.range / ramp  # [nm]
             raise ValueError(
                 f"full elastic contact needs a finer grid: van der Waals forces displace an element of "
-                f"{space.spacing:.3g} m by {ramp / 2:.3g} m, more than their range of {solids.range:.3g} m"
+                f"{space.spacing:.3g} m by {ramp / 2:.3g} m, more than their range of {solids.range:.3g} m; decrease "
+                f"sampling.spacing_nm to {enough:.3g}"
             )
         return cls(*film, solids.stress, solids.range, ramp)
 

@@ -4,6 +4,7 @@ Every point of the curve is the device on surfaces of another roughness, with th
 the surfaces as they are given, and thus the results of the device itself.
 """
 
+import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -150,6 +151,7 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: OfBeam | OfS
             found.append(settings.responses(contact, tips, humidity))
             refused.append("")
         except (ValueError, NotConverged) as reason:
+            traceback.print_exc()  # the log keeps where the reason arose, should it be an error of the code
             found.append([Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)] * len(settings.shapes))
             refused.append(str(reason))
     point = layout(found, refused, roughness_of(contact), contact.sizes["sample"], settings)

@@ -4,6 +4,7 @@ The update of stage test_beams is linear in the inputs. Here, surfaces, solids, 
 result, with the random numbers of the slopes. Lengths that tips hold are left out: they need a contact of their own.
 """
 
+import traceback
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -150,6 +151,7 @@ def _computed(data, _at, settings):
             contacts[name] = data["contacts"][name], at_mean(surfaces, pair, plain, errors)
         return compute(found, data["budgets"], settings["patches"], contacts, wanted)
     except (ValueError, NotConverged) as reason:
+        traceback.print_exc()  # the log keeps where the reason arose, should it be an error of the code
         return with_reruns(found, refused=str(reason))
 
 
