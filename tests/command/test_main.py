@@ -6,7 +6,9 @@ import sys
 from pathlib import Path
 
 import pytest
+import yaml
 from test_front import finished
+from written_scans import QUICK, etched, scans_of
 
 import stiction
 from stiction.command import launch
@@ -14,6 +16,7 @@ from stiction.command.ending import FAULT
 from stiction.command.front import FRONT
 from stiction.command.main import main
 from stiction.config.arrays import beams
+from stiction.config.merging import merged
 
 ROOT = Path(__file__).parents[2]
 BASE = ["--configfile", str(ROOT / "config.yaml")]
@@ -179,6 +182,19 @@ def test_a_check_names_what_would_be_computed_or_every_problem(tmp_path, capsys,
     path.write_text("seeds: 1\nchaos: {ordr: 2}\n")
     assert main(["check", str(path)]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 2
+
+
+def test_a_check_says_what_takes_most_of_the_time_of_a_device_on_measured_surfaces(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("stiction.pilot.problems", lambda *_: [])
+    device = {"kind": "stopper", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.6]}
+    devices = {"Measured": device | {"pair": "b"}, "Other": device | {"pair": "c"}}
+    config = merged(etched(*scans_of(tmp_path)), QUICK | {"devices": devices})
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(config))
+    assert main(["check", str(path), "--directory", str(tmp_path)]) == 0
+    can, costs = capsys.readouterr().out.splitlines()
+    assert can.endswith("devices Measured, Other and scans of Etched.")
+    assert costs.startswith("The budget of Measured draws the measured surfaces again")
 
 
 def test_a_check_draws_the_first_samples_and_remembers_what_they_showed(tmp_path, capsys, monkeypatch):

@@ -157,8 +157,8 @@ def _check(arguments):
     of_pairs = {name: {pair[side] for side in SIDES} for name, pair in config["pairs"].items()}
     if long := [name for name, device in devices.items() if of_pairs[device["pair"]] & {*scanned}]:
         _say(
-            f"The budget of {', '.join(long)} draws the measured surfaces again with every quantity changed, which takes "
-            "most of the time. Without it: stiction run FILE -- results/tables/safe_lengths.md (or stoppers.md)"
+            f"The budget of {', '.join(long)} draws the measured surfaces again with every quantity changed, which "
+            "takes most of the time. Without it: stiction run FILE -- results/tables/safe_lengths.md (or stoppers.md)"
         )
     return Status.DONE
 
