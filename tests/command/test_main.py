@@ -162,7 +162,8 @@ def test_the_study_that_is_written_is_valid_and_never_overwritten(tmp_path, caps
     changed = study.read_text()
     assert main(["init", "--directory", str(tmp_path)]) == 2
     assert study.read_text() == changed
-    assert main(["init", "--directory", str(tmp_path / "none")]) == 2
+    assert main(["init", "--directory", str(tmp_path / "new" / "folder")]) == 0
+    assert main(["init", "--directory", str(study / "below")]) == 2
 
 
 def test_a_table_of_test_beams_is_written_once(tmp_path, capsys):

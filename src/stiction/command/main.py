@@ -127,6 +127,7 @@ def _init_test_beams(target):
 def _new(target):
     """A file that did not exist."""
     try:
+        target.parent.mkdir(parents=True, exist_ok=True)
         with target.open("x", encoding="utf-8") as file:
             yield file
     except FileExistsError:
