@@ -23,7 +23,7 @@ import numpy as np
 
 from stiction.beam.resolution import longest
 from stiction.config.arrays import DATA
-from stiction.config.cases import case_id
+from stiction.config.cases import case_id, in_air
 from stiction.config.device_plan import Patch, patch
 from stiction.config.measured import is_measured, with_preliminary_estimates
 from stiction.config.messages import Problem, dotted, shown
@@ -203,12 +203,7 @@ def _refusals(use: Use, samples: Callable, preliminary: bool) -> Iterator[tuple[
     length, error, at = min(strips, default=(np.inf, 0.0, None))
     doubt = _PRELIMINARY if preliminary else 1
     if use.patch.length > doubt * (length + _CERTAIN * error):
-        yield use.strip, _too_long(use, length, error, f"{_at(at[1])} {len(shown[at]['laws'])} samples")
-
-
-def _at(humidity):
-    """Humidity in words, at the beginning of what samples show."""
-    return f"at RH {humidity:g}" if humidity else "in dry air"
+        yield use.strip, _too_long(use, length, error, f"{in_air(at[1])} {len(shown[at]['laws'])} samples")
 
 
 def _longest(use, laws):
@@ -237,7 +232,7 @@ def _weak(use, humidities, weak):
     """Key and message of a patch, a sample of which does not resist the adhesion at the first of some humidities."""
     pull, repulsion = (f"{from_si(weak[key], 'MPa'):.3g} MPa" for key in ("pull", "repulsion"))
     resist = (
-        f"{_at(humidities[0])}{' and others' * (len(set(humidities)) > 1)}, water and van der Waals forces pull "
+        f"{in_air(humidities[0])}{' and others' * (len(set(humidities)) > 1)}, water and van der Waals forces pull "
         f"with up to {pull}, and the summits of sample {weak['sample']} of {weak['samples']} resist with {repulsion}"
     )
     if weak["together"]:

@@ -122,10 +122,25 @@ def test_counts_have_budgets_of_beams_and_tips_on_the_contacts_of_the_device():
     assert set(inputs["test_beams"]) == {("first", 0.44), ("first", 0.67), ("first", 0.67, "tip")}
     tips = [graph.job(f"devices/{name}_rh067_tip") for name in ("budget/C1", "test_beams/budget/first")]
     assert tips[1].settings["budget"]["share"] == 0.5
-    assert tips[0].inputs["contact"] == tips[1].inputs["contact"] == inputs["tips"]["first"]
+    assert tips[0].inputs["contact"] == tips[1].inputs["contact"] == inputs["tips"]["first", True]
     assert tips[0].inputs["less"] == tips[1].inputs["less"] != {}
-    assert inputs["grounds"]["first"] == graph.job("devices/budget/C1_rh067").inputs["contact"]
+    assert inputs["grounds"]["first", True] == graph.job("devices/budget/C1_rh067").inputs["contact"]
     assert Graph(PLAN).job("devices/test_beams/C1").inputs["grounds"] == {}
+
+
+@pytest.mark.parametrize(
+    "kind", [{"stuck": [COUNTS[0] | {"humidity": "dry"}]}, {"crack_lengths": [DATA[0] | {"humidity": "dry"}]}]
+)
+def test_test_beams_in_dry_air_need_attraction_across_gaps_and_have_no_uncertain_humidity(kind):
+    array = {key: value for key, value in ARRAY.items() if key != "crack_lengths"} | kind
+    config = SECTIONS | {"test_beams": {"first": array}}
+    (problem,) = problems(merged(PAPER, config))
+    assert problem.startswith("attraction.reach is 'touching', must be all for pair b, in dry air")
+    across = Plan(load(merged(config, {"attraction": {"reach": "all"}})))
+    assert "humidity" in across.config["devices"]["C1"]["uncertainty"]
+    assert "humidity" not in across.of_test_beams.config["devices"]["first"]["uncertainty"]
+    mixed = config | {"test_beams": {"first": array | {"stuck": [COUNTS[0], COUNTS[0] | {"humidity": "dry"}]}}}
+    assert problems(merged(PAPER, mixed | {"attraction": {"reach": "all"}})) == ()
 
 
 def test_tips_of_counted_beams_are_drawn_with_their_own_slopes():

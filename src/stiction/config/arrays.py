@@ -13,6 +13,7 @@ from pathlib import Path
 from statistics import fmean, stdev
 from typing import Any, NamedTuple
 
+from stiction.config.cases import DRY
 from stiction.config.kinds import KEYS
 from stiction.config.messages import ConfigError, did_you_mean, shown
 from stiction.config.reading import text
@@ -25,7 +26,7 @@ _SIZES = ("pair", "thickness_um", "gap_um", "width_um", "strip_um")
 COLUMNS = ("humidity", "length_um", "crack_length_um", "stuck")
 TEMPLATE = f"""\
 # Test beams of one array, a row for every beam; key test_beams.NAME.file of the configuration names this file.
-# humidity: relative humidity, as a fraction of 1 [-]      length_um: length of the beam [µm]
+# humidity: relative humidity, as a fraction of 1, or dry  length_um: length of the beam [µm]
 # crack_length_um: measured crack length [µm], if any      stuck: yes or no, of a beam that was only counted
 {",".join(COLUMNS)}
 0.44,1500,941.0,
@@ -67,9 +68,11 @@ def counted(config: Mapping) -> dict[str, dict]:
 
 def _cantilever(array, devices):
     """Section of an array that some devices use."""
-    shared = next(map(shared_uncertainty, devices), {})
+    shared, measured_at = next(map(shared_uncertainty, devices), {}), humidities(array)
+    if not any(measured_at):  # dry air has no humidity that could be uncertain
+        shared = {key: value for key, value in shared.items() if key != "humidity"}
     sizes = {key: array[key] for key in _SIZES if key in array}
-    stated = {"humidities": humidities(array), "uncertainty": shared | array.get("uncertainty", {})}
+    stated = {"humidities": measured_at, "uncertainty": shared | array.get("uncertainty", {})}
     return {"kind": "cantilever"} | sizes | stated
 
 
@@ -163,7 +166,7 @@ def _beam(row, cells, columns):
     if len(cells) != len(columns):
         raise _Wrong(f"row {row}: it has {len(cells)} values, must have {len(columns)}, with points in decimal numbers")
     of = dict.fromkeys(COLUMNS, "") | dict(zip(columns, cells, strict=True))
-    humidity = _number(row, of, "humidity", 1, "as a fraction of 1")
+    humidity = 0.0 if of["humidity"] == DRY else _number(row, of, "humidity", 1, "as a fraction of 1, or dry")
     length = _number(row, of, "length_um", math.inf, "in µm")
     if bool(of["crack_length_um"]) == bool(of["stuck"]):
         raise _Wrong(f"row {row}: it must have either crack_length_um or stuck")

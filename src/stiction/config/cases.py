@@ -13,6 +13,8 @@ DRY, _OF_DRY = "dry", "_dry"
 CASE = "[A-Za-z][A-Za-z0-9]*_(?:rh0[0-9]{2,4}|dry)"
 #: Pattern of a `PairInAir` in paths.
 PAIR_IN_AIR = "[A-Za-z][A-Za-z0-9]*(?:_dry)?"
+#: Studies of pairs in humid air alone.
+IN_HUMID_AIR = ("full_contact", "asperities", "pressing", "variants")
 #: Why dry air is refused without attraction across gaps, as the end of a sentence.
 TOO_LITTLE = "without attraction across gaps, energies in dry air are 5 to 30 times too small, which is the unsafe side"
 #: Keys of humidities in a configuration.
@@ -150,6 +152,17 @@ def air(humidity: float) -> str:
     ('RH 0.67', 'dry')
     """
     return f"RH {humidity:g}" if humidity else DRY
+
+
+def in_air(humidity: float) -> str:
+    """Where something is, as a part of a sentence; parameter as of `air`.
+
+    Examples
+    --------
+    >>> in_air(0.67), in_air(0.0)
+    ('at RH 0.67', 'in dry air')
+    """
+    return f"at {air(humidity)}" if humidity else "in dry air"
 
 
 def decimals(humidity: float) -> str | None:

@@ -16,7 +16,7 @@ import numpy as np
 import yaml
 
 from stiction.config import memory
-from stiction.config.cases import NAMEABLE, TOO_LITTLE, decimals
+from stiction.config.cases import IN_HUMID_AIR, NAMEABLE, TOO_LITTLE, decimals
 from stiction.config.conditions import Keys, Relations
 from stiction.config.materials import hamaker_constants
 from stiction.config.messages import did_you_mean, duplicates, shown
@@ -528,6 +528,19 @@ def solids_attract_across_gaps(config):
     """Without van der Waals forces of the summits there are none across gaps."""
     if (config["attraction.reach"], config["van_der_waals"]) == ("all", "none"):
         yield "attraction.reach", "must be touching if van_der_waals is none", "van_der_waals"
+
+
+@relation
+def studies_in_humid_air_have_some(config):
+    """A study of humid air that is asked for has a pair that runs, between whose surfaces water condenses."""
+    asked = [name for name in config["run.studies"] if name in IN_HUMID_AIR]
+    in_humid_air = (
+        above_zero(humidities) and (not meeting.sides or wetting(meeting.sides, meeting.materials))
+        for _, meeting, humidities, _ in _running(config, "humidities")
+    )
+    if asked and not any(in_humid_air):
+        message = f"must be without {asked[0]}, which is computed in humid air alone: no pair of run.pairs is in any"
+        yield "run.studies", message, "run.pairs"
 
 
 @relation

@@ -10,7 +10,7 @@ import numpy as np
 
 from stiction.config import memory
 from stiction.config.arrays import DATA, shared_uncertainty
-from stiction.config.cases import air
+from stiction.config.cases import in_air
 from stiction.config.conditions import Relations
 from stiction.config.device_plan import DevicePlan
 from stiction.config.kinds import COMMON, KEYS, KINDS, ROUGHNESSES, kind_of
@@ -193,16 +193,6 @@ def attraction_reaches_across_dry_gaps_of_devices(config):
 
 
 @relation
-def roughnesses_are_in_humid_air(config):
-    """The contacts of a device over the roughness of a surface are those in humid air."""
-    for name, _, humidities in config.entries("devices", "roughness", "humidities"):
-        sides, materials, _ = _meeting(config, name)
-        if min(humidities) == 0 or (sides and not wetting(sides, materials)):
-            message = "must be left out for a device in dry air: it is computed in humid air alone"
-            yield f"devices.{name}.roughness", message, f"devices.{name}.humidities", *_scanned(config, name)
-
-
-@relation
 def uncertain_water_of_devices_is_a_liquid(config):
     """As above, one standard uncertainty below the humidities, or above temperature or contact angles, too."""
     keys = "humidity", "temperature_K", "contact_angle_deg"
@@ -318,8 +308,8 @@ def uncertain_humidities_stay_within_their_limits(config):
     """Humidities are above 0 and below 1 one standard uncertainty around their values, too."""
     for name, deviation, humidities in config.entries("devices", "uncertainty.humidity", "humidities"):
         message, given = None, f"devices.{name}.humidities"
-        if deviation and min(humidities) == 0:
-            message = "must be left out, because dry air has no humidity that could be uncertain: describe two devices"
+        if deviation and not any(humidities):
+            message = "must be left out, because dry air has no humidity that could be uncertain"
         elif not (min(above_zero(humidities), default=1) - deviation > 0 and max(humidities) + deviation < 1):
             message = "must leave the humidities above 0 and below 1"
         if message:
@@ -559,7 +549,7 @@ def test_beams_are_slender(config):
 
 def _at(datum, key):
     """A length among the data of an array in words."""
-    return f"that at {air(datum['humidity'])} is {datum[key]:g} µm"
+    return f"that {in_air(datum['humidity'])} is {datum[key]:g} µm"
 
 
 @relation
@@ -571,7 +561,7 @@ def counts_are_parts_of_all_beams(config):
 
 def _miscounted(entry, data):
     """Refusal of one count among the data of an array."""
-    group = f"beams of {entry['length_um']:g} µm at RH {entry['humidity']:g}"
+    group = f"beams of {entry['length_um']:g} µm {in_air(entry['humidity'])}"
     if entry["stuck"] > entry["of"]:
         return f"must count no more stuck beams than there are: {entry['stuck']} of {entry['of']} {group}"
     if sum((entry["humidity"], entry["length_um"]) == (one["humidity"], one["length_um"]) for one in data) > 1:

@@ -53,17 +53,19 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
 
 
 def _broken(config, faults, files=None):
-    """Violated relations; those of devices hold for the arrays of test beams, under the keys of these."""
+    """Violated relations; those of devices hold for the arrays of test beams, under the keys of these, if they have one."""
     broken = list(RELATIONS.problems(Keys(config, faults, files or {})))
     if any(path[:1] in ((), ("devices",), ("test_beams",)) for path in faults):
         return broken  # sections that are wrong on their own
     beams = Keys(config | {"devices": arrays.as_cantilevers(config)}, faults, files or {})
-    found = relations_devices.relation.problems(beams)
-    return broken + [_of_array(problem, config) for problem in found if problem.path[0] == "devices"]
+    return broken + [_of_array(problem, config) for problem in relations_devices.relation.problems(beams)]
 
 
 def _of_array(problem, config):
     """Problem of an array of test beams that was found as if the array were a device."""
-    array = config["test_beams"][problem.path[1]]
-    path = [next(filter(array.__contains__, arrays.DATA)) if key == "humidities" else key for key in problem.path[1:]]
-    return Problem(("test_beams", *path), problem.message.replace("devices.", "test_beams."))
+    path, message = problem.path, problem.message.replace("devices.", "test_beams.")
+    if path[0] == "devices":
+        array = config["test_beams"][path[1]]
+        data = next(filter(array.__contains__, arrays.DATA))
+        path = ("test_beams", *(data if key == "humidities" else key for key in path[1:]))
+    return Problem(path, message)

@@ -62,9 +62,10 @@ class Water:
         """Height h_C [m] and tension -ΔP [Pa] at a relative humidity, see `stiction.contact.meniscus.film`."""
         return film(humidity, self.temperature, self.contact_angles)
 
-    @property
-    def without(self) -> "Water":
-        """What attracts in dry air, where the summits do so through air."""
+    def at(self, humidity: float) -> "Water":
+        """The same at a humidity: where no water condenses, the summits attract each other through air."""
+        if self.film(humidity)[0]:
+            return self
         return replace(self, gaps=self.gaps and replace(self.gaps, summits="dry"))
 
 
@@ -102,10 +103,12 @@ def flooded_law(humidity: float, water: Water, hamaker_constant: float) -> tuple
     """Upper bounds of e [J m⁻²] and f_max [Pa] of any surfaces at a humidity: those of flooded flats that touch.
 
     Water pulls nowhere harder or farther than between flats, and neither do the solids. Their Hamaker constant [J] is 0
-    without van der Waals forces.
+    without van der Waals forces, and that of the water if attraction reaches across gaps.
     """
     height, pull = water.film(humidity)
     energy = height * pull
+    if water.gaps:
+        hamaker_constant = water.gaps.hamaker_constant[water.gaps.summits]
     if hamaker_constant:
         solid = vanderwaals.DugdaleAttraction(hamaker_constant)
         energy, pull = energy + solid.work_of_adhesion, pull + solid.stress

@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Any
 
 from stiction.config.arrays import as_cantilevers
-from stiction.config.cases import Case, PairInAir, case_id
+from stiction.config.cases import IN_HUMID_AIR, Case, PairInAir, case_id
 from stiction.config.device_plan import DevicePlan
 from stiction.config.measured import is_measured, preliminary_estimates, quantities
 from stiction.devices.materials import ELASTIC
@@ -216,7 +216,7 @@ class Plan:
         of_paper = [name for name in self.config["studies"] if name != "full_contact"]
         wanted = self.config["run"].get("studies", of_paper)
         needed = {"sensitivity": [self.figure_pair]} if self.pairs else {}
-        needed |= dict.fromkeys(("full_contact", "asperities", "pressing", "variants"), self.pairs)
+        needed |= dict.fromkeys(IN_HUMID_AIR, self.pairs)
         return [name for name in wanted if name not in needed or any(map(self.air.humid, needed[name]))]
 
     @property

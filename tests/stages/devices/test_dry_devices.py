@@ -81,6 +81,21 @@ def _files(inputs):
     return {file for names in named for file in (names.values() if isinstance(names, dict) else names)}
 
 
+def test_counted_test_beams_stick_on_the_contacts_of_their_own_air():
+    array = {key: CANTILEVER[key] for key in ("pair", "thickness_um", "gap_um", "width_um")}
+    array["stuck"] = [{"humidity": h, "length_um": 300, "stuck": 3, "of": 20} for h in ("dry", 0.5, 0.67)]
+    device = CANTILEVER | {"humidities": [0.67], "test_beams": ["T"]}
+    job = Graph(Plan(load(SIZES, {"devices": {"C1": device}, "test_beams": {"T": array}}))).job("devices/test_beams/C1")
+    patch = "1500x6000"
+    grounds = {("T", False): f"devices/contact/b_dry_{patch}", ("T", True): f"devices/contact/b_{patch}"}
+    assert job.inputs["grounds"] == grounds
+    assert [name.split("/")[-1].rsplit("_", 1)[0] for name in job.inputs["tips"].values()] == ["b_dry", "b"]
+    water = job.stage.converted(job.settings).stuck["T"].water
+    assert [water.at(humidity).gaps.summits for humidity in (0.0, 0.5)] == ["dry", "water"]
+    coated = replace(water, contact_angles=(2.0, 2.0))
+    assert coated.at(0.5) == coated.at(0.0)
+
+
 def test_humid_air_is_as_without_dry_air():
     humid = plan_of([0.67])
     tips = f"devices/contact/tips/{humid.devices.tips('C1').name}"
@@ -156,7 +171,7 @@ SETTINGS = stoppers.Settings(ACROSS, SIDES, 1e-6, (0.0, 0.67), (0.6, 0.9))
 def test_a_stopper_holds_least_in_dry_air_and_its_worst_air_is_the_worst_of_all(grounds):
     found = stoppers.compute(grounds[0], SETTINGS, grounds[1])
     assert found.axis[0] == 0
-    assert_allclose(found.pull_off.sel(humidity=0.0), 9e-12 * curves.pull_offs(grounds[1], 0.0, ACROSS.without))
+    assert_allclose(found.pull_off.sel(humidity=0.0), 9e-12 * curves.pull_offs(grounds[1], 0.0, ACROSS.at(0.0)))
     assert np.all(found.pull_off.sel(humidity=0.0) < found.pull_off.sel(humidity=0.67))
     humid = stoppers.compute(grounds[0], replace(SETTINGS, humidities=(0.67,)))
     assert_array_equal(found.isel(axis=slice(1, None)).mean_along, humid.mean_along)
@@ -178,7 +193,7 @@ def test_dry_air_is_the_worst_of_a_stopper_that_holds_most_in_it(grounds):
 
 
 def test_a_stopper_in_dry_air_alone_is_in_no_humid_air(grounds):
-    found = stoppers.compute(grounds[1], replace(SETTINGS, water=ACROSS.without, humidities=(0.0,)))
+    found = stoppers.compute(grounds[1], replace(SETTINGS, water=ACROSS.at(0.0), humidities=(0.0,)))
     assert_array_equal(found.axis, [0.0])
     assert stoppers.ends(found) == ()
     forces = 5e-8 * np.arange(1, 401)[None]
@@ -196,11 +211,11 @@ def test_a_stopper_in_dry_air_alone_is_in_no_humid_air(grounds):
 
 def test_the_bound_of_a_dry_cantilever_is_that_of_flats_in_contact():
     work = attraction("dry").work_of_adhesion
-    found = flooded_lengths(C1, ACROSS.without, 0.0)
+    found = flooded_lengths(C1, ACROSS.at(0.0), 0.0)
     assert_allclose(found, [arrest_length(work, C1.beam), arc_length(work, C1.beam)], rtol=1e-12)
     bridge = replace(R1, hamaker_constant=HAMAKER_CONSTANT["dry"])
-    assert flooded_lengths(bridge, ACROSS.without, 0.0) == [
-        least_length(*flooded_law(0.0, ACROSS.without, HAMAKER_CONSTANT["dry"]), bridge.beam)
+    assert flooded_lengths(bridge, ACROSS.at(0.0), 0.0) == [
+        least_length(*flooded_law(0.0, ACROSS.at(0.0), HAMAKER_CONSTANT["dry"]), bridge.beam)
     ]
 
 

@@ -65,6 +65,37 @@ def test_the_curve_of_a_cantilever_at_the_given_roughness_is_todays_result(canti
     assert np.all(given.error > today.beams_error)
 
 
+IN_DRY_AIR = {"attraction": {"reach": "all"}, "contact": {"samples": 60}, "chaos": {"order": 1}}
+IN_DRY_AIR |= {
+    "devices": {"S1": {"humidities": ["dry", 0.6], "restoring_force_uN": 0.2}, "C1": {"humidities": ["dry"]}}
+}
+
+
+@pytest.fixture(scope="module")
+def dry():
+    return Results.of(stiction.load(SECTIONS, IN_DRY_AIR))
+
+
+def test_points_at_the_given_roughness_are_todays_results_in_dry_and_in_humid_air(dry):
+    stopper, cantilever = (dry[f"devices/roughness/points/{name}_{POINTS - 1}"] for name in ("S1", "C1"))
+    np.testing.assert_array_equal(stopper.stuck[:, 0], dry["devices/stoppers/S1"].stuck.T)
+    assert np.all(stopper.estimate[0] < 0.5 * stopper.estimate[1])  # no water pulls
+    today = stiction.Device("C1", dry).safe_lengths("dry").sel(share=0.02)
+    for name, theirs in (("safe", "safe_length"), ("estimate", "estimate"), ("bound", "flooded_length")):
+        np.testing.assert_array_equal(cantilever[name].sel(humidity=0), today[theirs])
+
+
+def test_smooth_stoppers_in_dry_air_are_held_more_than_rough_ones_and_the_page_says_what_suffices(dry, tmp_path):
+    found = stiction.Device("S1", dry).roughness()
+    assert np.all(np.diff(found.estimate.sel(humidity=0, shape="force")) < 0)
+    first, second = tables_roughness.answers(found)
+    assert first.startswith("For a restoring force of 0.2 µN, in dry air, ")
+    assert "at a relative humidity of 0.6" in second
+    figure = figures_roughness.roughness(found)
+    assert "dry, estimate and 95 % band" in {text.get_text() for text in figure.legends[0].get_texts()}
+    assert covering(figure, tmp_path) == []
+
+
 def test_the_legend_of_a_cantilever_names_the_bounds_of_beam_and_tip(cantilever, tmp_path):
     given = cantilever.results[f"devices/roughness/points/C1_{POINTS - 1}"]
     figure = figures_roughness.roughness(curves.joined([given.assign(roughness=2e-9), given], "rms_nm", "B2"))

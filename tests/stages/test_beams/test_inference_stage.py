@@ -13,6 +13,7 @@ from vectors import sampled_vectors
 from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.contact import forcelaw
+from stiction.contact.environment import Gaps, Water
 from stiction.devices import arcs
 from stiction.devices.inference import FACTOR, SLOPE, Discrepancy, expected_share, lognormal
 from stiction.report.devices import figures_inference, tables_inference
@@ -89,7 +90,8 @@ def computed(
         slopes |= {(name, rh, "tip"): budget(array, rh, ARC) for name in names for rh in stuck.humidity}
     found = [dict.fromkeys(names, data) if data else {} for data in (lengths if len(means) else None, stuck)]
     settings = Settings(stated, dict.fromkeys(names, array), *found, DEVICE)
-    found = inference.compute(budgets(), slopes, safe_lengths(), *[dict.fromkeys(names)] * 2, settings)
+    contacts = {(name, is_humid): is_humid for name in names for is_humid in (False, True)}
+    found = inference.compute(budgets(), slopes, safe_lengths(), contacts, contacts, settings)
     return with_reruns(found)
 
 
@@ -342,7 +344,8 @@ def shapes(monkeypatch):
     """Cracks and arcs of the lengths of their budgets; the function makes all arcs so many times as long."""
 
     def longer(factor):
-        def of_shapes(cracks, *_):
+        def of_shapes(cracks, ground, tips, water):
+            assert ground == tips == (cracks.humidity > 0) == (water.gaps.summits == "water")
             crack = float(cracks.budget.centre)
             arc = factor * float(budget(cracks.beam, cracks.humidity, ARC).centre)
             return np.zeros(2), [lognormal(crack, SCATTER), lognormal(arc, SCATTER)]
@@ -354,7 +357,9 @@ def shapes(monkeypatch):
 
 
 def counts(lengths, stuck, of, humidities=HUMIDITIES):
-    return Stuck(None, tuple(humidities), tuple(lengths), tuple(stuck), (of,) * len(stuck))
+    return Stuck(
+        Water(300.0, gaps=Gaps({}, "water")), tuple(humidities), tuple(lengths), tuple(stuck), (of,) * len(stuck)
+    )
 
 
 def test_counts_say_about_the_device_what_the_crack_lengths_of_the_same_beams_say(shapes):
@@ -369,6 +374,19 @@ def test_counts_say_about_the_device_what_the_crack_lengths_of_the_same_beams_sa
     assert_allclose(counted.result_after, measured.result_after, rtol=1e-2)
     other = computed([], stuck=counts(1.1 * centres, (single < 1.03 * centres).sum(axis=0), number))
     assert np.all(np.abs(other.result_shift - measured.result_shift)[:3] > 0.01)  # control
+
+
+@pytest.mark.parametrize(("stuck", "sign"), [(2, 1), (10, 0), (18, -1)])
+def test_more_stuck_beams_in_dry_air_than_expected_mean_more_adhesion_in_any_air(shapes, monkeypatch, stuck, sign):
+    shapes(10.0)  # no tip holds
+    monkeypatch.setitem(ENERGY, 0.0, 0.2e-3)
+    monkeypatch.setitem(POWER, 0.0, -3.0)
+    found = computed([], humidities=(0.0,), stuck=counts([length(ARRAY, 0.0)], [stuck], 20, (0.0,)))
+    assert_array_equal(np.sign(found.result_shift.values.round(9)), sign)  # of crack lengths, and of tips by the inputs
+    assert_allclose(found.stuck_before, 0.5, atol=1e-9)
+    assert np.all(found.result_after < found.result_before)
+    of_rms = float(found["shift"].sel(input="rms of B2"))
+    assert np.sign(round(of_rms, 9)) == sign  # rougher surfaces adhere less
 
 
 @pytest.mark.usefixtures("shapes")
@@ -451,7 +469,7 @@ def test_data_that_nothing_explains_are_refused_in_words():
 def test_humidities_and_dimensions_beyond_those_of_the_test_beams_are_extrapolations():
     dry = tables_inference.warnings(computed(as_computed(humidities=(0.67,)), humidities=(0.67,)))
     assert dry[:1] == [
-        "Test beams were measured from RH 0.67 to 0.67: the prediction at RH 0.44, 0.92 is an extrapolation."
+        "Test beams were measured from RH 0.67 to 0.67: the prediction at relative humidities of 0.44, 0.92 is an extrapolation."
     ]
     # Lengths of equal beams are as the energy to the power of -1/4.
     longer, shorter = (ENERGY[0.67] / ENERGY[0.44]) ** 0.25 - 1, (ENERGY[0.92] / ENERGY[0.67]) ** 0.25 - 1

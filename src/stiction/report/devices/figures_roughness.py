@@ -5,6 +5,7 @@ import xarray as xr
 from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 
+from stiction.config.cases import air
 from stiction.config.kinds import ROUGHNESSES
 from stiction.devices.roughness import margins
 from stiction.report.devices.tables_roughness import in_unit, labelled
@@ -65,7 +66,7 @@ def _curve(panel, one, colour):
     x, estimate = in_unit(one, one.roughness.values), TO_UM * one.estimate.values
     reach = INTERVAL * TO_UM * one.error.values
     panel.fill_between(x, estimate - reach, estimate + reach, color=colour, alpha=0.2, linewidth=0)
-    panel.plot(x, estimate, ".-", color=colour, label=f"RH {float(one.humidity):g}, estimate and 95 % band")
+    panel.plot(x, estimate, ".-", color=colour, label=f"{air(float(one.humidity))}, estimate and 95 % band")
     panel.plot(x, TO_UM * one.safe.values, "_", color=colour, markersize=8, label="safe, 95 % confidence")
     if np.isfinite(one.bound.values).any():
         state = END_STATES[str(one["shape"].values)]
@@ -112,7 +113,7 @@ def roughness_map(found: xr.Dataset) -> Figure:
             panel.plot(*map(np.ravel, np.meshgrid(x, y)), ".", color="0.3", markersize=2)
             panel.plot(in_unit(found, float(found.given)), in_unit(found, float(found.other_given), "other_key"), "k+")
             _axes(panel, found)
-            panel.set_title(f"{END_STATES[shape].by}, RH {humidity:g}")
+            panel.set_title(f"{END_STATES[shape].by}, {air(humidity)}")
     return figure
 
 

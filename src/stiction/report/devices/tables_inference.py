@@ -5,7 +5,6 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import DRY
 from stiction.devices import inference
 from stiction.plan.names import by_name
 from stiction.report.format import TO_UM, airs, humidity_text, number, with_error
@@ -336,11 +335,8 @@ def _extrapolated(found):
     results = sorted(set(found.humidity_of_result.values.tolist()) - measured)
     beyond = [humidity for humidity in results if not humid[0] <= humidity <= humid[-1]]
     if beyond:
-        where = [DRY] * (0 in measured) + [f"from RH {humid[0]:g} to {humid[-1]:g}"] * bool(measured - {0.0})
-        yield (
-            f"Test beams were measured {' and '.join(where)}: the prediction at RH "
-            f"{', '.join(map(humidity_text, beyond))} is an extrapolation."
-        )
+        where = ["in dry air"] * (0 in measured) + [f"from RH {humid[0]:g} to {humid[-1]:g}"] * bool(measured - {0.0})
+        yield (f"Test beams were measured {' and '.join(where)}: the prediction {airs(beyond)} is an extrapolation.")
     yield from _beyond_in_adhesion(found)
     for size in OWN if "own_thickness" in found else ():
         device = float(found[f"own_{size}"][0])

@@ -5,10 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from stiction.config.cases import air
 from stiction.config.kinds import ROUGHNESSES
 from stiction.config.units import from_si, without_unit
 from stiction.plan.names import by_name
-from stiction.report.format import UM, with_error
+from stiction.report.format import UM, airs, with_error
 from stiction.report.tables import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import FORCE
@@ -112,7 +113,7 @@ def _enough(found, humidity, shape):
         f"a restoring force of {required}" if shape == FORCE else f"a length of {required} ({END_STATES[shape].by})"
     )
     where = _where(found, found.sel(humidity=humidity, shape=shape), _rows(found, "range", humidity, shape))
-    return f"For {wanted}, at a relative humidity of {humidity:g}, {where}"
+    return f"For {wanted}, {airs([humidity])}, {where}"
 
 
 def _where(found, curve, rows):
@@ -183,7 +184,7 @@ def _refusals(found):
     for humidity in found.humidity.values:
         for value in found.roughness.values:
             if reason := str(found.refused.sel(humidity=humidity, roughness=value).values):
-                at = f"{_shown(found, value)}{_unit(found)} (RH {humidity:g})"
+                at = f"{_shown(found, value)}{_unit(found)} ({air(humidity)})"
                 places.setdefault(reason, []).append(at)
     return [f"Not computed where the {name_of(found)} is {', '.join(at)}: {reason}." for reason, at in places.items()]
 

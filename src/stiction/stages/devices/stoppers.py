@@ -41,9 +41,8 @@ class Settings:
 def forces(contact: xr.Dataset, humidity: float, settings: Settings) -> np.ndarray:
     """Pull-off forces of all sampled patches at a relative humidity (m,) [N]."""
     area = settings.contact[0] * settings.contact[1]
-    water = settings.water if humidity > 0 else settings.water.without
     with on_patch(*settings.contact):
-        return pull_off_force(pull_offs(contact, humidity, water), area)
+        return pull_off_force(pull_offs(contact, humidity, settings.water.at(humidity)), area)
 
 
 def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = None) -> xr.Dataset:

@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis.shifts import value_of, with_value
+from stiction.config.cases import PairInAir
 from stiction.config.kinds import ROUGHNESSES
 from stiction.config.merging import merged
 from stiction.config.units import without_unit
@@ -103,31 +104,43 @@ def points_of(plan: Any, device: str) -> range:
     return range(POINTS * (CURVES if len(varied(plan, device)) > 1 else 1))
 
 
-def contacts_of(plan: Any, device: str, number: int) -> dict[str, str]:
-    """Names of the contacts of a point: of the patch of a device and of the tips of a cantilever."""
-    name = f"roughness/{device}_{number}"
-    tips = {"tips": f"{FOLDER}/tips/{name}"} if plan.devices.kind(device).has_tip else {}
-    return {"contact": f"{FOLDER}/{name}"} | tips
+def contacts_of(plan: Any, device: str, number: int) -> dict[str, dict[bool, str]]:
+    """Names of the contacts of a point, in humid air (true) and in dry air: of the patch, and of tips if there are any.
+
+    Where no water condenses, both are that in dry air.
+    """
+    section = plan.config["devices"][device]
+    folders = {"contact": FOLDER} | ({"tips": f"{FOLDER}/tips"} if plan.devices.kind(device).has_tip else {})
+    airs = {humidity > 0: plan.air.contact(section["pair"], humidity) for humidity in section["humidities"]}
+    names = {is_humid: f"{device}{pair.removeprefix(pair.pair)}_{number}" for is_humid, pair in airs.items()}
+    return {
+        kind: {is_humid: f"{folder}/roughness/{name}" for is_humid, name in names.items()}
+        for kind, folder in folders.items()
+    }
 
 
-def _of_patch(plan, device):
-    """Settings of the contact of the patch of a device, with as many stoppers as its share of stuck ones needs."""
+def _of_patch(plan, pair, device):
+    """Settings of the contact of the patch of a device, with as many stoppers as its share of stuck ones needs.
+
+    The pair is that of the device in its air.
+    """
     ground, share = plan.devices.ground(device), plan.config["devices"][device]["requirement"]["share"]
     samples = plan.config["contact"]["samples"]
     if not plan.devices.kind(device).is_beam:
         samples = max(samples, samples_for(share))
-    return patch_settings.on_patch(plan, At(**ground._asdict()), samples)
+    return patch_settings.on_patch(plan, At(**ground._replace(pair=pair)._asdict()), samples)
 
 
-def _of_tips(plan, device):
-    """Settings of the contact of the tips of a cantilever."""
-    return patch_settings.of_tips(plan, At(**plan.devices.tips(device)._asdict()))
+def _of_tips(plan, pair, device):
+    """As `_of_patch`, of the tips of a cantilever."""
+    return patch_settings.of_tips(plan, At(**plan.devices.tips(device)._replace(pair=pair)._asdict()))
 
 
-def _stage(name, folder, contact, words):
-    """Stage of one contact of a point; ``contact`` gives its settings by plan and device."""
+def _stage(name, folder, contact, words, in_air=PairInAir):
+    """Stage of one contact of a point; ``contact`` gives its settings by plan, pair in its air and device."""
 
     def settings(plan, at):
+        pair = plan.config["devices"][at.device]["pair"]
         what, *others = varied(plan, at.device)
         curve, point = divmod(int(at.number), POINTS)
         values = [(what, what.value(point)), *((other, other.of_curve(curve)) for other in others)]
@@ -135,7 +148,7 @@ def _stage(name, folder, contact, words):
         surface = {one.key: value for one, value in values if value is not None and one.key in own}
         if surface:  # on which the reach of tips depends
             plan = replace(plan, config=merged(plan.config, {"surfaces": {what.surface: surface}}))
-        found = {"contact": contact(plan, at.device), "pair": plan.config["devices"][at.device]["pair"]}
+        found = {"contact": contact(plan, in_air(pair), at.device), "pair": pair}
         found |= {"surface": what.surface, "quantity": without_unit(what.key)} | what.named("value", values[0][1])
         for other, value in values[1:] if curve else ():
             found |= {"other": without_unit(other.key)} | other.named("other_value", value)
@@ -143,7 +156,7 @@ def _stage(name, folder, contact, words):
 
     return Stage.writing(
         name,
-        f"{folder}/roughness/{{device}}_{{number}}",
+        f"{folder}/roughness/{{device}}{in_air('')}_{{number}}",
         inputs=lambda plan, at: of_pair(plan, plan.config["devices"][at.device]["pair"]),
         settings=settings,
         kind=Settings,
@@ -159,4 +172,6 @@ def _stage(name, folder, contact, words):
 STAGES = (
     _stage("roughness_contact", FOLDER, _of_patch, "the patch"),
     _stage("roughness_tip_contact", f"{FOLDER}/tips", _of_tips, "the tips"),
+    _stage("roughness_dry_contact", FOLDER, _of_patch, "the patch, in dry air,", PairInAir.in_dry_air),
+    _stage("roughness_dry_tip_contact", f"{FOLDER}/tips", _of_tips, "the tips, in dry air,", PairInAir.in_dry_air),
 )

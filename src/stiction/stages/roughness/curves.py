@@ -5,8 +5,8 @@ the surfaces as they are given, and thus the results of the device itself.
 """
 
 import traceback
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -136,24 +136,24 @@ def of_job(plain: dict[str, Any]) -> OfBeam | OfStopper:
 # Points
 
 
-def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: OfBeam | OfStopper) -> xr.Dataset:
+def compute(
+    contacts: Mapping[bool, xr.Dataset], tips: Mapping[bool, xr.Dataset], settings: OfBeam | OfStopper
+) -> xr.Dataset:
     """One point of the curve: lengths or forces at all humidities; what cannot be computed comes with the reason.
 
-    Parameters
-    ----------
-    contact, tips : Dataset
-        Of `stiction.stages.roughness.contacts`; the latter ``None`` without tips.
-    settings : OfBeam or OfStopper
+    The contacts are those of `stiction.stages.roughness.contacts`; there are none of tips of other devices.
     """
     found, refused = [], []
     for humidity in settings.humidities:
+        met, air = (contacts[humidity > 0], tips.get(humidity > 0)), settings.water.at(humidity)
         try:
-            found.append(settings.responses(contact, tips, humidity))
+            found.append(replace(settings, water=air).responses(*met, humidity))
             refused.append("")
         except (ValueError, NotConverged) as reason:
             traceback.print_exc()  # the log keeps where the reason arose, should it be an error of the code
             found.append([Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)] * len(settings.shapes))
             refused.append(str(reason))
+    contact = next(iter(contacts.values()))
     point = layout(found, refused, roughness_of(contact), contact.sizes["sample"], settings)
     return point.assign({name: contact[name] for name in OTHERS if name in contact})
 
@@ -287,7 +287,8 @@ def _rows(dimension, rows, *names):
 def _settings(plan, at):
     """What is required of a device, and everything that its length or force depends on apart from the contact."""
     section = plan.config["devices"][at.device]
-    own = plan.config["design"] | section | section["requirement"] | {"water": plan.air.water(section["pair"])}
+    wettest = plan.air.contact(section["pair"], max(section["humidities"]))
+    own = plan.config["design"] | section | section["requirement"] | {"water": plan.air.water(wettest)}
     if not plan.devices.kind(at.device).is_beam:
         return select(OfStopper, own)
     common = {key: plan.config[key] for key in ("seed", "chaos")}
@@ -308,7 +309,7 @@ STAGES = (
         inputs=lambda plan, at: contacts_of(plan, at.device, int(at.number)) | corrections_of(plan, at.device),
         settings=_settings,
         compute=lambda data, at, settings: compute(
-            data["contact"], data.get("tips"), corrected(of_job(settings), data)
+            data["contact"], data.get("tips", {}), corrected(of_job(settings), data)
         ),
         message="Device {device} at roughness {number}.",
         cluster=True,

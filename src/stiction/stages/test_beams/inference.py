@@ -125,15 +125,15 @@ def compute(
     budgets: Mapping[tuple, xr.Dataset],
     test_beams: Mapping[tuple, xr.Dataset],
     predicted: Mapping[float, xr.Dataset] | xr.Dataset,
-    grounds: Mapping[str, xr.Dataset],
-    tips: Mapping[str, xr.Dataset],
+    grounds: Mapping[tuple[str, bool], xr.Dataset],
+    tips: Mapping[tuple[str, bool], xr.Dataset],
     settings: Settings,
 ) -> xr.Dataset:
     """Inputs, lengths and safe lengths, or forces, of a device before and after its test beams were measured.
 
     Budgets are by device or array, humidity and, for tips, more. What is predicted are the datasets of stage
     safe_lengths of a beam by humidity, or that of stage stoppers. ``grounds`` and ``tips`` are the contacts on which
-    the beams of an array with counts stick, and those of their tips.
+    the beams of an array with counts stick in humid air, if true, or in dry air, and those of their tips.
     """
     of_arrays = [Result(*key[:2], one, settings.arrays[key[0]]) for key, one in test_beams.items()]
     beams, of_tips = ([one for one in of_arrays if (one.response == ARC) == is_tip] for is_tip in (False, True))
@@ -208,24 +208,24 @@ def counted(
     results: Sequence[Result],
     responses: np.ndarray,
     found: Mapping[str, Stuck],
-    grounds: Mapping[str, xr.Dataset],
-    tips: Mapping[str, xr.Dataset],
+    grounds: Mapping[tuple[str, bool], xr.Dataset],
+    tips: Mapping[tuple[str, bool], xr.Dataset],
 ) -> Counts:
     """Numbers of stuck beams beside the lengths that beams and tips hold.
 
     ASSUME: beams were counted whose tips had touched the substrate, and may be held by them. Crack lengths are
     lognormal.
 
-    The results (n) are those of beams and tips of test beams, the first ones with responses (n or more, k); counts and
-    contacts, as in `compute`, are by array.
+    The results (n) are those of beams and tips of test beams, the first ones with responses (n or more, k); counts are
+    by array, and contacts as in `compute`.
     """
     places = {(one.owner, one.humidity, one.response): place for place, one in enumerate(results)}
     rows, lengths, scores = [], [], []
     for name, data in found.items():
-        shapes = {
-            humidity: of_shapes(results[places[name, humidity, S_SHAPE]], grounds[name], tips[name], data.water)
-            for humidity in set(data.humidity)
-        }
+        shapes = {}
+        for humidity in set(data.humidity):
+            met = grounds[name, humidity > 0], tips[name, humidity > 0]
+            shapes[humidity] = of_shapes(results[places[name, humidity, S_SHAPE]], *met, data.water.at(humidity))
         for humidity, length in zip(data.humidity, data.length, strict=True):
             behind, of_humidity = shapes[humidity]
             rows.append(responses[[places[name, humidity, shape] for shape in _COUNTED]])
@@ -497,7 +497,8 @@ def _settings(plan, at):
     for name in data["crack_lengths"]:
         data["crack_lengths"][name]["length_um"] = arrays[name]["length_um"]
     for name in data["stuck"]:
-        data["stuck"][name]["water"] = plan.air.water(plan.of_test_beams.contact_of_device(_counted_case(arrays, name)))
+        wettest = case_id(name, max(data["stuck"][name]["humidity"]))
+        data["stuck"][name]["water"] = plan.air.water(plan.of_test_beams.contact_of_device(wettest))
     is_beam = plan.devices.kind(at.device).is_beam
     return (
         data
@@ -517,18 +518,17 @@ def _predicted(plan, device):
     return {humidity: f"devices/safe_lengths/{case_id(device, humidity)}" for humidity in stated}
 
 
-def _counted_case(arrays, name):
-    """An array at the highest humidity of its counts, none of which is in dry air."""
-    return case_id(name, max(humidities(arrays[name], "stuck")))
-
-
 def _contacts(plan, device):
-    """Contacts on which the counted test beams of a device stick, and those of their tips, by array."""
+    """Contacts on which the counted test beams of a device stick, and those of their tips, as in `compute`."""
     arrays, of_arrays = plan.config["test_beams"], plan.of_test_beams
-    names = [name for name in plan.config["devices"][device]["test_beams"] if "stuck" in arrays[name]]
+    cases = {
+        (name, humidity > 0): case_id(name, humidity)
+        for name in plan.config["devices"][device]["test_beams"]
+        for humidity in humidities(arrays[name], "stuck")
+    }
     return {
-        "grounds": {name: contact_of(of_arrays, _counted_case(arrays, name)) for name in names},
-        "tips": {name: tips_of(of_arrays, _counted_case(arrays, name))["tips"] for name in names},
+        "grounds": {key: contact_of(of_arrays, case) for key, case in cases.items()},
+        "tips": {key: tips_of(of_arrays, case)["tips"] for key, case in cases.items()},
     }
 
 
