@@ -469,7 +469,8 @@ def test_data_that_nothing_explains_are_refused_in_words():
 def test_humidities_and_dimensions_beyond_those_of_the_test_beams_are_extrapolations():
     dry = tables_inference.warnings(computed(as_computed(humidities=(0.67,)), humidities=(0.67,)))
     assert dry[:1] == [
-        "Test beams were measured from RH 0.67 to 0.67: the prediction at relative humidities of 0.44, 0.92 is an extrapolation."
+        "Test beams were measured from RH 0.67 to 0.67: the prediction at relative humidities of 0.44, 0.92 is an "
+        "extrapolation."
     ]
     # Lengths of equal beams are as the energy to the power of -1/4.
     longer, shorter = (ENERGY[0.67] / ENERGY[0.44]) ** 0.25 - 1, (ENERGY[0.92] / ENERGY[0.67]) ** 0.25 - 1

@@ -7,7 +7,7 @@ import xarray as xr
 
 from stiction.devices import inference
 from stiction.plan.names import by_name
-from stiction.report.format import TO_UM, airs, humidity_text, number, with_error
+from stiction.report.format import TO_UM, airs, number, with_error
 from stiction.report.tables import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import FORCE, S_SHAPE
