@@ -64,8 +64,8 @@ def test_neither_the_order_of_rows_and_columns_nor_a_mark_of_the_order_of_bytes_
     assert loaded(study("humidity,length_um,crack_length_um", *(line[:-1] for line in MEASURED)))["length_um"] == 1500
 
 
-def test_beams_may_be_counted_in_dry_air(study):
-    humid, dry = (loaded(study(HEAD, f"{air},500,,yes"))["stuck"] for air in ("0.44", "dry"))
+def test_beams_may_be_counted_in_dry_air():
+    humid, dry = (arrays.summary(arrays.beams(f"{HEAD}\n{air},500,,yes\n"))["stuck"] for air in ("0.44", "dry"))
     assert dry == [humid[0] | {"humidity": 0.0}]
 
 

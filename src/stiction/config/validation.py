@@ -53,7 +53,7 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
 
 
 def _broken(config, faults, files=None):
-    """Violated relations; those of devices hold for the arrays of test beams, under the keys of these, if they have one."""
+    """Violated relations; those of devices hold for the arrays of test beams, whose keys they name."""
     broken = list(RELATIONS.problems(Keys(config, faults, files or {})))
     if any(path[:1] in ((), ("devices",), ("test_beams",)) for path in faults):
         return broken  # sections that are wrong on their own
