@@ -1,7 +1,6 @@
 """Stage test_beams on budgets of analytic lengths: what a device shares with its test beams, known truth, tables."""
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -64,7 +63,6 @@ def budget(beam, humidity, response=S_SHAPE):
     )
 
 
-@cache
 def budgets():
     """Datasets of the device and of its test beams."""
     of_device = {("C1", rh): budget(DEVICE, rh) for rh in HUMIDITIES}
