@@ -15,6 +15,7 @@ from stiction.contact import forcelaw
 from stiction.contact.environment import Gaps, Water
 from stiction.devices import arcs
 from stiction.devices.inference import FACTOR, SLOPE, Discrepancy, expected_share, lognormal
+from stiction.report import style
 from stiction.report.devices import figures_inference, tables_inference
 from stiction.run import storage
 from stiction.stages.contact import curves
@@ -471,7 +472,7 @@ def test_humidities_and_dimensions_beyond_those_of_the_test_beams_are_extrapolat
         "extrapolation."
     ]
     # Lengths of equal beams are as the energy to the power of -1/4.
-    longer, shorter = (ENERGY[0.67] / ENERGY[0.44]) ** 0.25 - 1, (ENERGY[0.92] / ENERGY[0.67]) ** 0.25 - 1
+    longer, shorter = (ENERGY[0.67] / ENERGY[0.44]) ** 0.25 - 1, 1 - (ENERGY[0.67] / ENERGY[0.92]) ** 0.25
     assert dry[1].startswith(
         f"C1, RH 0.44: cracks of equal beams would be {100 * longer:.0f} % longer than the longest"
     )
@@ -530,6 +531,18 @@ def test_the_figure_shows_counts_at_the_lengths_of_their_beams():
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert "measured, 95 %" not in labels
     assert labels[-1].startswith("length of counted beams")
+
+
+def test_counts_in_dry_air_are_beside_the_axis(shapes, monkeypatch):
+    shapes(10.0)
+    monkeypatch.setitem(ENERGY, 0.0, 0.2e-3)
+    monkeypatch.setitem(POWER, 0.0, -3.0)
+    both = (0.0, 0.67)
+    found = computed([], humidities=both, stuck=counts(as_computed(0.7, both), [3, 4], 20, both))
+    panel = figures_inference.test_beams(found).axes[0]
+    at = {int(text.get_text()[0]): text.xy[0] for text in panel.texts if "of 20" in text.get_text()}
+    assert at == {3: style.places(list(both))[0.0], 4: 0.67}
+    assert 0 < at[3] < 0.67
 
 
 def test_bands_at_one_humidity_have_a_width():

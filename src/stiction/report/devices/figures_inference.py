@@ -69,7 +69,7 @@ def _lengths(panel, data):
         entries.append(panel.errorbar(humidity, TO_UM * data.measured, yerr=error, **_POINT, label="measured, 95 %"))
     for k in range(data.sizes["count"]):
         at = data.isel(count=k)
-        place = float(at.humidity_of_count), TO_UM * float(at.length_of_count)
+        place = placed[float(at.humidity_of_count)], TO_UM * float(at.length_of_count)
         (mark,) = panel.plot(*place, **_COUNT, label="length of counted beams, number of those that stick")
         panel.annotate(f"{int(at.stuck)} of {int(at.counted)}", place, (4, 3), textcoords="offset points")
         entries += [mark] if k == 0 else []

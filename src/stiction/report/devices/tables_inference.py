@@ -356,10 +356,10 @@ def _beyond_in_adhesion(found):
     ):
         beyond = max(reduced - most, least - reduced)
         if response == S_SHAPE and beyond > ADHESION:
-            words = "longer than the longest" if reduced > most else "shorter than the shortest"
+            sign, words = (1, "longer than the longest") if reduced > most else (-1, "shorter than the shortest")
             yield (
-                f"{result}: cracks of equal beams would be {100 * np.expm1(beyond):.0f} % {words} of the test beams, "
-                "so that the slope of the model over the adhesion is extrapolated."
+                f"{result}: cracks of equal beams would be {100 * sign * np.expm1(sign * beyond):.0f} % {words} of the "
+                "test beams, so that the slope of the model over the adhesion is extrapolated."
             )
 
 
