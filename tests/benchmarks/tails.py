@@ -2,22 +2,23 @@
 
 The attraction across gaps falls with the third power of the distance, and Eq. (12) exponentially. It keeps energy,
 largest attraction and its distance of every curve, and this script measures what the rest of the shape does to cracks
-on samples drawn at random. The beam on tabulated curves is solved by code of its own, which knows no crack front: it
-moves the whole beam in every step. Curves and tables of their laws are compared in it, so that only the shape differs;
-that the beam of the package arrests where this one does on the same laws is measured beside it.
+on samples drawn at random. Which part of a law does it is shown by laws of the same energy that take the shape of one
+branch from the curve, and by laws whose left branch is a parabola.
+
+A solver of its own, which knows no crack front and moves the whole beam in every step, finds all of these cracks on
+tables, so that only the shape differs. That the beam of the package arrests where this one does on the same laws is
+measured beside it.
 """
 
 import argparse
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 from numba import njit
-from scipy.linalg import solveh_banded
+from scipy.integrate import cumulative_trapezoid
 
-from stiction.beam import release
+from stiction.beam import equilibrium, release
 from stiction.beam.energy import arrest_length
-from stiction.beam.equilibrium import STEP, allowed_imbalance, distances, hermite
 from stiction.beam.resolution import resolved
 from stiction.config.cases import air
 from stiction.config.files import load
@@ -39,6 +40,12 @@ END = 150e-9
 LONGER, STRIPS = 1.6, 5
 #: Tables of laws end at this repulsion, in units of the largest attraction, where no beam rests.
 FIRMEST = 1e3
+#: Curves have jumps where summits let go: they need steps that are shorter by this factor than those of laws.
+FINER = 6.0
+#: Shapes of equal energy with the factor of their steps; all cracks are compared with those on the first.
+SHAPES = {"Eq. (12)": 1.0, "curves": FINER, "its right branch": FINER, "its left branch": 1.0, "parabola": 1.0}
+#: Largest number of Newton steps.
+STEPS = 400_000
 #: Length of the strips [µm], short enough for all pairs.
 STRIP = 1.0
 
@@ -66,93 +73,130 @@ def pressures_and_slopes(curves, drawn, step, distance):
 
 
 @njit
-def tangent(bend, stiffness, functions):
-    """Upper band (4, n) of the beam's elements (4, 4) and the stiffness of their points (elements, points)."""
-    band = np.zeros((4, 2 * len(stiffness) + 2))
-    for e in range(len(stiffness)):
-        for i in range(4):
-            for j in range(i, 4):
-                ground = np.sum(stiffness[e] * functions[:, i] * functions[:, j])
-                band[3 - (j - i), 2 * e + j] += bend[i, j] + ground
-    return band
+def assemble(u, ground, system, mesh, viscosity):
+    """Assemble the whole beam, clamped at its first node; returns the largest unbalanced force [N]."""
+    laws, curves, drawn, step = ground
+    system.band[:] = 0.0
+    system.force[:] = 0.0
+    points, elements = mesh.points_per_element, u.size // 2 - 1
+    for element in range(elements):
+        equilibrium.add_element(u, system, mesh, element)
+        i, here = 2 * element, slice(element * points, (element + 1) * points)
+        distance = mesh.gap - np.sum(mesh.hermite * u[i : i + 4], axis=1)
+        force, slope = pressures_and_slopes(curves, drawn[here], step, distance)
+        for p in range(points):
+            law, n = laws[here][p], mesh.hermite[p]
+            stretch = (law[2] if distance[p] < law[1] else law[3]) * (distance[p] - law[1])
+            system.stretch[here.start + p] = stretch
+            stiffness = viscosity / (1 + max(stretch, 0.0)) ** 2 - slope[p] * mesh.area
+            for row in range(4):
+                system.force[i + row] -= n[row] * force[p] * mesh.area
+                for column in range(row, 4):
+                    system.band[i + row, column - row] += stiffness * n[row] * n[column]
+    system.band[:2], system.force[:2] = 0.0, 0.0
+    system.band[:2, 0] = 1.0
+    return np.abs(system.force).max()
 
 
-def relaxed(beam, laws, curve, deflection, load=0.0):
-    """Deflection (elements + 1, 2) after a beam has crept downhill to its next equilibrium on ``curve(distance)``.
+@njit
+def relax(u, ground, mesh, finer, tolerance):
+    """Relax a beam in place, as `stiction.beam.equilibrium.equilibrate`; returns the largest unbalanced force [N].
 
-    As `stiction.beam.equilibrium.equilibrate`: Newton's method with dashpots; the laws limit the steps.
+    Steps are limited by the laws, whose lengths 1/a are divided by ``finer``: curves are less smooth than laws.
     """
-    size, functions = (
-        beam.element_length,
-        hermite((np.arange(len(laws) // beam.elements) + 0.5) * beam.elements / len(laws)),
-    )
-    area, scale = beam.width * beam.length / len(laws), np.array([1, size])
-    bend = (
-        np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]]) * beam.bending_stiffness / size**3
-    )
-    weight = load * size * np.array([1 / 2, 1 / 12, 1 / 2, -1 / 12])
-    tolerance, steepest = (
-        allowed_imbalance(beam, laws[:, 0].mean() * area),
-        0.5 * np.max(laws[:, 0] * laws[:, 3]) * area,
-    )
-    u, viscosity = (deflection * scale).ravel(), steepest
-    for _ in range(20_000):
-        distance = distances(beam, laws, u.reshape(-1, 2) / scale)
-        far = np.where(distance < laws[:, 1], laws[:, 2], laws[:, 3]) * (distance - laws[:, 1])
-        ahead = 1 + np.maximum(far, 0)
-        force, slope = curve(distance)
-        push = (force * area).reshape(beam.elements, -1)
-        ends = np.hstack([u.reshape(-1, 2)[:-1], u.reshape(-1, 2)[1:]])
-        unbalanced = np.zeros_like(u)
-        parts = weight - ends @ bend - push @ functions
-        unbalanced.reshape(-1, 2)[:-1] += parts[:, :2]
-        unbalanced.reshape(-1, 2)[1:] += parts[:, 2:]
-        unbalanced[:2] = 0.0
-        settled = np.abs(unbalanced).max() <= tolerance
-        if settled:
-            return u.reshape(-1, 2) / scale
-        stiffness = (viscosity / ahead**2 - slope * area).reshape(beam.elements, -1)
-        band = tangent(bend, stiffness, functions)
-        band[:, :2], band[2, 2], band[1, 2:4], band[0, 3:5] = 0.0, 0.0, 0.0, 0.0
-        band[3, :2] = 1.0
-        try:
-            change = solveh_banded(band, unbalanced, check_finite=False)
-        except np.linalg.LinAlgError:
-            viscosity *= 4
-            continue
-        moved = distances(beam, laws, change.reshape(-1, 2) / scale) - beam.gap
-        move = np.max(np.where(far > 0, laws[:, 3], laws[:, 2]) * np.abs(moved) / ahead) / STEP
-        if move <= 2:
-            u = u + change
+    laws = ground[0]
+    limits = laws * np.array([1.0, 1.0, finer, finer])
+    system = equilibrium.System(np.zeros((u.size + 3, 4)), np.zeros(u.size + 3), np.zeros(len(laws)))
+    steepest = 0.5 * np.max(laws[:, 0] * laws[:, 3]) * mesh.area
+    viscosity, residual = steepest, np.inf
+    for _ in range(STEPS):
+        residual = assemble(u, ground, system, mesh, viscosity)
+        if residual <= tolerance:
+            return residual
+        move = equilibrium.newton_step(u, limits, system, mesh, (0, u.size // 2 - 1))
         viscosity = max(viscosity, 0.01 * steepest * (move > 1)) * min(max(move, 0.25), 4.0)
-    raise NotConverged("equilibrium of the beam [N]", np.abs(unbalanced).max(), tolerance, 20_000)
+    return residual
 
 
-def crack_length(beam, laws, curve, start):
-    """Crack length of a beam released from a crack of the length ``start``, as `stiction.beam.release.release` [m]."""
+def relaxed(beam, ground, deflection, finer, load=0.0):
+    """Deflection (elements + 1, 2) after a beam has crept downhill to its next equilibrium on the ground."""
+    mesh, scale = equilibrium.mesh_of(beam, ground[0], load, 0.0), np.array([1, beam.element_length])
+    u, tolerance = (deflection * scale).ravel(), equilibrium.allowed_imbalance(beam, ground[0][:, 0].mean() * mesh.area)
+    residual = relax(u, ground, mesh, finer, tolerance)
+    if not residual <= tolerance:
+        raise NotConverged("equilibrium of the beam [N]", residual, tolerance, STEPS)
+    return u.reshape(-1, 2) / scale
+
+
+def crack_length(beam, ground, start, finer):
+    """Crack length of a beam released from a crack of the length ``start``, as `stiction.beam.release.release` [m].
+
+    The ground is (laws, curves, drawn, step): of every point (points, 4), force curves (m, n) [Pa], which of them each
+    point has (points,), and the spacing of their nodes [m].
+    """
+    laws = ground[0]
     pressed = release.s_shape(beam, beam.gap - laws[:, 1].mean(), start)
-    held = relaxed(beam, laws, curve, pressed, release.holding_load(beam, start))
-    return release.crack_length(beam, laws, relaxed(beam, laws, curve, held))
+    held = relaxed(beam, ground, pressed, finer, release.holding_load(beam, start))
+    return release.crack_length(beam, laws, relaxed(beam, ground, held, finer))
 
 
-# Samples of a pair and their laws
+# Samples of a pair, their laws, and laws of which one part is that of the curve
 
 
 def sampled(contact, humidity, water):
-    """Curves (m, n) [Pa] up to END, tables of their laws, the step of both [m], the laws (m, 4), and energies (m, 2).
-
-    The energies are those with and without attraction across gaps [J/m²].
-    """
+    """Force curves of the samples up to END, and their energies without attraction across gaps (m,) [J/m²]."""
     solid, bearing, starts, step = tables(contact)
     bearing = np.pad(bearing, ((0, 0), (0, round((END - starts[1]) / step) - bearing.shape[1])))
     found = force_curves(solid, bearing, starts, step, humidity, water)
     curves = np.array([found.curve(k).copy() for k in range(found.samples)])
-    vectors, limit = forcelaw.parametrise(*found)
-    lawful = forcelaw.admissible(vectors, limit)
-    laws = forcelaw.coefficients(vectors[lawful], limit)
-    of_laws = np.minimum(forcelaw.pressure(laws[:, None], found.distance), FIRMEST * laws[:, :1].max())
     alone = forcelaw.adhesion_energies(*force_curves(solid, bearing, starts, step, humidity, replace(water, gaps=None)))
-    return curves[lawful], of_laws, step, laws, np.column_stack([vectors[:, 0], alone])
+    return found._replace(curve=curves.__getitem__), curves, alone
+
+
+def right_energies(distance, curves, laws):
+    """Attraction of each curve beyond its d_max, integrated (m,) [J/m²]."""
+    passed = cumulative_trapezoid(np.maximum(-curves, 0), distance, initial=0)
+    return passed[:, -1] - [np.interp(law[1], distance, each) for law, each in zip(laws, passed, strict=True)]
+
+
+def stretched(distance, curve, law, factor):
+    """A law with the right branch of the curve, whose distances from d_max are divided by a factor (n,) [Pa]."""
+    shape = np.interp(law[1] + (distance - law[1]) * factor, distance, curve, right=0.0)
+    return np.where(distance > law[1], shape, forcelaw.pressure(law, distance))
+
+
+def parabolic(distance, vectors, limit):
+    r"""Pressures (m, n) [Pa] of laws whose left branch is a parabola; the right one is that of Eq. (12).
+
+    The parabola has its lowest point in (d_max, -f_max) and passes (d_limit, f_limit), so that it needs no more than
+    Eq. (12) does:
+
+    .. math:: f(d) = f_\mathrm{max} \bigl( a^2 (d - d_\mathrm{max})^2 - 1 \bigr), \quad
+        a = \frac{\sqrt{1 + f_\mathrm{limit} / f_\mathrm{max}}}{d_\mathrm{max} - d_\mathrm{limit}}
+
+    Its zero is at d_max - 1/a, and the right branch has the rest of the energy, e - 2 f_max / (3 a) = 3 f_max / (2
+    a_right). This is more than in Eq. (12) for every f_limit >= f_max.
+    """
+    e, f_max, d_max, d_limit = vectors.T[..., None]
+    a = np.sqrt(1 + limit / f_max) / (d_max - d_limit)
+    a_right = 1.5 * f_max / (e - 2 / 3 * f_max / a)
+    decay = np.exp(-a_right * np.maximum(distance - d_max, 0.0))
+    return f_max * np.where(distance < d_max, (a * (distance - d_max)) ** 2 - 1, decay * (decay - 2))
+
+
+def shapes(distance, curves, vectors, limit):
+    """Force curves (m, n) [Pa] of equal energy e, in the order of SHAPES; the laws of the samples are admissible."""
+    laws = forcelaw.coefficients(vectors, limit)
+    beyond, of_laws = right_energies(distance, curves, laws), 1.5 * laws[:, 0] / laws[:, 3]
+    own_right = np.column_stack([laws[:, :3], 1.5 * laws[:, 0] / beyond])
+    found = (
+        forcelaw.pressure(laws[:, None], distance),
+        curves,
+        np.array([stretched(distance, *each) for each in zip(curves, laws, beyond / of_laws, strict=True)]),
+        np.where(distance < laws[:, 1:2], curves, forcelaw.pressure(own_right[:, None], distance)),
+        parabolic(distance, vectors, limit),
+    )
+    return [np.minimum(each, FIRMEST * laws[:, 0].max()) for each in found]
 
 
 def resolved_beam(beam, strip, laws):
@@ -163,18 +207,20 @@ def resolved_beam(beam, strip, laws):
     return resolved(longer, elements * STRIPS, laws), elements * STRIPS
 
 
-def cracks(beam, curves, tables_of_laws, step, laws, drawn):
-    """ln l_s on the curves of the drawn samples (strips,), on tables of their laws, and by the beam of the package."""
+def cracks(beam, curves, step, laws, drawn):
+    """ln l_s on the curves of each of SHAPES for the drawn samples (strips,), and by the beam of the package."""
     ground = np.ascontiguousarray(laws[drawn])
     energy = forcelaw.energy(ground).mean()
     start = release.START * min(arrest_length(energy, beam), beam.length)
-    shapes = (partial(pressures_and_slopes, table, drawn, step) for table in (curves, tables_of_laws))
-    lengths = [crack_length(beam, ground, curve, start) for curve in shapes]
+    lengths = [
+        crack_length(beam, (ground, table, drawn, step), start, finer)
+        for table, finer in zip(curves, SHAPES.values(), strict=True)
+    ]
     return np.log([*lengths, release.released_beam(beam, ground, energy).crack_length])
 
 
 def row(pair, humidity, reach, samples, beams):
-    """One row of the table: pair, air, reach, energies and their scatter, and the differences of the cracks."""
+    """One row of the table: pair, air, reach, energies, their scatter, the share, and differences of the cracks."""
     strip = {"sampling": {"strip_length_um": STRIP}, "beam": {"elements": 300}}
     sizes = {
         "contact": {"samples": samples, "chunks": 1},
@@ -185,26 +231,41 @@ def row(pair, humidity, reach, samples, beams):
     config = load(strip | sizes | medium)
     plan = Plan(config)
     contact = Results.of(config)[f"contact/{pair}_NG"]
-    curves, of_laws, step, laws, energies = sampled(contact, humidity, in_si(Water, plan.air.water(pair)))
+    found, curves, alone = sampled(contact, humidity, in_si(Water, plan.air.water(pair)))
+    vectors, limit = forcelaw.parametrise(*found)
+    lawful = forcelaw.admissible(vectors, limit)
+    laws = forcelaw.coefficients(vectors[lawful], limit)
+    step = found.distance[1] - found.distance[0]
+    every = shapes(found.distance, curves[lawful], vectors[lawful], limit)
+    of_curves = vectors[lawful, 0] - right_energies(found.distance, curves[lawful], laws)
+    share = 0.5 * np.mean(laws[:, 0] / laws[:, 2]) / of_curves.mean()
     one = cantilever(in_si(Cantilevers, sections(plan, pair)), pair)
     beam, strips = resolved_beam(one, to_si(STRIP, "um"), laws)
     rng = stream(config["seed"], "tails", pair)
     drawn = (rng.integers(len(laws), size=strips) for _ in range(beams))
-    on_curves, on_laws, own = np.array([cracks(beam, curves, of_laws, step, laws, each) for each in drawn]).T
-    differences = [100 * np.array(mean_with_error(one)) for one in (on_curves - on_laws, own - on_laws)]
-    scatter = energies[:, 0].std(ddof=1) / energies[:, 0].mean()
+    law, curve, right, left, parabola, own = np.array([cracks(beam, every, step, laws, each) for each in drawn]).T
+    differences = (curve - law, right - law, left - law, curve - parabola, own - law)
+    energies = vectors[:, 0]
     return [
         pair,
         air(humidity),
         reach,
-        *(with_error(*mean_with_error(TO_MJ * one)) for one in energies.T),
-        f"{scatter:.2f}",
-        *(with_error(*one, "+") for one in differences),
+        *(with_error(*mean_with_error(TO_MJ * one)) for one in (energies, alone)),
+        f"{energies.std(ddof=1) / energies.mean():.2f}",
+        f"{share:.2f}",
+        *(with_error(*(100 * np.array(mean_with_error(one))), "+") for one in differences),
     ]
 
 
 #: Pair, humidity (0 in dry air) and reach of the attraction.
-CASES = (("b", 0.0, "all"), ("c", 0.0, "all"), ("c", 0.6, "all"), ("a", 0.0, "all"))
+CASES = (
+    ("b", 0.0, "all"),
+    ("c", 0.0, "all"),
+    ("c", 0.6, "all"),
+    ("a", 0.0, "all"),
+    ("c", 0.6, "touching"),
+    ("b", 0.44, "touching"),
+)
 HEADER = (
     "pair",
     "air",
@@ -212,8 +273,12 @@ HEADER = (
     "ē [mJ/m²]",
     "touching summits alone [mJ/m²]",
     "scatter of e",
+    "energy left of d_max, Eq. (12) over curves",
     "ln l_s, curves over Eq. (12) [%]",
-    "package over it [%]",
+    "right branch of the curve over Eq. (12) [%]",
+    "left branch of the curve over Eq. (12) [%]",
+    "curves over parabola [%]",
+    "package over Eq. (12) [%]",
 )
 
 
@@ -221,7 +286,7 @@ def main():
     """Print the table as Markdown."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--samples", type=int, default=300)
-    parser.add_argument("--beams", type=int, default=100)
+    parser.add_argument("--beams", type=int, default=150)
     parser.add_argument("--rows", type=int, nargs="+", default=range(len(CASES)), help="of the table, from 0")
     sizes = parser.parse_args()
     print(f"| {' | '.join(HEADER)} |\n|{'---|' * len(HEADER)}", flush=True)  # noqa: T201
