@@ -286,7 +286,7 @@ def main():
     """Print the table as Markdown."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--samples", type=int, default=300)
-    parser.add_argument("--beams", type=int, default=150)
+    parser.add_argument("--beams", type=int, default=80)
     parser.add_argument("--rows", type=int, nargs="+", default=range(len(CASES)), help="of the table, from 0")
     sizes = parser.parse_args()
     print(f"| {' | '.join(HEADER)} |\n|{'---|' * len(HEADER)}", flush=True)  # noqa: T201
