@@ -1,7 +1,6 @@
 """The last lines of a command, and its exit status."""
 
 import csv
-import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from enum import IntEnum
@@ -58,7 +57,7 @@ def last_lines(
         after = f" after {run.done} of {run.total} jobs" if run.planned else ""
         yield f"stopped{after}; run the same command to continue"
     elif ended == Status.CHECKS:
-        yield from _failed_checks(_below(directory))
+        yield from _failed_checks(shown(directory / "results"))
     elif run.failures:
         yield from _failed(list(run.failures.values()), directory)
     elif ended != Status.DONE:
@@ -67,18 +66,24 @@ def last_lines(
             yield from fault(directory / PRINTED)
     elif run.planned or run.up_to_date:
         yield _finished(run)
-        yield from where_to_look(_below(directory), targets)
+        yield from where_to_look(shown(directory / "results"), targets)
 
 
 def fault(log: Path) -> Iterator[str]:
     """Last lines after an error of the code."""
     yield FAULT
-    yield f"log: {os.path.relpath(log)}"
+    yield f"log: {shown(log)}"
 
 
-def _below(directory):
-    """Folder of results, as short as it can be written."""
-    return Path(os.path.relpath(directory / "results"))
+def shown(path: Path) -> Path:
+    """A path relative to the present folder, if it is below it, else from the root.
+
+    Examples
+    --------
+    >>> shown(Path("runs/results")), shown(Path("/a/b"))
+    (PosixPath('runs/results'), PosixPath('/a/b'))
+    """
+    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
 
 
 def _finished(run):
@@ -133,14 +138,14 @@ def _failed(jobs: list[Job], directory: Path) -> Iterator[str]:
     yield said
     if is_fault(said.partition(":")[0], ValueError, RuntimeError):
         yield FAULT
-    yield f"log: {logs[0] if logs else _below(directory) / 'logs'}"
+    yield f"log: {logs[0] if logs else shown(directory / 'results' / 'logs')}"
 
 
 def _existing(logs: Iterable[str], directory: Path) -> Iterator[Path]:
     """Those logs that exist; their paths are relative to the folder of the run."""
     for log in logs:
         if (directory / log).is_file():
-            yield Path(os.path.relpath(directory / log))
+            yield shown(directory / log)
 
 
 def sentence(log: Path) -> str:
