@@ -213,10 +213,11 @@ def test_the_bound_of_a_dry_cantilever_is_that_of_flats_in_contact():
     work = attraction("dry").work_of_adhesion
     found = flooded_lengths(C1, ACROSS.at(0.0), 0.0)
     assert_allclose(found, [arrest_length(work, C1.beam), arc_length(work, C1.beam)], rtol=1e-12)
-    bridge = replace(R1, hamaker_constant=HAMAKER_CONSTANT["dry"])
-    assert flooded_lengths(bridge, ACROSS.at(0.0), 0.0) == [
-        least_length(*flooded_law(0.0, ACROSS.at(0.0), HAMAKER_CONSTANT["dry"]), bridge.beam)
-    ]
+    for medium in ("dry", "water"):  # that of the air counts, also on a curve in both airs
+        bridge = replace(R1, hamaker_constant=HAMAKER_CONSTANT[medium])
+        law = flooded_law(0.0, ACROSS.at(0.0), HAMAKER_CONSTANT["dry"])
+        assert_allclose(law[0], work, rtol=1e-12)
+        assert flooded_lengths(bridge, ACROSS.at(0.0), 0.0) == [least_length(*law, bridge.beam)]
 
 
 def test_a_budget_in_dry_air_has_no_inputs_of_the_air():

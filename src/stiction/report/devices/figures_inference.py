@@ -71,7 +71,10 @@ def _lengths(panel, data):
         at = data.isel(count=k)
         place = placed[float(at.humidity_of_count)], TO_UM * float(at.length_of_count)
         (mark,) = panel.plot(*place, **_COUNT, label="length of counted beams, number of those that stick")
-        panel.annotate(f"{int(at.stuck)} of {int(at.counted)}", place, (4, 3), textcoords="offset points")
+        inwards = (
+            {"xytext": (-4, -3), "ha": "right", "va": "top"} if place[0] == max(placed.values()) else {"xytext": (4, 3)}
+        )
+        panel.annotate(f"{int(at.stuck)} of {int(at.counted)}", place, textcoords="offset points", **inwards)
         entries += [mark] if k == 0 else []
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
     humidity_axis(panel, placed)
