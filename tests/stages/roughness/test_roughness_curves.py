@@ -96,6 +96,16 @@ def test_smooth_stoppers_in_dry_air_are_held_more_than_rough_ones_and_the_page_s
     assert covering(figure, tmp_path) == []
 
 
+def test_surfaces_that_no_water_wets_are_held_at_any_humidity_as_in_dry_air():
+    wax = {"materials": {"Wax": {"contact_angle_deg": 100}}}
+    wax |= {"surfaces": dict.fromkeys(("B2", "Sub1"), {"material": "Wax"})}
+    config = stiction.load(SECTIONS, IN_DRY_AIR, wax, {"contact": {"samples": 20}})
+    found = Results.of(config)["devices/roughness/points/S1_0"]
+    dry, humid = (found.sel(humidity=humidity, drop=True) for humidity in (0.0, 0.6))
+    xr.testing.assert_identical(dry, humid)
+    assert float(dry.estimate[0]) > 0
+
+
 def test_the_legend_of_a_cantilever_names_the_bounds_of_beam_and_tip(cantilever, tmp_path):
     given = cantilever.results[f"devices/roughness/points/C1_{POINTS - 1}"]
     figure = figures_roughness.roughness(curves.joined([given.assign(roughness=2e-9), given], "rms_nm", "B2"))
