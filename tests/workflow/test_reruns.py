@@ -515,7 +515,7 @@ def imported(path):
 #: Modules that affect no result, or only settings and names of inputs, which count themselves.
 SILENT = {
     PACKAGE / f"{name}.py"
-    for name in ("progress", "run/logs", "plan/stage", "plan/names", "stages/devices/patch_settings")
+    for name in ("progress", "run/logs", "config/messages", "plan/stage", "plan/names", "stages/devices/patch_settings")
 }
 
 
