@@ -166,6 +166,25 @@ def test_counts_reach_the_most_probable_errors_of_the_inputs(counts):
     assert np.abs(logarithm(0.9 * found.mean) - at) > 1e-4  # control: the most probable errors are no plateau
 
 
+@pytest.mark.parametrize("stuck", [0, 5, 15, 20])
+@pytest.mark.parametrize("scatter", [0.005, 0.02, 0.06])
+@pytest.mark.parametrize("margin", [-0.5, 0.1, 0.3, 0.6])
+def test_counts_that_contradict_the_prior_reach_the_most_probable_errors_as_well(margin, scatter, stuck):
+    """The prior error of the lengths is 10 %; whole Newton steps go astray for some of these."""
+    shapes = [[inference.lognormal(1.0, scatter), ARCS]]
+    counts = Counts(
+        TWO_SHAPES.responses[:1], np.exp([[margin, margin + 0.1]]), shapes, np.array([stuck]), np.array([20])
+    )
+    found = given(PRIOR, DATA, counts)
+
+    def misfit(x):
+        pulls = (DATA.differences - DATA.responses @ x) / DATA.errors
+        return counts.deviance(x) + pulls @ pulls + x @ np.linalg.solve(PRIOR.covariance, x)
+
+    for step in 0.01 * PRIOR.deviations * np.eye(5):
+        assert min(misfit(found.mean + step), misfit(found.mean - step)) >= misfit(found.mean)
+
+
 def test_counts_say_what_the_lengths_of_the_same_beams_say():
     # Of N beams with measured lengths and scatter s, ln l is known to s/√N; counted at the median length, it is known
     # to √(π/2) s/√N (a probit at Φ = 1/2).

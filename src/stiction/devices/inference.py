@@ -32,7 +32,9 @@ from stiction.errors import NotConverged
 #: Names of the discrepancy of the model among the inputs: of its factor and of its slope.
 FACTOR, SLOPE = "factor of the model", "slope of the model"
 #: Newton steps for counts, and the change in prior standard deviations at which they end.
-_STEPS, _CLOSE = 50, 1e-10
+_STEPS, _CLOSE = 50, 1e-7
+#: Curvature of the logarithm of a probability that tells nothing.
+_NOTHING = 1e-12
 #: Normal scores at which the lengths of a shape are tabulated: on the fitted line, as quantiles, and beyond them.
 _SHORT, _QUANTILES, _FAR = (-8.0, -4.0, -2.0), np.linspace(-1.5, 2.0, 8), 8.0
 #: Variance below which a direction of the prior counts as exactly known, relative to that of single inputs.
@@ -201,24 +203,42 @@ def given(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> K
     """Knowledge after crack lengths were measured and stuck beams counted.
 
     With counts, it is the normal distribution around the most probable errors of the inputs that has their curvature
-    (Laplace), but for the curvature of the probit of several shapes (Gauss and Newton).
+    (Laplace), but for the curvature of the probit of several shapes (Gauss and Newton). Steps are halved as long as
+    that leads to more probable errors: where counts contradict the prior, whole steps may lead away from them.
 
     Raises
     ------
     NotConverged
-        If Newton steps do not reach the most probable errors.
+        If the steps do not reach the most probable errors.
     """
     found = given_lengths(prior, lengths)
     if counts is None or not len(counts):
         return found
-    scale = np.where(prior.deviations > 0, prior.deviations, 1)
+    mean, scale = found.mean, _scale(prior)
     for _ in range(_STEPS):
-        before = found.mean
-        found = given_lengths(prior, _joined(lengths, linearised(counts, before)))
-        change = np.abs((found.mean - before) / scale).max()
+        found = given_lengths(prior, _joined(lengths, linearised(counts, mean)))
+        step = found.mean - mean
+        change = np.abs(step / scale).max()
         if change < _CLOSE:
             return found
+        left = [_misfit(prior, lengths, counts, mean + share * step) for share in (1.0, 0.5)]
+        while left[-1] < left[-2]:
+            left.append(_misfit(prior, lengths, counts, mean + step / 2 ** len(left)))
+        mean = mean + step / 2 ** (len(left) - 2)
     raise NotConverged("errors of the inputs, in standard deviations", change, _CLOSE, _STEPS)
+
+
+def _scale(prior):
+    """Standard deviations of the inputs, 1 for those that are known."""
+    return np.where(prior.deviations > 0, prior.deviations, 1)
+
+
+def _misfit(prior, lengths, counts, errors):
+    """Sum of the squares of all pulls, on the data and on the inputs, at errors of the inputs; deviance of counts."""
+    pulls, scale = (lengths.differences - lengths.responses @ errors) / lengths.errors, _scale(prior)
+    moved = (errors - prior.mean) / scale
+    inverse = np.linalg.pinv(prior.covariance / np.outer(scale, scale), rcond=_ROUNDING, hermitian=True)
+    return pulls @ pulls + moved @ inverse @ moved + counts.deviance(errors)
 
 
 def linearised(counts: Counts, errors: np.ndarray) -> Lengths:
@@ -236,6 +256,7 @@ def linearised(counts: Counts, errors: np.ndarray) -> Lengths:
     others = counts.beams - counts.stuck
     slope = counts.stuck * above - others * below
     curvature = counts.stuck * above * (above + probit) + others * below * (below - probit)
+    curvature = np.maximum(curvature, _NOTHING)  # beams of which it was certain that all, or none, would stick
     return Lengths(responses, responses @ errors - slope / curvature, 1 / np.sqrt(curvature))
 
 
@@ -265,13 +286,8 @@ def p_value(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) ->
     if counts is None or not len(counts):
         away = lengths.differences - lengths.responses @ prior.mean
         return float(chdtrc(len(away), away @ np.linalg.solve(_spread(prior, lengths), away)))
-    found = given(prior, lengths, counts).mean
-    pulls = (lengths.differences - lengths.responses @ found) / lengths.errors
-    scale = np.where(prior.deviations > 0, prior.deviations, 1)
-    moved = (found - prior.mean) / scale
-    inverse = np.linalg.pinv(prior.covariance / np.outer(scale, scale), rcond=_ROUNDING, hermitian=True)
-    total = pulls @ pulls + moved @ inverse @ moved + counts.deviance(found)
-    return float(chdtrc(len(pulls) + len(counts), total))
+    total = _misfit(prior, lengths, counts, given(prior, lengths, counts).mean)
+    return float(chdtrc(len(lengths.differences) + len(counts), total))
 
 
 @dataclass(frozen=True)
@@ -288,7 +304,7 @@ def combinations(prior: Knowledge, posterior: Knowledge) -> list[Combination]:
     Data determine as many of them as there are independent data. Inputs that are correlated with the same combination
     are not told apart.
     """
-    scale = np.where(prior.deviations > 0, prior.deviations, 1)
+    scale = _scale(prior)
     variances, axes = np.linalg.eigh(prior.covariance / np.outer(scale, scale))
     uncertain = variances > _ROUNDING
     root = axes[:, uncertain] * np.sqrt(variances[uncertain])
