@@ -96,7 +96,7 @@ def test_a_stage_with_ends_writes_its_datasets_in_their_order(files, tmp_path, m
 def test_a_caption_has_the_settings_of_its_job_and_what_the_figure_adds(files, tmp_path, monkeypatch):
     drawn = SimpleNamespace(get_label=lambda: "(1) Too wet.")
     shown = Shown(file="png", title="Sheet: {surface}", category="")
-    (tmp_path / "sheet.rst").write_text("Times {{ snakemake.params.settings['factor'] }}.\n")
+    (tmp_path / "sheet.rst").write_text("Times\n{{ snakemake.params.settings['factor'] }}.\n")
     stage = Stage(name="sheet", files={}, message="", compute=lambda *_: drawn, save=lambda *_: None, shown=shown)
     inputs = {"one": files["B2"], "caption": str(tmp_path / "sheet.rst")}
     described = job(stage, inputs, {"one": ["heights", None]}, {})

@@ -1,5 +1,6 @@
 """Run one job of the workflow: load its inputs, compute, save."""
 
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -32,7 +33,8 @@ def _caption(stage, job, template, more) -> str:
     from jinja2 import StrictUndefined, Template  # comes with Snakemake
 
     caption = Template(Path(template).read_text(encoding="utf-8"), undefined=StrictUndefined).render(snakemake=job)
-    return "\n\n".join(filter(None, [stage.shown.title.format(**job.wildcards), caption.strip(), more])) + "\n"
+    paragraphs = [textwrap.fill(paragraph, 100) for paragraph in caption.strip().split("\n\n")]
+    return "\n\n".join(filter(None, [stage.shown.title.format(**job.wildcards), *paragraphs, more])) + "\n"
 
 
 def _listed(paths) -> list[str]:
