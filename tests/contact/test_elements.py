@@ -299,6 +299,17 @@ def test_the_largest_attraction_of_a_film_that_floods_everything_is_its_tension_
     assert found.states < 15
 
 
+@pytest.mark.parametrize("lower", [0.3, 1.0])
+def test_the_curve_of_higher_summits_leads_to_the_same_state(lower):
+    """As after pressing: at the distance where the summits rest that were there before, nothing touches."""
+    flat = np.minimum(rough(), rough().max() - np.float32(lower * NM))
+    adhesion, (distance, force) = adhesion_at(0.7), by_summits(0, 0.7)[2]
+    far = elements.at_rest(space_of(), flat, adhesion, (distance + 5 * NM, force))[0]
+    near = elements.at_rest(space_of(), flat, adhesion, (distance, force))[0]
+    assert far.energy(flat, adhesion) == pytest.approx(near.energy(flat, adhesion), rel=3e-3)
+    assert far.distance == pytest.approx(near.distance, abs=0.05 * NM)  # of a thousandth of the energy
+
+
 # What is refused
 
 

@@ -326,30 +326,30 @@ def _beyond_extremum(at, state, step, end):
 def _without_force(at, curve, energy):
     """State without force, and number of states; ``at(distance, before)`` is a state after another.
 
-    The curve of another model, shifted to the force of a state, leads to a change of sign, and secants to a force too
-    small to change the energy.
+    The curve of another model, shifted to the force of the first state, leads near it, steps to a change of sign, and
+    secants to a force too small to change the energy.
     """
-    state, ends, number = at(limit_distance(*curve, 0.0), None), {}, 1
+    state, ends, number, step = at(limit_distance(*curve, 0.0), None), {}, 1, _step(curve)
+    move = _shift(curve, state.force, step) or -step  # nothing touches or attracts there
     while True:
         ends[state.force > 0], last = state, state
         if len(ends) == 2:
             width, drop = ends[False].distance - ends[True].distance, ends[True].force - ends[False].force
-            distance = ends[True].distance + width * ends[True].force / drop
-        else:
-            distance = state.distance + _shift(curve, state.force)
-        state, number = at(distance, state), number + 1
-        stiffness = (last.force - state.force) / (state.distance - last.distance)
-        if 0.5 * state.force**2 <= ENERGY_LEFT * abs(energy(state)) * stiffness:
+            move = ends[True].distance + width * ends[True].force / drop - state.distance
+        state, number = at(state.distance + move, state), number + 1
+        stiffness = (last.force - state.force) / move
+        if 0.5 * state.force**2 < ENERGY_LEFT * abs(energy(state)) * stiffness:
             return state, number
+        move = step if state.force > 0 else -step
         _refuse_after(number)
 
 
-def _shift(curve, force):
+def _shift(curve, force, step):
     """Distance between a force and none in the curve of another model [m]; a step where the curve has no such force."""
     try:
         return limit_distance(*curve, 0.0) - limit_distance(*curve, force)
     except ValueError:
-        return np.sign(force) * _step(curve)
+        return step if force > 0 else -step
 
 
 def _refuse_after(states):
