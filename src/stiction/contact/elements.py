@@ -329,27 +329,31 @@ def _without_force(at, curve, energy):
     The curve of another model, shifted to the force of the first state, leads near it, steps to a change of sign, and
     secants to a force too small to change the energy.
     """
-    state, ends, number, step = at(limit_distance(*curve, 0.0), None), {}, 1, _step(curve)
-    move = _shift(curve, state.force, step) or -step  # nothing touches or attracts there
+    state, number, step = at(limit_distance(*curve, 0.0), None), 1, _step(curve)
+    ends = {state.force > 0: state}
+    move = _shift(curve, state.force, step)
     while True:
-        ends[state.force > 0], last = state, state
-        if len(ends) == 2:
-            width, drop = ends[False].distance - ends[True].distance, ends[True].force - ends[False].force
-            move = ends[True].distance + width * ends[True].force / drop - state.distance
-        state, number = at(state.distance + move, state), number + 1
-        stiffness = (last.force - state.force) / move
-        if 0.5 * state.force**2 < ENERGY_LEFT * abs(energy(state)) * stiffness:
+        before, state, number = state, at(state.distance + move, state), number + 1
+        ends[state.force > 0] = state
+        near, far = (ends[True], ends[False]) if len(ends) == 2 else (before, state)
+        width, drop = far.distance - near.distance, near.force - far.force
+        if width * drop > 0 and 0.5 * state.force**2 * width / drop < ENERGY_LEFT * abs(energy(state)):
             return state, number
-        move = step if state.force > 0 else -step
+        if len(ends) == 2:
+            move = near.distance + width * near.force / drop - state.distance
+        else:
+            move = step if state.force > 0 else -step
         _refuse_after(number)
 
 
 def _shift(curve, force, step):
-    """Distance between a force and none in the curve of another model [m]; a step where the curve has no such force."""
+    """Distance between a repulsive force and none in the curve of another model [m]; a step towards it from others."""
+    if force <= 0:
+        return -step
     try:
         return limit_distance(*curve, 0.0) - limit_distance(*curve, force)
     except ValueError:
-        return step if force > 0 else -step
+        return step  # no distance of the curve has this force
 
 
 def _refuse_after(states):
