@@ -12,8 +12,8 @@ from stiction.beam.cantilever import Beam
 from stiction.config import arrays
 from stiction.config.cases import PairInAir, case_id
 from stiction.config.kinds import ROUGHNESSES, Kind, kind_of
-from stiction.config.materials import material_of
 from stiction.config.measured import is_measured, preliminary_estimates, quantities
+from stiction.config.stated_materials import material_of
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope

@@ -18,8 +18,8 @@ import yaml
 from stiction.config import memory
 from stiction.config.cases import IN_HUMID_AIR, NAMEABLE, TOO_LITTLE, decimals
 from stiction.config.conditions import Keys, Relations
-from stiction.config.materials import hamaker_constants
 from stiction.config.messages import did_you_mean, duplicates, shown
+from stiction.config.stated_materials import hamaker_constants
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, in_si, to_si
 from stiction.contact.meniscus import dry_air, meniscus_height
 from stiction.devices import limits

@@ -14,7 +14,6 @@ from stiction.config.cases import in_air
 from stiction.config.conditions import Relations
 from stiction.config.device_plan import DevicePlan
 from stiction.config.kinds import COMMON, KEYS, KINDS, ROUGHNESSES, kind_of
-from stiction.config.materials import hamaker_constant
 from stiction.config.relations import (
     Meeting,
     above_zero,
@@ -36,6 +35,7 @@ from stiction.config.relations import (
     without_density,
     without_unique_names,
 )
+from stiction.config.stated_materials import hamaker_constant
 from stiction.config.units import NM_PER_UM
 from stiction.devices.materials import COATING_ATTRACTION, OF_CONTACT
 from stiction.surface.feasible import largest_kurtosis

@@ -11,7 +11,7 @@ import numpy as np
 
 from stiction.constants import HAMAKER_CONSTANT, HARDNESS
 from stiction.contact.asperity import Asperity, asperity, reduced_modulus
-from stiction.contact.vanderwaals import DugdaleAttraction, LayeredAttraction, attraction
+from stiction.contact.vanderwaals import DugdaleAttraction, LayeredAttraction, attraction, combined
 
 
 @dataclass(frozen=True)
@@ -62,13 +62,7 @@ def softer_hardness(first: Solid, second: Solid) -> float:
 
 
 def hamaker_constant(first: Solid, second: Solid, medium: str) -> float:
-    r"""Hamaker constant of two bodies through a medium, :math:`A_{132} = \sqrt{A_{131} A_{232}}` [J].
-
-    Bodies and medium have :math:`A_{131} = \bigl(\sqrt{A_{11}} - \sqrt{A_{33}}\bigr)^2` by their constants in vacuum
-    (J. N. Israelachvili, Intermolecular and Surface Forces, combining relations).
-
-    ASSUME: both bodies have a larger constant in vacuum than the medium; otherwise they may repel each other. The
-    combination is then exact in the approximation of Berthelot.
+    """Hamaker constant of two bodies through a medium, see `stiction.contact.vanderwaals.combined` [J].
 
     Raises
     ------
@@ -79,7 +73,7 @@ def hamaker_constant(first: Solid, second: Solid, medium: str) -> float:
         if medium not in solid.hamaker_constant:
             stated = ", ".join(solid.hamaker_constant)
             raise ValueError(f"the Hamaker constant of a solid through {medium} is not stated, only through {stated}")
-    return float(np.sqrt(first.hamaker_constant[medium] * second.hamaker_constant[medium]))
+    return combined(first.hamaker_constant[medium], second.hamaker_constant[medium])
 
 
 def interfaces(first: Solid, second: Solid, medium: str) -> tuple[tuple[float, float], ...]:
@@ -102,7 +96,7 @@ def interfaces(first: Solid, second: Solid, medium: str) -> tuple[tuple[float, f
     """
     hamaker_constant(first, second, medium)  # refuses a medium that is not stated
     pairs = product(_interfaces(first, medium), _interfaces(second, medium))
-    return tuple((float(np.sqrt(a * b)), s + t) for (a, s), (b, t) in pairs if a * b > 0)
+    return tuple((combined(a, b), s + t) for (a, s), (b, t) in pairs if a * b > 0)
 
 
 def _interfaces(solid, medium):

@@ -12,6 +12,18 @@ import numpy as np
 from stiction.constants import HAMAKER_CONSTANT, MOLECULAR_DISTANCE
 
 
+def combined(first: float, second: float) -> float:
+    r"""Hamaker constant of two different bodies, :math:`A_{132} = \sqrt{A_{131} A_{232}}`, in the unit of theirs.
+
+    Bodies and medium have :math:`A_{131} = \bigl(\sqrt{A_{11}} - \sqrt{A_{33}}\bigr)^2` by their constants in vacuum
+    (J. N. Israelachvili, Intermolecular and Surface Forces, combining relations).
+
+    ASSUME: both bodies have a larger constant in vacuum than the medium; otherwise they may repel each other. The
+    combination is then exact in the approximation of Berthelot.
+    """
+    return float(np.sqrt(first * second))
+
+
 @dataclass(frozen=True)
 class DugdaleAttraction:
     """Constant stress up to a cut-off distance; a `stiction.contact.asperity.Attraction`."""

@@ -4,17 +4,17 @@ The one module that decides which contacts a pair has in its airs. Their names, 
 humidities, are in `stiction.config.cases`.
 """
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
 from stiction.config.cases import TOO_LITTLE, PairInAir
-from stiction.config.materials import hamaker_constant, hamaker_constants
+from stiction.config.stated_materials import hamaker_constant, hamaker_constants
 from stiction.config.units import to_si
 from stiction.contact.meniscus import is_wetted
+from stiction.contact.vanderwaals import combined
 from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS
 from stiction.models import SIDES
-from stiction.plan.materials import Materials
+from stiction.plan.pair_materials import PairMaterials
 from stiction.plan.stage import chosen
 
 
@@ -26,7 +26,7 @@ class Air:
 
     @property
     def _materials(self):
-        return Materials(self.config)
+        return PairMaterials(self.config)
 
     def contact(self, pair: str, humidity: float) -> PairInAir:
         """Contact of a pair at a humidity: that in dry air where no water condenses.
@@ -87,7 +87,7 @@ class Air:
 
     def _hamaker_constant(self, pair, medium):
         """Hamaker constant of the two bodies of a pair through a medium [zJ]."""
-        return math.sqrt(math.prod(hamaker_constants(one)[medium] for one in self._materials.stated(pair)))
+        return combined(*(hamaker_constants(material)[medium] for material in self._materials.stated(pair)))
 
     def hamaker_constant(self, contact: str) -> float:
         """That of the two bodies of a contact, zero without van der Waals forces [zJ]."""

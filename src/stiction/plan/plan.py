@@ -16,7 +16,7 @@ from stiction.config.measured import is_measured, preliminary_estimates, quantit
 from stiction.devices.materials import ELASTIC
 from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SURFACE_MODELS
 from stiction.plan.air import Air
-from stiction.plan.materials import Materials
+from stiction.plan.pair_materials import PairMaterials
 from stiction.plan.paper import SUMMITS, PaperCase
 from stiction.plan.scans import Scans
 from stiction.plan.stage import chosen
@@ -36,9 +36,9 @@ class Plan:
         return DevicePlan(self.config)
 
     @cached_property
-    def materials(self) -> Materials:
+    def materials(self) -> PairMaterials:
         """Materials of the pairs."""
-        return Materials(self.config)
+        return PairMaterials(self.config)
 
     @cached_property
     def air(self) -> Air:
@@ -71,7 +71,7 @@ class Plan:
         return self.config["run"]["pairs"]
 
     def sides(self, pair: str) -> list[str]:
-        """As `stiction.plan.materials.Materials.sides`."""
+        """As `stiction.plan.pair_materials.PairMaterials.sides`."""
         return self.materials.sides(pair)
 
     def contact(self, case: Case) -> PairInAir:

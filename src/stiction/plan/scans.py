@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from stiction.config.measured import digest, evaluation, is_measured, source
-from stiction.plan.materials import Materials
+from stiction.plan.pair_materials import PairMaterials
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Scans:
 
     def sides(self, pair: str) -> list[str]:
         """Surfaces of a pair that are described by scans, each once."""
-        return [name for name in dict.fromkeys(Materials(self.config).sides(pair)) if name in self.surfaces]
+        return [name for name in dict.fromkeys(PairMaterials(self.config).sides(pair)) if name in self.surfaces]
 
     def files(self, surface: str) -> dict[str, str]:
         """Files of the scans of a surface, by number; none if it is described by numbers."""

@@ -21,7 +21,7 @@ from stiction.stages.beams.releases import ended, stuck_lengths
 #: Warnings by their subject, such as ``pair b, RH 0.67, G``.
 Warnings = dict[str, list[str]]
 #: Names of materials, each with the properties that are stated.
-Materials = Sequence[tuple[str, Sequence[str]]]
+StatedProperties = Sequence[tuple[str, Sequence[str]]]
 #: Plastic share of the contact area of a pair [-], and the mean pressure of its surfaces at which it is plastic [Pa].
 Plastic = tuple[float, float]
 NOT_STUDIED = (np.nan, np.nan)
@@ -50,7 +50,7 @@ def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
     return limits.given(*warnings)
 
 
-def contact_warnings(plastic: Plastic, materials: Materials, effect: str = limits.SHORTER) -> list[str | None]:
+def contact_warnings(plastic: Plastic, materials: StatedProperties, effect: str = limits.SHORTER) -> list[str | None]:
     """Warnings, or None, about the contact of a pair."""
     about = (limit(*material) for material in materials for limit in (limits.default_material, limits.spacer))
     return [limits.plastic_contact(*plastic, effect), *about]
@@ -66,7 +66,7 @@ def plastic_contact(plasticity: Mapping[str, xr.Dataset], pair: str) -> Plastic:
 def of_pairs(
     beams: Mapping[tuple[str, float, str], xr.Dataset],
     plasticity: Mapping[str, xr.Dataset],
-    materials: Mapping[str, Materials],
+    materials: Mapping[str, StatedProperties],
     settings: OfPairs,
 ) -> Warnings:
     """Warnings about the main line; plasticity is that of the pairs for which it was studied.

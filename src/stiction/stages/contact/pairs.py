@@ -21,7 +21,7 @@ from stiction.stages.surfaces.rough_surfaces import Sampling, Width, rough_surfa
 from stiction.streams import stream
 
 #: Materials of beam and substrate by side, where section ``solid`` does not hold for both.
-Materials = dict[str, Solid]
+SolidBySide = dict[str, Solid]
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Solids(Protocol):
 
     solid: Solid
     van_der_waals: str
-    materials: Materials
+    materials: SolidBySide
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Settings:
     contact: Contact
     beam: Width
     surfaces: tuple[str, ...] = ()  #: names of the two surfaces; they do not affect the results
-    materials: Materials = field(default_factory=dict)
+    materials: SolidBySide = field(default_factory=dict)
     tilt: Tilt | None = None  #: of the tips of beams, with the step of their distances; none for surfaces without slope
 
 

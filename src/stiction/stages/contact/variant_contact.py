@@ -10,7 +10,7 @@ from stiction.contact.solids import Solid
 from stiction.plan.stage import Stage
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import variant_summits
-from stiction.stages.contact.pairs import Materials, asperity_of
+from stiction.stages.contact.pairs import SolidBySide, asperity_of
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Settings:
 
     solid: Solid
     van_der_waals: str
-    materials: Materials = field(default_factory=dict)
+    materials: SolidBySide = field(default_factory=dict)
 
 
 def compute(summits: xr.Dataset, settings: Settings) -> xr.Dataset:

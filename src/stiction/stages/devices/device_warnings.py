@@ -18,8 +18,8 @@ from stiction.plan.stage import File, Stage, select
 from stiction.run.atomic import save_text
 from stiction.stages.beams.pair_warnings import (
     NOT_STUDIED,
-    Materials,
     Plastic,
+    StatedProperties,
     Warnings,
     as_markdown,
     contact_warnings,
@@ -34,7 +34,7 @@ class OfDevice:
     """A device and its pair."""
 
     device: DesignedBeam
-    materials: Materials = ()  #: of its pair
+    materials: StatedProperties = ()  #: of its pair
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class OfStopper:
     contact: tuple[float, float]  #: sides of the patch [m]
     humidities: tuple[float, ...]  #: of the stopper [-]
     worst_humidities: tuple[float, float]  #: ends of the axis along which the worst humidity is sought [-]
-    materials: Materials = ()  #: of its pair
+    materials: StatedProperties = ()  #: of its pair
 
 
 def of_device(

@@ -8,8 +8,8 @@ from typing import Any
 
 from stiction.config.cases import Case
 from stiction.config.device_plan import OF_TIPS, Patch
-from stiction.config.materials import hamaker_constants
 from stiction.config.merging import merged
+from stiction.config.stated_materials import hamaker_constants
 from stiction.config.units import NM_PER_UM
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import SHIFTS, SIDES

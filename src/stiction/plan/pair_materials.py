@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from stiction.config.cases import PairInAir
 from stiction.config.files import paper
-from stiction.config.materials import material_of
+from stiction.config.stated_materials import material_of
 from stiction.devices.materials import COATING, OF_COATINGS, PROPERTIES
 from stiction.models import SIDES
 from stiction.plan.stage import chosen
@@ -15,7 +15,7 @@ _POLYSILICON = 0.1
 
 
 @dataclass(frozen=True)
-class Materials:
+class PairMaterials:
     """Materials of both surfaces of a pair, named by itself or by its contact in some air."""
 
     config: dict  #: complete and valid
