@@ -1,5 +1,6 @@
 """The example of devices, with small samples: it runs, and the library gives the same numbers without files."""
 
+import json
 import re
 
 import pytest
@@ -64,6 +65,15 @@ def test_every_device_has_a_page_and_every_table_and_figure_is_there(run):
     assert {path.stem for path in (results / "tables").glob("*.html")} == tables
     figures = {"risk", "chart", "stoppers", *(f"budget_{device}" for device in ("C1", "R1", "S1"))}
     assert {path.stem for path in (results / "figures").glob("*.png")} == figures
+
+
+def test_every_page_states_the_run_and_the_commit_that_made_it(run):
+    (record,) = json.loads((run / "results" / "provenance.json").read_text(encoding="utf-8"))
+    code = f"commit {record['git']['commit']}" if record["git"] else "installed"
+    for path in (run / "results" / "devices").glob("*.html"):
+        page = path.read_text(encoding="utf-8")
+        assert f"Made by the run of {record['started'][:10]}" in page
+        assert code in page
 
 
 def test_warnings_of_all_devices_are_listed_and_the_plasticity_of_their_pair_is_checked(run):

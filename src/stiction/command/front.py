@@ -4,7 +4,6 @@ import csv
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from datetime import datetime
 from html import escape, unescape
 from itertools import groupby
 from pathlib import Path
@@ -15,6 +14,7 @@ import yaml
 from stiction.config.cases import air
 from stiction.config.files import paper
 from stiction.report.format import with_error
+from stiction.run import made
 
 #: Where the command leaves the page for Snakemake, relative to the folder of the run.
 FRONT = Path(".snakemake", "front.rst")
@@ -128,20 +128,12 @@ def _warnings(results, config):
 
 def provenance(run: Mapping[str, Any], number: int) -> Iterator[str]:
     """Date, code, machine and scans of a run from its record, the last of a number of runs."""
-    versions, git = run["versions"], run["git"]
-    package = " ".join(filter(None, ["stiction", versions.get("stiction")]))
     before = f", the last of {number} runs" if number > 1 else ""
-    started = f"{datetime.fromisoformat(run['started']):%Y-%m-%d %H:%M %Z}"
-    yield f"Started {started}{before}; all are in results/provenance.json."
-    if git is None:
-        yield f"{package}, installed"
-    else:
-        yield f"{package}, commit {git['commit']}"
-        for kind in ("changed", "untracked"):
-            if git[kind]:
-                yield f"Files that are {kind} in its folder: {', '.join(git[kind])}"
+    yield f"Started {made.started(run)}{before}; all are in results/provenance.json."
+    yield from made.code(run)
     yield f"{run['machine']['system']}, {run['machine']['cpu']}, {run['machine']['cores']} cores"
-    yield ", ".join(f"{name} {version}" for name, version in versions.items() if version and name != "stiction")
+    libraries = {name: version for name, version in run["versions"].items() if version and name != "stiction"}
+    yield ", ".join(f"{name} {version}" for name, version in libraries.items())
     for name, surface in run["config"]["surfaces"].items():
         if "scans" in surface:
             yield f"Scans of {name}: {', '.join(Path(file).name for file in surface['scans']['files'])}"

@@ -1,6 +1,7 @@
 """Pages of devices show the answer, the numbers of the datasets, figures and warnings."""
 
 import base64
+import json
 import re
 
 import numpy as np
@@ -228,6 +229,23 @@ def test_a_long_table_is_folded():
     silent |= {("C1", *curve): [] for curve in device_warnings.curves(charted(0.5))}
     page = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, charts, {}, silent).html
     assert page.count("<details><summary>Table of 72 rows</summary>") == 1
+
+
+def test_a_saved_page_ends_with_date_version_and_commit_of_the_last_run_and_differs_in_nothing_else(tmp_path):
+    save, page, lines = pages.STAGES[0].save, Page("S1", {}, ["Build it."]), []
+    for day, commit in (("01", "abc"), ("02", "def")):
+        runs = [{"started": f"2026-03-{day}T08:30:59+00:00", "versions": {"stiction": "1.2"}} for day in ("31", day)]
+        runs[0]["git"], runs[1]["git"] = None, {"commit": commit, "changed": ["law.py"], "untracked": []}
+        (tmp_path / "provenance.json").write_text(json.dumps(runs))
+        save(page, {"html": str(tmp_path / "devices" / "S1.html")})
+        lines.append((tmp_path / "devices" / "S1.html").read_text(encoding="utf-8").splitlines())
+        for part in (
+            f"run of 2026-03-{day} 08:30 UTC.",
+            f"stiction 1.2, commit {commit}.",
+            "changed in its folder: law.py",
+        ):
+            assert part in "".join(lines[-1])
+    assert sum(one != other for one, other in zip(*lines, strict=True)) == 2
 
 
 def test_text_is_escaped():

@@ -2,8 +2,9 @@
 
 import base64
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from html import escape
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -28,6 +29,7 @@ from stiction.report.devices import (
 )
 from stiction.report.format import MISSING, UM, UN, airs, humidity_text
 from stiction.report.style import STYLE, png
+from stiction.run import made
 from stiction.run.atomic import save_text
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings
@@ -55,8 +57,6 @@ dt {{ font-weight: bold }} dd {{ margin: 0 0 .5em 1.5em }}
 </style>
 <h1>{title}</h1>
 {body}
-<p class="made">Date, commit, libraries and configuration of every run are in
-<code>results/provenance.json</code>; this page has no date, so that equal results give equal pages.</p>
 </html>
 """
 #: Pixels of a page for one inch of a figure, and most rows of a table that is not folded.
@@ -83,13 +83,14 @@ class Page:
     sections: Sequence[Section] = ()
     warnings: Sequence[str] = ()  #: where the model ends for this device
     words: Mapping[str, str] = field(default_factory=dict)  #: terms and what they mean
+    made: Sequence[str] = ()  #: when and by which code
 
     @property
     def html(self) -> str:
         """The page as one file: figures are part of it."""
         parts = [_answer(self.answer), _facts(self.facts), *map(_section, self.sections)]
         parts += ["<h2>Limits of this prediction</h2>", _block("warning", [*self.warnings, NOT_MODELLED])]
-        parts += ["<h2>Terms</h2>", _words(self.words)]
+        parts += ["<h2>Terms</h2>", _words(self.words), _block("made", self.made)]
         return _PAGE.format(title=escape(self.title), body="\n".join(parts))
 
 
@@ -555,6 +556,15 @@ def _page(data, at, settings):
     return of_beam(at.device, settings, lengths, charts, budgets, limits, **more)
 
 
+def _save(page, paths):
+    """Write a page with the date and the code of the last run.
+
+    Its record is no input of the page, so that a run with nothing else to do keeps page and date.
+    """
+    record = Path(paths["html"]).parents[1] / "provenance.json"
+    save_text(replace(page, made=made.by_the_last_run(record)).html, paths["html"])
+
+
 STAGES = (
     Stage(
         name="device_page",
@@ -562,7 +572,7 @@ STAGES = (
         inputs=_inputs,
         settings=_settings,
         compute=_page,
-        save=lambda page, paths: save_text(page.html, paths["html"]),
+        save=_save,
         shown=Shown(file="html", title="{device}: what to build", category="Devices"),
         message="Page of device {device}.",
         jobs=lambda plan: [{"device": name} for name in plan.devices.sections],
