@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.equilibrium import ROUNDING, TOLERANCE
-from stiction.contact.environment import Water
+from stiction.contact.environment import Gaps, Water
 from stiction.contact.meniscus import flooded_energy
 from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.report import checks
@@ -79,7 +79,7 @@ def test_energies_of_the_same_surfaces_are_compared_pair_by_pair():
 
 def test_air_drier_than_in_any_experiment_is_not_checked_for_growth():
     dry = {(0.1, "NG"): 9, (0.3, "NG"): 5, (0.5, "NG"): 7, (0.7, "NG"): 8}
-    found = list(checks.of_trends(study(dry), []))
+    found = list(checks.of_trends(study(dry), [], ["b"]))
     assert [check.case for check in found] == ["b NG, RH 0.5 to 0.7"]
 
 
@@ -132,10 +132,23 @@ def test_no_sample_may_have_more_energy_than_flooded_flats_and_solids_in_contact
     bound = flooded_energy(300.0) + solids / spacing**2
     assert_allclose([flooded.energy(0.44), flooded.energy(0.9)], bound, rtol=1e-9)
     below, above = (forces(1e3 * bound * factor, scatter=0) for factor in (0.99, 1.01))
-    assert checks.energies_are_bounded("b", below, flooded.energy(0.44)).passed
-    assert not checks.energies_are_bounded("b", above, flooded.energy(0.44)).passed
+    assert checks.energies_are_bounded("b", below, 0.44, flooded).passed
+    assert not checks.energies_are_bounded("b", above, 0.44, flooded).passed
     one = forces(6.0, adhesion_energy=1.01 * bound)  # a single sample among 400
-    assert not checks.energies_are_bounded("b", one, flooded.energy(0.44)).passed
+    assert not checks.energies_are_bounded("b", one, 0.44, flooded).passed
+
+
+def test_flats_in_dry_air_and_those_that_no_water_wets_are_not_called_flooded():
+    gaps = Gaps({"dry": 18.65e-20}, "dry")
+    wetted, wax = (0.0, 0.0), (2.0, 2.0)
+    for humidity, angles, words in (
+        (0.5, wetted, "flooded flats"),
+        (0.0, wetted, "flats in contact"),
+        (0.5, wax, "flats in contact"),
+    ):
+        found = checks.energies_are_bounded("b", forces(6.0), humidity, checks.Flooded(Water(300.0, angles, gaps), 0.0))
+        assert found.name == f"energies are below those of {words}"
+        assert words in found.message
 
 
 def test_chaos_model_may_deviate_by_its_tolerance_and_no_more():
@@ -283,14 +296,20 @@ def study(energies):
 
 
 def test_trends_compare_neighbouring_humidities_and_both_height_models():
-    found = list(checks.of_trends(study({(0.8, "NG"): 9, (0.5, "NG"): 5, (0.8, "G"): 3, (0.5, "G"): 1}), ["b"]))
+    found = list(checks.of_trends(study({(0.8, "NG"): 9, (0.5, "NG"): 5, (0.8, "G"): 3, (0.5, "G"): 1}), ["b"], ["b"]))
     assert [check.name.split()[0] for check in found] == ["energy", "energy", "scatter", "negative", "negative"]
     assert all(check.passed for check in found)
 
 
 def test_surfaces_that_are_not_skewed_negatively_need_not_adhere_more():
-    found = list(checks.of_trends(study({(0.8, "NG"): 3, (0.8, "G"): 9}), []))
+    found = list(checks.of_trends(study({(0.8, "NG"): 3, (0.8, "G"): 9}), [], ["b"]))
     assert not found
+
+
+def test_surfaces_that_no_water_wets_need_not_adhere_more_in_humid_air():
+    same = study({(0.8, "NG"): 3, (0.5, "NG"): 3})
+    assert not any(check.passed for check in checks.of_trends(same, [], ["b"]) if "grows" in check.name)
+    assert not list(checks.of_trends(same, [], []))
 
 
 def test_verdict_lists_failed_checks_and_the_report_every_number():

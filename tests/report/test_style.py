@@ -10,10 +10,13 @@ import pandas as pd
 import pytest
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.container import ErrorbarContainer
+from plans import job_settings
 from published import SURFACES
 
 from stiction.beam.cantilever import Beam
+from stiction.config.files import load
 from stiction.contact import forcelaw
+from stiction.plan.plan import Plan
 from stiction.report.figures_beams import adhesion_energies, beam_shapes, converted
 from stiction.report.figures_forces import fitted_curve, force_curves, typical
 from stiction.report.figures_surfaces import elevation_maps, height_densities, profiles, spectra, summits
@@ -463,6 +466,17 @@ def test_every_pair_has_the_energy_of_its_own_flat_surfaces(pairs, published):
     shown = [curve(axes, "flat surfaces in saturated air")[1] for axes in figure.axes]
     np.testing.assert_allclose(np.mean(shown, axis=1), np.repeat([1e3 * flat[pair] for pair in pairs], 2))  # mJ/m²
     assert len(set(flat.values())) > 1
+
+
+def test_surfaces_in_dry_air_alone_have_no_flats_in_saturated_air(pairs, published):
+    panel = adhesion_energies(pairs, published, {}).axes[0]
+    assert {line.get_label() for line in panel.lines} & {
+        "crack as long as the beam",
+        "flat surfaces in saturated air",
+    } == {"crack as long as the beam"}
+    dry = {"humidities": ["dry"], "beam": "B2", "substrate": "Sub1", "gap_um": 20}
+    plan = Plan(load({"attraction": {"reach": "all"}, "pairs": {"mine": dry}, "run": {"pairs": ["b", "mine"]}}))
+    assert list(job_settings(plan, "figures/figure_15.pdf")["water"]) == ["b"]
 
 
 def test_markers_of_models_do_not_cover_the_measured_values(drawn):

@@ -145,9 +145,10 @@ def filled_gap(gap: float, film: float, rms: float) -> str | None:
     """Gap that is not much wider than film h_C and roughness, so that beam and film are not apart."""
     if gap >= least_gap(film, rms):
         return None
+    what, acts = ("sum of film height and roughness", "water") if film else ("roughness", "attraction across gaps")
     return (
-        f"The gap of {gap * 1e6:.3g} µm is less than {FILMS} times the sum of film height and roughness, "
-        f"{(film + rms) * 1e9:.3g} nm: the water acts on the beam ahead of its contact, too."
+        f"The gap of {gap * 1e6:.3g} µm is less than {FILMS} times the {what}, "
+        f"{(film + rms) * 1e9:.3g} nm: the {acts} acts on the beam ahead of its contact, too."
     )
 
 

@@ -12,7 +12,7 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
-from stiction.contact.meniscus import flooded_energy, is_wetted
+from stiction.contact.meniscus import flooded_energy
 from stiction.models import SURFACE_MODELS
 from stiction.plan.names import by_model, by_outcome
 from stiction.report import published
@@ -115,7 +115,7 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
     published : pandas.DataFrame
         The published Table III, rows of the paper's own pairs.
     flat : dict
-        Pair to the adhesion energy of its flats in saturated air, zero where no water condenses [J m⁻²].
+        Pair to the adhesion energy of its flats in saturated air [J m⁻²]; pairs in dry air alone are missing.
     """
     figure, axes, rows_of_pairs = _rows_of_panels(pairs, published)
     for (row, below), (pair, (beam, released, bands)) in zip(rows_of_pairs, pairs.items(), strict=True):
@@ -124,11 +124,11 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
         placed = places([*(humidity for humidity, _ in released), *known.relative_humidity])
         released = {(placed[humidity], model): beams for (humidity, model), beams in released.items()}
         lowest = min([weakest, *(float(axis.energy_quantile.sel(probability=0.5).min()) for axis in bands.values())])
-        highest = max(2 * flat[pair], 2 * weakest, *map(_reach, released.values()))
+        highest = max(2 * flat.get(pair, 0.0), 2 * weakest, *map(_reach, released.values()))
         row[0].set(yscale="log", ylim=(TO_MJ * lowest / 2, TO_MJ * highest))
         row[0].set_ylabel(r"adhesion energy $\Gamma$ [mJ/m²]")
         for panel, models in zip(row, _COLUMNS, strict=True):
-            _bounds(panel, flat[pair], weakest)
+            _bounds(panel, flat.get(pair), weakest)
             for surface in sorted(bands.keys() & (SURFACE_MODELS if "G" in models else ("NG",))):
                 _band(panel, bands[surface], surface)
             _known(panel, known, beam, models)
@@ -199,7 +199,7 @@ def _aside(panel, points):
 
 
 def _bounds(panel, flat, weakest):
-    """Energy of flat surfaces in saturated air and of the longest crack that fits into the beam [J m⁻²]."""
+    """Energy of flat surfaces in saturated air, if any, and of the longest crack that fits into the beam [J m⁻²]."""
     style = {"color": "black", "linewidth": 0.8}
     if flat:
         panel.axhline(TO_MJ * flat, linestyle="-.", label="flat surfaces in saturated air", **style)
@@ -287,10 +287,7 @@ def _adhesion_energies(data, _at, settings):
     """Energies of all pairs over the humidity, with the published and measured ones."""
     nominal = in_si(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
     waters = {pair: in_si(Water, water) for pair, water in settings["water"].items()}
-    flat = {
-        pair: flooded_energy(water.temperature, water.contact_angles) if is_wetted(water.contact_angles) else 0.0
-        for pair, water in waters.items()
-    }
+    flat = {pair: flooded_energy(water.temperature, water.contact_angles) for pair, water in waters.items()}
     pairs = {}
     for pair in settings["pairs"]:
         released = {key[1:]: beams for key, beams in data["beams"].items() if key[0] == pair}
@@ -321,7 +318,7 @@ STAGES = (
         },
         settings=lambda plan, at: (
             {"of_paper": plan.paper.pairs}
-            | {"water": {pair: plan.air.water(pair) for pair in plan.pairs}}
+            | {"water": {pair: plan.air.water(pair) for pair in plan.humid_pairs}}
             | sections(plan, *plan.pairs)
         ),
         compute=_adhesion_energies,

@@ -36,6 +36,7 @@ def charted(humidity, factor=1.0, error=0.004):
             "flooded_length": (("thickness", "gap", "shape"), limits),
             "by_elements": (("thickness", "gap"), [[1, 0], [1, 1]]),
             "power_law_error": error,
+            "film": 1e-9 if humidity else 0.0,
             "humidity": humidity,
         },
         coords={"thickness": [2e-6, 3e-6], "gap": [10e-6, 20e-6], "shape": [S_SHAPE, EITHER], "share": [1e-2, 1e-3]},

@@ -1,5 +1,6 @@
 """Devices in dry air: contacts of their own, no inputs of the air, a row and a point beside the axis for dry air."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -204,6 +205,22 @@ def test_a_stopper_in_dry_air_alone_is_in_no_humid_air(grounds):
         assert f"force of {1e6 * restoring:g} µN {verdict}" in page
         assert "humidity of" not in page.replace("Humidity of the largest", "")
         assert "In dry air, " in page
+        assert "orst" not in page
+    alone = tables_budget.stoppers({"S1": layout}, {"S1": []})
+    assert list(alone.cells.RH) == ["dry"]
+    assert "worst RH" not in alone.cells
+    assert "axis" not in alone.caption
+    both = tables_budget.stoppers({"S1": layout, "S2": humid_layout()}, {"S1": [], "S2": []})
+    assert list(both.cells.RH) == ["dry", "0.67", "0.6 to 0.9"]
+    assert list(both.cells["worst RH"])[0] == "dry"
+    assert "One in dry air alone has no such row." in both.caption
+
+
+def humid_layout():
+    """Dataset of a stopper that is in humid air alone."""
+    settings, axis = replace(SETTINGS, humidities=(0.67,)), stoppers.fine_axis(0.6, 0.9)
+    forces = np.outer(axis, 5e-8 * np.arange(1, 401))
+    return stoppers.layout(settings, forces[:1], axis, forces)
 
 
 # Bounds and budgets
@@ -248,11 +265,48 @@ def test_tables_print_dry_and_their_numbers_are_those_of_humidity_zero():
     table = tables_devices.safe_lengths(cases, warnings)
     assert list(dict.fromkeys(table.cells.RH)) == ["dry", "0.67"]
     assert set(table.frame.relative_humidity) == {0.0, 0.67}
-    assert "In dry air, the bound" in table.caption
     assert "dry" in [text.get_text() for text in figures_devices.risk(cases, warnings).axes[0].get_legend().texts]
     budgets = tables_budget.budget({("C1", 0.0): budget_dataset(), ("C1", 0.67): budget_dataset()})
     assert "C1, dry: " in budgets.caption
     assert set(budgets.cells.RH) == {"dry", "0.67"}
+
+
+def without_water(dataset):
+    """The same where no water condenses: in dry air, or because it does not wet the surfaces."""
+    return dataset.assign(film=0.0)
+
+
+TIPS = safe_with_tips(2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(400)))
+
+
+def captions(datasets):
+    """Captions of the tables of a device and the page, of datasets of stages safe_lengths and chart by humidity."""
+    shapes = [str(shape) for shape in TIPS["shape"].values]
+    warnings = {("C1", humidity, shape): [] for humidity in datasets for shape in shapes}
+    warnings |= {("C1", t, g, s): [] for t in (2e-6, 3e-6) for g in (10e-6, 20e-6) for s in shapes}
+    charts = {humidity: charted(humidity).assign(film=dataset.film) for humidity, dataset in datasets.items()}
+    section = CANTILEVER | {"humidities": list(datasets)}
+    return (
+        tables_devices.safe_lengths({("C1", humidity): one for humidity, one in datasets.items()}, warnings).caption,
+        tables_devices.chart({("C1", humidity): one for humidity, one in charts.items()}, warnings).caption,
+        pages.of_beam("C1", section, datasets, charts, {}, warnings).html,
+    )
+
+
+@pytest.mark.parametrize("humidity", [0.0, 0.67])
+def test_nothing_is_said_of_water_that_fills_gaps_where_none_condenses(humidity):
+    for text in captions({humidity: without_water(TIPS)}):
+        assert "flats in contact" in text
+        assert not [word for word in ("saturated", "flooded", "fills", "at this humidity") if word in text]
+
+
+def test_bounds_in_both_airs_are_told_apart():
+    for text in captions({0.0: without_water(TIPS), 0.67: TIPS}):
+        assert "where water fills all gaps" in text
+        assert re.search("(Where no water condenses, bounds are those|In dry air: that) of flats in contact", text)
+    for text in captions({0.67: TIPS}):
+        assert "Where no water" not in text
+        assert "Dry air" not in text
 
 
 def test_a_chart_shows_dry_air_beside_the_axis_and_no_line_leads_there():

@@ -157,17 +157,19 @@ _OF_BEAMS = {
         "What a length rests on: simulated beams alone; a line through the shortest 5 % of them, within what many more "
         "beams, tips and bridges on the surfaces of the paper's pair b confirmed; or that line beyond it."
     ),
-    "Bound": (
-        "Of a cantilever: the length that sticks where water fills all gaps. A single tip may hold a shorter one, "
-        "where its roughness follows its slope. Of a bridge: the length up to which no surfaces hold it at this "
-        "humidity, not even flooded flats in contact."
-    ),
 }
+_BOUND = (
+    "Of a cantilever: the length that sticks where water fills all gaps. A single tip may hold a shorter one, "
+    "where its roughness follows its slope. Of a bridge: the length up to which no surfaces hold it at this "
+    "humidity, not even flooded flats in contact."
+)
+_DRY_BOUND = (
+    "Of a cantilever: the length that sticks on flats in contact. A single tip may hold a shorter one, where its "
+    "roughness follows its slope. Of a bridge: the length up to which no surfaces hold it, not even flats in contact."
+)
+_WHERE_DRY = "In dry air: that of flats in contact."
 _IN_DRY_AIR = {
-    "Dry air": (
-        "No water condenses: the surfaces attract each other alone, where they touch and across gaps. The bound of a "
-        "cantilever is then the length that sticks on flats in contact."
-    ),
+    "Dry air": "No water condenses: the surfaces attract each other alone, where they touch and across gaps.",
 }
 _OF_CHARTS = {
     "Finite elements, power law": (
@@ -186,8 +188,8 @@ _OF_STOPPERS = {
         "Restoring force that is exceeded by the pull-off force of at most the stated share of stoppers, with a "
         "confidence of 95 %."
     ),
-    "Worst humidity": "Humidity of the largest mean pull-off force. Wetter air wets more area, but pulls less.",
 }
+_WORST = {"Worst humidity": "Humidity of the largest mean pull-off force. Wetter air wets more area, but pulls less."}
 _OF_BUDGETS = {
     "Effect": "Standard uncertainty of the result due to one measurement, if all others were exact.",
     "Remaining": "Standard uncertainty of the result if this measurement were exact.",
@@ -257,7 +259,8 @@ def of_beam(
     words = (
         held
         | _OF_BEAMS
-        | (_IN_DRY_AIR if 0 in found else {})
+        | {"Bound": tables_devices.about_bounds(found, _BOUND, _DRY_BOUND, _WHERE_DRY)}
+        | (_IN_DRY_AIR if any(float(dataset.film) == 0 for dataset in found.values()) else {})
         | (_OF_CHARTS if charts else {})
         | _words_of_budgets(budgets)
     )
@@ -286,7 +289,7 @@ def of_stopper(
     answer += [stuck_sentence(*row, force=float(found.restoring_force)) for row in shares_stuck(found)]
     worst = [worst_sentence(found)] if ends(found) else []
     answer += [*safe_force_sentences(found), *worst, *model_errors.sentences(name, errors)]
-    words = _OF_STOPPERS | _words_of_budgets(budgets)
+    words = _OF_STOPPERS | (_WORST if worst else {}) | _words_of_budgets(budgets)
     return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
 
 

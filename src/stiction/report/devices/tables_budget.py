@@ -19,7 +19,7 @@ from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, response_of
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import FORCE
-from stiction.stages.devices.stoppers import in_any_air, is_at_an_end, shares_stuck
+from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
 
 #: Rows of a budget below those of its measurements.
 TOTAL, INDEPENDENT, SCATTER = "total", "total, if all errors were independent", "scatter between devices"
@@ -67,24 +67,33 @@ def stoppers(
         "standard deviation over the patches; "
         "P(stuck): share of the patches that hold more than the restoring force, with its 95 % band; safe force: "
         "restoring force that is exceeded by the pull-off force of at most this share of all patches, with 95 % "
-        "confidence; – where there are too few patches. The last row of a stopper has the largest values along a fine "
-        "axis of humidities. Worst RH: humidity of the largest mean pull-off force along this axis."
+        "confidence; – where there are too few patches."
     )
-    if any(dataset.axis[0] == 0 for dataset in datasets.values()):
+    humid = [dataset for dataset in datasets.values() if ends(dataset)]
+    if humid:
+        caption += (
+            " The last row of a stopper has the largest values along a fine axis of humidities. Worst RH: humidity "
+            "of the largest mean pull-off force along this axis."
+        )
+    if any(dataset.axis[0] == 0 for dataset in humid):
         caption += " For a stopper in dry air as well, this is one of them."
+    if 0 < len(humid) < len(datasets):
+        caption += " One in dry air alone has no such row."
     listed = [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found]
     said = [caption, *([beside.caption(errors)] if errors else []), NOT_MODELLED, *(["Warnings:"] if listed else [])]
-    columns = _columns_of_stoppers(rows) | (beside.COLUMN if errors else {})
+    columns = _columns_of_stoppers(rows) | (_WORST if humid else {}) | (beside.COLUMN if errors else {})
     return Table.of(rows, with_list(" ".join(said), listed), columns)
 
 
 def _of_stopper(device, dataset):
-    """Numbers of one stopper at each of its humidities."""
+    """Numbers of one stopper at each of its humidities and, in humid air, the largest along its fine axis."""
     for humidity, *stuck in shares_stuck(dataset):
         forces = dataset.pull_off.sel(humidity=humidity).values / UN
         pull = *mean_with_error(forces), forces.std(ddof=1)
         safe = dataset.safe_force.sel(humidity=humidity, part="safe")
         yield {"device": device, "relative_humidity": humidity} | _stopper(dataset, pull, stuck, safe)
+    if not ends(dataset):
+        return
     worst = dataset.isel(axis=int(dataset.mean_along.argmax("axis")))
     pull = float(worst.mean_along) / UN, float(worst.mean_along_error) / UN, np.nan
     yield {"device": device, "relative_humidity": np.nan} | _stopper(dataset, pull, *in_any_air(dataset))
@@ -111,7 +120,6 @@ def _columns_of_stoppers(rows):
         "restoring force [µN]": ("g", "restoring_force_uN"),
         "P(stuck) [%]": (percentage, "share_stuck", "share_stuck_low", "share_stuck_high"),
         **{f"safe force, {name.rpartition('_')[2]} [µN]": (".3g", name) for name in names},
-        "worst RH": (worst_humidity, "worst_humidity", "worst_humidity_se", "worst_is_an_end"),
     }
 
 
@@ -144,6 +152,9 @@ def worst_humidity(humidity: float, error: float, is_an_end: bool) -> str:
     if not humidity:
         return humidity_text(humidity)
     return f"{humidity:g} or beyond" if is_an_end else with_error(humidity, error)
+
+
+_WORST = {"worst RH": (worst_humidity, "worst_humidity", "worst_humidity_se", "worst_is_an_end")}
 
 
 # Budget

@@ -1,6 +1,7 @@
 """Tables of devices: lengths of beams that come free, at their humidities and along the axes of charts."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -24,22 +25,38 @@ _SAFE_LENGTHS = (
     "middle. Estimate: length at "
     "which a share p sticks, with its standard errors due to the number of beams and to that of sampled surfaces. "
     "Every beam has its own tip, whose scatter is part of the first. Basis: sampled, by order statistics; fitted, by "
-    "a line through the shortest 5 %; extrapolated, beyond what was verified. Bound: for a cantilever, the length that "
+    "a line through the shortest 5 %; extrapolated, beyond what was verified."
+)
+_BOUND = (
+    "Bound: for a cantilever, the length that "
     "sticks in saturated air, where water fills all gaps; for a bridge, the length below which even flooded flats in "
     "contact do not hold its middle at this humidity, on which this bound depends, and up to which it is safe. That of "
     "a tip bounds tips on average: if roughness follows its slope, a single one holds harder than flooded flats, and "
     "a line through the lengths of few beams ends below."
 )
+_DRY_BOUND = (
+    "Bound: for a cantilever, the length that sticks on flats in contact, as no water condenses; for a bridge, the "
+    "length below which even such flats do not hold its middle, and up to which it is safe. That of a tip bounds tips "
+    "on average: if roughness follows its slope, a single one holds harder than flats, and a line through the lengths "
+    "of few beams ends below."
+)
 _CHART = (
     "Safe length of beams of the thicknesses and gaps of a chart over the relative humidity: the largest length at "
     "which, with a confidence of 95 % given the drawn surfaces, at most a share p sticks. From: finite elements, or a "
-    "power law between them, with its largest error at beams to which it was not fitted. Bound: for a cantilever, the "
-    "length that sticks where water fills all gaps; for a bridge, that below which even flooded flats do not hold its "
-    "middle at this humidity. A single rough tip may hold a shorter beam than flooded flats do. The warnings are about "
-    "the shortest length of each thickness and gap."
+    "power law between them, with its largest error at beams to which it was not fitted."
 )
-#: Ends a caption if a device is in dry air.
-_IN_DRY_AIR = " In dry air, the bound of a cantilever is the length that sticks on flats in contact."
+_CHART_BOUND = (
+    "Bound: for a cantilever, the "
+    "length that sticks where water fills all gaps; for a bridge, that below which even flooded flats do not hold its "
+    "middle at this humidity. A single rough tip may hold a shorter beam than flooded flats do."
+)
+_DRY_CHART_BOUND = (
+    "Bound: for a cantilever, the length that sticks on flats in contact, as no water condenses; for a bridge, that "
+    "below which even such flats do not hold its middle. A single rough tip may hold a shorter beam than flats do."
+)
+_CHART_WARNINGS = "The warnings are about the shortest length of each thickness and gap."
+#: Ends what is said about bounds if water condenses in some cases only.
+_WHERE_DRY = "Where no water condenses, bounds are those of flats in contact."
 
 
 def safe_lengths(
@@ -58,15 +75,21 @@ def safe_lengths(
             rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
-    text, columns = _with_dry_air(_SAFE_LENGTHS, found), _LENGTHS
+    text, columns = f"{_SAFE_LENGTHS} {about_bounds(found, _BOUND, _DRY_BOUND, _WHERE_DRY)}", _LENGTHS
     if errors:
         text, columns = f"{text} {beside.caption(errors)}", columns | beside.COLUMN
     return Table(frame, _caption(text, warnings), as_text(frame, columns).assign(warnings=marks))
 
 
-def _with_dry_air(text, found):
-    """Text with what is different in dry air, if a device is in it."""
-    return text + (_IN_DRY_AIR if any(humidity == 0 for _, humidity in found) else "")
+def about_bounds(found: Mapping[Any, xr.Dataset], humid: str, dry: str, where_dry: str) -> str:
+    """What the bounds of some cases are: of humid air, with what is different where no water condenses, or of dry air.
+
+    Cases have datasets with the height of their film, which is zero where no water condenses.
+    """
+    without_water = [float(one.film) == 0 for one in found.values()]
+    if all(without_water):
+        return dry
+    return f"{humid} {where_dry}" if any(without_water) else humid
 
 
 def _caption(text, warnings):
@@ -126,7 +149,9 @@ def chart(
             lengths = dict(zip(one.share.values.tolist(), one.safe_length.values / UM, strict=True))
             rows += [beam | {"share": share, "safe_length_um": length} | last for share, length in lengths.items()]
             cells.append(_beam_as_text(beam, lengths) | marks)
-    return Table(pd.DataFrame(rows), _caption(_with_dry_air(_CHART, found), warnings), pd.DataFrame(cells))
+    bounds = about_bounds(found, _CHART_BOUND, _DRY_CHART_BOUND, _WHERE_DRY)
+    text = " ".join([_CHART, bounds, _CHART_WARNINGS])
+    return Table(pd.DataFrame(rows), _caption(text, warnings), pd.DataFrame(cells))
 
 
 def _beam(one):
