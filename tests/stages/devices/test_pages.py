@@ -76,7 +76,7 @@ def test_a_worst_humidity_at_the_end_is_stated_as_one():
     )
 
 
-def test_the_second_sentence_of_a_page_names_the_roughness_that_was_asked_for():
+def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_second_sentence():
     asked = OfStopper(water=Water(300.0), humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6)
     forces = {rms: 1e-6 * (4e-9 / rms) ** 3 for rms in (2e-9, 8e-9, 3.4e-9)}
     responses = {
@@ -84,8 +84,16 @@ def test_the_second_sentence_of_a_page_names_the_roughness_that_was_asked_for():
     }
     points = [curves.layout([[one]], [""], rms, 400, asked) for rms, one in responses.items()]
     rough = curves.joined(points, "rms_nm", "B2")
-    said = pages.of_stopper("S1", STOPPER, STOPPERS["S1"], {}, [], roughness=rough).answer[1]
-    assert said == (
+    section = STOPPER | {"requirement": {"share": 0.05}, "roughness": {"surface": "B2", "rms_nm": [2, 8]}}
+    page = pages.of_stopper("S1", section, STOPPERS["S1"], {}, [], roughness=rough)
+    assert "<td>requirement</td><td>at most 1 in 20 sticks</td>" in page.html
+    assert "<td>roughness of B2 asked for</td><td>rms from 2 to 8 nm</td>" in page.html
+    shown = page.html.partition("<h2>How rough must it be?</h2>")[2].partition("<h2>Limits")[0]
+    assert "exactly 1 in 20 sticks at " in shown
+    assert "On the surfaces as they are given, at 3.4 nm" in shown
+    assert shown.count("<img") == 1
+    assert shown.count("rms of B2 [nm]</td>") == len(responses)
+    assert page.answer[1] == (
         "For a restoring force of 1 µN, at a relative humidity of 0.6, at most 1 in 20 sticks where the rms of B2 is "
         "4.13 to 8 nm (95 % confidence, given the drawn surfaces; computed for 2 to 8 nm)."
     )
@@ -159,8 +167,17 @@ def test_the_verdict_compares_the_restoring_force_with_what_is_needed():
     assert "suffices at all relative humidities from 0.4 to 0.9" in pages.verdict(found.assign(strong))
     assert "suffices at relative humidities of 0.44, 0.67, but" in pages.verdict(steeper.assign(strong))
     assert "at most 1 in 100 sticks" in pages.verdict(found)
-    few = found.assign(safe_force=found.safe_force * np.nan)
+    few = found.assign(safe_force=found.safe_force * np.nan, stuck=0 * found.stuck)
     assert pages.verdict(few).startswith("There are too few patches")
+
+
+def test_a_force_that_most_patches_exceed_does_not_suffice_however_few_they_are():
+    few = STOPPERS["S1"].assign(safe_force=STOPPERS["S1"].safe_force * np.nan)
+    stuck = few.stuck.copy(data=[[0, 0.9], [0, 0.85], [0.01, 0.95]])
+    assert pages.verdict(few.assign(stuck=stuck)) == (
+        "The restoring force of 18.99 µN does not suffice at a relative humidity of 0.67: at least 85 % of the "
+        "stoppers stick (95 % confidence, given the drawn surfaces)."
+    )
 
 
 def test_a_page_explains_the_terms_that_it_uses_and_no_others():

@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.config.cases import DRY, case_id
-from stiction.config.kinds import KEYS, kind_of
+from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of
 from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
@@ -312,7 +312,25 @@ def _facts_of(section):
         values = value if isinstance(value, list) else [value]
         found[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
     name = "relative humidities" if len(section["humidities"]) > 1 else "relative humidity"
-    return found | {name: ", ".join(map(humidity_text, section["humidities"]))}
+    found[name] = ", ".join(map(humidity_text, section["humidities"]))
+    return found | _asked(section)
+
+
+def _asked(section):
+    """What is required of a device and over which roughness it is asked for, by name; nothing if it is not asked."""
+    if "requirement" not in section:
+        return {}
+    required, over = section["requirement"], section["roughness"]
+    length = f"{required['length_um']:g} µm long, " if "length_um" in required else ""
+    ranges = (
+        f"{quantity.words} from {over[key][0]:g} to {over[key][1]:g}{quantity.unit}"
+        for key, quantity in ROUGHNESSES.items()
+        if key in over
+    )
+    return {
+        "requirement": f"{length}at most 1 in {1 / required['share']:g} sticks",
+        f"roughness of {over['surface']} asked for": ", ".join(ranges),
+    }
 
 
 def _at(humidity):
@@ -389,7 +407,7 @@ def verdict(found: xr.Dataset) -> str:
     stated, any_air = found.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(found)[1]
     known = [float(share) for share in found.share if np.isfinite(stated.sel(share=share))]
     if not known:
-        return "There are too few patches to say whether the restoring force suffices."
+        return _verdict_of_few(found)
     share = min(known)
     at_these, anywhere = (float(needed.sel(share=share)) for needed in (stated, any_air))
     head = f"The restoring force of {force / UN:g} µN"
@@ -401,6 +419,18 @@ def verdict(found: xr.Dataset) -> str:
     dry = ["in dry air"] if found.axis[0] == 0 else []
     humid = [f"at all relative humidities{_range(found)}"] if ends(found) else []
     return f"{head} suffices {' and '.join(dry + humid)}: {tail}"
+
+
+def _verdict_of_few(found):
+    """The verdict where there are too few patches to bound any of the shares from above."""
+    (humidity, _, low, _), share = max(shares_stuck(found), key=lambda row: row[2]), float(found.share.max())
+    if low <= share:
+        return "There are too few patches to say whether the restoring force suffices."
+    where, force = airs([humidity]), float(found.restoring_force)
+    return (
+        f"The restoring force of {force / UN:g} µN does not suffice {where}: at least {100 * low:.3g} % of the "
+        "stoppers stick (95 % confidence, given the drawn surfaces)."
+    )
 
 
 def safe_sentence(humidity: float, found: xr.Dataset) -> str:
