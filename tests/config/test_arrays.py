@@ -49,13 +49,24 @@ def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
 @pytest.mark.parametrize(
     ("changes", "key", "words"),
     [
-        ({"datum": {"mean_um": 1600}}, "test_beams.first.crack_lengths", "that at RH 0.67 is 1600 µm"),
-        ({"datum": {"mean_um": 15, "std_um": 1}}, "test_beams.first.crack_lengths", "above the thickness and the gap"),
-        ({"datum": {"std_um": 800}}, "test_beams.first.crack_lengths", "below the means: that at RH 0.67 is 800 µm"),
+        ({"datum": {"mean_um": 1600}}, "test_beams.first.crack_lengths[0].mean_um", "below the length of the beams"),
+        ({"datum": {"mean_um": 15, "std_um": 1}}, "test_beams.first.crack_lengths[0].mean_um", "above the thickness"),
+        ({"datum": {"std_um": 800}}, "test_beams.first.crack_lengths[0].std_um", "must be below the mean (given"),
         ({"datum": {"beams": 1}}, "test_beams.first.crack_lengths[0].beams", "at least 2"),
         ({"datum": {"humidity": 67}}, "test_beams.first.crack_lengths[0].humidity", "as a fraction of 1"),
-        ({"datum": {"humidity": 0.2}}, "test_beams.first.crack_lengths", "must be at least 0.2903: in drier air"),
+        ({"datum": {"humidity": 0.2}}, "test_beams.first.crack_lengths[0].humidity", "must be at least 0.2903: in dr"),
+        ({"datum": {"humidity": 0.66666}}, "test_beams.first.crack_lengths[0].humidity", "have at most 4 decimals"),
         ({"datum": {"humidity": 0.44}}, "test_beams.first.crack_lengths", "must list each humidity once"),
+        (
+            {"datum": {"humidity": 0.995}},
+            "devices.C1.uncertainty.humidity",
+            "above 0 and below 1 (given test_beams.first.crack_lengths[0].humidity = 0.995)",
+        ),
+        (
+            {"array": {"gap_um": 0.001, "uncertainty": {}}},
+            "test_beams.first.gap_um",
+            "(given test_beams.first.crack_lengths[0].humidity = 0.67",
+        ),
         ({"array": {"pair": "d"}}, "test_beams.first.pair", "must be one of a, b, c"),
         (
             {"array": {"uncertainty": {"gap_um": 30}}},
@@ -97,10 +108,15 @@ def test_counts_need_no_crack_lengths_and_may_stand_beside_them():
 @pytest.mark.parametrize(
     ("array", "key", "words"),
     [
-        ({**COUNTED, "stuck": [COUNTS[0] | {"stuck": 21}]}, "stuck", "no more stuck beams than there are: 21 of 20"),
-        ({**COUNTED, "stuck": [COUNTS[0] | {"length_um": 20}]}, "stuck", "that at RH 0.67 is 20 µm (given test_beams"),
+        ({**COUNTED, "stuck": [COUNTS[0] | {"stuck": 21}]}, "stuck[0].stuck", "no more than there are beams"),
+        ({**COUNTED, "stuck": [COUNTS[0] | {"length_um": 20}]}, "stuck[0].length_um", "in µm, above the thickness and"),
         ({**COUNTED, "stuck": COUNTS * 2}, "stuck", "beams of 300 µm at RH 0.67 are listed twice"),
-        ({**COUNTED, "stuck": [COUNTS[0] | {"humidity": 0.2}]}, "stuck", "must be at least 0.2903: in drier air"),
+        (
+            {**COUNTED, "stuck": [COUNTS[0] | {"humidity": 0.2}]},
+            "stuck[0].humidity",
+            "must be at least 0.2903: in drier",
+        ),
+        (ARRAY | {"stuck": [COUNTS[0] | {"humidity": 0.2}]}, "stuck[0].humidity", "must be at least 0.2903: in drier"),
         ({**COUNTED, "stuck": [COUNTS[0] | {"of": 0}]}, "stuck[0].of", "at least 1"),
         (
             {key: COUNTED[key] for key in COUNTED if key != "stuck"},
@@ -136,6 +152,7 @@ def test_test_beams_in_dry_air_need_attraction_across_gaps_and_have_no_uncertain
     config = SECTIONS | {"test_beams": {"first": array}}
     (problem,) = problems(merged(PAPER, config))
     assert problem.startswith("attraction.reach is 'touching', must be all for pair b, in dry air")
+    assert "[0].humidity = 'dry')" in problem
     across = Plan(load(merged(config, {"attraction": {"reach": "all"}})))
     assert "humidity" in across.config["devices"]["C1"]["uncertainty"]
     assert "humidity" not in across.of_test_beams.config["devices"]["first"]["uncertainty"]

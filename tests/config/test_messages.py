@@ -185,6 +185,7 @@ def test_what_a_message_advises_to_write_is_accepted(entry):
 def test_advice_is_given_where_there_is_a_value_to_advise():
     pair = {"type": "array", "minItems": 2, "maxItems": 2, "items": {"type": "number", "minimum": 0}}
     assert messages._hint(("contact_um",), 3, pair) == "; write [3, 3]"
+    assert messages._hint(("size_um",), 3, pair | {"examples": [[5, 5]]}) == "; write [3, 3]"
     names = {"type": "array", "items": {"type": "string"}}
     assert messages._hint(("pairs",), {"b": None}, names) == "; write [b]"
     assert messages._hint(("pairs",), {"b": {"gap_um": 2}}, names) == ""

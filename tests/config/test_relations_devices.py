@@ -146,6 +146,12 @@ WRONG = [
     (with_roughness(rms_nm=[1, 8000]), "devices.C1.roughness.rms_nm[1]", "at most 1000: standard deviation"),
     (with_roughness(rms_nm=[1]), "devices.C1.roughness.rms_nm", "2 entries"),
     (
+        with_roughness(rms_nm=3),
+        "devices.C1.roughness.rms_nm",
+        "ends of the range of the rms [nm]; both ends are wanted",
+    ),
+    (with_roughness(skewness=-1), "devices.C1.roughness.skewness", "both ends are wanted, as in [-1, 0]"),
+    (
         {"requirement": LONG, "roughness": {"surface": "B2", "skewness": [-3, 0]}},
         "devices.C1.roughness.skewness",
         "must have densities at both ends: at -3 the kurtosis of B2 must be above skewness² + 1 = 10",

@@ -128,9 +128,33 @@ def test_a_file_takes_the_place_of_data(study):
         files.load(study(HEAD, *MEASURED, stuck=[]))
 
 
-def test_values_that_no_beam_has_are_refused_as_those_of_a_configuration(study):
-    with pytest.raises(ConfigError, match=r"test_beams.first.stuck is .*must be at least 0\.2903"):
-        files.load(study(HEAD, "0.2,300,,yes"))
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        (["0.2,300,,yes"], "row 7: humidity is 0.2, must be at least 0.2903: in drier air"),
+        (["0.66666,300,,yes"], "row 7: humidity is 0.66666, must have at most 4 decimals"),
+        (["0.67,300,,no", "0.67,15,,yes"], "row 8: length_um is 15.0, must be in µm, above the thickness"),
+        (["0.67,300000,,yes"], "row 7: length_um is 300000.0, must be a number at least 0.1 and at most 100000"),
+        (["0.8,1500,2,", "0.8,1500,3,"], "row 7: the mean of crack_length_um at its humidity is 2.5, must be in µm"),
+        (["0.8,1500,30,", "0.8,1500,1400,"], "row 7: the standard deviation of crack_length_um at its humidity is"),
+    ],
+)
+def test_values_that_no_beam_has_are_refused_with_their_row_as_well(study, lines, words):
+    with pytest.raises(ConfigError) as refused:
+        files.load(study(HEAD, *MEASURED, *lines))
+    (sentence,) = refused.value.problems
+    assert sentence.startswith(f"test_beams.first.file is 'beams.csv', {words}")
+
+
+def test_rows_are_named_where_other_keys_depend_on_them(study):
+    with pytest.raises(ConfigError, match=r"is 'touching', .*beams\.csv', row 2: humidity = 'dry'\)$"):
+        files.load(study(HEAD, "dry,300,,yes"))
+
+
+def test_data_that_replace_those_of_a_file_have_no_row(study):
+    count = {"humidity": 0.2, "length_um": 300, "stuck": 1, "of": 2}
+    with pytest.raises(ConfigError, match=r"^test_beams\.first\.stuck\[0\]\.humidity is 0\.2, "):
+        files.load(study(HEAD, *COUNTED), {"test_beams": {"first": {"stuck": [count]}}})
 
 
 def test_files_are_those_of_the_configuration_that_names_them(tmp_path):

@@ -3,12 +3,13 @@
 Whatever is computed for an array is computed for a cantilever of its dimensions at the humidities of its data.
 
 In a file, a row is a beam: measured if it has a crack length, counted if it says whether it is stuck. The configuration
-has the means and counts from the start, so that nothing else knows of such files.
+has the means and counts from the start; what is wrong with them is said with the row, and nothing else knows of files.
 """
 
 import csv
 import math
 from collections.abc import Iterator, Mapping
+from itertools import zip_longest
 from pathlib import Path
 from statistics import fmean, stdev
 from typing import Any, NamedTuple
@@ -39,14 +40,21 @@ _REPLACED = ("length_um", "crack_lengths", "stuck")
 _WORDS = {"yes": True, "1": True, "no": False, "0": False}
 
 
-def users(config: Mapping, array: str) -> list[dict]:
-    """Sections of the devices whose prediction uses an array."""
-    return [device for device in config.get("devices", {}).values() if array in device.get("test_beams", ())]
+def users(config: Mapping, array: str) -> dict[str, dict]:
+    """Devices whose prediction uses an array, by name."""
+    devices = config.get("devices", {})
+    return {name: device for name, device in devices.items() if array in device.get("test_beams", ())}
 
 
 def humidities(array: Mapping, *kinds: str) -> list[float]:
     """Humidities of the data of an array, increasing; those of some kinds of data, by default of all."""
     return sorted({datum["humidity"] for kind in kinds or DATA for datum in array.get(kind, ())})
+
+
+def first_datum(array: Mapping, humidity: float) -> tuple[str, int]:
+    """Key and index of the first data of an array at one of its humidities."""
+    data = ((kind, k, datum) for kind in DATA for k, datum in enumerate(array.get(kind, ())))
+    return next((kind, k) for kind, k, datum in data if datum["humidity"] == humidity)
 
 
 def shared_uncertainty(device: Mapping) -> dict[str, float]:
@@ -58,7 +66,21 @@ def shared_uncertainty(device: Mapping) -> dict[str, float]:
 def as_cantilevers(config: Mapping) -> dict[str, dict]:
     """Sections of all arrays with data as if they were devices."""
     arrays = config.get("test_beams", {})
-    return {name: _cantilever(array, users(config, name)) for name, array in arrays.items() if humidities(array)}
+    measured_at = {name: humidities(array) for name, array in arrays.items()}
+    return {name: _cantilever(config, name, some) for name, some in measured_at.items() if some}
+
+
+def at_single_humidities(config: Mapping) -> list[dict[str, dict]]:
+    """Sections as of `as_cantilevers` with one humidity each, those with the highest humidity of every array first."""
+    rows = zip_longest(*(humidities(array)[::-1] for array in config["test_beams"].values()))
+    return [
+        {
+            name: _cantilever(config, name, [humidity])
+            for name, humidity in zip(config["test_beams"], row, strict=True)
+            if humidity is not None
+        }
+        for row in rows
+    ]
 
 
 def counted(config: Mapping) -> dict[str, dict]:
@@ -66,9 +88,10 @@ def counted(config: Mapping) -> dict[str, dict]:
     return {name: one for name, one in as_cantilevers(config).items() if "stuck" in config["test_beams"][name]}
 
 
-def _cantilever(array, devices):
-    """Section of an array that some devices use."""
-    shared, measured_at = next(map(shared_uncertainty, devices), {}), humidities(array)
+def _cantilever(config, name, measured_at):
+    """Section of an array at some of its humidities."""
+    array = config["test_beams"][name]
+    shared = next(map(shared_uncertainty, users(config, name).values()), {})
     if not any(measured_at):  # dry air has no humidity that could be uncertain
         shared = {key: value for key, value in shared.items() if key != "humidity"}
     sizes = {key: array[key] for key in _SIZES if key in array}
@@ -89,14 +112,22 @@ class Beam(NamedTuple):
     stuck: bool | None
 
 
+class Origin(NamedTuple):
+    """What replaces the name of a file that was read."""
+
+    file: str  #: name
+    beams: list[Beam]
+
+
 class _Wrong(ValueError):
     """What is wrong with a file, as the end of a sentence."""
 
 
 def with_files(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
-    """Configuration, which need not be valid, with means and counts instead of the files that the content names.
+    """Configuration, which need not be valid, with means and counts from the files that the content names.
 
-    ``named`` is the content of a configuration file, and ``folder`` the folder of this file.
+    The `Origin` of the data takes the place of the name of a file, until `without_files` removes it. ``named`` is the
+    content of a configuration file, and ``folder`` the folder of this file.
 
     Raises
     ------
@@ -124,12 +155,61 @@ def _replaced(name, entry, folder):
     if stated:
         raise ConfigError(f"{key}, must come without {', '.join(stated)}: the file has them")
     try:
-        data = summary(beams(text(folder / entry["file"])))
+        found = beams(text(folder / entry["file"]))
+        data = summary(found)
     except _Wrong as wrong:
         raise ConfigError(f"{key}, {wrong}") from None
     except (OSError, ValueError) as reason:
         raise ConfigError(f"{key}, which cannot be read: {getattr(reason, 'strerror', None) or reason}") from reason
-    return {other: value for other, value in entry.items() if other != "file"} | data
+    return entry | {"file": Origin(entry["file"], found)} | data
+
+
+def without_files(config: Any) -> Any:
+    """Configuration, which need not be valid, without the origins of data that were read from files."""
+    if not (read := _origins(config)):
+        return config
+    arrays = config["test_beams"]
+    plain = {name: {key: value for key, value in arrays[name].items() if key != "file"} for name in read}
+    return config | {"test_beams": arrays | plain}
+
+
+def in_files(sentence: str, config: Any) -> str:
+    """Sentence in which file, row and column take the place of the keys of data that were read from files."""
+    for name, origin in _origins(config).items():
+        for key, row, words in _places(origin.beams, config["test_beams"][name]):
+            place = f"test_beams.{name}.file is {shown(origin.file)}, row {row}: {words}"
+            sentence = sentence.replace(f"test_beams.{name}.{key}", place)
+    return sentence
+
+
+def _origins(config):
+    """Origins by the name of the array."""
+    arrays = config.get("test_beams") if isinstance(config, dict) else None
+    entries = arrays.items() if isinstance(arrays, dict) else ()
+    files = {name: entry.get("file") for name, entry in entries if isinstance(entry, dict)}
+    return {name: origin for name, origin in files.items() if isinstance(origin, Origin)}
+
+
+#: Values that a file does not have in a column of the same name.
+_STATISTICS = {
+    "mean_um": "the mean of crack_length_um at its humidity",
+    "std_um": "the standard deviation of crack_length_um at its humidity",
+}
+
+
+def _places(found, array):
+    """Keys of the data of an array that come from beams, the first row of each, and its column in words."""
+    data = summary(found)
+    for kind, groups in _by_kind(found).items():
+        if groups and array.get(kind) == data[kind]:  # another file of the configuration may replace a list
+            first = [group[0].row for _, group in groups]
+            yield from (
+                (f"{kind}[{k}].{key}", first[k], _STATISTICS.get(key, key))
+                for k, datum in enumerate(data[kind])
+                for key in datum
+            )
+            if kind == "crack_lengths":
+                yield "length_um", min(first), "length_um"
 
 
 # Rows
@@ -194,24 +274,31 @@ def _number(row, cells, column, limit, words):
 
 def summary(found: list[Beam]) -> dict[str, Any]:
     """Keys of an array: means of crack lengths by humidity, and counts by humidity and length."""
-    measured = [beam for beam in found if beam.stuck is None]
-    counted = [beam for beam in found if beam.stuck is not None]
+    measured, counted = _by_kind(found).values()
     data = {}
     if measured:
-        other = next((beam for beam in measured if beam.length != measured[0].length), None)
+        first, *others = sorted(beam for _, group in measured for beam in group)
+        other = next((beam for beam in others if beam.length != first.length), None)
         if other is not None:
             raise _Wrong(
-                f"row {other.row}: length_um is {other.length:g}, must be {measured[0].length:g} as in row "
-                f"{measured[0].row}: all beams with crack lengths are equal"
+                f"row {other.row}: length_um is {other.length:g}, must be {first.length:g} as in row {first.row}: all "
+                "beams with crack lengths are equal"
             )
-        data["length_um"] = measured[0].length
-        data["crack_lengths"] = [_mean(humidity, group) for humidity, group in _groups(measured, "humidity")]
+        data["length_um"] = first.length
+        data["crack_lengths"] = [_mean(humidity, group) for (humidity,), group in measured]
     if counted:
         data["stuck"] = [
             {"humidity": humidity, "length_um": length, "stuck": sum(beam.stuck for beam in group), "of": len(group)}
-            for (humidity, length), group in _groups(counted, "humidity", "length")
+            for (humidity, length), group in counted
         ]
     return data
+
+
+def _by_kind(found):
+    """Groups of equal beams by the key of their data: those with crack lengths, and those that were counted."""
+    measured = [beam for beam in found if beam.stuck is None]
+    counted = [beam for beam in found if beam.stuck is not None]
+    return {"crack_lengths": _groups(measured, "humidity"), "stuck": _groups(counted, "humidity", "length")}
 
 
 def _mean(humidity, group):
@@ -229,6 +316,5 @@ def _groups(found, *fields):
     """Beams with equal values of some fields, in the order of these values."""
     groups = {}
     for beam in found:
-        values = tuple(getattr(beam, field) for field in fields)
-        groups.setdefault(values if len(values) > 1 else values[0], []).append(beam)
+        groups.setdefault(tuple(getattr(beam, field) for field in fields), []).append(beam)
     return sorted(groups.items())

@@ -94,7 +94,8 @@ class Keys:
     def problem(self, key: str, message: str, *given: str) -> Problem:
         """Problem with a key, and the other keys on whose values that depends."""
         path, value = self._stated(key)
-        number = "" if path == _path(key) else f", which gives {_path(key)[-1]} = {self[key]:.4g}"
+        scanned = path[0] == "surfaces" and path != _path(key)
+        number = f", which gives {_path(key)[-1]} = {self[key]:.4g}" if scanned else ""
         others = dict.fromkeys(f"{dotted(other)} = {shown(given)}" for other, given in map(self._stated, given))
         more = f" (given {', '.join(others)})" if others else ""
         return Problem(path, f"is {shown(value)}{number}, {message}{more}")

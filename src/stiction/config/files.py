@@ -69,9 +69,9 @@ def normalised(config: dict) -> dict:
 
     Keys are sorted, so that the parameters of a rule do not depend on their order. The humidities of each pair and
     device are sorted as well, so that tables and curves begin with the lowest. Measured surfaces get all their keys.
-    Dry air has the humidity 0.
+    Dry air has the humidity 0. Data of test beams are without the files that they come from.
     """
-    config = in_numbers(config)
+    config = in_numbers(arrays.without_files(config))
     named = {section: config[section] for section in ("pairs", "devices") if section in config}
     surfaces = {name: complete(entry) for name, entry in config["surfaces"].items()}
     in_order = {section: _sorted(entries) for section, entries in named.items()}

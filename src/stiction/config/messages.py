@@ -159,7 +159,10 @@ def _advice(entry, text, sentence="write {}"):
 
 
 def _list_hint(value, entry):
-    """How to write one value, or keys without values, as a list of the least length."""
+    """How to write one value, or keys without values, as a list of the least length; or an example of both ends."""
+    for example in entry.get("examples", ()):
+        if "maxItems" in entry and len(set(example)) > 1:
+            return f"; both ends are wanted, as in {example}"
     keys = isinstance(value, dict) and not any(value.values())
     items = list(value) if keys else [value] * entry.get("minItems", 1)
     if not _accepts(entry, items):

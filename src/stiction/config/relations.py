@@ -115,9 +115,14 @@ def without_unique_names(humidities: list[float]) -> str | None:
     """Refusal of humidities whose cases have no name, or the same."""
     nameless = [humidity for humidity in humidities if not decimals(humidity)]
     if nameless:
-        return f"must each {NAMEABLE}; {nameless[0]} has more"
-    repeated = duplicates(humidities)
-    return f"must list each humidity once; {repeated[0]} is listed twice" if repeated else None
+        return f"must {NAMEABLE}; {nameless[0]} has more"
+    return repeated(humidities)
+
+
+def repeated(humidities: list[float]) -> str | None:
+    """Refusal of humidities that are listed twice."""
+    twice = duplicates(humidities)
+    return f"must list each humidity once; {twice[0]} is listed twice" if twice else None
 
 
 @relation

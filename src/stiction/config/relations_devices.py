@@ -14,6 +14,7 @@ from stiction.config.cases import in_air
 from stiction.config.conditions import Relations
 from stiction.config.device_plan import DevicePlan
 from stiction.config.kinds import COMMON, KEYS, KINDS, ROUGHNESSES, kind_of
+from stiction.config.messages import duplicates
 from stiction.config.relations import (
     Meeting,
     above_zero,
@@ -26,6 +27,7 @@ from stiction.config.relations import (
     not_apart,
     off_grid,
     references_are_defined,
+    repeated,
     schema,
     sides_of,
     surfaces_of,
@@ -33,7 +35,6 @@ from stiction.config.relations import (
     too_short,
     wetting,
     without_density,
-    without_unique_names,
 )
 from stiction.config.stated_materials import hamaker_constant
 from stiction.config.units import NM_PER_UM
@@ -522,18 +523,17 @@ def measured_beams_have_a_length(config):
 def crack_lengths_have_one_mean_at_a_humidity(config):
     """All beams of an array that were measured at a humidity have one mean."""
     for name, data in config.entries("test_beams", "crack_lengths"):
-        yield f"test_beams.{name}.crack_lengths", without_unique_names([datum["humidity"] for datum in data])
+        yield f"test_beams.{name}.crack_lengths", repeated([datum["humidity"] for datum in data])
 
 
 @relation
 def cracks_end_on_the_beams(config):
     """Mean crack lengths are shorter than the beams, and scatter by less than themselves."""
-    for name, data, length in config.entries("test_beams", "crack_lengths", "length_um"):
-        key = f"test_beams.{name}.crack_lengths"
-        if longer := [_at(datum, "mean_um") for datum in data if datum["mean_um"] >= length]:
-            yield key, f"must have means below the length of the beams: {longer[0]}", f"test_beams.{name}.length_um"
-        if wide := [_at(datum, "std_um") for datum in data if datum["std_um"] >= datum["mean_um"]]:
-            yield key, f"must have standard deviations below the means: {wide[0]}"
+    for array, key, datum, length in _data(config, "crack_lengths", "length_um"):
+        if datum["mean_um"] >= length:
+            yield f"{key}.mean_um", "must be below the length of the beams", f"{array}.length_um"
+        if datum["std_um"] >= datum["mean_um"]:
+            yield f"{key}.std_um", "must be below the mean", f"{key}.mean_um"
 
 
 @relation
@@ -541,29 +541,31 @@ def test_beams_are_slender(config):
     """Cracks and counted beams are longer than beams are thick and deflected; lengths in mm are not."""
     sizes = "thickness_um", "gap_um"
     for kind, length in (("crack_lengths", "mean_um"), ("stuck", "length_um")):
-        for name, data, *values in config.entries("test_beams", kind, *sizes):
-            if shorter := [_at(datum, length) for datum in data if datum[length] <= max(values)]:
-                message = f"must have lengths in µm above the thickness and the gap of the beams: {shorter[0]}"
-                yield f"test_beams.{name}.{kind}", message, *(f"test_beams.{name}.{size}" for size in sizes)
+        for array, key, datum, *values in _data(config, kind, *sizes):
+            if datum[length] <= max(values):
+                message = "must be in µm, above the thickness and the gap of the beams"
+                yield f"{key}.{length}", message, *(f"{array}.{size}" for size in sizes)
 
 
-def _at(datum, key):
-    """A length among the data of an array in words."""
-    return f"that {in_air(datum['humidity'])} is {datum[key]:g} µm"
+def _data(config, kind, *keys):
+    """Keys of the arrays and of their data of one kind, the data, and the values of other keys of their arrays."""
+    for name, data, *values in config.entries("test_beams", kind, *keys):
+        array = f"test_beams.{name}"
+        yield from ((array, f"{array}.{kind}.{k}", datum, *values) for k, datum in enumerate(data))
 
 
 @relation
 def counts_are_parts_of_all_beams(config):
-    """No more beams stick than there are, and each group of beams is counted once."""
+    """No more beams stick than there are."""
+    for _, key, datum in _data(config, "stuck"):
+        if datum["stuck"] > datum["of"]:
+            yield f"{key}.stuck", "must be no more than there are beams", f"{key}.of"
+
+
+@relation
+def beams_are_counted_once(config):
+    """Each group of beams is counted once."""
     for name, data in config.entries("test_beams", "stuck"):
-        yield f"test_beams.{name}.stuck", next(filter(None, (_miscounted(entry, data) for entry in data)), None)
-
-
-def _miscounted(entry, data):
-    """Refusal of one count among the data of an array."""
-    group = f"beams of {entry['length_um']:g} µm {in_air(entry['humidity'])}"
-    if entry["stuck"] > entry["of"]:
-        return f"must count no more stuck beams than there are: {entry['stuck']} of {entry['of']} {group}"
-    if sum((entry["humidity"], entry["length_um"]) == (one["humidity"], one["length_um"]) for one in data) > 1:
-        return f"must count each length at a humidity once: {group} are listed twice"
-    return None
+        for length, humidity in duplicates((datum["length_um"], datum["humidity"]) for datum in data):
+            group = f"beams of {length:g} µm {in_air(humidity)}"
+            yield f"test_beams.{name}.stuck", f"must count each length at a humidity once: {group} are listed twice"

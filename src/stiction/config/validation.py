@@ -1,11 +1,12 @@
 """Validation of a whole configuration: schema, relations between its keys, files of scans."""
 
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from stiction.config import arrays, measured, relations, relations_devices
-from stiction.config.cases import in_numbers
+from stiction.config.cases import in_numbers, in_words
 from stiction.config.conditions import Keys, Relations
-from stiction.config.messages import ConfigError, Problem, schema_problems
+from stiction.config.messages import ConfigError, schema_problems
 from stiction.config.relations import schema
 
 #: All relations between keys.
@@ -36,7 +37,8 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     ConfigError
         If the configuration is invalid; one line per problem: full key, value, allowed values.
     """
-    config = in_numbers(config)
+    stated = config
+    config = in_numbers(arrays.without_files(config))
     faults = schema_problems(config, schema())
     wrong = [fault.path for fault in faults]
     sections = _OPTIONAL | config if isinstance(config, dict) else config
@@ -48,24 +50,47 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
         files = {name: config["surfaces"][name]["scans"]["files"] for name in found}
         problems += _broken(measured.with_preliminary_estimates(sections, found), wrong, files)
     if problems:
-        raise ConfigError(*dict.fromkeys(map(str, problems)))
+        raise ConfigError(*dict.fromkeys(arrays.in_files(str(problem), stated) for problem in problems))
     return found
 
 
 def _broken(config, faults, files=None):
-    """Violated relations; those of devices hold for the arrays of test beams, whose keys they name."""
+    """Violated relations; those of devices hold for the arrays of test beams."""
     broken = list(RELATIONS.problems(Keys(config, faults, files or {})))
     if any(path[:1] in ((), ("devices",), ("test_beams",)) for path in faults):
         return broken  # sections that are wrong on their own
-    beams = Keys(config | {"devices": arrays.as_cantilevers(config)}, faults, files or {})
-    return broken + [_of_array(problem, config) for problem in relations_devices.relation.problems(beams)]
+    single = [
+        _KeysOfArrays(config | {"devices": beams}, faults, files or {}, config["devices"])
+        for beams in arrays.at_single_humidities(config)
+    ]
+    return broken + [problem for one in relations_devices.relation for problem in _of_arrays(one, single)]
 
 
-def _of_array(problem, config):
-    """Problem of an array of test beams that was found as if the array were a device."""
-    path, message = problem.path, problem.message.replace("devices.", "test_beams.")
-    if path[0] == "devices":
-        array = config["test_beams"][path[1]]
-        data = next(filter(array.__contains__, arrays.DATA))
-        path = ("test_beams", *(data if key == "humidities" else key for key in path[1:]))
-    return Problem(path, message)
+def _of_arrays(relation, single):
+    """Problems of arrays with one relation, each key once."""
+    found = {}
+    for keys in single:
+        for problem in Relations([relation]).problems(keys):
+            found.setdefault(problem.path, problem)
+    return found.values()
+
+
+@dataclass(frozen=True)
+class _KeysOfArrays(Keys):
+    """Keys of arrays that stand for devices, each at one of its humidities; problems name keys that users have."""
+
+    devices: dict = field(default_factory=dict)  #: those of the configuration
+
+    def _stated(self, key):
+        path, value = super()._stated(key)
+        if path[0] != "devices":
+            return path, value
+        _, name, *below = path
+        array = self.config["test_beams"][name]
+        if below[0] == "humidities":
+            humidity = self.config["devices"][name]["humidities"][0]
+            path = "test_beams", name, *arrays.first_datum(array, humidity), "humidity"
+            return path, in_words(humidity, path)
+        if below[0] == "uncertainty" and below[-1] not in array.get("uncertainty", {}):
+            return ("devices", next(iter(arrays.users({"devices": self.devices}, name))), *below), value
+        return ("test_beams", name, *below), value
