@@ -545,6 +545,32 @@ def test_counts_in_dry_air_are_beside_the_axis(shapes, monkeypatch):
     assert 0 < at[3] < 0.67
 
 
+@pytest.mark.parametrize("humid", [(), (0.67,), (0.44, 0.67, 0.92)])
+@pytest.mark.parametrize("names", [("arrayA",), ("arrayA", "arrayB")])
+def test_numbers_of_counts_cross_neither_the_line_of_dry_air_nor_the_frame(shapes, monkeypatch, humid, names):
+    shapes(10.0)
+    monkeypatch.setitem(ENERGY, 0.0, 0.2e-3)
+    monkeypatch.setitem(POWER, 0.0, -3.0)
+    both = (0.0, *humid)
+    stuck = counts(as_computed(0.7, both), [100] * len(both), 120, both)
+    figure = figures_inference.test_beams(computed([], humidities=both, names=names, stuck=stuck))
+    figure.draw_without_rendering()
+    panel = figure.axes[0]
+    boxes = [text.get_window_extent() for text in panel.texts]
+    assert len(boxes) == len(both)
+    lines = [line.get_xdata()[0] for line in panel.lines if line.get_linestyle() == ":"]
+    assert len(lines) == bool(humid)
+    for at in [panel.transData.transform((place, 0))[0] for place in lines] + [panel.bbox.x0, panel.bbox.x1]:
+        assert not [box for box in boxes if box.x0 < at < box.x1]
+        assert not [one for one in panel.collections if _crosses(one, panel, at)]
+
+
+def _crosses(band, panel, at):
+    """Whether a band is on both sides of a place [pixels]."""
+    along = panel.transData.transform(band.get_paths()[0].vertices)[:, 0]
+    return along.min() < at - 1 < at + 1 < along.max()
+
+
 def test_bands_at_one_humidity_have_a_width():
     for humidities in ((0.67,), (0.44, 0.67)):
         panel = figures_inference.test_beams(computed(as_computed(1.1, humidities), humidities=humidities)).axes[0]

@@ -14,8 +14,12 @@ _ROW, _AROUND, _HALF = 0.19, 0.9, 0.36
 #: Marks of measured crack lengths and of the lengths of counted beams.
 _POINT = {"fmt": "o", "color": "black", "markersize": 3}
 _COUNT = {"marker": "D", "color": "black", "markersize": 3, "linestyle": "none", "markerfacecolor": "white"}
-#: Ends of a band at a single humidity, from this [-].
-_ALONE = np.array([-0.01, 0.01])
+#: Where the numbers of a count are beside its mark.
+_LEFT, _RIGHT = {"xytext": (-4, -3), "ha": "right", "va": "top"}, {"xytext": (4, 3)}
+#: Largest half width of a band at a single humidity [-], also in distances to the next place.
+_ALONE, _NEXT = 0.01, 0.3
+#: Share of an axis as wide as the figure that the numbers of the counts in dry air need on their left.
+_ROOM = 0.1
 
 
 @styled
@@ -31,7 +35,7 @@ def test_beams(found: xr.Dataset) -> Figure:
             size: np.flatnonzero(found[key].values == name)
             for size, key in (("datum", "array"), ("count", "array_of_count"))
         }
-        shared |= _lengths(panel, found.isel(chosen))
+        shared |= _lengths(panel, found.isel(chosen), _ROOM * (len(arrays) + 1))
     axes[0, 0].set_ylabel("crack length [µm]")
     _inputs(axes[0, -1], uncertain)
     letter(axes, [*arrays, "inputs"])
@@ -39,22 +43,26 @@ def test_beams(found: xr.Dataset) -> Figure:
     return figure
 
 
-def _band(humidity, part):
+def _band(humidity, part, placed):
     """Places along a band through some humidities, in order; that of a single one has a width."""
     if len(part) == 1:
-        return humidity[part] + _ALONE, [part[0], part[0]]
+        half = min([_ALONE, *(_NEXT * np.diff(sorted(placed.values())))])
+        return humidity[part] + np.array([-half, half]), [part[0], part[0]]
     order = part[np.argsort(humidity[part])]
     return humidity[order], order
 
 
-def _lengths(panel, data):
-    """Crack lengths and counts of one array over the humidity; returns the entries of the legend by their name."""
+def _lengths(panel, data, room):
+    """Crack lengths and counts of one array over the humidity; returns the entries of the legend by their name.
+
+    Counts in dry air have ``room`` for their numbers, a share of the axis.
+    """
     placed = places([*data.datum_humidity.values.tolist(), *data.humidity_of_count.values.tolist()])
     humidity = np.array([placed[one] for one in data.datum_humidity.values])
     dry = data.datum_humidity.values == 0
-    bands = [_band(humidity, part) for part in map(np.flatnonzero, (~dry, dry)) if len(part)]
+    bands = [_band(humidity, part, placed) for part in map(np.flatnonzero, (~dry, dry)) if len(part)]
     computed, shift = TO_UM * data.computed.values, data.datum_shift.values
-    entries = []
+    entries, on_the_left = [], _on_the_left(placed)
     cases = (
         ("before", computed, data.datum_before, _BEFORE),
         ("after", computed * np.exp(shift), data.datum_after, _AFTER),
@@ -71,14 +79,21 @@ def _lengths(panel, data):
         at = data.isel(count=k)
         place = placed[float(at.humidity_of_count)], TO_UM * float(at.length_of_count)
         (mark,) = panel.plot(*place, **_COUNT, label="length of counted beams, number of those that stick")
-        inwards = (
-            {"xytext": (-4, -3), "ha": "right", "va": "top"} if place[0] == max(placed.values()) else {"xytext": (4, 3)}
-        )
-        panel.annotate(f"{int(at.stuck)} of {int(at.counted)}", place, textcoords="offset points", **inwards)
+        side = _LEFT if place[0] in on_the_left else _RIGHT
+        panel.annotate(f"{int(at.stuck)} of {int(at.counted)}", place, textcoords="offset points", **side)
         entries += [mark] if k == 0 else []
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
+    if 0 in data.humidity_of_count:
+        left, right = panel.get_xlim()
+        panel.set_xlim(min(left, (placed[0] - room * right) / (1 - room)), right)
     humidity_axis(panel, placed)
     return {entry.get_label(): entry for entry in entries}
+
+
+def _on_the_left(placed):
+    """Places whose numbers of counts are on the left: dry air, and the last of several humidities, at the frame."""
+    humid = sorted(place for humidity, place in placed.items() if humidity > 0)
+    return [place for humidity, place in placed.items() if humidity == 0] + humid[1:][-1:]
 
 
 def _inputs(panel, found):
