@@ -198,10 +198,10 @@ def test_a_page_explains_the_terms_that_it_uses_and_no_others():
 
 
 def test_surfaces_are_described_by_their_numbers_or_their_scans():
-    assert pages.described({"rms_nm": 2, "psd": "identified", "summit_density_per_um2": 40}) == (
+    assert pages.described({"rms_nm": 2, "psd": "identified", "summit_density_per_um2": 40}, {}) == (
         "rms 2 nm, density of summits 40 per µm²"
     )
-    assert pages.described({"scans": {"files": ["a.gwy", "b.gwy"]}}) == "described by 2 scans"
+    assert pages.described({"scans": {"files": ["a.gwy", "b.gwy"]}}, {}) == "described by 2 scans"
 
 
 def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():

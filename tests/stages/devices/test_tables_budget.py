@@ -239,6 +239,14 @@ def test_a_stopper_shows_the_share_of_patches_over_the_restoring_force():
     assert_allclose(force, 0.05 * np.arange(1, 401), rtol=1e-12)
 
 
+@pytest.mark.parametrize("restoring", [1e-6, 19e-6, 60e-6])
+def test_the_name_of_the_restoring_force_is_inside_its_panel(restoring):
+    figure = figures_budget.stoppers({"S1": STOPPERS["S1"].assign(restoring_force=restoring)}, {"S1": []})
+    figure.draw_without_rendering()
+    (text,), panel = figure.axes[0].texts, figure.axes[0].bbox
+    assert panel.x0 <= text.get_window_extent().x0 <= text.get_window_extent().x1 <= panel.x1
+
+
 @pytest.mark.parametrize(
     "draw", [lambda: figures_budget.budget(BEAMS), lambda: figures_budget.stoppers(STOPPERS, WARNINGS)]
 )

@@ -144,6 +144,24 @@ def test_an_error_of_one_step_gives_the_contact_of_the_slope_bit_for_bit(stopper
     xr.testing.assert_allclose(same, stopper.contact, rtol=1e-5)
 
 
+def test_test_beams_in_dry_air_are_computed_again_on_contacts_in_dry_air():
+    measured = [{"humidity": "dry", "mean_um": 1450, "std_um": 40, "beams": 10}]
+    stated = {"young_modulus_GPa": 5, "scan_um": 10, "humidity": 0}
+    dry = {"attraction": {"reach": "all"}}
+    dry |= {"devices": {"S1": {"humidities": ["dry"], "uncertainty": stated}}}
+    dry |= {"test_beams": {"T": {"length_um": 3000, "crack_lengths": measured}}}
+    device = stiction.Device("S1", Results.of(stiction.load(SECTIONS, dry)))
+    found = device.test_beams_again()
+    assert found.attrs["refused"] == ""
+    assert found.again.values.tolist() == ["S1, dry", "T, dry"]
+    assert np.all(np.abs(found.linear) > 0.01)  # the measured beams are longer than the computed ones
+    np.testing.assert_array_less(
+        np.abs(found.rerun - found.linear), 3 * np.hypot(found.linear_error, found.rerun_error)
+    )
+    job = device.results.graph.job("devices/test_beams/rerun/S1")
+    assert {pair for pair, _ in job.settings["contacts"].values()} == {"b_dry"}
+
+
 def test_inputs_for_which_nothing_can_be_computed_are_named_with_the_reason(stopper, monkeypatch):
     def refuse(*_):
         raise ValueError("no density")

@@ -72,21 +72,23 @@ def _stuck_over_force(panel, dataset):
         panel.plot(at, share, color=f"C{k}", linestyle=dashes(k), label=air(float(humidity)))
         panel.fill_between(at, low, high, color=f"C{k}", alpha=0.2, linewidth=0)
     panel.axvline(restoring, color="0.4", linestyle=":", linewidth=0.8)
+    panel.set(xlabel="restoring force [µN]", yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
+    is_left = restoring < np.mean(panel.get_xlim())
     panel.annotate(
         "restoring force",
         (restoring, 0.03),
-        (2, 0),
+        (2 if is_left else -2, 0),
         panel.get_xaxis_transform(),
         "offset points",
         fontsize=7,
+        ha="left" if is_left else "right",
         path_effects=OUTLINED,
     )
-    panel.set(xlabel="restoring force [µN]", yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
     legend_below(panel, handles(panel)[0])
 
 
 def _force_over_humidity(panel, dataset):
-    """Mean and 5 to 95 % of the pull-off force along the fine axis, and the worst humidity.
+    """Mean and 5 to 95 % of the pull-off force along the fine axis, and the worst humidity unless all air is dry.
 
     Returns the entries of the legend that are the same for all stoppers.
     """
@@ -100,12 +102,12 @@ def _force_over_humidity(panel, dataset):
         reach = np.abs(np.stack([low, high]) - means.values)[:, ~humid]
         panel.errorbar(placed[0.0], means[~humid], reach, fmt="o", color=_COLOUR, markersize=3, alpha=0.6)
     panel.axhline(TO_UN * float(dataset.restoring_force), color="0.4", linestyle=":", linewidth=0.8)
-    worst = float(dataset.worst_humidity)
-    label = f"worst humidity {worst:.2f}" if worst else "worst in dry air"
-    (mark,) = panel.plot([placed[worst]], [float(means.max())], "v", color="black", label=label)
+    if humid.any():
+        worst = float(dataset.worst_humidity)
+        label = f"worst humidity {worst:.2f}" if worst else "worst in dry air"
+        legend_below(panel, panel.plot([placed[worst]], [float(means.max())], "v", color="black", label=label))
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
     humidity_axis(panel, placed)
-    legend_below(panel, [mark])
     return [mean, band]
 
 

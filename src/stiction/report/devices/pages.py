@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from stiction.config.cases import DRY, case_id
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of
+from stiction.config.stated_materials import material_of
 from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
@@ -146,6 +147,8 @@ _OF_SURFACES = {
     "mean_summit_radius_um": ("mean radius of summits", " µm"),
     "summit_density_per_um2": ("density of summits", " per µm²"),
 }
+#: The same of its material.
+_OF_MATERIALS = {"contact_angle_deg": ("contact angle", "°"), "coating_nm": ("coating", " nm")}
 _OF_BEAMS = {
     "Safe length": (
         "Largest length at which at most the stated share sticks, with a confidence of 95 %. The confidence is that of "
@@ -338,19 +341,27 @@ def _at(humidity):
     return airs([humidity]).capitalize()
 
 
-def described(surface: Mapping) -> str:
-    """A surface of the configuration by its numbers, or by its scans.
+def described(surface: Mapping, material: Mapping) -> str:
+    """A surface of the configuration by its numbers, or by its scans, and by its material.
 
     Examples
     --------
-    >>> described({"rms_nm": 3.4, "skewness": -0.76, "kurtosis": 3.9})
+    >>> described({"rms_nm": 3.4, "skewness": -0.76, "kurtosis": 3.9}, {})
     'rms 3.4 nm, skewness -0.76, kurtosis 3.9'
+    >>> described({"rms_nm": 3.4, "material": "FDTS"}, {"contact_angle_deg": 110, "coating_nm": 1.2})
+    'rms 3.4 nm, FDTS, contact angle 110°, coating 1.2 nm'
     """
-    stated = [f"{name} {surface[key]:g}{unit}" for key, (name, unit) in _OF_SURFACES.items() if key in surface]
+    stated = _stated(surface, _OF_SURFACES)
     if "scans" in surface:
         files = len(surface["scans"]["files"])
         stated.append(f"described by {files} {'scan' if files == 1 else 'scans'}")
-    return ", ".join(stated)
+    stated += [surface["material"]] if "material" in surface else []
+    return ", ".join(stated + _stated(material, _OF_MATERIALS))
+
+
+def _stated(section, words):
+    """Numbers that a section states, in words."""
+    return [f"{name} {section[key]:g}{unit}" for key, (name, unit) in words.items() if key in section]
 
 
 def build_sentence(found: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> str:
@@ -574,7 +585,11 @@ def _settings(plan, at):
     section = plan.config["devices"][at.device]
     pair = plan.config["pairs"][section["pair"]]
     names = {f"surface of the {part}": pair[part] for part in ("beam", "substrate")}
-    surfaces = {part: f"{name}: {described(plan.config['surfaces'][name])}" for part, name in names.items()}
+    materials = [material_of(plan.config, name) for name in names.values()]
+    surfaces = {
+        part: f"{name}: {described(plan.config['surfaces'][name], material)}"
+        for (part, name), material in zip(names.items(), materials, strict=True)
+    }
     return section | {"surfaces": surfaces}
 
 
