@@ -13,12 +13,14 @@ import jsonschema
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 import yaml
 from PIL import Image
 
 import stiction
 from stiction.config.relations import schema
 from stiction.report.checks import RESOLVED
+from stiction.run import storage
 from stiction.surface.feasible import nearest_feasible
 
 ROOT = Path(__file__).parents[1]
@@ -118,6 +120,27 @@ def test_table_and_picture_of_the_drawn_test_beams_are_copied(tmp_path, monkeypa
     update.collect_beams(tmp_path)
     made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
     assert made == {"drawn_beams.csv", "drawn_beams.md", "drawn_beams.png"}
+
+
+def test_sentences_of_the_pages_with_test_beams_and_one_picture_are_copied(tmp_path, monkeypatch):
+    folder, picture = tmp_path / "run", f"{update.TEST_BEAMS_PICTURE[0]}.png"
+    assert "no finished run" in update.unfinished_devices("test_beams", update.TEST_BEAMS, folder)
+    monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
+    said = {name: lambda found, name=name: f"{name}: {float(found.factor)}" for name in update.TEST_BEAMS_SAID}
+    monkeypatch.setattr(update, "TEST_BEAMS_SAID", said)
+    for part in ("docs/tables", "docs/pictures", "run/results/figures", "run/results/devices/test_beams/rerun"):
+        (tmp_path / part).mkdir(parents=True)
+    for device, factor in (("onB", 1.1), ("onA", 1.0)):
+        path = folder / "results" / "devices" / "test_beams" / "rerun" / f"{device}.nc"
+        storage.save(xr.Dataset({"factor": factor}), path, "test_beams_rerun", {})
+    Image.new("RGB", (20, 10)).save(folder / "results" / "figures" / picture)
+    update.collect_test_beams(folder)
+    assert {path.name for path in (tmp_path / "docs").rglob("*.*")} == {"test_beams.csv", picture}
+    found, kept = (quoted.frame(docs / "tables" / "test_beams.csv") for docs in (tmp_path / "docs", DOCS))
+    assert [*found.text] == [f"{name}: {factor}" for factor in (1.0, 1.1) for name in said]
+    assert [*found.device] == ["onA"] * len(said) + ["onB"] * len(said)
+    assert set(kept.name) == set(said)
+    assert set(kept.device) == set(yaml.safe_load((ROOT / "examples" / "test_beams.yaml").read_text())["devices"])
 
 
 def test_shares_of_the_map_of_roughness_are_those_at_the_given_rms_by_the_skewness():
