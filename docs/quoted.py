@@ -29,23 +29,23 @@ NEARLY_GAUSSIAN = ((-0.1, 3.05), (0.05, 3.02), (-0.3, 3.5), (-0.5, 4.0))
 
 def numbers(tables):
     """All numbers, from a dict of the name of each table to its frame."""
-    found = crack_lengths(tables["table_3"]) | deviations(tables["table_3"]) | energies(tables["table_3"])
-    found |= surfaces(tables["table_1"]) | identification(tables["table_2"]) | fits(tables["fit_quality"])
-    found |= (
+    texts = crack_lengths(tables["table_3"]) | deviations(tables["table_3"]) | energies(tables["table_3"])
+    texts |= surfaces(tables["table_1"]) | identification(tables["table_2"]) | fits(tables["fit_quality"])
+    texts |= (
         variants(tables["variants"])
         | removed(tables["variants"])
         | slopes(tables["sensitivity"])
         | chaos(tables["resampling"])
     )
-    found |= safe_lengths(tables["safe_lengths"]) | stoppers(tables["stoppers"]) | budget(tables["budget"])
-    found |= drawn_lengths(tables["safe_lengths"], tables["budget"])
-    found |= model_errors(tables["model_error"]) | attraction(tables["attraction"])
-    found |= readings(tables["asperities"]) | pressing(tables["pressing"])
-    found |= sealed(tables["sealed_safe_lengths"], tables["sealed_stoppers"])
-    found |= measured_beams(tables["measured_beams"]) | said(tables["test_beams"]) | skewed(tables["roughness"])
-    found |= studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
+    texts |= safe_lengths(tables["safe_lengths"]) | stoppers(tables["stoppers"]) | budget(tables["budget"])
+    texts |= drawn_lengths(tables["safe_lengths"], tables["budget"])
+    texts |= model_errors(tables["model_error"]) | attraction(tables["attraction"])
+    texts |= readings(tables["asperities"]) | pressing(tables["pressing"])
+    texts |= sealed(tables["sealed_safe_lengths"], tables["sealed_stoppers"])
+    texts |= measured_beams(tables["measured_beams"]) | said(tables["test_beams"]) | skewed(tables["roughness"])
+    texts |= studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
     return (
-        found
+        texts
         | scans(tables["example_scans"])
         | timings(tables["timings"], tables["earlier_timings"])
         | constants()
@@ -104,12 +104,12 @@ def model_errors(table):
 
     ``summits_rms_a``, ``full_rms_a``: root mean square deviation from the published lengths [%].
     """
-    found = {}
+    texts = {}
     for pair, rows in table.groupby("pair"):
-        found[f"model_error_{pair}"] = f"{rows.model_error_percent.max():.0f}"
+        texts[f"model_error_{pair}"] = f"{rows.model_error_percent.max():.0f}"
         for name, column in (("summits", "deviation_percent"), ("full", "full_contact_deviation_percent")):
-            found[f"{name}_rms_{pair}"] = f"{np.sqrt(np.mean(rows[column] ** 2)):.1f}"
-    return found
+            texts[f"{name}_rms_{pair}"] = f"{np.sqrt(np.mean(rows[column] ** 2)):.1f}"
+    return texts
 
 
 def across_gaps(table):
@@ -137,16 +137,16 @@ def attraction(table):
 
     The latter are root mean square deviations from published and measured lengths [%]; ``touching_rms_…``: without.
     """
-    both = list(_both_reaches(table))
-    found = {f"across_{_case(across)}": f"{1 + across.meso_energy_shift_percent / 100:.3g}" for _, across in both} | {
-        f"across_shift_{_case(across)}": f"{across.shift_percent:+.1f}" for _, across in both
+    pairs = list(_both_reaches(table))
+    texts = {f"across_{_case(across)}": f"{1 + across.meso_energy_shift_percent / 100:.3g}" for _, across in pairs} | {
+        f"across_shift_{_case(across)}": f"{across.shift_percent:+.1f}" for _, across in pairs
     }
     for (pair, variant), rows in table.groupby(["pair", "variant"]):
         reach = "across" if variant == ACROSS else "touching"
         for name, column in (("published", "published"), ("measured", "experiment")):
             rms = np.sqrt(np.mean(rows[f"{column}_deviation_percent"] ** 2))
-            found[f"{reach}_rms_{name}_{pair}"] = f"{rms:.1f}"
-    return found
+            texts[f"{reach}_rms_{name}_{pair}"] = f"{rms:.1f}"
+    return texts
 
 
 def sealed(safe_lengths, stoppers):
@@ -154,14 +154,14 @@ def sealed(safe_lengths, stoppers):
 
     ``sealed_bare``, ``sealed_bare_stuck``: pull-off force of a stopper [µN], and P(stuck) [%]; so on for each stopper.
     """
-    found = {}
+    texts = {}
     for row in safe_lengths[np.isclose(safe_lengths.share, 1e-3)].itertuples():
-        found[f"sealed_{row.device}_{'beam' if row.held_by == 'beam' else 'tip'}"] = f"{row.safe_length_um:.0f}"
+        texts[f"sealed_{row.device}_{'beam' if row.held_by == 'beam' else 'tip'}"] = f"{row.safe_length_um:.0f}"
     for device, rows in stoppers.groupby("device"):
         first = rows.iloc[0]
-        found[f"sealed_{device}"] = f"{first.pull_off_uN:.2g}"
-        found[f"sealed_{device}_stuck"] = f"{100 * first.share_stuck:.3g}"
-    return found
+        texts[f"sealed_{device}"] = f"{first.pull_off_uN:.2g}"
+        texts[f"sealed_{device}_stuck"] = f"{100 * first.share_stuck:.3g}"
+    return texts
 
 
 def _both_reaches(table):
@@ -175,27 +175,27 @@ def readings(table):
 
     ``error_summit``: largest standard error of a length [%]; ``strips_summit``: number of strips.
     """
-    found = {}
+    texts = {}
     for row in table.itertuples():
-        found[f"{row.reading}_{row.spacing_nm:g}_{row.vdw}_{row.pair}"] = f"{row.rms_published_percent:.1f}"
+        texts[f"{row.reading}_{row.spacing_nm:g}_{row.vdw}_{row.pair}"] = f"{row.rms_published_percent:.1f}"
     for reading, rows in table.groupby("reading"):
-        found[f"error_{reading}"] = f"{rows.change_se_percent.max():.1g}"
-        found[f"strips_{reading}"] = str(rows.strips.max())
-    return found
+        texts[f"error_{reading}"] = f"{rows.change_se_percent.max():.1g}"
+        texts[f"strips_{reading}"] = str(rows.strips.max())
+    return texts
 
 
 def pressing(table):
     """``pressed_c_060``: ratio of the energies after the last press; ``adhered_c``: largest change by adhesion [%]."""
-    found = {}
+    texts = {}
     for pair, rows in table.groupby("pair"):
         alone, last = rows[rows.press == 0], rows[rows.press == rows.press.max()]
-        found[f"adhered_{pair}"] = f"{100 * (alone.energy_ratio - 1).abs().max():.1g}"
-        found[f"pressed_MPa_{pair}"] = f"{last.pressure_MPa.iloc[0]:.0f}"
-        found[f"pressed_at_H_{pair}"] = f"{last.at_hardness_percent.iloc[0]:.1g}"
+        texts[f"adhered_{pair}"] = f"{100 * (alone.energy_ratio - 1).abs().max():.1g}"
+        texts[f"pressed_MPa_{pair}"] = f"{last.pressure_MPa.iloc[0]:.0f}"
+        texts[f"pressed_at_H_{pair}"] = f"{last.at_hardness_percent.iloc[0]:.1g}"
         for row in last.itertuples():
             name = f"pressed_{pair}_{_digits(row.relative_humidity)}"
-            found[name] = with_error(row.energy_ratio, row.energy_ratio_se)
-    return found
+            texts[name] = with_error(row.energy_ratio, row.energy_ratio_se)
+    return texts
 
 
 def deviations(table_3):
@@ -203,51 +203,51 @@ def deviations(table_3):
 
     ``measured_scatter``: smallest relative standard deviation of a measured crack length [%].
     """
-    found = {"measured_scatter": f"{100 * (table_3.experiment_std_um / table_3.experiment_um).min():.1f}"}
+    texts = {"measured_scatter": f"{100 * (table_3.experiment_std_um / table_3.experiment_um).min():.1f}"}
     for pair, rows in table_3[table_3.model == "NG"].groupby("pair"):
         off = rows.deviation_percent
-        found[f"published_{pair}"] = f"{off.min():+.0f} to {off.max():+.0f}"
-        found[f"measured_rms_{pair}"] = f"{np.sqrt(np.mean(rows.experiment_deviation_percent**2)):.1f}"
-    return found
+        texts[f"published_{pair}"] = f"{off.min():+.0f} to {off.max():+.0f}"
+        texts[f"measured_rms_{pair}"] = f"{np.sqrt(np.mean(rows.experiment_deviation_percent**2)):.1f}"
+    return texts
 
 
 def energies(table_3):
     """``e_b_044_NG``: mean ē [mJ/m²], ``cv_…``: its scatter [%], ``gain_b_044``: NG over G; samples without a law."""
-    found = {}
+    texts = {}
     for row in table_3.itertuples():
         name = f"{_case(row)}_{row.model}"
-        found[f"e_{name}"] = f"{TO_MJ * row.meso_energy_J_per_m2:.3g}"
-        found[f"cv_{name}"] = f"{100 * row.meso_energy_cv:.0f}"
-        found[f"lawless_{name}"] = f"{100 * row.share_without_law:.2g}"
-        found[f"lawful_{name}"] = f"{100 * (row.meso_energy_lawful_J_per_m2 / row.meso_energy_J_per_m2 - 1):.0f}"
+        texts[f"e_{name}"] = f"{TO_MJ * row.meso_energy_J_per_m2:.3g}"
+        texts[f"cv_{name}"] = f"{100 * row.meso_energy_cv:.0f}"
+        texts[f"lawless_{name}"] = f"{100 * row.share_without_law:.2g}"
+        texts[f"lawful_{name}"] = f"{100 * (row.meso_energy_lawful_J_per_m2 / row.meso_energy_J_per_m2 - 1):.0f}"
     by_model = {model: rows for model, rows in table_3.groupby("model")}
     for gaussian, other in zip(by_model["G"].itertuples(), by_model["NG"].itertuples(), strict=True):
-        found[f"gain_{_case(other)}"] = f"{other.meso_energy_J_per_m2 / gaussian.meso_energy_J_per_m2:.0f}"
+        texts[f"gain_{_case(other)}"] = f"{other.meso_energy_J_per_m2 / gaussian.meso_energy_J_per_m2:.0f}"
     below = by_model["NG"][by_model["NG"].adhesion_energy_J_per_m2 < by_model["NG"].meso_energy_J_per_m2]
-    found["arrest_below_mean"] = _listed(
+    texts["arrest_below_mean"] = _listed(
         f"pair {row.pair} at RH {row.relative_humidity:.2f}" for row in below.itertuples()
     )
-    return found
+    return texts
 
 
 def surfaces(table_1):
     """``radius_B2_NG`` [µm], ``summits_B2_NG`` [µm⁻²] and, with ``published_`` before the name, those of the paper."""
-    found = {}
+    texts = {}
     for row in table_1.itertuples():
         name = f"{row.surface}_{row.column}"
-        found[f"radius_{name}"] = f"{row.mean_summit_radius_um:.2f}"
-        found[f"summits_{name}"] = f"{row.summit_density_per_um2:.0f}"
-        found[f"published_radius_{name}"] = f"{row.mean_summit_radius_um_published:g}"
-        found[f"published_summits_{name}"] = f"{row.summit_density_per_um2_published:g}"
-    return found
+        texts[f"radius_{name}"] = f"{row.mean_summit_radius_um:.2f}"
+        texts[f"summits_{name}"] = f"{row.summit_density_per_um2:.0f}"
+        texts[f"published_radius_{name}"] = f"{row.mean_summit_radius_um_published:g}"
+        texts[f"published_summits_{name}"] = f"{row.summit_density_per_um2_published:g}"
+    return texts
 
 
 def identification(table_2):
     """``identified_B1``: larger of the deviations of radius and density [%]."""
     rows = table_2[table_2.psd == "identified"]
     off = np.maximum(rows.radius_residual_percent.abs(), rows.density_residual_percent.abs())
-    found = {f"identified_{surface}": f"{value:.1f}" for surface, value in zip(rows.surface, off, strict=True)}
-    return found | {"identified_but_Sub2": f"{off[rows.surface != 'Sub2'].max():.1f}"}
+    texts = {f"identified_{surface}": f"{value:.1f}" for surface, value in zip(rows.surface, off, strict=True)}
+    return texts | {"identified_but_Sub2": f"{off[rows.surface != 'Sub2'].max():.1f}"}
 
 
 def fits(fit_quality):
@@ -258,12 +258,12 @@ def fits(fit_quality):
 
 def variants(table):
     """``shift_spacing_nm_5_a``: largest change of a mean crack length by a variant [%], and its humidity."""
-    found = {}
+    texts = {}
     for (pair, name), rows in table[table.variant != "base"].groupby(["pair", "variant"]):
         row = rows.loc[rows.shift_percent.abs().idxmax()] if rows.shift_percent.notna().any() else rows.iloc[0]
-        found[f"shift_{name}_{pair}"] = f"{abs(row.shift_percent):.1f}"
-        found[f"shift_{name}_{pair}_at"] = f"{row.relative_humidity:.2f}"
-    return found
+        texts[f"shift_{name}_{pair}"] = f"{abs(row.shift_percent):.1f}"
+        texts[f"shift_{name}_{pair}_at"] = f"{row.relative_humidity:.2f}"
+    return texts
 
 
 def removed(table):
@@ -277,12 +277,12 @@ def removed(table):
 
 def slopes(sensitivity):
     """``slope_skewness_044``: sensitivity of the mean ē ± standard error; ``published_slope_…``."""
-    found = {}
+    texts = {}
     for row in sensitivity[sensitivity.statistic == "mean"].itertuples():
         name = f"{row.moment}_{_digits(row.relative_humidity)}"
-        found[f"slope_{name}"] = with_error(row.slope, row.slope_se)
-        found[f"published_slope_{name}"] = number(row.published, "g")
-    return found
+        texts[f"slope_{name}"] = with_error(row.slope, row.slope_se)
+        texts[f"published_slope_{name}"] = number(row.published, "g")
+    return texts
 
 
 def chaos(resampling):
@@ -318,10 +318,10 @@ def scans(table):
 def timings(now, earlier):
     """``time_paper``: minutes and seconds, or seconds, of every row; ``ratio_paper``: that after over that before."""
     seconds = dict(zip([*now["name"], *earlier["name"]], [*now.seconds, *earlier.seconds], strict=True))
-    found = {f"time_{name}": _duration(value) for name, value in seconds.items()}
+    texts = {f"time_{name}": _duration(value) for name, value in seconds.items()}
     repeated = [name.removesuffix("_before") for name in seconds if name.endswith("_before")]
     ratios = {name: seconds[f"{name}_after"] / seconds[f"{name}_before"] for name in repeated}
-    return found | {f"ratio_{name}": f"{ratio:.2f}" for name, ratio in ratios.items()}
+    return texts | {f"ratio_{name}": f"{ratio:.2f}" for name, ratio in ratios.items()}
 
 
 def constants():
@@ -338,42 +338,42 @@ def constants():
 def nearly_gaussian():
     """``kurtosis_01``: largest at skewness ± 0.1; ``near_1``, ``near_1_off``: moments used for `NEARLY_GAUSSIAN`."""
     errors = np.sqrt(np.diag(feasible.sampling_covariance(feasible.SAMPLE)))
-    found = {
+    texts = {
         f"kurtosis_{skewness:02.0f}": f"{feasible.largest_kurtosis(skewness / 10):.2f}" for skewness in (0, 1, 3, 5, 10)
     }
-    found |= {"scan_heights": str(feasible.SAMPLE), "farthest": f"{feasible.LARGEST_DISTANCE:.2f}"}
-    found |= {"farthest_scans": f"{feasible.LARGEST_DISTANCE_OF_SCANS:.2f}"}
-    found |= {f"error_of_{name}": f"{error:.2g}" for name, error in zip(("skewness", "kurtosis"), errors, strict=True)}
+    texts |= {"scan_heights": str(feasible.SAMPLE), "farthest": f"{feasible.LARGEST_DISTANCE:.2f}"}
+    texts |= {"farthest_scans": f"{feasible.LARGEST_DISTANCE_OF_SCANS:.2f}"}
+    texts |= {f"error_of_{name}": f"{error:.2g}" for name, error in zip(("skewness", "kurtosis"), errors, strict=True)}
     for k, measured in enumerate(NEARLY_GAUSSIAN, 1):
         used = feasible.nearest_feasible(*measured)
-        found |= {f"near_{k}": f"{used.skewness:.3f}, {used.kurtosis:.3f}".replace("-", "−")}
-        found |= {f"near_{k}_off": f"{used.distance:.2f}"}
-        found |= {f"near_{k}_of": f"{measured[0]:g}, {measured[1]:g}".replace("-", "−")}
-    return found
+        texts |= {f"near_{k}": f"{used.skewness:.3f}, {used.kurtosis:.3f}".replace("-", "−")}
+        texts |= {f"near_{k}_off": f"{used.distance:.2f}"}
+        texts |= {f"near_{k}_of": f"{measured[0]:g}, {measured[1]:g}".replace("-", "−")}
+    return texts
 
 
 def safe_lengths(table):
     """``safe_C1_067_1e-03``: safe length of a device [µm], held by the beam alone; ``…_tip``: by beam or tip."""
-    found = {}
+    texts = {}
     for row in table.itertuples():
         name = f"safe_{row.device}_{_digits(row.relative_humidity)}_{row.share:.0e}".replace("-", "")
-        found[name + ("_tip" if row.held_by == "beam or tip" else "")] = f"{row.safe_length_um:.0f}"
-    return found
+        texts[name + ("_tip" if row.held_by == "beam or tip" else "")] = f"{row.safe_length_um:.0f}"
+    return texts
 
 
 def stoppers(table):
     """``worst_S1``: worst humidity; ``stuck_S1_067``: P(stuck) [%]; ``force_S1_067_1e02``: safe force [µN]."""
-    found = {}
+    texts = {}
     for row in table.dropna(subset=["relative_humidity"]).to_dict("records"):
         name = f"{row['device']}_{_digits(row['relative_humidity'])}"
-        found[f"worst_{row['device']}"] = f"{row['worst_humidity']:.2f}"
-        found[f"stuck_{name}"] = f"{100 * row['share_stuck']:.2g}"
+        texts[f"worst_{row['device']}"] = f"{row['worst_humidity']:.2f}"
+        texts[f"stuck_{name}"] = f"{100 * row['share_stuck']:.2g}"
         shares = [key.rpartition("_")[2] for key in row if key.startswith("safe_force_uN")]
-        found |= {
+        texts |= {
             f"force_{name}_{float(share):.0e}".replace("-", ""): f"{row[f'safe_force_uN_{share}']:.0f}"
             for share in shares
         }
-    return found
+    return texts
 
 
 def budget(table):
@@ -381,21 +381,21 @@ def budget(table):
 
     Those of tips are called ``total_C1_067_tip`` and so on.
     """
-    found = {}
+    texts = {}
     for (device, humidity, held_by), rows in table.groupby(["device", "relative_humidity", "held_by"]):
         name = f"{device}_{_digits(humidity)}" + ("_tip" if held_by == "tip" else "")
         totals = rows[rows.part == "total"].effect_percent.values
-        found |= {
+        texts |= {
             f"{what}_{name}": f"{value:.1f}" for what, value in zip(("total", "independent"), totals, strict=True)
         }
-        found[f"scatter_{name}"] = f"{rows[rows.part == 'scatter'].effect_percent.iloc[0]:.2g}"
+        texts[f"scatter_{name}"] = f"{rows[rows.part == 'scatter'].effect_percent.iloc[0]:.2g}"
         best = rows.loc[rows.remaining_percent.idxmin()]
-        found |= {f"best_{name}": best["name"], f"left_{name}": f"{best.remaining_percent:.1f}"}
+        texts |= {f"best_{name}": best["name"], f"left_{name}": f"{best.remaining_percent:.1f}"}
         inputs = rows[rows.part == "input"]
         for entry in inputs.itertuples():
             quantity = entry.name.replace("'", "").replace(" ", "_")
-            found[f"slope_{name}_{quantity}"] = with_error(entry.slope, entry.slope_se)
-    return found
+            texts[f"slope_{name}_{quantity}"] = with_error(entry.slope, entry.slope_se)
+    return texts
 
 
 def drawn_lengths(safe, budget):
@@ -409,8 +409,8 @@ def drawn_lengths(safe, budget):
     totals = budget[(budget.device == "C1") & (budget.held_by == "tip") & (budget["name"] == "total")].effect_percent
     of_tip = safe[(safe.device == "C1") & (safe.held_by == "beam or tip") & (safe.share == 1e-3)]
     least = float(of_tip.safe_length_um.min())
-    found = {"saturated_C1": saturated, "least_C1": least, "drawn_C1": (1 - 2 * totals.max() / 100) * least}
-    return {name: f"{length:.0f}" for name, length in found.items()}
+    texts = {"saturated_C1": saturated, "least_C1": least, "drawn_C1": (1 - 2 * totals.max() / 100) * least}
+    return {name: f"{length:.0f}" for name, length in texts.items()}
 
 
 def _duration(seconds):

@@ -83,7 +83,7 @@ TEST_BEAMS = "test_beams"
 TEST_BEAMS_SAID = {
     "build": tables_inference.built,
     "further": tables_inference.advised,
-    "warned": lambda found: " ".join(tables_inference.warnings(found)),
+    "warned": lambda update: " ".join(tables_inference.warnings(update)),
 }
 TEST_BEAMS_PICTURE = ("test_beams_onB", 1100)
 #: Tables of studies with a command of their own: command, and width of the picture of the same name [pixels] or 0.
@@ -200,8 +200,8 @@ def collect(results):
         for kind in ("csv", "md"):
             shutil.copyfile(results / "tables" / f"{name}.{kind}", DOCS / "tables" / f"{name}.{kind}")
     shutil.copyfile(results / "checks.csv", DOCS / "tables" / "checks.csv")
-    found = scalars(results / "studies") | meshes(results) | timing(results)
-    pd.DataFrame(found.items(), columns=["name", "text"]).to_csv(DOCS / "tables" / "studies.csv", index=False)
+    texts = scalars(results / "studies") | meshes(results) | timing(results)
+    pd.DataFrame(texts.items(), columns=["name", "text"]).to_csv(DOCS / "tables" / "studies.csv", index=False)
     (DOCS / "tables" / "jobs.md").write_text(jobs.table(results), encoding="utf-8")
     compared = quoted.compared_lengths(quoted.frame(DOCS / "tables" / "table_3.csv"))
     (DOCS / "tables" / "crack_lengths.md").write_text(compared + "\n", encoding="utf-8")
@@ -275,8 +275,8 @@ def collect_test_beams(folder):
     """Sentences of the pages of a run of the example of test beams, by device and name, and one picture."""
     rows = []
     for path in sorted((folder / "results" / "devices" / "test_beams" / "rerun").glob("*.nc")):
-        found = load(path, "test_beams_rerun")
-        rows += [{"device": path.stem, "name": name, "text": said(found)} for name, said in TEST_BEAMS_SAID.items()]
+        update = load(path, "test_beams_rerun")
+        rows += [{"device": path.stem, "name": name, "text": said(update)} for name, said in TEST_BEAMS_SAID.items()]
     pd.DataFrame(rows).to_csv(DOCS / "tables" / f"{TEST_BEAMS}.csv", index=False, lineterminator="\n")
     picture, width = TEST_BEAMS_PICTURE
     shrink(folder / "results" / "figures" / f"{picture}.png", DOCS / "pictures" / f"{picture}.png", width)
@@ -284,25 +284,25 @@ def collect_test_beams(folder):
 
 def scalars(studies):
     """Single numbers of the studies that have no table: name to text."""
-    found = {}
+    texts = {}
     for path in sorted((studies / "plasticity").glob("*.nc")):
         study = load(path, "plasticity")
         share, error = 100 * float(study.plastic_share), 100 * float(study.plastic_share_error)
-        found[f"plastic_{path.stem}"] = f"{with_error(share, error)} %" if share > 0 else "0 %"
+        texts[f"plastic_{path.stem}"] = f"{with_error(share, error)} %" if share > 0 else "0 %"
     sizes, orders, mesh, correlation = (
         load(studies / f"{name}.nc", name) for name in ("sample_sizes", "orders", "mesh", "correlation")
     )
     total, half = (int(size) for size in sizes["size"].values[[-1, -2]])
-    found["samples"], found["samples_distance"] = str(total), f"{sampling_distance(total):.3f}"
-    found["half"], found["half_distance"] = str(half), f"{float(sizes.distance.sel(size=half)):.3f}"
-    found |= {f"order_{k}": str(order) if order else "none" for k, order in enumerate(orders.converged_order.values, 1)}
-    found["orders"] = str(int(orders.order[-1]))
+    texts["samples"], texts["samples_distance"] = str(total), f"{sampling_distance(total):.3f}"
+    texts["half"], texts["half_distance"] = str(half), f"{float(sizes.distance.sel(size=half)):.3f}"
+    texts |= {f"order_{k}": str(order) if order else "none" for k, order in enumerate(orders.converged_order.values, 1)}
+    texts["orders"] = str(int(orders.order[-1]))
     of_paper = np.isclose(mesh.element_length, 7.5e-6) & np.isclose(mesh.point_distance, 1.5e-6)
     excess = mesh.energy.values[of_paper][0] / forcelaw.energy(mesh.law.values) - 1
-    found["mesh_excess"] = f"{100 * excess:.1f}"
+    texts["mesh_excess"] = f"{100 * excess:.1f}"
     for name, length in zip(correlation.surface.values, correlation.correlation_length.values, strict=True):
-        found[f"correlation_{name}"] = f"{TO_UM * float(length):.2f}"
-    return found
+        texts[f"correlation_{name}"] = f"{TO_UM * float(length):.2f}"
+    return texts
 
 
 def meshes(results):
@@ -314,11 +314,11 @@ def meshes(results):
         laws = forcelaw.coefficients(samples[forcelaw.admissible(samples, limit)], limit)
         lengths.append(foundation_length(beam, laws))
     strip = in_si(StripLength, {"strip_length_um": plan.config["sampling"]["strip_length_um"]}).strip_length
-    found = {}
+    texts = {}
     for name, size in (("elements", beam.element_length), ("strips", strip)):
-        found |= {f"{name}_least": f"{size / max(lengths):.2g}", f"{name}_most": f"{size / min(lengths):.2g}"}
+        texts |= {f"{name}_least": f"{size / max(lengths):.2g}", f"{name}_most": f"{size / min(lengths):.2g}"}
     contact = load(results / "contact" / f"{plan.figure_pair}_NG.nc", "contact")
-    return found | {"sample_kB": f"{4e-3 * (contact.sizes['distance'] + contact.sizes['height']):.1f}"}
+    return texts | {"sample_kB": f"{4e-3 * (contact.sizes['distance'] + contact.sizes['height']):.1f}"}
 
 
 def timing(results):

@@ -50,10 +50,10 @@ class Measured:
         job = results.graph.job(f"devices/test_beams/{device}")
         settings = in_si(stage.Settings, job.settings)
         budgets = {key: results[name] for key, name in job.inputs["test_beams"].items()}
-        return cls([stage.Result(*key, one, settings.arrays[key[0]]) for key, one in budgets.items()], settings)
+        return cls([stage.Result(*key, budget, settings.arrays[key[0]]) for key, budget in budgets.items()], settings)
 
     @property
-    def everyone(self):
+    def places(self):
         """Places of all beams."""
         return range(len(self.beams))
 
@@ -62,8 +62,8 @@ class Measured:
         stated = self.settings.discrepancy if slope else replace(self.settings.discrepancy, slope=0.0)
         results = [*self.beams, *others]
         prior, responses = stage.with_discrepancy(stage.common_inputs(results), self.beams, others, stated)
-        reduced = np.array([one.reduced for one in results])
-        middle = reduced[list(self.everyone if fitted is None else fitted)].mean()
+        reduced = np.array([result.reduced for result in results])
+        middle = reduced[list(self.places if fitted is None else fitted)].mean()
         responses[:, prior.names.index(inference.SLOPE)] = reduced - middle
         return prior, responses
 
@@ -74,7 +74,7 @@ class Measured:
     def errors(self, fitted, slope=True):
         """Differences of the other beams from what the fitted ones predict, and their standard deviations [-]."""
         prior, responses = self.prior(slope=slope, fitted=fitted)
-        data, others = self.data(responses), [k for k in self.everyone if k not in fitted]
+        data, others = self.data(responses), [k for k in self.places if k not in fitted]
         known = inference.given(prior, part(data, list(fitted)))
         shift, deviation = known.of(data.responses[others])
         return data.differences[others] - shift, np.hypot(deviation, data.errors[others])
@@ -88,44 +88,46 @@ def main(folder):
 
 def write(pairs, folder):
     """Numbers and table of all pairs."""
-    found = {pair: of_pair(one) for pair, one in pairs.items()} | {"ab": from_one_to_another(pairs["a"], pairs["b"])}
+    texts = {pair: of_pair(array) for pair, array in pairs.items()} | {
+        "ab": from_one_to_another(pairs["a"], pairs["b"])
+    }
     folder.mkdir(parents=True, exist_ok=True)
-    rows = [{"pair": pair, "name": name, "text": text} for pair, of in found.items() for name, text in of.items()]
+    rows = [{"pair": pair, "name": name, "text": text} for pair, of in texts.items() for name, text in of.items()]
     pd.DataFrame(rows).to_csv(folder / "measured.csv", index=False, lineterminator="\n")
-    cells = {"": ROWS.values()} | {f"pair {pair}": [found[pair][name] for name in ROWS] for pair in pairs}
+    cells = {"": ROWS.values()} | {f"pair {pair}": [texts[pair][name] for name in ROWS] for pair in pairs}
     (folder / "measured.md").write_text(
         pd.DataFrame(cells).to_markdown(index=False, disable_numparse=True) + "\n", encoding="utf-8"
     )
 
 
-def of_pair(one):
+def of_pair(array):
     """Numbers of a pair as text by name."""
-    prior, responses = one.prior()
-    data, (without, its_responses) = one.data(responses), one.prior(slope=False)
+    prior, responses = array.prior()
+    data, (without, its_responses) = array.data(responses), array.prior(slope=False)
     known = inference.given(prior, data)
     factor, slope = (known.names.index(name) for name in (inference.FACTOR, inference.SLOPE))
     halves = [range(0, 6, 2), range(1, 6, 2)]
-    found = {
+    texts = {
         "rms": percent(data.differences),
         "p": f"{inference.p_value(prior, data):.2f}",
         "factor": with_error(np.exp(known.mean[factor]), np.exp(known.mean[factor]) * known.deviations[factor]),
         "slope": with_error(known.mean[slope], known.deviations[slope]),
         "slopes": f"{abs(known.mean[slope]) / prior.deviations[slope]:.1f}",
-        "halves": percent(predicted(one, halves)[0]),
-        "halves_stated": percent(predicted(one, halves)[1]),
-        "halves_of_factor": percent(predicted(one, halves, slope=False)[0]),
-        "p_of_factor": f"{inference.p_value(without, one.data(its_responses)):.1g}",
-        "median": percent(np.median([rms(one.errors(half)[0]) for half in combinations(one.everyone, 3)])),
-        "singles": percent(predicted(one, combinations(one.everyone, 5))[0]),
+        "halves": percent(predicted(array, halves)[0]),
+        "halves_stated": percent(predicted(array, halves)[1]),
+        "halves_of_factor": percent(predicted(array, halves, slope=False)[0]),
+        "p_of_factor": f"{inference.p_value(without, array.data(its_responses)):.1g}",
+        "median": percent(np.median([rms(array.errors(half)[0]) for half in combinations(array.places, 3)])),
+        "singles": percent(predicted(array, combinations(array.places, 5))[0]),
     }
-    return found | of_inputs_alone(one) | of_line(one, data) | lengths(one)
+    return texts | of_inputs_alone(array) | of_line(array, data) | lengths(array)
 
 
-def of_inputs_alone(one):
+def of_inputs_alone(array):
     """What would have to be wrong if the model were exact, in standard uncertainties."""
-    prior, responses = one.prior()
-    inputs, count = stage.common_inputs(one.beams), len(prior.names) - 2 - len(one.beams)
-    data = replace(one.data(responses), responses=responses[: len(one.beams), :count])
+    prior, responses = array.prior()
+    inputs, count = stage.common_inputs(array.beams), len(prior.names) - 2 - len(array.beams)
+    data = replace(array.data(responses), responses=responses[: len(array.beams), :count])
     best = inference.given(inputs, data)
     moved = dict(zip(inputs.names, np.abs(best.mean) / inputs.deviations, strict=True))
     numbers = {
@@ -138,54 +140,56 @@ def of_inputs_alone(one):
     return left | {f"{name}_alone": f"{value:.1f}" for name, value in numbers.items()}
 
 
-def of_line(one, data):
+def of_line(array, data):
     """Scatter of ln(measured / computed) around the best straight line in ln l."""
-    reduced = np.array([beam.reduced for beam in one.beams])
+    reduced = np.array([beam.reduced for beam in array.beams])
     away = data.differences - np.polyval(np.polyfit(reduced, data.differences, 1), reduced)
-    most = {f"line_{round(100 * beam.humidity)}": f"{100 * at:+.1f}" for beam, at in zip(one.beams, away, strict=True)}
+    most = {
+        f"line_{round(100 * beam.humidity)}": f"{100 * at:+.1f}" for beam, at in zip(array.beams, away, strict=True)
+    }
     return {"line": f"{100 * np.sqrt(np.sum(away**2) / (len(away) - 2)):.1f}"} | most
 
 
-def lengths(one):
+def lengths(array):
     """Lengths of equal beams of another device before and after, whose dimensions and rests are its own [µm]."""
-    others = [one_of._replace(owner="C1") for one_of in one.beams]
-    prior, responses = one.prior(others)
-    known, device = inference.given(prior, one.data(responses)), responses[len(one.beams) :]
-    found = {}
+    others = [beam._replace(owner="C1") for beam in array.beams]
+    prior, responses = array.prior(others)
+    known, device = inference.given(prior, array.data(responses)), responses[len(array.beams) :]
+    texts = {}
     for beam, row, error, difference in zip(
-        one.beams, device, one.data(responses).errors, one.data(responses).differences, strict=True
+        array.beams, device, array.data(responses).errors, array.data(responses).differences, strict=True
     ):
         computed, (shift, after), (_, before) = TO_UM * float(beam.budget.centre), known.of(row), prior.of(row)
         measured, updated, end = computed * np.exp(difference), computed * np.exp(shift), round(100 * beam.humidity)
-        found |= {
+        texts |= {
             f"measured_{end}": with_error(measured, measured * error),
             f"before_{end}": with_error(computed, computed * before),
             f"after_{end}": with_error(updated, updated * after),
         }
-    return found
+    return texts
 
 
-def from_one_to_another(one, other):
+def from_one_to_another(array, other):
     """Errors at the humidities of another pair after the test beams of one, without and with a slope of the model."""
-    found = {}
+    texts = {}
     for name, slope in (("slope", True), ("factor", False)):
-        prior, responses = one.prior(other.beams, slope)
-        theirs = other.data(responses[len(one.beams) :])
-        shift, deviation = inference.given(prior, one.data(responses)).of(theirs.responses)
+        prior, responses = array.prior(other.beams, slope)
+        theirs = other.data(responses[len(array.beams) :])
+        shift, deviation = inference.given(prior, array.data(responses)).of(theirs.responses)
         away = theirs.differences - shift
-        found[f"rms_of_{name}"] = percent(away)
+        texts[f"rms_of_{name}"] = percent(away)
         if slope:
             stated = np.hypot(deviation, theirs.errors)
-            found |= {"stated": percent(stated), "most": f"{np.abs(away / stated).max():.1f}"}
-    return found
+            texts |= {"stated": percent(stated), "most": f"{np.abs(away / stated).max():.1f}"}
+    return texts
 
 
 # Numbers
 
 
-def predicted(one, halves, slope=True):
+def predicted(array, halves, slope=True):
     """Errors of all beams that are predicted from several choices of the fitted ones, and their deviations [-]."""
-    return np.concatenate([one.errors(half, slope) for half in halves], axis=1)
+    return np.concatenate([array.errors(half, slope) for half in halves], axis=1)
 
 
 def part(data, places):

@@ -35,7 +35,7 @@ def test_surface_and_contact(run):
 
 def test_scans(run):
     found = run("scans")
-    deviation = (found["found"].moments - np.array(found["truth"])) / found["found"].errors
+    deviation = (found["estimate"].moments - np.array(found["truth"])) / found["estimate"].errors
     assert np.all(np.abs(deviation) < 3.5)
     assert found["inspection"].reach.end == pytest.approx(found["spectrum"].cutoff, abs=2 * np.pi / 2e-6)
 

@@ -44,9 +44,9 @@ device = stiction.Device.of(config, "C1")
 for humidity in (0.44, 0.67):
     lengths = device.safe_lengths(humidity)
     for shape, line in zip(lengths["shape"].values, ("-", "--"), strict=False):
-        one = lengths.sel(shape=shape)
-        plt.semilogy(1e6 * one.length, one.stuck, line, label=f"RH {humidity}, {shape}")
-        safe = 1e6 * float(one.safe_length.sel(share=0.01))
+        curve = lengths.sel(shape=shape)
+        plt.semilogy(1e6 * curve.length, curve.stuck, line, label=f"RH {humidity}, {shape}")
+        safe = 1e6 * float(curve.safe_length.sel(share=0.01))
         print(f"RH {humidity}, {shape}: safe length {safe:.0f} µm, at which at most 1 % stick")
 plt.xlabel("length of the beam [µm]")
 plt.ylabel("P(stuck) [–]")

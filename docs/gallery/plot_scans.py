@@ -39,17 +39,17 @@ large, small = scans(10e-6, 4, 2), scans(2e-6, 1, 2)
 # Errors follow from the spectrum: neighbouring points are correlated, and far fewer heights are independent than
 # there are pixels.
 
-found = stiction.estimate_surface([*large, *small], seed=1)
+estimate = stiction.estimate_surface([*large, *small], seed=1)
 truth = np.log(3.4e-9), -0.76, 3.9
 for name, value, error, true in zip(
-    ("ln rms", "skewness", "kurtosis"), found.moments, found.errors, truth, strict=True
+    ("ln rms", "skewness", "kurtosis"), estimate.moments, estimate.errors, truth, strict=True
 ):
     print(f"{name}: {value:.3f} ± {error:.3f}, true value {true:.3f}")
 
 # %%
 # Limits of the scans are stated in words.
 
-print("\n".join(found.flags))
+print("\n".join(estimate.flags))
 
 # %%
 # Spectrum

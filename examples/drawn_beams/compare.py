@@ -20,11 +20,11 @@ PREDICTIONS = {"before": ("without test beams", "0.6", -0.004), "after": ("with 
 def main(folder):
     """Write table and figure."""
     rows = pd.read_csv(folder / "results" / "tables" / "test_beams.csv")
-    found = compared(rows, pd.read_csv(folder / "truth.csv"))
-    table = written(found)
+    lengths = compared(rows, pd.read_csv(folder / "truth.csv"))
+    table = written(lengths)
     (folder / "prediction.csv").write_text(table.csv, encoding="utf-8")
     (folder / "prediction.md").write_text(table.markdown, encoding="utf-8")
-    save(drawn(found), folder / "prediction.png")
+    save(drawn(lengths), folder / "prediction.png")
     print(table.markdown)  # noqa: T201
 
 
@@ -46,27 +46,27 @@ def off(row, name):
     return (getattr(row, f"{name}_um") - row.true_um) / deviation
 
 
-def written(found):
+def written(lengths):
     """Table for reading."""
     rows = []
-    for row in found.itertuples():
+    for row in lengths.itertuples():
         cells = {"RH": f"{row.humidity:g}", "true l_s [µm]": with_error(row.true_um, row.true_se_um)}
         for name, (words, *_) in PREDICTIONS.items():
             cells[f"{words} [µm]"] = with_error(getattr(row, f"{name}_um"), getattr(row, f"{name}_std_um"))
             cells[f"{words}: difference in standard deviations"] = number(off(row, name), "+.1f")
         rows.append(cells)
-    return Table(found, "Mean crack length of the device, predicted and true.", pd.DataFrame(rows))
+    return Table(lengths, "Mean crack length of the device, predicted and true.", pd.DataFrame(rows))
 
 
 @styled
-def drawn(found):
+def drawn(lengths):
     """Predicted and true crack lengths over the humidity."""
     figure, ((panel,),) = panels(1, 1, (SINGLE, 2.6))
-    panel.plot(found.humidity, found.true_um, color="black", marker="s", linestyle="", label="truth")
+    panel.plot(lengths.humidity, lengths.true_um, color="black", marker="s", linestyle="", label="truth")
     for name, (words, colour, shift) in PREDICTIONS.items():
-        deviation = 1.96 * found[f"{name}_std_um"]
+        deviation = 1.96 * lengths[f"{name}_std_um"]
         panel.errorbar(
-            found.humidity + shift, found[f"{name}_um"], deviation, fmt="o", color=colour, label=f"{words}, 95 %"
+            lengths.humidity + shift, lengths[f"{name}_um"], deviation, fmt="o", color=colour, label=f"{words}, 95 %"
         )
     panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$ [µm]")
     panel.legend()

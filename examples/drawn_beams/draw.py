@@ -49,8 +49,8 @@ def true(humidity):
 def measured(wafer):
     """Rows of beams with crack lengths."""
     for humidity in MEASURED:
-        found = stage_cracks.lengths(wafer.cracks(true(humidity)))[0]
-        yield from ([humidity, LENGTH, f"{crack / UM:.1f}", ""] for crack in found[:NUMBER])
+        cracks = stage_cracks.lengths(wafer.cracks(true(humidity)))[0]
+        yield from ([humidity, LENGTH, f"{crack / UM:.1f}", ""] for crack in cracks[:NUMBER])
 
 
 def counted(wafer):
@@ -65,9 +65,9 @@ def counted(wafer):
 def lengths(device, humidities):
     """Rows with the true mean crack lengths of the device and the standard errors of their computation."""
     for humidity in humidities:
-        found = stage_cracks.lengths(device.cracks(true(humidity)))
-        groups = found[1].mean(axis=1)
-        yield [humidity, found[0].mean() / UM, groups.std(ddof=1) / len(groups) ** 0.5 / UM]
+        computed = stage_cracks.lengths(device.cracks(true(humidity)))
+        groups = computed[1].mean(axis=1)
+        yield [humidity, computed[0].mean() / UM, groups.std(ddof=1) / len(groups) ** 0.5 / UM]
 
 
 def write(path, columns, rows):

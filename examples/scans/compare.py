@@ -19,11 +19,11 @@ MEASURED, TRUE = "mine", "truth"
 
 def main(folder):
     """Write table and figure."""
-    found = compared(pd.read_csv(folder / "results" / "tables" / "table_3.csv"))
-    table = written(found)
+    cracks = compared(pd.read_csv(folder / "results" / "tables" / "table_3.csv"))
+    table = written(cracks)
     (folder / "prediction.csv").write_text(table.csv, encoding="utf-8")
     (folder / "prediction.md").write_text(table.markdown, encoding="utf-8")
-    save(drawn(found), folder / "prediction.png")
+    save(drawn(cracks), folder / "prediction.png")
     print(table.markdown)  # noqa: T201
 
 
@@ -31,7 +31,7 @@ def compared(table_3):
     """Crack lengths of both pairs with their errors [µm], one row per humidity; model NG."""
     cases = table_3[table_3.model == "NG"].set_index(["pair", "relative_humidity"])
     mine, true = cases.loc[MEASURED], cases.loc[TRUE]
-    found = pd.DataFrame(
+    cracks = pd.DataFrame(
         {
             "predicted_um": mine.crack_length_um,
             "scans_se_um": mine.crack_length_scans_se_um,
@@ -40,12 +40,12 @@ def compared(table_3):
             "true_se_um": true.crack_length_se_um,
         }
     )
-    errors = found[["scans_se_um", "simulation_se_um", "true_se_um"]]
-    found["errors_off"] = (found.predicted_um - found.true_um) / np.sqrt((errors**2).sum(axis=1, skipna=False))
-    return found.reset_index()
+    errors = cracks[["scans_se_um", "simulation_se_um", "true_se_um"]]
+    cracks["errors_off"] = (cracks.predicted_um - cracks.true_um) / np.sqrt((errors**2).sum(axis=1, skipna=False))
+    return cracks.reset_index()
 
 
-def written(found):
+def written(cracks):
     """Table for reading."""
     rows = [
         {
@@ -56,28 +56,28 @@ def written(found):
             "l_s of the true surfaces [µm]": with_error(row.true_um, row.true_se_um),
             "difference in standard errors": number(row.errors_off, "+.1f"),
         }
-        for row in found.itertuples()
+        for row in cracks.itertuples()
     ]
     caption = (
         "Crack length predicted from scans, ± standard error due to scans and to the simulation, and its true value."
     )
-    return Table(found, caption, pd.DataFrame(rows))
+    return Table(cracks, caption, pd.DataFrame(rows))
 
 
 @styled
-def drawn(found):
+def drawn(cracks):
     """Crack lengths over the humidity, and their differences from those of the true surfaces."""
     figure, ((lengths,), (differences,)) = panels(2, 1, (SINGLE, 3.8), sharex=True, height_ratios=[2, 1])
-    error = np.hypot(found.scans_se_um, found.simulation_se_um)
+    error = np.hypot(cracks.scans_se_um, cracks.simulation_se_um)
     scans = {"marker": "o", "linestyle": "", "label": "from scans"}
-    lengths.plot(found.relative_humidity, found.true_um, color="black", marker="s", label="true surfaces")
-    lengths.errorbar(found.relative_humidity, found.predicted_um, error, **scans)
+    lengths.plot(cracks.relative_humidity, cracks.true_um, color="black", marker="s", label="true surfaces")
+    lengths.errorbar(cracks.relative_humidity, cracks.predicted_um, error, **scans)
     lengths.set(ylabel="crack length $l_s$ [µm]")
     lengths.legend()
-    difference, of_both = found.predicted_um - found.true_um, np.hypot(error, found.true_se_um)
+    difference, of_both = cracks.predicted_um - cracks.true_um, np.hypot(error, cracks.true_se_um)
     differences.axhline(0, color="black", linewidth=0.8)
     differences.errorbar(
-        found.relative_humidity, *(100 * part / found.true_um for part in (difference, of_both)), **scans
+        cracks.relative_humidity, *(100 * part / cracks.true_um for part in (difference, of_both)), **scans
     )
     differences.set(xlabel="relative humidity [–]", ylabel="difference [%]")
     humidity_axis(differences)

@@ -136,7 +136,7 @@ class Device:
         self._must_state("test_beams", self._section.get("test_beams"))
         return self.results[f"devices/test_beams/rerun/{self.name}"]
 
-    def warnings(self, found: xr.Dataset) -> list[str]:
+    def warnings(self, safe_lengths: xr.Dataset) -> list[str]:
         """Where a result of `safe_lengths` or `forces` is beyond the limits of the model, one sentence each.
 
         Plasticity is not checked, which is one of the sentences.
@@ -145,7 +145,7 @@ class Device:
         if "stopper" in settings:
             return device_warnings.of_stopper(in_si(device_warnings.OfStopper, settings["stopper"]))
         return pair_warnings.numbered(
-            device_warnings.of_device(found, in_si(device_warnings.OfDevice, settings["beam"]))
+            device_warnings.of_device(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
         )[0]
 
     def _result(self, stage, humidity, end=""):

@@ -93,27 +93,27 @@ def problems(
         """First samples of a patch, whose solids attract each other through the air of a humidity."""
         return of_patch(patch._replace(pair=plan.air.contact(patch.pair, humidity)), model)
 
-    guessed, found = _guessed(config), {}
+    guessed, by_key = _guessed(config), {}
     for use in chain(_pairs(plan), _devices(plan, "devices"), _devices(plan.of_test_beams, "test_beams")):
         given = [guessed[name] for name in dict.fromkeys(plan.sides(use.patch.pair)) if name in guessed]
         given += ["contact.model = 'full'"] * plan.variants.is_corrected()
         for path, message in _refusals(use, samples, preliminary=bool(given)):
             end = f" (preliminary, given {', '.join(given)})" if given else ""
             value = shown(reduce(getitem, path, config))
-            found.setdefault((path, use.patch), Problem(path, f"is {value}, {message}{end}"))
-    return list(found.values())
+            by_key.setdefault((path, use.patch), Problem(path, f"is {value}, {message}{end}"))
+    return list(by_key.values())
 
 
 def _guessed(config):
     """Keys and values of the surfaces whose spectrum the run will improve, by name."""
-    found = {}
+    guesses = {}
     for name, entry in config["surfaces"].items():
         if is_measured(entry):
             files = [Path(file).name for file in entry["scans"]["files"]]
-            found[name] = f"surfaces.{name}.scans.files = {shown(files)}"
+            guesses[name] = f"surfaces.{name}.scans.files = {shown(files)}"
         elif entry["psd"] != "published":
-            found[name] = f"surfaces.{name}.psd = {shown(entry['psd'])}"
-    return found
+            guesses[name] = f"surfaces.{name}.psd = {shown(entry['psd'])}"
+    return guesses
 
 
 # What sticks
@@ -196,8 +196,8 @@ def _refusals(use: Use, samples: Callable, preliminary: bool) -> Iterator[tuple[
     except (ValueError, ArithmeticError) as reason:
         yield use.pair, f"must have surfaces and a solid whose contact can be computed: {reason}"
         return
-    if weak := sorted(humidity for (_, humidity), found in shown.items() if "weak" in found):
-        yield _weak(use, weak, next(found["weak"] for found in shown.values() if "weak" in found))
+    if weak := sorted(humidity for (_, humidity), evidence in shown.items() if "weak" in evidence):
+        yield _weak(use, weak, next(evidence["weak"] for evidence in shown.values() if "weak" in evidence))
         return
     strips = [(*_longest(use, shown[at]["laws"]), at) for at in shown if at[1] in use.resolved]
     length, error, at = min(strips, default=(np.inf, 0.0, None))
@@ -217,13 +217,13 @@ def _longest(use, laws):
 def _too_long(use, length, error, samples):
     """Message about strips that are longer than samples allow, with a length or thickness that would do."""
     strip, enough = use.patch.length / NM_PER_UM, (length - _CERTAIN * error) / NM_PER_UM
-    found = f"{samples} allow {length / NM_PER_UM:.3g} ± {error / NM_PER_UM:.1g} µm"
+    evidence = f"{samples} allow {length / NM_PER_UM:.3g} ± {error / NM_PER_UM:.1g} µm"
     if use.thickness is None:
-        return f"must be at most {enough:.3g} µm to resolve the cracks of pair {use.patch.pair}: {found}"
+        return f"must be at most {enough:.3g} µm to resolve the cracks of pair {use.patch.pair}: {evidence}"
     # All lengths of a crack on given force laws are proportional to t^(3/4).
     thickness = use.thickness * (strip / enough) ** (4 / 3)
     return (
-        f"must be so large that strips of {strip:g} µm resolve its cracks, at least {thickness:.3g} µm: {found}; or "
+        f"must be so large that strips of {strip:g} µm resolve its cracks, at least {thickness:.3g} µm: {evidence}; or "
         f"decrease strip_um to at most {enough:.3g} µm, which must stay above the correlation length"
     )
 
@@ -242,7 +242,7 @@ def _weak(use, humidities, weak):
             f"{length:g} x {width:g} µm of pair {use.patch.pair}; as far as these samples show, {weak['together']} "
             "times the area would do"
         )
-    others = [f"{one:g}" for one in use.humidities if one not in humidities]
+    others = [f"{humidity:g}" for humidity in use.humidities if humidity not in humidities]
     choose = f"only {', '.join(others)}" if others else "other humidities"
     return use.pair, (
         f"must have surfaces rough enough and a solid stiff enough for its humidities: {resist} where the mean planes "
@@ -302,8 +302,8 @@ class Samples:
     def _contact(self):
         """Solid pressures, bearing areas and their grids, as in stage contact."""
         settings = in_si(Settings, self._settings)
-        both = [self.surfaces(name) for name in self.plan.sides(self.patch.pair)]
-        pair = surface_pair(both, self.model, settings)
+        surfaces = [self.surfaces(name) for name in self.plan.sides(self.patch.pair)]
+        pair = surface_pair(surfaces, self.model, settings)
         work = np.prod(pair.beam.grid.field_shape) / _POINTS * (1 + pair.distances.above / _DISTANCES) / 2
         number = min(settings.contact.samples, max(FEWEST, int(SAMPLES / work)))
         streams = streams_of_sides(settings.seed, self.patch.pair)

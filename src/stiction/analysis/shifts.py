@@ -67,11 +67,11 @@ def bracketed(surface: Description, quantity: str) -> tuple[tuple[Description, D
     """
     step = STEPS[quantity]
     if quantity in MODE_QUANTITIES[1:]:
-        found = _mode(surface, step, ORDERS[MODE_QUANTITIES.index(quantity) - 1])
+        shifted = _mode(surface, step, ORDERS[MODE_QUANTITIES.index(quantity) - 1])
     else:
         makers = {"rms": _rms, "skewness": _skewness, "kurtosis": _kurtosis, "corner": _corner, "slope": _slope}
-        found = makers[quantity](surface, step)
-    return tuple(found), 2 * step
+        shifted = makers[quantity](surface, step)
+    return tuple(shifted), 2 * step
 
 
 def value_of(surface: Description, quantity: str) -> float:
@@ -97,18 +97,18 @@ def moved(surface: Description, errors: Mapping[str, float]) -> Description:
     ASSUME: modes are added one after the other, which differs from their sum at second order. A kurtosis and a corner
     that no surface has come with their largest value.
     """
-    found = replace(surface, rms=float(np.exp(np.log(surface.rms) + errors["rms"]))) if "rms" in errors else surface
+    changed = replace(surface, rms=float(np.exp(np.log(surface.rms) + errors["rms"]))) if "rms" in errors else surface
     if "skewness" in errors or "kurtosis" in errors:
         skewness, kurtosis = (getattr(surface, name) + errors.get(name, 0.0) for name in ("skewness", "kurtosis"))
-        found = replace(found, skewness=skewness, kurtosis=min(kurtosis, largest_kurtosis(abs(skewness))))
+        changed = replace(changed, skewness=skewness, kurtosis=min(kurtosis, largest_kurtosis(abs(skewness))))
     for name in MODE_QUANTITIES[1:]:
         if name in errors:
-            found = _mode(found, errors[name], ORDERS[MODE_QUANTITIES.index(name) - 1])[1]
+            changed = _mode(changed, errors[name], ORDERS[MODE_QUANTITIES.index(name) - 1])[1]
     if "corner" in errors or "slope" in errors:
         shape = surface.spectrum
         corner = min(shape.corner * np.exp(errors.get("corner", 0.0)), shape.cutoff * np.exp(-STEPS["corner"]))
-        found = replace(found, spectrum=_bent(shape, float(corner), errors.get("slope", 0.0)))
-    return found
+        changed = replace(changed, spectrum=_bent(shape, float(corner), errors.get("slope", 0.0)))
+    return changed
 
 
 def _around(value, step, largest=np.inf):

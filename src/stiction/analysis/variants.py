@@ -38,13 +38,13 @@ def shift(variant: Variant, base: Variant) -> tuple[float, float]:
 
     Beam k and sample k of both variants use the same random numbers: their differences are the independent samples.
     """
-    both = variant.stuck & base.stuck
-    if both.sum() < 2:
+    stuck_in_both = variant.stuck & base.stuck
+    if stuck_in_both.sum() < 2:
         return np.nan, np.nan
-    mean, error = mean_with_error(variant.crack_length[both] - base.crack_length[both])
+    mean, error = mean_with_error(variant.crack_length[stuck_in_both] - base.crack_length[stuck_in_both])
     relative = [r.energy / r.energy.mean() for r in (variant, base)]
     _, energy_error = mean_with_error(relative[0] - relative[1])
-    return mean, np.hypot(error, base.crack_length[both].mean() * CRACK_LENGTH_POWER * energy_error)
+    return mean, np.hypot(error, base.crack_length[stuck_in_both].mean() * CRACK_LENGTH_POWER * energy_error)
 
 
 def energy_shift(variant: Variant, base: Variant) -> tuple[float, float]:

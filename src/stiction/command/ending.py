@@ -114,8 +114,8 @@ def _warnings(page):
 
 def _first(results, patterns):
     """The first file that matches the first pattern that any file matches; empty if there is none."""
-    found = (sorted(results.glob(pattern)) for pattern in patterns)
-    return next(filter(None, found), [])[:1]
+    matching = (sorted(results.glob(pattern)) for pattern in patterns)
+    return next(filter(None, matching), [])[:1]
 
 
 def _failed_checks(results):

@@ -168,7 +168,7 @@ def _paragraph(text):
     return f"<p>{escape(text.strip())}</p>"
 
 
-def _list(sentences: Iterable[str], plain: bool = True) -> str:
+def _list(sentences: Iterable[str], escaped: bool = True) -> str:
     """Sentences, or HTML, below each other; empty without any."""
-    items = "\n".join(f"<li>{escape(sentence) if plain else sentence}</li>" for sentence in sentences)
+    items = "\n".join(f"<li>{escape(sentence) if escaped else sentence}</li>" for sentence in sentences)
     return f"<ul>\n{items}\n</ul>" if items else ""

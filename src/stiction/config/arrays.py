@@ -135,8 +135,8 @@ def with_files(config: dict[str, Any], named: Mapping[str, Any], folder: str | P
         If a file cannot be used; one sentence with the key, the file, the row and the column.
     """
     files = {name: entry["file"] for name, entry in _arrays(named)}
-    found = {name: entry for name, entry in _arrays(config) if entry["file"] == files.get(name)}
-    replaced = {name: _replaced(name, entry, Path(folder)) for name, entry in found.items()}
+    own = {name: entry for name, entry in _arrays(config) if entry["file"] == files.get(name)}
+    replaced = {name: _replaced(name, entry, Path(folder)) for name, entry in own.items()}
     return config | {"test_beams": config["test_beams"] | replaced} if replaced else config
 
 
@@ -155,13 +155,13 @@ def _replaced(name, entry, folder):
     if stated:
         raise ConfigError(f"{key}, must come without {', '.join(stated)}: the file has them")
     try:
-        found = beams(text(folder / entry["file"]))
-        data = summary(found)
+        rows = beams(text(folder / entry["file"]))
+        data = summary(rows)
     except _Wrong as wrong:
         raise ConfigError(f"{key}, {wrong}") from None
     except (OSError, ValueError) as reason:
         raise ConfigError(f"{key}, which cannot be read: {getattr(reason, 'strerror', None) or reason}") from reason
-    return entry | {"file": Origin(entry["file"], found)} | data
+    return entry | {"file": Origin(entry["file"], rows)} | data
 
 
 def without_files(config: Any) -> Any:
@@ -169,8 +169,8 @@ def without_files(config: Any) -> Any:
     if not (read := _origins(config)):
         return config
     arrays = config["test_beams"]
-    plain = {name: {key: value for key, value in arrays[name].items() if key != "file"} for name in read}
-    return config | {"test_beams": arrays | plain}
+    without = {name: {key: value for key, value in arrays[name].items() if key != "file"} for name in read}
+    return config | {"test_beams": arrays | without}
 
 
 def in_files(sentence: str, config: Any) -> str:
@@ -197,10 +197,10 @@ _STATISTICS = {
 }
 
 
-def _places(found, array):
+def _places(of_file, array):
     """Keys of the data of an array that come from beams, the first row of each, and its column in words."""
-    data = summary(found)
-    for kind, groups in _by_kind(found).items():
+    data = summary(of_file)
+    for kind, groups in _by_kind(of_file).items():
         if groups and array.get(kind) == data[kind]:  # another file of the configuration may replace a list
             first = [group[0].row for _, group in groups]
             yield from (
@@ -272,9 +272,9 @@ def _number(row, cells, column, limit, words):
 # Means and counts
 
 
-def summary(found: list[Beam]) -> dict[str, Any]:
+def summary(beams: list[Beam]) -> dict[str, Any]:
     """Keys of an array: means of crack lengths by humidity, and counts by humidity and length."""
-    measured, counted = _by_kind(found).values()
+    measured, counted = _by_kind(beams).values()
     data = {}
     if measured:
         first, *others = sorted(beam for _, group in measured for beam in group)
@@ -294,10 +294,10 @@ def summary(found: list[Beam]) -> dict[str, Any]:
     return data
 
 
-def _by_kind(found):
+def _by_kind(of_array):
     """Groups of equal beams by the key of their data: those with crack lengths, and those that were counted."""
-    measured = [beam for beam in found if beam.stuck is None]
-    counted = [beam for beam in found if beam.stuck is not None]
+    measured = [beam for beam in of_array if beam.stuck is None]
+    counted = [beam for beam in of_array if beam.stuck is not None]
     return {"crack_lengths": _groups(measured, "humidity"), "stuck": _groups(counted, "humidity", "length")}
 
 
@@ -312,9 +312,9 @@ def _mean(humidity, group):
     return {"humidity": humidity, "mean_um": fmean(lengths), "std_um": stdev(lengths), "beams": len(group)}
 
 
-def _groups(found, *fields):
+def _groups(beams, *fields):
     """Beams with equal values of some fields, in the order of these values."""
     groups = {}
-    for beam in found:
+    for beam in beams:
         groups.setdefault(tuple(getattr(beam, field) for field in fields), []).append(beam)
     return sorted(groups.items())

@@ -61,11 +61,11 @@ class Keys:
         path = _path(section)
         if any(path[: len(fault)] == fault for fault in self.faults):
             raise Unknown(section)
-        found = self._value(path)
+        value = self._value(path)
         return (
-            [name for name in found if isinstance(name, str)]
-            if isinstance(found, dict)
-            else [*map(str, range(len(found)))]
+            [name for name in value if isinstance(name, str)]
+            if isinstance(value, dict)
+            else [*map(str, range(len(value)))]
         )
 
     def known(self, *keys: str) -> Iterator[tuple[str, Any]]:

@@ -142,11 +142,11 @@ class DevicePlan:
         """
         tips = tips._replace(pair=PairInAir(tips.pair).pair)
         counted = DevicePlan(self.config | {"devices": arrays.counted(self.config)})
-        users = [(one, name) for one in (self, counted) for name in one.with_tips if one.tips(name) == tips]
+        users = [(plan, name) for plan in (self, counted) for name in plan.with_tips if plan.tips(name) == tips]
         if not users:
             raise KeyError(f"no device has tips on strips {tips.name}")
-        slopes = {float(slope) for one, name in users for slope in one._slopes(name)}
-        reach = max(one._reach(name) for one, name in users)
+        slopes = {float(slope) for plan, name in users for slope in plan._slopes(name)}
+        reach = max(plan._reach(name) for plan, name in users)
         return {"slopes": sorted(slopes), "reach_nm": reach, "edge": self.config["design"]["tip_edge"]}
 
     def _slopes(self, device):
@@ -214,16 +214,16 @@ class DevicePlan:
     def uncertain_solids(self, device: str) -> list[str]:
         """Properties of the material of a device that are uncertain, keys of ``OF_CONTACT``."""
         stated = self.sections[device].get("uncertainty", {})
-        return [name for name, one in OF_CONTACT.items() if stated.get(one.key)]
+        return [name for name, entry in OF_CONTACT.items() if stated.get(entry.key)]
 
     def budgets(self, *devices: str) -> list[str]:
         """Budgets of devices, of all with an uncertain input by default: at each humidity, and those of tips."""
-        found = []
+        names = []
         for name in devices or self.budgeted:
             parts = ("", "_tip") if self.kind(name).has_tip else ("",)
             cases = [case_id(name, humidity) for humidity in self.sections[name]["humidities"]]
-            found += [case + part for part in parts for case in cases]
-        return found
+            names += [case + part for part in parts for case in cases]
+        return names
 
     def quantities(self, device: str) -> list[tuple[str, str]]:
         """Surfaces of a device and their uncertain quantities: of all scans, or of the heights alone if one is stated.
@@ -234,5 +234,5 @@ class DevicePlan:
         stated = MOMENT_QUANTITIES if self.sections[device].get("uncertainty", {}).get("scan_um") else ()
         surfaces = dict.fromkeys(pair[side] for side in SIDES)
         entries = {name: self.config["surfaces"][name] for name in surfaces}
-        found = {name: quantities(entry) if is_measured(entry) else stated for name, entry in entries.items()}
-        return [(name, quantity) for name, of_surface in found.items() for quantity in of_surface]
+        by_surface = {name: quantities(entry) if is_measured(entry) else stated for name, entry in entries.items()}
+        return [(name, quantity) for name, of_surface in by_surface.items() for quantity in of_surface]

@@ -62,10 +62,10 @@ def complete(entry: dict[str, Any]) -> dict[str, Any]:
 def resolve_scan_paths(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
     """Configuration, which need not be valid, whose scans are in the folder of the file whose content names them."""
     files = {name: _files(entry) for name, entry in _surfaces(named).items()}
-    found = {
+    scanned = {
         name: entry for name, entry in _surfaces(config).items() if _files(entry) and _files(entry) == files.get(name)
     }
-    moved = {name: _moved(entry, Path(folder).absolute()) for name, entry in found.items()}
+    moved = {name: _moved(entry, Path(folder).absolute()) for name, entry in scanned.items()}
     return config | {"surfaces": config["surfaces"] | moved} if moved else config
 
 
@@ -104,8 +104,8 @@ def digest(path: str | Path) -> str:
     """SHA-256 of the content of a regular file; raises OSError."""
     require_regular(path)
     path = Path(path)
-    found = path.stat()
-    return _digest(path.absolute(), found.st_mtime_ns, found.st_size)
+    status = path.stat()
+    return _digest(path.absolute(), status.st_mtime_ns, status.st_size)
 
 
 @cache
@@ -121,18 +121,18 @@ def preliminary_estimates(
     Surfaces with keys that are wrong on their own, the ``faults``, are left out; between processes, the numbers are
     kept in a folder, if one is named.
     """
-    found, problems = {}, []
+    estimates, problems = {}, []
     if _unusable(faults):
-        return found, problems
+        return estimates, problems
     wrong = {fault[1] for fault in faults if fault[:1] == ("surfaces",) and len(fault) > 1}
     for name, entry in config["surfaces"].items():
         if name not in wrong and is_measured(entry):
             try:
-                found[name] = _evaluated(complete(entry), config["scans"], kept)
-                problems += _without_density(name, entry, found[name])
+                estimates[name] = _evaluated(complete(entry), config["scans"], kept)
+                problems += _without_density(name, entry, estimates[name])
             except ScanError as refusal:
                 problems.append(_problem(name, complete(entry), refusal))
-    return found, problems
+    return estimates, problems
 
 
 def _unusable(faults):
@@ -211,20 +211,20 @@ def _preliminary(files, reading, evaluating):
     from stiction.scans.quantiles import measured_density
 
     scans = [_scan(path, label, reading) for label, path in files.items()]
-    found = estimate.inspect(scans, in_si(estimate.Settings, evaluating))
-    rms = _in_range(from_si(math.exp(found.moments[0]), "nm"), next(iter(files)), reading)
-    nearest = estimate.nearest_density(found)
-    form = measured_density(found.quantiles, found.areas)
-    skewness, kurtosis = map(float, found.moments[1:])
+    inspection = estimate.inspect(scans, in_si(estimate.Settings, evaluating))
+    rms = _in_range(from_si(math.exp(inspection.moments[0]), "nm"), next(iter(files)), reading)
+    nearest = estimate.nearest_density(inspection)
+    form = measured_density(inspection.quantiles, inspection.areas)
+    skewness, kurtosis = map(float, inspection.moments[1:])
     return {
         "rms_nm": rms,
         "measured": [skewness, kurtosis],
         "feasible": None if nearest is None else [nearest.skewness, nearest.kurtosis],
         "form": [form.scores.tolist(), form.heights.tolist()],
-        "plateau_nm4": from_si(found.fit.plateau, "nm4"),
-        "corner_rad_per_um": from_si(found.fit.corner, "rad_per_um"),
-        "slope": found.fit.slope,
-        "end_rad_per_um": from_si(float(found.reach.end), "rad_per_um"),
+        "plateau_nm4": from_si(inspection.fit.plateau, "nm4"),
+        "corner_rad_per_um": from_si(inspection.fit.corner, "rad_per_um"),
+        "slope": inspection.fit.slope,
+        "end_rad_per_um": from_si(float(inspection.reach.end), "rad_per_um"),
     }
 
 
@@ -247,13 +247,13 @@ def _in_range(rms, file, reading):
     raise ScanError(file, key, f"{reason}: they are in another unit than is stated")
 
 
-def _without_density(name, entry, found):
+def _without_density(name, entry, preliminary):
     """Problem of a surface whose moments have no maximum-entropy density, if it is to have it."""
     if complete(entry)["heights"] != "moments":
         return []
-    skewness, kurtosis = found["measured"]
+    skewness, kurtosis = preliminary["measured"]
     shown, files = f"the skewness {skewness:.3g} and kurtosis {kurtosis:.3g}", ", ".join(_labels(entry))
-    if not found["feasible"]:
+    if not preliminary["feasible"]:
         reason = f"no maximum-entropy density has moments near {shown} of {files}"
     elif kurtosis < _OF_TWO_HEIGHTS * (1 + skewness**2):
         reason = f"{shown} of {files} are those of two heights, which no maximum-entropy density describes"
@@ -273,40 +273,40 @@ def _problem(name, entry, refusal):
     return Problem(path, f"{given}: {refusal.file} {refusal.reason}")
 
 
-def with_preliminary_estimates(config: dict[str, Any], found: Mapping[str, dict]) -> dict[str, Any]:
+def with_preliminary_estimates(config: dict[str, Any], estimates: Mapping[str, dict]) -> dict[str, Any]:
     """Configuration in which measured surfaces are described by their preliminary numbers, as other surfaces are.
 
     Devices on measured surfaces are uncertain even if nothing else about them is.
     """
     spacing = config["sampling"]["spacing_nm"]
-    described = {name: _described(complete(config["surfaces"][name]), found[name], spacing) for name in found}
-    devices = {name: _with_uncertainty(device, config, found) for name, device in config.get("devices", {}).items()}
+    described = {name: _described(complete(config["surfaces"][name]), estimates[name], spacing) for name in estimates}
+    devices = {name: _with_uncertainty(device, config, estimates) for name, device in config.get("devices", {}).items()}
     return config | {"surfaces": config["surfaces"] | described} | ({"devices": devices} if devices else {})
 
 
-def _with_uncertainty(device, config, found):
+def _with_uncertainty(device, config, estimates):
     """Section of a device with a section of its uncertainty, if one of its surfaces is measured."""
     try:
-        measured = any(config["pairs"][device["pair"]][side] in found for side in SIDES)
+        measured = any(config["pairs"][device["pair"]][side] in estimates for side in SIDES)
     except (KeyError, TypeError):
         return device  # other relations report what is missing
     return {"uncertainty": {}} | device if measured else device
 
 
-def _described(entry, found, spacing):
+def _described(entry, preliminary, spacing):
     """Section of a surface by numbers: skewness and kurtosis, or the measured form if that gives its heights."""
     grid = math.pi / spacing * NM_PER_UM
-    cutoff = min(found["end_rad_per_um"], grid) if entry["beyond"] == "cut" else grid
-    plateau, corner = found["plateau_nm4"], found["corner_rad_per_um"]
+    cutoff = min(preliminary["end_rad_per_um"], grid) if entry["beyond"] == "cut" else grid
+    plateau, corner = preliminary["plateau_nm4"], preliminary["corner_rad_per_um"]
     psd = {
         "plateau_nm4": plateau,
-        "floor_nm4": plateau * (cutoff / corner) ** found["slope"],
+        "floor_nm4": plateau * (cutoff / corner) ** preliminary["slope"],
         "corner_rad_per_um": corner,
         "cutoff_rad_per_um": cutoff,
     }
     if entry["heights"] == "measured":
-        shape = {"form": tuple(map(tuple, found["form"]))}
+        shape = {"form": tuple(map(tuple, preliminary["form"]))}
     else:
-        shape = dict(zip(("skewness", "kurtosis"), found["feasible"] or (), strict=False))
+        shape = dict(zip(("skewness", "kurtosis"), preliminary["feasible"] or (), strict=False))
     material = {"material": entry["material"]} if "material" in entry else {}
-    return {"rms_nm": found["rms_nm"], **shape, "psd": "published", "published_psd": psd, **material}
+    return {"rms_nm": preliminary["rms_nm"], **shape, "psd": "published", "published_psd": psd, **material}

@@ -63,10 +63,10 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
     name, _, keys = rest.partition(".")
     entries = config.get(section) if section in _NAMED else None
     if not isinstance(entries, dict) or not isinstance(entries.get(name), dict) or not keys:
-        known = {one: config[one] for one in _NAMED if isinstance(config.get(one), dict)}
+        known = {kind: config[kind] for kind in _NAMED if isinstance(config.get(kind), dict)}
         if isinstance(entries, dict):
             known = {section: entries}
-        listed = "; ".join(f"{one}.NAME.KEY with NAME {' or '.join(map(str, names))}" for one, names in known.items())
+        listed = "; ".join(f"{kind}.NAME.KEY with NAME {' or '.join(map(str, names))}" for kind, names in known.items())
         raise ConfigError(f"compare.{path} is no key of an entry that exists, must be {listed}")
     copied = _affected(config, section, name)
     for end, value in values(config).items():
@@ -77,7 +77,7 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
         config = merged(config, {section: {name + end: change}})
     runs = _list(config, "run", "pairs")
     ends = values(config)
-    pairs = [one + end for one in runs for end in (ends if one in copied["pairs"] else [""])]
+    pairs = [pair + end for pair in runs for end in (ends if pair in copied["pairs"] else [""])]
     devices = {key: device for key, device in config.get("devices", {}).items() if key not in copied["devices"]}
     return merged(config, {"run": {"pairs": pairs}}) | ({"devices": devices} if devices else {})
 
@@ -94,20 +94,20 @@ def _is_valid(compare):
 
 def _list(config, section, key):
     """Names in a list of a section, empty if there are none."""
-    found = config.get(section)
-    found = found.get(key) if isinstance(found, dict) else None
-    return [one for one in found if isinstance(one, str)] if isinstance(found, list) else []
+    names = config.get(section)
+    names = names.get(key) if isinstance(names, dict) else None
+    return [name for name in names if isinstance(name, str)] if isinstance(names, list) else []
 
 
 def _affected(config, section, name):
     """Names by section of an entry and of all that use it."""
-    copied = {one: [] for one in _NAMED}
+    copied = {kind: [] for kind in _NAMED}
     copied[section] = [name]
-    for one in _NAMED:
-        entries = config.get(one)
+    for kind in _NAMED:
+        entries = config.get(kind)
         for other, entry in entries.items() if isinstance(entries, dict) else ():
-            if other not in copied[one] and _renamed(entry, one, copied, "x") != entry:
-                copied[one].append(other)
+            if other not in copied[kind] and _renamed(entry, kind, copied, "x") != entry:
+                copied[kind].append(other)
     return copied
 
 
@@ -121,7 +121,7 @@ def _renamed(entry, section, copied, end):
             return {inner: new(inner, below) for inner, below in value.items()}
         names = copied[_NAMED[section][key]] if key in _NAMED[section] else ()
         if isinstance(value, list):
-            return [one + end if one in names else one for one in value]
+            return [name + end if name in names else name for name in value]
         return value + end if isinstance(value, str) and value in names else value
 
     return {key: new(key, value) for key, value in entry.items()}

@@ -463,8 +463,8 @@ def coatings_leave_a_gap(config):
 
 def filled(gap: float, names: list[str | None], config: Keys) -> str | None:
     """Refusal of a gap [µm] that the coatings of two surfaces, which need not be defined, fill."""
-    both = of_material([config["surfaces"].get(name, {}) for name in names], config["materials"])
-    coatings = sum(material.get(COATING, 0) for material in both)
+    materials = of_material([config["surfaces"].get(name, {}) for name in names], config["materials"])
+    coatings = sum(material.get(COATING, 0) for material in materials)
     if gap * NM_PER_UM > coatings:
         return None
     return f"must be above the thickness of the coatings of both surfaces, {coatings:g} nm"
@@ -509,13 +509,13 @@ def above_zero(humidities: float | list) -> list[float]:
 
 def sides_of(beam: str, substrate: str, surfaces: dict) -> list[dict]:
     """Sections of the surfaces of a pair; empty if one is not defined or has no numbers (yet)."""
-    both = [surfaces.get(name, {}) for name in (beam, substrate)]
-    return both if all("rms_nm" in surface and "scans" not in surface for surface in both) else []
+    sides = [surfaces.get(name, {}) for name in (beam, substrate)]
+    return sides if all("rms_nm" in surface and "scans" not in surface for surface in sides) else []
 
 
 def of_material(sides: list[dict], materials: dict) -> list[dict]:
     """Stated properties of the material of each surface; none of the solid of both bodies, or of an undefined one."""
-    return [materials.get(side.get("material"), {}) for side in sides]
+    return [materials.get(surface.get("material"), {}) for surface in sides]
 
 
 def wetting(sides: list[dict], materials: dict, more: float = 0) -> tuple[float, ...]:
@@ -584,7 +584,7 @@ def too_short(config: Keys, pair: str, meeting: Meeting, humidities: list[float]
     wetted = not meeting.sides or wetting(meeting.sides, meeting.materials)
     if config["attraction.reach"] == "all" or (wetted and min(humidities) > 0):
         return None
-    stated = " and ".join(f"{one.get('contact_angle_deg', 0):g}" for one in of_material(*meeting[:2]))
+    stated = " and ".join(f"{material.get('contact_angle_deg', 0):g}" for material in of_material(*meeting[:2]))
     why = "in dry air" if wetted else f"where no water condenses at contact angles of {stated} degrees"
     return f"must be all for pair {pair}, {why}: {TOO_LITTLE}"
 

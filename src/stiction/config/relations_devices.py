@@ -199,7 +199,7 @@ def uncertain_water_of_devices_is_a_liquid(config):
     keys = "humidity", "temperature_K", "contact_angle_deg"
     for key in keys:
         for name, deviation, humidities in config.entries("devices", f"uncertainty.{key}", "humidities"):
-            meeting, (drier, warmer, more) = _meeting(config, name), (deviation * (key == one) for one in keys)
+            meeting, (drier, warmer, more) = _meeting(config, name), (deviation * (key == wrong) for wrong in keys)
             driest = min(above_zero(humidities), default=0) - drier
             if driest <= 0 or _freezes_or_boils(warmer, meeting.temperature) or too_dry(humidities, meeting):
                 continue  # other relations report it
@@ -388,10 +388,10 @@ def _air(config, name):
 @relation
 def requirements_and_roughnesses_come_together(config):
     """What is required is compared with the device over one quantity of a surface."""
-    for one, other in (("requirement", "roughness"), ("roughness", "requirement")):
-        for name, _ in config.entries("devices", one):
+    for stated, other in (("requirement", "roughness"), ("roughness", "requirement")):
+        for name, _ in config.entries("devices", stated):
             if other not in config.names(f"devices.{name}"):
-                yield f"devices.{name}.{one}", f"must come with {other}"
+                yield f"devices.{name}.{stated}", f"must come with {other}"
 
 
 @relation
@@ -475,7 +475,9 @@ def arrays_have_the_materials_of_their_devices(config):
     for name, used in config.entries("devices", "test_beams"):
         wanted = _names_of_materials(config, config["devices"][name]["pair"])
         others = (
-            one for one in used if one in arrays and _names_of_materials(config, arrays[one].get("pair")) != wanted
+            array
+            for array in used
+            if array in arrays and _names_of_materials(config, arrays[array].get("pair")) != wanted
         )
         if other := next(others, None):
             message = f"must have the materials of the device: those of {other} differ"

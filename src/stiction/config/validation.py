@@ -44,14 +44,14 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     sections = _OPTIONAL | config if isinstance(config, dict) else config
     broken = _broken(sections, wrong)
     of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
-    found, refused = measured.preliminary_estimates(config, wrong + of_surfaces, kept)
+    estimates, refused = measured.preliminary_estimates(config, wrong + of_surfaces, kept)
     problems = faults + broken + refused
-    if found:
-        files = {name: config["surfaces"][name]["scans"]["files"] for name in found}
-        problems += _broken(measured.with_preliminary_estimates(sections, found), wrong, files)
+    if estimates:
+        files = {name: config["surfaces"][name]["scans"]["files"] for name in estimates}
+        problems += _broken(measured.with_preliminary_estimates(sections, estimates), wrong, files)
     if problems:
         raise ConfigError(*dict.fromkeys(arrays.in_files(str(problem), stated) for problem in problems))
-    return found
+    return estimates
 
 
 def _broken(config, faults, files=None):
@@ -68,11 +68,11 @@ def _broken(config, faults, files=None):
 
 def _of_arrays(relation, single):
     """Problems of arrays with one relation, each key once."""
-    found = {}
+    problems = {}
     for keys in single:
         for problem in Relations([relation]).problems(keys):
-            found.setdefault(problem.path, problem)
-    return found.values()
+            problems.setdefault(problem.path, problem)
+    return problems.values()
 
 
 @dataclass(frozen=True)

@@ -85,8 +85,8 @@ class Counts:
     def scored(self, errors: np.ndarray, order: int = 0) -> np.ndarray:
         """Normal scores of all shapes at errors of the inputs (k,), or their derivatives by ln l (n, s)."""
         at = np.log(self.lengths) - self.responses @ errors
-        found = [[one(x, order) for one, x in zip(*both, strict=True)] for both in zip(self.scores, at, strict=True)]
-        return np.reshape(found, self.lengths.shape)
+        scores = [[s(x, order) for s, x in zip(*shapes, strict=True)] for shapes in zip(self.scores, at, strict=True)]
+        return np.reshape(scores, self.lengths.shape)
 
     def logarithms(self, errors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Logarithms of P(stuck) and P(free) at errors of the inputs (k,), (n,) each."""
@@ -211,16 +211,16 @@ def given(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> K
     NotConverged
         If the steps do not reach the most probable errors.
     """
-    found = given_lengths(prior, lengths)
+    known = given_lengths(prior, lengths)
     if counts is None or not len(counts):
-        return found
-    mean, scale = found.mean, _scale(prior)
+        return known
+    mean, scale = known.mean, _scale(prior)
     for _ in range(_STEPS):
-        found = given_lengths(prior, _joined(lengths, linearised(counts, mean)))
-        step = found.mean - mean
+        known = given_lengths(prior, _joined(lengths, linearised(counts, mean)))
+        step = known.mean - mean
         change = np.abs(step / scale).max()
         if change < _CLOSE:
-            return found
+            return known
         left = [_misfit(prior, lengths, counts, mean + share * step) for share in (1.0, 0.5)]
         while left[-1] < left[-2]:
             left.append(_misfit(prior, lengths, counts, mean + step / 2 ** len(left)))
@@ -311,7 +311,7 @@ def combinations(prior: Knowledge, posterior: Knowledge) -> list[Combination]:
     inverse = root / variances[uncertain]
     left, directions = np.linalg.eigh(inverse.T @ (posterior.covariance / np.outer(scale, scale)) @ inverse)
     deviations = np.sqrt(np.maximum(left, 0.0))
-    return [Combination(_signed(one), float(at)) for one, at in zip((root @ directions).T, deviations, strict=True)]
+    return [Combination(_signed(axis), float(at)) for axis, at in zip((root @ directions).T, deviations, strict=True)]
 
 
 def _signed(values):

@@ -75,7 +75,7 @@ def plastic_contact(share: float, pressure: float, effect: str = SHORTER) -> str
 
 def default_material(name: str, stated: Sequence[str]) -> str | None:
     """Defaults that are used for another material than polysilicon; ``stated`` lists inputs that are given."""
-    missing = [one.words for one in PROPERTIES.values() if one.words not in stated]
+    missing = [entry.words for entry in PROPERTIES.values() if entry.words not in stated]
     if name == "polysilicon" or not missing:
         return None
     if len(missing) == 1:

@@ -61,5 +61,5 @@ PROPERTIES = {
 COATING, COATING_ATTRACTION = "coating_nm", "coating_hamaker_constant_zJ"
 OF_COATINGS = {COATING: "coating", COATING_ATTRACTION: "Hamaker constant of the coating"}
 #: Those on which contact depends and that may be uncertain, and the keys of all on which it depends.
-OF_CONTACT = {name: one for name, one in PROPERTIES.items() if one.step}
-ELASTIC = (*(one.key for one in OF_CONTACT.values()), *OF_COATINGS)
+OF_CONTACT = {name: entry for name, entry in PROPERTIES.items() if entry.step}
+ELASTIC = (*(entry.key for entry in OF_CONTACT.values()), *OF_COATINGS)

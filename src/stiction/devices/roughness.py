@@ -56,15 +56,15 @@ def crossings(axis: np.ndarray, margin: np.ndarray, errors: np.ndarray) -> list[
     list of Crossing
         ASSUME: the cubic errs as much as it differs from that of Akima, which has other slopes at the points.
     """
-    found = []
+    crossed = []
     for points in _known(margin):
         monotone = PchipInterpolator(axis[points], margin[points])
         other = Akima1DInterpolator(axis[points], margin[points])
         for place in _zeros(monotone):
             error = np.hypot(np.interp(place, axis[points], errors[points]), other(place))
             anywhere = _anywhere(place, axis[points], margin[points])
-            found.append(Crossing(place, float(np.hypot(error / abs(monotone.derivative()(place)), anywhere))))
-    return found
+            crossed.append(Crossing(place, float(np.hypot(error / abs(monotone.derivative()(place)), anywhere))))
+    return crossed
 
 
 def sufficient(axis: np.ndarray, margin: np.ndarray) -> list[tuple[float, float]]:
@@ -72,13 +72,13 @@ def sufficient(axis: np.ndarray, margin: np.ndarray) -> list[tuple[float, float]
 
     Ranges reach a point whose margin is the largest from their inside alone: beside it, the margin may be any.
     """
-    found, margin = [], np.where(margin >= LARGEST, _LEAST, margin)
+    ranges, margin = [], np.where(margin >= LARGEST, _LEAST, margin)
     for points in _known(margin):
         monotone, known = PchipInterpolator(axis[points], margin[points]), axis[points]
         ends = np.array([known[0], *_zeros(monotone), known[-1]])
         enough = monotone((ends[:-1] + ends[1:]) / 2) >= 0
-        found += _joined(ends, enough)
-    return found
+        ranges += _joined(ends, enough)
+    return ranges
 
 
 def _known(margin: np.ndarray) -> list[slice]:

@@ -18,8 +18,8 @@ _PACKAGE = Path(__file__).parents[1]
 def modules() -> Iterator[str]:
     """Names of all modules that may declare stages, sorted within their folders."""
     for folder in FOLDERS:
-        found = pkgutil.walk_packages([str(_PACKAGE / folder)], f"stiction.{folder}.")
-        yield from sorted(module.name for module in found if not module.ispkg)
+        packaged = pkgutil.walk_packages([str(_PACKAGE / folder)], f"stiction.{folder}.")
+        yield from sorted(module.name for module in packaged if not module.ispkg)
 
 
 @cache
@@ -31,13 +31,13 @@ def stages() -> dict[str, tuple[Stage, str]]:
     ValueError
         If two stages have the same name.
     """
-    found = {}
+    declarations = {}
     for module in modules():
         for stage in declared(module):
-            if stage.name in found:
-                raise ValueError(f"{module} and {found[stage.name][1]} both declare stage {stage.name}")
-            found[stage.name] = stage, module
-    return found
+            if stage.name in declarations:
+                raise ValueError(f"{module} and {declarations[stage.name][1]} both declare stage {stage.name}")
+            declarations[stage.name] = stage, module
+    return declarations
 
 
 @dataclass(frozen=True)
@@ -92,8 +92,8 @@ class Graph:
             If the configuration has no such job.
         """
         for stage, matches in self._expressions:
-            if found := matches.fullmatch(file):
-                return Job(stage, At(**found.groupdict()), self.plan)
+            if match := matches.fullmatch(file):
+                return Job(stage, At(**match.groupdict()), self.plan)
         raise KeyError(f"no stage writes {file}")
 
 

@@ -42,7 +42,7 @@ class PairMaterials:
     def in_words(self, pair: str) -> list:
         """Names of the materials of a pair, each with its stated properties in words; section solid if it is one."""
         named, solid = self.config.get("materials", {}), self.config["solid"]
-        words = {one.key: one.words for one in PROPERTIES.values()} | OF_COATINGS
+        words = {entry.key: entry.words for entry in PROPERTIES.values()} | OF_COATINGS
         if abs(solid["young_modulus_GPa"] / paper()["solid"]["young_modulus_GPa"] - 1) > _POLYSILICON:
             named = named | {"the solid": solid}
         surfaces = self.config["surfaces"]

@@ -163,9 +163,9 @@ class Planner:
     def settings(self, path: str) -> dict | None:
         """Settings of the job that writes a dataset; ``None`` if the configuration has no such job."""
         for rule, matches in self._expressions:
-            if found := matches.fullmatch(path):
+            if match := matches.fullmatch(path):
                 try:
-                    return self.job(rule["name"], found.groupdict())["settings"]
+                    return self.job(rule["name"], match.groupdict())["settings"]
                 except KeyError:
                     return None
         return None

@@ -13,8 +13,8 @@ from stiction.run.atomic import save_text
 def run(job: Any) -> None:
     """Run a job as Snakemake describes it to a script."""
     (stage,) = (stage for stage in declared(job.params.module) if stage.name == job.rule)
-    plain = job.params.settings
-    settings = stage.converted(plain)
+    stated = job.params.settings
+    settings = stage.converted(stated)
     part = stage.first(settings) if stage.first else {}
     data = {name: _loaded(job.input.get(name, []), *how, part, stage) for name, how in job.params.inputs.items()}
     result = stage.compute(data, At(**job.wildcards), settings)
@@ -25,7 +25,7 @@ def run(job: Any) -> None:
         return
     datasets = [path for name, (label, _) in job.params.inputs.items() if label for path in _listed(job.input[name])]
     for dataset, path in zip(result if stage.each else [result], job.output, strict=True):
-        storage.save(dataset, path, stage.stage, plain, datasets)
+        storage.save(dataset, path, stage.stage, stated, datasets)
 
 
 def _caption(stage, job, template, more) -> str:

@@ -253,14 +253,14 @@ def select(kind: type, section: Mapping[str, Any], **given: Any) -> dict[str, An
     """
     keys = {without_unit(key): key for key in (*section, *given)}
     kinds, selected = get_type_hints(kind), {}
-    for one in fields(kind):
-        key = keys.get(one.name)
+    for field in fields(kind):
+        key = keys.get(field.name)
         if key in given:
             selected[key] = given[key]
         elif key is not None:
-            selected[key] = _part(kinds[one.name], section[key])
-        elif one.default is MISSING and one.default_factory is MISSING:
-            raise KeyError(f"no key for {kind.__qualname__}.{one.name}")
+            selected[key] = _part(kinds[field.name], section[key])
+        elif field.default is MISSING and field.default_factory is MISSING:
+            raise KeyError(f"no key for {kind.__qualname__}.{field.name}")
     return selected
 
 

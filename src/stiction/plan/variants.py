@@ -94,8 +94,8 @@ class Variants:
 
     def solids(self, pair: str, variant: str) -> dict:
         """Solids of a pair under a variant: the settings of the contact, given the summits."""
-        found = merged(chosen(self.config, _SOLIDS), chosen(self.changes[variant], _SOLIDS))
-        return self.plan.air.around(pair, found) | self.plan.materials.settings(pair, ELASTIC, found["solid"])
+        sections = merged(chosen(self.config, _SOLIDS), chosen(self.changes[variant], _SOLIDS))
+        return self.plan.air.around(pair, sections) | self.plan.materials.settings(pair, ELASTIC, sections["solid"])
 
     def with_summits_of(self, pair: str, variant: str) -> str:
         """First variant with the same summits of a pair: solids do not change them."""
@@ -119,8 +119,8 @@ class Variants:
 
     def _all_summits(self, pair, variant):
         """Settings of the summits of a pair under a variant."""
-        found = self.summits(pair, variant)
-        return merged(found["base"], found["changes"])
+        summits = self.summits(pair, variant)
+        return merged(summits["base"], summits["changes"])
 
     def _under(self, pair, variant):
         """All settings that distinguish the variants of a pair."""

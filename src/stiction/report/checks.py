@@ -161,8 +161,8 @@ def identification_meets_targets(case: str, identification: xr.Dataset) -> Itera
 
 def vectors_are_possible(case: str, forces: xr.Dataset) -> Check:
     """Every v of Eq. (11) obeys e > 0, 0 < f_max <= f_limit and d_limit < d_max."""
-    found, limit = stage_forces.vectors(forces)
-    e, f_max, d_max, d_limit = found.T
+    parameters, limit = stage_forces.vectors(forces)
+    e, f_max, d_max, d_limit = parameters.T
     good = (e > 0) & (f_max > 0) & (f_max <= limit) & (d_limit < d_max)
     message = f"{np.sum(~good)} of {len(good)} samples violate a constraint"
     return Check("v obeys its constraints", case, bool(good.all()), message)
@@ -257,21 +257,21 @@ def crack_is_resolved(
     energies = energy(laws)
     median = laws[np.argsort(energies)[len(laws) // 2]]
     try:
-        found = resolution(beam, median, round(beam.length / strip))
+        crack = resolution(beam, median, round(beam.length / strip))
     except (ValueError, NotConverged) as reason:
         yield Check(RESOLVED, case, False, f"no crack on uniform ground: {reason}")
         return
-    if not np.isfinite(found.error):
+    if not np.isfinite(crack.error):
         return
     message = (
-        f"crack on uniform ground is {TO_UM * found.used.crack_length:.4g} µm, {100 * found.error:+.2f} % off that on "
+        f"crack on uniform ground is {TO_UM * crack.used.crack_length:.4g} µm, {100 * crack.error:+.2f} % off that on "
         f"a finer mesh (allowed ± {100 * accuracy:g} %)"
     )
-    yield Check(RESOLVED, case, bool(abs(found.error) <= accuracy), message)
+    yield Check(RESOLVED, case, bool(abs(crack.error) <= accuracy), message)
     gamma, error = mean_with_error(TO_MJ * stuck)
     tolerance = accuracy / abs(CRACK_LENGTH_POWER)
     low = TO_MJ * rigid_energy(laws[:_RIGID]) * (1 - tolerance) - ALLOWED * error
-    high = TO_MJ * energies.max() * found.excess * (1 + tolerance) + ALLOWED * error
+    high = TO_MJ * energies.max() * crack.excess * (1 + tolerance) + ALLOWED * error
     message = (
         f"{with_error(gamma, error)} mJ/m², ē is {TO_MJ * energies.mean():.3g} mJ/m²; strips allow {low:.3g} to "
         f"{high:.3g} mJ/m²"
@@ -290,8 +290,8 @@ def of_surfaces(
     The targets by surface are rms_nm, skewness and kurtosis as given, of which feasible ones replace the last two;
     surfaces described by scans have the rms of their heights. The defects are as in `moments_meet_targets`.
     """
-    for surface, found in heights.items():
-        yield heights_are_as_measured(surface, found)
+    for surface, density in heights.items():
+        yield heights_are_as_measured(surface, density)
     for (surface, model), character in characters.items():
         used = heights[surface] if model == "NG" else {"skewness": 0.0, "kurtosis": 3.0}
         given = targets.get(surface, {"rms_nm": TO_NM * float(heights[surface].rms)})
@@ -336,8 +336,8 @@ def of_trends(
                 yield scatter_falls(case, drier, more_humid)
     for pair, humidity, model in forces:
         if model == "NG" and pair in skewed:
-            both = (forces[pair, humidity, which] for which in SURFACE_MODELS)
-            yield skewness_increases_adhesion(f"{pair}, {air(humidity)}", *both)
+            models = (forces[pair, humidity, which] for which in SURFACE_MODELS)
+            yield skewness_increases_adhesion(f"{pair}, {air(humidity)}", *models)
 
 
 def of_beams(

@@ -56,12 +56,12 @@ def rows(table: pd.DataFrame, source: Source, ends: Mapping[str, float]) -> pd.D
         table = table.assign(estimate_se_um=(errors**2).sum(axis=1) ** 0.5)
     names = table[source.subject].astype(str)
     copies = {end: table[names.str.endswith(end)] for end in ends}
-    found = [
-        one.assign(**{source.subject: names[one.index].str.removesuffix(end), "value": ends[end]})
-        for end, one in copies.items()
+    parts = [
+        copy.assign(**{source.subject: names[copy.index].str.removesuffix(end), "value": ends[end]})
+        for end, copy in copies.items()
     ]
     order = [source.subject, "relative_humidity", source.panels, *(["share"] if "share" in table else []), "value"]
-    return pd.concat(found).sort_values(list(dict.fromkeys(order)))
+    return pd.concat(parts).sort_values(list(dict.fromkeys(order)))
 
 
 def compared(table: pd.DataFrame, source: Source, key: str, ends: Mapping[str, float]) -> Table:

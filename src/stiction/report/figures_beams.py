@@ -179,8 +179,8 @@ def _labels_meet(released, published):
 
 def _shares(released, model):
     """Share of S-shaped beams at every humidity [-]."""
-    found = sorted((humidity, beams) for (humidity, which), beams in released.items() if which == model)
-    return [(humidity, float(ended(beams, "S-shape").mean())) for humidity, beams in found]
+    by_humidity = sorted((humidity, beams) for (humidity, which), beams in released.items() if which == model)
+    return [(humidity, float(ended(beams, "S-shape").mean())) for humidity, beams in by_humidity]
 
 
 def _panels_of_shares(row, released, limits):

@@ -118,7 +118,7 @@ def _lengths(panel, released, published):
     stuck = [TO_UM * stuck_lengths(released[key]) for key in points]
     placed = places([*(humidity for humidity, _ in points), *published.relative_humidity])
     cases = zip((placed[humidity] for humidity, _ in points), stuck, strict=True)
-    bars = [(humidity, found.mean(), found.std(ddof=1)) for humidity, found in cases if len(found) > 1]
+    bars = [(humidity, lengths.mean(), lengths.std(ddof=1)) for humidity, lengths in cases if len(lengths) > 1]
     humidity, mean, deviation = np.reshape(bars, (-1, 3)).T
     style = {"color": _COLOUR, "markersize": 3}
     dry = humidity == placed.get(0.0)  # no line leads there

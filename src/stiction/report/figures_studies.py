@@ -69,9 +69,9 @@ def sensitivities(datasets: Mapping[str, xr.Dataset], published: Mapping[tuple[s
     statistics = ("mean", "standard deviation")
     for panel, statistic in zip(axes, statistics, strict=True):
         for k, (moment, dataset) in enumerate(datasets.items()):
-            found = dataset.sel(statistic=statistic)
+            chosen = dataset.sel(statistic=statistic)
             style = {"marker": marker(k), "linestyle": dashes(k), "label": moment}
-            panel.errorbar(found.humidity, found.slope, found.standard_error, **style)
+            panel.errorbar(chosen.humidity, chosen.slope, chosen.standard_error, **style)
         panel.axhline(0, **_ZERO)
         panel.set(xlabel="relative humidity [–]", ylabel="normalised sensitivity [–]")
     for (moment, humidity), slope in published.items():
@@ -100,20 +100,20 @@ def summit_stresses(datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Figure 16: largest stress of the touching summits, by pair."""
     figure, axes, lines = columns_of_panels(len(datasets), 1, at_most_double(SINGLE), 2.6, sharey=True)
     axes = axes[:, 0]
-    onsets = [TO_GPA * ONSET * float(found.hardness) for found in datasets.values()]
+    onsets = [TO_GPA * ONSET * float(dataset.hardness) for dataset in datasets.values()]
     top = max(
         [1.15 * max(onsets), *(1.05 * TO_GPA * stress for data in datasets.values() for stress in data.stress.values)]
     )
     counts = LogNorm(vmin=_FAINTEST)
     cells = [_cells(panel, dataset, counts, top) for panel, dataset in zip(axes, datasets.values(), strict=True)]
     # A bar from 1 to 1 has no length.
-    counts.vmax = max([2, *(count for found in cells for count in found.get_array())])
+    counts.vmax = max([2, *(count for mesh in cells for count in mesh.get_array())])
     for panel, dataset, onset in zip(axes, datasets.values(), onsets, strict=True):
         panel.axhline(onset, color="C3", linestyle="--")
         place, style = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "path_effects": OUTLINED}
         panel.annotate(r"$0.6\,\sigma_H$", (0.95, onset), (0, 2), place, "offset points", **style)
         panel.text(0.95, 0.04, _share(dataset), transform=panel.transAxes, ha="right", path_effects=OUTLINED)
-    names = [rf"pair {pair}, $\bar d$ = {TO_NM * float(found.separation):g} nm" for pair, found in datasets.items()]
+    names = [rf"pair {pair}, $\bar d$ = {TO_NM * float(dataset.separation):g} nm" for pair, dataset in datasets.items()]
     letter(axes, names)
     for line in lines:
         line[0, 0].set_ylabel(r"largest stress $\sigma_{\max}$ [GPa]")
@@ -218,11 +218,11 @@ def order_convergence(orders: xr.Dataset) -> Figure:
     last = int(orders.order[-1])
     shown = sorted({-(-last * share // 6) for share in (1, 2, 4, 6)})  # 2, 4, 8 and 12 of 12
     for panel, eta in zip(used[:-1], etas, strict=True):
-        found = orders.sel(eta=eta)
-        panel.fill_between(orders.position, found.input_density, step="mid", color="0.85", label="samples")
+        of_eta = orders.sel(eta=eta)
+        panel.fill_between(orders.position, of_eta.input_density, step="mid", color="0.85", label="samples")
         for k, (order, shade) in enumerate(zip(shown, shades(len(shown)), strict=True)):
             style = {"color": shade, "linestyle": dashes(len(shown) - 1 - k), "label": f"$N_d$ = {order}"}
-            panel.step(orders.position, found.density.sel(order=order), where="mid", **style)
+            panel.step(orders.position, of_eta.density.sel(order=order), where="mid", **style)
         panel.set(xlabel=rf"$\eta_{eta}$ [–]", ylabel="density [–]", ylim=(0, None))
         panel.margins(x=0)
     used[0].legend()
@@ -390,9 +390,9 @@ def _styles(names):
 
 def _shift(panel, dataset, base, style):
     """Change of the crack length by a variant, relative to the base."""
-    both = zip(cases_of(dataset), cases_of(base), strict=True)
+    pairs = zip(cases_of(dataset), cases_of(base), strict=True)
     shifts = [
-        (h, *np.divide(comparison.shift(case, of), comparison.mean_crack_length(of)[0])) for (h, case), (_, of) in both
+        (h, *np.divide(comparison.shift(case, of), comparison.mean_crack_length(of)[0])) for (h, case), (_, of) in pairs
     ]
     humidity, shift, error = np.transpose(shifts)
     if dataset is not base:

@@ -192,15 +192,15 @@ def summits(characters: Mapping[str, Mapping[str, xr.Dataset]]) -> Figure:
     figure, axes = panels(len(characters), 2, (1.4 * SINGLE, 2.2 * len(characters)), sharex="row", sharey="row")
     for row, models in zip(axes, characters.values(), strict=True):
         points = [_summits(models[model]) for model in SURFACE_MODELS]
-        edges = [np.histogram_bin_edges(np.concatenate(both), _BINS) for both in zip(*points, strict=True)]
-        densities = [np.histogram2d(*both, edges, density=True)[0] for both in points]
+        edges = [np.histogram_bin_edges(np.concatenate(pair), _BINS) for pair in zip(*points, strict=True)]
+        densities = [np.histogram2d(*pair, edges, density=True)[0] for pair in points]
         shades = LogNorm(min(d[d > 0].min() for d in densities), np.max(densities))
-        for panel, density, both in zip(row, densities, points, strict=True):
+        for panel, density, pair in zip(row, densities, points, strict=True):
             filled = np.ma.masked_equal(density.T, 0)
             image = panel.pcolormesh(edges[0], 10 ** edges[1], filled, norm=shades, cmap="cividis_r")
             panel.set(yscale="log", xlabel="summit height [nm]")
             plain_log(panel.yaxis)
-            _mean_radius(panel, 1 / np.mean(10 ** -both[1]))
+            _mean_radius(panel, 1 / np.mean(10 ** -pair[1]))
         row[0].set_ylabel("summit radius [µm]")
         figure.colorbar(image, ax=row, label="density [nm$^{-1}$ decade$^{-1}$]")
     letter(axes, [f"{name}, {MODELS[model]['label']}" for name in characters for model in SURFACE_MODELS])

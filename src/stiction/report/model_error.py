@@ -48,7 +48,7 @@ def _rows(
     variants: Mapping[Outcome, xr.Dataset] | None = None,
 ) -> list[dict]:
     """One row for each pair and humidity; the ratio of the energies is NaN where full contact was not computed."""
-    found = []
+    rows = []
     for (pair, humidity), released in beams.items():
         case = {"pair": pair, "relative_humidity": humidity}
         error = errors[pair].sel(humidity=humidity)
@@ -59,7 +59,7 @@ def _rows(
         if error.applied:  # the beams have the corrected laws
             length, longer = length / float(error.length_factor), length
         known = {name: value(published, name, **case) for name in ("ng", "ng_std", "experiment", "experiment_std")}
-        found.append(
+        rows.append(
             case
             | {
                 "strips": int(error.strips),
@@ -81,17 +81,17 @@ def _rows(
                 "full_contact_experiment_deviation_percent": percent(longer, known["experiment"]),
             }
         )
-    return found
+    return rows
 
 
 def _of_beams(case, variants):
     """Change of the crack length of beams on corrected force laws, where they were computed."""
     keys = [(*case.values(), name) for name in (CORRECTED, "base")]
-    found = np.nan, np.nan
+    change = np.nan, np.nan
     if set(keys) <= set(variants):
         (_, full), (_, base) = (next(cases_of(variants[key])) for key in keys)
-        found = 100 * np.array(comparison.shift(full, base)) / comparison.mean_crack_length(base)[0]
-    return dict(zip(("beams_change_percent", "beams_change_se_percent"), map(float, found), strict=True))
+        change = 100 * np.array(comparison.shift(full, base)) / comparison.mean_crack_length(base)[0]
+    return dict(zip(("beams_change_percent", "beams_change_se_percent"), map(float, change), strict=True))
 
 
 def table(*data) -> Table:

@@ -43,11 +43,11 @@ def compared(data: Mapping[str, Any], settings: Mapping[str, Any]) -> pd.DataFra
 
 def rows(published: pd.DataFrame, /, **key: str | float) -> pd.DataFrame:
     """Rows whose columns hold the values of ``key``; numbers may differ by rounding."""
-    found = np.ones(len(published), bool)
+    matching = np.ones(len(published), bool)
     for column, value in key.items():
         held = published[column]
-        found &= (held == value if isinstance(value, str) else np.isclose(held.astype(float), value)).astype(bool)
-    return published[found]
+        matching &= (held == value if isinstance(value, str) else np.isclose(held.astype(float), value)).astype(bool)
+    return published[matching]
 
 
 def value(published: pd.DataFrame, column: str, /, **key: str | float) -> float:

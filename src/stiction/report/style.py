@@ -218,8 +218,8 @@ def dry_tick(panel: Axes, placed: Mapping[float, float]) -> None:
     dry, lowest = (*sorted(placed.values()), np.inf)[:2]
     ticks = [tick for tick in panel.get_xticks() if (dry + lowest) / 2 < tick <= panel.get_xlim()[1]]
     panel.set_xticks([dry, *ticks], [DRY, *(f"{tick:g}" for tick in ticks)])
-    for one in panel.get_shared_x_axes().get_siblings(panel) if ticks else ():
-        one.axvline((dry + lowest) / 2, color="0.6", linestyle=":", linewidth=0.8)
+    for sibling in panel.get_shared_x_axes().get_siblings(panel) if ticks else ():
+        sibling.axvline((dry + lowest) / 2, color="0.6", linestyle=":", linewidth=0.8)
 
 
 def letter(axes: Iterable[Axes], names: Sequence[str] | None = None) -> None:
@@ -238,10 +238,10 @@ def letter_lines(lines: Sequence[np.ndarray], names: Sequence[str]) -> None:
 
 def handles(*panels: Axes) -> tuple[list, list[str]]:
     """Handles and labels of the curves of some panels, each label once."""
-    found = {}
+    by_label = {}
     for panel in panels:
-        found |= dict(zip(*reversed(panel.get_legend_handles_labels()), strict=True))
-    return list(found.values()), list(found)
+        by_label |= dict(zip(*reversed(panel.get_legend_handles_labels()), strict=True))
+    return list(by_label.values()), list(by_label)
 
 
 def _marks(count):

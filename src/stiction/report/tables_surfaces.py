@@ -44,7 +44,7 @@ _PARAMETERS = {
 
 def surface_statistics(character: xr.Dataset) -> tuple[dict[str, float], dict[str, float]]:
     """Statistics of Table I of simulated strips and their standard errors, in the units of the table."""
-    return tuple(dict(zip(_STATISTICS, found, strict=True)) for found in statistics(character, _UNITS))
+    return tuple(dict(zip(_STATISTICS, values, strict=True)) for values in statistics(character, _UNITS))
 
 
 def table_1(
@@ -109,7 +109,7 @@ def table_2(
     sources, ``published`` or ``identified``, are of the spectra in use, whose defect is shown.
     """
     defects = {surface: {source: 100 * float(spectra[surface].defect)} for surface, source in sources.items()}
-    rows_of = (_rows_2(surface, found, published, defects[surface]) for surface, found in identifications.items())
+    rows_of = (_rows_2(surface, fit, published, defects[surface]) for surface, fit in identifications.items())
     caption = (
         "Table II: parameters of Eq. (7), as published (with corrected plateaus) and as identified from the summits; "
         "deviations from the measured (AFM) rms, summit radius and density, on surfaces not used to identify; defect: "
@@ -118,34 +118,32 @@ def table_2(
     return Table.of(chain.from_iterable(rows_of), caption, _TABLE_2)
 
 
-def _rows_2(surface, found, published, defects):
+def _rows_2(surface, fit, published, defects):
     """Published parameters of a surface, if any, and the identified ones; the defect of those in use."""
     match = rows(published, surface=surface)
     if len(match):
         known = match[list(_PARAMETERS)].iloc[0].to_dict()
         as_printed = {"plateau_nm4_as_printed": float(match.plateau_nm4_as_printed.iloc[0])}
         yield (
-            {"surface": surface, "psd": "published"}
-            | _shape(known, found, defects.get("published", np.nan))
-            | as_printed
+            {"surface": surface, "psd": "published"} | _shape(known, fit, defects.get("published", np.nan)) | as_printed
         )
-    spectrum = spectrum_of(found)
+    spectrum = spectrum_of(fit)
     identified = {name: getattr(spectrum, name.split("_")[0]) / unit for name, unit in _PARAMETERS.items()}
-    row = {"surface": surface, "psd": "identified"} | _shape(identified, found, defects.get("identified", np.nan))
-    yield row | _residuals(found)
+    row = {"surface": surface, "psd": "identified"} | _shape(identified, fit, defects.get("identified", np.nan))
+    yield row | _residuals(fit)
 
 
-def _shape(parameters, found, defect):
+def _shape(parameters, fit, defect):
     """Parameters of Eq. (7) in the units of the table, the deviation of their rms from the measured one, the defect."""
     shape = CutoffSelfAffine(**{name.split("_")[0]: parameters[name] * unit for name, unit in _PARAMETERS.items()})
-    residual = percent(np.sqrt(shape.variance), float(found.target_rms))
+    residual = percent(np.sqrt(shape.variance), float(fit.target_rms))
     return parameters | {"rms_residual_percent": residual, "gaussian_defect_percent": defect}
 
 
-def _residuals(found):
+def _residuals(fit):
     """Deviations of radius and density from the measured ones after identification, with standard errors [%]."""
     row = {}
-    for column, (off, error) in misfits(found).items():
+    for column, (off, error) in misfits(fit).items():
         row |= {f"{column}_residual_percent": off, f"{column}_residual_se_percent": error}
     return row
 

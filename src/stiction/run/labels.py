@@ -36,8 +36,8 @@ def made_from(inputs: Iterable[str | Path], stage: str, name: str, settings: dic
     """
     before = {}
     for path in inputs:
-        found = read(path)
-        before |= found.before | ({} if found.stage == stage else {Path(path).as_posix(): found.settings})
+        label = read(path)
+        before |= label.before | ({} if label.stage == stage else {Path(path).as_posix(): label.settings})
     return Label(stage, name, settings, before)
 
 
@@ -53,11 +53,11 @@ def read(path: str | Path) -> Label:
 
     try:
         with netCDF4.Dataset(path) as file:
-            found = {key: file.getncattr(key) for key in file.ncattrs()}
+            attributes = {key: file.getncattr(key) for key in file.ncattrs()}
     except (OSError, RuntimeError) as error:
         raise unreadable(path, error) from error
-    plain = (json.loads(found.get(key, "{}")) for key in ("settings", "before"))
-    return Label(found.get("stage"), found.get("name"), *plain)
+    parts = (json.loads(attributes.get(key, "{}")) for key in ("settings", "before"))
+    return Label(attributes.get("stage"), attributes.get("name"), *parts)
 
 
 def unreadable(path: str | Path, reason: Exception) -> DataError:

@@ -44,7 +44,7 @@ def checksum(path: str | Path) -> str:
 def recorded(folder: str | Path) -> dict[str, str]:
     """Checksums of results in the logs of a folder, by file."""
     texts = (path.read_text(encoding="utf-8") for path in sorted(Path(folder).rglob("*.log")))
-    return {file: found for text in texts for found, file in re.findall(r"^([0-9a-f]{64})  (.+)$", text, re.MULTILINE)}
+    return {file: sha for text in texts for sha, file in re.findall(r"^([0-9a-f]{64})  (.+)$", text, re.MULTILINE)}
 
 
 def peak_memory() -> float:

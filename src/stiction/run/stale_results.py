@@ -41,14 +41,14 @@ def foreign(
 def _difference(path, settings, expected, remember):
     """What distinguishes a dataset from the one that this run would compute; empty if nothing does."""
     try:
-        found = _label(path, remember)
+        label = _label(path, remember)
     except (DataError, OSError):
         return "cannot be read"
-    if found.name != path.stem:
-        return f"holds {found.stage} of {found.name}" if found.stage else "holds no result of this study"
-    if differing := _first(found.settings, settings):
+    if label.name != path.stem:
+        return f"holds {label.stage} of {label.name}" if label.stage else "holds no result of this study"
+    if differing := _first(label.settings, settings):
         return f"was computed with {differing}"
-    for file, stored in found.before.items():
+    for file, stored in label.before.items():
         if differing := _first(stored, expected(file) or {}):
             return f"depends on {file} with {differing}"
     return ""
@@ -65,13 +65,13 @@ def _state(path):
     return [str(path), state.st_ino, state.st_size, state.st_mtime_ns, state.st_ctime_ns]
 
 
-def _first(found, wanted, path=()):
+def _first(stored, wanted, path=()):
     """First key that differs between two sections, with both values; empty if they agree."""
-    if isinstance(found, dict) and isinstance(wanted, dict):
-        keys = sorted({*found, *wanted})
-        return next(filter(None, (_first(found.get(key), wanted.get(key), (*path, key)) for key in keys)), "")
+    if isinstance(stored, dict) and isinstance(wanted, dict):
+        keys = sorted({*stored, *wanted})
+        return next(filter(None, (_first(stored.get(key), wanted.get(key), (*path, key)) for key in keys)), "")
     wanted = json.loads(json.dumps(wanted))  # as it would be stored
-    return "" if found == wanted else f"{'.'.join(path)}: {_value(found)} instead of {_value(wanted)}"
+    return "" if stored == wanted else f"{'.'.join(path)}: {_value(stored)} instead of {_value(wanted)}"
 
 
 def _value(value):

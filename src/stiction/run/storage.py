@@ -54,11 +54,11 @@ def load(path: str | Path, stage: str, **parts: slice) -> xr.Dataset:
     wanted = stage, Path(path).stem
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
-            found = dataset.attrs.get("stage"), dataset.attrs.get("name")
+            label = dataset.attrs.get("stage"), dataset.attrs.get("name")
             loaded = dataset.isel(parts, missing_dims="ignore").load()
     except (OSError, ValueError, RuntimeError) as error:
         raise labels.unreadable(path, error) from error
-    if found != wanted:
-        held = "{} of {}".format(*found) if all(found) else "no result of this study"
+    if label != wanted:
+        held = "{} of {}".format(*label) if all(label) else "no result of this study"
         raise DataError(f"{path} holds {held}, not {stage} of {wanted[1]}; delete it and start again")
     return loaded

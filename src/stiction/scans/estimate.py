@@ -32,9 +32,11 @@ _PER_SCAN = 8
 _CORRELATED = 2
 
 
-def seen(found: Inspection, model: SurfaceModel, maps: Maps) -> SurfaceModel:
+def seen(inspection: Inspection, model: SurfaceModel, maps: Maps) -> SurfaceModel:
     """Model of a surface in scans of another size."""
-    return model if maps is found.largest else replace(model, spectrum=found.spectrum_in(maps), frame=maps.frame)
+    return (
+        model if maps is inspection.largest else replace(model, spectrum=inspection.spectrum_in(maps), frame=maps.frame)
+    )
 
 
 @dataclass(frozen=True)
@@ -82,10 +84,10 @@ class SurfaceEstimate:
 
     def spectrum(self, psd: str, cutoff: float) -> CutoffSelfAffine | TabulatedSpectrum:
         """Spectrum ``fitted`` or ``tabulated`` up to a cut-off [rad m⁻¹]."""
-        found = self.inspection
+        inspection = self.inspection
         if psd == "fitted":
-            return found.fit.spectrum(cutoff)
-        return tabulated(found.rings, found.reach, found.fit.slope, cutoff)
+            return inspection.fit.spectrum(cutoff)
+        return tabulated(inspection.rings, inspection.reach, inspection.fit.slope, cutoff)
 
     @property
     def flags(self) -> tuple[str, ...]:
@@ -115,67 +117,73 @@ def estimate(
         If the scans cannot be used, or no surface has their heights and spectrum.
     """
     settings = settings or Settings()
-    found = inspect(scans, settings)
-    values, heights = found.moments, found.quantiles
-    model, nearest = _model(found, values, heights)
+    inspection = inspect(scans, settings)
+    values, heights = inspection.moments, inspection.quantiles
+    model, nearest = _model(inspection, values, heights)
     # Feasibility is decided once, on the uncorrected moments, so that a run cannot refuse what validation accepted.
     farthest = LARGEST_DISTANCE_OF_SCANS if nearest is None else np.inf
     residuals = []
     for number in range(_ROUNDS):
-        drawn = _drawn(found, model, lambda k, number=number: stream(seed, "estimate", surface, number, k), model_scans)
-        of_sizes, heights = _unbiased(found, drawn, model)
-        values = found.averaged(of_sizes)
+        drawn = _drawn(
+            inspection, model, lambda k, number=number: stream(seed, "estimate", surface, number, k), model_scans
+        )
+        of_sizes, heights = _unbiased(inspection, drawn, model)
+        values = inspection.averaged(of_sizes)
         residuals.append(_residual(nearest, drawn[0].quantiles, moments(drawn[0].powers)))
-        model, nearest = _model(found, values, heights, farthest)
-    largest, count = found.largest, len(found.largest.names)
+        model, nearest = _model(inspection, values, heights, farthest)
+    largest, count = inspection.largest, len(inspection.largest.names)
     covariances = [
-        seen(found, model, maps).covariance / len(maps.names) + part.bias_covariance
-        for maps, part in zip(found.counted, drawn, strict=False)
+        seen(inspection, model, maps).covariance / len(maps.names) + part.bias_covariance
+        for maps, part in zip(inspection.counted, drawn, strict=False)
     ]
-    closed_form = found.propagated(covariances)
-    by_tiles = np.sqrt(found.propagated([tile_errors(maps.levelled, settings.tiles) ** 2 for maps in found.counted]))
+    closed_form = inspection.propagated(covariances)
+    by_tiles = np.sqrt(
+        inspection.propagated([tile_errors(maps.levelled, settings.tiles) ** 2 for maps in inspection.counted])
+    )
     fitness = goodness(_residual(nearest, largest.quantiles, largest.moments), np.vstack(residuals), count)
     described = nearest is not None and not fitness[1] < UNLIKELY
-    resolved = found.reach.low, min(found.reach.high, largest.reach.high)
-    sectors, sector_errors = spectra.sectors(largest.periodogram, found.rings, *resolved)
+    resolved = inspection.reach.low, min(inspection.reach.high, largest.reach.high)
+    sectors, sector_errors = spectra.sectors(largest.periodogram, inspection.rings, *resolved)
     return SurfaceEstimate(
-        inspection=found,
+        inspection=inspection,
         moments=values,
         covariance=closed_form if described else widened(closed_form, by_tiles),
         closed_form_errors=np.sqrt(np.diag(closed_form)),
         tile_errors=by_tiles,
-        homogeneity=_homogeneity(found, model),
+        homogeneity=_homogeneity(inspection, model),
         agreement=_agreement(of_sizes, values, covariances),
         model=model,
         feasible=nearest,
         quantiles=heights,
-        quantile_errors=_quantile_errors(found, drawn),
+        quantile_errors=_quantile_errors(inspection, drawn),
         goodness=fitness,
         sectors=sectors,
         sector_errors=sector_errors,
-        **_summits(found, drawn),
-        line_jump=max(line_jump(z, maps.frame.pixel) for maps in found.sizes for z in maps.levelled),
+        **_summits(inspection, drawn),
+        line_jump=max(line_jump(z, maps.frame.pixel) for maps in inspection.sizes for z in maps.levelled),
     )
 
 
-def _unbiased(found, drawn, model):
+def _unbiased(inspection, drawn, model):
     """Moments of every size, and quantiles of all together, less what levelling and the finite size change."""
-    counted = list(zip(found.counted, drawn, strict=False))
+    counted = list(zip(inspection.counted, drawn, strict=False))
     of_sizes = [maps.moments - part.bias(model.moments, len(maps.names)) for maps, part in counted]
-    return of_sizes, found.averaged([maps.quantiles - part.levelled_off.mean(axis=0) for maps, part in counted])
+    return of_sizes, inspection.averaged([maps.quantiles - part.levelled_off.mean(axis=0) for maps, part in counted])
 
 
-def _drawn(found, model, rng, fewest):
+def _drawn(inspection, model, rng, fewest):
     """Model scans of every size; ``rng(k)`` are the random numbers of number k of all."""
-    counts = [max(fewest, _PER_SCAN * len(maps.names)) for maps in found.sizes]
+    counts = [max(fewest, _PER_SCAN * len(maps.names)) for maps in inspection.sizes]
     first = np.cumsum([0, *counts])
     return [
-        draw_model_scans(seen(found, model, maps), found.settings.levelling, (rng(k + start) for k in range(count)))
-        for maps, count, start in zip(found.sizes, counts, first, strict=False)
+        draw_model_scans(
+            seen(inspection, model, maps), inspection.settings.levelling, (rng(k + start) for k in range(count))
+        )
+        for maps, count, start in zip(inspection.sizes, counts, first, strict=False)
     ]
 
 
-def nearest_density(found: Inspection) -> Feasible | None:
+def nearest_density(inspection: Inspection) -> Feasible | None:
     """Maximum-entropy density of the scans as they are, before the bias is known; ``None`` if there is none near.
 
     Raises
@@ -183,37 +191,42 @@ def nearest_density(found: Inspection) -> Feasible | None:
     ScanError
         If no surface has the heights and the spectrum of the scans.
     """
-    return _model(found, found.moments, found.quantiles)[1]
+    return _model(inspection, inspection.moments, inspection.quantiles)[1]
 
 
-def _model(found, values, heights, largest=LARGEST_DISTANCE_OF_SCANS):
+def _model(inspection, values, heights, largest=LARGEST_DISTANCE_OF_SCANS):
     """Surface with these moments, or with the density of these quantiles if they have none, and that of the moments."""
-    correlation = _CORRELATED * 2 * np.pi / found.fit.corner
+    correlation = _CORRELATED * 2 * np.pi / inspection.fit.corner
 
     def surface(density):
-        spectrum = found.spectrum_in(found.largest)
-        return SurfaceModel(density, spectrum, correlation, float(np.exp(values[0])), found.largest.frame)
+        spectrum = inspection.spectrum_in(inspection.largest)
+        return SurfaceModel(density, spectrum, correlation, float(np.exp(values[0])), inspection.largest.frame)
 
     try:
-        fallback = surface(measured_density(heights, found.areas))
-        density = feasible(*map(float, values[1:]), lambda: _covariance(found, fallback)[1:, 1:], largest)
+        fallback = surface(measured_density(heights, inspection.areas))
+        density = feasible(*map(float, values[1:]), lambda: _covariance(inspection, fallback)[1:, 1:], largest)
         model = fallback if density is None else surface(density.density)
         model.underlying  # noqa: B018
     except (ValueError, NotConverged) as reason:
         raise ScanError(
-            ", ".join(found.names), "files", f"has heights that no surface can be drawn with: {reason}"
+            ", ".join(inspection.names), "files", f"has heights that no surface can be drawn with: {reason}"
         ) from None
     return model, density
 
 
-def _covariance(found, model):
+def _covariance(inspection, model):
     """Covariance of the moments of all scans by the finite scans, (3, 3)."""
-    return found.propagated([seen(found, model, maps).covariance / len(maps.names) for maps in found.counted])
+    return inspection.propagated(
+        [seen(inspection, model, maps).covariance / len(maps.names) for maps in inspection.counted]
+    )
 
 
-def _homogeneity(found, model):
+def _homogeneity(inspection, model):
     """`stiction.scans.moments.homogeneity` of the scans of every size, together."""
-    parts = [(maps, homogeneity(moments(maps.powers), seen(found, model, maps).covariance)) for maps in found.counted]
+    parts = [
+        (maps, homogeneity(moments(maps.powers), seen(inspection, model, maps).covariance))
+        for maps in inspection.counted
+    ]
     several = [(len(maps.names) - 1, chi2) for maps, (chi2, _) in parts if len(maps.names) > 1]
     if not several:
         return parts[0][1]
@@ -226,17 +239,17 @@ def _agreement(of_sizes, values, covariances):
     freedom = len(of_sizes) - 1
     if freedom == 0:
         return np.full(3, np.nan), np.full(3, np.nan)
-    chi2 = sum((one - values) ** 2 / np.diag(error) for one, error in zip(of_sizes, covariances, strict=True))
+    chi2 = sum((size - values) ** 2 / np.diag(error) for size, error in zip(of_sizes, covariances, strict=True))
     return chi2, chdtrc(freedom, chi2)
 
 
-def _quantile_errors(found, drawn):
+def _quantile_errors(inspection, drawn):
     """Standard errors of the quantiles by the scatter of model scans, (49,) [-]."""
     variances = [
         (part.quantiles.std(axis=0, ddof=1) / np.sqrt(len(maps.names))) ** 2
-        for maps, part in zip(found.counted, drawn, strict=False)
+        for maps, part in zip(inspection.counted, drawn, strict=False)
     ]
-    return np.sqrt(found.propagated(variances))
+    return np.sqrt(inspection.propagated(variances))
 
 
 def widened(closed_form: np.ndarray, by_tiles: np.ndarray) -> np.ndarray:
@@ -266,12 +279,12 @@ def _residual(nearest: Feasible | None, quantile: np.ndarray, moment: np.ndarray
     return quantile[..., COMPARED] - nearest.density.quantile_of_normal(SCORES[COMPARED]) - shift @ slopes
 
 
-def _summits(found, drawn):
+def _summits(inspection, drawn):
     """Summits of the finest scans, with errors by tiles, and of the model scans."""
-    maps, count = found.finest, found.settings.tiles
+    maps, count = inspection.finest, inspection.settings.tiles
     per_tile = [summits_of_map(tile, _tile_frame(maps.frame, tile)) for z in maps.complete for tile in tiles(z, count)]
     values, errors = jackknife(radius_and_density, np.array(per_tile))
-    of_model = drawn[found.sizes.index(maps)].summits
+    of_model = drawn[inspection.sizes.index(maps)].summits
     modelled, error = jackknife(radius_and_density, of_model)
     return {
         "summits": values,

@@ -25,34 +25,34 @@ _STEP = 1.1
 _RANGE_OF_SECTORS = 4.99
 
 
-def sentences(found: Any) -> tuple[str, ...]:
+def sentences(estimate: Any) -> tuple[str, ...]:
     """Sentences on an estimate, the most serious causes first."""
-    return tuple(sentence for flag in _FLAGS if (sentence := flag(found)))
+    return tuple(sentence for flag in _FLAGS if (sentence := flag(estimate)))
 
 
-def infeasible(found: Any) -> str:
+def infeasible(estimate: Any) -> str:
     """Which measured moments have no maximum-entropy density."""
-    _, skewness, kurtosis = found.moments
+    _, skewness, kurtosis = estimate.moments
     return f"skewness {skewness:.3g} with kurtosis {kurtosis:.3g} has no maximum-entropy density"
 
 
-def _few_wavelengths(found):
-    number = found.inspection.wavelengths
+def _few_wavelengths(estimate):
+    number = estimate.inspection.wavelengths
     if number < ENOUGH_WAVELENGTHS:
         return f"only {number:.2g} wavelengths of the corner fit into the scan; errors are reliable from 10 on"
     return ""
 
 
-def _not_homogeneous(found):
-    ratio = np.max(found.tile_errors / found.closed_form_errors)
+def _not_homogeneous(estimate):
+    ratio = np.max(estimate.tile_errors / estimate.closed_form_errors)
     if ratio > _TILES:
         reason = "bow, particles or marks"
         return f"parts of a scan differ {ratio:.2g} times as much as those of one homogeneous surface ({reason})"
     return ""
 
 
-def _bowed(found):
-    inspection = found.inspection
+def _bowed(estimate):
+    inspection = estimate.inspection
     left = [remainder for remainder in inspection.remainders if remainder.likely < UNLIKELY]
     if not left:
         return ""
@@ -61,121 +61,123 @@ def _bowed(found):
     return f"levelling leaves a {shape} of {size:.2g} rms (p {left[-1].likely:.1g}); level: {left[-1].level} removes it"
 
 
-def _holes(found):
-    share = found.inspection.filled_share
+def _holes(estimate):
+    share = estimate.inspection.filled_share
     return f"{100 * share:.2g} % of the points were undefined and are filled from their neighbours" if share else ""
 
 
-def _scans_differ(found):
-    likely = found.homogeneity[1]
+def _scans_differ(estimate):
+    likely = estimate.homogeneity[1]
     names = [name for name, p in zip(_MOMENTS, likely, strict=True) if p < UNLIKELY]
     return f"the scans differ in {', '.join(names)} by more than their errors" if names else ""
 
 
-def _sizes_differ(found):
+def _sizes_differ(estimate):
     """Scans of different sizes that are not those of one surface."""
-    likely = found.agreement[1]
+    likely = estimate.agreement[1]
     names = [name for name, p in zip(_MOMENTS, likely, strict=True) if p < UNLIKELY]
-    sizes = " and of ".join(maps.size for maps in found.inspection.counted)
+    sizes = " and of ".join(maps.size for maps in estimate.inspection.counted)
     return f"scans of {sizes} differ in {', '.join(names)} by more than their errors" if names else ""
 
 
-def _spectra_differ(found):
+def _spectra_differ(estimate):
     steps = [
         f"scans of {second.size} have {ratio:.2g} times the spectrum of those of {first.size} where both resolve it"
-        for first, second, ratio, error in found.inspection.spectral_steps
+        for first, second, ratio, error in estimate.inspection.spectral_steps
         if chdtrc(1, ((ratio - 1) / error) ** 2) < UNLIKELY and not 1 / _STEP < ratio < _STEP
     ]
     return "; ".join(steps)
 
 
-def _small_scans(found):
-    inspection = found.inspection
+def _small_scans(estimate):
+    inspection = estimate.inspection
     small = [maps.size for maps in inspection.sizes[len(inspection.counted) :]]
     return f"scans of {', '.join(small)} show no plateau and count for the spectrum only" if small else ""
 
 
-def _spectrum_misfits(found):
-    fit = found.inspection.fit
+def _spectrum_misfits(estimate):
+    fit = estimate.inspection.fit
     ratio = fit.chi2 / fit.freedom
     if ratio > _MISFIT and chdtrc(fit.freedom, fit.chi2) < UNLIKELY:
         return f"the spectrum is not of the form of Eq. (7) (chi²/dof {ratio:.2g}); psd: tabulated follows it"
     return ""
 
 
-def _spectrum_ends(found):
-    within = found.inspection.reach
+def _spectrum_ends(estimate):
+    within = estimate.inspection.reach
     if within.end < within.nyquist:
         return f"the spectrum ends near {1e-6 * within.end:.3g} rad/µm; beyond: cut ends there, too"
     return ""
 
 
-def _anisotropic(found):
-    ratio = found.sectors.max() / found.sectors.min()
-    if not np.log(ratio) > max(np.log(_ANISOTROPY), _RANGE_OF_SECTORS * found.sector_errors.max()):
+def _anisotropic(estimate):
+    ratio = estimate.sectors.max() / estimate.sectors.min()
+    if not np.log(ratio) > max(np.log(_ANISOTROPY), _RANGE_OF_SECTORS * estimate.sector_errors.max()):
         return ""
     width = 180 / spectra.SECTORS
-    direction = (np.argmax(found.sectors) + 0.5) * width
+    direction = (np.argmax(estimate.sectors) + 0.5) * width
     return (
         f"the spectrum is {ratio:.2g} times as large at {direction:.0f}° to the fast axis as in the weakest direction"
     )
 
 
-def _moments_have_no_density(found):
-    if found.feasible is None:
-        return f"{infeasible(found)}, nor have others within their errors; only heights: measured can be used"
-    if found.feasible.distance > 0:
-        near = f"skewness {found.feasible.skewness:.3g} with kurtosis {found.feasible.kurtosis:.3g}"
-        return f"{infeasible(found)}; {near}, which is {found.feasible.distance:.2g} standard errors away, is used"
+def _moments_have_no_density(estimate):
+    if estimate.feasible is None:
+        return f"{infeasible(estimate)}, nor have others within their errors; only heights: measured can be used"
+    if estimate.feasible.distance > 0:
+        near = f"skewness {estimate.feasible.skewness:.3g} with kurtosis {estimate.feasible.kurtosis:.3g}"
+        return (
+            f"{infeasible(estimate)}; {near}, which is {estimate.feasible.distance:.2g} standard errors away, is used"
+        )
     return ""
 
 
-def _moments_do_not_describe(found):
-    distance, likely = found.goodness
+def _moments_do_not_describe(estimate):
+    distance, likely = estimate.goodness
     if likely < UNLIKELY:
         return f"four moments do not describe the heights (T² {distance:.3g}, p {likely:.1g}); heights: measured does"
     return ""
 
 
-def _errors_are_wider(found):
-    ratio = found.errors / found.closed_form_errors
+def _errors_are_wider(estimate):
+    ratio = estimate.errors / estimate.closed_form_errors
     names = [name for name, r in zip(_MOMENTS, ratio, strict=True) if r > _WIDER]
     if not names:
         return ""
     return f"errors of {', '.join(names)} are those by tiles, up to {ratio.max():.2g} times those in closed form"
 
 
-def _tip_rounds(found):
-    within = found.inspection.reach
+def _tip_rounds(estimate):
+    within = estimate.inspection.reach
     if within.tip < within.nyquist:
         return f"the tip rounds waves shorter than {2e9 * np.pi / within.tip:.3g} nm"
     return ""
 
 
-def _lines_jump(found):
-    slow, fast = found.line_jump
+def _lines_jump(estimate):
+    slow, fast = estimate.line_jump
     if slow > _JUMP * fast:
         steps = f"{1e9 * slow:.2g} nm, against steps of {1e9 * fast:.2g} nm along a line"
         return f"lines jump by {steps}; lines: offset levels them"
     return ""
 
 
-def _summits_differ(found):
+def _summits_differ(estimate):
     # ASSUME: the spectrum of the model errs as much as the summits of its scans scatter; its rms changes all radii.
-    variance = found.summit_errors**2 + found.model_summit_errors**2 / len(found.inspection.finest.names)
-    variance[0] += (found.errors[0] * found.summits[0]) ** 2
-    if not np.any(np.abs(found.summits - found.model_summits) > _SUMMITS * np.sqrt(variance)):
+    variance = estimate.summit_errors**2 + estimate.model_summit_errors**2 / len(estimate.inspection.finest.names)
+    variance[0] += (estimate.errors[0] * estimate.summits[0]) ** 2
+    if not np.any(np.abs(estimate.summits - estimate.model_summits) > _SUMMITS * np.sqrt(variance)):
         return ""
-    radius, density = found.summits / found.model_summits
+    radius, density = estimate.summits / estimate.model_summits
     sharper = radius < 1 < density
     reason = "noise, or short waves that the fit does not have" if sharper else "its short waves differ from the scans"
     return f"summits have {radius:.2g} times the radius and {density:.2g} times the density of the model: {reason}"
 
 
-def _no_summits(found):
-    if np.isfinite(found.summits + found.summit_errors).all():
+def _no_summits(estimate):
+    if np.isfinite(estimate.summits + estimate.summit_errors).all():
         return ""
-    reason = "there are too few" if found.inspection.finest.frame.square else "pixels are not square"
+    reason = "there are too few" if estimate.inspection.finest.frame.square else "pixels are not square"
     return f"{reason}: summits are not compared"
 
 

@@ -230,16 +230,16 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
         fitted, rings, within = _fitted(sizes)
     except ValueError as reason:
         raise ScanError(names, "files", f"cannot give a spectrum: {reason}") from None
-    found = Inspection(sizes, settings, rings, within, fitted)
-    if found.wavelengths < FEWEST_WAVELENGTHS:
-        side = min(found.largest.frame.size) * FEWEST_WAVELENGTHS / found.wavelengths
+    inspection = Inspection(sizes, settings, rings, within, fitted)
+    if inspection.wavelengths < FEWEST_WAVELENGTHS:
+        side = min(inspection.largest.frame.size) * FEWEST_WAVELENGTHS / inspection.wavelengths
         raise ScanError(
             names,
             "files",
-            f"shows no plateau of the spectrum: {found.wavelengths:.2g} wavelengths of its corner fit into the scan, "
-            f"{FEWEST_WAVELENGTHS} are needed, as on a side of about {1e6 * side:.2g} µm or more",
+            f"shows no plateau of the spectrum: {inspection.wavelengths:.2g} wavelengths of its corner fit into the "
+            f"scan, {FEWEST_WAVELENGTHS} are needed, as on a side of about {1e6 * side:.2g} µm or more",
         )
-    return found
+    return inspection
 
 
 def by_size(scans: Sequence[Scan]) -> list[dict[int, Scan]]:

@@ -101,10 +101,10 @@ class ModelScans:
         The mean over groups of as many model scans; their sampling error is reduced by the influence functions.
         """
         groups = len(self.powers) // scans
-        found, expected = (
+        averaged, expected = (
             rows[: groups * scans].reshape(groups, scans, -1).mean(axis=1) for rows in (self.powers, self.influence)
         )
-        return np.mean(moments(found) - expected, axis=0) - truth
+        return np.mean(moments(averaged) - expected, axis=0) - truth
 
     @property
     def bias_covariance(self) -> np.ndarray:

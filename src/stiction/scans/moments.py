@@ -116,9 +116,9 @@ def mode_covariance(translation: Translation, overlaps: np.ndarray, orders: Sequ
     _, skewness, kurtosis = moments_of(translation)
     of_rms = hermite_coefficients(influence(_table_powers(translation), skewness, kurtosis)[0])
     chosen = np.array(orders) - 1
-    found = np.diag([of_rms**2 @ overlaps, *overlaps[chosen]])
-    found[0, 1:] = found[1:, 0] = (of_rms * overlaps)[chosen]
-    return found
+    covariance = np.diag([of_rms**2 @ overlaps, *overlaps[chosen]])
+    covariance[0, 1:] = covariance[1:, 0] = (of_rms * overlaps)[chosen]
+    return covariance
 
 
 def homogeneity(per_scan: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -77,12 +77,12 @@ def feasible(
     be infinite [standard errors].
     """
     try:
-        found = (
+        nearest = (
             Moments(skewness, kurtosis, 0.0)
             if is_feasible(skewness, kurtosis)
             else nearest_feasible(skewness, kurtosis, covariance(), largest)
         )
-        return Feasible(maxent.solve(found.skewness, found.kurtosis), *found)
+        return Feasible(maxent.solve(nearest.skewness, nearest.kurtosis), *nearest)
     except (ValueError, NotConverged):
         return None
 

@@ -261,11 +261,11 @@ def _heights(channel, name):
 
 def _instrument_levelling(channel, name):
     """Note that the instrument has levelled the stored heights already, according to the metadata."""
-    found = []
+    levelled = []
     for key, value in channel.info.get("raw_metadata", {}).items():
         known = _LEVELLED.fullmatch(str(key))
         if known and known[1] in (None, str(channel.index)) and str(value).strip().lower() not in _NOT_LEVELLED:
-            found.append(f"{key}: {value}")
-    if not found:
+            levelled.append(f"{key}: {value}")
+    if not levelled:
         return ()
-    return (f"{name}: the instrument has levelled channel {channel.channel_id} already ({', '.join(found)})",)
+    return (f"{name}: the instrument has levelled channel {channel.channel_id} already ({', '.join(levelled)})",)

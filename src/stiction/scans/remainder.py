@@ -41,15 +41,15 @@ def remainders(
     The sum over scans and terms of c² over its variance has an F distribution, because the spectrum of the heights is
     estimated; its plateau has this relative standard error [-]. Terms that the levelling of lines removes do not count.
     """
-    found = []
+    remaining = []
     for name, degree in LEVELS.items():
         terms = [(a, degree - a) for a in range(degree + 1) if not _levelled(a, levelling.lines)]
         if degree > LEVELS[levelling.level] and terms:
             c = np.array([coefficients(z, terms) for z in scans])
             chi2 = np.sum(c**2 / variances(spectrum, size, terms))
             likely = fdtrc(c.size, 2 / error**2, chi2 / c.size)
-            found.append(Remainder(name, float(np.sqrt(np.mean(np.sum(c**2, axis=1)))), float(likely)))
-    return tuple(found)
+            remaining.append(Remainder(name, float(np.sqrt(np.mean(np.sum(c**2, axis=1)))), float(likely)))
+    return tuple(remaining)
 
 
 def _levelled(degree, lines):

@@ -99,17 +99,17 @@ def fit_to_the_end(rings: Rings, within: Reach) -> tuple[WhittleFit, Reach]:
     no shorter waves.
     """
     while True:
-        found = fit(rings, within)
-        end = _end(rings, within, found)
+        fitted = fit(rings, within)
+        end = _end(rings, within, fitted)
         if end >= within.high:
-            return found, replace(within, end=end)
+            return fitted, replace(within, end=end)
         within = replace(within, high=end)
 
 
-def _end(rings, within, found):
+def _end(rings, within, fitted):
     """Wave number beyond which all rings are below half of the fit; the Nyquist one if there is none [rad m⁻¹]."""
     known = rings.between(within.low, within.nyquist)
-    last = np.flatnonzero(known.density >= _ENDED * found.spectrum(within.nyquist)(known.wavenumber))[-1]
+    last = np.flatnonzero(known.density >= _ENDED * fitted.spectrum(within.nyquist)(known.wavenumber))[-1]
     if len(known.wavenumber) - 1 - last < _RINGS_BEYOND:
         return within.nyquist
     return float(known.wavenumber[last : last + 2].mean())

@@ -135,10 +135,10 @@ def nearest_feasible(
         )
         for end in (skewness - reach, skewness + reach)
     ]
-    found = min(straight, *(on_border(side.x) for side in sides), key=lambda moments: moments.distance)
-    if found.distance > largest:
+    nearest = min(straight, *(on_border(side.x) for side in sides), key=lambda moments: moments.distance)
+    if nearest.distance > largest:
         raise _too_far(skewness, kurtosis, errors, largest)
-    return found
+    return nearest
 
 
 def _too_far(skewness, kurtosis, errors, largest):

@@ -48,7 +48,7 @@ def _rows(
     published: pd.DataFrame,
 ) -> list[dict]:
     """One row for each pair, reading, grid, attraction and humidity."""
-    found = []
+    rows = []
     for pair, study in studies.items():
         humidities, base = study.humidity.values, None
         cases = [{"pair": pair, "relative_humidity": humidity} for humidity in humidities]
@@ -70,8 +70,8 @@ def _rows(
                 row = {"change_percent": 100 * (factor - 1), "change_se_percent": 100 * error}
                 row |= {"crack_length_um": length * factor, "published_um": of_paper}
                 row |= {"deviation_percent": percent(length * factor, of_paper)}
-                found.append(case | labels | count | row | whole)
-    return found
+                rows.append(case | labels | count | row | whole)
+    return rows
 
 
 def _rms(name, *compared):
@@ -150,14 +150,14 @@ def parts(studies: Mapping[str, xr.Dataset], full: Mapping[str, xr.Dataset]) -> 
 def _energies_of_models(study, of_full):
     """Humidities of full contact, and energies of the strips that all models have, with attraction of the solids."""
     at, full, _ = full_contact.energies(of_full)
-    known, found = np.isin(study.humidity.values, at), {"full": full}
+    known, by_model = np.isin(study.humidity.values, at), {"full": full}
     coarse, fine = (float(study.spacing[k]) for k in (0, -1))
     names = {("summit", coarse): "summit", ("summit", fine): "fine", ("shape", coarse): "shape"}
     for of, energies in energies_of_readings(study):
         if of["attraction"] == study.attraction[0] and (of["reading"], of["spacing"]) in names:
-            found[names[of["reading"], of["spacing"]]] = energies[:, known]
-    strips = min(map(len, found.values()))
-    return at, {name: energies[:strips] for name, energies in found.items()}
+            by_model[names[of["reading"], of["spacing"]]] = energies[:, known]
+    strips = min(map(len, by_model.values()))
+    return at, {name: energies[:strips] for name, energies in by_model.items()}
 
 
 #: Error that is due to rounding [%].

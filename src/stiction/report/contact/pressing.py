@@ -39,8 +39,8 @@ def _rows(studies: Mapping[str, xr.Dataset]) -> Iterator[dict]:
         after = [study.adhered_energy.values, *study.pressed_energy.transpose("step", "sample", "humidity").values]
         for number, energies in enumerate(after):
             press = {"pair": pair, "press": number, "strips": len(fresh)} | _press(study, number)
-            both = np.hstack([energies, fresh])
-            ratios, errors = jackknife(lambda means: np.divide(*np.split(means, 2)), both)
+            of_both = np.hstack([energies, fresh])
+            ratios, errors = jackknife(lambda means: np.divide(*np.split(means, 2)), of_both)
             for humidity, ratio, error in zip(study.humidity.values, ratios, errors, strict=True):
                 yield press | {"relative_humidity": humidity, "energy_ratio": ratio, "energy_ratio_se": error}
 
@@ -49,13 +49,13 @@ def _press(study, number):
     """Means over the strips of a press; only its pressure, 0, if it is adhesion alone."""
     columns = {"pressure_MPa": ("pressure", TO_MPA), "distance_nm": ("separation", TO_NM)}
     columns |= {"contact_percent": ("contact_share", 100), "at_hardness_percent": ("hardness_share", 100)}
-    found = {}
+    ratios = {}
     for column, (name, unit) in (columns | {"flattening_nm": ("flattening", TO_NM)}).items():
         mean, error = mean_with_error(unit * study[name].values)
         nothing = 0.0 if column == "pressure_MPa" else np.nan
         of_press = (mean[number - 1], error[number - 1]) if number else (nothing, nothing)
-        found |= dict(zip((column, f"{column}_se"), of_press, strict=True))
-    return found
+        ratios |= dict(zip((column, f"{column}_se"), of_press, strict=True))
+    return ratios
 
 
 def table(studies: Mapping[str, xr.Dataset]) -> Table:

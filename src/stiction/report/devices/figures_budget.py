@@ -56,7 +56,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
         line[1, 0].set_ylabel("pull-off force [µN]")
     letter_lines(lines, list(datasets))
     figure.legend(handles=shared, loc="outside upper center", ncols=2)
-    if sentences := [f"{name}: {sentence}" for name, found in warnings.items() for sentence in found]:
+    if sentences := [f"{name}: {sentence}" for name, of_device in warnings.items() for sentence in of_device]:
         figure.set_label("\n".join(["Warnings:", *sentences]))
         figure.supxlabel("Warnings are written out in results/tables/stoppers.md", fontsize=6, ha="left", x=0.01)
     return figure
@@ -124,11 +124,11 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
     for (_, humidity, *_), dataset in datasets.items():
         parts.setdefault(response_text(dataset), {})[humidity] = dataset
     bars = [(_measurements(cases), _choices(cases)) for cases in parts.values()]
-    heights = [_ROW * max(map(len, both)) + _AROUND for both in bars]
+    heights = [_ROW * max(map(len, of_row)) + _AROUND for of_row in bars]
     size = DOUBLE, sum(heights) + _LEGEND
     figure, axes = panels(len(bars), 2, size, height_ratios=heights, width_ratios=(3, 2))
-    for line, both, cases in zip(axes, bars, parts.values(), strict=True):
-        for panel, rows in zip(line, both, strict=True):
+    for line, of_row, cases in zip(axes, bars, parts.values(), strict=True):
+        for panel, rows in zip(line, of_row, strict=True):
             _tornado(panel, rows)
         scatter = ", ".join(f"{100 * float(dataset.scatter):.2g}" for dataset in cases.values())
         line[0].set_xlabel(f"standard uncertainty [%]; {SCATTER}: {scatter} %")
@@ -142,12 +142,12 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
 
 def _measurements(cases):
     """Rows of all measurements, the largest first, and of the total: name to bars [%] by humidity."""
-    found = {humidity: budget_of(dataset) for humidity, dataset in cases.items()}
+    budgets = {humidity: budget_of(dataset) for humidity, dataset in cases.items()}
     groups = {name: inputs for dataset in cases.values() for name, inputs in groups_of(dataset).items()}
     everything = [name for inputs in groups.values() for name in inputs]
     errors = [dataset.slope_error.values for dataset in cases.values()]
     rows = {
-        name: [_both_sides(one, inputs, error) for one, error in zip(found.values(), errors, strict=True)]
+        name: [_both_sides(budget, inputs, error) for budget, error in zip(budgets.values(), errors, strict=True)]
         for name, inputs in (groups | {TOTAL: everything}).items()
     }
     largest = sorted(groups, key=lambda name: -max(high for _, high, _ in rows[name]))
@@ -175,8 +175,8 @@ def _from_zero(dataset, choice):
     """Bar of the effect of a choice of the model, and its error [%]; zero if a budget does not have this choice."""
     if choice not in dataset.choice.values:
         return 0.0, 0.0, 0.0
-    one = dataset.sel(choice=choice)
-    return (*sorted((0.0, 100 * float(one.effect))), 100 * float(one.effect_error))
+    of_choice = dataset.sel(choice=choice)
+    return (*sorted((0.0, 100 * float(of_choice.effect))), 100 * float(of_choice.effect_error))
 
 
 def _tornado(panel, rows: Mapping[str, Sequence[tuple]]):

@@ -52,17 +52,17 @@ def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[str]], table: 
 
 
 @styled
-def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, str], list]) -> Figure:
+def risk(datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, str], list]) -> Figure:
     """Share of stuck beams over their length, with bands of 95 % and safe lengths, one panel for each device.
 
     The numbers of the warnings, which are by name, humidity and shape, mark the curves.
     """
-    names = list(dict.fromkeys(name for name, _ in found))
+    names = list(dict.fromkeys(name for name, _ in datasets))
     _, numbers = numbered(warnings)
-    most = max(sum(device == name for device, _ in found) for name in names)
+    most = max(sum(device == name for device, _ in datasets) for name in names)
     figure, columns, lines = columns_of_panels(len(names), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
     for panel, name in zip(columns[:, 0], names, strict=True):
-        cases = {humidity: dataset for (device, humidity), dataset in found.items() if device == name}
+        cases = {humidity: dataset for (device, humidity), dataset in datasets.items() if device == name}
         named = []
         for (humidity, dataset), shade in zip(cases.items(), shades(len(cases), _LIGHTEST), strict=True):
             _shares(panel, dataset, shade)
@@ -74,7 +74,7 @@ def risk(found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
     letter_lines(lines, names)
-    _explain(columns[0, 0], found)
+    _explain(columns[0, 0], datasets)
     figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=5 if len(names) > 1 else 3)
     refer_to_warnings(figure, warnings, "safe_lengths")
     return figure
@@ -94,28 +94,28 @@ def _shares(panel: Axes, dataset, colour):
     """P(stuck) of a device at one humidity, its band and its safe lengths."""
     length = TO_UM * dataset.length.values
     for shape in dataset["shape"].values:
-        one = dataset.sel(shape=shape)
-        known = one.stuck.values > 0
-        panel.plot(length[known], one.stuck.values[known], END_STATES[shape].lines[0], color=colour)
-        panel.fill_between(length[known], *one.stuck_band.values[:, known], color=colour, alpha=0.2, linewidth=0)
-        for share in one.share.values:
-            safe = one.sel(share=share)
+        curve = dataset.sel(shape=shape)
+        known = curve.stuck.values > 0
+        panel.plot(length[known], curve.stuck.values[known], END_STATES[shape].lines[0], color=colour)
+        panel.fill_between(length[known], *curve.stuck_band.values[:, known], color=colour, alpha=0.2, linewidth=0)
+        for share in curve.share.values:
+            safe = curve.sel(share=share)
             panel.plot(TO_UM * float(safe.safe_length), share, _BASES[str(safe.basis.values)], color=colour)
 
 
-def _explain(panel, found):
+def _explain(panel, datasets):
     """Add line styles and markers that occur to the legend of a panel."""
     for shape, state in END_STATES.items():
-        if any(shape in dataset["shape"].values for dataset in found.values()):
+        if any(shape in dataset["shape"].values for dataset in datasets.values()):
             panel.plot([], [], state.lines[0], color="0.3", label=state.legend)
     for basis, mark in _BASES.items():
-        if any(basis in dataset.basis.values for dataset in found.values()):
+        if any(basis in dataset.basis.values for dataset in datasets.values()):
             panel.plot([], [], mark, color="0.3", label=f"safe length, {basis}")
 
 
 @styled
 def chart(
-    found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, float, str], list]
+    datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, float, str], list]
 ) -> Figure:
     """Safe length over the relative humidity for the middle one of the shares.
 
@@ -125,12 +125,12 @@ def chart(
     """
     _, numbers = numbered(warnings)
     devices = {}
-    for (name, humidity), dataset in sorted(found.items()):
+    for (name, humidity), dataset in sorted(datasets.items()):
         devices.setdefault(name, []).append(dataset.expand_dims(relative_humidity=[humidity]))
     joint = {"data_vars": "minimal", "coords": "minimal", "compat": "equals", "join": "exact"}
     axes = {name: xr.concat(parts, "relative_humidity", **joint) for name, parts in devices.items()}
     placed = {name: places(whole.relative_humidity.values.tolist()) for name, whole in axes.items()}
-    subjects = [(name, *one) for name, whole in axes.items() for one in product(whole.gap.values, _shapes_of(whole))]
+    subjects = [(name, *at) for name, whole in axes.items() for at in product(whole.gap.values, _shapes_of(whole))]
     most = max(whole.sizes["thickness"] for whole in axes.values()) + 1
     figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
@@ -166,12 +166,12 @@ def _thicknesses(panel, whole, shape, marks, placed):
     state = END_STATES[shape]
     line, dotted = state.lines
     for thickness, shade, mark in zip(whole.thickness.values, shades(len(marks), _LIGHTEST), marks, strict=True):
-        for one, styles in _parts(whole.sel(thickness=thickness, share=share), (line, dotted)):
-            at = [placed[humidity] for humidity in one.relative_humidity.values]
-            between, lengths = one.by_elements.values == 0, TO_UM * one.safe_length
+        for part, styles in _parts(whole.sel(thickness=thickness, share=share), (line, dotted)):
+            at = [placed[humidity] for humidity in part.relative_humidity.values]
+            between, lengths = part.by_elements.values == 0, TO_UM * part.safe_length
             panel.plot(at, lengths, styles[0], color=shade)
             panel.plot(np.array(at)[between], lengths[between], "o", color=shade, fillstyle="none")
-            panel.plot(at, TO_UM * one.flooded_length, styles[1], color=shade, linewidth=0.8)
+            panel.plot(at, TO_UM * part.flooded_length, styles[1], color=shade, linewidth=0.8)
         label = f"thickness {TO_UM * thickness:g} µm{mark}"
         named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=label))
     panel.plot([], [], line, color="0.3", label=f"{state.legend}, p = {share:g}")

@@ -23,19 +23,19 @@ _ROOM = 0.1
 
 
 @styled
-def test_beams(found: xr.Dataset) -> Figure:
+def test_beams(update: xr.Dataset) -> Figure:
     """Measured crack lengths with bands of 95 % before and after, and inputs in units of their standard uncertainty."""
-    arrays = list(dict.fromkeys(map(str, found.array.values)))
-    uncertain = found.isel(input=np.flatnonzero(found.prior_deviation.values > 0))
+    arrays = list(dict.fromkeys(map(str, update.array.values)))
+    uncertain = update.isel(input=np.flatnonzero(update.prior_deviation.values > 0))
     height = max(2.4, _ROW * uncertain.sizes["input"] + _AROUND)
     figure, axes = panels(1, len(arrays) + 1, (DOUBLE, height))
     shared = {}
     for panel, name in zip(axes[0], arrays, strict=False):
         chosen = {
-            size: np.flatnonzero(found[key].values == name)
+            size: np.flatnonzero(update[key].values == name)
             for size, key in (("datum", "array"), ("count", "array_of_count"))
         }
-        shared |= _lengths(panel, found.isel(chosen), _ROOM * (len(arrays) + 1))
+        shared |= _lengths(panel, update.isel(chosen), _ROOM * (len(arrays) + 1))
     axes[0, 0].set_ylabel("crack length [µm]")
     _inputs(axes[0, -1], uncertain)
     letter(axes, [*arrays, "inputs"])
@@ -58,7 +58,7 @@ def _lengths(panel, data, room):
     Counts in dry air have ``room`` for their numbers, a share of the axis.
     """
     placed = places([*data.datum_humidity.values.tolist(), *data.humidity_of_count.values.tolist()])
-    humidity = np.array([placed[one] for one in data.datum_humidity.values])
+    humidity = np.array([placed[rh] for rh in data.datum_humidity.values])
     dry = data.datum_humidity.values == 0
     bands = [_band(humidity, part, placed) for part in map(np.flatnonzero, (~dry, dry)) if len(part)]
     computed, shift = TO_UM * data.computed.values, data.datum_shift.values
@@ -96,17 +96,17 @@ def _on_the_left(placed):
     return [place for humidity, place in placed.items() if humidity == 0] + humid[1:][-1:]
 
 
-def _inputs(panel, found):
+def _inputs(panel, uncertain):
     """Inputs before and after, in standard uncertainties before the measurement."""
-    places = np.arange(found.sizes["input"])
-    scale = found.prior_deviation.values
+    places = np.arange(uncertain.sizes["input"])
+    scale = uncertain.prior_deviation.values
     for centre, deviation, colour, half in (
         (0 * places, np.ones(len(places)), _BEFORE, _HALF),
-        (found["shift"].values / scale, found.deviation.values / scale, _AFTER, _HALF / 2),
+        (uncertain["shift"].values / scale, uncertain.deviation.values / scale, _AFTER, _HALF / 2),
     ):
         panel.barh(places, 2 * deviation, 2 * half, left=centre - deviation, color=colour, alpha=0.6, linewidth=0)
     panel.axvline(0, color="black", linewidth=0.6)
-    panel.set_yticks(places, list(found.input.values))
+    panel.set_yticks(places, list(uncertain.input.values))
     panel.tick_params(axis="y", length=0)
     panel.use_sticky_edges = False
     panel.autoscale_view(scaley=False)

@@ -33,76 +33,82 @@ _VALUES = ("safe", "estimate")
 
 
 @styled
-def roughness(found: xr.Dataset) -> Figure:
+def roughness(dataset: xr.Dataset) -> Figure:
     """Estimate with its band of 95 %, safe value and crossings with the required one; a panel for each end state.
 
     Of a map, the curve with the second quantity as given is drawn.
     """
-    found = next(one for one in curves_of(found) if "other" not in one.coords or one.other == one.other_given)
-    shapes = list(map(str, found["shape"].values))
+    as_given = (one for one in curves_of(dataset) if "other" not in one.coords or one.other == one.other_given)
+    curve = next(as_given)
+    shapes = list(map(str, curve["shape"].values))
     figure, axes = panels(1, len(shapes), (min(DOUBLE, 1.3 * SINGLE * len(shapes)), 3.0))
-    what = ROUGHNESSES[found.attrs["key"]]
+    what = ROUGHNESSES[curve.attrs["key"]]
     for panel, shape in zip(axes[0], shapes, strict=True):
-        for humidity, shade in zip(found.humidity.values, shades(found.sizes["humidity"], _LIGHTEST), strict=True):
-            _curve(panel, found.sel(humidity=humidity, shape=shape), shade)
-            _crossings(panel, found, (float(humidity), shape), shade)
-        panel.axhline(TO_UM * float(found.required), color="black", linewidth=0.8, label="required")
-        panel.axvline(in_unit(found, float(found.given)), color="0.6", linestyle=":", label="as given")
-        panel.set(yscale="log", xlabel=labelled(found))
+        for humidity, shade in zip(curve.humidity.values, shades(curve.sizes["humidity"], _LIGHTEST), strict=True):
+            _curve(panel, curve.sel(humidity=humidity, shape=shape), shade)
+            _crossings(panel, curve, (float(humidity), shape), shade)
+        panel.axhline(TO_UM * float(curve.required), color="black", linewidth=0.8, label="required")
+        panel.axvline(in_unit(curve, float(curve.given)), color="0.6", linestyle=":", label="as given")
+        panel.set(yscale="log", xlabel=labelled(curve))
         plain_log(panel.yaxis)
         if what.logarithmic:
             panel.set_xscale("log")
             plain_log(panel.xaxis)
     axes[0, 0].set_ylabel(
-        f"{'restoring force [µN]' if shapes == [FORCE] else 'length [µm]'}, p = {float(found.share):g}"
+        f"{'restoring force [µN]' if shapes == [FORCE] else 'length [µm]'}, p = {float(curve.share):g}"
     )
     letter(axes, [END_STATES[shape].by for shape in shapes])
     figure.legend(*handles(*axes[0]), loc="outside lower center", ncols=2 * len(shapes))
     return figure
 
 
-def _curve(panel, one, colour):
+def _curve(panel, line, colour):
     """Estimate of one humidity with its band, and the safe values."""
-    x, estimate = in_unit(one, one.roughness.values), TO_UM * one.estimate.values
-    reach = INTERVAL * TO_UM * one.error.values
+    x, estimate = in_unit(line, line.roughness.values), TO_UM * line.estimate.values
+    reach = INTERVAL * TO_UM * line.error.values
     panel.fill_between(x, estimate - reach, estimate + reach, color=colour, alpha=0.2, linewidth=0)
-    panel.plot(x, estimate, ".-", color=colour, label=f"{air(float(one.humidity))}, estimate and 95 % band")
-    panel.plot(x, TO_UM * one.safe.values, "_", color=colour, markersize=8, label="safe, 95 % confidence")
-    if np.isfinite(one.bound.values).any():
-        state = END_STATES[str(one["shape"].values)]
+    panel.plot(x, estimate, ".-", color=colour, label=f"{air(float(line.humidity))}, estimate and 95 % band")
+    panel.plot(x, TO_UM * line.safe.values, "_", color=colour, markersize=8, label="safe, 95 % confidence")
+    if np.isfinite(line.bound.values).any():
+        state = END_STATES[str(line["shape"].values)]
         panel.plot(
-            x, TO_UM * one.bound.values, state.lines[1], color=colour, linewidth=0.8, label=f"flat surfaces, {state.by}"
+            x,
+            TO_UM * line.bound.values,
+            state.lines[1],
+            color=colour,
+            linewidth=0.8,
+            label=f"flat surfaces, {state.by}",
         )
 
 
-def _crossings(panel, found, subject, colour):
+def _crossings(panel, curve, subject, colour):
     """Places where a curve meets what is required, with their 95 % intervals."""
     own = np.array(
-        [at == subject for at in zip(found.crossing_humidity.values, found.crossing_shape.values, strict=True)]
+        [at == subject for at in zip(curve.crossing_humidity.values, curve.crossing_shape.values, strict=True)]
     )
-    places, errors = (found[name].values[own.astype(bool)] for name in ("crossing_place", "crossing_error"))
+    places, errors = (curve[name].values[own.astype(bool)] for name in ("crossing_place", "crossing_error"))
     if len(places):
-        at, error = in_unit(found, places), INTERVAL * in_unit(found, errors)
-        height = np.full(len(at), TO_UM * float(found.required))
+        at, error = in_unit(curve, places), INTERVAL * in_unit(curve, errors)
+        height = np.full(len(at), TO_UM * float(curve.required))
         panel.errorbar(at, height, xerr=error, fmt="o", color=colour, fillstyle="none", zorder=3)
 
 
 @styled
-def roughness_map(found: xr.Dataset) -> Figure:
+def roughness_map(data: xr.Dataset) -> Figure:
     """Margin over what is required, and lines where it is met, over the two quantities of a dataset of stage roughness.
 
     The panels are by humidity and end state.
     """
-    humidities, shapes = found.humidity.values, list(map(str, found["shape"].values))
+    humidities, shapes = data.humidity.values, list(map(str, data["shape"].values))
     size = min(DOUBLE, 1.3 * SINGLE * len(shapes)), 2.8 * len(humidities)
     figure, axes = panels(len(humidities), len(shapes), size)
-    more_is_better = found.required.attrs["units"] == "m"
+    more_is_better = data.required.attrs["units"] == "m"
     margin = "length / required" if more_is_better else "restoring force / required"
-    x, y = in_unit(found, found.roughness.values), in_unit(found, found.other.values, "other_key")
+    x, y = in_unit(data, data.roughness.values), in_unit(data, data.other.values, "other_key")
     for row, humidity in zip(axes, humidities, strict=True):
         for panel, shape in zip(row, shapes, strict=True):
-            one = found.sel(humidity=humidity, shape=shape).transpose("other", "roughness", ...)
-            safe, estimate = (margins(one[name].values, float(found.required), more_is_better) for name in _VALUES)
+            curve = data.sel(humidity=humidity, shape=shape).transpose("other", "roughness", ...)
+            safe, estimate = (margins(curve[name].values, float(data.required), more_is_better) for name in _VALUES)
             colours = panel.contourf(
                 x, y, np.ma.masked_invalid(estimate / np.log(10)), 12, cmap="RdBu", norm=CenteredNorm()
             )
@@ -111,17 +117,17 @@ def roughness_map(found: xr.Dataset) -> Figure:
                 if np.nanmin(values) < 0 < np.nanmax(values):
                     panel.contour(x, y, np.ma.masked_invalid(values), [0], colors="black", linestyles=line)
             panel.plot(*map(np.ravel, np.meshgrid(x, y)), ".", color="0.3", markersize=2)
-            panel.plot(in_unit(found, float(found.given)), in_unit(found, float(found.other_given), "other_key"), "k+")
-            _axes(panel, found)
+            panel.plot(in_unit(data, float(data.given)), in_unit(data, float(data.other_given), "other_key"), "k+")
+            _axes(panel, data)
             panel.set_title(f"{END_STATES[shape].by}, {air(humidity)}")
     return figure
 
 
-def _axes(panel, found):
+def _axes(panel, curves):
     """Scales and labels of both quantities."""
-    panel.set(xlabel=labelled(found), ylabel=labelled(found, "other_key"))
+    panel.set(xlabel=labelled(curves), ylabel=labelled(curves, "other_key"))
     for axis, scale, key in ((panel.xaxis, panel.set_xscale, "key"), (panel.yaxis, panel.set_yscale, "other_key")):
-        if ROUGHNESSES[found.attrs[key]].logarithmic:
+        if ROUGHNESSES[curves.attrs[key]].logarithmic:
             scale("log")
             plain_log(axis)
 

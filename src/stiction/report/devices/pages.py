@@ -214,7 +214,7 @@ _OF_CHOICES = {
 def of_beam(
     name: str,
     section: Mapping,
-    found: Mapping[float, xr.Dataset],
+    safe_lengths: Mapping[float, xr.Dataset],
     charts: Mapping[float, xr.Dataset],
     budgets: Mapping[tuple, xr.Dataset],
     warnings: Mapping[tuple, Sequence[str]],
@@ -229,7 +229,7 @@ def of_beam(
     name : str
     section : dict
         Its section of the configuration.
-    found, charts : dict
+    safe_lengths, charts : dict
         Humidity to the datasets of the stages safe_lengths and chart; the latter may be empty.
     budgets : dict
         Humidity and, for tips, more to the dataset of stage budget; may be empty.
@@ -240,7 +240,7 @@ def of_beam(
     errors : dict, optional
         Name of the device to the dataset of stage device_model_error.
     """
-    cases = {(name, humidity): dataset for humidity, dataset in found.items()}
+    cases = {(name, humidity): dataset for humidity, dataset in safe_lengths.items()}
     table = tables_devices.safe_lengths(cases, warnings, errors).cells.drop(columns="device")
     sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, {}))]
     if charts:
@@ -248,22 +248,22 @@ def of_beam(
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets, errors)
-    answer = [build_sentence(found, budgets), *_rough_enough(roughness)]
+    answer = [build_sentence(safe_lengths, budgets), *_rough_enough(roughness)]
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
         answer.append(tables_inference.built(test_beams))
-    answer += [safe_sentence(humidity, dataset) for humidity, dataset in found.items()]
+    answer += [safe_sentence(humidity, dataset) for humidity, dataset in safe_lengths.items()]
     answer += model_errors.sentences(name, errors)
     sections += _how_rough(name, roughness)
     listed = pair_warnings.with_numbers(warnings)
     listed += [] if test_beams is None else tables_inference.warnings(test_beams)
-    shapes = next(iter(found.values()))["shape"].values
+    shapes = next(iter(safe_lengths.values()))["shape"].values
     held = {term: text for shape in shapes for term, text in END_STATES[str(shape)].terms.items()}
     words = (
         held
         | _OF_BEAMS
-        | {"Bound": tables_devices.about_bounds(found, _BOUND, _DRY_BOUND, _WHERE_DRY)}
-        | (_IN_DRY_AIR if any(float(dataset.film) == 0 for dataset in found.values()) else {})
+        | {"Bound": tables_devices.about_bounds(safe_lengths, _BOUND, _DRY_BOUND, _WHERE_DRY)}
+        | (_IN_DRY_AIR if any(float(dataset.film) == 0 for dataset in safe_lengths.values()) else {})
         | (_OF_CHARTS if charts else {})
         | _words_of_budgets(budgets)
     )
@@ -273,7 +273,7 @@ def of_beam(
 def of_stopper(
     name: str,
     section: Mapping,
-    found: xr.Dataset,
+    stopper: xr.Dataset,
     budgets: Mapping[tuple, xr.Dataset],
     warnings: Sequence[str],
     test_beams: xr.Dataset | None = None,
@@ -281,17 +281,17 @@ def of_stopper(
     roughness: xr.Dataset | None = None,
 ) -> Page:
     """Page of a stopper; parameters as in `of_beam`, with one dataset of stage stoppers and a list of warnings."""
-    table = tables_budget.stoppers({name: found}, {name: []}, errors).cells.drop(columns=["device"])
-    sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: found}, {}))]
+    table = tables_budget.stoppers({name: stopper}, {name: []}, errors).cells.drop(columns=["device"])
+    sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: stopper}, {}))]
     sections += [*_sure(name, budgets, errors), *_how_rough(name, roughness)]
-    answer, listed = [verdict(found), *_rough_enough(roughness)], list(warnings)
+    answer, listed = [verdict(stopper), *_rough_enough(roughness)], list(warnings)
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
         answer.append(tables_inference.built(test_beams))
         listed += tables_inference.warnings(test_beams)
-    answer += [stuck_sentence(*row, force=float(found.restoring_force)) for row in shares_stuck(found)]
-    worst = [worst_sentence(found)] if ends(found) else []
-    answer += [*safe_force_sentences(found), *worst, *model_errors.sentences(name, errors)]
+    answer += [stuck_sentence(*row, force=float(stopper.restoring_force)) for row in shares_stuck(stopper)]
+    worst = [worst_sentence(stopper)] if ends(stopper) else []
+    answer += [*safe_force_sentences(stopper), *worst, *model_errors.sentences(name, errors)]
     words = _OF_STOPPERS | (_WORST if worst else {}) | _words_of_budgets(budgets)
     return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
 
@@ -309,14 +309,14 @@ def _title(name, section):
 
 def _facts_of(section):
     """Dimensions and conditions of a device, by name."""
-    found = {"surfaces": f"pair {section['pair']}"} | section.get("surfaces", {})
+    facts = {"surfaces": f"pair {section['pair']}"} | section.get("surfaces", {})
     for key in kind_of(section).keys:
         (name, unit), value = KEYS[key], section[key]
         values = value if isinstance(value, list) else [value]
-        found[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
+        facts[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
     name = "relative humidities" if len(section["humidities"]) > 1 else "relative humidity"
-    found[name] = ", ".join(map(humidity_text, section["humidities"]))
-    return found | _asked(section)
+    facts[name] = ", ".join(map(humidity_text, section["humidities"]))
+    return facts | _asked(section)
 
 
 def _asked(section):
@@ -364,24 +364,24 @@ def _stated(section, words):
     return [f"{name} {section[key]:g}{unit}" for key, (name, unit) in words.items() if key in section]
 
 
-def build_sentence(found: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> str:
+def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> str:
     """The length to build for all humidities of a device, for the middle one of the shares.
 
     It is the least safe length, less twice the largest uncertainty of what holds the shortest devices, if any is known.
 
     Parameters
     ----------
-    found, budgets : dict
+    safe_lengths, budgets : dict
         As in `of_beam`.
     """
-    least = min(_safe(dataset).item() for dataset in found.values())
-    total = max((budget_of(budget).total for key, budget in _of_shortest(found, budgets).items()), default=0.0)
+    least = min(_safe(dataset).item() for dataset in safe_lengths.values())
+    total = max((budget_of(budget).total for key, budget in _of_shortest(safe_lengths, budgets).items()), default=0.0)
     length = (1 - 2 * total) * least / UM
     if length <= 0:
         return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
     sentence = (
-        f"Build it no longer than {length:.0f} µm: then at most 1 in {1 / _chosen(_any(found)):g} sticks "
-        f"{airs(found)} (95 % confidence, given the drawn surfaces)."
+        f"Build it no longer than {length:.0f} µm: then at most 1 in {1 / _chosen(_any(safe_lengths)):g} sticks "
+        f"{airs(safe_lengths)} (95 % confidence, given the drawn surfaces)."
     )
     if total == 0:
         return f"{sentence} No uncertainty of the measurements is subtracted, because none is stated."
@@ -391,34 +391,34 @@ def build_sentence(found: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr
     )
 
 
-def _any(found):
+def _any(safe_lengths):
     """One of the datasets of a device, which have the same shares and shapes."""
-    return next(iter(found.values()))
+    return next(iter(safe_lengths.values()))
 
 
-def _safe(found):
+def _safe(dataset):
     """Safe length for the chosen share, however the device is held [m]."""
-    return found.safe_length.sel(share=_chosen(found)).min()
+    return dataset.safe_length.sel(share=_chosen(dataset)).min()
 
 
-def _chosen(found):
+def _chosen(dataset):
     """The share of stuck devices for which sentences state lengths: the middle one [-]."""
-    return float(found.share[found.sizes["share"] // 2])
+    return float(dataset.share[dataset.sizes["share"] // 2])
 
 
-def _of_shortest(found, budgets):
+def _of_shortest(safe_lengths, budgets):
     """Budgets of what holds the shortest devices: of tips, if there are tips."""
-    of_tips = EITHER in _any(found)["shape"].values
+    of_tips = EITHER in _any(safe_lengths)["shape"].values
     return {key: budget for key, budget in budgets.items() if ("tip" in key) == of_tips}
 
 
-def verdict(found: xr.Dataset) -> str:
+def verdict(stopper: xr.Dataset) -> str:
     """Whether the restoring force of a stopper suffices, for the smallest share that its patches can bound."""
-    force, where = float(found.restoring_force), airs(found.humidity.values)
-    stated, any_air = found.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(found)[1]
-    known = [float(share) for share in found.share if np.isfinite(stated.sel(share=share))]
+    force, where = float(stopper.restoring_force), airs(stopper.humidity.values)
+    stated, any_air = stopper.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(stopper)[1]
+    known = [float(share) for share in stopper.share if np.isfinite(stated.sel(share=share))]
     if not known:
-        return _verdict_of_few(found)
+        return _verdict_of_few(stopper)
     share = min(known)
     at_these, anywhere = (float(needed.sel(share=share)) for needed in (stated, any_air))
     head = f"The restoring force of {force / UN:g} µN"
@@ -426,28 +426,28 @@ def verdict(found: xr.Dataset) -> str:
     if force < at_these:
         return f"{head} does not suffice {where}: a larger one is needed if {tail}"
     if force < anywhere:
-        return f"{head} suffices {where}, but not at all{_range(found)}: {tail}"
-    dry = ["in dry air"] if found.axis[0] == 0 else []
-    humid = [f"at all relative humidities{_range(found)}"] if ends(found) else []
+        return f"{head} suffices {where}, but not at all{_range(stopper)}: {tail}"
+    dry = ["in dry air"] if stopper.axis[0] == 0 else []
+    humid = [f"at all relative humidities{_range(stopper)}"] if ends(stopper) else []
     return f"{head} suffices {' and '.join(dry + humid)}: {tail}"
 
 
-def _verdict_of_few(found):
+def _verdict_of_few(stopper):
     """The verdict where there are too few patches to bound any of the shares from above."""
-    (humidity, _, low, _), share = max(shares_stuck(found), key=lambda row: row[2]), float(found.share.max())
+    (humidity, _, low, _), share = max(shares_stuck(stopper), key=lambda row: row[2]), float(stopper.share.max())
     if low <= share:
         return "There are too few patches to say whether the restoring force suffices."
-    where, force = airs([humidity]), float(found.restoring_force)
+    where, force = airs([humidity]), float(stopper.restoring_force)
     return (
         f"The restoring force of {force / UN:g} µN does not suffice {where}: at least {100 * low:.3g} % of the "
         "stoppers stick (95 % confidence, given the drawn surfaces)."
     )
 
 
-def safe_sentence(humidity: float, found: xr.Dataset) -> str:
+def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
     """The safe lengths of a device at one humidity in words, for the middle one of the shares."""
-    share = _chosen(found)
-    lengths = found.safe_length.sel(share=share) / UM
+    share = _chosen(dataset)
+    lengths = dataset.safe_length.sel(share=share) / UM
     shortest, longest = float(lengths.min()), float(lengths.max())
     air, but = _at(humidity), f"at most 1 in {1 / share:g}"
     sentence = (
@@ -471,42 +471,42 @@ def stuck_sentence(humidity: float, stuck: float, low: float, high: float, force
     return f"{_at(humidity)}, {share} of the stoppers ({band}) hold more than the restoring force of {force / UN:g} µN."
 
 
-def safe_force_sentences(found: xr.Dataset) -> list[str]:
+def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
     """Restoring forces that would suffice at the humidities of a stopper, and in any air of its fine axis.
 
     For the shares that its patches can bound.
     """
-    stated = found.safe_force.sel(part="safe").max("humidity")
-    where = "At all these humidities" if found.sizes["humidity"] > 1 else _at(float(found.humidity[0]))
+    stated = stopper.safe_force.sel(part="safe").max("humidity")
+    where = "At all these humidities" if stopper.sizes["humidity"] > 1 else _at(float(stopper.humidity[0]))
     return [
         f"{where}, a restoring force of {float(force) / UN:.3g} µN leaves at most 1 in "
         f"{1 / float(force.share):g} stuck (95 % confidence)"
-        + (f"; at any humidity{_range(found)}, {float(more) / UN:.3g} µN are needed." if ends(found) else ".")
-        for force, more in zip(stated, in_any_air(found)[1], strict=True)
+        + (f"; at any humidity{_range(stopper)}, {float(more) / UN:.3g} µN are needed." if ends(stopper) else ".")
+        for force, more in zip(stated, in_any_air(stopper)[1], strict=True)
         if np.isfinite(force)
     ]
 
 
-def worst_sentence(found: xr.Dataset) -> str:
+def worst_sentence(stopper: xr.Dataset) -> str:
     """The worst humidity of a stopper in words."""
-    worst = float(found.worst_humidity)
-    share, least, most = (100 * share for share in in_any_air(found)[0])
+    worst = float(stopper.worst_humidity)
+    share, least, most = (100 * share for share in in_any_air(stopper)[0])
     stuck = f" In no air of this range do more than {share:.3g} % ({least:.3g} to {most:.3g} %) stick."
     stuck = "" if f"{share:.3g}" == "100" else stuck
-    if is_at_an_end(found):
-        low, high = ends(found)
+    if is_at_an_end(stopper):
+        low, high = ends(stopper)
         return f"Between relative humidities of {low:g} and {high:g}, the stopper holds most at {worst:g}.{stuck}"
     if not worst:
-        return f"The stopper holds most in dry air; humid air{_range(found)} is less critical.{stuck}"
+        return f"The stopper holds most in dry air; humid air{_range(stopper)} is less critical.{stuck}"
     return (
-        f"The stopper holds most at a relative humidity of {worst:.2f}; drier and wetter air,{_range(found)}, "
+        f"The stopper holds most at a relative humidity of {worst:.2f}; drier and wetter air,{_range(stopper)}, "
         f"are less critical.{stuck}"
     )
 
 
-def _range(found):
+def _range(stopper):
     """Range of humidities along which the worst was sought, in words."""
-    low, high = ends(found)
+    low, high = ends(stopper)
     return f" from {low:g} to {high:g}"
 
 
@@ -516,37 +516,41 @@ def _sure(name, budgets, errors):
         return []
     cases = {(name, *key): dataset for key, dataset in budgets.items()}
     sentences = [
-        f"{f'Relative humidity {humidity:g}' if humidity else 'Dry air'}: {tables_budget.advised(one)}"
-        for (humidity, *_), one in budgets.items()
+        f"{f'Relative humidity {humidity:g}' if humidity else 'Dry air'}: {tables_budget.advised(budget)}"
+        for (humidity, *_), budget in budgets.items()
     ]
     sentences += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
     cells, drawn = _side_by_side(tables_budget.budget(cases, errors).cells), figures_budget.budget(cases)
     return [Section("Uncertainty, and what should be measured better", sentences, cells, drawn)]
 
 
-def _of_test_beams(name, found):
+def _of_test_beams(name, update):
     """Section on what the test beams of a device say."""
-    said = [tables_inference.explained(found), *tables_inference.combinations(found), tables_inference.advised(found)]
-    said += [tables_inference.again(found), *tables_inference.stuck(found)]
-    cells = tables_inference.test_beams({name: found}).cells.drop(columns="device")
-    return Section("What the test beams say", said, cells, figures_inference.test_beams(found))
+    said = [
+        tables_inference.explained(update),
+        *tables_inference.combinations(update),
+        tables_inference.advised(update),
+    ]
+    said += [tables_inference.again(update), *tables_inference.stuck(update)]
+    cells = tables_inference.test_beams({name: update}).cells.drop(columns="device")
+    return Section("What the test beams say", said, cells, figures_inference.test_beams(update))
 
 
-def _rough_enough(found):
+def _rough_enough(roughness):
     """Which roughness suffices, among the first sentences; nothing if this was not asked."""
-    return [] if found is None else tables_roughness.briefly(found)
+    return [] if roughness is None else tables_roughness.briefly(roughness)
 
 
-def _how_rough(name, found):
+def _how_rough(name, roughness):
     """Section on how rough a surface must be; none if this was not asked."""
-    if found is None:
+    if roughness is None:
         return []
-    cells = tables_roughness.roughness({name: found}).cells.drop(columns="device")
-    of_map = "other" in found.dims
-    said = [*tables_roughness.answers(found), tables_roughness.FORM_OF_MAPS if of_map else tables_roughness.FORM]
-    sections = [Section("How rough must it be?", said, cells, figures_roughness.roughness(found))]
+    cells = tables_roughness.roughness({name: roughness}).cells.drop(columns="device")
+    of_map = "other" in roughness.dims
+    said = [*tables_roughness.answers(roughness), tables_roughness.FORM_OF_MAPS if of_map else tables_roughness.FORM]
+    sections = [Section("How rough must it be?", said, cells, figures_roughness.roughness(roughness))]
     if of_map:
-        sections.append(Section("Over two quantities", _OF_MAPS, None, figures_roughness.roughness_map(found)))
+        sections.append(Section("Over two quantities", _OF_MAPS, None, figures_roughness.roughness_map(roughness)))
     return sections
 
 

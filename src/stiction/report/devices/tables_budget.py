@@ -79,7 +79,7 @@ def stoppers(
         caption += " For a stopper in dry air as well, this is one of them."
     if 0 < len(humid) < len(datasets):
         caption += " One in dry air alone has no such row."
-    listed = [f"{device}: {sentence}" for device, found in warnings.items() for sentence in found]
+    listed = [f"{device}: {sentence}" for device, of_device in warnings.items() for sentence in of_device]
     said = [caption, *([beside.caption(errors)] if errors else []), NOT_MODELLED, *(["Warnings:"] if listed else [])]
     columns = _columns_of_stoppers(rows) | (_WORST if humid else {}) | (beside.COLUMN if errors else {})
     return Table.of(rows, with_list(" ".join(said), listed), columns)
@@ -189,10 +189,10 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
 
 def advised(dataset: xr.Dataset) -> str:
     """Sentence on what to measure better."""
-    found = budget_of(dataset)
-    if found.total == 0:
+    uncertainty = budget_of(dataset)
+    if uncertainty.total == 0:
         return "No uncertainty of an input is stated."
-    return advice(found, groups_of(dataset), response_text(dataset))
+    return advice(uncertainty, groups_of(dataset), response_text(dataset))
 
 
 def response_text(dataset: xr.Dataset) -> str:
@@ -208,17 +208,17 @@ def counted_as_exact(dataset: xr.Dataset) -> str:
 
 def _of_budget(device, humidity, dataset):
     """Numbers of one device at one humidity: inputs, measurements, totals, scatter, choices."""
-    found, errors = budget_of(dataset), dataset.slope_error.values
+    uncertainty, errors = budget_of(dataset), dataset.slope_error.values
     head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[response_of(dataset)[0]].by}
-    deviations = np.sqrt(np.diag(found.covariance))
-    for name, slope, error, deviation in zip(found.names, found.slopes, errors, deviations, strict=True):
+    deviations = np.sqrt(np.diag(uncertainty.covariance))
+    for name, slope, error, deviation in zip(uncertainty.names, uncertainty.slopes, errors, deviations, strict=True):
         numbers = {"slope": slope, "slope_se": error, "standard_uncertainty": deviation}
-        yield head | {"part": "input", "name": name} | numbers | _effect(found, [name], errors)
+        yield head | {"part": "input", "name": name} | numbers | _effect(uncertainty, [name], errors)
     for name, inputs in groups_of(dataset).items():
-        left = {"remaining_percent": 100 * found.remaining(inputs)}
-        yield head | {"part": "measurement", "name": name} | _effect(found, inputs, errors) | left
-    for name, whole in ((TOTAL, found), (INDEPENDENT, found.uncorrelated)):
-        yield head | {"part": "total", "name": name} | _effect(whole, found.names, errors)
+        left = {"remaining_percent": 100 * uncertainty.remaining(inputs)}
+        yield head | {"part": "measurement", "name": name} | _effect(uncertainty, inputs, errors) | left
+    for name, whole in ((TOTAL, uncertainty), (INDEPENDENT, uncertainty.uncorrelated)):
+        yield head | {"part": "total", "name": name} | _effect(whole, uncertainty.names, errors)
     yield head | {"part": "scatter", "name": SCATTER, "effect_percent": 100 * float(dataset.scatter)}
     for name in dataset.choice.values:
         effect, error = (100 * float(dataset[key].sel(choice=name)) for key in ("effect", "effect_error"))
@@ -229,9 +229,9 @@ def _of_model(device, humidity, dataset, errors):
     """Row of the error of the model, if it is known."""
     response, _ = response_of(dataset)
     head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[response].by}
-    for found in filter(None, [model_errors.of_device(errors, device, humidity, response)]):
-        effect = {"effect_percent": found["model_error_percent"], "effect_se_percent": found["model_error_se_percent"]}
-        yield head | {"part": MODEL[found["interpolated"]], "name": "model error: full elastic contact"} | effect
+    for error in filter(None, [model_errors.of_device(errors, device, humidity, response)]):
+        effect = {"effect_percent": error["model_error_percent"], "effect_se_percent": error["model_error_se_percent"]}
+        yield head | {"part": MODEL[error["interpolated"]], "name": "model error: full elastic contact"} | effect
 
 
 def _effect(budget, inputs, slope_errors):

@@ -60,14 +60,14 @@ _WHERE_DRY = "Where no water condenses, bounds are those of flats in contact."
 
 
 def safe_lengths(
-    found: Mapping[tuple[str, float], xr.Dataset],
+    datasets: Mapping[tuple[str, float], xr.Dataset],
     warnings: Mapping[tuple[str, float, str], list],
     errors: Mapping[str, xr.Dataset] | None = None,
 ) -> Table:
     """Safe lengths of all beams, one row per device, humidity, shape and share; errors of the model are by device."""
     rows, marks = [], []
     numbers = numbered(warnings)[1]
-    for (device, humidity), dataset in found.items():
+    for (device, humidity), dataset in datasets.items():
         for shape in map(str, dataset["shape"].values):
             head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[shape].by}
             last = model_errors.of_device(errors, device, humidity, shape)
@@ -75,18 +75,18 @@ def safe_lengths(
             rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
-    text, columns = f"{_SAFE_LENGTHS} {about_bounds(found, _BOUND, _DRY_BOUND, _WHERE_DRY)}", _LENGTHS
+    text, columns = f"{_SAFE_LENGTHS} {about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY)}", _LENGTHS
     if errors:
         text, columns = f"{text} {beside.caption(errors)}", columns | beside.COLUMN
     return Table(frame, _caption(text, warnings), as_text(frame, columns).assign(warnings=marks))
 
 
-def about_bounds(found: Mapping[Any, xr.Dataset], humid: str, dry: str, where_dry: str) -> str:
+def about_bounds(datasets: Mapping[Any, xr.Dataset], humid: str, dry: str, where_dry: str) -> str:
     """What the bounds of some cases are: of humid air, with what is different where no water condenses, or of dry air.
 
     Cases have datasets with the height of their film, which is zero where no water condenses.
     """
-    without_water = [float(one.film) == 0 for one in found.values()]
+    without_water = [float(one.film) == 0 for one in datasets.values()]
     if all(without_water):
         return dry
     return f"{humid} {where_dry}" if any(without_water) else humid
@@ -98,22 +98,22 @@ def _caption(text, warnings):
     return with_list(" ".join([text, NOT_MODELLED, *(["Warnings:"] if listed else [])]), listed)
 
 
-def _safe_length(one):
+def _safe_length(point):
     """One safe length with its errors."""
     return {
-        "share": float(one.share),
-        "safe_length_um": float(one.safe_length) / UM,
-        "estimate_um": float(one.estimate) / UM,
-        "estimate_se_beams_um": float(one.beams_error) / UM,
-        "estimate_se_surfaces_um": float(one.surfaces_error) / UM,
-        "basis": str(one.basis.values),
-        "bound_um": _bound(one),
+        "share": float(point.share),
+        "safe_length_um": float(point.safe_length) / UM,
+        "estimate_um": float(point.estimate) / UM,
+        "estimate_se_beams_um": float(point.beams_error) / UM,
+        "estimate_se_surfaces_um": float(point.surfaces_error) / UM,
+        "basis": str(point.basis.values),
+        "bound_um": _bound(point),
     }
 
 
-def _bound(one):
+def _bound(point):
     """Bound of the length by flooded flats [µm]."""
-    return float(one.flooded_length) / UM
+    return float(point.flooded_length) / UM
 
 
 _LENGTHS = DEVICE | {
@@ -132,7 +132,7 @@ _LENGTHS = DEVICE | {
 
 
 def chart(
-    found: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, float, str], list]
+    datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, float, str], list]
 ) -> Table:
     """Safe lengths along the axes of all charts, curve by curve; a line of text has the lengths of all shares.
 
@@ -140,30 +140,30 @@ def chart(
     """
     numbers = numbered(warnings)[1]
     rows, cells = [], []
-    for device, curve in dict.fromkeys((name, curve) for (name, _), one in found.items() for curve in curves(one)):
+    for device, curve in dict.fromkeys((name, curve) for (name, _), one in datasets.items() for curve in curves(one)):
         last = {"warnings": " ".join(warnings[device, *curve])}
         marks = {"warnings": ", ".join(map(str, numbers[device, *curve]))}
-        for humidity in sorted(humidity for name, humidity in found if name == device):
-            one = found[device, humidity].sel(dict(zip(("thickness", "gap", "shape"), curve, strict=True)))
+        for humidity in sorted(humidity for name, humidity in datasets if name == device):
+            one = datasets[device, humidity].sel(dict(zip(("thickness", "gap", "shape"), curve, strict=True)))
             beam = {"device": device, "relative_humidity": humidity} | _beam(one)
             lengths = dict(zip(one.share.values.tolist(), one.safe_length.values / UM, strict=True))
             rows += [beam | {"share": share, "safe_length_um": length} | last for share, length in lengths.items()]
             cells.append(_beam_as_text(beam, lengths) | marks)
-    bounds = about_bounds(found, _CHART_BOUND, _DRY_CHART_BOUND, _WHERE_DRY)
+    bounds = about_bounds(datasets, _CHART_BOUND, _DRY_CHART_BOUND, _WHERE_DRY)
     text = " ".join([_CHART, bounds, _CHART_WARNINGS])
     return Table(pd.DataFrame(rows), _caption(text, warnings), pd.DataFrame(cells))
 
 
-def _beam(one):
+def _beam(point):
     """Size of a beam of a chart, what its lengths come from, and its limit."""
-    computed = bool(one.by_elements)
+    computed = bool(point.by_elements)
     return {
-        "thickness_um": round(float(one.thickness) / UM, 9),  # as in the configuration
-        "gap_um": round(float(one.gap) / UM, 9),
-        "held_by": END_STATES[str(one["shape"].values)].by,
+        "thickness_um": round(float(point.thickness) / UM, 9),  # as in the configuration
+        "gap_um": round(float(point.gap) / UM, 9),
+        "held_by": END_STATES[str(point["shape"].values)].by,
         "from": "finite elements" if computed else "power law",
-        "power_law_error_percent": np.nan if computed else 100 * float(one.power_law_error),
-        "bound_um": _bound(one),
+        "power_law_error_percent": np.nan if computed else 100 * float(point.power_law_error),
+        "bound_um": _bound(point),
     }
 
 

@@ -34,11 +34,11 @@ _STUCK = ("expected_stuck", "updated_stuck", 100)
 # Sentences
 
 
-def combinations(found: xr.Dataset) -> list[str]:
+def combinations(update: xr.Dataset) -> list[str]:
     """What the test beams determine, and which inputs they do not tell apart."""
-    names = found.input.values
+    names = update.input.values
     sentences = []
-    for remaining, correlations in zip(found.remaining.values, found.correlation.values, strict=True):
+    for remaining, correlations in zip(update.remaining.values, update.correlation.values, strict=True):
         if remaining < DETERMINED:
             used = [
                 i for i in np.argsort(-np.abs(correlations)) if abs(correlations[i]) >= NAMED * max(abs(correlations))
@@ -52,38 +52,38 @@ def combinations(found: xr.Dataset) -> list[str]:
     return sentences or ["The test beams determine no combination of the inputs twice as well as before."]
 
 
-def advised(found: xr.Dataset) -> str:
+def advised(update: xr.Dataset) -> str:
     """Which further test beams would help the device most, where it is known least."""
-    worst = int(np.argmax(found.result_after.values))
-    left = 100 * found.result_after_further.isel(result=worst)
+    worst = int(np.argmax(update.result_after.values))
+    left = 100 * update.result_after_further.isel(result=worst)
     best = int(np.argmin(left.isel(beams=0).values))
     after = [f"{float(one):.2g} % with {int(one.beams)} beams" for one in left.isel(further=best)]
     return (
-        f"Further test beams would help most as {found.further.values[best]}, at least "
-        f"{TO_UM * float(found.further_length[best]):.0f} µm long: the standard uncertainty of the result for "
-        f"{found.result.values[worst]} would fall from {100 * float(found.result_after[worst]):.2g} to "
+        f"Further test beams would help most as {update.further.values[best]}, at least "
+        f"{TO_UM * float(update.further_length[best]):.0f} µm long: the standard uncertainty of the result for "
+        f"{update.result.values[worst]} would fall from {100 * float(update.result_after[worst]):.2g} to "
         f"{', to '.join(after)}."
     )
 
 
-def explained(found: xr.Dataset) -> str:
+def explained(update: xr.Dataset) -> str:
     """Whether the data agree with the model."""
-    both, alone = float(found.p_value), float(found.p_value_of_inputs)
+    together, of_inputs = float(update.p_value), float(update.p_value_of_inputs)
     return (
         f"Differences from the computed lengths and counts as large as measured, or larger, have a probability of "
-        f"{both:.2g} if inputs and model err as stated, and of {alone:.2g} if the inputs alone do."
+        f"{together:.2g} if inputs and model err as stated, and of {of_inputs:.2g} if the inputs alone do."
     )
 
 
-def built(found: xr.Dataset) -> str:
+def built(update: xr.Dataset) -> str:
     """What to build before and after the measurement, for the middle one of the shares.
 
     As `stiction.report.devices.pages.build_sentence`: the least safe length, less twice the largest uncertainty of what
     holds the devices, here with the error of the model as far as it applies; of a stopper the largest safe force, with
     twice the uncertainty added.
     """
-    responses = list(dict.fromkeys(map(str, found.response.values)))
-    (before, after), *others = (_built(found, response) for response in sorted(responses, key=_WEAKEST.index))
+    responses = list(dict.fromkeys(map(str, update.response.values)))
+    (before, after), *others = (_built(update, response) for response in sorted(responses, key=_WEAKEST.index))
     if FORCE in responses:
         return (
             f"With the test beams, give it a restoring force of at least {after:.3g} µN, without them {before:.3g} µN; "
@@ -96,52 +96,52 @@ def built(found: xr.Dataset) -> str:
     )
 
 
-def _built(found, response):
+def _built(update, response):
     """Lengths, or forces, to build before and after the measurement for one way in which a device is held [µm, µN]."""
-    share = found.share.values[found.sizes["share"] // 2]
-    chosen = found.isel(result=np.flatnonzero(found.response.values == response))
+    share = update.share.values[update.sizes["share"] // 2]
+    chosen = update.isel(result=np.flatnonzero(update.response.values == response))
     for safe, name in (("safe", "result_before"), ("updated_safe", "result_after")):
-        sizes, doubt = found[safe].sel(share=share, shape=shape_of(response)), 2 * float(chosen[name].max())
+        sizes, doubt = update[safe].sel(share=share, shape=shape_of(response)), 2 * float(chosen[name].max())
         least, most = (TO_UM * float(size) for size in (sizes.min(), sizes.max()))
         yield most * (1 + doubt) if response == FORCE else least * max(1 - doubt, 0.0)
 
 
-def again(found: xr.Dataset) -> str:
+def again(update: xr.Dataset) -> str:
     """How the linear update compares with results that were computed again at its inputs."""
-    if found.attrs["refused"]:
-        return f"At the inputs that the test beams suggest, nothing can be computed again: {found.attrs['refused']}."
+    if update.attrs["refused"]:
+        return f"At the inputs that the test beams suggest, nothing can be computed again: {update.attrs['refused']}."
     return (
         "Computed again at the inputs that the test beams suggest, the results change by (in brackets: by the linear "
-        f"update) {', '.join(map(_change, _again(found)))}. Errors of the model and lengths that tips hold are left "
+        f"update) {', '.join(map(_change, _again(update)))}. Errors of the model and lengths that tips hold are left "
         "out."
     )
 
 
-def _again(found):
+def _again(update):
     """Each result that was computed again."""
-    return [found.isel(again=k) for k in range(found.sizes["again"])]
+    return [update.isel(again=k) for k in range(update.sizes["again"])]
 
 
-def _change(one):
+def _change(result):
     """Both changes of a result in words."""
     linear, rerun = (
-        with_error(100 * float(one[name]), 100 * float(one[f"{name}_error"])) for name in ("linear", "rerun")
+        with_error(100 * float(result[name]), 100 * float(result[f"{name}_error"])) for name in ("linear", "rerun")
     )
-    return f"{one['again'].values}: {rerun} % (linear {linear} %)"
+    return f"{result['again'].values}: {rerun} % (linear {linear} %)"
 
 
-def stuck(found: xr.Dataset) -> list[str]:
+def stuck(update: xr.Dataset) -> list[str]:
     """P(stuck) before and after the measurement at every humidity, averaged over the uncertainty of the inputs."""
-    shape = shape_of(min(map(str, found.response.values), key=_WEAKEST.index))
-    chosen = found.sel(shape=shape)
+    shape = shape_of(min(map(str, update.response.values), key=_WEAKEST.index))
+    chosen = update.sel(shape=shape)
     if "share" in chosen.expected_stuck.dims:
-        chosen = chosen.isel(share=found.sizes["share"] // 2)
+        chosen = chosen.isel(share=update.sizes["share"] // 2)
     sentences = []
-    for one in (chosen.sel(humidity=humidity) for humidity in found.humidity.values):
-        size = "at its restoring force" if shape == FORCE else f"of {TO_UM * float(one.safe):.0f} µm, the safe length,"
+    for at in (chosen.sel(humidity=humidity) for humidity in update.humidity.values):
+        size = "at its restoring force" if shape == FORCE else f"of {TO_UM * float(at.safe):.0f} µm, the safe length,"
         sentences.append(
-            f"{airs([float(one.humidity)]).capitalize()}, {_percent(one.expected_stuck)} of the devices {size} are "
-            f"expected to stick without the test beams and {_percent(one.updated_stuck)} with them, averaged over the "
+            f"{airs([float(at.humidity)]).capitalize()}, {_percent(at.expected_stuck)} of the devices {size} are "
+            f"expected to stick without the test beams and {_percent(at.updated_stuck)} with them, averaged over the "
             "uncertainty of the inputs."
         )
     return sentences
@@ -157,17 +157,17 @@ def _percent(share):
 
 def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     """Test beams and the lengths of their devices, by name of the device, before and after the measurement."""
-    rows = [row for device, found in datasets.items() for row in _rows(device, found)]
+    rows = [row for device, update in datasets.items() for row in _rows(device, update)]
     sentences = [
         f"{device}: {sentence}"
-        for device, found in datasets.items()
+        for device, update in datasets.items()
         for sentence in [
-            explained(found),
-            *combinations(found),
-            advised(found),
-            again(found),
-            *stuck(found),
-            *warnings(found),
+            explained(update),
+            *combinations(update),
+            advised(update),
+            again(update),
+            *stuck(update),
+            *warnings(update),
         ]
     ]
     caption = (
@@ -178,24 +178,24 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     return Table.of(rows, with_list(caption, sentences), _COLUMNS)
 
 
-def _rows(device, found):
+def _rows(device, update):
     """Numbers of one device: data, results, what is safe, inputs."""
     for part in (_data, _results, _safe_sizes, _of_inputs):
-        yield from part(device, found)
+        yield from part(device, update)
 
 
-def _data(device, found):
+def _data(device, update):
     """Crack lengths and counts."""
-    for datum in found.datum.values:
-        at = found.sel(datum=datum)
+    for datum in update.datum.values:
+        at = update.sel(datum=datum)
         computed = TO_UM * float(at.computed)
         numbers = _of_length(computed, *(float(at[f"datum_{key}"]) for key in ("before", "shift", "after")))
         error = float(at.measured * at.datum_measured_error)
         own = {"measured": TO_UM * float(at.measured), "measured_se": TO_UM * error} if error > 0 else {}
         head = {"device": device, "relative_humidity": float(at.datum_humidity), "part": "crack length [µm]"}
         yield head | {"name": str(at.array.values)} | numbers | own
-    for k in range(found.sizes["count"]):
-        at = found.isel(count=k)
+    for k in range(update.sizes["count"]):
+        at = update.isel(count=k)
         part = f"stuck of {int(at.counted)}, {TO_UM * float(at.length_of_count):g} µm long"
         head = {"device": device, "relative_humidity": float(at.humidity_of_count), "part": part}
         shares = {name: float(at.counted * at[f"stuck_{name}"]) for name in ("before", "after")}
@@ -204,45 +204,45 @@ def _data(device, found):
         )
 
 
-def _results(device, found):
+def _results(device, update):
     """What the budgets of the device are of."""
-    for result in found.result.values:
-        at = found.sel(result=result)
+    for result in update.result.values:
+        at = update.sel(result=result)
         length = TO_UM * float(at.centre)
         numbers = _of_length(length, *(float(at[f"result_{key}"]) for key in ("before", "shift", "after")))
         head = {"device": device, "relative_humidity": float(at.humidity_of_result)}
         yield head | {"part": END_STATES[str(at.response.values)].result, "name": device} | numbers
 
 
-def _safe_sizes(device, found):
+def _safe_sizes(device, update):
     """Safe lengths or forces, and P(stuck)."""
-    for humidity in found.humidity.values:
+    for humidity in update.humidity.values:
         head = {"device": device, "relative_humidity": float(humidity), "name": device}
-        for shape in map(str, found["shape"].values):
-            of_shape, unit = found.sel(humidity=humidity, shape=shape), "µN" if shape == FORCE else "µm"
-            for share in found.share.values:
+        for shape in map(str, update["shape"].values):
+            of_shape, unit = update.sel(humidity=humidity, shape=shape), "µN" if shape == FORCE else "µm"
+            for share in update.share.values:
                 at = of_shape.sel(share=share)
                 part = f"{END_STATES[shape].safe}, p = {share:g}"
                 yield head | {"part": f"{part} [{unit}]"} | _both(at, "safe", "updated_safe", TO_UM)
-                if "share" in found.expected_stuck.dims:
+                if "share" in update.expected_stuck.dims:
                     yield head | {"part": f"stuck at the {part}, before [%]"} | _both(at, *_STUCK)
-            if "share" not in found.expected_stuck.dims:
+            if "share" not in update.expected_stuck.dims:
                 yield head | {"part": "stuck at the restoring force [%]"} | _both(of_shape, *_STUCK)
 
 
-def _of_inputs(device, found):
+def _of_inputs(device, update):
     """Inputs in their standard uncertainties."""
-    for name in found.input.values:
-        at = found.sel(input=name)
+    for name in update.input.values:
+        at = update.sel(input=name)
         scale = float(at.prior_deviation) or np.nan
         head = {"device": device, "relative_humidity": np.nan, "part": "input [standard uncertainties]", "name": name}
         after = {"after": float(at["shift"]) / scale, "after_std": float(at.deviation) / scale}
         yield head | {"before": 0.0, "before_std": 1.0} | after
 
 
-def _both(found, before, after, scale):
+def _both(update, before, after, scale):
     """Numbers before and after the measurement."""
-    return {"before": scale * float(found[before]), "after": scale * float(found[after])}
+    return {"before": scale * float(update[before]), "after": scale * float(update[after])}
 
 
 def _of_length(length, before, shift, after):
@@ -272,54 +272,54 @@ _COLUMNS = DEVICE | {
 # Warnings
 
 
-def warnings(found: xr.Dataset) -> list[str]:
+def warnings(update: xr.Dataset) -> list[str]:
     """What the test beams contradict, and where the prediction goes beyond them, in sentences with numbers."""
-    return [*_contradictions(found), *_moved(found), *_nonlinear(found), *_extrapolated(found)]
+    return [*_contradictions(update), *_moved(update), *_nonlinear(update), *_extrapolated(update)]
 
 
-def _contradictions(found):
+def _contradictions(update):
     """Data that the inputs, or inputs and model together, do not explain."""
-    alone, both = float(found.p_value_of_inputs), float(found.p_value)
-    if both < UNLIKELY:
+    of_inputs, together = float(update.p_value_of_inputs), float(update.p_value)
+    if together < UNLIKELY:
         yield (
             f"Neither the errors of the inputs nor those of the model, as stated, explain the test beams (p = "
-            f"{both:.1g}): something else is wrong, such as a dimension, a humidity or plastic contact. Do not rely on "
-            "the update."
+            f"{together:.1g}): something else is wrong, such as a dimension, a humidity or plastic contact. Do not "
+            "rely on the update."
         )
-    elif alone < UNLIKELY:
-        factor, slope = (float(found["shift"].sel(input=name)) for name in (inference.FACTOR, inference.SLOPE))
+    elif of_inputs < UNLIKELY:
+        factor, slope = (float(update["shift"].sel(input=name)) for name in (inference.FACTOR, inference.SLOPE))
         yield (
-            f"The errors of the inputs, as stated, do not explain the test beams (p = {alone:.1g}); an error of the "
-            f"model does: lengths are {np.exp(factor):.3g} times as large as computed, with a slope of {slope:+.2g} in "
-            "the logarithm of the length."
+            f"The errors of the inputs, as stated, do not explain the test beams (p = {of_inputs:.1g}); an error of "
+            f"the model does: lengths are {np.exp(factor):.3g} times as large as computed, with a slope of "
+            f"{slope:+.2g} in the logarithm of the length."
         )
-    for datum in found.datum.values[found.computed.values > found.beam_length.values]:
-        at = found.sel(datum=datum)
+    for datum in update.datum.values[update.computed.values > update.beam_length.values]:
+        at = update.sel(datum=datum)
         yield (
             f"{datum}: computed cracks of {TO_UM * float(at.computed):.0f} µm are longer than the beams, "
             f"{TO_UM * float(at.beam_length):.0f} µm: mean lengths of the beams that stick are too short."
         )
 
 
-def _moved(found):
+def _moved(update):
     """Inputs, and rests of the model, that err more than their standard deviations let expect."""
-    known = found.isel(input=np.flatnonzero(found.prior_deviation.values > 0))
+    known = update.isel(input=np.flatnonzero(update.prior_deviation.values > 0))
     for name, score in zip(known.input.values, (known["shift"] / known.prior_deviation).values, strict=True):
         if abs(score) > LARGE:
             yield f"The test beams move the {name} by {score:+.2g} of its standard uncertainties: check it."
-    for datum, rest in zip(found.datum.values, found.datum_rest.values, strict=True):
-        if abs(rest) > LARGE * found.attrs["rest"]:
+    for datum, rest in zip(update.datum.values, update.datum_rest.values, strict=True):
+        if abs(rest) > LARGE * update.attrs["rest"]:
             yield f"{datum}: {100 * rest:+.2g} % of the length are left to errors of the model at this humidity alone."
 
 
-def _nonlinear(found):
+def _nonlinear(update):
     """Results that change otherwise than in the linear update."""
     different = []
-    for one in _again(found):
-        apart = float(one.rerun - one.linear)
-        error = float(np.hypot(one.linear_error, one.rerun_error))
+    for result in _again(update):
+        apart = float(result.rerun - result.linear)
+        error = float(np.hypot(result.linear_error, result.rerun_error))
         if abs(apart) > DIFFERENT * error:
-            different.append(f"{with_error(100 * apart, 100 * error)} % ({one['again'].values})")
+            different.append(f"{with_error(100 * apart, 100 * error)} % ({result['again'].values})")
     if different:
         yield (
             f"The update is not linear: results that were computed again differ from it by {', '.join(different)}. If "
@@ -328,19 +328,19 @@ def _nonlinear(found):
         )
 
 
-def _extrapolated(found):
+def _extrapolated(update):
     """Conditions of the device beyond those of its test beams."""
-    measured = set(found.datum_humidity.values.tolist())
+    measured = set(update.datum_humidity.values.tolist())
     humid = sorted(measured - {0.0}) or [np.inf]
-    results = sorted(set(found.humidity_of_result.values.tolist()) - measured)
+    results = sorted(set(update.humidity_of_result.values.tolist()) - measured)
     beyond = [humidity for humidity in results if not humid[0] <= humidity <= humid[-1]]
     if beyond:
         where = ["in dry air"] * (0 in measured) + [f"from RH {humid[0]:g} to {humid[-1]:g}"] * bool(measured - {0.0})
         yield (f"Test beams were measured {' and '.join(where)}: the prediction {airs(beyond)} is an extrapolation.")
-    yield from _beyond_in_adhesion(found)
-    for size in OWN if "own_thickness" in found else ():
-        device = float(found[f"own_{size}"][0])
-        nearest = min(found[size].values, key=lambda value: abs(np.log(device / value)))
+    yield from _beyond_in_adhesion(update)
+    for size in OWN if "own_thickness" in update else ():
+        device = float(update[f"own_{size}"][0])
+        nearest = min(update[size].values, key=lambda value: abs(np.log(device / value)))
         if abs(np.log(device / nearest)) > np.log(SIZES):
             yield (
                 f"The {size} of the device, {TO_UM * device:.3g} µm, differs by more than a factor of {SIZES:g} from "
@@ -348,11 +348,11 @@ def _extrapolated(found):
             )
 
 
-def _beyond_in_adhesion(found):
+def _beyond_in_adhesion(update):
     """Cracks of the device longer, or shorter, than equal beams would have under the conditions of the test beams."""
-    least, most = (float(found.datum_reduced.quantile(end)) for end in (0, 1))
+    least, most = (float(update.datum_reduced.quantile(end)) for end in (0, 1))
     for result, response, reduced in zip(
-        found.result.values, found.response.values, found.result_reduced.values, strict=True
+        update.result.values, update.response.values, update.result_reduced.values, strict=True
     ):
         beyond = max(reduced - most, least - reduced)
         if response == S_SHAPE and beyond > ADHESION:

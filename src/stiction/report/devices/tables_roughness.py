@@ -29,14 +29,14 @@ FORM_OF_MAPS = FORM.replace("One quantity of one surface is", "Two quantities of
 # Sentences
 
 
-def in_unit(found: xr.Dataset, values: float | np.ndarray, key: str = "key") -> float | np.ndarray:
+def in_unit(dataset: xr.Dataset, values: float | np.ndarray, key: str = "key") -> float | np.ndarray:
     """Values of a varied quantity in the unit of its key, which is an attribute: ``key`` or ``other_key``."""
-    name = found.attrs[key]
+    name = dataset.attrs[key]
     unit = name.removeprefix(without_unit(name)).removeprefix("_")
     return from_si(values, unit) if unit else values
 
 
-def name_of(found: xr.Dataset, key: str = "key") -> str:
+def name_of(dataset: xr.Dataset, key: str = "key") -> str:
     """A varied quantity in words.
 
     Examples
@@ -44,10 +44,10 @@ def name_of(found: xr.Dataset, key: str = "key") -> str:
     >>> name_of(xr.Dataset(attrs={"key": "rms_nm", "surface": "B2"}))
     'rms of B2'
     """
-    return f"{ROUGHNESSES[found.attrs[key]].words} of {found.attrs['surface']}"
+    return f"{ROUGHNESSES[dataset.attrs[key]].words} of {dataset.attrs['surface']}"
 
 
-def labelled(found: xr.Dataset, key: str = "key") -> str:
+def labelled(dataset: xr.Dataset, key: str = "key") -> str:
     """A varied quantity with its unit, for axes and tables.
 
     Examples
@@ -55,15 +55,15 @@ def labelled(found: xr.Dataset, key: str = "key") -> str:
     >>> labelled(xr.Dataset(attrs={"key": "rms_nm", "surface": "B2"}))
     'rms of B2 [nm]'
     """
-    return f"{name_of(found, key)} [{_unit(found, key).strip() or '–'}]"
+    return f"{name_of(dataset, key)} [{_unit(dataset, key).strip() or '–'}]"
 
 
-def answers(found: xr.Dataset) -> list[str]:
+def answers(dataset: xr.Dataset) -> list[str]:
     """Which roughness suffices, one sentence for each humidity and end state, and why some is not computed.
 
     Those of a map are about each of its curves.
     """
-    return [_at_other(curve) + sentence for curve in curves_of(found) for sentence in _answers(curve)]
+    return [_at_other(curve) + sentence for curve in curves_of(dataset) for sentence in _answers(curve)]
 
 
 def _answers(curve):
@@ -71,9 +71,9 @@ def _answers(curve):
     return [_answer(curve, *subject) for subject in _subjects(curve)] + _refusals(curve)
 
 
-def briefly(found: xr.Dataset) -> list[str]:
+def briefly(dataset: xr.Dataset) -> list[str]:
     """Where which roughness suffices, one sentence for each humidity and end state; of a map, at what is given."""
-    curves = [curve for curve in curves_of(found) if not _is_changed(curve)]
+    curves = [curve for curve in curves_of(dataset) if not _is_changed(curve)]
     return [f"{_enough(curve, *subject)}." for curve in curves for subject in _subjects(curve)]
 
 
@@ -95,34 +95,34 @@ def _is_changed(curve):
     return "other" in curve.coords and float(curve.other) != float(curve.other_given)
 
 
-def _answer(found, humidity, shape):
+def _answer(curve, humidity, shape):
     """Which roughness suffices at a humidity against one end state."""
     places = [
-        with_error(in_unit(found, float(row.crossing_place)), in_unit(found, float(row.crossing_error))) + _unit(found)
-        for row in _rows(found, "crossing", humidity, shape)
+        with_error(in_unit(curve, float(row.crossing_place)), in_unit(curve, float(row.crossing_error))) + _unit(curve)
+        for row in _rows(curve, "crossing", humidity, shape)
     ]
-    exactly = f"; exactly {_share(found)} sticks at {' and at '.join(places)}" if places else ""
-    more = _worst(found, humidity, shape) + _given(found, humidity, shape)
-    return f"{_enough(found, humidity, shape)}{exactly}. {more}"
+    exactly = f"; exactly {_share(curve)} sticks at {' and at '.join(places)}" if places else ""
+    more = _worst(curve, humidity, shape) + _given(curve, humidity, shape)
+    return f"{_enough(curve, humidity, shape)}{exactly}. {more}"
 
 
-def _enough(found, humidity, shape):
+def _enough(curve, humidity, shape):
     """Where the safe value at a humidity against one end state meets what is required."""
-    required = f"{float(found.required) / UM:g} {_required_unit(found)}"
+    required = f"{float(curve.required) / UM:g} {_required_unit(curve)}"
     wanted = (
         f"a restoring force of {required}" if shape == FORCE else f"a length of {required} ({END_STATES[shape].by})"
     )
-    where = _where(found, found.sel(humidity=humidity, shape=shape), _rows(found, "range", humidity, shape))
+    where = _where(curve, curve.sel(humidity=humidity, shape=shape), _rows(curve, "range", humidity, shape))
     return f"For {wanted}, {airs([humidity])}, {where}"
 
 
-def _where(found, curve, rows):
+def _where(dataset, curve, rows):
     """Roughness at which the safe value of a curve meets what is required."""
     known = curve.roughness.values[curve.safe.notnull().values]
     if not len(known):
         return "nothing is computed"
-    name, share, whole = name_of(found), _share(found), _range(found, known[0], known[-1])
-    ranges = [_range(found, float(row.range_low), float(row.range_high)) for row in rows]
+    name, share, whole = name_of(dataset), _share(dataset), _range(dataset, known[0], known[-1])
+    ranges = [_range(dataset, float(row.range_low), float(row.range_high)) for row in rows]
     if not ranges:
         return f"no {name} of {whole} suffices: nowhere there is it certain that at most {share} sticks"
     sure = "95 % confidence, given the drawn surfaces"
@@ -131,9 +131,9 @@ def _where(found, curve, rows):
     return f"at most {share} sticks where the {name} is {' or '.join(ranges)} ({sure}; computed for {whole})"
 
 
-def _worst(found, humidity, shape):
+def _worst(curve, humidity, shape):
     """Where a stopper is held most if this is inside the range, beyond the errors of both ends."""
-    known = found.sel(humidity=humidity, shape=shape).dropna("roughness", subset=["estimate"])
+    known = curve.sel(humidity=humidity, shape=shape).dropna("roughness", subset=["estimate"])
     forces, errors = known.estimate.values, known.error.values
     if shape != FORCE or not len(forces):
         return ""
@@ -141,62 +141,62 @@ def _worst(found, humidity, shape):
     apart = [forces[most] - forces[end] > DIFFERENT * np.hypot(errors[most], errors[end]) for end in (0, -1)]
     if not all(apart):
         return ""
-    place = f"{_shown(found, known.roughness[most])}{_unit(found)}"
-    return f"The worst {name_of(found)} is inside this range, near {place}: less and more of it hold less. "
+    place = f"{_shown(curve, known.roughness[most])}{_unit(curve)}"
+    return f"The worst {name_of(curve)} is inside this range, near {place}: less and more of it hold less. "
 
 
-def _given(found, humidity, shape):
+def _given(curve, humidity, shape):
     """P(stuck) on the surfaces as they are given, if it is known."""
-    given = found.sel(humidity=humidity, shape=shape, roughness=float(found.given))
+    given = curve.sel(humidity=humidity, shape=shape, roughness=float(curve.given))
     stuck, low, high = (100 * given.stuck.values).tolist()
-    where = f"At the given {name_of(found)}" if _is_changed(found) else "On the surfaces as they are given"
+    where = f"At the given {name_of(curve)}" if _is_changed(curve) else "On the surfaces as they are given"
     if np.isnan(stuck):
         return f"{where}, it is not computed."
-    place = f"{_shown(found, float(found.given))}{_unit(found)}"
+    place = f"{_shown(curve, float(curve.given))}{_unit(curve)}"
     return f"{where}, at {place}, {stuck:.3g} % ({low:.3g} to {high:.3g} %) stick."
 
 
-def _rows(found, dimension, humidity, shape):
+def _rows(curve, dimension, humidity, shape):
     """Crossings or ranges of a humidity and end state."""
     names = [f"{dimension}_humidity", f"{dimension}_shape"]
-    own = (found[names[0]].values == humidity) & (found[names[1]].values == shape)
-    return [found.isel({dimension: k}) for k in np.flatnonzero(own)]
+    own = (curve[names[0]].values == humidity) & (curve[names[1]].values == shape)
+    return [curve.isel({dimension: k}) for k in np.flatnonzero(own)]
 
 
-def _shown(found, value, key="key"):
+def _shown(dataset, value, key="key"):
     """A value of a varied quantity as text."""
-    return f"{in_unit(found, float(value), key):.3g}"
+    return f"{in_unit(dataset, float(value), key):.3g}"
 
 
-def _range(found, low, high):
+def _range(dataset, low, high):
     """A range of the varied quantity as text."""
-    return f"{_shown(found, low)} to {_shown(found, high)}{_unit(found)}"
+    return f"{_shown(dataset, low)} to {_shown(dataset, high)}{_unit(dataset)}"
 
 
-def _share(found):
+def _share(dataset):
     """The allowed share as text."""
-    return f"1 in {1 / float(found.share):g}"
+    return f"1 in {1 / float(dataset.share):g}"
 
 
-def _refusals(found):
+def _refusals(curve):
     """Where nothing is computed, by reason."""
     places = {}
-    for humidity in found.humidity.values:
-        for value in found.roughness.values:
-            if reason := str(found.refused.sel(humidity=humidity, roughness=value).values):
-                at = f"{_shown(found, value)}{_unit(found)} ({air(humidity)})"
+    for humidity in curve.humidity.values:
+        for value in curve.roughness.values:
+            if reason := str(curve.refused.sel(humidity=humidity, roughness=value).values):
+                at = f"{_shown(curve, value)}{_unit(curve)} ({air(humidity)})"
                 places.setdefault(reason, []).append(at)
-    return [f"Not computed where the {name_of(found)} is {', '.join(at)}: {reason}." for reason, at in places.items()]
+    return [f"Not computed where the {name_of(curve)} is {', '.join(at)}: {reason}." for reason, at in places.items()]
 
 
-def _unit(found, key="key"):
+def _unit(dataset, key="key"):
     """Unit of a varied quantity with a space before it, or nothing."""
-    return ROUGHNESSES[found.attrs[key]].unit
+    return ROUGHNESSES[dataset.attrs[key]].unit
 
 
-def _required_unit(found):
+def _required_unit(dataset):
     """Unit of what is required, as shown."""
-    return "µN" if found.required.attrs["units"] == "N" else "µm"
+    return "µN" if dataset.required.attrs["units"] == "N" else "µm"
 
 
 # Table
@@ -207,8 +207,10 @@ def roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
 
     The datasets are by name of the device.
     """
-    rows = [row for device, found in datasets.items() for curve in curves_of(found) for row in _points(device, curve)]
-    sentences = [f"{device}: {sentence}" for device, found in datasets.items() for sentence in answers(found)]
+    rows = [
+        row for device, dataset in datasets.items() for curve in curves_of(dataset) for row in _points(device, curve)
+    ]
+    sentences = [f"{device}: {sentence}" for device, dataset in datasets.items() for sentence in answers(dataset)]
     of_maps = any("other" in row for row in rows)
     caption = (
         "Safe length of a beam, or safe restoring force of a stopper, over the roughness of a surface: with a "
@@ -217,36 +219,36 @@ def roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
         f"force, with its 95 % band. {FORM_OF_MAPS if of_maps else FORM} Devices: number of simulated devices at every "
         "roughness."
     )
-    columns = {name: one for name, one in _COLUMNS.items() if of_maps or name != "and"}
+    columns = {name: column for name, column in _COLUMNS.items() if of_maps or name != "and"}
     return Table.of(rows, with_list(caption, sentences), columns)
 
 
-def _points(device, found):
+def _points(device, curve):
     """Numbers of one curve of a device."""
     other = {}
-    if "other" in found.coords:
-        other = {"other": labelled(found, "other_key"), "other_value": float(in_unit(found, found.other, "other_key"))}
-    for humidity in found.humidity.values:
-        for shape in map(str, found["shape"].values):
-            for value in found.roughness.values:
-                one = found.sel(humidity=humidity, shape=shape, roughness=value)
-                stuck, low, high = (100 * one.stuck.values).tolist()
+    if "other" in curve.coords:
+        other = {"other": labelled(curve, "other_key"), "other_value": float(in_unit(curve, curve.other, "other_key"))}
+    for humidity in curve.humidity.values:
+        for shape in map(str, curve["shape"].values):
+            for value in curve.roughness.values:
+                point = curve.sel(humidity=humidity, shape=shape, roughness=value)
+                stuck, low, high = (100 * point.stuck.values).tolist()
                 yield {
                     "device": device,
                     "relative_humidity": float(humidity),
                     "held_by": END_STATES[shape].by,
-                    "varied": labelled(found),
-                    "value": float(in_unit(found, value)),
-                    "share": float(found.share),
-                    "unit": _required_unit(found),
-                    "safe": float(one.safe) / UM,
-                    "estimate": float(one.estimate) / UM,
-                    "estimate_se": float(one.error) / UM,
-                    "required": float(found.required) / UM,
+                    "varied": labelled(curve),
+                    "value": float(in_unit(curve, value)),
+                    "share": float(curve.share),
+                    "unit": _required_unit(curve),
+                    "safe": float(point.safe) / UM,
+                    "estimate": float(point.estimate) / UM,
+                    "estimate_se": float(point.error) / UM,
+                    "required": float(curve.required) / UM,
                     "stuck_percent": stuck,
                     "stuck_low_percent": low,
                     "stuck_high_percent": high,
-                    "devices": int(found.samples),
+                    "devices": int(curve.samples),
                 } | other
 
 

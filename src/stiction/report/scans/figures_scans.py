@@ -92,10 +92,12 @@ def _map(figure: Figure, panel: Axes, estimate):
 def _density(panel, estimate):
     """Histogram with its errors, maximum entropy and Gaussian density."""
     rms, z = TO_NM * stage_estimate.rms(estimate), np.linspace(-6, 6, 601)
-    edges, found, error = (estimate[name].values for name in ("edge", "histogram", "histogram_error"))
-    largest = found.max() / rms
-    panel.stairs((found + error) / rms, rms * edges, baseline=np.maximum(found - error, 0) / rms, fill=True, **_BAND)
-    panel.stairs(found / rms, rms * edges, baseline=None, label="measured, ± 1 standard error", **_MEASURED)
+    edges, density, error = (estimate[name].values for name in ("edge", "histogram", "histogram_error"))
+    largest = density.max() / rms
+    panel.stairs(
+        (density + error) / rms, rms * edges, baseline=np.maximum(density - error, 0) / rms, fill=True, **_BAND
+    )
+    panel.stairs(density / rms, rms * edges, baseline=None, label="measured, ± 1 standard error", **_MEASURED)
     panel.plot(rms * z, np.exp(-(z**2) / 2) / np.sqrt(2 * np.pi) / rms, **MODELS["G"])
     if not np.isnan(stage_estimate.distance(estimate)):
         entropy = stage_estimate.density(estimate, "moments")(z) / rms

@@ -41,7 +41,7 @@ def scans(
         "Scans of the measured surfaces: moments of the levelled heights of each file, ± standard error of one scan of "
         "its size. The moments of the surface, without the bias of levelling, are in the title of its sheet."
     )
-    flags = [f"{name}: {flag}" for name, found in limits.items() for flag in found]
+    flags = [f"{name}: {flag}" for name, sentences in limits.items() for flag in sentences]
     return Table.of(rows, with_list(caption, flags), _SCANS)
 
 
@@ -94,16 +94,16 @@ def _rows(pair, study, k):
     case = study.isel(humidity=k)
     key = {"pair": pair, "relative_humidity": float(case.humidity)}
     for name in study.surface.values:
-        one = case.sel(surface=name)
-        parts = {f"{part}_percent": 100 * float(one.error.sel(part=part)) for part in _PARTS}
-        parts |= {"total_se_percent": 100 * float(one.error_sampling)}
-        number_of = {"scans": int(one.scans), "scans_needed": int(one.scans_needed)}
-        yield key | {"surface": str(name)} | parts | _crack_length(float(one.error.sel(part="total"))) | number_of
+        surface = case.sel(surface=name)
+        parts = {f"{part}_percent": 100 * float(surface.error.sel(part=part)) for part in _PARTS}
+        parts |= {"total_se_percent": 100 * float(surface.error_sampling)}
+        number_of = {"scans": int(surface.scans), "scans_needed": int(surface.scans_needed)}
+        yield key | {"surface": str(name)} | parts | _crack_length(float(surface.error.sel(part="total"))) | number_of
     changes = {}
     for choice in study.choice.values:
-        one = case.sel(choice=choice)
-        errors = float(one.change_error), float(one.change_error_scans)
-        changes |= {f"{choice}_percent": 100 * float(one.change), f"{choice}_se_percent": 100 * np.hypot(*errors)}
+        of_choice = case.sel(choice=choice)
+        errors = float(of_choice.change_error), float(of_choice.change_error_scans)
+        changes |= {f"{choice}_percent": 100 * float(of_choice.change), f"{choice}_se_percent": 100 * np.hypot(*errors)}
     total = float(case.pair_error)
     parts = {"total_percent": 100 * total, "total_se_percent": 100 * float(case.pair_error_sampling)}
     number_of = {"scans": int(case.scans.sum()), "scans_needed": int(case.scans_needed.sum())}

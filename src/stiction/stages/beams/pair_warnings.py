@@ -73,7 +73,7 @@ def of_pairs(
 
     Each pair has the names of its materials, each with the properties that are stated.
     """
-    found = {
+    warnings = {
         f"pair {pair}": limits.given(
             _without_water(pair, beams, settings.water[pair]),
             *contact_warnings(plastic_contact(plasticity, pair), materials[pair]),
@@ -83,10 +83,10 @@ def of_pairs(
     for (pair, humidity, model), dataset in beams.items():
         nominal = cantilever(settings, pair)
         film = limits.given(limits.thin_film(settings.water[pair].film(humidity)[0]))
-        found[f"pair {pair}, {air(humidity)}, {model}"] = film + of_beams(
+        warnings[f"pair {pair}, {air(humidity)}, {model}"] = film + of_beams(
             dataset, nominal, settings.sampling.strip_length
         )
-    return found
+    return warnings
 
 
 def _without_water(pair, cases, water):
@@ -100,10 +100,10 @@ def of_films(cases: Collection[tuple[str, float, str]], water: Mapping[str, Wate
 
     The cases are pair, humidity and model.
     """
-    found = {f"Pair {pair}": _without_water(pair, cases, one) for pair, one in water.items()}
+    by_subject = {f"Pair {pair}": _without_water(pair, cases, film) for pair, film in water.items()}
     for pair, humidity, _ in cases:
-        found[f"Pair {pair}, {air(humidity)}"] = limits.thin_film(water[pair].film(humidity)[0])
-    return [f"{subject}: {sentence}" for subject, sentence in found.items() if sentence]
+        by_subject[f"Pair {pair}, {air(humidity)}"] = limits.thin_film(water[pair].film(humidity)[0])
+    return [f"{subject}: {sentence}" for subject, sentence in by_subject.items() if sentence]
 
 
 def numbered(warnings: Mapping[Any, list[str]]) -> tuple[list[str], dict[Any, list[int]]]:
@@ -114,8 +114,8 @@ def numbered(warnings: Mapping[Any, list[str]]) -> tuple[list[str], dict[Any, li
     >>> numbered({"a": ["x.", "y."], "b": ["y."]})
     (['x.', 'y.'], {'a': [1, 2], 'b': [2]})
     """
-    sentences = list(dict.fromkeys(sentence for found in warnings.values() for sentence in found))
-    return sentences, {key: [sentences.index(one) + 1 for one in found] for key, found in warnings.items()}
+    sentences = list(dict.fromkeys(sentence for said in warnings.values() for sentence in said))
+    return sentences, {key: [sentences.index(one) + 1 for one in said] for key, said in warnings.items()}
 
 
 def with_numbers(warnings: Mapping[Any, list[str]]) -> list[str]:
@@ -126,7 +126,7 @@ def with_numbers(warnings: Mapping[Any, list[str]]) -> list[str]:
 def as_markdown(warnings: Warnings) -> str:
     """Warnings as a page, each sentence with all its subjects."""
     sentences, _ = numbered(warnings)
-    about = [[subject for subject, found in warnings.items() if sentence in found] for sentence in sentences]
+    about = [[subject for subject, said in warnings.items() if sentence in said] for sentence in sentences]
     lines = [f"- {'; '.join(names)}: {sentence}" for names, sentence in zip(about, sentences, strict=True)]
     none = ["No result is beyond the limits of the model that are checked."]
     return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", limits.NOT_MODELLED, ""])

@@ -46,7 +46,7 @@ class Settings(OnStrips):
 
 def without_scatter(settings: OnStrips, samples: int) -> Settings:
     """Settings of this number of beams of nominal dimensions."""
-    common = {one.name: getattr(settings, one.name) for one in fields(OnStrips)}
+    common = {field.name: getattr(settings, field.name) for field in fields(OnStrips)}
     return Settings(**common, samples=samples, scatter=0)
 
 

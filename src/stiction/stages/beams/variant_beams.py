@@ -51,10 +51,10 @@ def layout(humidities: Sequence[float], energies: Sequence, beams: Sequence[dict
 
 def by_pair(cases: Mapping[tuple[str, float, str], xr.Dataset]) -> dict[tuple[str, str], xr.Dataset]:
     """Datasets of all humidities by pair and variant, from those by pair, humidity and variant."""
-    found = {}
+    cases_of = {}
     for (pair, _, variant), dataset in sorted(cases.items(), key=lambda item: item[0][1]):
-        found.setdefault((pair, variant), []).append(dataset)
-    return {key: xr.concat(found[key], "humidity") for key in dict.fromkeys((pair, name) for pair, _, name in cases)}
+        cases_of.setdefault((pair, variant), []).append(dataset)
+    return {key: xr.concat(cases_of[key], "humidity") for key in dict.fromkeys((pair, name) for pair, _, name in cases)}
 
 
 def cases_of(dataset: xr.Dataset) -> Iterator[tuple[float, Variant]]:

@@ -60,8 +60,8 @@ def compute(grids: Sequence[EquivalentSurface], pair: str, seed: int, settings: 
         )
     streams, films = streams_of_sides(seed, pair), [settings.water.film(each) for each in settings.humidities]
     media = [_Medium.of(settings.solids, name) for name in settings.attractions]
-    found = np.full((len(grids), len(READINGS), settings.strips, len(media), len(films)), np.nan)
-    seconds = np.full(found.shape[:-1], np.nan)
+    energies = np.full((len(grids), len(READINGS), settings.strips, len(media), len(films)), np.nan)
+    seconds = np.full(energies.shape[:-1], np.nan)
     for i, surface in enumerate(grids):
         for k in progress(range(settings.strips), "surface pairs"):
             strip = Strip(surface.draw(*streams(k)), surface.distances, films)
@@ -70,8 +70,8 @@ def compute(grids: Sequence[EquivalentSurface], pair: str, seed: int, settings: 
                     start = process_time()
                     pressure = _pressure(strip, surface, reading, medium)
                     seconds[i, j, k, n] = process_time() - start
-                    found[i, j, k, n] = strip.energies(pressure)
-    return layout(found, seconds, [surface.spacing for surface in grids], settings.attractions, settings.humidities)
+                    energies[i, j, k, n] = strip.energies(pressure)
+    return layout(energies, seconds, [surface.spacing for surface in grids], settings.attractions, settings.humidities)
 
 
 class _Medium(NamedTuple):

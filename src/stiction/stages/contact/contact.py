@@ -43,8 +43,8 @@ def compute_each(
     pairs = surface_pairs(alternatives, model, settings)
     samples = range(settings.contact.samples) if samples is None else samples
     streams = streams_of_sides(settings.seed, pair)
-    found = contacts_of_samples(pairs, streams, progress(samples, "surface pairs"))
-    datasets = [layout(*curves, one.distances, samples) for curves, one in zip(found, pairs, strict=True)]
+    contacts = contacts_of_samples(pairs, streams, progress(samples, "surface pairs"))
+    datasets = [layout(*curves, rough.distances, samples) for curves, rough in zip(contacts, pairs, strict=True)]
     return [of_tips(*each) for each in zip(datasets, pairs, strict=True)] if settings.tilt else datasets
 
 
@@ -89,18 +89,18 @@ def joined(chunks: Iterable[xr.Dataset], samples: int) -> xr.Dataset:
         If a chunk has other distances than those before it, or if samples are missing or repeated.
     """
     pressures = areas = grid = None
-    found = 0
+    joined_samples = 0
     for chunk in chunks:
         if grid is None:
             grid = _grid(chunk)
             pressures, areas = (np.empty((samples, n), np.float32) for n in (grid.above, grid.below + grid.above))
-        here = slice(found, found + chunk.sizes["sample"])
+        here = slice(joined_samples, joined_samples + chunk.sizes["sample"])
         if _grid(chunk) != grid or not np.array_equal(chunk.sample, np.arange(samples)[here]):
-            raise ValueError(f"the chunk after {found} of {samples} samples does not continue the contact")
+            raise ValueError(f"the chunk after {joined_samples} of {samples} samples does not continue the contact")
         pressures[here], areas[here] = chunk.solid_pressure, chunk.bearing_area
-        found = here.stop
-    if found != samples:
-        raise ValueError(f"the chunks contain {found} of {samples} samples")
+        joined_samples = here.stop
+    if joined_samples != samples:
+        raise ValueError(f"the chunks contain {joined_samples} of {samples} samples")
     return layout(pressures, areas, grid, range(samples))
 
 

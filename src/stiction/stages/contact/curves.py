@@ -21,14 +21,14 @@ def parametrised(sampled: ForceCurves, humidity: float, water: Water) -> tuple[n
 
     ASSUME: one ratio of e and one of f_max at a humidity hold for all samples, on strips and patches of any size.
     """
-    found = forcelaw.parametrise(*sampled)
-    return water.correction.vectors(*found, humidity) if water.correction else found
+    vectors = forcelaw.parametrise(*sampled)
+    return water.correction.vectors(*vectors, humidity) if water.correction else vectors
 
 
 def energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
-    found = forcelaw.adhesion_energies(*force_curves(contact, humidity, water))
-    return found * water.correction.at(humidity)[0] if water.correction else found
+    energies = forcelaw.adhesion_energies(*force_curves(contact, humidity, water))
+    return energies * water.correction.at(humidity)[0] if water.correction else energies
 
 
 def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, np.ndarray]:
@@ -60,8 +60,8 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
 
 def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Largest attraction f_max of all samples at a relative humidity (m,) [Pa]."""
-    found = forcelaw.pull_offs(*force_curves(contact, humidity, water)[:3])
-    return found * water.correction.at(humidity)[1] if water.correction else found
+    forces = forcelaw.pull_offs(*force_curves(contact, humidity, water)[:3])
+    return forces * water.correction.at(humidity)[1] if water.correction else forces
 
 
 def vectors(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, float]:

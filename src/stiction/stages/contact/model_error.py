@@ -28,16 +28,16 @@ def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
     _, *pull_offs = full_contact.pull_offs(study)
     at = np.sort(settings.humidities)
     given = computed, at
-    found = {
+    ratios = {
         "energy_ratio": mean_ratios(*energies, *given),
         "pull_off_ratio": mean_ratios(*pull_offs, *given),
         "length_factor": length_factors(*energies, *given),
     }
-    return layout(found, at, computed, study.sizes["sample"], settings.applied)
+    return layout(ratios, at, computed, study.sizes["sample"], settings.applied)
 
 
 def layout(
-    found: Mapping[str, tuple[np.ndarray, np.ndarray]],
+    ratios: Mapping[str, tuple[np.ndarray, np.ndarray]],
     at: np.ndarray,
     computed: Sequence[float],
     strips: int,
@@ -48,8 +48,8 @@ def layout(
     They are at increasing humidities; full contact was ``computed`` at some of them, on a number of strips. ``applied``
     says whether the predictions are corrected.
     """
-    columns = {name: values for name, (values, _) in found.items()}
-    columns |= {f"{name}_error": errors for name, (_, errors) in found.items()}
+    columns = {name: values for name, (values, _) in ratios.items()}
+    columns |= {f"{name}_error": errors for name, (_, errors) in ratios.items()}
     return xr.Dataset(
         {name: ("humidity", values, {"units": "1"}) for name, values in columns.items()}
         | {"interpolated": ("humidity", ~np.isin(at, computed)), "strips": ((), strips), "applied": ((), applied)},

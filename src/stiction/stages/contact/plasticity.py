@@ -28,14 +28,14 @@ class Settings(pairs.Settings):
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
     """Find the touching summits of all strips, the share of their contact area that yields, and the mean pressure."""
-    both = surface_pair(surfaces, "NG", settings)
+    rough_pair = surface_pair(surfaces, "NG", settings)
     streams = streams_of_sides(settings.seed, pair)
-    found = []
+    touching = []
     for k in progress(range(settings.strips), "strips"):
-        height, curvature, area_of_strip, _ = both.summits(both.draw(*streams(k)))
+        height, curvature, area_of_strip, _ = rough_pair.summits(rough_pair.draw(*streams(k)))
         interference, radius = plasticity.touching(height, curvature, settings.distance)
-        found.append((interference, radius, np.full(len(radius), k)))
-    interference, radius, strip = np.hstack(found)
+        touching.append((interference, radius, np.full(len(radius), k)))
+    interference, radius, strip = np.hstack(touching)
     materials = bodies(settings)
     modulus = solids.composite_modulus(*materials)
     stress = hertz_maximum_stress(interference, radius, modulus)

@@ -44,11 +44,11 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
         As in study full_contact, and if a strip rests at the smallest distance without being pressed.
     """
     hardness = solids.softer_hardness(*bodies(settings))
-    found = [
+    strips = [
         _of_strip(*strip, np.linspace(0, 1, settings.steps + 1), settings.distance, hardness)
         for strip in full_contact.strips(surfaces, pair, settings)
     ]
-    return layout(*map(np.array, zip(*found, strict=True)), settings.humidities)
+    return layout(*map(np.array, zip(*strips, strict=True)), settings.humidities)
 
 
 def _of_strip(space, heights, cases, shares, closest, hardness):

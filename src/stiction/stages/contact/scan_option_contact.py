@@ -44,11 +44,11 @@ def compute(
     Samples have the random numbers of the base; another cut-off gives another surface nevertheless. The estimates are
     by measured surface, the choice is a key of `stiction.models.ALTERNATIVES_OF_SCANS`.
     """
-    both = [
+    with_options = [
         as_is if name not in estimates else _otherwise(name, estimates[name], choice, settings)
         for name, as_is in zip(settings.surfaces, surfaces, strict=True)
     ]
-    return stage_contact.compute(both, pair, "NG", settings)
+    return stage_contact.compute(with_options, pair, "NG", settings)
 
 
 def _otherwise(name, estimate, choice, settings):

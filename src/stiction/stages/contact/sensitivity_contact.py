@@ -38,7 +38,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
 
 def names(settings: Settings) -> list[str]:
     """Names of the contacts in the order of `compute`, such as ``rms_less``."""
-    return [f"{moment}_{side}" for moment in settings.moments for side in SHIFTS]
+    return [f"{moment}_{shift}" for moment in settings.moments for shift in SHIFTS]
 
 
 def moment(dataset: xr.Dataset) -> float:
@@ -57,7 +57,7 @@ STAGES = (
     Stage.writing(
         "sensitivity_contact",
         "studies/sensitivity/contact/{pair}_{each}",
-        each=lambda plan: [f"{moment}_{side}" for moment in plan.shifted_moments for side in SHIFTS],
+        each=lambda plan: [f"{moment}_{shift}" for moment in plan.shifted_moments for shift in SHIFTS],
         inputs=lambda plan, at: of_pair(plan, at.pair),
         settings=_settings,
         kind=Settings,

@@ -35,9 +35,9 @@ def compute(
     heights, spectrum = surfaces[settings.surfaces.index(surface)]
     if estimate is not None:
         heights = measured_heights.compute(estimate, measured_heights.Settings(surface, "measured"))
-    both, difference = bracketed(description(heights, spectrum), quantity)
+    shifted, difference = bracketed(description(heights, spectrum), quantity)
     alternatives = []
-    for changed in both:
+    for changed in shifted:
         drawn = drawn_as(changed, settings.sampling.spacing)
         alternatives.append(
             [drawn if name == surface else same for name, same in zip(settings.surfaces, surfaces, strict=True)]

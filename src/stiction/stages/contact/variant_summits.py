@@ -123,10 +123,10 @@ def _datasets(surface, spacing, identification):
 
 def layout(summits: Sequence[Summits], bearing_areas: Sequence[np.ndarray], grid: DistanceGrid) -> xr.Dataset:
     """Dataset of the summits of all samples above the mean plane, found in equal areas, and of their bearing areas."""
-    above = [one.tops > 0 for one in summits]
+    above = [of_sample.tops > 0 for of_sample in summits]
     tops, curvatures = (
         np.concatenate([values[kept] for values, kept in zip(column, above, strict=True)])
-        for column in ([one.tops for one in summits], [one.curvatures for one in summits])
+        for column in ([of_sample.tops for of_sample in summits], [of_sample.curvatures for of_sample in summits])
     )
     return xr.Dataset(
         {
@@ -168,7 +168,7 @@ def inputs(plan: Any, at: At) -> dict[str, dict[str, str]]:
 def arguments(data: dict, at: At, settings: dict) -> tuple:
     """Arguments of `compute` from plain settings: those without the variant and its changes."""
     measured = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
-    wanted = (in_si(Settings, plain) for plain in (settings["base"], merged(settings["base"], settings["changes"])))
+    wanted = (in_si(Settings, part) for part in (settings["base"], merged(settings["base"], settings["changes"])))
     return data["identifications"], at.pair, *wanted, measured
 
 

@@ -31,15 +31,7 @@ from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.error_notes import explain_errors
 from stiction.stages.devices.patch_settings import contacts_of_budget, contacts_of_tip_budget
 from stiction.stages.devices.releases import ARC, FORCE, DesignedBeam, addresses, arrests, section_of_beam
-from stiction.stages.devices.uncertain_inputs import (
-    Input,
-    Known,
-    Settings,
-    State,
-    countable,
-    covariances,
-    uncertain,
-)
+from stiction.stages.devices.uncertain_inputs import Input, Known, Settings, State, countable, covariances, uncertain
 
 
 @dataclass(frozen=True)
@@ -124,9 +116,9 @@ class PatchBudget(Settings):
 AnyBudget = BeamBudget | TipBudget | PatchBudget
 
 
-def of_job(plain: dict[str, Any]) -> AnyBudget:
+def of_job(settings: dict[str, Any]) -> AnyBudget:
     """Settings of a budget from those of a job: tips have a share, and patches no beam."""
-    return in_si(TipBudget if "share" in plain else BeamBudget if "device" in plain else PatchBudget, plain)
+    return in_si(TipBudget if "share" in settings else BeamBudget if "device" in settings else PatchBudget, settings)
 
 
 def compute(
@@ -146,13 +138,13 @@ def compute(
     state = settings.state(contact)
     respond = settings.responder(state)
     inputs, covariance = uncertain(state, shifted, solids, known, settings)
-    found = slopes(inputs, respond)
+    slopes_with_errors = slopes(inputs, respond)
     changes = {}
     for name, changed in choices.items():
         base = replace(state, contact=first(contact, changed.sizes["sample"]))
         with explain_errors(f"This is the contact under the choice {name}."):
             changes[name] = effect(base, replace(state, contact=changed), respond)
-    return layout(inputs, found, covariance, respond([state]), changes, settings)
+    return layout(inputs, slopes_with_errors, covariance, respond([state]), changes, settings)
 
 
 def of_stoppers(states: Sequence[State]) -> Responses:
@@ -168,8 +160,10 @@ def of_tips(states: Sequence[State], share: float) -> Responses:
 
     ASSUME: no crack stops on beams that are so short that only a share p of the tips hold them.
     """
-    found = [(curves.tip_forces(state.contact, state.humidity, state.water), state.device.beam) for state in states]
-    lengths = [arcs.longest_free(*forces, beam) for forces, beam in found]
+    forces_and_beams = [
+        (curves.tip_forces(state.contact, state.humidity, state.water), state.device.beam) for state in states
+    ]
+    lengths = [arcs.longest_free(*forces, beam) for forces, beam in forces_and_beams]
     return Responses(np.array(lengths), partial(_held, share=share))
 
 
@@ -200,10 +194,10 @@ def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, addr
     return Responses(values, centre, device.opening.contribution(np.array(laws)), length)
 
 
-def shared_laws(found: Sequence[tuple[np.ndarray, float]]) -> list[np.ndarray]:
+def shared_laws(parametrised: Sequence[tuple[np.ndarray, float]]) -> list[np.ndarray]:
     """Force laws of the samples that have one at every state, from vectors and f_limit of each; (m, 4) each."""
-    lawful = np.logical_and.reduce([forcelaw.admissible(vectors, limit) for vectors, limit in found])
-    return [forcelaw.coefficients(vectors[lawful], limit) for vectors, limit in found]
+    lawful = np.logical_and.reduce([forcelaw.admissible(vectors, limit) for vectors, limit in parametrised])
+    return [forcelaw.coefficients(vectors[lawful], limit) for vectors, limit in parametrised]
 
 
 def _picked(laws, number, rng):
@@ -216,25 +210,25 @@ def _picked(laws, number, rng):
 
 def slopes(inputs: Sequence[Input], respond: Respond) -> np.ndarray:
     """Slopes of the logarithm of the response and their standard errors, (inputs, 2)."""
-    found = []
+    with_errors = []
     for entry in progress(inputs, "inputs"):
         with explain_errors(f"This is the contact with less or more of the input {entry.name}."):
-            found.append(_slope(respond(entry.states), entry.step))
-    return np.array(found).reshape(len(inputs), 2)
+            with_errors.append(_slope(respond(entry.states), entry.step))
+    return np.array(with_errors).reshape(len(inputs), 2)
 
 
-def _slope(found, step):
+def _slope(responses, step):
     """Slope between two states and its standard error, of the devices and of the samples that they share."""
-    value, own = log_slope(found.centre, *found.values, step)
-    if found.shared is None:
+    value, own = log_slope(responses.centre, *responses.values, step)
+    if responses.shared is None:
         return value, own
-    return value, np.hypot(own, log_slope(found.length, *found.shared, step)[1])
+    return value, np.hypot(own, log_slope(responses.length, *responses.shared, step)[1])
 
 
 def effect(base: State, changed: State, respond: Respond) -> tuple[float, float]:
     """Relative change of the response by another choice of the model, with its standard error [-]."""
-    found = respond([base, changed])
-    return choice_effect(*map(found.centre, found.values)), _slope(found, 1.0)[1]
+    responses = respond([base, changed])
+    return choice_effect(*map(responses.centre, responses.values)), _slope(responses, 1.0)[1]
 
 
 # Dataset
@@ -289,10 +283,10 @@ def budget_of(dataset: xr.Dataset) -> Budget:
 
 def groups_of(dataset: xr.Dataset) -> dict[str, list[str]]:
     """Inputs by the measurement that determines them."""
-    found = {}
+    groups = {}
     for name, group in zip(dataset.input.values, dataset.group.values, strict=True):
-        found.setdefault(str(group), []).append(str(name))
-    return found
+        groups.setdefault(str(group), []).append(str(name))
+    return groups
 
 
 def response_of(dataset: xr.Dataset) -> tuple[str, float]:
@@ -367,14 +361,14 @@ BUDGET = Stage.writing(
 
 def budgets_of_arrays(plan: Any, device: str) -> dict[tuple, str]:
     """Datasets of the budgets of the test beams of a device, by array and humidity, and ``tip`` if of counted tips."""
-    found = {}
+    budgets = {}
     for name in plan.config["devices"][device].get("test_beams", []):
         array = plan.config["test_beams"][name]
         for humidity in arrays.humidities(array):
-            found[name, humidity] = f"{OF_ARRAYS}/{case_id(name, humidity)}"
+            budgets[name, humidity] = f"{OF_ARRAYS}/{case_id(name, humidity)}"
         for humidity in arrays.humidities(array, "stuck"):
-            found[name, humidity, "tip"] = f"{OF_ARRAYS}/{case_id(name, humidity)}_tip"
-    return found
+            budgets[name, humidity, "tip"] = f"{OF_ARRAYS}/{case_id(name, humidity)}_tip"
+    return budgets
 
 
 def _inputs_of_test_beams(contacts):

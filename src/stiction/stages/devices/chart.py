@@ -60,8 +60,8 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
         safe = (sticking.safe_lengths(values, settings, least) for values in lengths.values())
         return np.array([[one.length for one in of_shape] for of_shape in safe])
 
-    found = filled(settings.thicknesses, settings.gaps, by_elements)
-    return layout(found, surface_rms(contact), settings)
+    chart = filled(settings.thicknesses, settings.gaps, by_elements)
+    return layout(chart, surface_rms(contact), settings)
 
 
 def _of_size(settings, thickness, gap):
@@ -79,12 +79,12 @@ def filled(
     """
     sizes = np.array(list(product(thicknesses, gaps)))
     corner, test = corners_and_tests(len(thicknesses), len(gaps))
-    found = {k: by_elements(*sizes[k]) for k in np.flatnonzero(corner | test)}
-    if laws := _power_laws(sizes, found, test):
-        between = np.array([law(*sizes.T) for law, _ in laws]).T.reshape(-1, *found[0].shape)
-        lengths = [found.get(k, length) for k, length in enumerate(between)]
+    computed = {k: by_elements(*sizes[k]) for k in np.flatnonzero(corner | test)}
+    if laws := _power_laws(sizes, computed, test):
+        between = np.array([law(*sizes.T) for law, _ in laws]).T.reshape(-1, *computed[0].shape)
+        lengths = [computed.get(k, length) for k, length in enumerate(between)]
         return Filled(np.array(lengths), corner | test, max(error for _, error in laws))
-    lengths = [found[k] if k in found else by_elements(*size) for k, size in enumerate(sizes)]
+    lengths = [computed[k] if k in computed else by_elements(*size) for k, size in enumerate(sizes)]
     return Filled(np.array(lengths), np.full(len(sizes), True), 0.0)
 
 
@@ -101,34 +101,34 @@ def corners_and_tests(thicknesses: int, gaps: int) -> tuple[np.ndarray, np.ndarr
     return corner.ravel(), (test & ~corner).ravel()
 
 
-def _power_laws(sizes, found, test):
+def _power_laws(sizes, computed, test):
     """Power law of each shape and share with its error; none if no size is left or one of them errs too much."""
-    known = list(found)
+    known = list(computed)
     if len(known) == len(sizes):
         return []
-    columns = np.reshape([found[k] for k in known], (len(known), -1)).T
+    columns = np.reshape([computed[k] for k in known], (len(known), -1)).T
     try:
         return [checked_power_law(*sizes[known].T, column, test[known]) for column in columns]
     except ValueError:
         return []
 
 
-def layout(found: Filled, rms: float, settings: Settings) -> xr.Dataset:
+def layout(filled: Filled, rms: float, settings: Settings) -> xr.Dataset:
     """Dataset of safe lengths (sizes, shapes, shares) [m] over thickness and gap at one humidity.
 
     The rms is that of the sum of both surfaces [m].
     """
     grid, size = (len(settings.thicknesses), len(settings.gaps)), ("thickness", "gap")
     shapes = list(settings.device.opening.shapes)
-    designed = (_of_size(settings, *one) for one in product(settings.thicknesses, settings.gaps))
+    designed = (_of_size(settings, *size) for size in product(settings.thicknesses, settings.gaps))
     limits = [sticking.flooded_lengths(device, settings.water, settings.humidity) for device in designed]
     metres, none = {"units": "m"}, {"units": "1"}
     return xr.Dataset(
         {
-            "safe_length": ((*size, "shape", "share"), found.lengths.reshape(*grid, len(shapes), -1), metres),
+            "safe_length": ((*size, "shape", "share"), filled.lengths.reshape(*grid, len(shapes), -1), metres),
             "flooded_length": ((*size, "shape"), np.reshape(limits, (*grid, -1)), metres),
-            "by_elements": (size, found.by_elements.reshape(grid).astype(np.int8), none),
-            "power_law_error": ((), found.error, none),
+            "by_elements": (size, filled.by_elements.reshape(grid).astype(np.int8), none),
+            "power_law_error": ((), filled.error, none),
             "film": ((), settings.water.film(settings.humidity)[0], metres),
             "rms": ((), rms, metres),
             "humidity": ((), settings.humidity, none),

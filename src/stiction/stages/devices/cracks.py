@@ -66,7 +66,7 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
     device, ground = settings.device, settings.device.opening.resolved(settings.device, laws)
     groups = max(2, min(GROUPS, len(vectors) // PER_GROUP))
     models = [model, *(fitted(vectors[k::groups], limit, settings.chaos) for k in range(groups))]
-    released = [arrests(device, ground, partial(draw_laws, one), settings.beams, address) for one in models]
+    released = [arrests(device, ground, partial(draw_laws, of), settings.beams, address) for of in models]
     return layout(device.opening, released[0], released[1:], ground[0], laws, surface_rms(contact))
 
 

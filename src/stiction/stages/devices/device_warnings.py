@@ -50,36 +50,36 @@ class OfStopper:
 
 
 def of_device(
-    found: xr.Dataset, of: OfDevice, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0
+    safe_lengths: xr.Dataset, of: OfDevice, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0
 ) -> dict[str, list[str]]:
     """Warnings about a device at a humidity, by the shape in which it sticks; dataset of stage safe_lengths.
 
     Each shape is checked at the shortest of its lengths, where slopes are largest. That no water condenses is worth a
     sentence at a humidity, but not in dry air.
     """
-    shortest = found.safe_length.min("share")
-    without = limits.given(limits.no_water(float(found.film), humidity))
+    shortest = safe_lengths.safe_length.min("share")
+    without = limits.given(limits.no_water(float(safe_lengths.film), humidity))
     return {
-        shape: without + _of_length(float(shortest.sel(shape=shape)), found, of, plastic)
-        for shape in map(str, found["shape"].values)
+        shape: without + _of_length(float(shortest.sel(shape=shape)), safe_lengths, of, plastic)
+        for shape in map(str, safe_lengths["shape"].values)
     }
 
 
 def of_chart(
-    found: Sequence[xr.Dataset], of: OfDevice, plastic: Plastic = NOT_STUDIED
+    charts: Sequence[xr.Dataset], of: OfDevice, plastic: Plastic = NOT_STUDIED
 ) -> dict[tuple[float, float, str], list[str]]:
     """Warnings about the chart of a device by thickness [m], gap [m] and shape; a dataset of stage chart per humidity.
 
     Each curve is checked at its shortest length.
     """
     warnings = {}
-    for thickness, gap, shape in curves(found[0]):
-        along = [one.sel(thickness=thickness, gap=gap, shape=shape) for one in found]
-        shortest = min(along, key=lambda one: float(one.safe_length.min()))
+    for thickness, gap, shape in curves(charts[0]):
+        along = [curve.sel(thickness=thickness, gap=gap, shape=shape) for curve in charts]
+        shortest = min(along, key=lambda curve: float(curve.safe_length.min()))
         of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
         length = float(shortest.safe_length.min())
         warnings[thickness, gap, shape] = _of_length(
-            length, shortest, of_size, plastic, min(filter(None, (float(one.film) for one in along)), default=0.0)
+            length, shortest, of_size, plastic, min(filter(None, (float(curve.film) for curve in along)), default=0.0)
         )
     return warnings
 
@@ -89,15 +89,15 @@ def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
     return list(product(*(chart[name].values.tolist() for name in ("thickness", "gap", "shape"))))
 
 
-def _of_length(length, found, of, plastic, thinnest=None):
+def _of_length(length, dataset, of, plastic, thinnest=None):
     """Warnings about a device of a length [m]; film and rms from a dataset.
 
     The thinnest film [m] is that of the dataset, or along the axis of a chart.
     """
     device = of.device
     sizes = device.gap, device.width, device.thickness, length / device.opening.arms
-    return limits.of_beam(*sizes, float(found.film), float(found.rms)) + limits.given(
-        limits.thin_film(thinnest or float(found.film)),
+    return limits.of_beam(*sizes, float(dataset.film), float(dataset.rms)) + limits.given(
+        limits.thin_film(thinnest or float(dataset.film)),
         limits.stretched_bridge(device.gap, device.thickness) if device.opening.arms == 2 else None,
         *contact_warnings(plastic, of.materials),
     )
@@ -126,23 +126,23 @@ def of_stopper(of: OfStopper, plastic: Plastic = NOT_STUDIED) -> list[str]:
 
 def read(files: Mapping[str, str]) -> OfDevices:
     """Warnings about devices from their files, by name."""
-    found = OfDevices({}, {}, {})
+    joined = OfDevices({}, {}, {})
     for name, path in files.items():
-        for known, stored in zip(found, json.loads(Path(path).read_text(encoding="utf-8")), strict=True):
+        for known, stored in zip(joined, json.loads(Path(path).read_text(encoding="utf-8")), strict=True):
             known.update({(name, *key) if key else name: sentences for key, sentences in stored})
-    return found
+    return joined
 
 
 def subjects(warnings: OfDevices) -> Warnings:
     """Warnings about devices by their subjects in words."""
-    found = {
+    by_subject = {
         f"{name}, {air(humidity)}, held by the {END_STATES[shape].by}": sentences
         for (name, humidity, shape), sentences in warnings.lengths.items()
     }
     for (name, thickness, gap, shape), sentences in warnings.curves.items():
         size = f"{from_si(thickness, 'um'):g} µm thick, gap {from_si(gap, 'um'):g} µm"
-        found[f"{name}, chart, {size}, held by the {END_STATES[shape].by}"] = sentences
-    return found | warnings.patches
+        by_subject[f"{name}, chart, {size}, held by the {END_STATES[shape].by}"] = sentences
+    return by_subject | warnings.patches
 
 
 # Stages

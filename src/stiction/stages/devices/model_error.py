@@ -42,11 +42,13 @@ def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
     """Factor of every length, or of the force, at the humidities of a device."""
     computed, *energies = full_contact.energies(study)
     _, *pull_offs = full_contact.pull_offs(study)
-    models = [np.stack(both, axis=-1) for both in zip(energies, pull_offs, strict=True)]
+    models = [np.stack(of_model, axis=-1) for of_model in zip(energies, pull_offs, strict=True)]
     device, at = settings.device, np.array(settings.humidities)
     shapes = device.opening.shapes if device else (FORCE,)
-    found = [factors(lambda means, of=shape: response(of, means, device), *models, computed, at) for shape in shapes]
-    values, errors = np.moveaxis(found, 1, 0)
+    of_shapes = [
+        factors(lambda means, of=shape: response(of, means, device), *models, computed, at) for shape in shapes
+    ]
+    values, errors = np.moveaxis(of_shapes, 1, 0)
     return layout(values, errors, shapes, settings, computed)
 
 

@@ -77,8 +77,8 @@ def _changed(plan, device, slopes, changed, choices):
     """
     devices = plan.devices
     quantities, solids = devices.quantities(device), devices.uncertain_solids(device)
-    shifted = {side: {key: f"{slopes}_{key[0]}_{key[1]}_{side}" for key in quantities} for side in SHIFTS}
-    uncertain = {f"solids_{side}": {name: f"{changed.format(name)}_{side}" for name in solids} for side in SHIFTS}
+    shifted = {shift: {key: f"{slopes}_{key[0]}_{key[1]}_{shift}" for key in quantities} for shift in SHIFTS}
+    uncertain = {f"solids_{shift}": {name: f"{changed.format(name)}_{shift}" for name in solids} for shift in SHIFTS}
     return shifted | uncertain | {"choices": {name: f"{changed.format('choices')}_{name}" for name in choices}}
 
 
@@ -129,9 +129,9 @@ def with_property(settings: dict[str, Any], name: str, change: Callable[[float],
     return settings | {"materials": changed}
 
 
-def less_or_more(name: str, side: str) -> Callable[[float], float]:
+def less_or_more(name: str, shift: str) -> Callable[[float], float]:
     """Change of a property to less or more of it, as in `with_property`."""
-    return lambda value: OF_CONTACT[name].step.ends(value)[SHIFTS.index(side)]
+    return lambda value: OF_CONTACT[name].step.ends(value)[SHIFTS.index(shift)]
 
 
 def _with_other(material, name, change):
@@ -139,7 +139,7 @@ def _with_other(material, name, change):
     key = OF_CONTACT[name].key
     value = (material | {"hamaker_constant_zJ": hamaker_constants(material)})[key]
     if isinstance(value, dict):
-        return material | {key: {medium: change(one) for medium, one in value.items()}}
+        return material | {key: {medium: change(constant) for medium, constant in value.items()}}
     return material | {key: change(value)}
 
 

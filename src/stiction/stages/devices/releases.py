@@ -126,8 +126,8 @@ def arrests(
 
 def _crack_lengths(beam, strips, draw, number, address):
     """Crack lengths of long cantilevers, parameters as of `held_lengths`."""
-    found = released_beams(Experiment(beam, strips, draw), number, address)
-    return np.where(found["state"] == EndState.S_SHAPE, found["crack_length"], np.inf)
+    released = released_beams(Experiment(beam, strips, draw), number, address)
+    return np.where(released["state"] == EndState.S_SHAPE, released["crack_length"], np.inf)
 
 
 def _energies_and_pull_offs(laws):

@@ -33,18 +33,18 @@ class Settings:
 
 def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
     """P(stuck) and safe lengths; each beam has one of the tips, and a bridge has none."""
-    found, of_group, foundation = stage_cracks.lengths(cracks)
+    lengths, of_group, foundation = stage_cracks.lengths(cracks)
     device, held = settings.device, None
     if tips is not None:
         held = arcs.longest_free(*curves.tip_forces(tips, settings.humidity, settings.water), device.beam)
-    sticking = sticking_lengths(found, foundation, device, held)
+    sticking = sticking_lengths(lengths, foundation, device, held)
     groups = [sticking_lengths(one, foundation, device, held) for one in of_group]
     least = bound(device, settings.water, settings.humidity)
     safe = {shape: safe_lengths(values, settings, least) for shape, values in sticking.items()}
     estimates = {
         shape: [[one.estimate for one in safe_lengths(group[shape], settings)] for group in groups] for shape in safe
     }
-    errors = {shape: risk.error_of_surfaces(found) for shape, found in estimates.items()}
+    errors = {shape: risk.error_of_surfaces(lengths) for shape, lengths in estimates.items()}
     return layout(sticking, safe, errors, float(cracks.rms), settings)
 
 

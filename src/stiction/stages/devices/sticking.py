@@ -109,5 +109,5 @@ def bound(device: DesignedBeam, water: Water, humidity: float) -> float:
 
 def safe_lengths(sticking: np.ndarray, settings: Settings, least: float = 0.0) -> list[SafeLength]:
     """Safe length for every share, from sticking lengths (n,) [m]; at least the `bound` of the device."""
-    found = [risk.safe_length(sticking, share, stream(settings.seed, "safe length")) for share in settings.shares]
-    return [replace(one, length=max(one.length, least)) for one in found]
+    lengths = [risk.safe_length(sticking, share, stream(settings.seed, "safe length")) for share in settings.shares]
+    return [replace(bound, length=max(bound.length, least)) for bound in lengths]

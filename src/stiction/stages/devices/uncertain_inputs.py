@@ -176,9 +176,9 @@ def uncertain(
 
 def changed(state: State, errors: Mapping[str, float]) -> State:
     """State whose dimensions, air and modulus of the beam err, by the names of the inputs; its contact stays."""
-    for one in (*OF_BEAMS, *OF_AIR):
-        if one.name in errors:
-            state = one.moved(state, errors[one.name])
+    for entry in (*OF_BEAMS, *OF_AIR):
+        if entry.name in errors:
+            state = entry.moved(state, errors[entry.name])
     modulus = OF_CONTACT["modulus"]
     if modulus.words in errors and state.device:
         stiffer = modulus.step.moved(state.device.young_modulus, errors[modulus.words])
@@ -189,8 +189,8 @@ def changed(state: State, errors: Mapping[str, float]) -> State:
 def countable(sizes: Sequence[str], settings: Settings) -> list[str]:
     """Everything that a measurement of a device with these sizes could determine, for reading."""
     surfaces = [f"the {part} of {name}" for name in settings.surfaces for part in ("heights", "spectrum")]
-    solids = [one.group for one in OF_CONTACT.values()]
-    air = [one.group or f"the {one.name}" for one in OF_AIR if settings.water.film(settings.humidity)[0]]
+    solids = [entry.group for entry in OF_CONTACT.values()]
+    air = [entry.group or f"the {entry.name}" for entry in OF_AIR if settings.water.film(settings.humidity)[0]]
     return [*surfaces, *(f"the {name.replace('_', ' ')}" for name in sizes), *solids, *dict.fromkeys(air)]
 
 
@@ -202,17 +202,17 @@ def of_surface(
     for quantity in known.quantities:
         kind = "spectrum" if quantity in SPECTRUM_QUANTITIES else "heights"
         contacts = shifted[surface, quantity]
-        both = tuple(replace(state, contact=contact) for contact in contacts)
-        inputs.append(Input(f"{quantity} of {surface}", f"the {kind} of {surface}", both, difference(contacts[0])))
+        states = tuple(replace(state, contact=contact) for contact in contacts)
+        inputs.append(Input(f"{quantity} of {surface}", f"the {kind} of {surface}", states, difference(contacts[0])))
     return Block(inputs, known.covariance)
 
 
 def of_numbers(state: State, varied: Sequence[Varied], stated: Uncertainty) -> Iterator[Block]:
     """Blocks of those of some inputs that are uncertain."""
-    for field, together in groupby(varied, lambda one: one.field):
+    for field, together in groupby(varied, lambda number: number.field):
         if deviation := getattr(stated, field):
-            found, deviations = zip(*(one.around(state, deviation) for one in together), strict=True)
-            yield Block(list(found), np.full((len(found), len(found)), deviations[0] ** 2))
+            inputs, deviations = zip(*(number.around(state, deviation) for number in together), strict=True)
+            yield Block(list(inputs), np.full((len(inputs), len(inputs)), deviations[0] ** 2))
 
 
 def of_solids(state: State, solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings) -> Iterator[Block]:
@@ -223,14 +223,14 @@ def of_solids(state: State, solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
     for name, field in _OF_SOLIDS.items():
         if name not in solids:
             continue
-        both, step = [replace(state, contact=contact) for contact in solids[name]], OF_CONTACT[name].step
+        states, step = [replace(state, contact=contact) for contact in solids[name]], OF_CONTACT[name].step
         if name == "modulus" and state.device:
             moduli = step.ends(settings.young_modulus)
             beams = [replace(state.device, young_modulus=modulus) for modulus in moduli]
-            both = [replace(of, device=beam) for of, beam in zip(both, beams, strict=True)]
+            states = [replace(of, device=beam) for of, beam in zip(states, beams, strict=True)]
         deviation = getattr(settings.uncertainty, field)
         relative = deviation / getattr(settings, field) if step.relative else deviation
-        entry = Input(OF_CONTACT[name].words, OF_CONTACT[name].group, tuple(both), step.difference)
+        entry = Input(OF_CONTACT[name].words, OF_CONTACT[name].group, tuple(states), step.difference)
         yield Block([entry], np.array([[relative**2]]))
 
 
@@ -265,8 +265,8 @@ def of_scans(estimate: xr.Dataset, heights_of: xr.Dataset) -> Known:
     ASSUME: the errors of heights and spectrum are independent.
     """
     measured = isinstance(heights.density(heights_of, "NG"), MeasuredDensity)
-    found = errors_of(estimate, MODE_QUANTITIES if measured else MOMENT_QUANTITIES)
-    return Known(found.names + SPECTRUM_QUANTITIES, block_diag(found.heights, found.spectrum))
+    errors = errors_of(estimate, MODE_QUANTITIES if measured else MOMENT_QUANTITIES)
+    return Known(errors.names + SPECTRUM_QUANTITIES, block_diag(errors.heights, errors.spectrum))
 
 
 def of_one_scan(heights_of: xr.Dataset, spectrum_of: xr.Dataset, side: float) -> Known:

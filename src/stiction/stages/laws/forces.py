@@ -40,10 +40,10 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
     sampled = force_curves(contact, settings.humidity, settings.water)
     vectors, limit = parametrised(sampled, settings.humidity, settings.water)
     kept = [sampled.curve(k).copy() for k in range(min(_KEPT, sampled.samples))]
-    found = layout(vectors, limit, sampled.distance, kept)
+    dataset = layout(vectors, limit, sampled.distance, kept)
     if settings.water.correction is None:
-        return found
-    return found.assign(dict(zip(_RATIOS, settings.water.correction.at(settings.humidity), strict=True)))
+        return dataset
+    return dataset.assign(dict(zip(_RATIOS, settings.water.correction.at(settings.humidity), strict=True)))
 
 
 def layout(vectors: np.ndarray, limit: float, distance: np.ndarray, curves: Sequence[np.ndarray]) -> xr.Dataset:
@@ -72,11 +72,11 @@ def vectors(forces: xr.Dataset) -> tuple[np.ndarray, float]:
 
 def vectors_of_curves(forces: xr.Dataset) -> tuple[np.ndarray, float]:
     """As `vectors`, of the curves themselves: of the sum over summits, without a correction to full elastic contact."""
-    found, limit = vectors(forces)
+    sampled, limit = vectors(forces)
     if _RATIOS[0] not in forces:
-        return found, limit
+        return sampled, limit
     energy, pull_off = (float(forces[ratio]) for ratio in _RATIOS)
-    return found / [energy, pull_off, 1, 1], limit / pull_off
+    return sampled / [energy, pull_off, 1, 1], limit / pull_off
 
 
 def energies(forces: xr.Dataset) -> np.ndarray:

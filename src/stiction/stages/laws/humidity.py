@@ -27,8 +27,8 @@ class Settings:
 def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
     """Compute the energy of every sample at every humidity; store the quantiles."""
     humidities = np.linspace(*settings.range, settings.points)
-    found = np.array([energies(contact, float(h), settings.water) for h in progress(humidities, "humidities")])
-    return layout(humidities, _PROBABILITIES, found)
+    of_humidities = np.array([energies(contact, float(h), settings.water) for h in progress(humidities, "humidities")])
+    return layout(humidities, _PROBABILITIES, of_humidities)
 
 
 def layout(humidity: np.ndarray, probabilities: np.ndarray, energies: np.ndarray) -> xr.Dataset:

@@ -82,9 +82,9 @@ def compute(
     def of_all(of_one):
         return np.array([of_one(dataset, errors[name]) for name, dataset in slopes.items()])
 
-    found = Uncertainty(*map(of_all, (_parts, _sampling, _form)))
+    uncertainty = Uncertainty(*map(of_all, (_parts, _sampling, _form)))
     changes = {name: _changes(contact, base, settings) for name, contact in choices.items()}
-    return layout(list(slopes), settings.humidities, found, [errors[name].scans for name in slopes], changes)
+    return layout(list(slopes), settings.humidities, uncertainty, [errors[name].scans for name in slopes], changes)
 
 
 def _budgets(slopes, errors):
@@ -124,7 +124,7 @@ def _changes(contact, base, settings):
 def layout(
     surfaces: Sequence[str],
     humidities: Sequence[float],
-    found: Uncertainty,
+    uncertainty: Uncertainty,
     scans: Sequence[int],
     choices: Mapping[str, Sequence[tuple[float, float]]],
 ) -> xr.Dataset:
@@ -132,8 +132,8 @@ def layout(
 
     Each choice has the relative change of ē and its standard error due to sampling, (n_rh, 2) [-].
     """
-    total = found.parts[:, -1]
-    pair, form = np.linalg.norm(total, axis=0), np.linalg.norm(found.form, axis=0)
+    total = uncertainty.parts[:, -1]
+    pair, form = np.linalg.norm(total, axis=0), np.linalg.norm(uncertainty.form, axis=0)
     changes = np.array(list(choices.values())).reshape(len(choices), len(humidities), 2)
     by_scans = np.array([form if name == "heights" else 0 * form for name in choices]).reshape(changes.shape[:2])
     by_slopes = {"units": "1", "long_name": "standard error of the error by the samples of the slopes"}
@@ -141,12 +141,12 @@ def layout(
         {
             "error": (
                 ("surface", "part", "humidity"),
-                found.parts,
+                uncertainty.parts,
                 {"units": "1", "long_name": "standard error of ln e"},
             ),
-            "error_sampling": (("surface", "humidity"), found.sampling, by_slopes),
+            "error_sampling": (("surface", "humidity"), uncertainty.sampling, by_slopes),
             "pair_error": ("humidity", pair, {"units": "1"}),
-            "pair_error_sampling": ("humidity", np.linalg.norm(total * found.sampling, axis=0) / pair, by_slopes),
+            "pair_error_sampling": ("humidity", np.linalg.norm(total * uncertainty.sampling, axis=0) / pair, by_slopes),
             "change": (("choice", "humidity"), changes[..., 0], {"units": "1", "long_name": "relative change of e"}),
             "change_error": (("choice", "humidity"), changes[..., 1], {"units": "1"}),
             "change_error_scans": (("choice", "humidity"), by_scans, {"units": "1", "long_name": "by the scans"}),

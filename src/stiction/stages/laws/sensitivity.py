@@ -27,8 +27,8 @@ class Settings:
 def compute(contacts: Sequence[xr.Dataset], settings: Settings) -> xr.Dataset:
     """Compare samples drawn with the same random numbers at the two values of the moment."""
     at = [moment(contact) for contact in contacts]
-    found = np.array([[energies(contact, h, settings.water) for h in settings.humidities] for contact in contacts])
-    return layout(found, at, energy_sensitivity(found.swapaxes(1, 2), at), settings.humidities)
+    means = np.array([[energies(contact, h, settings.water) for h in settings.humidities] for contact in contacts])
+    return layout(means, at, energy_sensitivity(means.swapaxes(1, 2), at), settings.humidities)
 
 
 def layout(energies: np.ndarray, at: Sequence[float], estimate: tuple, humidities: Sequence[float]) -> xr.Dataset:
@@ -52,7 +52,7 @@ STAGES = (
         "sensitivity",
         "studies/sensitivity/{pair}_{moment}",
         inputs=lambda plan, at: {
-            "contacts": [f"studies/sensitivity/contact/{at.pair}_{at.moment}_{side}" for side in SHIFTS]
+            "contacts": [f"studies/sensitivity/contact/{at.pair}_{at.moment}_{shift}" for shift in SHIFTS]
         },
         settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
         kind=Settings,

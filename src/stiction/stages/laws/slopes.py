@@ -27,8 +27,10 @@ def compute(contacts: Mapping[str, Sequence[xr.Dataset]], settings: Settings) ->
 
     Each quantity, a key of `stiction.analysis.shifts.STEPS`, has the contact with less and with more of it.
     """
-    found = np.array([[_slope(*both, h, settings.water) for h in settings.humidities] for both in contacts.values()])
-    return layout(list(contacts), settings.humidities, *np.moveaxis(found, -1, 0))
+    with_errors = np.array(
+        [[_slope(*ends, h, settings.water) for h in settings.humidities] for ends in contacts.values()]
+    )
+    return layout(list(contacts), settings.humidities, *np.moveaxis(with_errors, -1, 0))
 
 
 def _slope(less, more, humidity, water):
@@ -68,7 +70,7 @@ def errors_of(dataset: xr.Dataset, quantities: Sequence[str]) -> np.ndarray:
 def _inputs(plan, at):
     """Contacts of a pair with less and with more of every quantity of a surface."""
     contact = f"studies/slopes/contact/{at.pair}_{at.surface}"
-    return {side: {name: f"{contact}_{name}_{side}" for name in plan.quantities(at.surface)} for side in SHIFTS}
+    return {shift: {name: f"{contact}_{name}_{shift}" for name in plan.quantities(at.surface)} for shift in SHIFTS}
 
 
 STAGES = (

@@ -148,11 +148,11 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
         surface = {one.key: value for one, value in values if value is not None and one.key in own}
         if surface:  # on which the reach of tips depends
             plan = replace(plan, config=merged(plan.config, {"surfaces": {what.surface: surface}}))
-        found = {"contact": contact(plan, in_air(pair), at.device), "pair": pair}
-        found |= {"surface": what.surface, "quantity": without_unit(what.key)} | what.named("value", values[0][1])
+        settings = {"contact": contact(plan, in_air(pair), at.device), "pair": pair}
+        settings |= {"surface": what.surface, "quantity": without_unit(what.key)} | what.named("value", values[0][1])
         for other, value in values[1:] if curve else ():
-            found |= {"other": without_unit(other.key)} | other.named("other_value", value)
-        return found
+            settings |= {"other": without_unit(other.key)} | other.named("other_value", value)
+        return settings
 
     return Stage.writing(
         name,

@@ -81,7 +81,7 @@ class OfBeam:
         lengths = sticking.released(self.device, met, self)
         bounds = sticking.flooded_lengths(self.device, self.water, humidity)
         numbers = sticking.bound(self.device, self.water, humidity), self._scatter(contact, humidity)
-        return [self._response(one, bound, *numbers) for one, bound in zip(lengths.values(), bounds, strict=True)]
+        return [self._response(held, bound, *numbers) for held, bound in zip(lengths.values(), bounds, strict=True)]
 
     def _response(self, lengths, bound, least, scatter):
         """Response from sticking lengths (n,) [m], their bounds and their relative error by the number of samples."""
@@ -128,9 +128,9 @@ class OfStopper:
         return [Response(*safe_force(forces, self.share), np.nan, stuck)]
 
 
-def of_job(plain: dict[str, Any]) -> OfBeam | OfStopper:
+def of_job(settings: dict[str, Any]) -> OfBeam | OfStopper:
     """Settings of a point from those of a job: those of beams have their dimensions."""
-    return in_si(OfBeam if "device" in plain else OfStopper, plain)
+    return in_si(OfBeam if "device" in settings else OfStopper, settings)
 
 
 # Points
@@ -143,23 +143,23 @@ def compute(
 
     The contacts are those of `stiction.stages.roughness.contacts`; there are none of tips of other devices.
     """
-    found, refused = [], []
+    responses, refused = [], []
     for humidity in settings.humidities:
         met, air = (contacts[humidity > 0], tips.get(humidity > 0)), settings.water.at(humidity)
         try:
-            found.append(replace(settings, water=air).responses(*met, humidity))
+            responses.append(replace(settings, water=air).responses(*met, humidity))
             refused.append("")
         except (ValueError, NotConverged) as reason:
             traceback.print_exc()  # the log keeps where the reason arose, should it be an error of the code
-            found.append([Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)] * len(settings.shapes))
+            responses.append([Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)] * len(settings.shapes))
             refused.append(str(reason))
     contact = next(iter(contacts.values()))
-    point = layout(found, refused, roughness_of(contact), contact.sizes["sample"], settings)
+    point = layout(responses, refused, roughness_of(contact), contact.sizes["sample"], settings)
     return point.assign({name: contact[name] for name in OTHERS if name in contact})
 
 
 def layout(
-    found: Sequence[Sequence[Response]],
+    responses: Sequence[Sequence[Response]],
     refused: Sequence[str],
     value: float,
     samples: int,
@@ -168,7 +168,7 @@ def layout(
     """Dataset of a point: responses by humidity and shape, and why those of a humidity are missing."""
     required, unit = settings.required
     over, note = ("humidity", "shape"), {"units": unit}
-    columns = {name: [[getattr(one, name) for one in row] for row in found] for name in Response._fields}
+    columns = {name: [[getattr(one, name) for one in row] for row in responses] for name in Response._fields}
     return xr.Dataset(
         {name: (over, columns[name], note) for name in ("safe", "estimate", "error", "bound")}
         | {
@@ -203,9 +203,9 @@ def joined(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Dataset:
         Name of the surface.
     """
     *others, given = points
-    apart = [one for one in others if not np.isclose(one.roughness, given.roughness, rtol=1e-6, atol=0)]
+    apart = [point for point in others if not np.isclose(point.roughness, given.roughness, rtol=1e-6, atol=0)]
     shared = ["required", "share", "samples"]
-    over = [one.drop_vars(shared).set_coords("roughness") for one in (*apart, given)]
+    over = [point.drop_vars(shared).set_coords("roughness") for point in (*apart, given)]
     curve = xr.concat(over, "roughness").sortby("roughness")
     curve = curve.assign(given[shared]).assign(given=given.roughness).assign_attrs(key=key, surface=surface)
     logarithmic = ROUGHNESSES[key].logarithmic
@@ -213,9 +213,10 @@ def joined(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Dataset:
     places, ranges = [], []
     for humidity in curve.humidity.values:
         for shape in curve["shape"].values:
-            one, at = curve.sel(humidity=humidity, shape=shape), (float(humidity), str(shape))
-            places += [(*at, found.place, found.error) for found in crossings(axis, *_margins(one, "estimate"))]
-            ranges += [(*at, *ends) for ends in sufficient(axis, _margins(one, "safe")[0])]
+            subject, at = curve.sel(humidity=humidity, shape=shape), (float(humidity), str(shape))
+            met = crossings(axis, *_margins(subject, "estimate"))
+            places += [(*at, crossing.place, crossing.error) for crossing in met]
+            ranges += [(*at, *ends) for ends in sufficient(axis, _margins(subject, "safe")[0])]
     places, ranges = (np.array(rows, dtype=object).reshape(len(rows), 4) for rows in (places, ranges))
     if logarithmic:
         places[:, 2], ranges[:, 2:] = np.exp(places[:, 2].astype(float)), np.exp(ranges[:, 2:].astype(float))
@@ -229,14 +230,14 @@ def mapped(points: Sequence[xr.Dataset], surface: str, key: str, other: str = ""
     The first curve has the second quantity as it is given; others at the same value are left out.
     """
     first, *more = [
-        joined([one.drop_vars(OTHERS, errors="ignore") for one in points[k : k + POINTS]], key, surface)
+        joined([point.drop_vars(OTHERS, errors="ignore") for point in points[k : k + POINTS]], key, surface)
         for k in range(0, len(points), POINTS)
     ]
     if not more:
         return first
     given = float(points[-1].other_given)
     curves = {given: first}
-    for value, curve in zip((float(one.other) for one in points[POINTS::POINTS]), more, strict=True):
+    for value, curve in zip((float(point.other) for point in points[POINTS::POINTS]), more, strict=True):
         if not np.isclose(value, given, rtol=1e-6, atol=1e-12):
             curves[value] = curve
     values = sorted(curves)
@@ -250,24 +251,24 @@ def mapped(points: Sequence[xr.Dataset], surface: str, key: str, other: str = ""
 
 def _rows_of(curve, name, value):
     """Crossings or ranges of a curve, with its value of the second quantity."""
-    own = curve[[one for one in curve.data_vars if name in curve[one].dims]]
+    own = curve[[variable for variable in curve.data_vars if name in curve[variable].dims]]
     return own.drop_attrs().assign({f"{name}_other": (name, np.full(own.sizes[name], value))})
 
 
-def curves_of(found: xr.Dataset) -> list[xr.Dataset]:
+def curves_of(dataset: xr.Dataset) -> list[xr.Dataset]:
     """Curve of a device, or all curves of its map, each with its value of the second quantity as ``other``."""
-    if "other" not in found.dims:
-        return [found]
-    own = [{name: np.flatnonzero(found[f"{name}_other"] == value) for name in _TABLES} for value in found.other]
-    return [found.sel(other=value).isel(rows) for value, rows in zip(found.other.values, own, strict=True)]
+    if "other" not in dataset.dims:
+        return [dataset]
+    own = [{name: np.flatnonzero(dataset[f"{name}_other"] == value) for name in _TABLES} for value in dataset.other]
+    return [dataset.sel(other=value).isel(rows) for value, rows in zip(dataset.other.values, own, strict=True)]
 
 
-def _margins(one, name):
+def _margins(curve, name):
     """Margins of a curve over what is required, and their standard errors."""
-    more_is_better = one.required.attrs["units"] == "m"
-    known = np.isfinite(one.estimate.values) & (one.estimate.values > 0)
-    errors = np.divide(one.error.values, one.estimate.values, out=np.zeros(known.size), where=known)
-    return margins(one[name].values, float(one.required), more_is_better), errors
+    more_is_better = curve.required.attrs["units"] == "m"
+    known = np.isfinite(curve.estimate.values) & (curve.estimate.values > 0)
+    errors = np.divide(curve.error.values, curve.estimate.values, out=np.zeros(known.size), where=known)
+    return margins(curve[name].values, float(curve.required), more_is_better), errors
 
 
 def _rows(dimension, rows, *names):
@@ -297,8 +298,8 @@ def _settings(plan, at):
 
 def _what(plan, device):
     """What is varied, and of which surface."""
-    found, *others = varied(plan, device)
-    return {"key": found.key, "surface": found.surface} | ({"other": others[0].key} if others else {})
+    first, *others = varied(plan, device)
+    return {"key": first.key, "surface": first.surface} | ({"other": others[0].key} if others else {})
 
 
 STAGES = (

@@ -61,16 +61,16 @@ def compute(scans: Sequence[xr.Dataset], surface: str, settings: Settings) -> xr
         If the scans cannot be used, or no surface has their heights and spectrum.
     """
     maps = [stage_scan.scan_of(dataset) for dataset in scans]
-    found = evaluation.estimate(maps, settings.seed, settings.evaluation, surface, settings.model_scans)
-    for sentence in found.flags:
+    estimate = evaluation.estimate(maps, settings.seed, settings.evaluation, surface, settings.model_scans)
+    for sentence in estimate.flags:
         warnings.warn(f"surface {surface}: {sentence}", stacklevel=2)
-    return layout(found, [note for dataset in scans for note in stage_scan.notes(dataset)])
+    return layout(estimate, [note for dataset in scans for note in stage_scan.notes(dataset)])
 
 
-def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
+def layout(estimate: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
     """Dataset of an estimate; the notes on the files follow the sentences on the estimate."""
     return xr.Dataset(
-        _moments(found) | _spectrum(found) | _heights(found) | _summits(found) | _scans(found, notes),
+        _moments(estimate) | _spectrum(estimate) | _heights(estimate) | _summits(estimate) | _scans(estimate, notes),
         coords={
             "moment": list(MOMENTS),
             "other_moment": list(MOMENTS),
@@ -86,30 +86,30 @@ def layout(found: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
     )
 
 
-def _moments(found):
+def _moments(estimate):
     """Variables of the moments, their errors, and whether scans agree."""
-    inspection, nearest = found.inspection, found.feasible
+    inspection, nearest = estimate.inspection, estimate.feasible
     near = (np.nan,) * 3 if nearest is None else (nearest.skewness, nearest.kurtosis, nearest.distance)
     powers = np.array(inspection.in_order([maps.powers for maps in inspection.sizes]))
     closed_form = "standard errors if the heights have the density of the model"
     return {
-        "moments": ("moment", found.moments, _MOMENT),
-        "covariance": (("moment", "other_moment"), found.covariance, {"long_name": "of the moments"}),
+        "moments": ("moment", estimate.moments, _MOMENT),
+        "covariance": (("moment", "other_moment"), estimate.covariance, {"long_name": "of the moments"}),
         "raw_moments": ("moment", inspection.moments, {"long_name": "of the levelled scans, with their bias"}),
         "scan_moments": (("scan", "moment"), moments(powers), {"long_name": "of every scan"}),
-        "closed_form_errors": ("moment", found.closed_form_errors, {"long_name": closed_form}),
-        "tile_errors": ("moment", found.tile_errors, {"long_name": "standard errors from the scatter of tiles"}),
-        "homogeneity_chi2": ("moment", found.homogeneity[0], _CHI2),
-        "homogeneity_p": ("moment", found.homogeneity[1], _P),
-        "agreement_chi2": ("moment", found.agreement[0], _CHI2),
-        "agreement_p": ("moment", found.agreement[1], _P),
+        "closed_form_errors": ("moment", estimate.closed_form_errors, {"long_name": closed_form}),
+        "tile_errors": ("moment", estimate.tile_errors, {"long_name": "standard errors from the scatter of tiles"}),
+        "homogeneity_chi2": ("moment", estimate.homogeneity[0], _CHI2),
+        "homogeneity_p": ("moment", estimate.homogeneity[1], _P),
+        "agreement_chi2": ("moment", estimate.agreement[0], _CHI2),
+        "agreement_p": ("moment", estimate.agreement[1], _P),
         "feasible": ("shape", list(near), {"long_name": "moments of the maximum-entropy density; distance"}),
     }
 
 
-def _spectrum(found):
+def _spectrum(estimate):
     """Variables of the spectrum, its fit, and the wave numbers that the scans resolve."""
-    inspection, largest = found.inspection, found.inspection.largest
+    inspection, largest = estimate.inspection, estimate.inspection.largest
     rings, fit = inspection.rings, inspection.fit
     slow = spectra.rings(largest.periodogram, largest.periodogram.near_slow_axis)
     reach = zip(_REACH.items(), astuple(inspection.reach), strict=True)
@@ -129,62 +129,62 @@ def _spectrum(found):
         **{name: ((), value, _WAVE | words) for (name, words), value in reach},
         "wavelengths": ((), inspection.wavelengths, {"units": "1", "long_name": "of the corner along a scan"}),
         "areas": ((), inspection.areas, {"units": "1", "long_name": "correlation areas of all scans"}),
-        "sectors": ("sector", found.sectors, {"units": "1", "long_name": "spectrum relative to its mean"}),
-        "sector_errors": ("sector", found.sector_errors, {"units": "1"}),
+        "sectors": ("sector", estimate.sectors, {"units": "1", "long_name": "spectrum relative to its mean"}),
+        "sector_errors": ("sector", estimate.sector_errors, {"units": "1"}),
     }
 
 
-def _heights(found):
+def _heights(estimate):
     """Variables of the form of the heights, and a map of them."""
-    largest = found.inspection.largest
-    density = histogram(largest.levelled, largest.quantiles, found.quantiles)
-    errors = histogram_errors(found.model) / np.sqrt(len(largest.names))
+    largest = estimate.inspection.largest
+    density = histogram(largest.levelled, largest.quantiles, estimate.quantiles)
+    errors = histogram_errors(estimate.model) / np.sqrt(len(largest.names))
     first = {"units": "m", "long_name": "first of the largest scans, levelled"}
     return {
-        "quantile": ("score", found.quantiles, {"units": "1", "long_name": "standardised height"}),
-        "quantile_error": ("score", found.quantile_errors, {"units": "1"}),
-        "goodness_chi2": ((), found.goodness[0], _CHI2),
-        "goodness_p": ((), found.goodness[1], _P),
+        "quantile": ("score", estimate.quantiles, {"units": "1", "long_name": "standardised height"}),
+        "quantile_error": ("score", estimate.quantile_errors, {"units": "1"}),
+        "goodness_chi2": ((), estimate.goodness[0], _CHI2),
+        "goodness_p": ((), estimate.goodness[1], _P),
         "histogram": ("bin", density, {"units": "1", "long_name": "density of z / rms"}),
         "histogram_error": ("bin", errors, {"units": "1"}),
         "edge": ("edges", EDGES, {"units": "1", "long_name": "edges of the bins of z / rms"}),
-        "mode_covariance": (("mode", "other_mode"), _mode_covariance(found), {"long_name": "of ln rms and modes"}),
+        "mode_covariance": (("mode", "other_mode"), _mode_covariance(estimate), {"long_name": "of ln rms and modes"}),
         "elevation": (("fast", "slow"), largest.levelled[0].astype(np.float32), first),
     }
 
 
-def _summits(found):
+def _summits(estimate):
     """Variables of the summits of the scans and of the model."""
     return {
-        "summits": ("summit", found.summits, _SUMMITS),
-        "summit_errors": ("summit", found.summit_errors, _SUMMITS),
-        "model_summits": ("summit", found.model_summits, _SUMMITS),
-        "model_summit_errors": ("summit", found.model_summit_errors, _SUMMITS),
+        "summits": ("summit", estimate.summits, _SUMMITS),
+        "summit_errors": ("summit", estimate.summit_errors, _SUMMITS),
+        "model_summits": ("summit", estimate.model_summits, _SUMMITS),
+        "model_summit_errors": ("summit", estimate.model_summit_errors, _SUMMITS),
     }
 
 
-def _scans(found, notes):
+def _scans(estimate, notes):
     """Variables of the scans themselves, and sentences about them."""
-    inspection = found.inspection
+    inspection = estimate.inspection
     return {
-        "line_jump": ("axis", list(found.line_jump[::-1]), {"units": "m", "long_name": "typical step"}),
+        "line_jump": ("axis", list(estimate.line_jump[::-1]), {"units": "m", "long_name": "typical step"}),
         "scans": ("size", [len(maps.names) for maps in inspection.sizes], {"long_name": "number of each size"}),
         "counted": ((), len(inspection.counted), {"long_name": "number of sizes that count for the moments"}),
         "pixel": (("size", "axis"), [maps.frame.pixel for maps in inspection.sizes], {"units": "m"}),
         "points": (("size", "axis"), [maps.frame.shape for maps in inspection.sizes]),
         "files": ((), "\n".join(inspection.names)),
-        "flags": ((), "\n".join([*found.flags, *notes]), {"long_name": "limits of the estimate, one per line"}),
+        "flags": ((), "\n".join([*estimate.flags, *notes]), {"long_name": "limits of the estimate, one per line"}),
     }
 
 
-def _mode_covariance(found):
+def _mode_covariance(estimate):
     """Covariance of the quantities of a measured density, `stiction.models.MODE_QUANTITIES`."""
-    inspection = found.inspection
-    models = [(evaluation.seen(inspection, found.model, maps), len(maps.names)) for maps in inspection.counted]
+    inspection = estimate.inspection
+    models = [(evaluation.seen(inspection, estimate.model, maps), len(maps.names)) for maps in inspection.counted]
     covariance = inspection.propagated(
         [mode_covariance(model.translation, model.overlaps, ORDERS) / count for model, count in models]
     )
-    covariance[0, 0] = found.covariance[0, 0]
+    covariance[0, 0] = estimate.covariance[0, 0]
     return covariance
 
 
@@ -222,8 +222,11 @@ def rings(estimate: xr.Dataset) -> Rings:
 def frames(estimate: xr.Dataset) -> list[tuple[int, Frame]]:
     """Number of the scans of each size, and their points and size; the largest first."""
     return [
-        (int(one.scans), Frame(tuple(map(int, one.points.values)), tuple(map(float, (one.points * one.pixel).values))))
-        for one in (estimate.isel(size=k) for k in range(estimate.sizes["size"]))
+        (
+            int(of_size.scans),
+            Frame(tuple(map(int, of_size.points.values)), tuple(map(float, (of_size.points * of_size.pixel).values))),
+        )
+        for of_size in (estimate.isel(size=k) for k in range(estimate.sizes["size"]))
     ]
 
 

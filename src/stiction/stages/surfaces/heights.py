@@ -34,10 +34,10 @@ def compute(settings: Settings) -> xr.Dataset:
     ValueError, NotConverged
         As `stiction.surface.feasible.nearest_feasible`.
     """
-    found = nearest_feasible(settings.skewness, settings.kurtosis)
-    used = replace(settings, skewness=found.skewness, kurtosis=found.kurtosis)
-    measured = Moments(settings.skewness, settings.kurtosis, found.distance) if found.distance else None
-    dataset = layout(maxent.solve(found.skewness, found.kurtosis), used, measured)
+    feasible = nearest_feasible(settings.skewness, settings.kurtosis)
+    used = replace(settings, skewness=feasible.skewness, kurtosis=feasible.kurtosis)
+    measured = Moments(settings.skewness, settings.kurtosis, feasible.distance) if feasible.distance else None
+    dataset = layout(maxent.solve(feasible.skewness, feasible.kurtosis), used, measured)
     if measured:
         warnings.warn(substitution(dataset), stacklevel=2)
     return dataset

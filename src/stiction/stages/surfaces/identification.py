@@ -57,22 +57,22 @@ def compute(heights: xr.Dataset, surface: str, settings: Settings) -> xr.Dataset
         numbers = range(settings.identification.patches)
         return lambda: (stream(settings.seed, "identification", surface, *part, k) for k in numbers)
 
-    found = identify(target, Translation(density(heights, "NG")), grid, patches(), patches("control"))
-    parameters.refuse_long_correlation(surface, found.spectrum, {"identification.patch_um": patch})
-    return layout(found, target)
+    identified = identify(target, Translation(density(heights, "NG")), grid, patches(), patches("control"))
+    parameters.refuse_long_correlation(surface, identified.spectrum, {"identification.patch_um": patch})
+    return layout(identified, target)
 
 
-def layout(found: Identification, target: SummitTarget) -> xr.Dataset:
+def layout(identified: Identification, target: SummitTarget) -> xr.Dataset:
     """Dataset of the parameters of Eq. (7), simulated summit statistics and those asked for."""
-    return parameters.variables(found.spectrum).assign(
-        mean_radius=((), found.mean_radius, {"units": "m"}),
-        mean_radius_error=((), found.mean_radius_error, {"units": "m"}),
-        summit_density=((), found.density, {"units": "m-2"}),
-        summit_density_error=((), found.density_error, {"units": "m-2"}),
+    return parameters.variables(identified.spectrum).assign(
+        mean_radius=((), identified.mean_radius, {"units": "m"}),
+        mean_radius_error=((), identified.mean_radius_error, {"units": "m"}),
+        summit_density=((), identified.density, {"units": "m-2"}),
+        summit_density_error=((), identified.density_error, {"units": "m-2"}),
         target_mean_radius=((), target.mean_radius, {"units": "m"}),
         target_summit_density=((), target.density, {"units": "m-2"}),
         target_rms=((), target.rms, {"units": "m"}),
-        evaluations=((), found.evaluations),
+        evaluations=((), identified.evaluations),
     )
 
 

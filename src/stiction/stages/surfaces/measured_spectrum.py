@@ -41,12 +41,12 @@ def compute(estimate: xr.Dataset, heights: xr.Dataset, settings: Settings) -> xr
         warnings.warn(f"surface {use.surface}: {clipped}", stacklevel=2)
     try:
         target = stage_estimate.spectrum(estimate, settings.psd, cutoff)
-        found = stage_spectrum.on_grid(target, heights, settings.spacing)
+        spectrum = stage_spectrum.on_grid(target, heights, settings.spacing)
     except (ValueError, NotConverged) as reason:
         raise ValueError(f"surface {use.surface} {source} cannot be drawn: {reason}") from None
     lengths = {"sampling.strip_length_um": use.strip_length, "sampling.margin_um": use.margin}
     parameters.refuse_long_correlation(use.surface, target, lengths, source)
-    return found.assign(flags=((), clipped))
+    return spectrum.assign(flags=((), clipped))
 
 
 def cutoff_and_clipping(end: float, settings: Settings) -> tuple[float, str]:

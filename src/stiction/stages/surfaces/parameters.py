@@ -68,8 +68,8 @@ def misfits(identification: xr.Dataset) -> dict[str, tuple[float, float]]:
     dict
         ``radius`` and ``density``: the relative deviation and its standard error [%].
     """
-    found = {}
+    by_quantity = {}
     for word, name in (("radius", "mean_radius"), ("density", "summit_density")):
         value, error, target = (float(identification[key]) for key in (name, f"{name}_error", f"target_{name}"))
-        found[word] = 100 * (value / target - 1), 100 * error / target
-    return found
+        by_quantity[word] = 100 * (value / target - 1), 100 * error / target
+    return by_quantity

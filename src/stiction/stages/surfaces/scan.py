@@ -30,15 +30,15 @@ def compute(path: str | Path, settings: Settings) -> xr.Dataset:
     ScanError
         If the file has no usable map of heights.
     """
-    found = reading.read(path, settings.source)
-    for note in found.notes:
+    file = reading.read(path, settings.source)
+    for note in file.notes:
         warnings.warn(note, stacklevel=2)
-    return layout(found)
+    return layout(file)
 
 
-def layout(found: ScanFile) -> xr.Dataset:
+def layout(file: ScanFile) -> xr.Dataset:
     """Dataset of the heights of one scan, less their mean, in single precision; NaN where they are undefined."""
-    scan = found.scan
+    scan = file.scan
     fast, slow = (np.arange(n) * pixel for n, pixel in zip(scan.heights.shape, scan.frame.pixel, strict=True))
     elevation = np.asarray(scan.heights - np.nanmean(scan.heights), np.float32)
     return xr.Dataset(
@@ -46,9 +46,9 @@ def layout(found: ScanFile) -> xr.Dataset:
             "elevation": (("fast", "slow"), elevation, {"units": "m"}),
             "size": ("axis", list(scan.size), {"units": "m", "long_name": "number of points times their distance"}),
             "file": ((), scan.name),
-            "channel": ((), found.channel, {"long_name": "channel of the file that was read"}),
-            "unit": ((), found.unit, {"long_name": "unit of the heights in the file"}),
-            "notes": ((), "\n".join(found.notes), {"long_name": "sentences on channel and instrument, one per line"}),
+            "channel": ((), file.channel, {"long_name": "channel of the file that was read"}),
+            "unit": ((), file.unit, {"long_name": "unit of the heights in the file"}),
+            "notes": ((), "\n".join(file.notes), {"long_name": "sentences on channel and instrument, one per line"}),
         },
         coords={
             "fast": ("fast", fast, {"units": "m"}),

@@ -75,9 +75,9 @@ def refuse_misuse(identification: xr.Dataset, use: Use) -> None:
     ValueError
         If strips are not longer than its correlation length, or its summits do not resemble the measured ones.
     """
-    found = parameters.spectrum_of(identification)
+    spectrum = parameters.spectrum_of(identification)
     lengths = {"sampling.strip_length_um": use.strip_length, "sampling.margin_um": use.margin}
-    parameters.refuse_long_correlation(use.surface, found, lengths)
+    parameters.refuse_long_correlation(use.surface, spectrum, lengths)
     ratios = {word: 1 + off / 100 for word, (off, _) in parameters.misfits(identification).items()}
     if not all(1 / RESEMBLES <= ratio <= RESEMBLES for ratio in ratios.values()):
         raise ValueError(

@@ -135,16 +135,18 @@ def compute(
     safe_lengths of a beam by humidity, or that of stage stoppers. ``grounds`` and ``tips`` are the contacts on which
     the beams of an array with counts stick in humid air, if true, or in dry air, and those of their tips.
     """
-    of_arrays = [Result(*key[:2], one, settings.arrays[key[0]]) for key, one in test_beams.items()]
-    beams, of_tips = ([one for one in of_arrays if (one.response == ARC) == is_tip] for is_tip in (False, True))
-    of_device = [Result(*key[:2], one, settings.device) for key, one in budgets.items()]
+    of_arrays = [Result(*key[:2], budget, settings.arrays[key[0]]) for key, budget in test_beams.items()]
+    beams, of_tips = (
+        [budget for budget in of_arrays if (budget.response == ARC) == is_tip] for is_tip in (False, True)
+    )
+    of_device = [Result(*key[:2], budget, settings.device) for key, budget in budgets.items()]
     inputs = common_inputs([*beams, *of_tips, *of_device])
     prior, responses = with_discrepancy(inputs, beams, [*of_tips, *of_device], settings.discrepancy)
     lengths = measured(beams, responses, settings.crack_lengths)
     counts = counted([*beams, *of_tips], responses, settings.stuck, grounds, tips)
     posterior = inference.given(prior, lengths, counts)
     device, own = responses[len(of_arrays) :], len(inputs.names)
-    found = [
+    parts = [
         of_inputs(prior, posterior, own + 2),
         of_data(beams, responses, prior, posterior, settings),
         of_counts(counts, posterior, settings.stuck),
@@ -152,17 +154,17 @@ def compute(
         of_further(beams, responses, of_device, device, posterior),
         of_agreement(prior, lengths, counts, own),
     ]
-    both = xr.merge(found, combine_attrs="no_conflicts")
-    return with_forces(both, predicted) if settings.device is None else with_lengths(both, predicted)
+    merged = xr.merge(parts, combine_attrs="no_conflicts")
+    return with_forces(merged, predicted) if settings.device is None else with_lengths(merged, predicted)
 
 
 def common_inputs(results: Sequence[Result]) -> Knowledge:
     """Inputs of all results and the covariance of their errors, as their budgets state it."""
-    names = list(dict.fromkeys(name for one in results for name in one.names))
+    names = list(dict.fromkeys(name for result in results for name in result.names))
     covariance = np.zeros((len(names), len(names)))
-    for one in results:
-        at = [names.index(name) for name in one.names]
-        covariance[np.ix_(at, at)] = one.budget.covariance.values
+    for result in results:
+        at = [names.index(name) for name in result.names]
+        covariance[np.ix_(at, at)] = result.budget.covariance.values
     return Knowledge(tuple(names), np.zeros(len(names)), covariance)
 
 
@@ -176,38 +178,38 @@ def with_discrepancy(
     """
     results = [*beams, *others]
     responses = np.zeros((len(results), len(inputs.names)))
-    for row, one in zip(responses, results, strict=True):
-        row[[inputs.names.index(name) for name in one.names]] = one.budget.slope.values
-    reduced = np.array([one.reduced for one in results]) - np.mean([one.reduced for one in beams])
-    conditions = [one.condition if one.response == S_SHAPE else None for one in results]
+    for row, result in zip(responses, results, strict=True):
+        row[[inputs.names.index(name) for name in result.names]] = result.budget.slope.values
+    reduced = np.array([result.reduced for result in results]) - np.mean([result.reduced for result in beams])
+    conditions = [result.condition if result.response == S_SHAPE else None for result in results]
     return inference.with_discrepancy(inputs, responses, reduced, conditions, stated)
 
 
-def measured(beams: Sequence[Result], responses: np.ndarray, found: Mapping[str, CrackLengths]) -> Lengths:
+def measured(beams: Sequence[Result], responses: np.ndarray, crack_lengths: Mapping[str, CrackLengths]) -> Lengths:
     """Measured mean crack lengths beside those that were computed.
 
     ASSUME: the crack lengths of single beams are independent; the error of a computed mean is negligible.
     """
     differences, errors, rows = [], [], []
-    for one, row in zip(beams, responses, strict=False):
-        if (at := _place(one, found)) is not None:
-            mean, std, number = (getattr(found[one.owner], key)[at] for key in ("mean", "std", "beams"))
-            differences.append(np.log(mean / float(one.budget.centre)))
+    for beam, row in zip(beams, responses, strict=False):
+        if (at := _place(beam, crack_lengths)) is not None:
+            mean, std, number = (getattr(crack_lengths[beam.owner], key)[at] for key in ("mean", "std", "beams"))
+            differences.append(np.log(mean / float(beam.budget.centre)))
             errors.append(std / mean / np.sqrt(number))
             rows.append(row)
     return Lengths(np.reshape(rows, (-1, responses.shape[1])), np.array(differences), np.array(errors))
 
 
-def _place(result, found):
+def _place(result, crack_lengths):
     """Place of a result of test beams among the humidities at which crack lengths of its array were measured."""
-    measured_at = found[result.owner].humidity if result.owner in found else ()
+    measured_at = crack_lengths[result.owner].humidity if result.owner in crack_lengths else ()
     return measured_at.index(result.humidity) if result.humidity in measured_at else None
 
 
 def counted(
     results: Sequence[Result],
     responses: np.ndarray,
-    found: Mapping[str, Stuck],
+    stuck: Mapping[str, Stuck],
     grounds: Mapping[tuple[str, bool], xr.Dataset],
     tips: Mapping[tuple[str, bool], xr.Dataset],
 ) -> Counts:
@@ -219,9 +221,9 @@ def counted(
     The results (n) are those of beams and tips of test beams, the first ones with responses (n or more, k); counts are
     by array, and contacts as in `compute`.
     """
-    places = {(one.owner, one.humidity, one.response): place for place, one in enumerate(results)}
+    places = {(result.owner, result.humidity, result.response): place for place, result in enumerate(results)}
     rows, lengths, scores = [], [], []
-    for name, data in found.items():
+    for name, data in stuck.items():
         shapes = {}
         for humidity in set(data.humidity):
             met = grounds[name, humidity > 0], tips[name, humidity > 0]
@@ -231,7 +233,7 @@ def counted(
             rows.append(responses[[places[name, humidity, shape] for shape in _COUNTED]])
             lengths.append(length - behind)
             scores.append(of_humidity)
-    numbers = (np.concatenate([getattr(one, key) for one in found.values()] or [[]]) for key in ("stuck", "of"))
+    numbers = (np.concatenate([getattr(counted, key) for counted in stuck.values()] or [[]]) for key in ("stuck", "of"))
     shape = (-1, len(_COUNTED))
     return Counts(np.reshape(rows, (*shape, responses.shape[1])), np.reshape(lengths, shape), scores, *numbers)
 
@@ -251,7 +253,8 @@ def of_shapes(cracks: Result, ground: xr.Dataset, tips: xr.Dataset, water: Water
 def of_inputs(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Dataset:
     """The first inputs before and after the measurement, and their combinations that the data determine or do not."""
     before, after = (
-        Knowledge(one.names[:count], one.mean[:count], one.covariance[:count, :count]) for one in (prior, posterior)
+        Knowledge(state.names[:count], state.mean[:count], state.covariance[:count, :count])
+        for state in (prior, posterior)
     )
     combinations = inference.combinations(before, after)
     return xr.Dataset(
@@ -259,8 +262,8 @@ def of_inputs(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Dataset:
             "prior_deviation": ("input", before.deviations),
             "shift": ("input", after.mean),
             "deviation": ("input", after.deviations),
-            "correlation": (("combination", "input"), [one.correlations for one in combinations], {"units": "1"}),
-            "remaining": ("combination", [one.remaining for one in combinations], {"units": "1"}),
+            "correlation": (("combination", "input"), [each.correlations for each in combinations], {"units": "1"}),
+            "remaining": ("combination", [each.remaining for each in combinations], {"units": "1"}),
         },
         coords={"input": list(before.names)},
     )
@@ -273,38 +276,38 @@ def of_data(
 
     Those that were not measured, where beams were only counted, are not a number.
     """
-    own = [_measured_length(one, settings.crack_lengths) for one in beams]
-    lengths = {"computed": [float(one.budget.centre) for one in beams]}
+    own = [_measured_length(beam, settings.crack_lengths) for beam in beams]
+    lengths = {"computed": [float(beam.budget.centre) for beam in beams]}
     lengths |= {key: [data[key] for data in own] for key in ("measured", "beam_length")}
     numbers = {"measured_error": [data["error"] for data in own]} | _both(prior, posterior, responses[: len(beams)])
-    lengths |= {size: [getattr(one.beam, size) for one in beams] for size in OWN}
-    numbers |= {"reduced": [one.reduced for one in beams]}
-    numbers |= {"rest": posterior.mean[[posterior.names.index(inference.rest(one.condition)) for one in beams]]}
+    lengths |= {size: [getattr(beam.beam, size) for beam in beams] for size in OWN}
+    numbers |= {"reduced": [beam.reduced for beam in beams]}
+    numbers |= {"rest": posterior.mean[[posterior.names.index(inference.rest(beam.condition)) for beam in beams]]}
     return xr.Dataset(
         {name: ("datum", value, {"units": "m"}) for name, value in lengths.items()}
         | {f"datum_{name}": ("datum", value, {"units": "1"}) for name, value in numbers.items()},
         coords={
-            "datum": [one.condition for one in beams],
-            "array": ("datum", [one.owner for one in beams]),
-            "datum_humidity": ("datum", [one.humidity for one in beams]),
+            "datum": [beam.condition for beam in beams],
+            "array": ("datum", [beam.owner for beam in beams]),
+            "datum_humidity": ("datum", [beam.humidity for beam in beams]),
         },
         attrs={"rest": settings.discrepancy.rest},
     )
 
 
-def _measured_length(result, found):
+def _measured_length(result, crack_lengths):
     """Measured mean length [m], its relative standard error and the length of the beams [m]; or no numbers."""
-    at = _place(result, found)
+    at = _place(result, crack_lengths)
     if at is None:
         return dict.fromkeys(("measured", "error", "beam_length"), np.nan)
-    data = found[result.owner]
+    data = crack_lengths[result.owner]
     error = data.std[at] / data.mean[at] / np.sqrt(data.beams[at])
     return {"measured": data.mean[at], "error": error, "beam_length": data.length}
 
 
-def of_counts(counts: Counts, posterior: Knowledge, found: Mapping[str, Stuck]) -> xr.Dataset:
+def of_counts(counts: Counts, posterior: Knowledge, stuck: Mapping[str, Stuck]) -> xr.Dataset:
     """Counted beams and their P(stuck) before and after the measurement, for the most probable inputs."""
-    rows = [(name, *row) for name, data in found.items() for row in zip(data.humidity, data.length, strict=True)]
+    rows = [(name, *row) for name, data in stuck.items() for row in zip(data.humidity, data.length, strict=True)]
     names, humidities, lengths = zip(*rows, strict=True) if rows else ((), (), ())
     return xr.Dataset(
         {
@@ -343,17 +346,17 @@ def of_results(
 ) -> xr.Dataset:
     """Results of a device before and after the measurement: mean crack lengths, lengths that few tips hold, forces."""
     numbers = {"of_inputs": inputs.of(responses[:, : len(inputs.names)])[1]} | _both(prior, posterior, responses)
-    numbers |= {"reduced": [one.reduced for one in of_device]}
-    centre = [float(one.budget.centre) for one in of_device], {"units": of_device[0].budget.centre.attrs["units"]}
-    sizes = {size: [getattr(one.beam, size) for one in of_device] for size in OWN if of_device[0].beam}
+    numbers |= {"reduced": [result.reduced for result in of_device]}
+    centre = [float(result.budget.centre) for result in of_device], {"units": of_device[0].budget.centre.attrs["units"]}
+    sizes = {size: [getattr(result.beam, size) for result in of_device] for size in OWN if of_device[0].beam}
     return xr.Dataset(
         {"centre": ("result", *centre)}
         | {f"own_{size}": ("result", values, {"units": "m"}) for size, values in sizes.items()}
         | {f"result_{name}": ("result", value, {"units": "1"}) for name, value in numbers.items()},
         coords={
-            "result": [one.condition for one in of_device],
-            "response": ("result", [one.response for one in of_device]),
-            "humidity_of_result": ("result", [one.humidity for one in of_device]),
+            "result": [result.condition for result in of_device],
+            "response": ("result", [result.response for result in of_device]),
+            "humidity_of_result": ("result", [result.humidity for result in of_device]),
         },
     )
 
@@ -370,37 +373,37 @@ def of_further(
     These are more beams of an array at one of its humidities, or a new array like the device at one of its humidities,
     whose dimensions and rest of the model are then its own.
     """
-    further = [(one, row, 0.0) for one, row in zip(beams, responses, strict=False)]
-    for one, row in zip(of_device, device, strict=True):
-        if one.response == S_SHAPE:
-            own = np.isin(posterior.names, one.own)
-            further.append((one, np.where(own, 0, row), float(np.linalg.norm((row * posterior.deviations)[own]))))
+    further = [(beam, row, 0.0) for beam, row in zip(beams, responses, strict=False)]
+    for beam, row in zip(of_device, device, strict=True):
+        if beam.response == S_SHAPE:
+            own = np.isin(posterior.names, beam.own)
+            further.append((beam, np.where(own, 0, row), float(np.linalg.norm((row * posterior.deviations)[own]))))
     left = [
         [
             [
-                inference.further_beams(posterior, target, row, np.hypot(one.scatter / np.sqrt(n), apart))
+                inference.further_beams(posterior, target, row, np.hypot(beam.scatter / np.sqrt(n), apart))
                 for n in FURTHER
             ]
-            for one, row, apart in further
+            for beam, row, apart in further
         ]
         for target in device
     ]
     return xr.Dataset(
         {
             "result_after_further": (("result", "further", "beams"), left, {"units": "1"}),
-            "further_length": ("further", [LONG * float(one.budget.centre) for one, *_ in further], {"units": "m"}),
+            "further_length": ("further", [LONG * float(beam.budget.centre) for beam, *_ in further], {"units": "m"}),
         },
-        coords={"further": [one.condition for one, *_ in further], "beams": list(FURTHER)},
+        coords={"further": [beam.condition for beam, *_ in further], "beams": list(FURTHER)},
     )
 
 
-def with_lengths(found: xr.Dataset, safe_lengths: Mapping[float, xr.Dataset]) -> xr.Dataset:
+def with_lengths(update: xr.Dataset, safe_lengths: Mapping[float, xr.Dataset]) -> xr.Dataset:
     """The dataset with safe lengths before and after the measurement, and P(stuck) of beams of the former ones.
 
     ASSUME: safe lengths shift as the mean length of S-shapes and bridges, or as the length that few tips hold, as the
     budgets do.
     """
-    safe = xr.concat([one.safe_length for one in safe_lengths.values()], "humidity").assign_coords(
+    safe = xr.concat([dataset.safe_length for dataset in safe_lengths.values()], "humidity").assign_coords(
         humidity=list(safe_lengths)
     )
 
@@ -408,26 +411,26 @@ def with_lengths(found: xr.Dataset, safe_lengths: Mapping[float, xr.Dataset]) ->
         lengths, shares = sticking(safe_lengths[humidity].sel(shape=shape))
         return inference.expected_share(np.log(length / lengths), np.diff(shares, prepend=0.0), shift, deviation)
 
-    return found.assign(_before_and_after(found, safe) | _shares(found, safe, share))
+    return update.assign(_before_and_after(update, safe) | _shares(update, safe, share))
 
 
-def sticking(found: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+def sticking(dataset: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Lengths of one shape (n,) [m] and P(stuck) at each [-]: estimated for the small shares, and counted above them.
 
     Too few beams are counted to give the small shares.
     """
-    estimates = found.estimate.sortby("share")
+    estimates = dataset.estimate.sortby("share")
     scores = ndtri(estimates.share.values)
     small = np.linspace(scores[0], scores[-1], _SMALL)
     lengths, shares = np.exp(np.interp(small, scores, np.log(estimates.values))), ndtr(small)
-    above = (found.stuck.values > shares[-1]) & (found.length.values > lengths[-1])
+    above = (dataset.stuck.values > shares[-1]) & (dataset.length.values > lengths[-1])
     return (
-        np.concatenate([lengths, found.length.values[above]]),
-        np.concatenate([shares, found.stuck.values[above]]),
+        np.concatenate([lengths, dataset.length.values[above]]),
+        np.concatenate([shares, dataset.stuck.values[above]]),
     )
 
 
-def with_forces(found: xr.Dataset, stopper: xr.Dataset) -> xr.Dataset:
+def with_forces(update: xr.Dataset, stopper: xr.Dataset) -> xr.Dataset:
     """The dataset with safe forces of a stopper before and after, and P(stuck) at its restoring force.
 
     ASSUME: the forces of all patches shift as their mean.
@@ -439,23 +442,23 @@ def with_forces(found: xr.Dataset, stopper: xr.Dataset) -> xr.Dataset:
         held = np.maximum(stopper.pull_off.sel(humidity=humidity).values, np.finfo(float).tiny)
         return inference.expected_share(np.log(held / force), np.full(len(held), 1 / len(held)), -shift, deviation)
 
-    return found.assign(_before_and_after(found, safe) | _shares(found, stated, share))
+    return update.assign(_before_and_after(update, safe) | _shares(update, stated, share))
 
 
-def _before_and_after(found, safe):
+def _before_and_after(update, safe):
     """Safe lengths or forces before and after the measurement."""
     return {
         "safe": safe,
-        "updated_safe": safe * np.exp(_of_shapes(found, "result_shift").reindex_like(safe.isel(share=0))),
+        "updated_safe": safe * np.exp(_of_shapes(update, "result_shift").reindex_like(safe.isel(share=0))),
     }
 
 
-def _of_shapes(found, name):
+def _of_shapes(update, name):
     """Numbers of the results of a device by humidity and shape."""
-    shapes = list(map(shape_of, found.response.values))
-    keys = {"humidity": ("result", found.humidity_of_result.values), "shape": ("result", shapes)}
+    shapes = list(map(shape_of, update.response.values))
+    keys = {"humidity": ("result", update.humidity_of_result.values), "shape": ("result", shapes)}
     return (
-        found[name]
+        update[name]
         .drop_vars(["result", "response", "humidity_of_result"])
         .assign_coords(keys)
         .set_index(result=["humidity", "shape"])
@@ -463,16 +466,16 @@ def _of_shapes(found, name):
     )
 
 
-def _shares(found, sizes, share):
+def _shares(update, sizes, share):
     """P(stuck) of some sizes before and after the measurement, averaged over the uncertainty of the inputs."""
-    shift, before, after = (_of_shapes(found, f"result_{name}") for name in ("shift", "before", "after"))
+    shift, before, after = (_of_shapes(update, f"result_{name}") for name in ("shift", "before", "after"))
     stacked = sizes.stack(at=sizes.dims)
     expected = {"expected_stuck": [], "updated_stuck": []}
-    for one in stacked:
-        at = {"humidity": float(one.humidity), "shape": str(one["shape"].values)}
+    for size in stacked:
+        at = {"humidity": float(size.humidity), "shape": str(size["shape"].values)}
         moved = float(shift.sel(at)), float(after.sel(at))
         for name, numbers in zip(expected, ((0.0, float(before.sel(at))), moved), strict=True):
-            expected[name].append(share(*at.values(), float(one), *numbers))
+            expected[name].append(share(*at.values(), float(size), *numbers))
     return {
         name: stacked.copy(data=values).unstack("at").transpose(*sizes.dims).reindex_like(sizes).assign_attrs(units="1")
         for name, values in expected.items()

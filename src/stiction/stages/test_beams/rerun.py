@@ -35,7 +35,7 @@ NUMBERS = ("linear", "linear_error", "rerun", "rerun_error")
 
 
 def compute(
-    found: xr.Dataset,
+    update: xr.Dataset,
     budgets: Mapping[tuple[str, float], xr.Dataset],
     patches: Sequence[str],
     contacts: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
@@ -46,17 +46,17 @@ def compute(
     The budgets are by device or array, and humidity; each has the name of its patch and its settings. A patch has the
     contact with the stated inputs and that of its first samples with the errors of the update.
     """
-    errors, names, rows = errors_of(found), [], []
+    errors, names, rows = errors_of(update), [], []
     for (key, budget), patch, own in zip(budgets.items(), patches, settings, strict=True):
         result = Result(*key, budget, None)
         names.append(result.condition)
         rows.append(compared(result, *contacts[patch], errors, own))
-    return with_reruns(found, names, rows)
+    return with_reruns(update, names, rows)
 
 
-def errors_of(found: xr.Dataset) -> dict[str, float]:
+def errors_of(update: xr.Dataset) -> dict[str, float]:
     """Expected errors of all inputs after the measurement, by their names."""
-    return dict(zip(map(str, found.input.values), found["shift"].values.tolist(), strict=True))
+    return dict(zip(map(str, update.input.values), update["shift"].values.tolist(), strict=True))
 
 
 def compared(
@@ -75,17 +75,17 @@ def compared(
 
 
 def at_mean(
-    surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset]], pair: str, plain: dict[str, Any], errors: Mapping[str, float]
+    surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset]], pair: str, base: dict[str, Any], errors: Mapping[str, float]
 ) -> xr.Dataset:
     """Contact of a pair whose surfaces and solids err, by the name of the input, such as ``rms of B2``.
 
-    The surfaces are datasets (heights, spectrum) by name; ``plain`` has the settings of the contact with the stated
+    The surfaces are datasets (heights, spectrum) by name; ``base`` has the settings of the contact with the stated
     inputs, as of a job. The name of the pair is part of the addresses of random numbers.
     """
-    for name, one in OF_CONTACT.items():
-        if one.words in errors:
-            plain = with_property(plain, name, partial(one.step.moved, by=errors[one.words]))
-    settings, drawn = in_si(Settings, plain), {}
+    for name, entry in OF_CONTACT.items():
+        if entry.words in errors:
+            base = with_property(base, name, partial(entry.step.moved, by=errors[entry.words]))
+    settings, drawn = in_si(Settings, base), {}
     for name in settings.surfaces:
         surface = description(*surfaces[name])
         own = {key: errors[f"{key} of {name}"] for key in surface.quantities if f"{key} of {name}" in errors}
@@ -94,12 +94,12 @@ def at_mean(
 
 
 def with_reruns(
-    found: xr.Dataset, names: Sequence[str] = (), rows: Sequence[Sequence[float]] = (), refused: str = ""
+    update: xr.Dataset, names: Sequence[str] = (), rows: Sequence[Sequence[float]] = (), refused: str = ""
 ) -> xr.Dataset:
     """Dataset of an update with its reruns, or with the reason why there are none."""
     columns = np.reshape(rows, (-1, len(NUMBERS))).T
     numbers = {name: ("again", column, {"units": "1"}) for name, column in zip(NUMBERS, columns, strict=True)}
-    return found.assign(numbers).assign_coords(again=np.array(names, str)).assign_attrs(refused=refused)
+    return update.assign(numbers).assign_coords(again=np.array(names, str)).assign_attrs(refused=refused)
 
 
 # Stage
@@ -107,8 +107,8 @@ def with_reruns(
 
 def _cases(plan, device):
     """Plan and case of all budgets of a device and its test beams that are not of tips, by their names and humidity."""
-    both = (plan, budgets_of(plan, device)), (plan.of_test_beams, budgets_of_arrays(plan, device))
-    return {key: (of, case_id(*key), name) for of, found in both for key, name in found.items() if len(key) == 2}
+    plans = (plan, budgets_of(plan, device)), (plan.of_test_beams, budgets_of_arrays(plan, device))
+    return {key: (of, case_id(*key), name) for of, budgets in plans for key, name in budgets.items() if len(key) == 2}
 
 
 def _inputs(plan, at):
@@ -118,7 +118,7 @@ def _inputs(plan, at):
     sides = dict.fromkeys(side for patch in patches for side in plan.sides(patch.pair))
     ratios = {patch.name: of_pair(plan, PairInAir(patch.pair).pair).get("model_error") for patch in patches}
     return {
-        "found": f"devices/test_beams/{at.device}",
+        "update": f"devices/test_beams/{at.device}",
         "budgets": {key: name for key, (*_, name) in cases.items()},
         "contacts": {patch.name: contact_of(of, case) for patch, (of, case) in patches.items()},
         "model_errors": {name: ratio for name, ratio in ratios.items() if ratio},
@@ -140,19 +140,20 @@ def _settings(plan, at):
 
 def _computed(data, _at, settings):
     """Contacts with the errors of the update, and everything that is computed again; or the reason why it is not."""
-    found, surfaces = data["found"], {name: (one, data["spectrum"][name]) for name, one in data["heights"].items()}
-    errors, contacts, model_errors = errors_of(found), {}, data["model_errors"]
+    surfaces = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
+    update = data["update"]
+    errors, contacts, model_errors = errors_of(update), {}, data["model_errors"]
     wanted = [
-        corrected(of_job(plain), {"model_error": model_errors[patch]} if patch in model_errors else {})
-        for plain, patch in zip(settings["budgets"], settings["patches"], strict=True)
+        corrected(of_job(own), {"model_error": model_errors[patch]} if patch in model_errors else {})
+        for own, patch in zip(settings["budgets"], settings["patches"], strict=True)
     ]
     try:
-        for name, (pair, plain) in settings["contacts"].items():
-            contacts[name] = data["contacts"][name], at_mean(surfaces, pair, plain, errors)
-        return compute(found, data["budgets"], settings["patches"], contacts, wanted)
+        for name, (pair, own) in settings["contacts"].items():
+            contacts[name] = data["contacts"][name], at_mean(surfaces, pair, own, errors)
+        return compute(update, data["budgets"], settings["patches"], contacts, wanted)
     except (ValueError, NotConverged) as reason:
         traceback.print_exc()  # the log keeps where the reason arose, should it be an error of the code
-        return with_reruns(found, refused=str(reason))
+        return with_reruns(update, refused=str(reason))
 
 
 STAGES = (
