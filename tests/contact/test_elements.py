@@ -1,5 +1,6 @@
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -308,6 +309,22 @@ def test_the_curve_of_higher_summits_leads_to_the_same_state(lower):
     near = elements.at_rest(space_of(), flat, adhesion, (distance, force))[0]
     assert far.energy(flat, adhesion) == pytest.approx(near.energy(flat, adhesion), rel=3e-3)
     assert far.distance == pytest.approx(near.distance, abs=0.05 * NM)  # of a thousandth of the energy
+
+
+@pytest.mark.parametrize("below", [1.0, 5.0])
+def test_a_force_that_jumps_past_zero_is_found_at_its_jump(below):
+    """A made-up strip of which a contact opens at 1 nm: secants through the last two states lead astray."""
+    asked, energy = [], 1e-9
+
+    def at(distance, *_):
+        asked.append(distance)
+        force = 1.2 - 0.2 * distance / NM if distance < 1 * NM else -below
+        return SimpleNamespace(distance=distance, force=force)
+
+    state, states = elements._without_force(at, other_model(0.2 * NM, 2 * NM), lambda state: energy)
+    assert states == len(asked) < 20
+    between = 2 * elements.ENERGY_LEFT * energy * (1 + below) / state.force**2
+    assert abs(state.distance - 1 * NM) < between < 0.02 * NM
 
 
 # What is refused

@@ -40,6 +40,8 @@ SETTLED = 2e-3
 SHARE = 0.3
 #: The attraction of each turn goes beyond that of the last gap by this factor, because turns approach from one side.
 RELAXATION = 1.4
+#: The first state of a search for one without force, which only says how far that is, settles this many times less.
+FIRST = 10
 #: Share of the adhesion energy that a force may leave where it is taken to vanish.
 ENERGY_LEFT = 1e-3
 #: Most turns of the attraction, displacements in each, and distances in the search for one state.
@@ -87,8 +89,8 @@ class Adhesion:
 
     def traction(self, gap: np.ndarray) -> np.ndarray:
         """Attraction q at gaps [Pa], of their shape, float32."""
-        near = np.clip((self.reach + self.ramp / 2 - gap) / np.float32(self.ramp), 0, 1)
-        return np.float32(self.tension) * (gap < self.height) + np.float32(self.stress) * near
+        law = np.float32([self.height, self.tension, self.stress, self.reach + self.ramp / 2, self.ramp])
+        return _traction(np.ravel(gap).astype(np.float32, copy=False), *law).reshape(np.shape(gap))
 
     def energy(self, gap: np.ndarray) -> np.ndarray:
         """Energy w per area at gaps >= 0, negative [J m⁻²]."""
@@ -142,10 +144,12 @@ def equilibrium(
     adhesion: Adhesion | None = None,
     start: State | None = None,
     hardness: float = np.inf,
+    coarser: float = 1.0,
 ) -> State:
     """State of a strip of heights z (n1, n2) float32 [m] at a distance d [m]; elastic, without attraction by default.
 
-    It begins with the pressure and the attraction of another state, by default with contact without attraction.
+    It begins with the pressure and the attraction of another state, by default with contact without attraction, and
+    settles ``coarser`` times less than to `SETTLED` and `TOLERANCE`.
 
     Raises
     ------
@@ -155,7 +159,7 @@ def equilibrium(
     undeformed = np.float32(distance) - heights
     if start is None:
         nothing = np.zeros_like(undeformed)
-        pressure, gap, _ = _supported(space, undeformed, nothing, nothing, 0.0, hardness)
+        pressure, gap, _ = _supported(space, undeformed, nothing, nothing, hardness, coarser * TOLERANCE)
         start = State(distance, pressure, nothing, gap, 0, hardness)
         if adhesion is None:
             return start
@@ -163,35 +167,62 @@ def equilibrium(
     else:
         pressure, attraction = start.pressure, start.attraction
     for turn in range(1, TURNS + 1):
-        pressure, gap, before = _supported(space, undeformed, pressure, attraction, SHARE, hardness)
-        change = adhesion.traction(gap) - attraction
-        left = _mean(np.abs(change)) / max(_mean(np.abs(attraction)), 1.0)
-        if left <= SETTLED and before <= 5 * TOLERANCE:
+        pressure, gap, before = _supported(space, undeformed, pressure, attraction, hardness, TOLERANCE, SHARE)
+        relaxed, change, size = _relaxed(adhesion.traction(gap), attraction, np.float32(RELAXATION))
+        left = change / max(size, 1.0)
+        if left <= coarser * SETTLED and before <= 5 * coarser * TOLERANCE:
             return State(distance, pressure, attraction, gap, turn, hardness)
-        attraction = attraction + np.float32(RELAXATION) * change
+        attraction = relaxed
     raise NotConverged(f"{_UNSETTLED}: change of the attraction", left, SETTLED, TURNS)
 
 
-def _supported(space, undeformed, pressure, attraction, share, hardness):
+@kernel
+def _traction(gap, height, tension, stress, end, ramp):
+    """Attraction q at gaps (n,) [Pa]: of a film up to its height, and a stress that ends in a ramp."""
+    traction, none = np.empty_like(gap), np.float32(0)
+    for i in range(gap.size):
+        inside = _larger(end - gap[i], none)
+        traction[i] = (tension if gap[i] < height else none) + stress * (inside / ramp if inside < ramp else 1)
+    return traction
+
+
+@kernel
+def _relaxed(wanted, attraction, factor):
+    """Attraction (n1, n2) moved by a factor of the way to the one wanted, mean size of that way and of the attraction.
+
+    All in Pa.
+    """
+    relaxed, columns = np.empty_like(attraction), attraction.shape[1]
+    changes, sizes = np.zeros(columns), np.zeros(columns)
+    for i in range(attraction.shape[0]):
+        for j in range(columns):
+            change = wanted[i, j] - attraction[i, j]
+            changes[j] += abs(change)
+            sizes[j] += abs(attraction[i, j])
+            relaxed[i, j] = attraction[i, j] + factor * change
+    return relaxed, changes.sum() / attraction.size, sizes.sum() / attraction.size
+
+
+def _supported(space, undeformed, pressure, attraction, hardness, tolerance, share=0.0):
     """Pressure 0 <= p <= H without overlap where p < H, p and gap (n1, n2) [Pa], [m]; residual at the beginning [m].
 
     Projected gradients with the steps of J. Barzilai and J. M. Borwein, IMA J. Numer. Anal. 8, 141 (1988), of one
     displacement each. Conjugate gradients need two wherever the projection changes their direction, which is nearly
     always here, and twice as many displacements in all.
 
-    The residual is reduced to a ``share`` of that at the beginning, or to `TOLERANCE`.
+    The residual is reduced to a tolerance [m], or to a share of that at the beginning.
     """
     gap, hardness = undeformed + space.displacement(pressure - attraction), np.float32(hardness)
     first = left = _residual(pressure, gap, hardness)
     step = first_step = 0.5 / space.unit
     for _ in range(STEPS):
-        if left <= max(TOLERANCE, share * first):
+        if left <= max(tolerance, share * first):
             return pressure, gap, first
         descended, traction = _descended(pressure, gap, attraction, np.float32(step), hardness)
         displacement = space.displacement(traction)
         after, step, left = _moved(pressure, gap, descended, undeformed, displacement, hardness)
         pressure, gap, step = descended, after, step or first_step
-    raise NotConverged(f"{_UNSETTLED}: gap of an element in contact [m]", left, TOLERANCE, STEPS)
+    raise NotConverged(f"{_UNSETTLED}: gap of an element in contact [m]", left, tolerance, STEPS)
 
 
 @kernel
@@ -298,8 +329,8 @@ def at_rest(
 ) -> tuple[State, int]:
     """State without force, which has the adhesion energy, and the number of states; parameters of `separation`."""
 
-    def at(distance, before):
-        return equilibrium(space, heights, distance, adhesion, before)
+    def at(distance, before, coarser=1.0):
+        return equilibrium(space, heights, distance, adhesion, before, coarser=coarser)
 
     return _without_force(at, curve, lambda state: state.energy(heights, adhesion))
 
@@ -324,12 +355,12 @@ def _beyond_extremum(at, state, step, end):
 
 
 def _without_force(at, curve, energy):
-    """State without force, and number of states; ``at(distance, before)`` is a state after another.
+    """State without force, and number of states; ``at(distance, before, coarser)`` is a state after another.
 
     The curve of another model, shifted to the force of the first state, leads near it, steps to a change of sign, and
     secants to a force too small to change the energy.
     """
-    state, number, step = at(limit_distance(*curve, 0.0), None), 1, _step(curve)
+    state, number, step = at(limit_distance(*curve, 0.0), None, FIRST), 1, _step(curve)
     ends = {state.force > 0: state}
     move = _shift(curve, state.force, step)
     while True:
