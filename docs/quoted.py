@@ -43,7 +43,7 @@ def numbers(tables):
     texts |= readings(tables["asperities"]) | pressing(tables["pressing"])
     texts |= sealed(tables["sealed_safe_lengths"], tables["sealed_stoppers"])
     texts |= measured_beams(tables["measured_beams"]) | said(tables["test_beams"]) | skewed(tables["roughness"])
-    texts |= studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
+    texts |= tails(tables["tails"]) | studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
     return (
         texts
         | scans(tables["example_scans"])
@@ -290,6 +290,31 @@ def chaos(resampling):
     return {"chaos_most": f"{resampling.difference_percent.abs().max():.1f}"}
 
 
+def tails(table):
+    """``tail_c_060_touching``, ``parabola_c_060_touching``: cracks on curves over those on Eq. (12), or parabolas [%].
+
+    ``tail_right``: the largest change by the right branch of the curves [%]; ``tail_left_least``, ``tail_left_most``:
+    energy left of d_max over that of the curves [-]; ``tail_energy_a``: dry energy over that of touching summits [-].
+    The table has texts, as the script of ``make tails`` prints them.
+    """
+    texts, energies = {}, table[["ē [mJ/m²]", "touching summits alone [mJ/m²]"]].map(_value)
+    for row, energy in zip(table.to_dict("records"), energies.itertuples(index=False), strict=True):
+        is_dry = row["air"] == "dry"
+        case = f"{row['pair']}_{'dry' if is_dry else _digits(_value(row['air'].removeprefix('RH ')))}_{row['reach']}"
+        texts[f"tail_{case}"] = row["ln l_s, curves over Eq. (12) [%]"]
+        texts[f"parabola_{case}"] = row["curves over parabola [%]"]
+        texts |= {f"tail_energy_{row['pair']}": f"{energy[0] / energy[1]:.0f}"} if is_dry else {}
+    left = table["energy left of d_max, Eq. (12) over curves"].map(_value)
+    right = table["right branch of the curve over Eq. (12) [%]"].map(_value)
+    ends = {"tail_left_least": left.min(), "tail_left_most": left.max(), "tail_right": right.abs().max()}
+    return texts | {name: f"{value:.1f}" for name, value in ends.items()}
+
+
+def _value(text):
+    """The number before an error."""
+    return float(text.split(" ± ")[0])
+
+
 def studies(table):
     """Scalars of the studies by name, as written by `update.scalars`."""
     return {row.name: row.text for row in table.itertuples(index=False)}
@@ -429,6 +454,12 @@ def _digits(humidity):
 def _listed(parts):
     parts = list(parts)
     return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts) or "no case"
+
+
+def of_markdown(path):
+    """A table in Markdown as texts."""
+    head, _, *rows = ([cell.strip() for cell in line.split("|")[1:-1]] for line in path.read_text("utf-8").splitlines())
+    return pd.DataFrame(rows, columns=head)
 
 
 def frame(path):

@@ -97,6 +97,8 @@ OWN_STUDIES = {
 SEALED_TABLES = ("safe_lengths", "stoppers")
 #: Table of ``make attraction``, and its target.
 ATTRACTION, OF_ATTRACTION = "attraction", "results/tables/variants.csv"
+#: Table of ``make tails``, in Markdown alone.
+TAILS = "tails"
 #: Largest picture [bytes].
 LARGEST = 350_000
 #: Schema of configuration files for editors.
@@ -385,7 +387,7 @@ def quoted_numbers():
             "earlier_timings",
         )
     }
-    return quoted.numbers(frames)
+    return quoted.numbers(frames | {TAILS: quoted.of_markdown(DOCS / "tables" / f"{TAILS}.md")})
 
 
 def record(numbers):

@@ -169,6 +169,28 @@ def test_numbers_of_checks_scans_and_timings_are_those_of_their_tables():
     }
 
 
+def test_numbers_of_force_laws_are_those_of_the_table_of_their_script(tmp_path):
+    heads = ["pair", "air", "reach", "ē [mJ/m²]", "touching summits alone [mJ/m²]"]
+    heads += ["energy left of d_max, Eq. (12) over curves", "ln l_s, curves over Eq. (12) [%]"]
+    heads += ["right branch of the curve over Eq. (12) [%]", "curves over parabola [%]"]
+    rows = [
+        ["b", "dry", "all", "0.18 ± 0.01", "0.04 ± 0.01", "1.55", "+1.3 ± 0.4", "-0.6 ± 0.3", "-0.7 ± 0.5"],
+        ["c", "RH 0.6", "touching", "0.02 ± 0.01", "0.02 ± 0.01", "1.35", "+5.0 ± 0.8", "+0.2 ± 0.3", "+0.6 ± 0.4"],
+    ]
+    lines = [heads, ["---"] * len(heads), *rows]
+    (tmp_path / "t.md").write_text("".join(f"| {' | '.join(line)} |\n" for line in lines), encoding="utf-8")
+    assert quoted.tails(quoted.of_markdown(tmp_path / "t.md")) == {
+        "tail_b_dry_all": "+1.3 ± 0.4",
+        "parabola_b_dry_all": "-0.7 ± 0.5",
+        "tail_energy_b": "4",
+        "tail_c_060_touching": "+5.0 ± 0.8",
+        "parabola_c_060_touching": "+0.6 ± 0.4",
+        "tail_left_least": "1.4",
+        "tail_left_most": "1.6",
+        "tail_right": "0.6",
+    }
+
+
 def test_drawn_lengths_are_those_of_the_tables_less_twice_the_largest_uncertainty():
     safe = pd.DataFrame({"device": "C1", "held_by": ["beam", "beam or tip"], "relative_humidity": 0.92, "share": 1e-3})
     totals = pd.DataFrame({"device": "C1", "held_by": ["beam", "tip", "tip"], "name": "total"})
