@@ -29,6 +29,9 @@ PLATE = 10.0
 STRETCH = 0.5
 #: What plastic contact does to beams and to stoppers that were pressed as hard.
 SHORTER, STRONGER = "beams that were pressed stick at shorter lengths", "stoppers that were pressed hold more"
+#: How to let plastic contact be checked, and how where the list of studies leaves it out.
+DISTANCE = "give its distance in studies.plasticity.distance_nm"
+NAMED = f"{DISTANCE}, and name plasticity in run.studies"
 #: Relevant to stiction, but not in the model at any setting.
 NOT_MODELLED = (
     "Not in the model: drying after release, the time that water needs to condense, electric charge and voltage, wear, "
@@ -57,13 +60,13 @@ def cut_off_mean(share: float, mean: float, length: float) -> str | None:
     )
 
 
-def plastic_contact(share: float, pressure: float, effect: str = SHORTER) -> str | None:
-    """Contact that is plastic under a mean pressure of the surfaces; NaN if it was not studied.
+def plastic_contact(share: float, pressure: float, effect: str = SHORTER, remedy: str = DISTANCE) -> str | None:
+    """Contact that is plastic under a mean pressure of the surfaces; NaN if it was not studied, which has a remedy.
 
     ``effect`` says what this does to a device that was pressed, `SHORTER` or `STRONGER`. Adhesion alone presses less.
     """
     if math.isnan(share):
-        return "Whether the contact is plastic was not checked: give its distance in studies.plasticity.distance_nm."
+        return f"Whether the contact is plastic was not checked: {remedy}."
     if share <= PLASTIC:
         return None
     return (

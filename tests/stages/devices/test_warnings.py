@@ -93,6 +93,14 @@ def test_pairs_whose_plasticity_was_not_studied_are_said_to_be_unchecked():
     assert "was not checked" in sentence
 
 
+@pytest.mark.parametrize(("studies", "named"), [([], True), (["plasticity"], False), (None, False)])
+def test_the_remedy_names_the_list_of_studies_where_it_leaves_plasticity_out(studies, named):
+    plan = Plan(load({"run": {"pairs": ["b"]} | ({} if studies is None else {"studies": studies})}))
+    page = pair_warnings.STAGES[0].compute({"beams": {}, "plasticity": {}}, None, job_settings(plan, "warnings.md"))
+    assert "give its distance in studies.plasticity.distance_nm" in page
+    assert (", and name plasticity in run.studies." in page) == named
+
+
 @pytest.mark.parametrize(("modulus", "missing"), [(164, False), (150, False), (180, False), (70, True), (200, True)])
 def test_a_solid_far_from_polysilicon_is_said_to_keep_its_other_properties(modulus, missing):
     found = about_pairs({}, PLASTIC, Plan(load({"solid": {"young_modulus_GPa": modulus}})))

@@ -50,10 +50,12 @@ def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
     return limits.given(*warnings)
 
 
-def contact_warnings(plastic: Plastic, materials: StatedProperties, effect: str = limits.SHORTER) -> list[str | None]:
-    """Warnings, or None, about the contact of a pair."""
+def contact_warnings(
+    plastic: Plastic, materials: StatedProperties, effect: str = limits.SHORTER, remedy: str = limits.DISTANCE
+) -> list[str | None]:
+    """Warnings, or None, about the contact of a pair, with the remedy where its plasticity was not studied."""
     about = (limit(*material) for material in materials for limit in (limits.default_material, limits.spacer))
-    return [limits.plastic_contact(*plastic, effect), *about]
+    return [limits.plastic_contact(*plastic, effect, remedy), *about]
 
 
 def plastic_contact(plasticity: Mapping[str, xr.Dataset], pair: str) -> Plastic:
@@ -68,15 +70,16 @@ def of_pairs(
     plasticity: Mapping[str, xr.Dataset],
     materials: Mapping[str, StatedProperties],
     settings: OfPairs,
+    remedy: str = limits.DISTANCE,
 ) -> Warnings:
-    """Warnings about the main line; plasticity is that of the pairs for which it was studied.
+    """Warnings about the main line; plasticity is that of the pairs for which it was studied; others have a remedy.
 
     Each pair has the names of its materials, each with the properties that are stated.
     """
     warnings = {
         f"pair {pair}": limits.given(
             _without_water(pair, beams, settings.water[pair]),
-            *contact_warnings(plastic_contact(plasticity, pair), materials[pair]),
+            *contact_warnings(plastic_contact(plasticity, pair), materials[pair], remedy=remedy),
         )
         for pair in settings.pairs
     }
@@ -135,7 +138,8 @@ def as_markdown(warnings: Warnings) -> str:
 def _of_pairs(data, _at, settings):
     """Warnings about all pairs as a page."""
     nominal = in_si(OfPairs, settings["pairs"])
-    return as_markdown(of_pairs(data["beams"], data["plasticity"], settings["materials"], nominal))
+    remedy = limits.DISTANCE if settings["plasticity_runs"] else limits.NAMED
+    return as_markdown(of_pairs(data["beams"], data["plasticity"], settings["materials"], nominal, remedy))
 
 
 STAGES = (
@@ -153,6 +157,7 @@ STAGES = (
             }
             | sections(plan, *plan.pairs),
             "materials": {pair: plan.materials.in_words(pair) for pair in plan.pairs},
+            "plasticity_runs": "plasticity" in plan.studies,
         },
         compute=_of_pairs,
         save=lambda page, paths: save_text(page, paths["markdown"]),
