@@ -7,8 +7,10 @@ import pytest
 import yaml
 from configurations import PAPER, ROOT, changed
 
-from stiction.config import memory
+from stiction.config import files, memory
 from stiction.config.device_plan import DevicePlan
+from stiction.plan.graph import stages
+from stiction.plan.plan import Plan
 
 DRAWING = """
 import sys
@@ -68,22 +70,6 @@ def test_the_largest_field_of_a_configuration_counts(overlay, size):
     assert memory.of_job(changed(overlay)) == max(memory.USUAL, round(memory.of_field(*size))) > memory.USUAL
 
 
-JOINING = """
-import sys
-from stiction.run.logs import peak_memory
-from stiction.stages.contact import contact
-from stiction.stages.contact import curves
-from stiction.contact.environment import Water
-from stiction.run import storage
-
-before, samples, paths = peak_memory(), int(sys.argv[1]), sys.argv[2:]
-joined = contact.joined((storage.load(path, "contact") for path in paths), samples)
-storage.save(joined, paths[0].replace("/0.nc", "/all.nc"), "contact", {})
-curves.energies(joined, 0.67, Water(300.0))
-print(before, peak_memory())
-"""
-
-
 STICKING = """
 contact: {samples: 100000, chunks: 100}
 run: {pairs: [a]}
@@ -112,6 +98,69 @@ def test_the_patch_of_a_device_with_an_uncertainty_is_also_drawn_with_the_points
     assert memory.of_job(changed(stated + finer)) == pytest.approx(memory.of_field(41, 41, 5), abs=1)
 
 
+HOLDING = """
+import sys
+import numpy as np
+import xarray as xr
+from stiction.contact.environment import Water
+from stiction.run import storage
+from stiction.run.logs import peak_memory
+from stiction.stages.contact import curves
+
+tips, contacts, path = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
+rng, draw = np.random.default_rng(1), ("sample", "slope")
+found = xr.Dataset(
+    {
+        "solid_pressure": ((*draw, "distance"), rng.random((tips, 12, 488), dtype=np.float32)),
+        "bearing_area": ((*draw, "height"), rng.random((tips, 12, 715), dtype=np.float32)),
+        "step": 1e-10,
+        "length": 2.44e-6,
+    },
+    coords={
+        "distance": 1e-10 * np.arange(488),
+        "height": 1e-10 * np.arange(-500, 215),
+        "slope": np.linspace(0.01, 0.1, 12),
+    },
+)
+storage.save(found, path, "contact", {})
+del found
+before = peak_memory()
+held = [storage.load(path, "contact") for _ in range(contacts)]
+curves.tip_forces(held[-1], 0.67, Water(300.0))
+print(before, peak_memory())
+"""
+
+
+def test_contacts_of_tips_take_at_most_the_estimated_memory_and_at_least_a_quarter(tmp_path):
+    """The numbers of distances and heights are those of pair c, the largest in the examples."""
+    tips, contacts = 200, 12
+    words = [sys.executable, "-c", HOLDING, str(tips), str(contacts), str(tmp_path / "c.nc")]
+    before, used = map(float, subprocess.run(words, text=True, capture_output=True, check=True).stdout.split())
+    estimate = memory.of_tips(12 * tips * contacts) - memory.USUAL
+    assert 0.25 * estimate < used - before < estimate
+
+
+def test_budgets_of_tips_reserve_the_memory_of_all_their_tips_under_every_input():
+    def reserved(*overlays):
+        plan = Plan(files.load(ROOT / "examples" / "devices.yaml", *overlays))
+        return [stages()[name][0].memory(plan) for name in ("tip_budget", "test_beam_tip_budget")]
+
+    array = {"pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}
+    array |= {"stuck": [{"humidity": 0.67, "length_um": 300, "stuck": 3, "of": 20}]}
+    counted = {"test_beams": {"A": array}, "devices": {"C1": {"test_beams": ["A"]}}}
+    # 15 slopes; contacts with the inputs as stated, with less and more of seven, and under four choices of the model.
+    assert reserved() == [memory.of_tips(15 * 1000 * (1 + 2 * 7 + 4)), memory.of_tips(0)]
+    assert reserved({"design": {"beams": 2000}}) == [memory.of_tips(15 * 2000 * (1 + 2 * 7 + 4)), memory.of_tips(0)]
+    # Test beams have no chart, whose beams have other slopes, and no other choices of the model.
+    assert reserved(counted)[1] == memory.of_tips(12 * 1000 * (1 + 2 * 7))
+
+
+def test_a_job_reserves_what_its_stage_needs_if_that_is_more_than_usual():
+    config = changed("contact: {samples: 100}")
+    assert [memory.of_job(config, 1700.4, attempt) for attempt in (1, 2)] == [1700, 3400]
+    assert memory.of_job(config, 700) == memory.USUAL
+
+
 def test_a_job_that_failed_may_use_twice_as_much():
     config = changed("contact: {samples: 100}")
-    assert [memory.of_job(config, attempt) for attempt in (1, 2, 3)] == [800, 1600, 3200]
+    assert [memory.of_job(config, attempt=attempt) for attempt in (1, 2, 3)] == [800, 1600, 3200]

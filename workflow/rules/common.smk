@@ -147,6 +147,6 @@ def of_job(rule, key):
     return lambda wildcards: planner.job(rule["name"], wildcards)[key]
 
 
-def memory_of_attempt(wildcards, attempt):
-    """Memory to reserve for a job [MB]."""
-    return memory.of_job(config, attempt)
+def memory_of(rule):
+    """Function of the attempt that gives the memory to reserve for a job [MB]."""
+    return lambda wildcards, attempt: memory.of_job(config, rule["memory"], attempt)

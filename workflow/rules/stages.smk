@@ -17,7 +17,7 @@ for declared in planner.rules:
         localrule: not declared["cluster"]
         resources:
             runtime=declared["minutes"],
-            mem_mb=memory_of_attempt,
+            mem_mb=memory_of(declared),
         params:
             module=declared["module"],
             inputs=of_job(declared, "inputs"),

@@ -12,6 +12,8 @@ FIELD_UM = from_si(FIELD, "um")
 #: Memory of a job: libraries and small arrays [MB]; fields, their waves and their spectra [bytes per point]. Measured:
 #: 54 bytes per point of a field whose spectrum is estimated, up to 24 of one from which a strip is cut.
 _BASE, _PER_POINT = 350, 60
+#: Memory of one tip at one slope in a contact that a job holds [bytes]. Measured: 1800 to 5700 (pairs a and c).
+_PER_SLOPE = 6000
 #: Memory that every job may use without a request [MB], and the most that a job may need.
 USUAL, LARGEST = 800, 8000
 
@@ -38,12 +40,24 @@ def spacings_of(device: dict, spacing_nm: float, others_nm: Sequence[float]) -> 
     return (spacing_nm, *others_nm) if "uncertainty" in device else (spacing_nm,)
 
 
-def of_job(config: dict, attempt: int = 1) -> int:
-    """Memory to reserve for any job of a configuration [MB]; jobs that fail are started again with twice as much.
+def of_job(config: dict, least: float = 0.0, attempt: int = 1) -> int:
+    """Memory to reserve for a job of a configuration [MB]; jobs that fail are started again with twice as much.
 
-    Jobs that hold many samples, or large scans, may need more than the fields that they draw.
+    The job of a stage may need more than the field that it draws, ``least``; so may those that hold many samples, or
+    large scans.
     """
-    return max(USUAL, round(_of_largest_field(config))) * 2 ** (attempt - 1)
+    return round(max(USUAL, least, _of_largest_field(config))) * 2 ** (attempt - 1)
+
+
+def of_tips(slopes: int) -> float:
+    """Memory of a job that holds the contacts of tips, with this number of slopes of all of them together [MB].
+
+    Examples
+    --------
+    >>> round(of_tips(12 * 400 * 15))  # 12 slopes of 400 tips in 15 contacts
+    1232
+    """
+    return USUAL + from_si(_PER_SLOPE * slopes, "MB")
 
 
 def _of_largest_field(config):

@@ -106,6 +106,7 @@ class Planner:
         taken = ("name", "targets", "temporary", "cluster", "minutes", "priority", "libraries")
         return {key: getattr(stage, key) for key in taken} | {
             "module": module,
+            "memory": stage.memory(self.plan) if stage.memory else 0,
             "dataset": stage.save is None,
             "files": {key: path_of(stage, name) for key, name in stage.patterns(self.plan).items()},
             "wanted": [

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
-from stiction.config import arrays
+from stiction.config import arrays, memory
 from stiction.config.cases import Case, case_id
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
@@ -348,6 +348,17 @@ def budgets_of(plan: Any, *devices: str) -> dict[tuple, str]:
     }
 
 
+def _memory_of_tips(plan, view, names):
+    """Memory of the largest budget of tips [MB], which holds all its contacts; ``view`` has these beams as devices."""
+    slopes = []
+    for name in names:
+        contacts = contacts_of_tip_budget(view, case_id(name, view.devices.sections[name]["humidities"][0]))
+        left_out = [] if view is plan else contacts["choices"]
+        number = sum(1 if isinstance(some, str) else len(some) for some in contacts.values()) - len(left_out)
+        slopes.append(number * len(plan.devices.tilt(view.devices.tips(name))["slopes"]))
+    return memory.of_tips(plan.config["design"]["beams"] * max(slopes, default=0))
+
+
 BUDGET = Stage.writing(
     "budget",
     "devices/budget/{case}",
@@ -388,6 +399,9 @@ STAGES = (
         "devices/budget/{case}_tip",
         inputs=lambda plan, at: _inputs(plan, at.case.device) | contacts_of_tip_budget(plan, at.case),
         settings=_settings_of_tips,
+        memory=lambda plan: _memory_of_tips(
+            plan, plan, [name for name in plan.devices.budgeted if name in plan.devices.with_tips]
+        ),
         label="budget",
         message="Budget of the tips of {case}.",
     ),
@@ -404,6 +418,7 @@ STAGES = (
         OF_ARRAYS + "/{case}_tip",
         inputs=_inputs_of_test_beams(contacts_of_tip_budget),
         settings=lambda plan, at: _settings_of_tips(plan.of_test_beams, at, HALF) | {"choices": []},
+        memory=lambda plan: _memory_of_tips(plan, plan.of_test_beams, arrays.counted(plan.config)),
         label="budget",
         message="Budget of the tips of test beams {case}.",
     ),
