@@ -16,7 +16,7 @@ import numpy as np
 import yaml
 
 from stiction.config import memory
-from stiction.config.cases import IN_HUMID_AIR, NAMEABLE, TOO_LITTLE, decimals
+from stiction.config.cases import DRY, IN_HUMID_AIR, NAMEABLE, TOO_LITTLE, decimals
 from stiction.config.conditions import Keys, Relations
 from stiction.config.messages import did_you_mean, duplicates, shown
 from stiction.config.stated_materials import hamaker_constants
@@ -122,7 +122,7 @@ def without_unique_names(humidities: list[float]) -> str | None:
 def repeated(humidities: list[float]) -> str | None:
     """Refusal of humidities that are listed twice."""
     twice = duplicates(humidities)
-    return f"must list each humidity once; {twice[0]} is listed twice" if twice else None
+    return f"must list each humidity once; {twice[0] or DRY} is listed twice" if twice else None
 
 
 @relation
@@ -537,15 +537,31 @@ def solids_attract_across_gaps(config):
 
 @relation
 def studies_in_humid_air_have_some(config):
-    """A study of humid air that is asked for has a pair that runs, between whose surfaces water condenses."""
-    asked = [name for name in config["run.studies"] if name in IN_HUMID_AIR]
-    in_humid_air = (
-        above_zero(humidities) and (not meeting.sides or wetting(meeting.sides, meeting.materials))
-        for _, meeting, humidities, _ in _running(config, "humidities")
-    )
-    if asked and not any(in_humid_air):
-        message = f"must be without {asked[0]}, which is computed in humid air alone: no pair of run.pairs is in any"
-        yield "run.studies", message, "run.pairs"
+    """A study of humid air that is asked for has a pair that runs, between whose surfaces water condenses.
+
+    That of the sensitivity is about the pair of the figures.
+    """
+    humid = {
+        pair: above_zero(humidities) and (not meeting.sides or wetting(meeting.sides, meeting.materials))
+        for pair, meeting, humidities, _ in _running(config, "humidities")
+    }
+    running = [pair for pair in config["run.pairs"] if pair in humid]
+    shown = [pair for pair in running if pair == config["figures.pair"]] or running[:1]
+    for name in config["run.studies"]:
+        if name in IN_HUMID_AIR and not any(humid.values()):
+            yield "run.studies", _without(name, "no pair of run.pairs is in any"), "run.pairs"
+        elif name == "sensitivity" and shown and not humid[shown[0]]:
+            yield (
+                "run.studies",
+                _without(name, f"pair {shown[0]} of the figures is in none"),
+                "run.pairs",
+                "figures.pair",
+            )
+
+
+def _without(study, why):
+    """Refusal of a study of humid air."""
+    return f"must be without {study}, which is computed in humid air alone: {why}"
 
 
 @relation
