@@ -5,7 +5,7 @@ import io
 import pytest
 from test_follow import end, heard, plan, start
 
-from stiction.command.display import Display, duration, line
+from stiction.command.display import Display, costs, duration, line
 
 
 class Terminal(io.StringIO):
@@ -49,6 +49,25 @@ def test_a_file_gets_few_lines_and_no_control_characters(run):
     assert len(file.getvalue().splitlines()) == 3
     assert "\x1b" not in file.getvalue()
     assert "\r" not in file.getvalue()
+
+
+@pytest.mark.parametrize("stream", [io.StringIO, Terminal])
+def test_what_budgets_cost_is_said_once_before_the_first_job(stream):
+    run = heard(plan(beams=4, budget=1, tip_slope_contact=5, slope_contact=10))
+    display = Display(run, shown := stream())
+    for now in (0, 100):
+        display(now)
+    display.close()
+    (told,) = (text for text in shown.getvalue().splitlines() if "budget" in text)
+    assert told.removeprefix("\x1b[K").startswith("16 of 20 jobs are for budgets, which say what to measure better.")
+
+
+def test_a_run_without_budgets_says_nothing_about_them(run):
+    assert list(costs(run)) == []
+
+
+def test_contacts_that_the_study_of_slopes_needs_anyway_are_no_costs_of_budgets():
+    assert next(costs(heard(plan(slopes=2, budget=1, slope_contact=10)))).startswith("1 of 13 jobs are")
 
 
 @pytest.mark.parametrize(

@@ -47,6 +47,14 @@ def test_a_run_that_was_stopped_says_how_to_continue(tmp_path):
     assert lines(heard(), Status.STOPPED, tmp_path) == ["stopped; run the same command to continue"]
 
 
+def test_a_run_with_budgets_says_which_part_of_the_time_they_took(tmp_path):
+    jobs = start(0), start(1, "budget", at=70), end(0, 70), end(1, 100)
+    assert lines(heard(plan(beams=1, budget=1), *jobs), Status.DONE, tmp_path)[0] == (
+        "Done: 2 jobs in 2 min, 30 % of their time for budgets."
+    )
+    assert "budgets" not in lines(DONE, Status.DONE, tmp_path)[0]
+
+
 def test_a_refusal_is_the_last_line(tmp_path):
     assert lines(heard(record("no", event="error")), Status.REFUSED, tmp_path, "other") == ["no"]
     assert lines(heard(), Status.REFUSED, tmp_path, "usage") == ["usage"]

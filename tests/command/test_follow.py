@@ -7,6 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stiction.command.follow import Run
+from stiction.stages.contact import slope_contact
+from stiction.stages.devices import budget, choice_contacts, contacts, slope_contacts
 
 
 def record(message=None, level=logging.INFO, at=0.0, **extra):
@@ -38,6 +40,13 @@ def heard(*records):
     for one in records:
         run.hear(one)
     return run
+
+
+def test_rules_of_budgets_are_those_of_their_modules():
+    modules = budget, choice_contacts, slope_contacts, slope_contact, contacts
+    rules = {stage.name for module in modules for stage in module.STAGES} - {"device_contact", "tip_contact"}
+    assert heard(plan(**dict.fromkeys(rules, 1), beams=1)).budgets == rules
+    assert heard(plan(beams=1)).budgets == set()
 
 
 @given(st.integers(1, 8), st.integers(3, 20), st.integers(0, 30), st.floats(1, 100))

@@ -3,12 +3,15 @@
 import shutil
 import threading
 import time
+from collections.abc import Iterator
 from typing import TextIO
 
 from stiction.command.follow import Run
 
 #: Time between two lines of a file, and between two drawings on a terminal [s].
 _APART, _REDRAWN = 30.0, 1.0
+#: Clears the line on a terminal.
+_ABOVE = "\r\x1b[K"
 _START = "loading; after an installation, compiling for a minute"
 
 
@@ -17,7 +20,7 @@ class Display:
 
     def __init__(self, run: Run, stream: TextIO):
         self._run, self._stream = run, stream
-        self._last, self._closed = 0.0, threading.Event()
+        self._last, self._closed, self._told = 0.0, threading.Event(), False
         self._clock = threading.Thread(target=self._draw, daemon=True) if stream.isatty() else None
         if self._clock:
             self._clock.start()
@@ -26,10 +29,13 @@ class Display:
         """Draw the line until the end."""
         while not self._closed.wait(_REDRAWN):
             width = shutil.get_terminal_size().columns - 1
-            self._write(f"\r\x1b[K{line(self._run, time.time())[:width]}")
+            self._write(f"{_ABOVE}{line(self._run, time.time())[:width]}")
 
     def __call__(self, now: float) -> None:
-        """Write a line to a file, unless this was done a moment ago."""
+        """Write once what budgets cost, and to a file a line about the run, unless this was done a moment ago."""
+        if self._run.planned and not self._told:
+            self._told = True
+            self._write("".join(f"{_ABOVE if self._clock else ''}{text}\n" for text in costs(self._run)))
         if self._clock is None and self._run.planned and now - self._last >= _APART:
             self._last = now
             self._write(f"{line(self._run, now)}\n")
@@ -43,7 +49,7 @@ class Display:
         self._closed.set()
         if self._clock:
             self._clock.join()
-            self._write("\r\x1b[K")
+            self._write(_ABOVE)
 
 
 def line(run: Run, now: float) -> str:
@@ -53,6 +59,15 @@ def line(run: Run, now: float) -> str:
     jobs = list(run.jobs.values())  # another thread adds jobs
     latest = max(jobs, key=lambda job: job.started).message if jobs else _START
     return f"{run.done} of {run.total} jobs{remaining}: {latest}" if run.planned else "planning"
+
+
+def costs(run: Run) -> Iterator[str]:
+    """What the budgets of a run cost, before it has computed anything; nothing without budgets."""
+    if number := sum(run.planned[rule] for rule in run.budgets):
+        yield (
+            f"{number} of {run.total} jobs are for budgets, which say what to measure better. Without them: stiction "
+            "run FILE -- results/tables/safe_lengths.md (of stoppers: results/tables/stoppers.md)"
+        )
 
 
 def duration(seconds: float) -> str:

@@ -90,7 +90,10 @@ def _finished(run):
     """That a run has finished, and how long it took."""
     if run.up_to_date:
         return "Nothing to do: all results are up to date."
-    return f"Done: {run.done} jobs in {duration(run.last - run.started)}."
+    spent = {rule: sum(seconds) for rule, seconds in run.seconds.items()}
+    share = sum(spent.get(rule, 0) for rule in run.budgets) / max(sum(spent.values()), 1)
+    of_budgets = f", {100 * share:.0f} % of their time for budgets" if run.budgets else ""
+    return f"Done: {run.done} jobs in {duration(run.last - run.started)}{of_budgets}."
 
 
 def where_to_look(results: Path, targets: Sequence[str] = ()) -> Iterator[str]:

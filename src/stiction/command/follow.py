@@ -13,6 +13,13 @@ from logging import WARNING, LogRecord
 #: First line of an error of Snakemake, and the places in files that follow the message.
 _ORIGIN = re.compile(r"\A\w+( in rule \S+)?( in file \"[^\n]*)?:\n|(\n  File \"[^\n]*)+\s*\Z")
 
+#: Rules of budgets, and of contacts that budgets alone read; study slopes reads the last one as well.
+_BUDGETS = {
+    *("budget", "tip_budget", "test_beam_budget", "test_beam_tip_budget"),
+    *("device_slope_contact", "tip_slope_contact", "device_choice_summits", "device_choice_contact"),
+    *("tip_choice_contact", "solid_contact", "tip_solid_contact", "slope_contact"),
+}
+
 
 def is_fault(kind: str, *expected: type[Exception]) -> bool:
     """Whether an exception, by the name of its class, is an error of the code: built in and none that is expected.
@@ -93,6 +100,11 @@ class Run:
     def total(self) -> int:
         """Number of jobs that this run needs."""
         return self.planned.total()
+
+    @property
+    def budgets(self) -> set[str]:
+        """Rules of this run whose jobs serve budgets alone."""
+        return _BUDGETS & self.planned.keys() - ({"slope_contact"} if "slopes" in self.planned else set())
 
     def hear(self, record: LogRecord) -> None:
         """Follow one report of Snakemake; reports of unknown kinds are left out."""
