@@ -41,7 +41,7 @@ def front_page(results: Path) -> str:
     last, config = runs[-1], runs[-1]["config"]
     sections = {
         f"Results of {' and '.join(_subjects(config))}": _list(answers(results, config)),
-        "Open first": _list(_links(results, config), plain=False),
+        "Open first": _list(_links(results, config), escaped=False),
         **({"Checks": _paragraph(_text(results / "verdict.txt"))} if config["run"]["pairs"] else {}),
         "Warnings": _list(_warnings(results, config)) or _paragraph("No result is beyond the limits of the model."),
         "Provenance": _list(provenance(last, len(runs))),
