@@ -16,6 +16,7 @@ import stiction
 from stiction.config.units import in_si
 from stiction.devices import inference
 from stiction.plan.graph import Results
+from stiction.report import published
 from stiction.report.format import TO_UM, with_error
 from stiction.stages.test_beams import inference as stage
 
@@ -24,6 +25,8 @@ from stiction.stages.test_beams import inference as stage
 FEW = {"contact": {"samples": 1000}, "chaos": {"order": 6}, "design": {"budget_beams": 100}}
 #: Devices of the example by the pair of their test beams.
 DEVICES = {"a": "onA", "b": "onB", "c": "onC"}
+#: Numbers of every pair that are compared with those on the lengths that the paper computed.
+COMPARED = ("slope", "line", "halves", "halves_of_factor", "median", "singles")
 #: Rows of the table by the names of their numbers.
 ROWS = {
     "rms": "rms of ln(measured / computed) [%]",
@@ -51,6 +54,13 @@ class Measured:
         settings = in_si(stage.Settings, job.settings)
         budgets = {key: results[name] for key, name in job.inputs["test_beams"].items()}
         return cls([stage.Result(*key, budget, settings.arrays[key[0]]) for key, budget in budgets.items()], settings)
+
+    def with_lengths(self, lengths):
+        """The same test beams with other computed lengths, by humidity [µm]."""
+        centres = (beam.budget.centre.copy(data=lengths[beam.humidity] / TO_UM) for beam in self.beams)
+        budgets = (beam.budget.assign(centre=at) for beam, at in zip(self.beams, centres, strict=True))
+        beams = [beam._replace(budget=budget) for beam, budget in zip(self.beams, budgets, strict=True)]
+        return replace(self, beams=beams)
 
     @property
     def places(self):
@@ -89,8 +99,10 @@ def main(folder):
 def write(pairs, folder):
     """Numbers and table of all pairs."""
     texts = {pair: of_pair(array) for pair, array in pairs.items()} | {
-        "ab": from_one_to_another(pairs["a"], pairs["b"])
+        "ab": from_one_to_another(pairs["a"], pairs["b"]),
+        "all": sizes_of_the_discrepancy(pairs.values()),
     }
+    texts |= on_lengths_of_the_paper(pairs)
     folder.mkdir(parents=True, exist_ok=True)
     rows = [{"pair": pair, "name": name, "text": text} for pair, of in texts.items() for name, text in of.items()]
     pd.DataFrame(rows).to_csv(folder / "measured.csv", index=False, lineterminator="\n")
@@ -136,18 +148,50 @@ def of_inputs_alone(array):
         "modulus": moved["Young's modulus"],
         "gap": next(value for name, value in moved.items() if name.startswith("gap of")),
     }
+    (measured,) = array.settings.crack_lengths.values()
+    single = replace(data, errors=data.errors * np.sqrt(measured.beams))
     left = {"p_of_inputs": f"{inference.p_value(inputs, data):.0e}", "left": percent(residuals(data, best))}
+    left |= {"p_of_single": f"{inference.p_value(inputs, single):.0e}"}
     return left | {f"{name}_alone": f"{value:.1f}" for name, value in numbers.items()}
 
 
 def of_line(array, data):
     """Scatter of ln(measured / computed) around the best straight line in ln l."""
-    reduced = np.array([beam.reduced for beam in array.beams])
-    away = data.differences - np.polyval(np.polyfit(reduced, data.differences, 1), reduced)
+    _, away, scatter = line(array, data)
     most = {
         f"line_{round(100 * beam.humidity)}": f"{100 * at:+.1f}" for beam, at in zip(array.beams, away, strict=True)
     }
-    return {"line": f"{100 * np.sqrt(np.sum(away**2) / (len(away) - 2)):.1f}"} | most
+    return {"line": f"{100 * scatter:.1f}"} | most
+
+
+def line(array, data):
+    """Slope of the best straight line of ln(measured / computed) over ln l, distances from it, and their scatter."""
+    reduced = np.array([beam.reduced for beam in array.beams])
+    fitted = np.polyfit(reduced, data.differences, 1)
+    away = data.differences - np.polyval(fitted, reduced)
+    return fitted[0], away, np.sqrt(np.sum(away**2) / (len(away) - 2))
+
+
+def sizes_of_the_discrepancy(arrays):
+    """Root mean squares, over all pairs, of factor, slope and rest that describe ln(measured / computed)."""
+    data = [array.data(array.prior()[1]) for array in arrays]
+    slopes, _, rests = zip(*map(line, arrays, data), strict=True)
+    sizes = {"factor": [one.differences.mean() for one in data], "slope": slopes, "rest": rests}
+    return {name: f"{rms(values):.2f}" for name, values in sizes.items()}
+
+
+def on_lengths_of_the_paper(pairs):
+    """Numbers of pairs on the lengths that the paper computed, and by how much those computed here are shorter."""
+    table, theirs, texts = published.read(published.file("table_3")), {}, {}
+    for pair, array in pairs.items():
+        lengths_of_paper = table[table.pair == pair].set_index("relative_humidity").ng
+        theirs[pair] = array.with_lengths(lengths_of_paper)
+        ratios = [TO_UM * float(beam.budget.centre) / lengths_of_paper[beam.humidity] for beam in array.beams]
+        numbers = of_pair(theirs[pair])
+        texts[f"paper_{pair}"] = {name: numbers[name] for name in COMPARED} | {
+            "shorter": f"{100 * (1 - min(ratios)):.0f}"
+        }
+    return texts | {"paper_ab": from_one_to_another(theirs["a"], theirs["b"])}
 
 
 def lengths(array):
