@@ -107,11 +107,25 @@ def test_the_energy_of_every_dry_sample_grows_with_the_hamaker_constant(dry):
 
 def test_rough_surfaces_stick_less_in_dry_air(dry):
     """With the same random numbers, all heights are larger in the same proportion."""
-    results = Results.of(load(SIZES, ACROSS, {"surfaces": {"B2": {"rms_nm": 1.3 * 3.4}}}))
-    rougher = tuple((results[f"heights/{name}"], results[f"spectrum/{name}"]) for name in ("B2", "Sub1"))
-    less = energies(contact_of("b_dry", of=lambda: rougher), 0.0, water_of("b_dry"))
+    less, _ = rougher(1.3)
     ratio, error = mean_with_error(less / energies(dry, 0.0, water_of("b_dry")))
     assert ratio + 4 * error < 0.9
+
+
+def rougher(factor):
+    """Energies of the samples of pair b in dry air with heights so many times as large, and of their summits alone."""
+    results = Results.of(load(SIZES, ACROSS, {"surfaces": {"B2": {"rms_nm": factor * 3.4}}}))
+    drawn = tuple((results[f"heights/{name}"], results[f"spectrum/{name}"]) for name in ("B2", "Sub1"))
+    found, water = contact_of("b_dry", of=lambda: drawn), water_of("b_dry")
+    return energies(found, 0.0, water), energies(found, 0.0, replace(water, gaps=None))
+
+
+def test_summits_take_over_on_rough_surfaces_so_that_energies_fall_more_slowly_than_one_over_the_square():
+    (rough, of_summits), (roughest, of_highest) = (np.log(rougher(factor)) for factor in (2, 8))
+    fall, error = mean_with_error(rough - roughest)
+    assert fall + 4 * error < 2 * np.log(8 / 2)
+    more, error = mean_with_error((rough - of_summits) - (roughest - of_highest))
+    assert more > 4 * error
 
 
 def test_water_holds_surfaces_more_strongly_than_dry_air(dry, humid):
