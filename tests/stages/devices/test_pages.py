@@ -55,6 +55,12 @@ def test_a_page_is_one_file_with_its_figures(stopper):
     assert not re.findall(r'(?:src|href)="(?!data:)', stopper)
 
 
+def test_long_descriptions_of_surfaces_are_wrapped_and_numbers_of_tables_are_not(stopper):
+    assert ".facts td { white-space: normal;" in stopper
+    assert stopper.count('<table class="facts">') == 1
+    assert "td { white-space: nowrap }" in stopper
+
+
 def test_the_page_of_a_stopper_says_how_many_stick_and_in_which_air(stopper):
     assert "0.67, 0 % of the stoppers (0 to 0.918 %) hold more than the restoring force of 18.99 µN" in stopper
     assert "holds most at a relative humidity of 0.70; drier and wetter air, from 0.4 to 0.9" in stopper

@@ -50,7 +50,8 @@ h1 {{ font-size: 1.5em }} h2 {{ font-size: 1.15em; margin-top: 1.6em }}
 table {{ border-collapse: collapse; margin: .6em 0 }}
 td, th {{ padding: 2px 12px; text-align: right; border-bottom: 1px solid #ddd }}
 td:first-child, th:first-child {{ text-align: left }}
-td {{ white-space: nowrap }} img {{ max-width: 100% }} .table {{ overflow-x: auto }}
+td {{ white-space: nowrap }} .facts td {{ white-space: normal; text-align: left }}
+img {{ max-width: 100% }} .table {{ overflow-x: auto }}
 .answer {{ font-size: 1.1em; border-left: 4px solid #0072B2; padding: .2em 1em }}
 .made {{ font-size: .85em; color: #555; margin-top: 2em }}
 .warning {{ border-left: 4px solid #D55E00; padding: .2em 1em }}
@@ -111,7 +112,7 @@ def _paragraphs(sentences):
 
 def _facts(facts):
     rows = "".join(f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in facts.items())
-    return f"<table>{rows}</table>"
+    return f'<table class="facts">{rows}</table>'
 
 
 def _section(section):
