@@ -249,11 +249,14 @@ def test_pictures_keep_their_colours(tmp_path):
         np.testing.assert_array_equal(np.asarray(small.convert("RGB"))[5::10, 5::10], colours)
 
 
-def test_pictures_are_small_and_all_are_shown():
+def test_pictures_are_small_in_full_colours_and_all_shown():
     shown = {Path(link).name for page in PAGES for link in links(page) if link.endswith(".png")}
     pictures = list((DOCS / "pictures").iterdir())
     assert {path.name for path in pictures} == shown
     assert max(path.stat().st_size for path in pictures) <= update.LARGEST
+    for path in pictures:
+        with Image.open(path) as picture:
+            assert picture.mode == "RGB", f"{path.name} has a palette"
 
 
 def links(page):

@@ -106,6 +106,15 @@ def test_the_risk_shows_shares_bands_and_safe_lengths_of_every_device(found):
     assert {(line.get_linestyle(), line.get_marker()) for line in first.get_legend().get_lines()} == {("-", "None")}
 
 
+def test_a_humidity_has_one_colour_in_all_panels(found):
+    figure = figures_devices.risk(
+        {("C1", 0.44): found["C1", 0.44], ("C1", 0.67): found["C1", 0.67], ("R1", 0.67): found["C1", 0.67]}, {}
+    )
+    first, second = ([line.get_color() for line in panel.get_legend().get_lines()] for panel in figure.axes)
+    np.testing.assert_array_equal(first[1], second[0])
+    assert not np.array_equal(first[0], first[1])
+
+
 def test_the_table_of_charts_has_every_length_and_where_it_is_from():
     table = tables_devices.chart(CHARTS, STEEP)
     assert len(table.frame) == 3 * 16

@@ -55,19 +55,22 @@ def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[str]], table: 
 def risk(datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, str], list]) -> Figure:
     """Share of stuck beams over their length, with bands of 95 % and safe lengths, one panel for each device.
 
+    A humidity has the same colour in all panels.
     The numbers of the warnings, which are by name, humidity and shape, mark the curves.
     """
     names = list(dict.fromkeys(name for name, _ in datasets))
     _, numbers = numbered(warnings)
     most = max(sum(device == name for device, _ in datasets) for name in names)
+    humidities = sorted({humidity for _, humidity in datasets})
+    colours = dict(zip(humidities, shades(len(humidities), _LIGHTEST), strict=True))
     figure, columns, lines = columns_of_panels(len(names), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
     for panel, name in zip(columns[:, 0], names, strict=True):
         cases = {humidity: dataset for (device, humidity), dataset in datasets.items() if device == name}
         named = []
-        for (humidity, dataset), shade in zip(cases.items(), shades(len(cases), _LIGHTEST), strict=True):
-            _shares(panel, dataset, shade)
+        for humidity, dataset in cases.items():
+            _shares(panel, dataset, colours[humidity])
             label = f"{air(humidity)}{_marks(numbers, name, humidity)}"
-            named.append(Line2D([], [], color=shade, linewidth=3, label=label))
+            named.append(Line2D([], [], color=colours[humidity], linewidth=3, label=label))
         legend_below(panel, named)
         shares = np.concatenate([dataset.share.values for dataset in cases.values()])
         panel.set(yscale="log", ylim=(shares.min() / 2, 1.3), xlabel="length of the device [µm]")
