@@ -88,8 +88,8 @@ def test_the_template_is_a_file(study):
         ([HEAD, "67,1500,705,"], "row 2: humidity is '67', must be a number above 0, as a fraction of 1"),
         ([HEAD, "0.67,1500 nm,705,"], "row 2: length_um is '1500 nm', must be a number above 0, in µm"),
         ([HEAD, "nan,1500,705,"], "row 2: humidity is 'nan'"),
-        ([HEAD, "0,67,1500,705,"], "row 2: it has 5 values, must have 4, with points in decimal numbers"),
-        ([HEAD, "0.67,1500"], "row 2: it has 2 values"),
+        ([HEAD, "0,67,1500,705,"], "row 2: commas separate 5 values, must be 4, with points in decimal numbers"),
+        ([HEAD, "0.67,1500"], "row 2: commas separate 2 values"),
         (
             [HEAD, "# ok", "0.67,1500,1500,"],
             "row 3: crack_length_um is '1500', must be a number above 0, below the length",

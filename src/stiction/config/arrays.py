@@ -244,7 +244,9 @@ def _check_columns(row, columns):
 def _beam(row, cells, columns):
     """Beam of a row."""
     if len(cells) != len(columns):
-        raise _Wrong(f"row {row}: it has {len(cells)} values, must have {len(columns)}, with points in decimal numbers")
+        raise _Wrong(
+            f"row {row}: commas separate {len(cells)} values, must be {len(columns)}, with points in decimal numbers"
+        )
     of = dict.fromkeys(COLUMNS, "") | dict(zip(columns, cells, strict=True))
     humidity = 0.0 if of["humidity"] == DRY else _number(row, of, "humidity", 1, "as a fraction of 1, or dry")
     length = _number(row, of, "length_um", math.inf, "in µm")

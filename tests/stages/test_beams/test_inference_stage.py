@@ -450,6 +450,8 @@ def test_the_dataset_is_stored_and_read_unchanged(tmp_path):
 
 def test_data_that_the_inputs_explain_give_no_warning():
     assert tables_inference.warnings(computed(as_computed(1.01))) == []
+    assert tables_inference.explained(computed(as_computed(1.01))).startswith("The test beams are as computed, ")
+    assert tables_inference.explained(computed(as_computed(1.3))).startswith("Differences from the computed ")
 
 
 def test_data_that_only_the_model_explains_say_so_with_its_factor():
@@ -511,7 +513,9 @@ def test_the_table_has_data_lengths_safe_lengths_and_inputs():
     assert len(table.frame) == 3 + 6 + 12 + 8
     cells = table.cells.set_index("what").before
     assert cells["C1: safe length, beam or tip, p = 0.001 [µm]"].iloc[0] == "250.0"
-    assert "Further test beams would help most as " in table.caption
+    assert "C1: stuck at the safe length, beam or tip, p = 0.001, of column before [%]" in cells
+    assert [tables_inference._number(share, np.nan) for share in (19.46, 0.0134)] == ["19.5", "0.013"]
+    assert "Further test beams would help most with the dimensions and in the air of " in table.caption
 
 
 @pytest.mark.usefixtures("shapes")

@@ -59,8 +59,8 @@ def advised(update: xr.Dataset) -> str:
     best = int(np.argmin(left.isel(beams=0).values))
     after = [f"{float(one):.2g} % with {int(one.beams)} beams" for one in left.isel(further=best)]
     return (
-        f"Further test beams would help most as {update.further.values[best]}, at least "
-        f"{TO_UM * float(update.further_length[best]):.0f} µm long: the standard uncertainty of the result for "
+        f"Further test beams would help most with the dimensions and in the air of {update.further.values[best]}, at "
+        f"least {TO_UM * float(update.further_length[best]):.0f} µm long: the standard uncertainty of the result for "
         f"{update.result.values[worst]} would fall from {100 * float(update.result_after[worst]):.2g} to "
         f"{', to '.join(after)}."
     )
@@ -69,9 +69,10 @@ def advised(update: xr.Dataset) -> str:
 def explained(update: xr.Dataset) -> str:
     """Whether the data agree with the model."""
     together, of_inputs = float(update.p_value), float(update.p_value_of_inputs)
+    agree = "The test beams are as computed, within the stated errors. " * (min(together, of_inputs) >= UNLIKELY)
     return (
-        f"Differences from the computed lengths and counts as large as measured, or larger, have a probability of "
-        f"{together:.2g} if inputs and model err as stated, and of {of_inputs:.2g} if the inputs alone do."
+        f"{agree}Differences from the computed lengths and counts as large as measured, or larger, have a probability "
+        f"of {together:.2g} if inputs and model err as stated, and of {of_inputs:.2g} if the inputs alone do."
     )
 
 
@@ -89,7 +90,9 @@ def built(update: xr.Dataset) -> str:
             f"With the test beams, give it a restoring force of at least {after:.3g} µN, without them {before:.3g} µN; "
             "twice the uncertainty of the force is added. Cracks do not say how much the model errs at stoppers."
         )
-    alone = "".join(f"; if its tip cannot touch, {one:.0f} and {other:.0f} µm" for other, one in others)
+    alone = "".join(
+        f"; if its tip cannot touch, {one:.0f} µm with them and {other:.0f} µm without" for other, one in others
+    )
     return (
         f"With the test beams, build it no longer than {after:.0f} µm, without them {before:.0f} µm{alone}. Twice the "
         "uncertainty of the lengths is subtracted, with that of the model for devices that cracks along the beam hold."
@@ -225,7 +228,7 @@ def _safe_sizes(device, update):
                 part = f"{END_STATES[shape].safe}, p = {share:g}"
                 yield head | {"part": f"{part} [{unit}]"} | _both(at, "safe", "updated_safe", TO_UM)
                 if "share" in update.expected_stuck.dims:
-                    yield head | {"part": f"stuck at the {part}, before [%]"} | _both(at, *_STUCK)
+                    yield head | {"part": f"stuck at the {part}, of column before [%]"} | _both(at, *_STUCK)
             if "share" not in update.expected_stuck.dims:
                 yield head | {"part": "stuck at the restoring force [%]"} | _both(of_shape, *_STUCK)
 
@@ -253,7 +256,7 @@ def _of_length(length, before, shift, after):
 
 def _number(value, deviation):
     """A number, with its standard deviation if it has one."""
-    return with_error(value, deviation) if deviation > 0 else number(value, ".1f")
+    return with_error(value, deviation) if deviation > 0 else number(value, ".1f" if abs(value) >= 1 else ".2g")
 
 
 def _measured(value, error):
