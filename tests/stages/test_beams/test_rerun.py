@@ -105,7 +105,10 @@ SECTIONS = {
     "test_beams": {"T": ARRAY},
     "run": {"pairs": [], "studies": []},
     "contact": {"samples": 40},
-    "studies": {"slopes": {"samples": 40}},
+    "studies": {
+        "slopes": {"samples": 40},
+        "variants": dict.fromkeys(("van_der_waals", "psd", "every", "spacing_nm"), []),
+    },
     "chaos": {"order": 2},
     "design": {
         "budget_beams": 40,
@@ -146,11 +149,10 @@ def test_an_error_of_one_step_gives_the_contact_of_the_slope_bit_for_bit(stopper
 
 def test_test_beams_in_dry_air_are_computed_again_on_contacts_in_dry_air():
     measured = [{"humidity": "dry", "mean_um": 1450, "std_um": 40, "beams": 10}]
-    stated = {"young_modulus_GPa": 5, "scan_um": 10, "humidity": 0}
-    dry = {"attraction": {"reach": "all"}}
-    dry |= {"devices": {"S1": {"humidities": ["dry"], "uncertainty": stated}}}
-    dry |= {"test_beams": {"T": {"length_um": 3000, "crack_lengths": measured}}}
-    device = stiction.Device("S1", Results.of(stiction.load(SECTIONS, dry)))
+    dry = SECTIONS | {"attraction": {"reach": "all"}}
+    dry |= {"devices": {"S1": STOPPER | {"humidities": ["dry"], "uncertainty": {"young_modulus_GPa": 40}}}}
+    dry |= {"test_beams": {"T": ARRAY | {"length_um": 3000, "crack_lengths": measured}}}
+    device = stiction.Device("S1", Results.of(stiction.load(dry)))
     found = device.test_beams_again()
     assert found.attrs["refused"] == ""
     assert found.again.values.tolist() == ["S1, dry", "T, dry"]
