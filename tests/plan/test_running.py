@@ -1,10 +1,13 @@
 """One job of the workflow: its inputs have the structure of the declaration, and its dataset names them."""
 
+import re
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
+from jinja2 import Template
 
 from stiction.plan import running
 from stiction.plan.stage import Shown, Stage
@@ -104,6 +107,26 @@ def test_a_caption_has_the_settings_of_its_job_and_what_the_figure_adds(files, t
     monkeypatch.setattr(running, "declared", lambda module: (stage,))
     running.run(described)
     assert (tmp_path / "sheet.txt").read_text() == "Sheet: B2\n\nTimes 10.\n\n(1) Too wet.\n"
+
+
+CAPTIONS = [
+    path
+    for path in sorted((Path(__file__).parents[2] / "workflow" / "report").glob("*.rst"))
+    if '["humidity"]' in path.read_text(encoding="utf-8")
+]
+
+
+@pytest.mark.parametrize("path", CAPTIONS, ids=lambda path: path.stem)
+def test_no_caption_of_a_figure_in_dry_air_has_a_humidity(path):
+    said = {}
+    for stated, shown in ((0.0, 0.0), (0.0, "dry"), (0.65, 0.65)):
+        params = SimpleNamespace(settings={"pair": "b", "humidity": stated})
+        figure = SimpleNamespace(params=params, config={"figures": {"humidity": shown}})
+        said[shown] = Template(path.read_text(encoding="utf-8")).render(snakemake=figure)
+    assert said[0.0] == said["dry"]
+    assert re.search(r"relative\s+humidity 0\.65", said[0.65])
+    assert "0.0" not in said["dry"].replace("0.01", "")
+    assert "dry air" in said["dry"]
 
 
 class Outputs(dict):

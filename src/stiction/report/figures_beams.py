@@ -147,8 +147,17 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
         panel.set_xlabel("relative humidity RH [–]")
     kinds = [(pair, kind) for pair, (_, below) in zip(pairs, rows_of_pairs, strict=True) for kind in _kinds(below)]
     letter(axes, [f"pair {pair}, {' and '.join(models)}{kind}" for pair, kind in kinds for models in _COLUMNS])
-    figure.legend(*handles(*axes.flat), loc="outside upper center", ncols=5, columnspacing=1.2)
+    _legend_above(figure, axes)
     return figure
+
+
+def _legend_above(figure, axes):
+    """Legend of all panels, with as many columns as fit across the figure."""
+    entries, place = handles(*axes.flat), {"loc": "outside upper center", "columnspacing": 1.2}
+    legend = figure.legend(*entries, ncols=5, **place)
+    if legend.get_window_extent().width > figure.bbox.width:
+        legend.remove()
+        figure.legend(*entries, ncols=4, **place)
 
 
 def _rows_of_panels(pairs, published):
