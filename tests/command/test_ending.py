@@ -136,6 +136,8 @@ def test_where_to_look_counts_warnings_and_names_page_and_table(tmp_path, monkey
     assert first == "Open first: results/figures/overview.png and results/tables/table_3.md."
     fill(results, "devices/S1.html", "devices/C1.html", "tables/stoppers.md")
     assert list(where_to_look(results))[-1] == "Open first: results/devices/C1.html and results/tables/stoppers.md."
+    fill(results, "tables/roughness.md")
+    assert list(where_to_look(results))[-1].endswith("and results/tables/roughness.md."), "which was asked for"
 
 
 def test_what_was_asked_for_is_opened_first(tmp_path, monkeypatch):

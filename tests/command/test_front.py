@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from stiction.command.front import answers, front_page, is_finished
+from stiction.command.front import answers, front_page, is_finished, provenance
 from stiction.config.files import paper
 from stiction.report.devices.pages import Page
 from stiction.run.provenance import record
@@ -65,6 +65,17 @@ def test_the_page_holds_verdict_warnings_provenance_and_what_differs_from_the_pa
     assert "Scans of B2: mine.gwy" in page
     assert "sampling:" not in page, "is that of the paper"
     assert "Not in the model" not in page.split("Provenance")[0]
+
+
+def test_the_page_lists_files_that_git_does_not_know_apart_from_changed_ones():
+    run = {"started": "2026-03-01T08:30:59+00:00", "versions": {}, "config": {"surfaces": {}}}
+    run |= {"machine": dict.fromkeys(("system", "cpu", "cores"), "")}
+    listed = list(provenance(run | {"git": {"commit": "abc", "changed": ["law.py"], "untracked": ["notes"]}}, 1))
+    assert listed[1:4] == [
+        "stiction, commit abc",
+        "Files that are changed in its folder: law.py",
+        "Files that are untracked in its folder: notes",
+    ]
 
 
 def test_what_is_shown_depends_on_the_configuration_and_not_on_files_of_other_runs(tmp_path):

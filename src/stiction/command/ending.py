@@ -24,7 +24,9 @@ class Status(IntEnum):
 _VERDICT = "verdict"
 #: Pages and tables of results to open first, the most important one first.
 _PAGES = ("devices/*.html", "figures/overview.png", "figures/surface_sheet_*.png", "figures/*.png")
-_TABLES = ("tables/safe_lengths.md", "tables/stoppers.md", "tables/table_3.md", "tables/scans.md")
+_TABLES = tuple(
+    f"tables/{name}.md" for name in ("roughness", "test_beams", "safe_lengths", "stoppers", "table_3", "scans")
+)
 #: Where everything goes that Snakemake and its jobs print, relative to the folder of the run.
 PRINTED = Path(".snakemake", "printed.log")
 #: What to do about an error of the code.

@@ -131,6 +131,8 @@ def provenance(run: Mapping[str, Any], number: int) -> Iterator[str]:
     before = f", the last of {number} runs" if number > 1 else ""
     yield f"Started {made.started(run)}{before}; all are in results/provenance.json."
     yield from made.code(run)
+    if run["git"] and run["git"]["untracked"]:
+        yield f"Files that are untracked in its folder: {', '.join(run['git']['untracked'])}"
     yield f"{run['machine']['system']}, {run['machine']['cpu']}, {run['machine']['cores']} cores"
     libraries = {name: version for name, version in run["versions"].items() if version and name != "stiction"}
     yield ", ".join(f"{name} {version}" for name, version in libraries.items())

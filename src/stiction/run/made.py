@@ -19,15 +19,14 @@ def started(run: Mapping[str, Any]) -> str:
 
 
 def code(run: Mapping[str, Any]) -> Iterator[str]:
-    """Version and commit of the code of a run, and the files that differ from the commit."""
+    """Version and commit of the code of a run, and the files of the commit that were changed."""
     package, git = " ".join(filter(None, ["stiction", run["versions"].get("stiction")])), run["git"]
     if git is None:
         yield f"{package}, installed"
         return
     yield f"{package}, commit {git['commit']}"
-    for kind in ("changed", "untracked"):
-        if git[kind]:
-            yield f"Files that are {kind} in its folder: {', '.join(git[kind])}"
+    if git["changed"]:
+        yield f"Files that are changed in its folder: {', '.join(git['changed'])}"
 
 
 def by_the_last_run(record: Path) -> list[str]:

@@ -258,7 +258,7 @@ def test_a_saved_page_ends_with_date_version_and_commit_of_the_last_run_and_diff
     save, page, lines = pages.STAGES[0].save, Page("S1", {}, ["Build it."]), []
     for day, commit in (("01", "abc"), ("02", "def")):
         runs = [{"started": f"2026-03-{day}T08:30:59+00:00", "versions": {"stiction": "1.2"}} for day in ("31", day)]
-        runs[0]["git"], runs[1]["git"] = None, {"commit": commit, "changed": ["law.py"], "untracked": []}
+        runs[0]["git"], runs[1]["git"] = None, {"commit": commit, "changed": ["law.py"], "untracked": ["mine.gwy"]}
         (tmp_path / "provenance.json").write_text(json.dumps(runs))
         save(page, {"html": str(tmp_path / "devices" / "S1.html")})
         lines.append((tmp_path / "devices" / "S1.html").read_text(encoding="utf-8").splitlines())
@@ -268,6 +268,7 @@ def test_a_saved_page_ends_with_date_version_and_commit_of_the_last_run_and_diff
             "changed in its folder: law.py",
         ):
             assert part in "".join(lines[-1])
+        assert "mine.gwy" not in "".join(lines[-1]), "is no code"
     assert sum(one != other for one, other in zip(*lines, strict=True)) == 2
 
 
