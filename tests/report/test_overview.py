@@ -67,6 +67,14 @@ def curves(panel):
     return {label: np.array(found[0].get_data(orig=False), float) for label, found in bars(panel).items()}
 
 
+def test_humid_air_is_on_its_side_of_the_line_beside_dry_air():
+    released = {(humidity, "NG"): beams() for humidity in (0.0, 0.67)}
+    panel = overview("b", character(), forces(), beams(), released, PUBLISHED[:0]).axes[3]
+    (line,) = [one for one in panel.lines if one.get_linestyle() == ":"]
+    assert panel.get_xticks()[0] < line.get_xdata()[0] < curves(panel)["computed here"][0][0]
+    assert curves(panel)["computed here"][0][0] == pytest.approx(0.67)
+
+
 def test_overview_is_written_without_a_warning_and_no_panel_covers_another(tmp_path):
     figure = draw()
     save(figure, tmp_path / "overview.png", tmp_path / "overview.pdf")

@@ -125,7 +125,8 @@ def _lengths(panel, released, published):
     if dry.any():
         panel.errorbar(humidity[dry], mean[dry], deviation[dry], fmt="o", **style)
     style |= {"fmt": "o-", "label": "computed here"}
-    panel.errorbar(humidity[~dry] - _APART, mean[~dry], deviation[~dry], **style)
+    aside = _APART if len(published) else 0.0
+    panel.errorbar(humidity[~dry] - aside, mean[~dry], deviation[~dry], **style)
     panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$ [µm]")
     panel.margins(y=0.12)
     if len(humidity) > _FEW:
