@@ -1,21 +1,26 @@
 """Time and memory of the jobs of a run, rule by rule, from their logs: ``make jobs``. Prints a table."""
 
+import json
 import re
 import sys
 from pathlib import Path
 
+from stiction.config import memory
 from stiction.plan.graph import stages
+from stiction.plan.plan import Plan
+from stiction.plan.stage import WILDCARDS, expression
 
 ROOT = Path(__file__).parents[2]
 TOOK = re.compile(r"^took ([\d.]+) s, (\d+) MB$", re.MULTILINE)
 
 
-def rules():
-    """For every stage: name, pattern of its logs, and the requested memory [MB] and minutes."""
-    default = (ROOT / "profiles" / "default" / "config.yaml").read_text()
-    memory = int(re.search(r"mem_mb=(\d+)", default)[1])
+def rules(results):
+    """For every stage: name, pattern of its logs, and the memory [MB] and minutes that its last run requested."""
+    config = json.loads((results / "provenance.json").read_text(encoding="utf-8"))[-1]["config"]
+    plan = Plan(config)
     for name, (stage, _) in sorted(stages().items()):
-        yield name, re.compile(re.sub(r"{\w+}", "[^/]+", stage.log)), memory, stage.minutes
+        least = stage.memory(plan) if stage.memory else 0.0
+        yield name, expression(stage.log, WILDCARDS), memory.of_job(config, least), stage.minutes
 
 
 def costs(results):
@@ -23,20 +28,20 @@ def costs(results):
     logs = {
         str(path.relative_to(results / "logs"))[:-4]: path.read_text() for path in (results / "logs").rglob("*.log")
     }
-    for name, pattern, memory, minutes in rules():
+    for name, pattern, requested, minutes in rules(results):
         own = [log for log in logs if pattern.fullmatch(log)]  # other rules may write logs of the same names
         took = [TOOK.findall(text)[-1] for log in own if TOOK.search(text := logs.pop(log))]
         if took:
             seconds, megabytes = (list(map(float, column)) for column in zip(*took, strict=True))
-            yield name, len(took), max(seconds), sum(seconds), max(megabytes), memory, minutes
+            yield name, len(took), max(seconds), sum(seconds), max(megabytes), requested, minutes
 
 
 def table(results):
     """The table in Markdown."""
     lines = ["| rule | jobs | longest [s] | all [s] | most memory [MB] | requested [MB] | requested [min] |"]
     lines += ["|---|---|---|---|---|---|---|"]
-    for name, jobs, longest, seconds, megabytes, memory, minutes in costs(results):
-        lines += [f"| {name} | {jobs} | {longest:.1f} | {seconds:.0f} | {megabytes:.0f} | {memory} | {minutes} |"]
+    for name, jobs, longest, seconds, megabytes, requested, minutes in costs(results):
+        lines += [f"| {name} | {jobs} | {longest:.1f} | {seconds:.0f} | {megabytes:.0f} | {requested} | {minutes} |"]
     return "\n".join(lines) + "\n"
 
 
