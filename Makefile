@@ -88,7 +88,7 @@ asperities pressing: $(VENV)/ready
 sealed: $(VENV)/ready
 	$(STICTION) devices examples/sealed.yaml --directory runs/sealed -- $(ARGS)
 
-# Cracks on force curves themselves, compared with those on Eq. (12): ten minutes of one core.
+# Cracks on force curves themselves, compared with those on Eq. (12): twenty minutes of one core.
 tails: $(VENV)/ready
 	$(BIN)/python tests/benchmarks/tails.py $(ARGS) | tee docs/tables/tails.md
 
