@@ -123,9 +123,9 @@ def test_the_paper_runs_all_its_studies_and_a_configuration_without_studies_none
 def test_without_studies_all_other_jobs_are_the_same():
     few = without_studies()
     assert {"table_3", "figure_14", "beams", "verdict"} <= {job.stage.name for job in few.values()}
-    reduced = {"checks", "model_limits"}  # which read the results of studies
+    reduced = {"checks", "model_limits"}  # which read the results of studies, and the latter says how to run one
     for name, job in few.items():
-        assert job.settings == JOBS[name].settings
+        assert job.settings == JOBS[name].settings or job.stage.name == "model_limits"
         assert job.inputs == JOBS[name].inputs or job.stage.name in reduced
 
 
