@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from snakemake.iocontainers import Namedlist
 
 from stiction.config.files import load
 from stiction.config.relations import schema
@@ -90,6 +91,14 @@ def test_the_settings_of_every_job_are_those_that_its_stage_takes():
     for job in JOBS.values():
         plain = json.loads(json.dumps(job.settings))  # as Snakemake passes them on
         job.stage.converted(plain)
+
+
+def test_no_input_or_file_of_a_job_has_a_name_that_snakemake_reserves():
+    """As ``update`` is: a workflow with such a job ends before it starts."""
+    reserved = set(dir(Namedlist)) - {"index", "sort"}
+    assert "update" in reserved
+    for name, job in JOBS.items():
+        assert not reserved & {*job.inputs, *job.stage.files}, name
 
 
 def test_a_name_of_no_stage_is_refused():

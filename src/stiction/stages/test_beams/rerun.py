@@ -118,7 +118,7 @@ def _inputs(plan, at):
     sides = dict.fromkeys(side for patch in patches for side in plan.sides(patch.pair))
     ratios = {patch.name: of_pair(plan, PairInAir(patch.pair).pair).get("model_error") for patch in patches}
     return {
-        "update": f"devices/test_beams/{at.device}",
+        "updated": f"devices/test_beams/{at.device}",
         "budgets": {key: name for key, (*_, name) in cases.items()},
         "contacts": {patch.name: contact_of(of, case) for patch, (of, case) in patches.items()},
         "model_errors": {name: ratio for name, ratio in ratios.items() if ratio},
@@ -141,7 +141,7 @@ def _settings(plan, at):
 def _computed(data, _at, settings):
     """Contacts with the errors of the update, and everything that is computed again; or the reason why it is not."""
     surfaces = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
-    update = data["update"]
+    update = data["updated"]
     errors, contacts, model_errors = errors_of(update), {}, data["model_errors"]
     wanted = [
         corrected(of_job(own), {"model_error": model_errors[patch]} if patch in model_errors else {})
