@@ -1,6 +1,7 @@
 """The command line, without Snakemake: what is asked of it, and what is refused before it starts."""
 
 import json
+import os
 import re
 import sys
 from pathlib import Path
@@ -140,6 +141,23 @@ def test_without_snakemake_the_command_says_what_to_install(asked, capsys, monke
     assert "-m pip install 'snakemake[reports]" in capsys.readouterr().err
     assert asked == []
     assert main(["check", "mine.yaml"]) == 0, "needs no Snakemake"
+
+
+def test_errors_of_a_quiet_run_go_to_a_file_until_it_ends(tmp_path, capfd):
+    with launch._kept_errors(tmp_path) as terminal:
+        os.write(2, b"of a job\n")
+        terminal.write("shown\n")
+    os.write(2, b"after it\n")
+    assert capfd.readouterr() == ("", "shown\nafter it\n")
+    assert launch.printed_last(tmp_path) == "of a job"
+
+
+@pytest.mark.parametrize(("quiet", "progress"), [(True, True), (True, False), (False, True)])
+def test_only_a_quiet_run_shows_its_progress_in_a_line(tmp_path, monkeypatch, quiet, progress):
+    shown = []
+    monkeypatch.setattr("snakemake.cli.main", lambda _: shown.append(launch.RUN.changed))
+    assert launch.snakemake([], tmp_path, quiet, progress) == (0, False)
+    assert [display is not None for display in shown] == [quiet and progress]
 
 
 def test_a_path_of_python_that_snakemake_does_not_support_is_refused(asked, capsys, monkeypatch):

@@ -189,6 +189,8 @@ def test_advice_is_given_where_there_is_a_value_to_advise():
     names = {"type": "array", "items": {"type": "string"}}
     assert messages._hint(("pairs",), {"b": None}, names) == "; write [b]"
     assert messages._hint(("pairs",), {"b": {"gap_um": 2}}, names) == ""
+    ends = pair | {"examples": [[1, 8]]}
+    assert [messages._hint(("rms_nm",), value, ends) == "" for value in (3, [3, 3, 3])] == [False, True]
     assert messages._hint(("pairs",), "no", names) == "; write ['no']", "YAML reads no as a truth value"
 
 

@@ -335,6 +335,13 @@ def test_the_strip_of_a_tip_holds_the_wedge_of_the_flattest_beam_and_its_film():
     assert devices.tips("C3").length > 1.5 * devices.tips("C1").length
 
 
+def test_tips_reach_into_the_film_of_the_wettest_air_of_a_device_and_its_chart():
+    for humidities, more, wettest in (([0.44, 0.95], {}, 0.95), ([0.44], {"chart": CHART}, 0.9)):
+        devices = DevicePlan(load({"devices": {"C1": C1 | {"humidities": humidities} | more}}))
+        film = 1e9 * float(meniscus_height(wettest, 300))
+        assert film + 10.2 <= devices.tilt(devices.tips("C1"))["reach_nm"] < 1.2 * (film + 10.3)
+
+
 def test_slopes_of_tips_cover_charts_and_devices_share_strips_of_one_length():
     alone, charted = (
         DevicePlan(load({"devices": {"C1": C1 | chart}}))
