@@ -118,5 +118,7 @@ def test_a_browser_shows_the_answer_and_the_figures_of_a_page(run, device):
         widths = browser.run("return [...document.images].map(picture => picture.naturalWidth)")
         assert len(widths) == len(re.findall("<img", path.read_text(encoding="utf-8"))) >= 2
         assert min(widths) > 600
-        assert browser.run("return document.body.scrollWidth <= window.innerWidth")
+        for width in (1440, 390):
+            browser.resize(width)
+            assert browser.run("return document.documentElement.scrollWidth") <= width
         assert browser.errors() == []
