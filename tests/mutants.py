@@ -404,8 +404,8 @@ def caught(module, mutants, copies):
 
 
 def run(mutants):
-    """Mutants that no test catches; each mutant is printed when its module is done."""
-    names, survivors = sorted({mutant.module for mutant in mutants}), []
+    """Mutants that no test catches, and modules whose tests fail without one; each is printed once it is known."""
+    names, survivors, failing = sorted({mutant.module for mutant in mutants}), [], []
     os.environ["OMP_NUM_THREADS"] = "1"
     PROCESSES.set_forkserver_preload(LIBRARIES)
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -414,10 +414,14 @@ def run(mutants):
             copies.put(Copy(Path(folder) / str(worker)))
         tasks = [pool.submit(caught, name, [m for m in mutants if m.module == name], copies) for name in names]
         for task in as_completed(tasks):
+            if error := task.exception():
+                print(error, flush=True)  # noqa: T201
+                failing.append(names[tasks.index(task)])
+                continue
             for mutant, test in task.result().items():
                 print(f"caught    {mutant}  {test}" if test else f"SURVIVED  {mutant}", flush=True)  # noqa: T201
                 survivors += [] if test else [mutant]
-    return survivors
+    return survivors, failing
 
 
 def main():
@@ -434,10 +438,11 @@ def main():
     mutants = sample(names, options.number, options.seed) or parser.error(f"no code in {' '.join(wanted)}")
     if options.list:
         sys.exit("\n".join(map(str, mutants)))
-    survivors = run(mutants)
-    share = 1 - len(survivors) / len(mutants)
-    print(*map(str, survivors), f"{share:.1%} of {len(mutants)} mutants caught", sep="\n")  # noqa: T201
-    sys.exit(share < REQUIRED)
+    survivors, failing = run(mutants)
+    tried = sum(mutant.module not in failing for mutant in mutants)
+    share = 1 - len(survivors) / max(tried, 1)
+    print(*map(str, survivors), f"{share:.1%} of {tried} mutants caught", sep="\n")  # noqa: T201
+    sys.exit(share < REQUIRED or bool(failing))
 
 
 if __name__ == "__main__":
