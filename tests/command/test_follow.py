@@ -110,6 +110,20 @@ def test_a_refusal_is_told_without_its_place_in_a_file(text):
     assert heard(record(text, logging.ERROR, event="error")).refusal == "The folder\nis used."
 
 
+@pytest.mark.parametrize(
+    ("error", "told", "fault"),
+    [
+        ("NotPlanned: x.nc cannot be computed", "x.nc cannot be computed", False),
+        ("KeyError: 'seed'", "KeyError: 'seed'", True),
+    ],
+)
+def test_an_error_of_the_plan_is_told_without_what_snakemake_writes_around_it(error, told, fault):
+    text = 'InputFunctionException in rule r in file "/a/Snakefile", line 5:\n'
+    text += f'Error:\n  {error}\nWildcards:\n  pair=a\nTraceback:\n  File "/a", line 1, in f'
+    run = heard(record(text, logging.ERROR, event="error", exception="InputFunctionException"))
+    assert (run.refusal, bool(run.fault)) == (told, fault)
+
+
 def test_warnings_and_unknown_reports():
     run = heard(record("x was computed", logging.WARNING), record(event="rulegraph"), record("Building DAG of jobs..."))
     assert run.warnings == ["x was computed"]

@@ -11,7 +11,7 @@ from stiction.config.files import load
 from stiction.config.relations import schema
 from stiction.plan.graph import Graph, stages
 from stiction.plan.plan import Plan
-from stiction.plan.planner import Planner
+from stiction.plan.planner import NotPlanned, Planner
 from stiction.plan.stage import File, Stage
 
 ROOT = Path(__file__).parents[2]
@@ -174,6 +174,21 @@ def test_the_workflow_plans_the_jobs_of_the_declarations(planner):
             f"results/{inner}.nc" for names in job.inputs.values() for inner in listed(names) if type(inner) is str
         ]
         assert [file for files in planned["files"].values() for file in files if file.endswith(".nc")] == datasets
+
+
+def test_a_file_with_a_name_that_the_configuration_lacks_is_refused_in_words(planner):
+    pressed = next(rule for rule in planner.rules if rule["name"] == "pressed")
+    assert planner.inputs(pressed, {"pair": "c"}) == planner.job("pressed", {"pair": "c"})["files"]
+    with pytest.raises(NotPlanned, match="results/studies/pressing/a.nc .* the configuration has no 'a' for it"):
+        planner.inputs(pressed, {"pair": "a"})
+    assert planner.settings("results/studies/pressing/a.nc") is None
+
+
+def test_a_key_that_a_declaration_lacks_is_no_fault_of_the_name_of_a_file(planner, monkeypatch):
+    pressed = next(rule for rule in planner.rules if rule["name"] == "pressed")
+    monkeypatch.setattr(Planner, "job", lambda *_: {}["seed"])
+    with pytest.raises(KeyError, match="seed"):
+        planner.inputs(pressed, {"pair": "a"})
 
 
 def test_a_repeated_plan_needs_no_declaration_and_a_change_of_the_configuration_does(planner, tmp_path, monkeypatch):

@@ -118,7 +118,7 @@ def inputs_of(rule):
     """Input function of the rule of a stage."""
 
     def inputs(wildcards):
-        files = planner.job(rule["name"], wildcards)["files"]
+        files = planner.inputs(rule, dict(wildcards))
         written = {file.format(**dict(wildcards)) for file in rule["files"].values()}
         return files | caption_of(rule) | ({"stale": STALE} if written & unusable().keys() else {})
 

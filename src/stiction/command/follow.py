@@ -13,6 +13,9 @@ from logging import WARNING, LogRecord
 #: First line of an error of Snakemake, and the places in files that follow the message.
 _ORIGIN = re.compile(r"\A\w+( in rule \S+)?( in file \"[^\n]*)?:\n|(\n  File \"[^\n]*)+\s*\Z")
 
+#: An exception of the plan and its message, in what Snakemake writes around them.
+_OF_PLAN = re.compile(r"\AError:\n  (\w+): (.*)\nWildcards:\n", re.DOTALL)
+
 #: Rules of budgets, and of contacts that budgets alone read; study slopes reads the last one as well.
 _BUDGETS = {
     *("budget", "tip_budget", "test_beam_budget", "test_beam_tip_budget"),
@@ -151,9 +154,11 @@ class Run:
         """An error of the run itself; that of a command which a run starts says less than what the command printed."""
         kind = getattr(record, "exception", "")
         if kind != "CalledProcessError":
-            self.refusal = _ORIGIN.sub("", str(record.msg)).strip()
+            said = _ORIGIN.sub("", str(record.msg)).strip()
+            if of_plan := _OF_PLAN.match(said):
+                kind, said = of_plan.groups()
             self.fault = str(record.msg) if is_fault(kind) else ""
-            self.refusal = f"{kind}: {self.refusal}" if self.fault else self.refusal
+            self.refusal = f"{kind}: {said}" if self.fault else said
 
     def seconds_left(self, now: float) -> float | None:
         """Estimate of the time that the run still takes [s]; ``None`` while too little is known, or when it is over.

@@ -22,6 +22,10 @@ from stiction.run.provenance import version_of
 RESULTS, DATASET = "results/", ".nc"
 
 
+class NotPlanned(ValueError):
+    """A file is asked for that no job of the configuration writes."""
+
+
 class Planner:
     """Rules and jobs of one configuration: complete, valid and in normal form.
 
@@ -144,6 +148,23 @@ class Planner:
             "inputs": {name: [label, keys] for name, (_, label, keys) in inputs.items()},
             "settings": job.settings,
         }
+
+    def inputs(self, rule: Mapping[str, Any], wildcards: Mapping[str, str]) -> dict[str, list[str]]:
+        """Input files of a job of a rule.
+
+        Raises
+        ------
+        NotPlanned
+            If the configuration does not have a name that the files of the job have.
+        """
+        try:
+            return self.job(rule["name"], wildcards)["files"]
+        except KeyError as missing:
+            (name,) = missing.args
+            if not any(f"{value}_".startswith(f"{name}_") for value in wildcards.values()):
+                raise
+            file = next(iter(rule["files"].values())).format(**wildcards)
+            raise NotPlanned(f"{file} cannot be computed: the configuration has no {name!r} for it") from missing
 
     def _input(self, names):
         """Files of an input, name of the stage of its datasets, and its structure."""
