@@ -298,6 +298,10 @@ class Watch:
     def __init__(self, found):
         self.found, self.failed, self.seconds = found, "", {}
 
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_pycollect_makeitem(self, collector):
+        return [] if collector.path.is_relative_to(Path("src").resolve()) else None  # of the package, only doctests
+
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items):
         items.sort(key=lambda item: -self.found.get(item.nodeid, 0))

@@ -123,6 +123,7 @@ found = xr.Dataset(
     },
 )
 storage.save(found, path, "contact", {})
+curves.tip_forces(found.isel(sample=[0]), 0.67, Water(300.0))  # compiles, which takes memory of its own
 del found
 before = peak_memory()
 held = [storage.load(path, "contact") for _ in range(contacts)]
