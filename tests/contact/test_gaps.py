@@ -43,6 +43,8 @@ def test_pressure_of_flats_is_that_of_lennard_jones():
     distance = AT_REST + gaps
     expected = -flats.hamaker_constant / (6 * np.pi) * (distance**-3 - AT_REST**6 / distance**9)
     assert_allclose(slope, expected, rtol=1e-6, atol=1e3)
+    tension = -np.gradient(flats.work(np.linspace(0, 0.2, 20_001) * NM), 1e-5 * NM)
+    assert_allclose(tension.max(), flats.largest_pressure, rtol=1e-6)
 
 
 def test_summits_and_gaps_together_do_the_work_of_eq_10_on_flats():

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from scipy.special import ndtr
+from scipy.special import ndtr, ndtri
 from scipy.stats import binom
 
 from stiction.devices import inference
@@ -229,6 +229,8 @@ def test_normal_scores_are_those_of_the_lengths():
     lengths = np.random.default_rng(1).lognormal(0.2, 0.1, 100_000)
     at = 0.2 + 0.1 * np.array([-5, -2.5, -1, 0, 1, 2, 4])
     assert_allclose(inference.score(lengths)(at), inference.lognormal(np.exp(0.2), 0.1)(at), rtol=0.05, atol=0.02)
+    few = np.exp(0.2 + 0.1 * ndtri((np.arange(400) + 0.5) / 400))  # goes on beyond the longest one, at 3.0
+    assert_allclose(inference.score(few)(0.2 + 0.1 * np.array([2, 3, 4])), [2, 3, 4], rtol=0.02)
     skewed = np.sort(np.exp(np.random.default_rng(2).exponential(0.2, 10_000)))
     shares = ndtr(inference.score(skewed)(np.log(skewed[[500, 5000, 9000]])))
     assert_allclose(shares, [0.05, 0.5, 0.9], atol=0.01)

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.special import ndtri
+from scipy.special import ndtr, ndtri
+from scipy.stats import beta
 from standard_errors import ALLOWED, errors_off
 
 from stiction.devices import tail
@@ -65,6 +66,13 @@ def test_a_sum_of_exponentials_draws_the_lowest_order_statistics():
 def test_simulated_errors_have_no_bias_within_the_fitted_part():
     errors, _ = tail.scaled_errors(400, 0.02, np.random.default_rng(5), 20_000)
     assert errors_off(errors, 0) < ALLOWED + 0.002 * np.sqrt(20_000) / errors.std()  # Blom's positions err by 0.002
+
+
+def test_simulated_errors_where_the_fitted_scores_have_their_mean_are_those_of_normal_order_statistics():
+    scores = tail.normal_scores(60)
+    errors, _ = tail.scaled_errors(60, ndtr(scores.mean()), np.random.default_rng(6), 100_000)
+    expected = np.mean([beta(rank, 61 - rank).expect(ndtri) for rank in (1, 2, 3)])
+    assert errors_off(errors, expected - scores.mean()) < ALLOWED
 
 
 def test_a_heavier_end_is_not_a_line_and_the_fit_follows_its_lowest_part():

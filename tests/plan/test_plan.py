@@ -228,6 +228,9 @@ def test_coatings_of_both_surfaces_keep_solids_apart_in_the_gaps_and_each_its_ow
     assert none.air.water("b") == plan(attraction={"reach": "all"}).air.water("b")
     assert coated.materials.in_words("b") == [["Thin", ["coating"]], ["Thick", ["coating", "contact angle"]]]
     assert none.materials.in_words("b") == [["Thin", []]]
+    soft = plan(materials=bodies, surfaces={"B2": {"material": "Thin"}}, solid={"young_modulus_GPa": 70})
+    elastic = ["Poisson's ratio", "Young's modulus"]
+    assert soft.materials.in_words("b") == [["Thin", ["coating"]], ["the solid", elastic]]
 
 
 def test_coatings_that_attract_are_stated_for_the_gaps_and_for_the_summits_and_change_nothing_else():

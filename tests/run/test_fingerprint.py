@@ -109,6 +109,13 @@ def test_a_module_that_does_not_affect_results_does_not_count(package, monkeypat
     assert list(of_script(package)) == ["script.py", "stiction.near"]
 
 
+def test_neither_declarations_nor_settings_of_jobs_count_for_any_figure_or_table():
+    counted = {name for path in fingerprint.PACKAGE.glob("report/**/*.py") for name in fingerprint.fingerprint(path)}
+    assert "stiction.stages.devices.device_warnings" in counted
+    settings = {"stiction.plan.stage", "stiction.plan.names", "stiction.stages.devices.patch_settings"}
+    assert counted.isdisjoint(settings)
+
+
 def test_the_hash_is_the_same_in_this_version_of_python(tmp_path):
     path = tmp_path / "sample.py"
     path.write_text(SAMPLE)

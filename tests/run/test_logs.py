@@ -1,13 +1,15 @@
 """Logs of jobs."""
 
+import resource
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from stiction.progress import progress
-from stiction.run.logs import logged, recorded
+from stiction.run.logs import logged, peak_memory, recorded
 
 
 def test_a_successful_job_logs_progress_warnings_time_and_memory(tmp_path):
@@ -38,6 +40,14 @@ def test_the_logged_memory_is_the_peak(tmp_path):
         return int((tmp_path / "job.log").read_text().split()[-2])
 
     assert peak(128) - peak(0) == pytest.approx(128, abs=5)
+
+
+@pytest.mark.parametrize(("platform", "unit"), [("darwin", 1), ("linux", 1024)])
+def test_the_peak_that_the_system_counts_is_in_megabytes_on_every_platform(monkeypatch, platform, unit):
+    monkeypatch.setattr(Path, "exists", lambda _: False)
+    monkeypatch.setattr(sys, "platform", platform)
+    monkeypatch.setattr(resource, "getrusage", lambda _: SimpleNamespace(ru_maxrss=300 * 2**20 // unit))
+    assert peak_memory() == 300
 
 
 def test_a_failed_job_logs_its_traceback_and_prints_one_line(tmp_path):

@@ -67,8 +67,9 @@ def test_a_truncated_file_is_rejected_by_name(tmp_path, size):
         storage.load(tmp_path / "x.nc", "forces")
 
 
-def test_a_foreign_file_is_rejected(tmp_path):
-    dataset().to_netcdf(tmp_path / "x.nc")
+@pytest.mark.parametrize("stage", ["", "forces"])
+def test_a_foreign_file_is_rejected(tmp_path, stage):
+    dataset().assign_attrs(stage=stage).to_netcdf(tmp_path / "x.nc")
     with pytest.raises(storage.DataError, match="no result of this study"):
         storage.load(tmp_path / "x.nc", "forces")
 

@@ -60,6 +60,11 @@ def test_beyond_the_measured_quantiles_heights_are_straight_lines_in_the_score()
     np.testing.assert_allclose(np.diff(low) / 2.5, (near[3] - near[2]) / 0.5)
 
 
+def test_an_outermost_quantile_with_just_enough_areas_beyond_it_is_used():
+    for score in SCORES[SCORES >= 1]:
+        assert measured_density(SCORES, 10 / ndtr(-score)).scores[-1] == score
+
+
 def test_small_scans_have_no_measured_density():
     assert measured_density(SCORES, 70).scores[-1] < 1.2
     with pytest.raises(ValueError, match="heights of 40 independent areas do not give a density"):
