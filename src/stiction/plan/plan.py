@@ -140,7 +140,7 @@ class Plan:
 
     def quantities(self, surface: str) -> tuple[str, ...]:
         """Quantities of a surface that have slopes, see `stiction.analysis.shifts`; those of scans include modes."""
-        modes = MODE_QUANTITIES[1:] if surface in self.scans.surfaces else ()
+        modes = MODE_QUANTITIES if surface in self.scans.surfaces else ()
         return tuple(dict.fromkeys((*quantities(self.config["surfaces"][surface]), *modes)))
 
     @cached_property
