@@ -61,7 +61,9 @@ def shifted():
     """Datasets of less and more skewness, and their settings."""
     plain = job_settings(small.PLAN, "studies/sensitivity/contact/b_rms_less") | {"moments": ["skewness"]}
     settings = small.settings_of(sensitivity_contact, plain)
-    return sensitivity_contact.compute(small.surfaces(), "b", settings), settings
+    of_heights, spectra = zip(*small.surfaces(), strict=True)
+    data, at = {"heights": of_heights, "spectrum": spectra}, SimpleNamespace(pair="b")
+    return stage_of(sensitivity_contact).compute(data, at, settings), settings
 
 
 def test_less_and_more_of_a_moment_bracket_that_of_the_surface(shifted):

@@ -8,6 +8,7 @@ from numpy.testing import assert_array_equal
 from plans import job_settings
 
 from stiction.contact import elements
+from stiction.plan.graph import Results
 from stiction.stages.contact import full_contact
 from stiction.stages.contact.pairs import bodies
 from stiction.stages.laws import forces
@@ -17,7 +18,7 @@ SETTINGS = small.settings_of(full_contact, job_settings(small.PLAN, "studies/ful
 
 @cache
 def study():
-    return full_contact.compute(small.surfaces(), "b", SETTINGS)
+    return Results.of(small.PLAN.config)["studies/full_contact/b"]
 
 
 def test_the_humidities_are_the_lowest_the_middle_and_the_highest_of_the_pair():

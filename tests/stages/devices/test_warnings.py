@@ -296,7 +296,9 @@ def test_a_curve_of_a_chart_has_the_warnings_of_its_shortest_length(warned):
 
 
 def test_the_air_of_the_shortest_length_of_a_curve_counts():
-    along = [charted(700 * UM), charted(600 * UM, film=2 * UM)]
+    less_certain = xr.DataArray([1.0, 0.7], dims="share")
+    along = [charted(700 * UM), charted(800 * UM, film=2 * UM)]
+    along[1]["safe_length"] = along[1].safe_length * less_certain  # longer than the others at the largest share alone
     of = device_warnings.OfDevice(C1)
     assert (
         "sum of film height and roughness"

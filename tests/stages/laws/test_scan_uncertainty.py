@@ -50,7 +50,7 @@ ERRORS = Errors(
     scans=1,
 )
 WANTED = replace(
-    small.settings_of(slopes, job_settings(small.PLAN, "studies/sensitivity/b_rms")), humidities=HUMIDITIES
+    small.settings_of(scan_uncertainty, job_settings(small.PLAN, "studies/scan_uncertainty/b")), humidities=HUMIDITIES
 )
 
 

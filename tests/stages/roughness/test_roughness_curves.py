@@ -145,6 +145,10 @@ def test_water_alone_holds_smooth_stoppers_by_its_tension_and_rough_ones_less():
     assert float(found.estimate[-1]) < 0.5 * flooded
 
 
+def test_contacts_of_a_curve_are_deleted_once_they_have_been_read():
+    assert all(stage.temporary for stage in contacts.STAGES)
+
+
 def test_a_share_that_needs_more_stoppers_than_were_drawn_has_them():
     more = Plan(stiction.load(SECTIONS, {"devices": {"S1": {"requirement": {"share": 1e-3}}}}))
     settings = Graph(more).job("devices/contact/roughness/S1_0").settings

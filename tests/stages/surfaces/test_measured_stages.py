@@ -133,6 +133,13 @@ def test_an_estimate_comes_back_from_its_dataset(through_a_file):
     assert_array_equal(found.line_jump, expected.line_jump[::-1])
 
 
+def test_an_estimate_states_how_well_scans_of_one_size_and_sizes_agree():
+    stated = np.arange(12.0).reshape(2, 2, 3)
+    found = estimate.layout(dataclasses.replace(object_of_b2(), homogeneity=stated[0], agreement=stated[1]))
+    for name, (chi2, p) in zip(("homogeneity", "agreement"), stated, strict=True):
+        assert_array_equal([found[f"{name}_chi2"], found[f"{name}_p"]], [chi2, p])
+
+
 def test_an_estimate_of_a_published_surface_is_within_its_errors():
     error = np.sqrt(np.diag(b2().covariance))
     assert np.all(np.abs(b2().moments - truth("B2")) < 4 * error)
