@@ -13,6 +13,7 @@ from stiction.plan.graph import Graph, stages
 from stiction.plan.plan import Plan
 from stiction.plan.planner import NotPlanned, Planner
 from stiction.plan.stage import File, Stage
+from stiction.report.style import STUDIES
 
 ROOT = Path(__file__).parents[2]
 #: The paper, and the devices of the examples, which need every stage that no measured surface needs.
@@ -142,6 +143,21 @@ def test_every_study_of_the_paper_can_be_selected():
     listed = SCHEMA["properties"]["run"]["properties"]["studies"]["items"]["enum"]
     assert {*listed, "slopes"} == set(PLAN.config["studies"]), "slopes are part of errors, not a study of their own"
     assert {stage.study for stage, _ in stages().values()} == {*listed, ""}
+
+
+def test_every_figure_has_its_caption_and_those_of_studies_of_the_paper_are_also_study_figures():
+    for name, (stage, _) in stages().items():
+        if "png" in stage.files:
+            assert (ROOT / "workflow" / "report" / f"{stage.shown.caption}.rst").is_file(), name
+            of_paper = stage.shown.category == STUDIES and stage.targets != (stage.study,)
+            assert {*stage.targets} >= {"figures", "study_figures"} if of_paper else stage.targets, name
+
+
+@pytest.mark.parametrize(("figure", "table"), [("chart", "chart"), ("risk", "safe_lengths")])
+def test_figures_of_devices_have_the_data_and_warnings_of_their_tables(figure, table):
+    drawn, written = GRAPH.job(f"figures/{figure}.png").inputs, GRAPH.job(f"tables/{table}.md").inputs
+    assert {name: drawn[name] for name in drawn if name != "style"}.items() <= written.items()
+    assert drawn["warnings"]
 
 
 def test_without_pairs_only_devices_and_scans_are_wanted(tmp_path):

@@ -7,6 +7,9 @@ from numpy.testing import assert_allclose
 
 from stiction.analysis.convergence import KOLMOGOROV_MEAN, sampling_distance
 from stiction.analysis.mesh import Arrest
+from stiction.config.files import load
+from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
 from stiction.report import figures_studies, tables_studies
 from stiction.report.style import save
 from stiction.stages.beams import mesh as study_mesh
@@ -142,6 +145,14 @@ def bars(panel):
     return [np.ptp(segment[:, 1]) / 2 for segment in container[2][0].get_segments()]
 
 
+@pytest.mark.parametrize("pair", ["a", "b"])
+def test_only_the_pair_of_published_sensitivities_is_compared_with_them(pair):
+    job = Graph(Plan(load({"figures": {"pair": pair}}))).job("figures/figure_13.png")
+    found = {moment: sensitivity(-6.0) for moment in job.inputs["studies"]}
+    panel = job.compute({"studies": found, "published": job.inputs["published"]}).axes[0]
+    assert [note.get_text() for note in panel.texts] == (["paper, kurtosis", "paper, skewness"] if pair == "b" else [])
+
+
 def test_error_bars_of_figure_13_are_standard_errors():
     assert_allclose(bars(figures_studies.sensitivities({"rms": sensitivity(-6.0)}, {}).axes[0]), 0.1)
 
@@ -179,6 +190,13 @@ def test_figure_16_labels_pairs_without_contact():
 def test_figure_18_shows_the_error_of_the_samples():
     panel = figures_studies.order_convergence(orders(2, 4)).axes[-1]
     assert any(np.allclose(line.get_ydata(), sampling_distance(50, 400)) for line in panel.get_lines())
+
+
+def test_figure_18_shows_the_distance_of_every_coordinate_at_every_order():
+    found = orders(2, 4)
+    *shown, _ = (line.get_xydata().T for line in figures_studies.order_convergence(found).axes[-1].get_lines())
+    for eta, points in zip(found.eta, shown, strict=True):
+        assert_allclose(points, [found.order, found.distance.sel(target="kernels", eta=eta)])
 
 
 @pytest.mark.parametrize(("dimension", "marginals"), [(1, 1), (2, 2), (3, 3), (4, 3)])
@@ -226,6 +244,8 @@ def test_the_inset_of_figure_19_shows_the_shortest_elements_and_those_of_the_pap
     low, high = inset.get_xlim()
     assert low < 1e6 * min(lengths) < high
     assert high == pytest.approx(1.3 * max(7.5, 1e6 * min(lengths)))
+    (shaded,) = inset.patches
+    assert_allclose([shaded.get_y(), shaded.get_y() + shaded.get_height()], [-2.5, 2.5])  # %, stated in the paper
 
 
 def test_base_and_experiment_lie_above_the_other_variants():
@@ -257,6 +277,21 @@ def test_the_figure_of_the_variants_shows_the_numbers_of_the_table():
     axes = figures_studies.variants(VARIANTS, PUBLISHED).axes
     assert_allclose(heights(axes[1])[0], table.loc["b", "van_der_waals_none"].shift_percent)
     assert_allclose(heights(axes[2])[0], table.loc["a", "base"].published_deviation_percent)
+
+
+def test_error_bars_of_the_variants_are_the_standard_errors_of_the_table():
+    table = tables_studies.variants(VARIANTS, PUBLISHED).frame.set_index(["pair", "variant"])
+    panel = figures_studies.variants(VARIANTS, PUBLISHED).axes[1]
+    assert_allclose(bars(panel), table.loc["b", "van_der_waals_none"].shift_se_percent)
+
+
+def test_variants_of_pairs_of_the_paper_are_compared_with_what_was_published():
+    job = Graph(Plan(load())).job("figures/variants.png")
+    found = {(*key, k): each.isel(humidity=k) for key, each in VARIANTS.items() for k in range(len(HUMIDITIES))}
+    found = {(pair, HUMIDITIES[k], name): each for (pair, name, k), each in found.items()}
+    figure = job.compute({"studies": found, "published": job.inputs["published"]})
+    assert len(figure.axes) == 4
+    assert "measured" in [container.get_label() for container in figure.axes[2].containers]
 
 
 def test_free_beams_are_counted_and_not_averaged():

@@ -136,6 +136,12 @@ def test_law_of_the_typical_curve_lies_on_it():
     assert len(panel.collections[1].get_segments()) == 8
 
 
+def test_all_points_of_the_force_curves_within_the_panel_are_drawn():
+    panel = draw().axes[1]
+    within = 1e-6 * forces().force.values < panel.get_ylim()[1]  # MPa
+    assert [len(curve) for curve in panel.collections[0].get_segments()] == list(within.sum(axis=1))
+
+
 @pytest.mark.parametrize("models", [("NG", "GEO"), ("NG",)])
 def test_crack_lengths_are_those_of_s_shaped_beams_at_every_humidity(models):
     found = curves(draw(models).axes[3])

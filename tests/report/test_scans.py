@@ -9,6 +9,7 @@ import xarray as xr
 from drawn_scans import published
 from numpy.testing import assert_allclose
 
+from stiction.report.format import with_error
 from stiction.report.scans.figures_scans import surface_sheet
 from stiction.report.scans.tables_scans import scan_uncertainty, scans
 from stiction.report.style import save
@@ -179,6 +180,10 @@ def test_the_spectrum_is_grey_beyond_its_reach_and_shows_the_fit():
         tuple(np.sort(patch.get_extents().transformed(axes.transData.inverted()).intervalx)) for patch in axes.patches
     )
     assert_allclose([grey[0][1], grey[1][0]], [1e-6 * reach.low, 1e-6 * reach.high], rtol=1e-6)
+    assert_allclose([grey[0][0], grey[1][1]], axes.get_xlim())
+    assert np.all(np.diff(grey) > 0)
+    error = 1e-6 * fit.corner * np.sqrt(fit.covariance[1, 1])
+    assert axes.texts[0].get_text().startswith(f"corner {with_error(1e-6 * fit.corner, error)} rad/µm\n")
 
 
 def test_summits_of_scans_and_model_have_their_errors():

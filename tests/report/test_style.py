@@ -266,6 +266,11 @@ def test_three_surfaces_leave_no_empty_panel(characters):
     assert len(axes_of(elevation_maps(three))) == 3
 
 
+def test_maps_of_surfaces_lie_two_abreast(characters):
+    places = [axes.get_subplotspec() for axes in axes_of(elevation_maps(characters | {"more": characters["B2"]}))]
+    assert [(one.rowspan.start, one.colspan.start) for one in places] == [(0, 0), (0, 1), (1, 0), (1, 1), (2, 0)]
+
+
 def test_profiles_run_along_the_middle_of_the_patch(drawn, characters):
     x, z = drawn["09"].axes[1].lines[1].get_data()
     np.testing.assert_allclose(x, 0.01 * np.arange(12))  # µm
@@ -292,12 +297,13 @@ def test_the_drawn_spectrum_is_compared_with_the_target_of_the_same_rms(drawn, c
 
 def test_relation_is_one_where_the_spectrum_is_the_target(drawn, iteration):
     middle, bottom = drawn["10"].axes[4], drawn["10"].axes[8]
-    _, relation = curve(middle, "surfaces of the last iteration")
+    zeta, relation = curve(middle, "surfaces of the last iteration")
     np.testing.assert_allclose(relation, (iteration.periodogram[-1] / iteration.target).mean("field"))
     error = (iteration.periodogram[-1] / iteration.target).std("field", ddof=1) / np.sqrt(5)
     band = middle.collections[1].get_paths()[0].vertices[:, 1]
     assert band.max() == pytest.approx(float((relation + 2 * error).max()))
     assert band.min() == pytest.approx(float((relation - 2 * error).min()))
+    np.testing.assert_allclose(np.unique(middle.collections[1].get_paths()[0].vertices[:, 0]), zeta)
     np.testing.assert_allclose(curve(bottom, "iterated")[1], [30, 20, 10])  # %
     np.testing.assert_allclose(curve(bottom, "closed form, expected")[1], 0.1)
 
@@ -374,6 +380,17 @@ def test_shallow_curves_are_enlarged_until_their_attraction_fills_the_inset(forc
     drawn = inset.collections[0].get_segments()[3][:, 1]
     assert drawn.min() == pytest.approx(1e-6 * float(weak.force[3].min()))
     assert not deep.child_axes
+    shallow.figure.draw_without_rendering()
+    _, top = shallow.transData.inverted().transform(inset.bbox.max)
+    assert shallow.get_ylim()[0] < top < 1e-6 * float(weak.force.min())  # below what it enlarges
+
+
+def test_curves_at_larger_distances_have_a_window_of_the_same_width(forces):
+    laws = forcelaw.coefficients(stage_forces.vectors(forces)[0], LIMIT)
+    moved = forces.assign(limit_distance=forces.limit_distance + 1e-7)
+    moved = moved.assign(distance=forces.distance + 1e-7)
+    windows = [force_curves({"b": (each, each, laws)}).axes[0].get_xlim() for each in (forces, moved)]
+    np.testing.assert_allclose(np.diff(windows, axis=0), 100, rtol=1e-6)
 
 
 def test_one_pair_fills_one_row_of_force_curves(forces):
@@ -387,6 +404,7 @@ def test_histogram_counts_only_beams_that_ended_s_shaped():
     assert sum(bar.get_height() for bar in histogram.patches) == 25
     assert histogram.texts[0].get_text().startswith("25 of 40 beams S-shaped\n877 ± ")  # mean of the first 25 of 40
     assert len(shapes.lines) == 3 + 1
+    np.testing.assert_allclose(shapes.lines[-1].get_xydata().T, 1e6 * np.array([beams.node, beams.deflection[0]]))  # µm
     assert shapes.yaxis_inverted()
 
 
