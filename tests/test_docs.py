@@ -19,6 +19,7 @@ from PIL import Image
 
 import stiction
 from stiction.config.relations import schema
+from stiction.plan.graph import stages
 from stiction.report.checks import RESOLVED
 from stiction.run import storage
 from stiction.surface.feasible import nearest_feasible
@@ -352,6 +353,13 @@ def test_every_rule_on_the_page_of_results_can_be_computed_by_its_name(tmp_path)
     targets = set(listed.stdout.split())
     assert {"table_1", "figure_19", "verdict"} <= named <= targets
     assert "identification" not in targets, "a rule with wildcards"
+
+
+def test_rules_on_the_page_of_clusters_reserve_the_minutes_that_it_says():
+    said = re.findall(r"((?:`\w+`(?:,| and)\s+)*`\w+`) (?:have )?(\d+)", (DOCS / "cluster.md").read_text())
+    minutes = {name: int(each) for names, each in said for name in re.findall(r"`(\w+)`", names)}
+    assert len(minutes) > 10
+    assert minutes == {name: stages()[name][0].minutes for name in minutes}
 
 
 def test_citation_changelog_and_package_name_the_same_version():
