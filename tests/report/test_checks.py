@@ -187,7 +187,9 @@ def released(mean, n=400, stuck=1.0):
 
 
 def test_chaos_model_may_change_a_crack_length_by_one_per_cent_plus_errors():
-    assert checks.chaos_keeps_crack_length("b", released(700), released(706)).passed
+    found = checks.chaos_keeps_crack_length("b", released(700), released(706))
+    assert found.passed
+    assert float(found.message.split(" ± ")[0]) == pytest.approx(700, rel=0.01)  # µm
     # 1 % and 4 · √2 · 5 % / √400
     assert checks.chaos_keeps_crack_length("b", released(700), released(700 / 1.023)).passed
     assert not checks.chaos_keeps_crack_length("b", released(700), released(700 / 1.026)).passed
@@ -246,6 +248,7 @@ def test_energy_of_the_cracks_lies_between_that_of_a_stiff_beam_and_of_the_stron
     assert min(allowed) == pytest.approx(0.96 * 7, rel=0.015)
     assert 1.04 * strongest < max(allowed) < 1.08 * strongest
     _, energy = of_mesh(cracks(1.3 * strongest, error=0.5), samples)
+    assert (energy.name, energy.case) == ("energy of the cracks is one of the strips", "b")
     assert energy.passed, "few beams leave an error"
 
 
@@ -334,6 +337,18 @@ def test_checks_are_read_as_they_were_written_whatever_their_message(tmp_path):
     assert list(read.columns) == ["name", "case", "passed", "message"]
     assert read.to_dict("records") == table.to_dict("records")
     assert checks.verdict(read) == "1 of 2 checks of the results failed. growth: mine # 2: grows by 1 # 2, 3"
+
+
+def test_the_last_job_ends_with_the_sentence_of_failed_checks_and_writes_that_of_passed_ones(tmp_path):
+    (verdict,) = (stage for stage in checks.STAGES if stage.name == "verdict")
+    path = tmp_path / "checks.csv"
+    for passed, sentence in ((True, "All 1 checks of the results passed."), (False, "1 of 1 checks of the results")):
+        checks.table([checks.Check("growth", "b", passed, "grows")]).to_csv(path, index=False)
+        if passed:
+            assert verdict.compute({"checks": path}, None, None) == sentence
+        else:
+            with pytest.raises(SystemExit, match=sentence):
+                verdict.compute({"checks": path}, None, None)
 
 
 def test_messages_give_as_many_digits_as_their_error_allows():

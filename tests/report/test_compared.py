@@ -47,6 +47,7 @@ def test_errors_of_beams_and_of_surfaces_are_combined():
     assert list(rows(SAFE, LENGTHS, ENDS).estimate_se_um) == pytest.approx([5, 6])
     cells = compared(SAFE, LENGTHS, "surfaces.B2.rms_nm", ENDS).cells
     assert list(cells["surfaces.B2.rms_nm"]) == ["3", "10"]
+    assert list(cells["RH"]) == ["0.67", "0.67"]
     assert list(cells["length that a share p holds [µm]"]) == ["100.0 ± 5.0", "200.0 ± 6.0"]
 
 

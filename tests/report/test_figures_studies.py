@@ -1,5 +1,7 @@
 """Figures and tables of the studies show the numbers of their datasets; equal data give equal files."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -10,7 +12,7 @@ from stiction.analysis.mesh import Arrest
 from stiction.config.files import load
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
-from stiction.report import figures_studies, tables_studies
+from stiction.report import figures_studies, published, tables_studies
 from stiction.report.style import save
 from stiction.stages.beams import mesh as study_mesh
 from stiction.stages.beams import variant_beams as study_variant
@@ -312,6 +314,8 @@ def test_the_summary_states_the_share_of_the_published_deviation_that_a_variant_
     )
     shown, error = map(float, line.split("|")[-2].split(" ± "))
     assert abs(shown - 100 * (1 - other / base)) < error
+    rms = float(line.split("|")[-4].split(" ± ")[0])
+    assert rms == pytest.approx(np.sqrt(other), rel=0.1)
 
 
 def test_a_summary_without_published_values_leaves_them_out():
@@ -328,3 +332,14 @@ def test_published_sensitivities_are_in_the_row_of_their_moment_and_humidity():
         [0.5, "mean", "rms", -6.5]
     ]
     assert "-6.00 ± 0.10 (-6.5)" in table.markdown
+
+
+def test_the_table_of_fig_13_is_of_the_pair_of_its_plan_and_has_the_slopes_of_its_studies():
+    data = {
+        "studies": {"rms": sensitivity(-6.0)},
+        "published": Path(published.__file__).with_name("resources") / "sensitivity.csv",
+    }
+    stage = tables_studies.STAGES[0]
+    table = stage.compute(data, None, {"pair": "b", "of_paper": ["b"]})
+    assert set(table.frame.pair) == {"b"}
+    assert set(table.frame.slope) == {-6.0}

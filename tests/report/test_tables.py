@@ -1,6 +1,7 @@
 """Tables from datasets with known numbers."""
 
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import pandas as pd
@@ -185,6 +186,21 @@ def test_statistics_are_compared_with_the_published_ones_and_listed_with_the_mea
     assert np.isnan([other.rms_nm_published, other.rms_nm_afm, other.rms_nm_deviation_percent]).all()
     assert "(63) |" in table.markdown.splitlines()[-2]
     assert "(" not in table.markdown.splitlines()[-1]
+
+
+def test_measured_statistics_are_those_of_the_configuration_and_those_estimated_from_scans():
+    estimated = {"skewness": 0.3}
+    data = {
+        "heights": {},
+        "estimates": {"mine": object()},
+        "characters": {(name, "NG"): character() for name in ("B1", "mine")},
+        "published": RESOURCES / "table_1.csv",
+    }
+    with patch.object(tables_surfaces.estimate, "statistics", return_value=estimated):
+        frame = (
+            tables_surfaces.STAGES[0].compute(data, None, {"measured": {"B1": {"rms_nm": 1.7}}, "of_paper": []}).frame
+        )
+    assert_allclose([frame.rms_nm_afm[0], frame.skewness_afm[1]], [1.7, 0.3])
 
 
 def test_resampling_compares_the_means_of_stuck_beams_with_errors_of_the_beams():

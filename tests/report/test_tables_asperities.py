@@ -62,6 +62,15 @@ def test_the_base_does_not_change_and_every_reading_has_a_line():
     assert row(table.frame, "summit").change_percent == 0
     assert list(table.cells.asperity) == [*np.repeat(READINGS, 2)[:-1]] * 2
     assert list(table.cells["grid [nm]"]) == ["10", "5", "10", "5", "10", "5", "10"] * 2
+    assert list(table.cells["time / summits"]) == ["1", "1", "2", "2", "3", "3", "4"] * 2
+
+
+def test_a_line_shows_the_changes_at_both_ends_of_the_humidities():
+    rising = STUDY.assign(adhesion_energy=STUDY.adhesion_energy.copy())
+    rising.adhesion_energy.loc[{"reading": "island"}] *= xr.DataArray([0.5**4, 0.7, 0.25**4], dims="humidity") / 0.8
+    line = asperities.table({"a": rising}, *DATA[1:], PUBLISHED).cells.iloc[2]
+    shown = [float(line[f"Δl_s [%], {end}"].split(" ± ")[0]) for end in ("low RH", "high RH")]
+    assert shown == pytest.approx([100, 300])
 
 
 def test_pairs_that_were_not_published_have_no_deviation_from_print():
@@ -91,5 +100,9 @@ def test_the_figure_has_all_curves_and_equal_bytes(published):
     labels = figure.legends[0].texts
     known = {"summit, 10 nm", "summit, 5 nm", "island, 10 nm", "island, 5 nm", "shape, 10 nm", "full contact"}
     known |= {"fitted, 10 nm", "fitted, 5 nm"}
+    for panel, factor in zip(figure.axes, (0.8, 0.8 * 0.7), strict=True):  # with attraction of the solids and without
+        (curve,) = (one.lines[0] for one in panel.containers if one.get_label() == "island, 10 nm")
+        np.testing.assert_array_equal(curve.get_xdata(), HUMIDITIES)
+        np.testing.assert_allclose(list(curve.get_ydata()), 100 * (factor**-0.25 - 1))
     assert {text.get_text() for text in labels} == known | ({"published"} if len(published) else set())
     assert style.png(figure) == style.png(asperities.figure(*DATA, published))

@@ -3,6 +3,8 @@ import pandas as pd
 import pytest
 import xarray as xr
 
+from stiction.config.files import load
+from stiction.plan.plan import Plan
 from stiction.report import model_error, style
 from stiction.stages.contact import full_contact
 from stiction.stages.contact import model_error as stage_model_error
@@ -48,6 +50,11 @@ def test_the_table_states_the_error_of_every_case_and_marks_interpolated_ones():
     marks = table.cells["model error of l_s [%]"].str.endswith("*")
     assert marks.tolist() == frame.interpolated.tolist()
     assert "6 strips" in table.caption
+
+
+def test_the_table_takes_the_error_of_every_pair_from_its_study():
+    stage, plan = model_error.STAGES[0], Plan(load({"run": {"pairs": ["a", "b"]}}))
+    assert stage.inputs(plan, None)["errors"] == {pair: f"studies/model_error/{pair}" for pair in ("a", "b")}
 
 
 def test_pairs_that_are_not_published_are_compared_with_nothing():

@@ -215,7 +215,7 @@ def dry_tick(panel: Axes, placed: Mapping[float, float]) -> None:
     """Tick for dry air if it is among the `places` of an axis, and a line between it and the lowest humidity."""
     if 0 not in placed:
         return
-    dry, lowest = (*sorted(placed.values()), np.inf)[:2]
+    dry, lowest = (*placed.values(), np.inf)[:2]
     ticks = [tick for tick in panel.get_xticks() if (dry + lowest) / 2 < tick <= panel.get_xlim()[1]]
     panel.set_xticks([dry, *ticks], [DRY, *(f"{tick:g}" for tick in ticks)])
     for sibling in panel.get_shared_x_axes().get_siblings(panel) if ticks else ():

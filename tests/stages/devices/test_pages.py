@@ -73,6 +73,7 @@ def test_the_page_of_a_stopper_says_how_many_stick_and_in_which_air(stopper):
     assert f"; at any humidity from 0.4 to 0.9, {any_air:.3g} µN are needed." in stopper
     assert "1 in 1000" not in stopper
     assert "<td>3 x 3 µm</td>" in stopper
+    assert "<td>relative humidities</td><td>0.44, 0.67</td>" in stopper
 
 
 def test_a_worst_humidity_at_the_end_is_stated_as_one():

@@ -173,6 +173,8 @@ def test_bars_of_a_tornado_are_the_effects_the_largest_first():
     names, bars = drawn(chosen)
     assert names == ["van der Waals in dry gaps"]
     assert_allclose([bars[0].get_x(), bars[0].get_x() + bars[0].get_width()], [-4.2, 0], atol=1e-12)
+    ((low, high),) = (segment[:, 0] for segment in chosen.containers[1][2][0].get_segments())
+    assert_allclose([low, high], [-4.5, -3.9])  # the error is drawn at the end away from zero
     assert "mean length at which beams stick" in measured.get_title(loc="left")
     assert measured.get_xlabel().endswith("scatter between devices: 1.4, 1.4 %")
 

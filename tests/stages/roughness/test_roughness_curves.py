@@ -193,6 +193,8 @@ def test_page_and_table_say_which_roughness_suffices_with_its_error():
     table = tables_roughness.roughness({"S1": found})
     assert sentence in table.caption
     np.testing.assert_allclose(table.frame.value, np.sort([*(1e9 * RANGE), 3.4]))
+    np.testing.assert_allclose(table.frame.required, 1)
+    assert set(table.frame.unit) == {"µN"}
     assert png(figures_roughness.roughness(found))[:4] == b"\x89PNG"
 
 
@@ -216,10 +218,14 @@ def test_a_beam_that_sticks_at_no_length_is_an_answer():
     beam = curves.OfBeam(**common, share=SHARE, length=1e-4)
     never = beam._response(np.full(100, np.inf), 5e-5, 5e-5, 0.0)
     points = [curves.layout([[never]], [""], rms, 100, beam) for rms in RANGE]
-    (sentence,) = tables_roughness.answers(curves.joined(points, "rms_nm", "B2"))
+    found = curves.joined(points, "rms_nm", "B2")
+    (sentence,) = tables_roughness.answers(found)
     assert "at most 1 in 20 sticks at any rms of B2 of 1 to 8 nm" in sentence
     assert "at 8 nm, 0 % (0 to " in sentence
-    assert png(figures_roughness.roughness(curves.joined(points, "rms_nm", "B2")))[:4] == b"\x89PNG"
+    frame = tables_roughness.roughness({"C1": found}).frame
+    np.testing.assert_allclose(frame.required, 100)
+    assert set(frame.unit) == {"µm"}
+    assert png(figures_roughness.roughness(found))[:4] == b"\x89PNG"
 
 
 def test_a_stopper_that_is_held_most_inside_the_range_has_a_worst_roughness():
@@ -237,6 +243,9 @@ def test_what_cannot_be_computed_is_named_with_its_reason_and_leaves_the_rest():
     assert "where the rms of B2 is 4.13 to 8 nm" in sentence
     assert "computed for 1.41 to 8 nm" in sentence
     assert refusal == "Not computed where the rms of B2 is 1 nm (RH 0.6): too smooth."
+    nowhere = [point(rms, "too smooth", np.nan) for rms in RANGE8]
+    sentence, _ = tables_roughness.answers(curves.joined(nowhere, "rms_nm", "B2"))
+    assert "nothing is computed" in sentence
 
 
 # Two quantities
@@ -304,6 +313,15 @@ def test_a_second_value_that_is_the_given_one_is_there_once():
     found = curves.mapped(points, "B2", "rms_nm", "skewness")
     assert found.other.values.tolist() == [-1, -0.5, 0, 1]
     assert [len(one.crossing) for one in curves.curves_of(found)] == [1] * 4
+
+
+def test_a_map_of_a_stopper_has_positive_margins_where_the_restoring_force_exceeds_the_adhesion():
+    points = [point(rms).assign(other=value, other_given=0.0) for value in (0, -1) for rms in RANGE8]
+    figure = figures_roughness.roughness_map(curves.mapped(points, "B2", "rms_nm", "skewness"))
+    panel, bar = figure.axes
+    assert bar.get_ylabel() == "lg (restoring force / required)"
+    margins = panel.collections[0]
+    np.testing.assert_allclose([margins.zmin, margins.zmax], 3 * np.log10([1 / 4, 2]))
 
 
 @pytest.mark.slow
