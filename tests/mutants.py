@@ -8,8 +8,8 @@ run until the first fails: those named after the module, those that import it, a
 module which imports it. Tests that found an error before come first.
 
 Not generated are errors that no test should notice: in texts, messages and what raises or logs them, in annotations,
-decorators, imports and ``__all__``, in resources, precision and looks (``RESOURCES``, ``INVISIBLE``), and in calls and
-numbers that only arrange a drawing.
+decorators, imports and ``__all__``, in resources, precision, looks and guards against what never happens
+(``RESOURCES``, ``INVISIBLE``), and in calls and numbers that only arrange a drawing.
 """
 
 import argparse
@@ -63,10 +63,11 @@ SYMMETRIC = {"min", "max", "minimum", "maximum", "fmin", "fmax", "hypot", "allcl
 
 #: Modules that affect time and memory only.
 RESOURCES = {"config.memory", "run.warmup"}
-#: Functions that report, methods that arrange drawings, and keywords of resources, precision and looks.
+#: Functions that report, methods that arrange drawings, and keywords of resources, precision, looks and guards.
 REPORTS = {"print", "warn", "warning", "info", "debug", "error", "exception", "progress"}
-INVISIBLE = "rtol atol xtol ftol gtol xatol fatol tol maxiter max_nfev maxsize cache nogil chunksize encoding"
+INVISIBLE = "rtol atol xtol ftol gtol xatol fatol tol maxiter max_nfev maxsize cache nogil chunksize encoding minutes"
 INVISIBLE += " color linewidth linestyle alpha fontsize figsize zorder label loc ncols rotation pad lw s c"
+INVISIBLE += " markersize capsize xytext ha va strict join"
 INVISIBLE = set(INVISIBLE.split())
 DRAWINGS = {"ax", "axes", "axis", "figure", "inset", "panel"}
 ARRANGING = "annotate colorbar legend locator_params margins set suptitle supxlabel text tick_params"
