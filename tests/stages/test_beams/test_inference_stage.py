@@ -1,5 +1,6 @@
 """Stage test_beams on budgets of analytic lengths: what a device shares with its test beams, known truth, tables."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -337,6 +338,23 @@ def test_pages_state_what_follows_for_bridges_and_stoppers(found, built, stuck, 
     assert figures_inference.test_beams(found).axes
 
 
+def test_lengths_to_build_are_the_least_safe_ones_less_twice_the_uncertainty_of_what_holds_the_device():
+    found = computed(as_computed(1.1))
+
+    def built(shape, response, safe, deviation):
+        doubt = float(found[deviation][(found.response == response).values].max())
+        return f"{float(found[safe].sel(shape=shape).min()) / UM * (1 - 2 * doubt):.0f} µm"
+
+    cases = [
+        (*held, *columns)
+        for held in ((EITHER, ARC), (S_SHAPE, S_SHAPE))
+        for columns in (("updated_safe", "result_after"), ("safe", "result_before"))
+    ]
+    lengths = [built(*case) for case in cases]
+    assert len(set(lengths)) == 4
+    assert re.findall(r"\d+ µm", tables_inference.built(found)) == lengths
+
+
 # Counts
 
 
@@ -513,6 +531,9 @@ def test_the_combination_that_one_length_determines_names_its_inputs():
 def test_the_table_has_data_lengths_safe_lengths_and_inputs():
     table = tables_inference.test_beams({"C1": computed(as_computed(1.1))})
     assert len(table.frame) == 3 + 6 + 12 + 8
+    results = table.frame[table.frame.part.str.contains("tip|length") & (table.frame.name == "C1")]
+    assert set(results.device) == {"C1"}
+    assert set(results.relative_humidity) == set(HUMIDITIES)
     cells = table.cells.set_index("what").before
     assert cells["C1: safe length, beam or tip, p = 0.001 [µm]"].iloc[0] == "250.0"
     assert "C1: stuck at the safe length, beam or tip, p = 0.001, of column before [%]" in cells
@@ -537,6 +558,8 @@ def test_the_figure_shows_counts_at_the_lengths_of_their_beams():
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert "measured, 95 %" not in labels
     assert labels[-1].startswith("length of counted beams")
+    single = figures_inference.test_beams(computed([], stuck=counts(as_computed(0.7)[:1], [3], 20, HUMIDITIES[:1])))
+    assert single.legends[0].get_texts()[-1].get_text() == labels[-1]
 
 
 def test_counts_in_dry_air_are_beside_the_axis(shapes, monkeypatch):
