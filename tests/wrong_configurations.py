@@ -172,7 +172,8 @@ WRONG_RELATIONS = [
     ("run: {pairs: [c], studies: [mesh, full_contact]}\npairs: {c: {humidities: [dry]}}\nattraction: {reach: all}",
      "run.studies", "['mesh', 'full_contact']",
      "must be without full_contact, which is computed in humid air alone: no pair of run.pairs is in any"),
-    ("run: {pairs: [c, a], studies: [sensitivity]}\npairs: {c: {humidities: [dry]}}\nattraction: {reach: all}",
+    ("run: {pairs: [a, c], studies: [sensitivity]}\nfigures: {pair: c}\npairs: {c: {humidities: [dry]}}\n"
+     "attraction: {reach: all}",
      "run.studies", "['sensitivity']",
      "must be without sensitivity, which is computed in humid air alone: pair c of the figures is in none"),
     ("figures: {humidity: dry}\nrun: {pairs: [c]}", "attraction.reach", "'touching'", "must be all for pair c, in dry"),

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from published import SURFACES
 from scipy.special import ndtr
 
-from stiction.analysis.shifts import ORDERS, STEPS, Description, bracketed, value_of, with_value
+from stiction.analysis.shifts import ORDERS, STEPS, Description, bracketed, moved, value_of, with_value
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.scans.quantiles import SCORES
 from stiction.surface.empirical import MeasuredDensity
@@ -45,6 +45,13 @@ def test_one_quantity_differs_by_the_stated_difference_and_no_other(surface, qua
 def test_both_values_are_around_that_of_the_surface(quantity):
     both, _ = bracketed(B2, quantity)
     assert_allclose(np.mean([quantities(one)[quantity] for one in both]), quantities(B2)[quantity], rtol=1e-9)
+
+
+@pytest.mark.parametrize("quantity", MOMENT_QUANTITIES + SPECTRUM_QUANTITIES)
+def test_a_surface_that_errs_by_a_step_is_one_of_both(quantity):
+    both, _ = bracketed(B2, quantity)
+    erring = [moved(B2, {quantity: sign * STEPS[quantity]}) for sign in (-1, 1)]
+    assert_allclose(*([list(quantities(each).values()) for each in surfaces] for surfaces in (erring, both)), rtol=1e-9)
 
 
 @pytest.mark.parametrize("surface", [GAUSSIAN, replace(B2, skewness=0.3, kurtosis=3.24)], ids=["Gaussian", "skewed"])

@@ -169,6 +169,8 @@ def test_bars_of_a_tornado_are_the_effects_the_largest_first():
     assert names == ["heights of B2", "thickness", tables_budget.TOTAL]
     assert_allclose([bar.get_width() for bar in bars[:2]], 100 * np.sqrt(6e-4) * np.array([4, 2]), rtol=1e-9)
     assert_allclose([bar.get_x() for bar in bars], [-bar.get_width() / 2 for bar in bars])
+    middles = [bar.get_y() + bar.get_height() / 2 for bar in bars]
+    assert_allclose(np.reshape(middles, (3, 2)).mean(axis=1), range(3), atol=1e-12)
     assert_allclose(bars[4].get_width(), 2 * 2 * 100 * np.sqrt(6e-4 + 0.64e-4), rtol=1e-9)
     names, bars = drawn(chosen)
     assert names == ["van der Waals in dry gaps"]
