@@ -289,8 +289,9 @@ def rounds(module):
     using.sort(key=lambda path: path.parent != own)
     others = {name for name in modules() if module in imported(path_of(name))}
     near = [path for path in sorted(own.glob("test_*.py")) if others & imported(path) and path not in [*named, *using]]
-    # What a module declares as stages is tested with all others, through their graph.
-    graph = "plan.graph" if "\nSTAGES = " in path_of(module).read_text(encoding="utf-8") else None
+    # Stages, and what modules declare as stages, are tested with all others, through their graph.
+    declares = folder[:1] == ["stages"] or "\nSTAGES = " in path_of(module).read_text(encoding="utf-8")
+    graph = "plan.graph" if declares else None
     planned = [path for name in ("plan", "config") for path in sorted(tests.joinpath(name).glob("test_*.py"))]
     through = [path for path in planned if graph in imported(path) and path not in [*named, *using, *near]]
     found = [(named, FAST), (using, FAST), (near, FAST), (through, FAST), (named or using, SLOW)]

@@ -228,6 +228,12 @@ def test_a_beam_that_sticks_at_no_length_is_an_answer():
     assert png(figures_roughness.roughness(found))[:4] == b"\x89PNG"
 
 
+def test_a_margin_errs_by_the_relative_error_of_its_length_and_not_at_all_where_no_beam_sticks():
+    lengths = {"estimate": ("point", [5e-5, np.inf]), "error": ("point", [1e-6, np.nan])}
+    curve = xr.Dataset(lengths | {"required": ((), 1e-4, {"units": "m"})})
+    np.testing.assert_allclose(curves._margins(curve, "estimate")[1], [0.02, 0])
+
+
 def test_a_stopper_that_is_held_most_inside_the_range_has_a_worst_roughness():
     forces = 4e-6 * np.exp(-(np.log(RANGE / 2e-9) ** 2))
     found = curves.joined([*map(point, RANGE, [""] * len(RANGE), forces), point(3.4e-9, force=3e-6)], "rms_nm", "B2")
