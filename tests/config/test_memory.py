@@ -11,6 +11,7 @@ from stiction.config import files, memory
 from stiction.config.device_plan import DevicePlan
 from stiction.plan.graph import stages
 from stiction.plan.plan import Plan
+from stiction.plan.stage import Stage
 
 DRAWING = """
 import sys
@@ -49,11 +50,11 @@ def test_memory_grows_with_the_number_of_points():
     assert wide - empty == pytest.approx(2 * (small - empty))
 
 
-def test_the_paper_needs_no_more_than_the_usual_memory_of_the_profiles():
+def test_the_paper_needs_no_more_than_the_usual_memory_and_time_of_the_profiles():
     assert memory.of_job(PAPER) == memory.USUAL
     for profile in ("default", "slurm"):
         settings = yaml.safe_load((ROOT / "profiles" / profile / "config.yaml").read_text(encoding="utf-8"))
-        assert f"mem_mb={memory.USUAL}" in settings["default-resources"]
+        assert {f"mem_mb={memory.USUAL}", f"runtime={Stage.minutes}"} <= set(settings["default-resources"])
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.container import ErrorbarContainer
 
 from stiction.contact import forcelaw
-from stiction.report.figures_overview import overview
+from stiction.report.figures_overview import _FOLLOWED, overview
 from stiction.report.style import save
 from stiction.stages.laws import forces as stage_forces
 from stiction.streams import stream
@@ -140,6 +140,15 @@ def test_all_points_of_the_force_curves_within_the_panel_are_drawn():
     panel = draw().axes[1]
     within = 1e-6 * forces().force.values < panel.get_ylim()[1]  # MPa
     assert [len(curve) for curve in panel.collections[0].get_segments()] == list(within.sum(axis=1))
+    (law,) = (line for line in panel.lines if line.get_linestyle() == "--")
+    assert law.get_ydata().max() < panel.get_ylim()[1]
+
+
+def test_the_panel_of_the_forces_begins_a_tenth_before_they_attract():
+    distance, force = stage_forces.curves(forces())
+    attracting = 1e9 * distance[(force < _FOLLOWED * force.min()).any(axis=0)]
+    width = np.ptp(attracting)
+    np.testing.assert_allclose(draw().axes[1].get_xlim(), [attracting[0] - 0.1 * width, attracting[-1]])
 
 
 @pytest.mark.parametrize("models", [("NG", "GEO"), ("NG",)])
