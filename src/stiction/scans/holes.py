@@ -34,5 +34,5 @@ def _laplacian(shape, pixel):
 
 def _second_difference(points):
     """Second difference of a row of points, whose ends have one neighbour, (points, points)."""
-    step = sparse.diags_array([-np.ones(points - 1), np.ones(points - 1)], offsets=[0, 1], shape=(points - 1, points))
+    step = sparse.diags_array([[-1.0], [1.0]], offsets=[0, 1], shape=(points - 1, points))
     return step.T @ step
