@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from stiction.run.fingerprint import SILENT
+from stiction.run.fingerprint import SILENT, fingerprint
 
 PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 #: Modules outside of folders, and folders, in the order in which they may import: from those before them.
@@ -245,6 +245,13 @@ def test_no_number_depends_on_a_module_that_the_fingerprint_leaves_out():
         refusing = {name.removeprefix("stiction.") for name in SILENT if ".config." in name}
         if path.parent not in (PACKAGE / "config", PACKAGE / "command") and path != PACKAGE / "pilot.py":
             assert not modules_used(path) & refusing, f"{path} must use config.files"
+
+
+@pytest.mark.parametrize("folder", ["stages", "report"])
+def test_planning_is_code_of_no_result(folder):
+    for path in (PACKAGE / folder).rglob("*.py"):
+        # What the plan decides for a job is in its settings and inputs; a change of its code must rerun nothing else.
+        assert not [name for name in fingerprint(path) if name.startswith("stiction.plan.")], path
 
 
 def test_an_import_that_is_out_of_order_is_found(tmp_path):

@@ -6,6 +6,8 @@ from stiction.config.cases import Case
 
 #: A case with its model: pair, relative humidity [-] and model.
 Outcome = tuple[str, float, str]
+#: Variant that corrects the base case to full elastic contact.
+CORRECTED = "contact_full"
 
 
 def by_name(folder: str, names: Iterable[str], end: str = "") -> dict[str, str]:

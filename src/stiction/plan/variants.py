@@ -8,6 +8,7 @@ from stiction.config.cases import Case, PairInAir, case_id
 from stiction.config.merging import merged
 from stiction.devices.materials import ELASTIC
 from stiction.models import SIDES
+from stiction.plan.names import CORRECTED
 from stiction.plan.paper import MOMENTS
 from stiction.plan.stage import chosen
 
@@ -18,8 +19,6 @@ _CHANGED = {
 }
 #: Sections of the solids, which do not affect the summits.
 _SOLIDS = ("solid", "van_der_waals")
-#: Variant that corrects the base case to full elastic contact.
-CORRECTED = "contact_full"
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.analysis import variants as comparison
-from stiction.plan.names import Outcome, by_case, by_name, by_outcome
-from stiction.plan.variants import CORRECTED
+from stiction.plan.names import CORRECTED, Outcome, by_case, by_name, by_outcome
 from stiction.report import published
 from stiction.report.beside import change, marked
 from stiction.report.format import UM, as_published, percent, signed, with_error
