@@ -1,9 +1,7 @@
 """Settings of all tests."""
 
-import fcntl
 import gc
 import os
-from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -17,19 +15,6 @@ settings.load_profile("steady")
 
 # The output of a process is buffered, as that of most users is.
 os.environ.pop("PYTHONUNBUFFERED", None)
-
-if "PYTEST_XDIST_WORKER" in os.environ:
-    from numba.core.caching import IndexDataCacheFile
-
-    save = IndexDataCacheFile.save
-
-    def save_alone(cache, key, data):
-        """Save a compiled kernel while no other worker does; two at once could exchange their machine code."""
-        with Path(__file__).open() as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
-            save(cache, key, data)
-
-    IndexDataCacheFile.save = save_alone
 
 
 def pytest_collection_finish():

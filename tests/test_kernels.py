@@ -1,6 +1,7 @@
 """Machine code on disk belongs to the sources: a toy package with a kernel that calls the kernel of another module."""
 
 import ast
+import fcntl
 import os
 import shutil
 import subprocess
@@ -8,9 +9,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from numba.core.caching import FunctionCache
 
 from stiction import kernels
 from stiction.run import fingerprint
+from stiction.surface.translation import _horner
 
 PACKAGE = Path(kernels.__file__).parent
 SOURCES = {
@@ -134,6 +137,34 @@ def test_processes_that_start_at_once_after_a_change_have_the_new_results(toy):
     assert called(toy) == (31, False)
     edit(toy, "called", "_Mesh", "_Grid")
     assert called(toy) == (31, True), "the name of a type"
+
+
+@pytest.fixture
+def saved(monkeypatch):
+    """Saves a kernel without writing it; says whether another process could have saved one meanwhile."""
+    cache, free = kernels._Cache(_horner.py_func), []
+
+    def save(_cache, _signature, _data):
+        with (Path(cache.cache_path) / "lock").open("a") as other:
+            try:
+                flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                free.append(False)
+            else:
+                free.append(True)
+
+    monkeypatch.setattr(FunctionCache, "save_overload", save)
+    flock = fcntl.flock
+    return lambda: cache.save_overload(None, None) or free
+
+
+def test_kernels_are_saved_one_at_a_time(saved):
+    assert saved() == [False]
+
+
+def test_kernels_are_saved_on_file_systems_without_locks(saved, monkeypatch):
+    monkeypatch.setattr(kernels.fcntl, "flock", lambda *_: os.open("no such file", os.O_RDONLY))
+    assert saved() == [True]
 
 
 def test_sources_of_a_kernel_are_the_imports_in_its_syntax_tree():

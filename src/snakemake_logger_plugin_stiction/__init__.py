@@ -4,8 +4,6 @@ from logging import LogRecord
 
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 
-from stiction.command.follow import RUN
-
 __all__ = ["LogHandler"]
 
 
@@ -17,11 +15,17 @@ class LogHandler(LogHandlerBase):
     has_formatter = True
     needs_rulegraph = False
 
+    def __post_init__(self) -> None:
+        # Not at the top: Snakemake imports all plugins before a Snakefile says which code is its own.
+        from stiction.command.follow import RUN
+
+        self._run = RUN
+
     @property
     def writes_to_stream(self) -> bool:
         """Whether Snakemake leaves the terminal to this plugin."""
-        return RUN.quiet
+        return self._run.quiet
 
     def emit(self, record: LogRecord) -> None:
         """Follow one report."""
-        RUN.hear(record)
+        self._run.hear(record)

@@ -7,8 +7,10 @@ many processes start at once. A stamp inside the files, such as Numba's, would n
 they name a type that the sources no longer define.
 """
 
+import fcntl
 import re
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache, partial
 from hashlib import sha256
 from pathlib import Path
@@ -52,7 +54,11 @@ class _Cache(FunctionCache):
     _impl_class = _Names
 
     def save_overload(self, sig, data):
-        super().save_overload(sig, data)
+        # Processes that saved a kernel for different types at once could exchange their machine code.
+        with (Path(self.cache_path) / "lock").open("a") as alone:
+            with suppress(OSError):  # on file systems without locks
+                fcntl.flock(alone, fcntl.LOCK_EX)
+            super().save_overload(sig, data)
         current = self._impl.filename_base  # module.function-line.py311.digest
         function, python = re.fullmatch(r"(.*)-\d+(\.py\w+)\.\w+", current).groups()
         for path in Path(self.cache_path).glob(f"{function}-*{python}.*nb[ic]"):

@@ -38,6 +38,11 @@ def test_a_package_of_the_same_name_on_the_path_of_the_user_is_not_used(tmp_path
     assert "another package" not in done.stdout + done.stderr
 
 
+def test_snakemake_imports_the_package_only_where_it_is_used(monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", str(ROOT / "src"))
+    assert imported("import snakemake_logger_plugin_stiction, sys; print('stiction' in sys.modules)") == "False"
+
+
 def test_jobs_find_the_modules_of_the_user_after_those_of_the_package(modules, monkeypatch):
     monkeypatch.setattr(sys, "path", sys.path[:])
     head, found, _ = (ROOT / "Snakefile").read_text(encoding="utf-8").partition("\nconfigfile:")

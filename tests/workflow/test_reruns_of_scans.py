@@ -15,8 +15,10 @@ CONFIG = {
     "pairs": {"a": {"humidities": [0.8]}, "b": {"humidities": [0.8]}},
     "figures": {"humidity": 0.8, "pair": "b"},
     "contact": {"chunks": 2},
+    "studies": {"pressing": {"distance_nm": {"b": 4}}},
 }
-TARGETS = ["all", *(f"results/studies/{name}.nc" for name in ("correlation", "plasticity/b", "variants/b_rh080_base"))]
+STUDIES = ("correlation", "plasticity/b", "full_contact/b", "pressing/b", "variants/b_rh080_base")
+TARGETS = ["all", *(f"results/studies/{name}.nc" for name in STUDIES)]
 #: Rules, and the rules that read their outputs, listed by hand; this configuration has no devices.
 READ_BY = {
     rule: " ".join(name for name in readers.split() if name not in OF_DEVICES) for rule, readers in READ_BY.items()

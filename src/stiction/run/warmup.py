@@ -1,8 +1,8 @@
-"""Compile and cache all kernels before jobs run in parallel: ``python -m stiction.run.warmup``.
+"""Compile and cache the kernels of the paper before jobs run in parallel: ``python -m stiction.run.warmup``.
 
-Kernels that are not in the cache are compiled by processes of their own, whose memory is free again when they end. A
-kernel that two of them compiled, with different types, could corrupt the index of its cache: the parts have none in
-common.
+Kernels that are not in the cache are compiled by processes of their own, whose memory is free again when they end. The
+parts have no kernel in common, so that none is compiled twice. Kernels of other studies (full contact, islands) are
+compiled by the first jobs that need them.
 """
 
 import sys
