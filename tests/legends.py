@@ -3,9 +3,9 @@
 from stiction.report.style import save
 
 
-def covering(figure, tmp_path):
+def covering(figure):
     """Labels of the first entries of legends that lie on a panel, on a text or another legend, or beyond the figure."""
-    save(figure, tmp_path / "figure.png")
+    save(figure)  # lays it out
     legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()] + figure.legends
     boxes = [axes.bbox for axes in figure.axes] + [text.get_window_extent() for text in _texts(figure)]
     drawn = [(legend, legend.get_window_extent().shrunk(0.98, 0.9)) for legend in legends]

@@ -18,7 +18,7 @@ def labelled(label):
 
 
 @pytest.mark.parametrize(("label", "columns"), [("x", 5), ("a rather long label", 2), (20 * " ab", 1)])
-def test_a_legend_below_a_panel_covers_nothing_and_has_the_columns_that_fit(label, columns, tmp_path):
+def test_a_legend_below_a_panel_covers_nothing_and_has_the_columns_that_fit(label, columns):
     figure = labelled(label)
     assert {panel.get_legend()._ncols for panel in figure.axes} == {columns}
-    assert covering(figure, tmp_path) == []
+    assert covering(figure) == []

@@ -558,11 +558,11 @@ def test_a_pair_of_one_humidity_shows_its_median_and_stays_within_all_humidities
     assert panel.get_xlim()[0] < 0.99 < panel.get_xlim()[1] <= 1
 
 
-def test_the_legend_of_figure_15_is_inside_it_after_surfaces_that_no_water_wets_too(pairs, published, tmp_path):
+def test_the_legend_of_figure_15_is_inside_it_after_surfaces_that_no_water_wets_too(pairs, published):
     beam, beams, axes = pairs["b"]
     repeated = {model: axis.assign_coords(humidity=np.full(5, 0.5)) for model, axis in axes.items()}
     for shown in ({"wax": (beam, beams, {}), "mine": (beam, beams, repeated)}, pairs):
-        assert covering(adhesion_energies(shown, published, {"mine": FLAT, "b": FLAT}), tmp_path) == []
+        assert covering(adhesion_energies(shown, published, {"mine": FLAT, "b": FLAT})) == []
 
 
 def test_beams_in_dry_air_are_shown_whole_beside_the_axis(pairs, published):

@@ -182,17 +182,17 @@ def test_the_axis_of_a_chart_is_that_of_its_own_lengths():
 
 
 @pytest.mark.parametrize("count", [1, 2, 5])
-def test_no_legend_covers_a_panel_a_text_or_another_legend(found, count, tmp_path):
+def test_no_legend_covers_a_panel_a_text_or_another_legend(found, count):
     cases = {(f"C{k}", rh): found["C1", 0.44 if rh == 0.44 else 0.67] for k in range(count) for rh in (0.44, 0.67, 0.9)}
     bases = np.resize(["sampled", "fitted", "extrapolated"], found["C1", 0.44].basis.shape)
     cases = {case: one.assign(basis=one.basis.copy(data=bases)) for case, one in cases.items()}
     warned = dict.fromkeys(product(*map(dict.fromkeys, zip(*cases, strict=True)), (S_SHAPE, EITHER)), ["Too wet."])
-    assert covering(figures_devices.risk(cases, warned), tmp_path) == []
+    assert covering(figures_devices.risk(cases, warned)) == []
     axes = {(f"C{k}", rh): charted(rh) for k in range(count) for rh in (0.4, 0.5)}
-    assert covering(figures_devices.chart(axes, {}), tmp_path) == []
+    assert covering(figures_devices.chart(axes, {})) == []
 
 
-def test_many_warnings_leave_the_panels_their_place_and_keep_their_numbers(found, tmp_path):
+def test_many_warnings_leave_the_panels_their_place_and_keep_their_numbers(found):
     cases = {(f"C{k}", rh): found["C1", 0.44] for k in range(20) for rh in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)}
     warned = {(*case, shape): [f"{case} is too wet."] for case in cases for shape in (S_SHAPE, EITHER)}
     figure = figures_devices.risk(cases, warned)
@@ -200,15 +200,15 @@ def test_many_warnings_leave_the_panels_their_place_and_keep_their_numbers(found
     assert named(figure.axes[0])[1] == "RH 0.5 (2)"
     assert "(2) ('C0', 0.5) is too wet." in tables_devices.safe_lengths(cases, warned).caption
     assert figure.get_figheight() <= 24
-    assert covering(figure, tmp_path) == []
+    assert covering(figure) == []
     assert sum(panel.get_position().height for panel in figure.axes[::4]) > 0.5
 
 
-def test_a_legend_within_a_panel_is_found(found, tmp_path):
+def test_a_legend_within_a_panel_is_found(found):
     figure = figures_devices.risk(found, WARNINGS)
     panel = figure.axes[0]
     panel.legend(handles=panel.get_legend().legend_handles, labels=["first", "second"], loc="lower right")
-    assert covering(figure, tmp_path) == ["first"]
+    assert covering(figure) == ["first"]
 
 
 def named(panel):

@@ -209,9 +209,9 @@ def test_six_humidities_fit_a_screen_with_bars_that_darken_and_do_not_meet():
 
 
 @pytest.mark.parametrize("count", [1, 2, 5])
-def test_no_legend_of_stoppers_covers_a_panel_or_a_text(count, tmp_path):
+def test_no_legend_of_stoppers_covers_a_panel_or_a_text(count):
     datasets = {f"S{k}": stopper_dataset() for k in range(count)}
-    assert covering(figures_budget.stoppers(datasets, {"S0": ["Beware."]}), tmp_path) == []
+    assert covering(figures_budget.stoppers(datasets, {"S0": ["Beware."]})) == []
 
 
 @pytest.mark.parametrize("count", [2, 6, 30])

@@ -86,7 +86,7 @@ def test_points_at_the_given_roughness_are_todays_results_in_dry_and_in_humid_ai
         np.testing.assert_array_equal(cantilever[name].sel(humidity=0), today[theirs])
 
 
-def test_smooth_stoppers_in_dry_air_are_held_more_than_rough_ones_and_the_page_says_what_suffices(dry, tmp_path):
+def test_smooth_stoppers_in_dry_air_are_held_more_than_rough_ones_and_the_page_says_what_suffices(dry):
     found = stiction.Device("S1", dry).roughness()
     assert np.all(np.diff(found.estimate.sel(humidity=0, shape="force")) < 0)
     first, second = tables_roughness.answers(found)
@@ -94,7 +94,7 @@ def test_smooth_stoppers_in_dry_air_are_held_more_than_rough_ones_and_the_page_s
     assert "at a relative humidity of 0.6" in second
     figure = figures_roughness.roughness(found)
     assert "dry, estimate and 95 % band" in {text.get_text() for text in figure.legends[0].get_texts()}
-    assert covering(figure, tmp_path) == []
+    assert covering(figure) == []
 
 
 def test_surfaces_that_no_water_wets_are_held_at_any_humidity_as_in_dry_air():
@@ -107,13 +107,13 @@ def test_surfaces_that_no_water_wets_are_held_at_any_humidity_as_in_dry_air():
     assert float(dry.estimate[0]) > 0
 
 
-def test_the_legend_of_a_cantilever_names_the_bounds_of_beam_and_tip(cantilever, tmp_path):
+def test_the_legend_of_a_cantilever_names_the_bounds_of_beam_and_tip(cantilever):
     given = cantilever.results[f"devices/roughness/points/C1_{POINTS - 1}"]
     figure = figures_roughness.roughness(curves.joined([given.assign(roughness=2e-9), given], "rms_nm", "B2"))
     assert {"flat surfaces, beam", "flat surfaces, beam or tip"} < {
         text.get_text() for text in figure.legends[0].get_texts()
     }
-    assert covering(figure, tmp_path) == []
+    assert covering(figure) == []
 
 
 def test_a_required_roughness_put_back_has_the_share_within_its_error(stopper):
