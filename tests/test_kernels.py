@@ -167,6 +167,14 @@ def test_kernels_are_saved_on_file_systems_without_locks(saved, monkeypatch):
     assert saved() == [True]
 
 
+def test_kernels_are_saved_although_their_folder_was_removed(monkeypatch, tmp_path):
+    cache, saved = kernels._Cache(_horner.py_func), []
+    monkeypatch.setattr(cache, "_cache_path", str(tmp_path / "removed" / "folder"))
+    monkeypatch.setattr(FunctionCache, "save_overload", lambda *data: saved.append(data))
+    cache.save_overload(None, None)
+    assert saved == [(cache, None, None)]
+
+
 def test_sources_of_a_kernel_are_the_imports_in_its_syntax_tree():
     for path in PACKAGE.rglob("*.py"):
         names = [name for node in ast.walk(ast.parse(path.read_bytes())) for name in fingerprint.imported(node)]

@@ -55,13 +55,15 @@ class _Cache(FunctionCache):
 
     def save_overload(self, sig, data):
         # Processes that saved a kernel for different types at once could exchange their machine code.
-        with (Path(self.cache_path) / "lock").open("a") as alone:
+        folder = Path(self.cache_path)
+        folder.mkdir(parents=True, exist_ok=True)  # it may have been removed since this module was imported
+        with (folder / "lock").open("a") as alone:
             with suppress(OSError):  # on file systems without locks
                 fcntl.flock(alone, fcntl.LOCK_EX)
             super().save_overload(sig, data)
         current = self._impl.filename_base  # module.function-line.py311.digest
         function, python = re.fullmatch(r"(.*)-\d+(\.py\w+)\.\w+", current).groups()
-        for path in Path(self.cache_path).glob(f"{function}-*{python}.*nb[ic]"):
+        for path in folder.glob(f"{function}-*{python}.*nb[ic]"):
             if not path.name.startswith(f"{current}."):
                 path.unlink(missing_ok=True)
 
