@@ -3,11 +3,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from published import IDENTITY, SPACING, SURFACES
+from scipy import fft
 
 from stiction.errors import NotConverged
 from stiction.surface.maxent import HeightDensity
 from stiction.surface.spectrum import CutoffSelfAffine
-from stiction.surface.translation import LARGEST_SCORE, Translation, spectrum_of_heights, underlying_spectrum
+from stiction.surface.translation import (
+    LARGEST_SCORE,
+    Translation,
+    _of_even,
+    spectrum_of_heights,
+    underlying_spectrum,
+)
 
 published = pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
 #: The standard deviation of the tabulated heights is off by step² / 12 · |d ln p / dz| in each tail.
@@ -162,6 +169,15 @@ def test_products_of_waves_fill_the_tail_so_that_the_field_has_less_power_there_
     top, flat = in_band(surface.spectrum, 0.5, 0.95), in_band(surface.spectrum, 0.02, 0.2)
     assert np.all(surface.underlying(top) < 0.97 * surface.spectrum(top) / surface.spectrum.variance)
     assert np.all(surface.underlying(flat) > surface.spectrum(flat) / surface.spectrum.variance)
+
+
+@pytest.mark.parametrize("points", [8, 9])
+def test_autocorrelations_are_even_so_that_half_of_them_give_all_bit_for_bit(points):
+    density = np.random.default_rng(1).random((points, points))
+    turned = np.roll(density[::-1, ::-1], 1, axis=(0, 1))
+    even = fft.fft2(density + turned).real
+    np.testing.assert_array_equal(_of_even(np.exp, even), np.exp(even))
+    assert not np.array_equal(_of_even(np.exp, density), np.exp(density))
 
 
 @given(st.floats(0.2, 5))

@@ -167,7 +167,7 @@ def underlying_spectrum(
     """
     zeta, cell = _square(spacing, points)
     correlation = fft.fft2(_on_square(target, zeta)).real
-    rho = translation.underlying_autocorrelation(correlation / correlation[0, 0])
+    rho = _of_even(translation.underlying_autocorrelation, correlation / correlation[0, 0])
     wanted = fft.ifft2(rho).real / cell
     possible = np.where(zeta <= target.cutoff, np.maximum(wanted, 0), 0)
     defect = np.abs(wanted - possible).sum() * cell
@@ -180,7 +180,7 @@ def spectrum_of_heights(
     """Spectrum of the translated field, of unit variance: the inverse of `underlying_spectrum`."""
     zeta, cell = _square(spacing, points)
     correlation = fft.fft2(_on_square(underlying, zeta)).real
-    heights = fft.ifft2(translation.autocorrelation(correlation / correlation[0, 0])).real / cell
+    heights = fft.ifft2(_of_even(translation.autocorrelation, correlation / correlation[0, 0])).real / cell
     return _radial(heights, zeta, np.inf)
 
 
@@ -196,6 +196,13 @@ def _on_square(spectrum, zeta):
     mirrored = np.minimum(places, len(zeta) - places)
     quarter = spectrum(zeta[: mirrored.max() + 1, : mirrored.max() + 1])
     return quarter[mirrored[:, None], mirrored]
+
+
+def _of_even(function, values):
+    """A function of values (n, n) that are even in the lag: of one half of them, which the other mirrors."""
+    n = len(values)
+    half = function(values[:, : n // 2 + 1])
+    return np.hstack((half, half[-np.arange(n), n - half.shape[1] : 0 : -1]))
 
 
 def _radial(spectrum, zeta, cutoff):
