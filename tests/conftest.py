@@ -13,6 +13,10 @@ gc.disable()
 settings.register_profile("steady", deadline=None, derandomize=True)
 settings.load_profile("steady")
 
+# One thread for each process, as in jobs: with a process on every core, more threads only wait for each other.
+for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "DUCC0_NUM_THREADS"):
+    os.environ.setdefault(name, "1")
+
 # The output of a process is buffered, as that of most users is.
 os.environ.pop("PYTHONUNBUFFERED", None)
 

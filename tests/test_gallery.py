@@ -33,6 +33,7 @@ def test_surface_and_contact(run):
     assert found["study"].energies(0.67).mean() == pytest.approx(6.3e-3, rel=0.06), "as in Table III"
 
 
+@pytest.mark.slow
 def test_scans(run):
     found = run("scans")
     deviation = (found["estimate"].moments - np.array(found["truth"])) / found["estimate"].errors

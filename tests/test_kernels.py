@@ -102,7 +102,13 @@ def stored(folder):
     return {path.name: path.stat().st_mtime_ns for path in folder.rglob("*.nb[ic]")}
 
 
-@pytest.mark.parametrize("place", ["next to the sources", "folder of the user", "chosen folder"])
+@pytest.mark.parametrize(
+    "place",
+    [
+        "next to the sources",
+        *(pytest.param(place, marks=pytest.mark.slow) for place in ("folder of the user", "chosen folder")),
+    ],
+)
 def test_changes_of_what_a_kernel_calls_and_no_others_change_the_results_of_the_next_process(toy, place):
     chosen = {"NUMBA_CACHE_DIR": str(toy.parent / "chosen")} if place == "chosen folder" else {}
     if place == "folder of the user":
@@ -121,6 +127,7 @@ def test_changes_of_what_a_kernel_calls_and_no_others_change_the_results_of_the_
     assert not after.keys() & before.keys()
 
 
+@pytest.mark.slow
 def test_numba_alone_returns_old_results_after_such_a_change(toy):
     (toy / "kernels.py").write_text(NUMBA)
     assert called(toy) == (21, True)
@@ -129,6 +136,7 @@ def test_numba_alone_returns_old_results_after_such_a_change(toy):
     assert process.communicate()[0].split()[1] == "21.0"
 
 
+@pytest.mark.slow
 def test_processes_that_start_at_once_after_a_change_have_the_new_results(toy):
     assert called(toy) == (21, True)
     edit(toy, "constants", "2.0", "3.0")

@@ -55,12 +55,15 @@ def refused(*overlays):
     return list(map(str, pilot.problems(configured(*overlays), {}, "code", REMEMBER)))
 
 
-@pytest.mark.parametrize("file", ["config.yaml", "examples/devices.yaml", "examples/test_beams.yaml"])
+@pytest.mark.parametrize(
+    "file",
+    ["config.yaml", "examples/devices.yaml", pytest.param("examples/test_beams.yaml", marks=pytest.mark.slow)],
+)
 def test_the_paper_and_the_examples_can_run(file):
     assert refused((ROOT / file).read_text(encoding="utf-8")) == []
 
 
-@pytest.mark.parametrize("rms", [10, 20, 40])
+@pytest.mark.parametrize("rms", [10, *(pytest.param(rms, marks=pytest.mark.slow) for rms in (20, 40))])
 def test_rough_surfaces_can_run(rms):
     assert refused(B, f"surfaces: {{B2: {{rms_nm: {rms}}}}}\npairs: {{b: {{humidities: [0.67]}}}}") == []
 
@@ -113,7 +116,15 @@ REFUSALS = [
 ]
 
 
-@pytest.mark.parametrize(("overlay", "key", "words"), REFUSALS, ids=[row[0][:50] for row in REFUSALS])
+#: One of each kind: pairs, strips and devices; the others are slow tests.
+FAST = {0, 5, 7, 12}
+ROWS = [
+    pytest.param(*row, id=row[0][:50], marks=[pytest.mark.slow] * (number not in FAST))
+    for number, row in enumerate(REFUSALS)
+]
+
+
+@pytest.mark.parametrize(("overlay", "key", "words"), ROWS)
 def test_what_the_jobs_would_refuse_is_refused_by_name(overlay, key, words):
     (line,) = refused(B, overlay)
     assert line.startswith(key)
@@ -130,7 +141,7 @@ def scans(tmp_path_factory):
     return path
 
 
-@pytest.mark.parametrize("heights", ["moments", "measured"])
+@pytest.mark.parametrize("heights", ["moments", pytest.param("measured", marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     ("overlay", "begins"),
     [
@@ -150,7 +161,10 @@ def test_measured_surfaces_are_drawn_from_their_preliminary_numbers(scans, overl
     assert line.endswith("(preliminary, given surfaces.Etched.scans.files = ['B2-0.gwy'])")
 
 
-@pytest.mark.parametrize("overlay", ["surfaces: {B2: {rms_nm: 0.3}}", "solid: {young_modulus_GPa: 0.1}"])
+@pytest.mark.parametrize(
+    "overlay",
+    ["surfaces: {B2: {rms_nm: 0.3}}", pytest.param("solid: {young_modulus_GPa: 0.1}", marks=pytest.mark.slow)],
+)
 def test_a_patch_that_does_not_resist_is_refused_with_the_forces_of_its_weakest_sample(overlay):
     config = configured(B, overlay, "contact: {samples: 40}\nchaos: {order: 2}")
     (line,) = map(str, pilot.problems(config, {}, "code", REMEMBER))
@@ -163,6 +177,7 @@ def test_a_patch_that_does_not_resist_is_refused_with_the_forces_of_its_weakest_
     assert 0 < pull < 500
 
 
+@pytest.mark.slow
 def test_strips_are_allowed_as_the_jobs_allow_them_within_the_error_of_the_samples():
     config = configured(
         B, f"contact: {{samples: 300}}\nchaos: {{order: 4}}\ndevices: {{D: {{{BEAM}, thickness_um: 1, width_um: 10}}}}"

@@ -124,7 +124,7 @@ def test_what_a_valid_configuration_allows_can_be_computed(extreme):
     assert np.all((lengths > 0) & (lengths <= found.beam.length))
 
 
-@pytest.mark.parametrize("rms", [10, 40])
+@pytest.mark.parametrize("rms", [10, pytest.param(40, marks=pytest.mark.slow)])
 def test_surfaces_on_which_no_adhesion_is_left_are_accepted_and_do_not_hold_a_beam(rms):
     few = {"run": {"pairs": ["b"]}, "figures": {"humidity": 0.67}, "contact": {"samples": 100}, "chaos": {"order": 4}}
     config = load(few, {"surfaces": {"B2": {"rms_nm": rms}}, "beam": {"samples": 5}})

@@ -25,11 +25,13 @@ def lengths(factor=1.0):
     )
 
 
+@pytest.mark.slow
 def test_on_a_table_of_eq_12_the_crack_is_that_of_the_law():
     law, table = lengths()
     assert table == pytest.approx(law, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_a_table_with_a_tenth_less_force_has_a_crack_that_is_longer_as_the_fourth_root():
     law, table = lengths(factor=0.9)
     assert table / law == pytest.approx(0.9**-0.25, rel=0.01)

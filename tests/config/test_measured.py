@@ -255,7 +255,7 @@ def test_moments_without_a_density_are_refused_unless_the_heights_are_measured(t
 
 
 @pytest.mark.filterwarnings("ignore:surface Etched")
-@pytest.mark.parametrize("share", [0.5, 0.9])
+@pytest.mark.parametrize("share", [0.5, pytest.param(0.9, marks=pytest.mark.slow)])
 def test_scans_of_two_heights_are_refused_before_a_run_and_never_in_it(tmp_path, share):
     (drawn,) = published("B2", SIDE, 1)
     steps = np.sign(drawn.heights - np.quantile(drawn.heights, share))

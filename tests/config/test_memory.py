@@ -133,6 +133,7 @@ print(before, peak_memory())
 """
 
 
+@pytest.mark.slow
 def test_contacts_of_tips_take_at_most_the_estimated_memory_and_at_least_a_quarter(tmp_path):
     """The numbers of distances and heights are those of pair c, the largest in the examples."""
     tips, contacts = 200, 12

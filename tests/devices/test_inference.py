@@ -237,6 +237,7 @@ def test_normal_scores_are_those_of_the_lengths():
     assert np.all(np.diff(inference.score(skewed)(np.linspace(-3, 3, 500))) > 0)
 
 
+@pytest.mark.slow
 def test_stated_intervals_hold_the_true_lengths_of_counted_beams():
     def posterior(truth, rng, margin):
         margins = np.array([margin, 0.0, 0.05]) + rng.normal(0, 0.05, 3)

@@ -232,6 +232,7 @@ def released(laws, points):
     return end.state is EndState.S_SHAPE, end.crack_length
 
 
+@pytest.mark.slow
 def test_one_monte_carlo_of_long_beams_answers_all_lengths():
     n, grounds = 240, [scattered_laws(stream(5, "cut", k), 1000, 0.3) for k in range(240)]
     s_shaped, cracks = np.transpose([released(laws, 1000) for laws in grounds])

@@ -75,8 +75,8 @@ def panel(figure, title):
     return found
 
 
-#: Sheets with most text; the others are slow tests.
-FULL = {"long flags", "not square", "many digits"}
+#: The sheet with most text; the others are slow tests.
+FULL = {"long flags"}
 ROWS = [pytest.param(name, marks=[pytest.mark.slow] * (name not in FULL)) for name in SHEETS]
 
 
@@ -224,6 +224,7 @@ def test_every_scan_has_its_row_with_the_error_of_one_scan():
     assert f"- Etched: a flag\n- Etched: {CLIPPED}" in table.markdown
 
 
+@pytest.mark.slow
 def test_a_surface_of_scans_of_two_sizes_has_the_errors_of_each():
     smaller = [stage_scan.layout(ScanFile(scan, "Height", "nm", ())) for scan in published("B2", 4e-6, 1)]
     datasets = [*smaller, *maps()]

@@ -39,6 +39,7 @@ def test_the_histogram_of_many_scans_is_the_density_of_the_surface(scans):
     assert np.sqrt(np.mean(off[inside] ** 2)) < 2
 
 
+@pytest.mark.slow
 def test_the_bias_of_levelling_is_taken_out_of_the_histogram_by_that_of_the_quantiles(scans):
     bowed = [level(z, Levelling("plane", "bow")) for z in scans]
     raw, levelled = as_measured(scans), as_measured(bowed)

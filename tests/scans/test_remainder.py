@@ -127,6 +127,7 @@ def share_of_rms(flag):
     return float(re.search(r"of (\S+) rms", flag)[1])
 
 
+@pytest.mark.slow
 def test_a_bow_of_one_and_a_half_rms_is_flagged_with_its_remedy():
     form = X[:, None] ** 2 + Y**2
     bowed = dataclasses.replace(SCANS[0], heights=SCANS[0].heights + 1.5 * B2.rms * (form - form.mean()))

@@ -170,6 +170,7 @@ def test_summits_differ_beyond_their_errors_and_that_of_the_rms():
         assert about(rough.flags, "summits have") == (part == 1), "the density of summits does not depend on the rms"
 
 
+@pytest.mark.slow
 def test_the_same_seed_and_name_give_the_same_estimate():
     first, again, other, named = (
         estimate(B2[:1], seed, model_scans=2, **more).moments
@@ -387,6 +388,7 @@ def test_quantiles_have_no_bias_of_levelling():
     np.testing.assert_array_equal(bowed[0].density("measured").heights, expected.heights)
 
 
+@pytest.mark.slow
 def test_scans_of_two_surfaces_are_told_from_those_of_one():
     assert np.all(of_b2().homogeneity[1] > 0.01)
     mixed = estimate([*B2, *published("B1", SIDE, 2)], SEED, model_scans=8)
@@ -404,6 +406,7 @@ def test_moments_without_others_near_them_leave_the_goodness_unknown():
     assert np.isnan(_residual(None, of_b2().quantiles, of_b2().moments)).all()
 
 
+@pytest.mark.slow
 def test_gaussian_scans_are_never_refused():
     for found in estimates(gaussian(4e-6, 3), count=12):
         assert found.feasible is not None
@@ -439,6 +442,7 @@ def test_a_density_that_four_moments_do_not_describe_is_told_from_one_that_they_
     assert of_b2().goodness[1] > 0.01
 
 
+@pytest.mark.slow
 def test_particles_leave_the_measured_density():
     z = B2[0].heights.copy()
     for i, j in stream(1, "particles").integers(5, 240, (6, 2)):

@@ -84,6 +84,7 @@ def test_mirrored_moments_have_mirrored_neighbours():
     np.testing.assert_allclose(right, np.multiply(left, (-1, 1, 1)), atol=1e-3)
 
 
+@pytest.mark.slow
 def test_distance_is_in_the_errors_of_the_measurement():
     exact_kurtosis = nearest_feasible(-0.3, 3.3, np.diag([0.05, 1e-3]) ** 2)
     exact_skewness = nearest_feasible(-0.3, 3.3, np.diag([1e-3, 0.05]) ** 2)
@@ -92,6 +93,7 @@ def test_distance_is_in_the_errors_of_the_measurement():
     assert exact_skewness.distance == pytest.approx((3.3 - largest_kurtosis(-0.3)) / 0.05, rel=0.01)
 
 
+@pytest.mark.slow
 def test_correlated_errors_move_both_moments_alike():
     # If skewness and kurtosis err in opposite directions, the way to more skewness and less kurtosis is short.
     apart = np.array([[1, -0.9], [-0.9, 1]]) * 0.05**2
@@ -106,6 +108,7 @@ def test_default_errors_are_those_of_independent_gaussian_heights():
     np.testing.assert_allclose(np.diag(np.cov(moments)), np.diag(feasible.sampling_covariance(500)), rtol=0.13)
 
 
+@pytest.mark.slow
 def test_measured_gaussian_surfaces_are_feasible_within_their_error_and_not_within_a_tenth_of_it():
     heights = stream(2, "feasible").standard_normal((8, feasible.SAMPLE))
     measured = np.column_stack([skew(heights, axis=1), kurtosis_of(heights, axis=1) + 3])

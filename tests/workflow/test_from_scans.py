@@ -76,6 +76,7 @@ def test_nothing_reruns_in_another_folder_with_copied_files_of_equal_content(fin
     assert "Nothing to be done" in done.stdout
 
 
+@pytest.mark.slow
 def test_scans_are_evaluated_without_a_pair(planner, tmp_path):
     (good,) = scans_of(tmp_path)
     overlay = tmp_path / "mine.yaml"

@@ -1,15 +1,14 @@
 """Which rules a change reruns and which it must not: plans with placeholder files, in a copy of the source tree."""
 
 # ruff: noqa: E501
-import base64
 import contextlib
-import json
 import os
 import re
 import shutil
 import subprocess
 from functools import reduce
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,8 +20,9 @@ from planner import Planner
 from stiction.config.files import normalised, paper
 from stiction.config.measured import resolve_scan_paths
 from stiction.config.merging import merged
-from stiction.plan.graph import Graph, stages
+from stiction.plan.graph import Graph, stages, structured
 from stiction.plan.plan import Plan
+from stiction.plan.stage import File
 from stiction.run import storage
 
 #: Two pairs, one figure case, so that every rule has few jobs.
@@ -187,6 +187,7 @@ def behind(rules, read_by=READ_BY):
 
 #: Dataset larger than the files whose contents Snakemake compares by default.
 LARGE = "results/contact/a_NG.nc"
+NOISE = np.frombuffer(np.random.default_rng(0).bytes(2_000_000), np.uint8)  # cannot be compressed
 
 
 class Tree:
@@ -207,36 +208,31 @@ class Tree:
         self.graph = Graph(Plan(normalised(resolve_scan_paths(merged(paper(), named), named, scratch))))
         self.overlay = scratch / "overlay.yaml"
         self.planner = Planner(folder, scratch)
-        for name in self.planner.outputs(*targets, config=[self.small]):
-            path = folder / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.touch()
-        self.touch()
-        self.label()
-        self.touch()
-
-    def touch(self):
-        """Let Snakemake take all placeholders for results of the present settings and code."""
-        touched = [*self.targets, "--touch", "--forceall", "--scheduler", "greedy", "--no-hooks"]
-        status, printed = self.planner(*touched, config=[self.small])
+        with contextlib.chdir(folder):
+            for name in self.planner.outputs(*targets, config=[self.small]):
+                self.place(name)
+        touched = [*targets, "--touch", "--forceall", "--scheduler", "greedy", "--no-hooks"]
+        status, printed = self.planner(*touched, config=[self.small])  # results of the present settings and code
         assert status == 0, printed
 
-    def label(self):
-        """Replace the placeholders by datasets with settings and inputs but without numbers, except for `LARGE`."""
-        noise = np.frombuffer(np.random.default_rng(0).bytes(2_000_000), np.uint8)  # cannot be compressed
-        records = {}
-        for path in (self.folder / ".snakemake" / "metadata").iterdir():
-            records[base64.urlsafe_b64decode(path.name).decode()] = json.loads(path.read_text())
-        datasets = {name: record for name, record in records.items() if name.endswith(".nc")}
-        while datasets:
-            ready = [name for name, record in datasets.items() if not set(record["input"]) & set(datasets)]
-            for name in ready:
-                record = datasets.pop(name)
-                job = self.graph.job(name.removeprefix("results/").removesuffix(".nc"))
-                with contextlib.chdir(self.folder):
-                    content = xr.Dataset({"noise": ("byte", noise)} if name == LARGE else {})
-                    before = [file for file in record["input"] if file.endswith(".nc")]
-                    storage.save(content, name, job.stage.stage, job.settings, before)
+    def place(self, name):
+        """Make an empty file, or a dataset with settings and inputs but without numbers, except for `LARGE`."""
+        path = Path(name)
+        if path.exists():
+            return
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if path.suffix != ".nc":
+            path.touch()
+            return
+        job = self.graph.job(name.removeprefix("results/").removesuffix(".nc"))
+        read = []
+        for files in job.inputs.values():
+            structured(files, read.append)
+        before = [f"results/{file}.nc" for file in read if not isinstance(file, File)]
+        for file in before:
+            self.place(file)
+        content = xr.Dataset({"noise": ("byte", NOISE)} if name == LARGE else {})
+        storage.save(content, name, job.stage.stage, job.settings, before)
 
     def git(self, *command):
         """Run git in the copy."""

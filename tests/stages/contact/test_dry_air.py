@@ -120,6 +120,7 @@ def rougher(factor):
     return energies(found, 0.0, water), energies(found, 0.0, replace(water, gaps=None))
 
 
+@pytest.mark.slow
 def test_summits_take_over_on_rough_surfaces_so_that_energies_fall_more_slowly_than_one_over_the_square():
     (rough, of_summits), (roughest, of_highest) = (np.log(rougher(factor)) for factor in (2, 8))
     fall, error = mean_with_error(rough - roughest)

@@ -145,6 +145,7 @@ def test_a_chart_has_the_safe_lengths_of_its_device_and_longer_ones_for_thicker_
     assert float(found.power_law_error) == 0
 
 
+@pytest.mark.slow
 def test_tips_of_a_chart_hold_as_those_of_the_device():
     tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(200))
     found, wanted = computed(C1, (2 * UM, C1.thickness), (C1.gap,), tips, (1e-2, 1e-3))

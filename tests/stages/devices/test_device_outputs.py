@@ -181,7 +181,7 @@ def test_the_axis_of_a_chart_is_that_of_its_own_lengths():
         assert high < top < 1.1 * high
 
 
-@pytest.mark.parametrize("count", [1, 2, 5])
+@pytest.mark.parametrize("count", [1, 2, pytest.param(5, marks=pytest.mark.slow)])
 def test_no_legend_covers_a_panel_a_text_or_another_legend(found, count):
     cases = {(f"C{k}", rh): found["C1", 0.44 if rh == 0.44 else 0.67] for k in range(count) for rh in (0.44, 0.67, 0.9)}
     bases = np.resize(["sampled", "fitted", "extrapolated"], found["C1", 0.44].basis.shape)
@@ -192,6 +192,7 @@ def test_no_legend_covers_a_panel_a_text_or_another_legend(found, count):
     assert covering(figures_devices.chart(axes, {})) == []
 
 
+@pytest.mark.slow
 def test_many_warnings_leave_the_panels_their_place_and_keep_their_numbers(found):
     cases = {(f"C{k}", rh): found["C1", 0.44] for k in range(20) for rh in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)}
     warned = {(*case, shape): [f"{case} is too wet."] for case in cases for shape in (S_SHAPE, EITHER)}
@@ -242,6 +243,7 @@ def test_the_chart_has_numbers_of_warnings_beside_the_thickness():
     assert figure._supxlabel.get_text() == "(1) to (2): warnings, written out in results/tables/chart.md"
 
 
+@pytest.mark.slow
 def test_equal_data_give_equal_files(found, tmp_path):
     for name in ("one", "two"):
         save(figures_devices.risk(found, WARNINGS), tmp_path / f"{name}.png", tmp_path / f"{name}.pdf")

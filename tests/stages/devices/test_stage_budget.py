@@ -83,6 +83,7 @@ def test_slopes_of_a_beam_are_about_the_powers_of_eq_13():
     assert np.all(errors < 0.06)
 
 
+@pytest.mark.slow
 def test_three_joint_shifts_move_the_length_by_the_sum_of_their_effects():
     values, errors = budget.slopes(INPUTS, BEAMS).T
     shifts = np.array([-0.4, 0.08, 0.1])

@@ -58,6 +58,7 @@ def test_the_curve_of_a_stopper_at_the_given_roughness_is_todays_result(stopper)
     assert float(found.given) == float(stopper.results["heights/B2"].rms)
 
 
+@pytest.mark.slow
 def test_the_curve_of_a_cantilever_at_the_given_roughness_is_todays_result(cantilever):
     today = cantilever.safe_lengths(0.88).sel(share=0.02)
     given = cantilever.results[f"devices/roughness/points/C1_{POINTS - 1}"].sel(humidity=0.88)
@@ -77,6 +78,7 @@ def dry():
     return Results.of(stiction.load(SECTIONS, IN_DRY_AIR))
 
 
+@pytest.mark.slow
 def test_points_at_the_given_roughness_are_todays_results_in_dry_and_in_humid_air(dry):
     stopper, cantilever = (dry[f"devices/roughness/points/{name}_{POINTS - 1}"] for name in ("S1", "C1"))
     np.testing.assert_array_equal(stopper.stuck[:, 0], dry["devices/stoppers/S1"].stuck.T)
@@ -86,6 +88,7 @@ def test_points_at_the_given_roughness_are_todays_results_in_dry_and_in_humid_ai
         np.testing.assert_array_equal(cantilever[name].sel(humidity=0), today[theirs])
 
 
+@pytest.mark.slow
 def test_smooth_stoppers_in_dry_air_are_held_more_than_rough_ones_and_the_page_says_what_suffices(dry):
     found = stiction.Device("S1", dry).roughness()
     assert np.all(np.diff(found.estimate.sel(humidity=0, shape="force")) < 0)
@@ -270,6 +273,7 @@ def mapped():
     return device
 
 
+@pytest.mark.slow
 def test_the_curve_of_a_map_at_the_given_second_quantity_is_that_of_one_quantity_bit_for_bit(mapped):
     plain = stiction.load(SECTIONS, FEW, {"devices": {"S1": {"humidities": [0.6]}}})
     alone = stiction.Device("S1", Results.of(plain)).roughness()
@@ -280,6 +284,7 @@ def test_the_curve_of_a_map_at_the_given_second_quantity_is_that_of_one_quantity
     assert not alone.estimate.equals(curves.curves_of(found)[0].estimate.drop_vars("other"))
 
 
+@pytest.mark.slow
 def test_every_other_curve_of_a_map_is_that_of_a_surface_with_this_second_quantity(mapped):
     found = mapped.roughness()
     skewness = float(found.other[0])
@@ -290,12 +295,14 @@ def test_every_other_curve_of_a_map_is_that_of_a_surface_with_this_second_quanti
     np.testing.assert_allclose(one.estimate, curves.safe_force(forces, SHARE)[1], rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_peaks_of_a_skewed_surface_keep_stoppers_apart(mapped):
     found = mapped.roughness().sel(roughness=float(mapped.roughness().given), humidity=0.6, shape="force")
     assert found.other.values.tolist() == sorted(found.other.values)
     assert np.all(np.diff(found.estimate) < 0)  # the more positive the skewness, the more peaks and the less valleys
 
 
+@pytest.mark.slow
 def test_a_map_is_told_curve_by_curve_and_drawn(mapped):
     found = mapped.roughness()
     said = tables_roughness.answers(found)

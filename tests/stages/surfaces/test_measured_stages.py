@@ -173,6 +173,7 @@ def test_an_estimate_has_the_model_scans_that_are_asked_for(monkeypatch):
     assert asked == [5, SETTINGS.evaluation, "Other", 17]
 
 
+@pytest.mark.slow
 def test_the_band_near_the_slow_axis_holds_jumps_of_lines():
     z = published("B2", SIDE, 1)[0]
     jumps = 0.3 * B2.rms * stream(1, "lines").standard_normal(z.heights.shape[1])
@@ -320,6 +321,7 @@ def test_a_scan_that_cannot_be_used_is_refused():
         estimated(found=[small])
 
 
+@pytest.mark.slow
 def test_files_of_equal_content_in_two_formats_give_the_same_estimate(tmp_path):
     z = published("B2", SIDE, 1)[0].heights
     first, second = (

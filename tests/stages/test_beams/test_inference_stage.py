@@ -420,6 +420,7 @@ def test_counts_of_beams_that_tips_hold_say_more_about_tips_than_about_cracks():
     assert_allclose(found.stuck_after, 0.5, atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("shapes", "mean_lengths_alone")
 def test_the_true_lengths_of_the_device_are_inside_the_stated_intervals_of_counts():
     scores = []

@@ -132,12 +132,14 @@ def assert_as_computed_again(found, names):
     )
 
 
+@pytest.mark.slow
 def test_test_beams_and_device_are_computed_again_on_one_contact_of_each_patch(stopper):
     found = stopper.test_beams_again()
     assert_as_computed_again(found, ["S1, RH 0.67", "T, RH 0.67"])
     xr.testing.assert_equal(found.drop_dims("again"), stopper.test_beams())
 
 
+@pytest.mark.slow
 def test_an_error_of_one_step_gives_the_contact_of_the_slope_bit_for_bit(stopper):
     job = stopper.results.graph.job("devices/test_beams/rerun/S1")
     surfaces = {
@@ -162,6 +164,7 @@ def test_test_beams_in_dry_air_are_computed_again_on_contacts_in_dry_air():
     assert {pair for pair, _ in job.settings["contacts"].values()} == {"b_dry"}
 
 
+@pytest.mark.slow
 def test_inputs_for_which_nothing_can_be_computed_are_named_with_the_reason(stopper, monkeypatch):
     def refuse(*_):
         raise ValueError("no density")
