@@ -1,9 +1,12 @@
 """The command line, without Snakemake: what is asked of it, and what is refused before it starts."""
 
+import gc
 import json
 import os
 import re
+import signal
 import sys
+import warnings
 from pathlib import Path
 
 import pytest
@@ -158,6 +161,17 @@ def test_only_a_quiet_run_shows_its_progress_in_a_line(tmp_path, monkeypatch, qu
     monkeypatch.setattr("snakemake.cli.main", lambda _: shown.append(launch.RUN.changed))
     assert launch.snakemake([], tmp_path, quiet, progress) == (0, False)
     assert [display is not None for display in shown] == [quiet and progress]
+
+
+def test_jobs_that_ctrl_c_keeps_from_starting_are_no_warning(tmp_path, monkeypatch):
+    async def prepare():
+        """As Snakemake does before it starts a job."""
+
+    monkeypatch.setattr("snakemake.cli.main", lambda _: [prepare(), signal.raise_signal(signal.SIGINT)])
+    with warnings.catch_warnings(record=True) as caught:
+        assert launch.snakemake([], tmp_path, True, False) == (1, True)
+        gc.collect()
+    assert caught == []
 
 
 def test_a_path_of_python_that_snakemake_does_not_support_is_refused(asked, capsys, monkeypatch):

@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import tempfile
+import warnings
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TextIO
@@ -65,6 +66,7 @@ def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: 
 
     def interrupt(*received):
         stopped.append(received)
+        warnings.filterwarnings("ignore", "coroutine .* was never awaited", RuntimeWarning)  # of jobs about to start
         signal.default_int_handler(*received)
 
     signal.signal(signal.SIGINT, interrupt)

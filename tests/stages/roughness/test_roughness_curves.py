@@ -338,7 +338,7 @@ def test_a_map_of_a_stopper_has_positive_margins_where_the_restoring_force_excee
 
 
 @pytest.mark.slow
-def test_the_stopper_of_the_issue_sticks_at_3_4_nm_and_not_at_5_nm():
+def test_a_stopper_of_30_micronewton_sticks_at_3_4_nm_and_not_at_5_nm():
     bump = {"contact_um": [5, 5], "restoring_force_uN": 30, "humidities": [0.6], "requirement": {"share": 0.01}}
     bump |= {"roughness": {"rms_nm": [3.4, 5]}}
     few = {"contact": {"samples": 300}, "chaos": {"order": 6}, "devices": {"S1": bump}}
