@@ -2,6 +2,7 @@
 
 import gc
 import os
+import pickle
 
 import pytest
 from hypothesis import settings
@@ -32,6 +33,24 @@ def pytest_collection_modifyitems(items):
     first = ["test_reruns.py", "test_run.py", "test_surface_estimate.py", "test_resume.py", "test_scan_uncertainty.py"]
     first += ["test_feasible.py", "test_messages.py", "test_study.py", "test_device.py"]
     items.sort(key=lambda item: (item.path.name not in first, item.path.parent.name != "workflow"))
+
+
+@pytest.fixture(autouse=True, scope="session")
+def spectra_on_grids():
+    """Invert the translation once for each surface and grid, which takes 0.2 s: many tests begin with the same ones."""
+    from stiction.stages.surfaces import heights, spectrum
+
+    known, on_grid = {}, spectrum.on_grid
+
+    def remembered(target, heights_of_surface, spacing):
+        key = pickle.dumps((target, heights.density(heights_of_surface, "NG"), spacing))
+        if key not in known:
+            known[key] = on_grid(target, heights_of_surface, spacing)
+        return known[key].copy(deep=True)
+
+    spectrum.on_grid = remembered
+    yield
+    spectrum.on_grid = on_grid
 
 
 @pytest.fixture

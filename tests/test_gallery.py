@@ -25,6 +25,7 @@ def test_every_study_is_tested():
     }
 
 
+@pytest.mark.slow
 def test_surface_and_contact(run):
     found = run("surface_and_contact")
     assert found["heights"].std() == pytest.approx(3.4e-9, rel=0.05)

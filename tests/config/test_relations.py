@@ -67,7 +67,10 @@ def test_a_violated_relation_is_rejected_in_one_line_with_key_value_and_what_is_
         "figures: {humidity: 0.9902}\nrun: {pairs: [a, b]}",
         "beam: {thickness_um: 1.5}",
         "surfaces: {B1: {skewness: -0.1, kurtosis: 3.05}}",
-        "surfaces: {B1: {skewness: -0.5, kurtosis: 4}, Sub1: {skewness: 1.0e-9, kurtosis: 3}}",
+        pytest.param(
+            "surfaces: {B1: {skewness: -0.5, kurtosis: 4}, Sub1: {skewness: 1.0e-9, kurtosis: 3}}",
+            marks=pytest.mark.slow,
+        ),
         "pairs: {a: {substrate: B1}}",
         "van_der_waals: none",
         "run: {pairs: [c, a]}",

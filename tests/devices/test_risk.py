@@ -118,7 +118,10 @@ def test_a_safe_length_states_what_it_rests_on(samples, share, basis):
     assert risk.safe_length(lognormal(np.random.default_rng(3), samples), share, stream(0)).basis is basis
 
 
-@pytest.mark.parametrize(("samples", "share"), [(600, 1e-2), (600, 1e-3), (600, 1e-4), (3000, 1e-3)])
+@pytest.mark.parametrize(
+    ("samples", "share"),
+    [(600, 1e-2), (600, 1e-3), pytest.param(600, 1e-4, marks=pytest.mark.slow), (3000, 1e-3)],
+)
 def test_safe_lengths_are_safe_in_95_of_100_studies(samples, share):
     rng, repeats = np.random.default_rng(4), 400
     found = [risk.safe_length(lognormal(rng, samples), share, rng) for _ in range(repeats)]

@@ -98,6 +98,7 @@ def test_directions_are_compared_where_aliases_of_the_large_scans_do_not_reach()
     np.testing.assert_allclose(errors[1], errors[0], rtol=0.05, err_msg="equal numbers of waves")
 
 
+@pytest.mark.slow
 def test_sizes_that_contradict_each_other_are_named():
     assert np.all(of_all().agreement[1] > UNLIKELY)
     assert not any("differ" in flag or "times the spectrum" in flag for flag in of_all().flags)

@@ -214,7 +214,7 @@ def test_no_legend_of_stoppers_covers_a_panel_or_a_text(count):
     assert covering(figures_budget.stoppers(datasets, {"S0": ["Beware."]})) == []
 
 
-@pytest.mark.parametrize("count", [2, 6, 30])
+@pytest.mark.parametrize("count", [2, 6, pytest.param(30, marks=pytest.mark.slow)])
 def test_every_panel_has_the_name_of_its_stopper_in_a_figure_that_is_not_too_tall(count):
     datasets = {f"S{k}": stopper_dataset(peak=1 + k) for k in range(count)}
     figure = figures_budget.stoppers(datasets, {name: ["Beware."] for name in datasets})
