@@ -1,5 +1,6 @@
 """Configuration files: reading, overlays on the configuration of the paper, and the normal form."""
 
+import copy
 import functools
 from collections.abc import Mapping
 from pathlib import Path
@@ -40,7 +41,7 @@ def load(*overlays: str | Path | Mapping) -> dict:
         arrays.with_files(overlay, overlay, Path()) if isinstance(overlay, Mapping) else located(overlay)
         for overlay in overlays
     )
-    config = expanded(functools.reduce(merged, changes, read(PAPER)))
+    config = expanded(functools.reduce(merged, changes, copy.deepcopy(paper())))
     validate(config)
     return normalised(config)
 
@@ -60,7 +61,7 @@ def located(path: str | Path) -> dict:
 
 @functools.cache
 def paper() -> dict:
-    """Configuration of the paper, read once, for comparison."""
+    """Configuration of the paper, read once; not to be changed."""
     return read(PAPER)
 
 
