@@ -121,21 +121,34 @@ def _hold(system, node):
 def add_points(u, laws, system, mesh, element, viscosity):
     """Add force and tangent of the contact points of one element, Eq. (12), with a dashpot at each within reach."""
     i, points = 2 * element, mesh.points_per_element
+    band, force = system.band, system.force
+    # The sums of an element are in registers while its points are added.
+    u_0, u_1, u_2, u_3 = u[i], u[i + 1], u[i + 2], u[i + 3]
+    f_0, f_1, f_2, f_3 = force[i], force[i + 1], force[i + 2], force[i + 3]
+    k_00, k_01, k_02, k_03 = band[i, 0], band[i, 1], band[i, 2], band[i, 3]
+    k_11, k_12, k_13 = band[i + 1, 0], band[i + 1, 1], band[i + 1, 2]
+    k_22, k_23, k_33 = band[i + 2, 0], band[i + 2, 1], band[i + 3, 0]
     for p in range(points):
         r = element * points + p
-        n = mesh.hermite[p]
-        distance = mesh.gap - (n[0] * u[i] + n[1] * u[i + 1] + n[2] * u[i + 2] + n[3] * u[i + 3])
+        n_0, n_1, n_2, n_3 = mesh.hermite[p, 0], mesh.hermite[p, 1], mesh.hermite[p, 2], mesh.hermite[p, 3]
+        distance = mesh.gap - (n_0 * u_0 + n_1 * u_1 + n_2 * u_2 + n_3 * u_3)
         a = laws[r, 2] if distance < laws[r, 1] else laws[r, 3]
         t = a * (distance - laws[r, 1])
         system.stretch[r] = t
         if t < REACH:
             x = np.exp(-t)
             push = laws[r, 0] * mesh.area * x * (x - 2)
-            k = 2 * a * laws[r, 0] * mesh.area * x * (x - 1) + viscosity / (1 + max(t, 0.0)) ** 2
-            for row in range(4):
-                system.force[i + row] -= n[row] * push
-                for column in range(row, 4):
-                    system.band[i + row, column - row] += k * n[row] * n[column]
+            dashpot = viscosity / (1 + t) ** 2 if t > 0 else viscosity
+            k = 2 * a * laws[r, 0] * mesh.area * x * (x - 1) + dashpot
+            f_0, f_1, f_2, f_3 = f_0 - n_0 * push, f_1 - n_1 * push, f_2 - n_2 * push, f_3 - n_3 * push
+            m_0, m_1, m_2, m_3 = k * n_0, k * n_1, k * n_2, k * n_3
+            k_00, k_01, k_02, k_03 = k_00 + m_0 * n_0, k_01 + m_0 * n_1, k_02 + m_0 * n_2, k_03 + m_0 * n_3
+            k_11, k_12, k_13 = k_11 + m_1 * n_1, k_12 + m_1 * n_2, k_13 + m_1 * n_3
+            k_22, k_23, k_33 = k_22 + m_2 * n_2, k_23 + m_2 * n_3, k_33 + m_3 * n_3
+    force[i], force[i + 1], force[i + 2], force[i + 3] = f_0, f_1, f_2, f_3
+    band[i, 0], band[i, 1], band[i, 2], band[i, 3] = k_00, k_01, k_02, k_03
+    band[i + 1, 0], band[i + 1, 1], band[i + 1, 2] = k_11, k_12, k_13
+    band[i + 2, 0], band[i + 2, 1], band[i + 3, 0] = k_22, k_23, k_33
 
 
 @kernel
