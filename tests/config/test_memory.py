@@ -160,10 +160,9 @@ def test_budgets_of_tips_reserve_the_memory_of_all_their_tips_under_every_input(
 
 def test_a_job_reserves_what_its_stage_needs_if_that_is_more_than_usual():
     config = changed("contact: {samples: 100}")
-    assert [memory.of_job(config, 1700.4, attempt) for attempt in (1, 2)] == [1700, 3400]
+    assert memory.of_job(config, 1700.4) == 1700
     assert memory.of_job(config, 700) == memory.USUAL
 
 
 def test_a_job_that_failed_may_use_twice_as_much():
-    config = changed("contact: {samples: 100}")
-    assert [memory.of_job(config, attempt=attempt) for attempt in (1, 2, 3)] == [800, 1600, 3200]
+    assert [memory.of_attempt(1700, attempt) for attempt in (1, 2, 3)] == [1700, 3400, 6800]

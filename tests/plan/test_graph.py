@@ -1,6 +1,7 @@
 """Jobs that follow from the declarations: names, settings and inputs agree with each other, for every stage."""
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from stiction.plan.plan import Plan
 from stiction.plan.planner import NotPlanned, Planner
 from stiction.plan.stage import File, Stage
 from stiction.report.style import STUDIES
+from stiction.run.fingerprint import PACKAGE
 
 ROOT = Path(__file__).parents[2]
 #: The paper, and the devices of the examples, which need every stage that no measured surface needs.
@@ -224,11 +226,20 @@ def test_a_repeated_plan_needs_no_declaration_and_a_change_of_the_configuration_
         other.rules  # noqa: B018
 
 
-def test_what_is_kept_depends_on_declarations_and_plans_although_fingerprints_leave_them_out(planner):
-    reached = {name for code in planner._codes.values() for name in code}
-    assert {
-        f"stiction.{name}" for name in ("plan.stage", "plan.names", "stages.devices.patch_settings", "plan.plan")
-    } <= reached
+@pytest.mark.parametrize(
+    "file", ["plan/plan.py", "plan/stage.py", "stages/devices/patch_settings.py", "models.py", "config/paper.yaml"]
+)
+def test_what_is_kept_depends_on_all_code_also_where_fingerprints_leave_it_out(planner, tmp_path, monkeypatch, file):
+    copy = shutil.copytree(PACKAGE, tmp_path / "stiction", ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr("stiction.plan.planner.PACKAGE", copy)
+
+    def planned():
+        return Planner(PLAN.config, {}, lambda _, compute: compute(), tmp_path / "jobs.json")
+
+    assert planned()._determined_by == planner._determined_by
+    with (copy / file).open("a", encoding="utf-8") as text:
+        text.write("# another comment")
+    assert planned()._determined_by != planner._determined_by
 
 
 def test_a_dataset_of_no_job_has_no_settings(planner):

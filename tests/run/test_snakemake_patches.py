@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import pandas
 import pytest
 import snakemake.api
-from snakemake import persistence
+from snakemake import common, dag, persistence, rules
 from snakemake.persistence.file import FilePersistence
 from snakemake.scheduling.job_scheduler import JobScheduler
 from snakemake.script import PythonScript
@@ -224,6 +224,116 @@ def test_unknown_records_of_parameters_remain_as_they_are(monkeypatch):
     monkeypatch.delattr(persistence, "PersistenceBase")
     snakemake_patches.compare_without_pandas()
     assert not hasattr(persistence, "PersistenceBase")
+
+
+class Unhashable:
+    """Input function without a hash."""
+
+    __hash__ = None
+
+    def __call__(self, wildcards, input):
+        """Nothing."""
+
+
+@pytest.fixture
+def signatures(monkeypatch):
+    """Functions whose signatures Snakemake has read since the change."""
+    inspected, known = [], common.get_function_params
+
+    def get_function_params(func):
+        inspected.append(func)
+        return known(func)
+
+    for module in (common, rules):
+        monkeypatch.setattr(module, "get_function_params", get_function_params)
+    snakemake_patches.remember_signatures()
+    return inspected
+
+
+def test_a_signature_is_read_once(signatures):
+    def of_attempt(wildcards, attempt):
+        """Nothing."""
+
+    unhashable, candidates = Unhashable(), {"input": 1, "attempt": 2, "threads": 3}
+    for _ in range(3):
+        assert list(rules.get_function_params(of_attempt)) == ["wildcards", "attempt"]
+        assert common.get_input_function_aux_params(of_attempt, candidates) == {"attempt": 2}
+        assert common.get_input_function_aux_params(unhashable, candidates) == {"input": 1}
+    assert signatures == [of_attempt, unhashable, unhashable, unhashable]
+
+
+def test_an_unknown_way_to_read_signatures_remains_as_it_is(monkeypatch):
+    def another(func, wildcards):
+        """A way that is not known."""
+
+    monkeypatch.setattr(rules, "get_function_params", another)
+    known = common.get_function_params
+    snakemake_patches.remember_signatures()
+    assert (common.get_function_params, rules.get_function_params) == (known, another)
+    monkeypatch.setattr(common, "get_function_params", another)
+    snakemake_patches.remember_signatures()
+    assert common.get_function_params is rules.get_function_params is another
+
+
+class Rule:
+    """Rule with a script."""
+
+    def __init__(self, script):
+        self.script = script
+
+
+@pytest.mark.parametrize(("script", "number"), [("a.py", 1), ("{wildcards.name}.py", 3), (ROOT / "a.py", 3), (None, 3)])
+def test_a_script_is_looked_for_once_unless_its_name_depends_on_the_job(monkeypatch, script, number):
+    looked_for = []
+
+    def process_job(self, job):
+        looked_for.append(job)
+        assert isinstance(self, dag.ScriptProcessor)
+
+    monkeypatch.setattr(dag.ScriptProcessor, "process_job", process_job)
+    snakemake_patches.look_for_scripts_once()
+    for _ in range(2):  # what one plan has found, another looks for again
+        looked_for.clear()
+        processor = dag.ScriptProcessor(None)
+        jobs = [SimpleNamespace(rule=rule) for rule in [*3 * [Rule(script)], Rule("other.py"), Rule("other.py")]]
+        for job in jobs:
+            processor.process_job(job)
+        assert looked_for == [*jobs[:number], *jobs[-2:]]
+
+
+def test_a_missing_script_is_looked_for_by_every_job(monkeypatch):
+    def process_job(self, job):
+        raise FileNotFoundError(self, job)
+
+    monkeypatch.setattr(dag.ScriptProcessor, "process_job", process_job)
+    snakemake_patches.look_for_scripts_once()
+    processor, job = dag.ScriptProcessor(None), SimpleNamespace(rule=Rule("a.py"))
+    for _ in range(2):
+        with pytest.raises(FileNotFoundError):
+            processor.process_job(job)
+
+
+def test_an_unknown_search_for_scripts_remains_as_it_is(monkeypatch):
+    def another(self, jobs):
+        """A search that is not known."""
+
+    monkeypatch.setattr(dag.ScriptProcessor, "process_job", another)
+    snakemake_patches.look_for_scripts_once()
+    assert dag.ScriptProcessor.process_job is another
+    monkeypatch.delattr(dag, "ScriptProcessor")
+    snakemake_patches.look_for_scripts_once()
+    assert not hasattr(dag, "ScriptProcessor")
+
+
+def test_this_version_of_snakemake_plans_with_the_changes(monkeypatch):
+    before = common.get_function_params, dag.ScriptProcessor.process_job
+    for module in (common, rules):
+        monkeypatch.setattr(module, "get_function_params", before[0])
+    monkeypatch.setattr(dag.ScriptProcessor, "process_job", before[1])
+    snakemake_patches.remember_signatures()
+    snakemake_patches.look_for_scripts_once()
+    assert common.get_function_params is rules.get_function_params is not before[0]
+    assert dag.ScriptProcessor.process_job is not before[1]
 
 
 @pytest.fixture

@@ -24,6 +24,8 @@ except RuntimeError as error:
     raise WorkflowError(str(error))
 
 snakemake_patches.compare_without_pandas()
+snakemake_patches.look_for_scripts_once()
+snakemake_patches.remember_signatures()
 remember = DiskCache(".snakemake/planning.json")
 
 
@@ -119,7 +121,7 @@ def inputs_of(rule):
 
     def inputs(wildcards):
         files = planner.inputs(rule, dict(wildcards))
-        written = {file.format(**dict(wildcards)) for file in rule["files"].values()}
+        written = {file.format(**dict(wildcards)) for file in rule["files"].values()} if unusable() else set()
         return files | caption_of(rule) | ({"stale": STALE} if written & unusable().keys() else {})
 
     return inputs
@@ -149,4 +151,5 @@ def of_job(rule, key):
 
 def memory_of(rule):
     """Function of the attempt that gives the memory to reserve for a job [MB]."""
-    return lambda wildcards, attempt: memory.of_job(config, rule["memory"], attempt)
+    megabytes = memory.of_job(config, rule["memory"])
+    return lambda wildcards, attempt: memory.of_attempt(megabytes, attempt)

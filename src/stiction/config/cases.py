@@ -5,6 +5,7 @@ Dry air has the humidity 0 in the code. It has no water at all, which is not a f
 
 import re
 from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 #: Word for the humidity of dry air in configurations, and the end of the names of its cases and contacts.
@@ -65,26 +66,27 @@ class Case(str):
     @property
     def pair(self) -> str:
         """Name of its pair."""
-        return self._parts[0]
+        return _parts(self)[0]
 
     device = pair  #: name of its device, in cases of devices
 
     @property
     def humidity(self) -> float:
         """Relative humidity [-]."""
-        return self._parts[1]
+        return _parts(self)[1]
 
-    @property
-    def _parts(self):
-        """Pair and humidity, the inverse of `case_id`."""
-        pair, _, digits = self.removesuffix(_OF_DRY).partition("_rh0")
-        valid = re.fullmatch(CASE, self)
-        humidity = float(f"0.{digits or 0}") if valid else 0.0
-        if not valid or case_id(pair, humidity) != self:
-            raise ValueError(
-                f"{str(self)!r} is not a case, must be like b_rh067 for pair b at relative humidity 0.67, or b_dry"
-            )
-        return pair, humidity
+
+@cache
+def _parts(case):
+    """Pair and humidity of a case, the inverse of `case_id`; a plan asks for them ten times for each job."""
+    pair, _, digits = case.removesuffix(_OF_DRY).partition("_rh0")
+    valid = re.fullmatch(CASE, case)
+    humidity = float(f"0.{digits or 0}") if valid else 0.0
+    if not valid or case_id(pair, humidity) != case:
+        raise ValueError(
+            f"{str(case)!r} is not a case, must be like b_rh067 for pair b at relative humidity 0.67, or b_dry"
+        )
+    return pair, humidity
 
 
 def case_id(pair: str, humidity: float | str) -> Case:

@@ -40,13 +40,24 @@ def spacings_of(device: dict, spacing_nm: float, others_nm: Sequence[float]) -> 
     return (spacing_nm, *others_nm) if "uncertainty" in device else (spacing_nm,)
 
 
-def of_job(config: dict, least: float = 0.0, attempt: int = 1) -> int:
-    """Memory to reserve for a job of a configuration [MB]; jobs that fail are started again with twice as much.
+def of_job(config: dict, least: float = 0.0) -> int:
+    """Memory to reserve for a job of a configuration [MB].
 
     The job of a stage may need more than the field that it draws, ``least``; so may those that hold many samples, or
     large scans.
     """
-    return round(max(USUAL, least, _of_largest_field(config))) * 2 ** (attempt - 1)
+    return round(max(USUAL, least, _of_largest_field(config)))
+
+
+def of_attempt(megabytes: int, attempt: int) -> int:
+    """Memory to reserve for an attempt of a job [MB]: twice as much after each failure.
+
+    Examples
+    --------
+    >>> [of_attempt(800, attempt) for attempt in (1, 2, 3)]
+    [800, 1600, 3200]
+    """
+    return megabytes * 2 ** (attempt - 1)
 
 
 def of_tips(slopes: int) -> float:

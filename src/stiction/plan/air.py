@@ -50,7 +50,7 @@ class Air:
 
     def humid(self, pair: str) -> list[float]:
         """Humidities of a pair at which water condenses: studies over the humidity leave out dry air."""
-        return [rh for rh in self.config["pairs"][pair]["humidities"] if rh > 0 and self.is_wetted(pair)]
+        return [rh for rh in self.config["pairs"][pair]["humidities"] if rh > 0] if self.is_wetted(pair) else []
 
     def around(self, contact: str, config: dict | None = None) -> dict[str, Any]:
         """Configuration in which the summits of a contact attract each other through its own medium."""

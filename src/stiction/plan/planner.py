@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from stiction.plan.plan import Plan
-from stiction.plan.stage import FOLDERS, WILDCARDS, At, expression
+from stiction.plan.stage import WILDCARDS, At, expression
 from stiction.run.atomic import DataError, save_text
 from stiction.run.fingerprint import PACKAGE, fingerprint
 from stiction.run.provenance import version_of
@@ -44,6 +44,7 @@ class Planner:
         self._file = Path(kept).absolute()  # Snakemake leaves its working directory before it ends
         self._codes = {}
         self._kept = self._read()
+        self._number_read = len(self._kept)
 
     def _read(self):
         """What an earlier plan with the same code and configuration kept."""
@@ -56,8 +57,8 @@ class Planner:
     @cached_property
     def _determined_by(self):
         """Hash of everything that determines the jobs: code, configuration and files of scans."""
-        folders = (*FOLDERS, "plan")  # fingerprints leave out declarations, which decide here
-        code = {str(path): self._code(str(path)) for name in folders for path in sorted((PACKAGE / name).rglob("*.py"))}
+        files = sorted(file for kind in ("*.py", "*.yaml") for file in PACKAGE.rglob(kind))
+        code = {str(file.relative_to(PACKAGE)): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
         scans = [Path(file) for surface in self.plan.scans.surfaces for file in self.plan.scans.files(surface).values()]
         states = [(str(file), file.stat().st_mtime_ns, file.stat().st_size) for file in scans]
         text = json.dumps([code, self.plan.config, states, dict(self.plan.preliminary)], sort_keys=True, default=str)
@@ -71,7 +72,7 @@ class Planner:
 
     def save(self) -> None:
         """Keep the jobs for the next plan; nothing is lost but time if the file cannot be written."""
-        if self._kept != self._read():
+        if len(self._kept) > self._number_read:
             try:
                 save_text(json.dumps(self._kept), self._file)
             except (OSError, DataError):
@@ -135,7 +136,7 @@ class Planner:
 
     def job(self, rule: str, wildcards: Mapping[str, str]) -> dict:
         """Files and structure of the inputs and settings of a job."""
-        return self._known(json.dumps([rule, dict(wildcards)], sort_keys=True), lambda: self._job(rule, wildcards))
+        return self._known(f"{rule} {sorted(wildcards.items())}", lambda: self._job(rule, wildcards))
 
     def _job(self, rule, wildcards):
         """As `job`, from the declaration."""

@@ -10,6 +10,7 @@ no extension. Inputs that are no datasets, such as published tables, are a `File
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
+from functools import cache
 from importlib import import_module
 from types import SimpleNamespace
 from typing import Any, get_args, get_origin, get_type_hints
@@ -253,7 +254,7 @@ def select(kind: type, section: Mapping[str, Any], **given: Any) -> dict[str, An
     {'temperature_K': 300, 'samples': 7}
     """
     keys = {without_unit(key): key for key in (*section, *given)}
-    kinds, selected = get_type_hints(kind), {}
+    kinds, selected = _kinds_of(kind), {}
     for field in fields(kind):
         key = keys.get(field.name)
         if key in given:
@@ -263,6 +264,9 @@ def select(kind: type, section: Mapping[str, Any], **given: Any) -> dict[str, An
         elif field.default is MISSING and field.default_factory is MISSING:
             raise KeyError(f"no key for {kind.__qualname__}.{field.name}")
     return selected
+
+
+_kinds_of = cache(get_type_hints)  # a plan asks for those of a few classes thousands of times
 
 
 def _part(kind, value):

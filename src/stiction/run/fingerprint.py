@@ -19,6 +19,8 @@ SILENT |= {"stiction.plan.stage", "stiction.plan.names", "stiction.stages.device
 SILENT |= {f"stiction.config.{name}" for name in ("conditions", "relations", "relations_devices", "validation")}
 #: Fields of a syntax tree that do not affect what the code does.
 _WITHOUT_MEANING = {"kind", "type_comment", "type_ignores"}
+#: Kinds of nodes that may begin with a docstring.
+_DOCUMENTED = {ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef}
 
 
 def _compute(_determined_by, compute):
@@ -117,13 +119,14 @@ def canonical(node: object) -> str:
         return f"[{','.join(map(canonical, node))}]"
     if not isinstance(node, ast.AST):
         return repr(node)
-    fields = {name: getattr(node, name, None) for name in _meaningful(type(node))}
-    if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and _has_docstring(node):
-        fields["body"] = node.body[1:]
-    if isinstance(node, ast.JoinedStr):
-        fields["values"] = _joined(node.values)
-    parts = (f"{name}={canonical(value)}" for name, value in fields.items() if value not in (None, []))
-    return f"{type(node).__name__}({','.join(parts)})"
+    kind, fields = type(node), vars(node)
+    if kind in _DOCUMENTED and _has_docstring(node):
+        fields = fields | {"body": node.body[1:]}
+    elif kind is ast.JoinedStr:
+        fields = {"values": _joined(node.values)}
+    given = [(name, fields.get(name)) for name in _meaningful(kind)]
+    parts = [f"{name}={canonical(value)}" for name, value in given if value is not None and value != []]
+    return f"{kind.__name__}({','.join(parts)})"
 
 
 @cache

@@ -10,11 +10,12 @@ import subprocess
 import sys
 import tempfile
 import threading
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import snakemake.api  # noqa: F401  first, because its imports are circular
-from snakemake import persistence
+from snakemake import common, dag, persistence, rules
 from snakemake.logging import logger
 from snakemake.script import PythonScript
 
@@ -105,6 +106,41 @@ def compare_without_pandas() -> None:
         return compared(record, value) if "pandas" in sys.modules else record._serialize_param_builtin(value)
 
     records._serialize_param_pandas = serialize
+
+
+def look_for_scripts_once() -> None:
+    """Let Snakemake look for the script of a rule once, not for every job; an unknown way to look for it remains."""
+    processor = getattr(dag, "ScriptProcessor", None)
+    look_for = getattr(processor, "process_job", None)
+    if look_for is None or list(inspect.signature(look_for).parameters) != ["self", "job"]:
+        return
+
+    def process_job(self, job):
+        present = vars(self).setdefault("present", set())
+        if job.rule not in present:
+            look_for(self, job)
+            if isinstance(job.rule.script, str) and "{" not in job.rule.script:  # otherwise it depends on the job
+                present.add(job.rule)
+
+    processor.process_job = process_job
+
+
+def remember_signatures() -> None:
+    """Let Snakemake read the signature of a function once, not nine times for every job; an unknown way remains."""
+    inspected = getattr(common, "get_function_params", None)
+    if inspected is None or getattr(rules, "get_function_params", None) is not inspected:
+        return
+    if list(inspect.signature(inspected).parameters) != ["func"]:
+        return
+    known = cache(inspected)
+
+    def get_function_params(func):
+        try:
+            return known(func)
+        except TypeError:  # it has no hash
+            return inspected(func)
+
+    common.get_function_params = rules.get_function_params = get_function_params
 
 
 def limit_timers(workflow: Any) -> None:
