@@ -164,6 +164,7 @@ numbers: $(VENV)/ready
 
 # Builds HTML, without network access, and changes no tracked file.
 docs: $(VENV)/ready
+	@test -f docs/_build/html/searchindex.js || rm -rf docs/_build  # left by a build that was stopped
 	$(BIN)/python -m sphinx -W --keep-going -n -q docs docs/_build/html
 	@echo "open docs/_build/html/index.html"
 
