@@ -16,7 +16,7 @@ PATHS = [SOURCE, *filter(None, dict(os.environ).get("PYTHONPATH", "").split(os.p
 os.environ.update(PYTHONPATH=os.pathsep.join(dict.fromkeys(PATHS)))
 
 # Nearly all objects of a plan remain until its end; looking for garbage among them would take a sixth of its time.
-gc.set_threshold(100_000)
+gc.set_threshold(1_000_000)
 
 
 configfile: str(BASE / "config.yaml")

@@ -278,8 +278,8 @@ def test_an_unknown_way_to_read_signatures_remains_as_it_is(monkeypatch):
 class Rule:
     """Rule with a script."""
 
-    def __init__(self, script):
-        self.script = script
+    def __init__(self, script, name="stage"):
+        self.script, self.name = script, name
 
 
 @pytest.mark.parametrize(("script", "number"), [("a.py", 1), ("{wildcards.name}.py", 3), (ROOT / "a.py", 3), (None, 3)])
@@ -295,7 +295,8 @@ def test_a_script_is_looked_for_once_unless_its_name_depends_on_the_job(monkeypa
     for _ in range(2):  # what one plan has found, another looks for again
         looked_for.clear()
         processor = dag.ScriptProcessor(None)
-        jobs = [SimpleNamespace(rule=rule) for rule in [*3 * [Rule(script)], Rule("other.py"), Rule("other.py")]]
+        others = Rule("other.py", "first"), Rule("other.py", "second")
+        jobs = [SimpleNamespace(rule=rule) for rule in [*3 * [Rule(script)], *others]]
         for job in jobs:
             processor.process_job(job)
         assert looked_for == [*jobs[:number], *jobs[-2:]]

@@ -118,11 +118,12 @@ SCRIPT = code(BASE / "workflow" / "scripts" / "stage.py")
 
 def inputs_of(rule):
     """Input function of the rule of a stage."""
+    caption = caption_of(rule)
 
     def inputs(wildcards):
-        files = planner.inputs(rule, dict(wildcards))
+        files = planner.inputs(rule, dict(wildcards)) | caption
         written = {file.format(**dict(wildcards)) for file in rule["files"].values()} if unusable() else set()
-        return files | caption_of(rule) | ({"stale": STALE} if written & unusable().keys() else {})
+        return files | {"stale": STALE} if written & unusable().keys() else files
 
     return inputs
 

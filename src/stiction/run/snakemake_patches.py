@@ -116,11 +116,11 @@ def look_for_scripts_once() -> None:
         return
 
     def process_job(self, job):
-        present = vars(self).setdefault("present", set())
-        if job.rule not in present:
+        rule, present = job.rule.name, vars(self).setdefault("present", set())
+        if rule not in present:
             look_for(self, job)
             if isinstance(job.rule.script, str) and "{" not in job.rule.script:  # otherwise it depends on the job
-                present.add(job.rule)
+                present.add(rule)
 
     processor.process_job = process_job
 
