@@ -1,5 +1,6 @@
 """Stiction of MEMS beams, from the statistics of two rough surfaces to the distribution of crack lengths."""
 
+import atexit
 import gc
 import os
 import signal
@@ -15,8 +16,10 @@ sys.path.insert(0, SOURCE)
 PATHS = [SOURCE, *filter(None, dict(os.environ).get("PYTHONPATH", "").split(os.pathsep))]
 os.environ.update(PYTHONPATH=os.pathsep.join(dict.fromkeys(PATHS)))
 
-# Nearly all objects of a plan remain until its end; looking for garbage among them would take a sixth of its time.
+# Nearly all objects of a plan remain until its end. Looking for garbage among them would take a sixth of its time, and
+# again as long when Python ends.
 gc.set_threshold(1_000_000)
+atexit.register(gc.freeze)
 
 
 configfile: str(BASE / "config.yaml")

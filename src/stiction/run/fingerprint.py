@@ -120,12 +120,17 @@ def canonical(node: object) -> str:
     if not isinstance(node, ast.AST):
         return repr(node)
     kind, fields = type(node), vars(node)
+    if not fields:  # a third of all nodes, such as ``Load()``
+        return f"{kind.__name__}()"
     if kind in _DOCUMENTED and _has_docstring(node):
         fields = fields | {"body": node.body[1:]}
     elif kind is ast.JoinedStr:
         fields = {"values": _joined(node.values)}
-    given = [(name, fields.get(name)) for name in _meaningful(kind)]
-    parts = [f"{name}={canonical(value)}" for name, value in given if value is not None and value != []]
+    parts = [
+        f"{name}={canonical(value)}"
+        for name in _meaningful(kind)
+        if (value := fields.get(name)) or value not in (None, [])
+    ]
     return f"{kind.__name__}({','.join(parts)})"
 
 
