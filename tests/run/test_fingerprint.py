@@ -144,3 +144,9 @@ def test_the_pieces_of_a_formatted_string_do_not_count():
 
     assert formatted("ab") == formatted("a", "b") == formatted("a", "", "b") != formatted("ba")
     assert formatted(None, None, "a") == formatted("", None, "", None, "a", "") != formatted(None, "a", None)
+
+
+def test_every_two_constants_count_as_different():
+    values = ["0", "0.0", "0j", "False", "None", "''", "b''", "()", "[]", "{}", "...", "1", "True", "'None'", "-0.0"]
+    texts = {fingerprint.canonical(ast.parse(f"limit = {value}")) for value in values}
+    assert len(texts) == len(values)

@@ -129,7 +129,7 @@ def canonical(node: object) -> str:
     parts = [
         f"{name}={canonical(value)}"
         for name in _meaningful(kind)
-        if (value := fields.get(name)) or value not in (None, [])
+        if (value := fields.get(name)) or value not in (None, [])  # constants may be 0, False or empty
     ]
     return f"{kind.__name__}({','.join(parts)})"
 
