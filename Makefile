@@ -124,13 +124,13 @@ test-all: lint
 lint: $(VENV)/ready
 	$(BIN)/ruff format --check src tests workflow docs examples
 	$(BIN)/ruff check src tests workflow docs examples
-	$(BIN)/snakefmt --check Snakefile workflow/rules
+	$(BIN)/snakefmt --check Snakefile workflow
 	$(SNAKEMAKE) --lint
 
 format: $(VENV)/ready
 	$(BIN)/ruff format src tests workflow docs examples
 	$(BIN)/ruff check --fix src tests workflow docs examples
-	$(BIN)/snakefmt Snakefile workflow/rules
+	$(BIN)/snakefmt Snakefile workflow
 
 # A SLURM cluster on this machine; the test is skipped, with the reason, if the daemons of SLURM are not installed.
 cluster: $(VENV)/ready

@@ -8,7 +8,7 @@ import sys
 import threading
 from pathlib import Path
 
-BASE = Path(workflow.basedir)
+BASE = Path(workflow.current_basedir)
 # Jobs use the code that belongs to this file, because its fingerprint decides what reruns: next to it in a checkout, and
 # around it in an installed package.
 SOURCE = str(BASE / "src" if (BASE / "src").is_dir() else BASE.parents[1])

@@ -99,6 +99,13 @@ def page() -> str:
     return "\n\n".join(parts)
 
 
+def sections() -> str:
+    """Table of the sections and their subjects in Markdown."""
+    subjects = {name: entry["description"].partition(" [")[0] for name, entry in schema()["properties"].items()}
+    rows = [f"| `{name}` | {about[0].upper()}{about[1:]} |" for name, about in subjects.items()]
+    return "\n".join(["| section | subject |", "|---|---|", *rows])
+
+
 def _row(key, above):
     """Row of one key, without the first names of its path; defaults hold without a file of one's own."""
     default = "" if "*" in key.path else next((_yaml(value) for value in _values(PAPER, key.path)), "")

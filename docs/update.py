@@ -5,8 +5,8 @@
    ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction`` and ``stiction devices
    examples/NAME.yaml --directory runs/NAME`` with the names roughness and test_beams in folders of ``runs`` beside it.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
-3. The pages of ``docs`` are generated from ``docs/templates``, with numbers and tables inserted, and the schema
-   for editors from that of the configuration.
+3. The pages of ``docs`` and ``config/README.md`` are generated from ``docs/templates``, with numbers and tables
+   inserted, and the schema for editors from that of the configuration.
 
 Steps 2 and 3 depend on ``docs`` alone: ``tests/test_docs.py`` repeats them and compares.
 """
@@ -363,8 +363,13 @@ def pages():
     texts = {DOCS / "results.json": json.dumps(record(numbers), indent=1, ensure_ascii=False, sort_keys=True) + "\n"}
     for template in sorted((DOCS / "templates").glob("*.md")):
         body = filled(template.read_text(encoding="utf-8"), numbers)
-        texts[DOCS / template.name] = NOTE.format(name=template.name) + "\n\n" + body
+        texts[page_of(template)] = NOTE.format(name=template.name) + "\n\n" + body
     return texts | {EDITORS: keys.for_editors()}
+
+
+def page_of(template):
+    """File that is written from a template."""
+    return ROOT / "config" / "README.md" if template.name == "config.md" else DOCS / template.name
 
 
 def quoted_numbers():
@@ -392,7 +397,7 @@ def quoted_numbers():
 
 def record(numbers):
     """Numbers quoted by the pages, and checksums of the tables and pictures that the pages are made of."""
-    quoted_names = {name for text in templates() for name in re.findall(r"{{ (\w+) }}", text)} - {"keys"}
+    quoted_names = {name for text in templates() for name in re.findall(r"{{ (\w+) }}", text)} - {"keys", "sections"}
     files = sorted(path for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir())
     return {
         "numbers": {name: numbers[name] for name in sorted(quoted_names)},
@@ -408,7 +413,10 @@ def templates():
 def filled(template, numbers):
     """Template with ``{{ name }}`` replaced by a number and ``{{ table: name }}`` by a table with its caption."""
     with_tables = re.sub(r"{{ table: (\w+) }}", lambda match: shown(DOCS / "tables" / f"{match[1]}.md"), template)
-    with_keys = with_tables.replace("{{ keys }}", keys.page()) if "{{ keys }}" in with_tables else with_tables
+    with_keys = with_tables
+    for name, made in (("{{ keys }}", keys.page), ("{{ sections }}", keys.sections)):
+        if name in with_keys:
+            with_keys = with_keys.replace(name, made())
     return re.sub(r"{{ (\w+) }}", lambda match: numbers[match[1]], with_keys)
 
 

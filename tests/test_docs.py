@@ -57,7 +57,7 @@ def written():
 
 WRITTEN = [
     DOCS / "results.json",
-    *(DOCS / path.name for path in sorted((DOCS / "templates").glob("*.md"))),
+    *(update.page_of(path) for path in sorted((DOCS / "templates").glob("*.md"))),
     update.EDITORS,
 ]
 

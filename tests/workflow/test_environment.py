@@ -47,7 +47,7 @@ def test_jobs_find_the_modules_of_the_user_after_those_of_the_package(modules, m
     monkeypatch.setattr(sys, "path", sys.path[:])
     head, found, _ = (ROOT / "Snakefile").read_text(encoding="utf-8").partition("\nconfigfile:")
     assert found
-    exec(compile(head, "Snakefile", "exec"), {"workflow": SimpleNamespace(basedir=str(ROOT))})
+    exec(compile(head, "Snakefile", "exec"), {"workflow": SimpleNamespace(current_basedir=str(ROOT))})
     assert os.environ["PYTHONPATH"] == os.pathsep.join([str(ROOT / "src"), str(modules)])
     assert (
         imported("import mine, stiction; print(mine.LENGTH, stiction.__file__)") == f"7 {ROOT}/src/stiction/__init__.py"

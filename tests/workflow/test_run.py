@@ -78,6 +78,13 @@ def test_a_second_run_has_nothing_to_do(smoke):
     assert "Nothing to be done" in snakemake(smoke, "-n").stdout
 
 
+@pytest.mark.slow
+def test_the_snakefile_of_the_catalogue_plans_the_same_run(smoke, tmp_path):
+    standard = ["--snakefile", ROOT / "workflow" / "Snakefile"]
+    assert "Nothing to be done" in snakemake(smoke, *standard, "-n").stdout
+    assert "whole_workflow" in snakemake(tmp_path, *standard, "-n").stdout  # it is its default target
+
+
 def test_the_next_plan_knows_the_labels_of_all_datasets(smoke):
     known = json.loads((smoke / ".snakemake" / "labels.json").read_text())
     labels = [label for label in known.values() if isinstance(label, list)]  # the others are checksums

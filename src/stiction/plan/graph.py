@@ -112,7 +112,7 @@ class Results:
 
     Examples
     --------
-    >>>     >>> results = Results.of(stiction.load())  # doctest: +SKIP
+    >>> results = Results.of(stiction.load())  # doctest: +SKIP
     >>> results["forces/b_rh067_NG"].adhesion_energy  # doctest: +SKIP
     """
 
