@@ -75,6 +75,14 @@ def test_energies_are_those_of_the_vectors(study):
     assert_array_equal(study.energies(HUMIDITY), study.forces(HUMIDITY).adhesion_energy)
 
 
+@pytest.mark.parametrize("humidity", [np.nan, -0.5, 67, "wet"])
+def test_what_is_no_humidity_is_refused_by_all_results(study, humidity):
+    for result in (study.energies, study.forces, study.chaos, study.beams):
+        with pytest.raises(ValueError, match=f"umidity .*{humidity}") as refused:
+            result(humidity)
+        assert "attraction" not in str(refused.value)
+
+
 @pytest.mark.parametrize("model", ["G", "NG"])
 def test_the_chaos_model_is_that_of_its_stage(model):
     study = PairStudy.of(merged(CONFIG, {"contact": {"samples": 20}}), "b", model)

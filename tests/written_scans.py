@@ -74,7 +74,11 @@ def bad_files(folder, good):
         "half.gwy": ({}, "files[0]", f"is 'half.gwy', {damage}"),
         "damaged.gwy": ({}, "files[0]", f"is 'damaged.gwy', {damage}"),
         "nonsense.txt": (_GIVEN, "files[0]", f"is 'nonsense.txt', {damage}"),
-        "cut.di": ({}, "files[0]", "is 'cut.di', which holds no channel at all: the file is damaged or not complete"),
+        "cut.di": (
+            {},
+            "files[0]",
+            "is 'cut.di', which holds no map with units of length: set them in the program that",
+        ),
         "profile.xyz": (_GIVEN, "files[0]", "is 'profile.xyz', which is a profile; a map of heights is needed"),
         "bare.npy": ({"height_unit": "nm"}, "size_um", "is missing: bare.npy has no size in a unit of length"),
         "bare.npy ": ({"size_um": [1, 1]}, "height_unit", "is missing: bare.npy has no unit; give one of m, mm"),

@@ -1,16 +1,26 @@
-"""Exceptions: iterations that do not converge, scans that cannot be used."""
+"""Exceptions: iterations that do not converge, scans that cannot be used.
+
+Each passes its arguments on to the class of Python, which needs them to rebuild it in another process.
+"""
 
 
 class NotConverged(RuntimeError):
     """An iteration ended above its tolerance; the message includes its name, residual and tolerance."""
 
     def __init__(self, what: str, residual: float, tolerance: float, iterations: int):
-        super().__init__(f"{what}: residual {residual:.3g} > {tolerance:.3g} after {iterations} iterations")
+        super().__init__(what, residual, tolerance, iterations)
+
+    def __str__(self):
+        what, residual, tolerance, iterations = self.args
+        return f"{what}: residual {residual:.3g} > {tolerance:.3g} after {iterations} iterations"
 
 
 class ScanError(ValueError):
     """A measured scan that cannot be used; one sentence with the key of the configuration and the file."""
 
     def __init__(self, file: str, key: str, reason: str):
-        super().__init__(f"{key}: {file} {reason}")
+        super().__init__(file, key, reason)
         self.file, self.key, self.reason = file, key, reason
+
+    def __str__(self):
+        return f"{self.key}: {self.file} {self.reason}"

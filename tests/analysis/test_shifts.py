@@ -65,8 +65,8 @@ def test_at_the_border_of_the_feasible_moments_both_values_have_a_density(surfac
 
 @pytest.mark.parametrize("quantity", SPECTRUM_QUANTITIES)
 def test_at_the_limits_of_eq_7_both_values_have_a_spectrum(quantity):
-    steep = CutoffSelfAffine(1.0, 0.999, 0.99e8, 1e8)
-    flat = CutoffSelfAffine(1.0, 1.0, 0.5e8, 1e8)
+    steep = CutoffSelfAffine(1e-33, 0.999e-33, 0.99e8, 1e8)
+    flat = CutoffSelfAffine(1e-33, 1e-33, 0.5e8, 1e8)
     for spectrum in (steep, flat):
         (less, more), difference = bracketed(replace(B2, spectrum=spectrum), quantity)
         assert_allclose(quantities(more)[quantity] - quantities(less)[quantity], difference, rtol=1e-9)

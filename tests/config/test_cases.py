@@ -30,7 +30,7 @@ def test_every_humidity_of_four_decimals_is_recovered_from_its_case_name(tenthou
     assert case_id("b", humidity).humidity == humidity
 
 
-@pytest.mark.parametrize("humidity", [1, -0.5, 0.67512, 0.1 + 0.2, 1e-5, math.nan, 67])
+@pytest.mark.parametrize("humidity", [1, -0.5, 0.67512, 0.1 + 0.2, 1e-5, math.nan, 67, "wet", None, [0.67]])
 def test_a_humidity_without_a_valid_case_name_is_rejected(humidity):
     with pytest.raises(ValueError, match="must be dry, or above 0, below 1 and have at most 4 decimals"):
         case_id("b", humidity)

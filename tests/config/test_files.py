@@ -3,6 +3,7 @@
 import copy
 import json
 
+import numpy as np
 import pytest
 from configurations import PAPER, ROOT
 from hypothesis import given
@@ -36,6 +37,44 @@ def test_overlays_change_single_keys_one_after_the_other(tmp_path):
         assert config["run"]["pairs"] == ["b"]
         assert config["contact"] == PAPER["contact"] | {"samples": 2000, "chunks": 4}
         assert config["surfaces"] == PAPER["surfaces"]
+
+
+#: Values of NumPy and those of Python that they stand for.
+OF_NUMPY = {
+    "float32": (np.float32(2.5), 2.5),
+    "float32 with decimals": (np.float32(0.45), 0.45),
+    "float64": (np.float64(0.1), 0.1),
+    "integer": (np.int64(2000), 2000),
+    "truth": (np.bool_(True), True),
+    "text": (np.str_("b"), "b"),
+    "no dimension": (np.array(2.5), 2.5),
+    "array": (np.array([0.44, 0.67]), [0.44, 0.67]),
+    "array in single precision": (np.array([[0.44], [0.67]], np.float32), [[0.44], [0.67]]),
+    "tuple": ((1, np.int8(2)), [1, 2]),
+    "sections": ({"a": {"b": [np.float16(0.5)]}}, {"a": {"b": [0.5]}}),
+}
+
+
+@pytest.mark.parametrize(("value", "expected"), OF_NUMPY.values(), ids=OF_NUMPY)
+def test_values_of_numpy_are_those_of_python(value, expected):
+    found = files.plain(value)
+    assert json.dumps(found) == json.dumps(expected)
+    assert files.plain(expected) == expected
+
+
+def test_a_configuration_of_numpy_is_that_of_python():
+    of_numpy = {
+        "surfaces": {"B2": {"rms_nm": np.float32(2.5)}},
+        "pairs": {"b": {"humidities": np.array([0.67, 0.8])}},
+        "contact": {"samples": np.int64(2000)},
+        "run": {"pairs": ("b",)},
+    }
+    assert load(of_numpy) == load(files.plain(of_numpy))
+    for wrong in ({"surfaces": {"B2": {"rms_nm": np.array([2.5, 3])}}}, {"contact": {"samples": np.float32(2000)}}):
+        with pytest.raises(
+            ConfigError, match=r"^(surfaces.B2.rms_nm is \[2.5, 3.0\]|contact.samples is 2000.0), must be"
+        ):
+            load(wrong)
 
 
 def test_an_invalid_configuration_is_rejected_with_the_problems_of_all_overlays():

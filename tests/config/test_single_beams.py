@@ -102,6 +102,11 @@ def test_the_template_is_a_file(study):
             "row 2: crack_length_um must have different values in at least two rows at humidity",
         ),
         ([HEAD, *MEASURED, "0.67,1400,705,"], "row 7: length_um is 1400, must be 1500 as in row 2"),
+        ([HEAD, *MEASURED, "0.67,1500,0.71,"], "row 7: crack_length_um is 0.71, but 720.5 in row 3: all must be in µm"),
+        ([HEAD, "0.67,1500,0.71,", "0.67,1500,0.7,", "0.67,1500,705,"], "row 4: crack_length_um is 705, but 0.7 in"),
+        ([HEAD, "0.67,1500,0.71,", "0.67,1500,705,"], "all must be in µm"),
+        ([HEAD, "0.67," + 131073 * "5"], "row 2 of 131078 characters cannot be read: field larger than field limit"),
+        ([HEAD + "," + 131073 * "x"], "row 1 of 131114 characters cannot be read: field larger than field limit"),
     ],
 )
 def test_what_is_wrong_with_a_file_is_one_sentence_with_key_file_and_row(study, lines, words):
@@ -110,6 +115,14 @@ def test_what_is_wrong_with_a_file_is_one_sentence_with_key_file_and_row(study, 
     (sentence,) = refused.value.problems
     assert sentence.startswith("test_beams.first.file is 'beams.csv', ")
     assert words in sentence
+
+
+def test_crack_lengths_that_scatter_by_a_factor_of_ten_are_in_one_unit():
+    rows = ["0.67,1500,70,", "0.67,1500,700,", "0.44,1500,1.2,", "0.44,1500,12,"]
+    assert [datum["beams"] for datum in arrays.summary(arrays.beams("\n".join([HEAD, *rows])))["crack_lengths"]] == [
+        2,
+        2,
+    ]
 
 
 def test_a_damaged_or_missing_file_is_named(study):
@@ -136,7 +149,10 @@ def test_a_file_takes_the_place_of_data(study):
         (["0.67,300,,no", "0.67,15,,yes"], "row 8: length_um is 15.0, must be in µm, above the thickness"),
         (["0.67,300000,,yes"], "row 7: length_um is 300000.0, must be a number at least 0.1 and at most 100000"),
         (["0.8,1500,2,", "0.8,1500,3,"], "row 7: the mean of crack_length_um at its humidity is 2.5, must be in µm"),
-        (["0.8,1500,30,", "0.8,1500,1400,"], "row 7: the standard deviation of crack_length_um at its humidity is"),
+        (
+            ["0.8,1500,50,", "0.8,1500,50,", "0.8,1500,1400,"],
+            "row 7: the standard deviation of crack_length_um at its humidity is",
+        ),
     ],
 )
 def test_values_that_no_beam_has_are_refused_with_their_row_as_well(study, lines, words):

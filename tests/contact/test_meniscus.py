@@ -68,6 +68,13 @@ def test_between_flats_that_do_not_wet_no_water_condenses(second):
         meniscus_height(0.67, 300, (np.radians(61), second))
 
 
+@pytest.mark.parametrize("humidity", [np.nan, -0.5, -1e-9, 1.0, 67, "0.67", None])
+@pytest.mark.parametrize("angles", [(0.0, 0.0), (np.pi / 2, np.pi / 2)])
+def test_what_is_no_humidity_is_not_that_of_dry_air(humidity, angles):
+    with pytest.raises(ValueError, match=f"must be 0, in dry air, or above 0 and below 1, got {humidity}"):
+        film(humidity, 300.0, angles)
+
+
 @pytest.mark.parametrize(("humidity", "angles"), [(0.0, (0.0, 0.0)), (0.9, (np.pi / 2, np.pi / 2)), (0.2, (3.0, 2.0))])
 def test_in_dry_air_and_between_flats_that_water_does_not_wet_there_is_no_film(humidity, angles):
     assert film(humidity, 300.0, angles) == (0.0, 0.0)

@@ -56,8 +56,9 @@ def test_coefficients_are_those_of_orthonormal_polynomials():
 
 
 def test_a_flat_spectrum_gives_the_variance_of_independent_areas():
-    flat = CutoffSelfAffine(2.0, 1.0, 1e12, 1e13)
-    np.testing.assert_allclose(variances(flat, SIZE, [(0, 0), (1, 0), *BOWS]), 8 * np.pi**2 / np.prod(SIZE), rtol=0.03)
+    flat = CutoffSelfAffine(2e-30, 1e-30, 1e12, 1e13)
+    expected = 4 * np.pi**2 * flat.plateau / np.prod(SIZE)
+    np.testing.assert_allclose(variances(flat, SIZE, [(0, 0), (1, 0), *BOWS]), expected, rtol=0.03)
 
 
 def test_a_bow_along_the_short_side_has_shorter_waves_and_less_of_them():

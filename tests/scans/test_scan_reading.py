@@ -51,7 +51,7 @@ def test_pixels_need_not_be_square(tmp_path, ending):
 
 
 def test_the_first_index_runs_along_the_fast_axis(tmp_path):
-    ramp = 1e-9 * np.arange(64.0)[:, None] * np.ones(40)
+    ramp = 1e-9 * (np.arange(64.0)[:, None] + np.random.default_rng(1).random(40))
     path = written(tmp_path, "gwy", topography(ramp))
     along_x, along_y = (read(path, Source(fast_axis=axis)).scan for axis in "xy")
     np.testing.assert_allclose(np.diff(along_x.heights, axis=0), 1e-9)
@@ -127,7 +127,7 @@ def test_undefined_points_are_not_numbers(tmp_path, ending):
 
 
 def test_undefined_points_of_a_matrix_are_not_numbers(tmp_path):
-    z = HEIGHTS.copy()
+    z = HEIGHTS / 1e-9
     z[0, 0] = np.nan
     np.save(tmp_path / "scan.npy", z)
     assert read(tmp_path / "scan.npy", GIVEN).scan.defined.sum() == z.size - 1
@@ -159,6 +159,8 @@ CHOICES = {
     "a name beside none": ([("channel 0", "nm"), ("Height", "nm")], None, "Height"),
     "file without names": ([("channel 0", None)], None, "channel 0"),
     "default name": ([("Default", "m")], None, "Default"),
+    "measured heights alone": ([("Height (measured)", "m"), ("Height (measured, retrace)", "m")],
+                               None, "Height (measured)"),
     "any name that is given": ([("Deflection", "nm"), ("Height", "nm")], "Deflection", "Deflection"),
 }  # fmt: skip
 
@@ -167,7 +169,7 @@ CHOICES = {
 def test_the_channel_of_the_heights_is_chosen_by_name(named, wanted, expected):
     chosen, notes = reading._height_channel(channels(*named), wanted, "scan.spm")
     assert chosen.channel_id == expected
-    assert bool(notes) == (wanted is None and expected in ("Height#1", "HeightTrace", "Z Height Forward"))
+    assert bool(notes) == (wanted is None and len([name for name, _ in named if "Height" in name]) > 1)
     assert all(note.startswith(f"scan.spm: channel {expected} was read; the file also has ") for note in notes)
 
 
@@ -179,6 +181,9 @@ REFUSED_CHANNELS = {
     "a height in amperes": ([("Height", "A")], None, "no channel that is named as a height"),
     "a single other channel": ([("Friction", "nm")], None, "no channel that is named as a height"),
     "two kinds of heights": ([("Height", "nm"), ("ZSensor", "nm")], None, "name one of: Height, ZSensor"),
+    "heights as commanded and as measured": ([("Height", "m"), ("Height (measured)", "m")],
+                                             None, "name one of: Height, Height [(]measured[)]"),
+    "raw heights and others": ([("Raw Height", "m"), ("Height", "m")], None, "name one of: Raw Height, Height"),
     "an unknown name": ([("Height", "nm")], "height", "no channel height, only: Height"),
 }  # fmt: skip
 
@@ -230,6 +235,7 @@ def bad_files(folder):
         "square.spm": bytes(2 * 64 * 64),
         "profile.xyz": profile.encode(),
         "column.txt": "\n".join(map(str, range(40))).encode(),
+        "no_units.gwy": whole["gwy"].replace(b"unitstr\x00sm\x00", b"unitstr\x00s?\x00"),
     } | {f"half.{ending}": content[: len(content) // 2] for ending, content in whole.items()}
 
 
@@ -254,7 +260,8 @@ BAD = {
     "scan.npy": (Source(size=SIZE), "height_unit", "has no unit; give one of m, mm"),
     "scan.gwy": (Source(size=(6.5e-6, 4e-6)), "size_um", "has a size of 6.4 x 4 µm, which differs by more than 1 %"),
     "scan.x3p": (Source(height_unit="nm"), "height_unit", "has heights in m, not in nm"),
-    "point.npy": (Source(size=(0.0, 1e-6), height_unit="nm"), "size_um", "has a size of 0 x 1e-06 m"),
+    "point.npy": (Source(size=(0.0, 1e-6), height_unit="nm"), "size_um", "has a size of 0 x 1e-06 m, must be two"),
+    "no_units.gwy": (GIVEN, "files", "holds no map with units of length: set them in the program that wrote it, or"),
 }
 
 
@@ -276,6 +283,131 @@ def test_an_unusable_file_is_refused_in_one_sentence_with_key_and_file(tmp_path,
 def test_a_size_given_for_a_file_that_has_one_must_agree(tmp_path):
     path = written(tmp_path, "gwy", topography())
     np.testing.assert_allclose(read(path, Source(size=(6.43e-6, 4e-6), height_unit="m")).scan.size, SIZE)
+
+
+#: Values that programs write for heights that are not defined, or in another way than the library reads.
+TOKENS = ["***", "---", "null", "N/A", "1,5", "1.#QNAN", "-", "1.5nm", "0x"]
+LINES = [" ".join(f"{height:.4f}" for height in line) for line in HEIGHTS.T / 1e-9]
+POINTS = [
+    f"{0.1 * i:.1f} {0.1 * j:.1f} {height:.4f}" for (i, j), height in np.ndenumerate(HEIGHTS / 1e-9)
+]  # in µm and nm
+
+
+def replaced(lines, number, column, token):
+    """Lines of a text in which a value takes the place of another one."""
+    values = lines[number].split()
+    values[column] = token
+    return [*lines[:number], " ".join(values), *lines[number + 1 :]]
+
+
+@pytest.mark.parametrize(
+    ("ending", "head", "end"),
+    [
+        ("txt", [], []),
+        ("txt", ["# Channel: Height", "", "# 1 2 3 ---"], ["# 4 x 5"]),
+        ("txt", ["Channel: Height", "measured in May"], ["end of the data"]),
+        ("xyz", [], []),
+        ("xyz", ["x y z"], []),
+        ("xyz", ["2560", "x [µm], y [µm], z [nm]"], []),
+    ],
+)
+def test_all_lines_of_a_text_are_read(tmp_path, ending, head, end):
+    path = tmp_path / f"scan.{ending}"
+    lines = LINES if ending == "txt" else POINTS
+    path.write_text("\n".join([*head, *lines, *end, ""]), encoding="utf-8")
+    np.testing.assert_allclose(read(path, GIVEN).scan.heights, HEIGHTS, atol=1e-13)
+
+
+#: The library tries 200 headings before it gives up a list of points whose last one is wrong, which takes two seconds.
+WRONG = [(ending, token, place) for ending in ("txt", "xyz") for token in TOKENS for place in (0, 7)]
+WRONG += [("txt", token, -1) for token in TOKENS] + [("xyz", "***", -1)]
+
+
+@pytest.mark.parametrize(("ending", "token", "place"), WRONG)
+def test_a_line_with_a_value_that_is_no_number_is_refused_with_both(tmp_path, ending, token, place):
+    path = tmp_path / f"scan.{ending}"
+    lines = LINES if ending == "txt" else POINTS
+    number = range(len(lines))[place]
+    path.write_text("\n".join(["# heights", *replaced(lines, number, 2, token), ""]), encoding="utf-8")
+    with pytest.raises(ScanError) as caught:
+        read(path, GIVEN)
+    assert f"has {token!r} in line {number + 2}, must be a number, or nan" in str(caught.value)
+
+
+def test_a_line_without_any_number_is_not_left_out(tmp_path):
+    for place in (0, 7, -1):
+        lines = list(LINES)
+        lines[place] = " ".join(["---"] * len(HEIGHTS))
+        (tmp_path / "scan.txt").write_text("\n".join([*lines, ""]))
+        with pytest.raises(ScanError, match=r"has '---' in line \d+, must be a number"):
+            read(tmp_path / "scan.txt", GIVEN)
+
+
+def test_words_for_undefined_heights_are_read_as_such(tmp_path):
+    for word in ("nan", "NaN", "bad", "Bad", "inf"):
+        (tmp_path / "scan.txt").write_text("\n".join([*replaced(LINES, 3, 5, word), ""]))
+        scan = read(tmp_path / "scan.txt", GIVEN).scan
+        assert np.argwhere(~scan.defined).tolist() == [[5, 3]]
+
+
+def test_points_on_no_regular_grid_are_not_called_a_map_of_three_columns(tmp_path):
+    scattered = [f"{x:.4f} {y:.4f} {z:.4f}" for x, y, z in stream(1, "points").random((2370, 3))]
+    for points in (POINTS[:-5], scattered):
+        (tmp_path / "scan.xyz").write_text("\n".join([*points, ""]))
+        with pytest.raises(ScanError, match=r"lists points that are on no regular grid.*; a map is needed"):
+            read(tmp_path / "scan.xyz", GIVEN)
+
+
+@pytest.mark.parametrize(
+    ("size", "scale", "agrees"),
+    [
+        (SIZE, 1, True),
+        ((6.4e-9, 4e-9), 1, True),
+        ((6.4e-9, 4e-9), 10, True),
+        ((6.42e-6, 4e-6), 1, True),
+        ((3e-6, 9e-6), 10, True),
+        ((64e-6, 40e-6), 1, False),
+        ((6.4e-6, 6.4e-6), 1, False),
+        ((5e-6, 5e-6), 1, False),
+    ],
+    ids=["in µm", "in nm", "in Å", "rounded", "numbers of the points", "ten times", "square", "another"],
+)
+def test_coordinates_are_compared_with_the_stated_size(tmp_path, size, scale, agrees):
+    heights = size[0] / SIZE[0] * HEIGHTS / 1e-9
+    points = [f"{0.1 * scale * i:.5g} {0.1 * scale * j:.5g} {z:.7f}" for (i, j), z in np.ndenumerate(heights)]
+    (tmp_path / "scan.xyz").write_text("\n".join([*points, ""]))
+    if agrees:
+        assert read(tmp_path / "scan.xyz", Source(size=size, height_unit="nm")).scan.size == size
+    else:
+        with pytest.raises(ScanError, match=r"^size_um: scan.xyz has coordinates over 6.4 x 4, which are .* no unit"):
+            read(tmp_path / "scan.xyz", Source(size=size, height_unit="nm"))
+
+
+@pytest.mark.parametrize(("width", "unit"), [(160, "m"), (15, "mm"), (6.4, "mm"), (0.1, "nm"), (6.4, "Å")])
+def test_a_size_that_no_microscope_scans_is_refused(tmp_path, width, unit):
+    head = [f"# Width: {width} {unit}", f"# Height: {width} {unit}", "# Value units: nm"]
+    (tmp_path / "scan.txt").write_text("\n".join([*head, *LINES, ""]), encoding="utf-8")
+    with pytest.raises(
+        ScanError, match=r"^files: scan.txt has .*, must be from .* are in another unit than is stated$"
+    ):
+        read(tmp_path / "scan.txt")
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_lines_that_a_scan_did_not_reach_are_undefined_and_told(tmp_path, axis):
+    finished = np.moveaxis(HEIGHTS.copy(), axis, 0)
+    for rest in (0.0, 1e-9, finished[20], finished[:10]):
+        z = finished.copy()
+        z[30:40] = rest
+        scanned = read(written(tmp_path, "gwy", topography(np.moveaxis(z, 0, axis))))
+        defined = np.moveaxis(scanned.scan.defined, axis, 0)
+        assert not defined[30:40].any()
+        assert defined[:30].all()
+        assert defined[40:].all()
+        assert scanned.notes == (
+            "scan.gwy: 10 empty, constant or repeated lines, as where a scan was stopped, count as undefined",
+        )
+    assert read(written(tmp_path, "gwy", topography())).notes == ()
 
 
 LIBRARY = reading._library("a.spm")
@@ -317,6 +449,7 @@ class Damaged:
     """Reader and channel of a damaged file, which fails where it is asked for one thing."""
 
     index, name, channel_id, unit, data_unit = 0, "Height", "Height", "nm", "nm"
+    format = staticmethod(lambda: "sur")
     dim, physical_sizes, nb_grid_pts, is_uniform = 2, (64.0, 40.0), (64, 40), True
 
     def __init__(self, where, error):

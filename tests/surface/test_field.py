@@ -299,7 +299,31 @@ def test_waves_up_to_the_nyquist_number_are_drawn():
     assert errors_off(moments(heights)[:, 1], 1) < ALLOWED
 
 
-@pytest.mark.parametrize("change", [{"spacing": 0.0}, {"spacing": 1e-6}, {"length": -1e-6}])
+@pytest.mark.parametrize(
+    "change",
+    [
+        *({"spacing": value} for value in (0.0, 1e-6, -10e-9, np.nan)),
+        *({side: value} for side in ("length", "width") for value in (-1e-6, np.inf, np.nan)),
+    ],
+)
 def test_grid_without_points_is_refused(change):
     with pytest.raises(ValueError, match="0 < spacing <= strip, got"):
         dataclasses.replace(STRIP, **change)
+
+
+@pytest.mark.parametrize(("side", "spacing"), [(1e-6, -10e-9), (1e-6, 0.0), (-1e-6, 10e-9), (1e-9, 10e-9)])
+def test_a_period_without_points_is_refused(side, spacing):
+    with pytest.raises(ValueError, match="0 < spacing <= strip, got"):
+        StripGrid.periodic(side, spacing)
+
+
+@pytest.mark.parametrize("margin", [-1.0, -1e-12, np.nan, np.inf])
+def test_a_margin_is_no_negative_length(margin):
+    with pytest.raises(ValueError, match=f"a margin of at least 0, got {margin:.3g} m"):
+        dataclasses.replace(STRIP, margin=margin)
+
+
+@pytest.mark.parametrize("rms", [0.0, -1e-9, np.nan, np.inf])
+def test_a_rough_surface_has_an_rms(rms):
+    with pytest.raises(ValueError, match=f"an rms above 0, got {rms:.3g} m"):
+        RoughSurface(SURFACES["B2"].spectrum, IDENTITY, rms, FIELD)

@@ -139,6 +139,8 @@ def test_tails_beyond_the_support_are_refused_instead_of_truncated():
 def test_newton_that_runs_out_of_steps_reports_its_residual():
     with pytest.raises(NotConverged, match=r"skewness -0.78, kurtosis 4.6: residual .* > 1e-10"):
         maxent.solve(-0.78, 4.6, max_iterations=2)
+    with pytest.raises(NotConverged, match="residual inf > 1e-10 after 0 iterations"):
+        maxent.solve(-0.76, 3.9, max_iterations=0)
 
 
 def test_upper_tails_beyond_the_support_are_refused_as_well():

@@ -216,11 +216,43 @@ def test_a_table_without_decay_has_its_corner_at_the_cutoff():
         ({"corner": -1.0}, "0 < corner < cutoff, got -1"),
         ({"floor": 2e-33}, "0 < floor <= plateau, got 2e-33, 1e-33"),
         ({"floor": 0.0}, "0 < floor <= plateau, got 0"),
+        ({"cutoff": np.inf}, "0 < corner < cutoff, got 1e[+]06, inf"),
+        ({"cutoff": np.nan}, "0 < corner < cutoff, got 1e[+]06, nan"),
+        ({"plateau": np.nan}, "0 < floor <= plateau, got 1e-33, nan"),
+        ({"plateau": np.inf}, "plateau <= 1e-12, got inf"),
+        ({"plateau": 525.0, "floor": 0.8}, "plateau <= 1e-12, got 525 m⁴: convert nm⁴ by the factor 1e-36"),
+        ({"plateau": 0.002, "floor": 0.001}, "convert nm⁴ by the factor 1e-36"),
     ],
 )
 def test_impossible_spectrum_is_refused_with_its_numbers(change, message):
     with pytest.raises(ValueError, match=message):
         dataclasses.replace(DISC, **change)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"wavenumber": [0.0, 2.0, 1.0]}, "wave numbers from 0 on that increase, got 1 rad/m"),
+        ({"wavenumber": [0.0, 1.0, 1.0]}, "that increase, got 1 rad/m"),
+        ({"wavenumber": [-1.0, 1.0, 2.0]}, "that increase, got -1 rad/m"),
+        ({"wavenumber": [0.0, np.nan, 2.0]}, "that increase, got nan rad/m"),
+        ({"wavenumber": [0.0, 1.0, np.inf]}, "that increase, got inf rad/m"),
+        ({"wavenumber": [0.0, 1.0]}, "a density for each of two or more wave numbers"),
+        ({"wavenumber": 1.0, "density": 1.0}, "a density for each of two or more wave numbers"),
+        ({"density": [4.0, -1e-9, 1.0]}, "densities of 0 or more, got -1e-09"),
+        ({"density": [4.0, np.nan, 1.0]}, "densities of 0 or more, got nan"),
+        ({"density": [4.0, 2.0, np.inf]}, "densities of 0 or more, got inf"),
+        ({"density": [0.0, 0.0, 1.0]}, "a density above 0 below the cut-off, 1.5 rad/m"),
+        ({"cutoff": 0.0}, "a density above 0 below the cut-off, 0 rad/m"),
+        ({"cutoff": np.inf}, "a density above 0 below the cut-off, inf rad/m"),
+        ({"cutoff": np.nan}, "a density above 0 below the cut-off, nan rad/m"),
+    ],
+)
+def test_an_impossible_table_is_refused_with_its_numbers(change, message):
+    table = {"wavenumber": [0.0, 1.0, 2.0], "density": [4.0, 2.0, 1.0], "cutoff": 1.5}
+    given = {name: np.array(value) if name != "cutoff" else value for name, value in (table | change).items()}
+    with pytest.raises(ValueError, match=message):
+        TabulatedSpectrum(**given)
 
 
 @pytest.mark.parametrize("n", [8, 9])

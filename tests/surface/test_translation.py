@@ -114,8 +114,23 @@ def test_skewed_heights_cannot_be_perfectly_anticorrelated():
 
 
 def test_inversion_that_runs_out_of_steps_reports_its_residual():
-    with pytest.raises(NotConverged, match="underlying autocorrelation: residual"):
-        SURFACES["B1"].translation.underlying_autocorrelation(0.5, max_iterations=1)
+    for steps in (0, 1):
+        with pytest.raises(NotConverged, match=f"underlying autocorrelation: residual .* after {steps} iterations"):
+            SURFACES["B1"].translation.underlying_autocorrelation(0.5, max_iterations=steps)
+
+
+@pytest.mark.parametrize("function", [underlying_spectrum, spectrum_of_heights])
+def test_a_grid_that_does_not_resolve_the_spectrum_is_refused(function):
+    surface = SURFACES["B2"]
+    finest = np.pi / surface.spectrum.cutoff
+    function(surface.spectrum, surface.translation, finest * (1 + 1e-12), points=64)  # the same in other units
+    with pytest.raises(
+        ValueError, match=r"cut-off 1.25e[+]08 rad/m is beyond the Nyquist wave number of the grid, 1.249"
+    ):
+        function(surface.spectrum, surface.translation, 1.001 * finest, points=64)
+    for spacing in (-10e-9, 0.0, np.nan, np.inf):
+        with pytest.raises(ValueError, match=f"a distance of the points above 0, got {spacing:.4g} m"):
+            function(surface.spectrum, surface.translation, spacing, points=64)
 
 
 def in_band(target, low, high):

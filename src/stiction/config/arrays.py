@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator, Mapping
 from itertools import zip_longest
 from pathlib import Path
-from statistics import fmean, stdev
+from statistics import fmean, median, stdev
 from typing import Any, NamedTuple
 
 from stiction.config.cases import DRY
@@ -38,6 +38,8 @@ TEMPLATE = f"""\
 #: Keys of an array that a file replaces.
 _REPLACED = ("length_um", "crack_lengths", "stuck")
 _WORDS = {"yes": True, "1": True, "no": False, "0": False}
+#: Ratio of crack lengths of equal beams at a humidity from which one is in mm and the other in µm: between 1 and 1000.
+_OTHER_UNIT = math.sqrt(1000)
 
 
 def users(config: Mapping, array: str) -> dict[str, dict]:
@@ -218,7 +220,7 @@ def _places(of_file, array):
 def beams(content: str) -> list[Beam]:
     """Single beams from the text of a file; lines that begin with # are comments."""
     lines = ((k, line) for k, line in enumerate(content.removeprefix("\ufeff").splitlines(), 1) if line.strip(" ,"))
-    rows = [(k, [cell.strip() for cell in next(csv.reader([line]))]) for k, line in lines if line[0] != "#"]
+    rows = [(k, _cells(k, line)) for k, line in lines if line[0] != "#"]
     if not rows:
         raise _Wrong(f"which is empty, must begin with the names of its columns: {','.join(COLUMNS)}")
     (first, columns), *others = rows
@@ -226,6 +228,14 @@ def beams(content: str) -> list[Beam]:
     if not others:
         raise _Wrong("which holds no beam, must have a row for every beam")
     return [_beam(row, cells, columns) for row, cells in others]
+
+
+def _cells(row, line):
+    """Values of a row."""
+    try:
+        return [cell.strip() for cell in next(csv.reader([line]))]
+    except csv.Error as reason:
+        raise _Wrong(f"row {row} of {len(line)} characters cannot be read: {reason}") from None
 
 
 def _check_columns(row, columns):
@@ -305,6 +315,7 @@ def _by_kind(of_array):
 
 def _mean(humidity, group):
     """Mean crack length of beams at a humidity."""
+    _require_one_unit(group)
     lengths = [beam.crack_length for beam in group]
     if len(set(lengths)) < 2:
         raise _Wrong(
@@ -312,6 +323,18 @@ def _mean(humidity, group):
             f"{humidity:g}: their standard deviation gives the error of the mean"
         )
     return {"humidity": humidity, "mean_um": fmean(lengths), "std_um": stdev(lengths), "beams": len(group)}
+
+
+def _require_one_unit(group):
+    """Refuse a crack length in mm among those in µm, or the reverse, which their mean may hide."""
+    usual = median(beam.crack_length for beam in group)
+    off = max(group, key=lambda beam: abs(math.log(beam.crack_length / usual)))
+    other = max(group, key=lambda beam: abs(math.log(beam.crack_length / off.crack_length)))
+    if max(off.crack_length / other.crack_length, other.crack_length / off.crack_length) > _OTHER_UNIT:
+        raise _Wrong(
+            f"row {off.row}: crack_length_um is {off.crack_length:g}, but {other.crack_length:g} in row {other.row}: "
+            "all must be in µm"
+        )
 
 
 def _groups(beams, *fields):

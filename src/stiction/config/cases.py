@@ -6,6 +6,7 @@ Dry air has the humidity 0 in the code. It has no water at all, which is not a f
 import re
 from collections.abc import Sequence
 from functools import cache
+from numbers import Real
 from typing import Any
 
 #: Word for the humidity of dry air in configurations, and the end of the names of its cases and contacts.
@@ -105,8 +106,8 @@ def case_id(pair: str, humidity: float | str) -> Case:
     humidity = in_numbers(humidity)
     if humidity == 0:
         return Case(pair + _OF_DRY)
-    text = decimals(humidity)
-    if not (0 < humidity < 1 and text):
+    text = decimals(humidity) if isinstance(humidity, Real) else None
+    if not (text and 0 < humidity < 1):
         raise ValueError(f"humidity {humidity} of pair {pair} must be dry, or above 0, below 1 and {NAMEABLE}")
     return Case(f"{pair}_rh{text.replace('.', '')}")
 

@@ -4,6 +4,7 @@ import copy
 import functools
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from stiction.config import arrays
 from stiction.config.cases import in_numbers
@@ -37,13 +38,28 @@ def load(*overlays: str | Path | Mapping) -> dict:
     # Imports the physics, which reading alone does not need.
     from stiction.config.validation import validate
 
-    changes = (
-        arrays.with_files(overlay, overlay, Path()) if isinstance(overlay, Mapping) else located(overlay)
-        for overlay in overlays
-    )
+    changes = (_in_memory(one) if isinstance(one, Mapping) else located(one) for one in overlays)
     config = expanded(functools.reduce(merged, changes, copy.deepcopy(paper())))
     validate(config)
     return normalised(config)
+
+
+def _in_memory(overlay):
+    """Mapping as YAML would give it, with the data of test beams in files."""
+    content = plain(overlay)
+    return arrays.with_files(content, content, Path())
+
+
+def plain(value: Any) -> Any:
+    """Value as YAML would give it: lists for arrays and tuples, and numbers of Python for those of NumPy.
+
+    A number in single precision becomes the one that it shows.
+    """
+    if isinstance(value, Mapping):
+        return {plain(key): plain(inner) for key, inner in value.items()}
+    if getattr(value, "ndim", None) == 0:  # a number or an array of NumPy, which this module need not import
+        return float(str(value)) if value.dtype.kind == "f" else value.item()
+    return list(map(plain, value)) if isinstance(value, list | tuple) or hasattr(value, "ndim") else value
 
 
 def located(path: str | Path) -> dict:

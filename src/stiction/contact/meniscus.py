@@ -5,6 +5,8 @@ at its 300 K: a published correlation gives only their ratio to 300 K. The paper
 correlations give 71.7 and 18.08), and its numbers are to be reproduced.
 """
 
+from numbers import Real
+
 import numpy as np
 
 from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_MOLECULE, WATER_SURFACE_ENERGY
@@ -155,6 +157,12 @@ def dry_air(humidity: float, temperature: float, contact_angles: tuple[float, fl
     )
 
 
+def require_humidity(humidity: float) -> None:
+    """Refuse a relative humidity that no air has [-]."""
+    if not (isinstance(humidity, Real) and 0 <= humidity < 1):
+        raise ValueError(f"relative humidity must be 0, in dry air, or above 0 and below 1, got {humidity}")
+
+
 def film(humidity: float, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
     """Height h_C [m] and tension -ΔP [Pa] of the water at one humidity, see `meniscus_height`.
 
@@ -163,8 +171,9 @@ def film(humidity: float, temperature: float, contact_angles: tuple[float, float
     Raises
     ------
     ValueError
-        If the air is not dry, and too dry for a film that is a liquid.
+        If no air has this humidity, or if it is not dry, and too dry for a film that is a liquid.
     """
+    require_humidity(humidity)
     if humidity == 0 or not is_wetted(contact_angles):
         return 0.0, 0.0
     if refusal := dry_air(humidity, temperature, contact_angles):

@@ -10,7 +10,7 @@ from typing import Any
 from stiction.config.cases import TOO_LITTLE, PairInAir
 from stiction.config.stated_materials import hamaker_constant, hamaker_constants
 from stiction.config.units import to_si
-from stiction.contact.meniscus import is_wetted
+from stiction.contact.meniscus import is_wetted, require_humidity
 from stiction.contact.vanderwaals import combined
 from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS
 from stiction.models import SIDES
@@ -36,8 +36,9 @@ class Air:
         Raises
         ------
         ValueError
-            If no water condenses and attraction does not reach across gaps.
+            If no air has this humidity, or no water condenses and attraction does not reach across gaps.
         """
+        require_humidity(humidity)
         if humidity > 0 and self.is_wetted(pair):
             return PairInAir(pair)
         if self.config["attraction"]["reach"] == "touching":

@@ -34,7 +34,7 @@ def contact_kernels() -> None:
     grid = StripGrid(1e-6, 1e-6, 1e-8, 0.0)
     translation = Translation(maxent.GAUSSIAN)
     translation.autocorrelation(0.5)
-    surface = RoughSurface(CutoffSelfAffine(1, 0.1, 1e7, 1e8), translation, 1e-9, grid)
+    surface = RoughSurface(CutoffSelfAffine(1e-33, 1e-34, 1e7, 1e8), translation, 1e-9, grid)
     for through in ("water", "none"):
         model = asperity(reduced_modulus(164e9, 0.23), attraction(through))
         pair = SurfacePair(surface, surface, 1e-10, asperity=model)

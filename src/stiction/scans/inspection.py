@@ -224,6 +224,7 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
     for scan in scans:
         if scan.undefined_share > settings.undefined_share:
             share = f"{100 * scan.undefined_share:.3g} % of its points undefined"
+            share += f" ({scan.stopped})" if scan.stopped else ""
             raise ScanError(scan.name, "files", f"has {share}, at most {100 * settings.undefined_share:.3g} % may be")
     sizes = tuple(Maps.of(alike, settings) for alike in by_size(scans))
     try:

@@ -19,17 +19,21 @@ import numpy as np
 from stiction.errors import ScanError
 from stiction.regular import require_regular
 from stiction.scans.scan import Scan
+from stiction.scans.text_lines import COORDINATES, misread
 
 #: Units of length [m], and those of them that files have: an A in a file may be an ampere.
 UNITS = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6, "nm": 1e-9, "Å": 1e-10, "A": 1e-10, "pm": 1e-12}
 STORED = set(UNITS) - {"A"}
 #: Names of height channels consist of these words: at least one of the first set, others only of the second and third.
-_HEIGHT, _SENSOR = {"height", "topography", "z"}, {"axis", "sensor"}
-_DIRECTION = {"scan", "trace", "retrace", "forward", "backward", "measured", "raw", "channel", "data"}
+#: Heights by different means are different quantities. Those of both directions of a line are one quantity.
+_HEIGHT, _MEANS = {"height", "topography", "z"}, {"axis", "sensor", "measured", "raw", "data"}
+_DIRECTION = {"scan", "trace", "retrace", "forward", "backward", "channel"}
 #: Names of the library for the channel of a file that names none.
 _NAMELESS = re.compile(r"(default|channel \d+)$", re.IGNORECASE)
 #: Formats that any file of a certain length has: recognised by the ending of the file only.
 _WITHOUT_MAGIC = {"hgt", "nms"}
+#: Formats of text: maps of lines, and points with their coordinates.
+_LINES, _POINTS = "asc", "xyz"
 #: Metadata of instruments on whether the stored heights are levelled, and their values if they are not.
 _LEVELLED = re.compile(r"offline planefit|(?:planefit|flattenorder) (\d+)", re.IGNORECASE)
 _NOT_LEVELLED = {"none", "-1", "0", ""}
@@ -88,17 +92,34 @@ def _read(library, path, source):
     name = path.name
     with _opened(library, path) as reader:
         if not reader.channels:
-            raise ScanError(name, "files", "holds no channel at all: the file is damaged or not complete")
+            raise ScanError(
+                name,
+                "files",
+                "holds no map with units of length: set them in the program that wrote it, or the file is damaged",
+            )
         channel, notes = _height_channel(reader.channels, source.channel, name)
         if channel.dim != 2:
             raise ScanError(name, "files", "is a profile; a map of heights is needed")
+        if reader.format() in (_LINES, _POINTS):
+            _require_all_lines(library, path, reader.format(), channel)
         unit, size = _unit(channel, source, name), _size(channel, source, name)
         heights = UNITS[_delivered(channel, unit)] * _heights(channel, name)
         notes += _instrument_levelling(channel, name)
         identifier = channel.channel_id
     if source.fast_axis == "y":
         heights, size = heights.T, size[::-1]
-    return ScanFile(Scan(heights, size, name), identifier, unit, notes)
+    scan = _scan(heights, size, name, source)
+    notes += (f"{name}: {scan.stopped}, count as undefined",) if scan.stopped else ()
+    return ScanFile(scan, identifier, unit, notes)
+
+
+def _scan(heights, size, name, source):
+    """Scan; what is wrong with it is wrong with the file where the configuration does not state it."""
+    try:
+        return Scan(heights, size, name)
+    except ScanError as refusal:
+        stated = {"size_um": source.size, "height_unit": source.height_unit}
+        raise ScanError(name, "files" if stated.get(refusal.key) is None else refusal.key, refusal.reason) from None
 
 
 def _refuse_empty(path):
@@ -142,6 +163,7 @@ def _library(name):
         unknown=IO.CannotDetectFileFormat,
         error=IO.ReadFileError,
         endings={ending: kind for kind in IO.readers for ending in (kind.format(), *(kind.file_extensions() or ()))},
+        formats=IO.lookup_reader_by_format,
     )
 
 
@@ -164,8 +186,11 @@ def _ending(path):
 def _error_of_its_format(library, path):
     """Why the reader for the ending of a file does not accept it; ``None`` if no format has this ending."""
     kind = library.endings.get(_ending(path))
-    if kind is None:
-        return None
+    return None if kind is None else _error_of(kind, path)
+
+
+def _error_of(kind, path):
+    """Why the reader of a format does not accept a file; ``None`` if it does."""
     try:
         kind(str(path)).close()
     except Exception as error:  # whatever a reader raises on a damaged file
@@ -174,11 +199,38 @@ def _error_of_its_format(library, path):
 
 
 def _unreadable(library, path, error):
-    """One sentence, with the first line of an error of the library itself if that is short."""
+    """One sentence, with the reason of the library."""
+    return ScanError(path.name, "files", f"cannot be read as any known format, or is damaged{_quoted(library, error)}")
+
+
+def _quoted(library, error):
+    """First line of an error of the library itself, in brackets, if that is short."""
     message = str(error) if isinstance(error, library.error) else ""
     line = next(iter(message.strip().splitlines()), "").rstrip(". ")
-    quoted = f" ({line})" if 0 < len(line) <= _LONGEST_REASON else ""
-    return ScanError(path.name, "files", f"cannot be read as any known format, or is damaged{quoted}")
+    return f" ({line})" if 0 < len(line) <= _LONGEST_REASON else ""
+
+
+def _require_all_lines(library, path, kind, channel):
+    """Refuse a text of which the library leaves out lines, and points that it takes for a map of three columns."""
+    found = misread(_text(path), commas=kind == _POINTS)
+    if found is not None:
+        line, value = found
+        shown = value if len(value) <= _LONGEST_REASON else value[:_LONGEST_REASON] + " …"
+        raise ScanError(
+            path.name, "files", f"has {shown!r} in line {line}, must be a number, or nan where no height is defined"
+        )
+    if kind == _LINES and channel.nb_grid_pts[0] <= COORDINATES:
+        reason = _quoted(library, _error_of(library.formats[_POINTS], path))
+        raise ScanError(path.name, "files", f"lists points that are on no regular grid{reason}; a map is needed")
+
+
+def _text(path):
+    """Text of a file in one of the encodings that the library tries."""
+    content = path.read_bytes()
+    try:
+        return content.decode("utf-16" if content.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8")
+    except UnicodeDecodeError:
+        return content.decode("latin-1")
 
 
 def _words(name):
@@ -189,7 +241,7 @@ def _words(name):
 def _is_height(channel):
     """Whether name and unit of a channel are those of heights."""
     words = _words(channel.name)
-    named = bool(words & _HEIGHT) and words <= _HEIGHT | _SENSOR | _DIRECTION
+    named = bool(words & _HEIGHT) and words <= _HEIGHT | _MEANS | _DIRECTION
     return named and (_unit_of(channel) is None or _unit_of(channel) in STORED)
 
 
@@ -242,12 +294,25 @@ def _size(channel, source, name):
     if channel.physical_sizes is None or channel.unit not in STORED:
         if source.size is None:
             raise ScanError(name, "size_um", "has no size in a unit of length; give the size along x and y")
+        if channel.physical_sizes is not None and channel.unit is None:
+            _require_some_unit(channel, source.size, name)
         return source.size
     stored = tuple(float(length) * UNITS[channel.unit] for length in channel.physical_sizes)
     if source.size is not None and not np.allclose(source.size, stored, rtol=_SAME_SIZE, atol=0):
         shown = " x ".join(f"{length / UNITS['um']:.4g}" for length in stored)
         raise ScanError(name, "size_um", f"has a size of {shown} µm, which differs by more than 1 %")
     return stored
+
+
+def _require_some_unit(channel, size, name):
+    """Refuse a size that coordinates without a unit have in no unit of length, unless they count the points."""
+    extent = tuple(map(float, channel.physical_sizes))
+    candidates = [channel.nb_grid_pts, *([length / unit for length in size] for unit in UNITS.values())]
+    if not any(np.allclose(extent, candidate, rtol=_SAME_SIZE, atol=0) for candidate in candidates):
+        stated, found = (
+            " x ".join(f"{length:.4g}" for length in pair) for pair in (np.array(size) / UNITS["um"], extent)
+        )
+        raise ScanError(name, "size_um", f"has coordinates over {found}, which are {stated} µm in no unit of length")
 
 
 def _heights(channel, name):

@@ -13,10 +13,11 @@ from stiction.errors import ScanError
 
 #: Fewest points along a side: 8 sectors, 16 tiles and a line of degree 2 need them.
 FEWEST_POINTS = 32
-
-
 #: Relative difference of the sides of a pixel that still is square.
 _SQUARE = 1e-3
+#: ASSUME: range of the distances of points [µm], from a tenth of an atom to the coarsest optical profilers; of the rms
+#: of the heights [µm]; and of their rms slope [-], from mirrors of telescopes to needles. Wrong units give others.
+_PIXELS, _HEIGHTS, _SLOPES = (1e-5, 10.0), (1e-6, 100.0), (1e-6, 10.0)
 
 
 @dataclass(frozen=True)
@@ -42,22 +43,55 @@ class Frame:
         return self.size[0] * self.size[1]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Scan:
-    """Heights on a rectangular grid."""
+    """Heights on a rectangular grid.
+
+    Masked and infinite heights are undefined, and so are lines along either axis that are constant or equal to an
+    earlier one: a microscope leaves them where a scan was stopped.
+
+    Raises
+    ------
+    ScanError
+        If the heights are no map, or if size, heights or slopes are those of no surface.
+    """
 
     heights: np.ndarray  #: fast axis first, NaN where undefined, (n1, n2) [m]
     size: tuple[float, float]  #: along the fast and the slow axis, number of points times their distance [m]
     name: str = "scan"  #: of the file, for messages
 
     def __post_init__(self):
-        if min(self.heights.shape) < FEWEST_POINTS:
-            shown = " x ".join(map(str, self.heights.shape))
-            raise ScanError(self.name, "files", f"has {shown} points, needs {FEWEST_POINTS} along each side")
-        if not all(0 < length < np.inf for length in self.size):
-            raise ScanError(self.name, "size_um", f"has a size of {self.size[0]:.4g} x {self.size[1]:.4g} m")
-        if not np.nanmax(self.heights, initial=-np.inf) > np.nanmin(self.heights, initial=np.inf):
+        heights = np.ma.filled(np.ma.asarray(self.heights, dtype=float), np.nan)
+        if heights.ndim != 2 or min(heights.shape) < FEWEST_POINTS:
+            shown = " x ".join(map(str, heights.shape)) or "no"
+            raise ScanError(self.name, "files", f"has {shown} points, needs {FEWEST_POINTS} along each side of a map")
+        size = tuple(np.asarray(self.size, float).ravel())
+        if len(size) != 2 or not all(0 < length < np.inf for length in size):
+            shown = " x ".join(f"{length:.4g}" for length in size)
+            raise ScanError(self.name, "size_um", f"has a size of {shown} m, must be two lengths")
+        object.__setattr__(self, "size", tuple(map(float, size)))
+        object.__setattr__(self, "heights", _without_repeats(np.where(np.isfinite(heights), heights, np.nan)))
+        if not self.defined.any():
             raise ScanError(self.name, "files", "has the same height, or none, at all points")
+        self._require_possible()
+
+    def _require_possible(self):
+        """Refuse what no surface has."""
+        for key, what, value, (least, largest) in (
+            ("size_um", "a distance of its points of {} µm", 1e6 * min(self.frame.pixel), _PIXELS),
+            ("size_um", "a distance of its points of {} µm", 1e6 * max(self.frame.pixel), _PIXELS),
+            ("height_unit", "heights with an rms of {} µm", 1e6 * np.nanstd(self.heights), _HEIGHTS),
+            ("height_unit", "an rms slope of {}", self._rms_slope(), _SLOPES),
+        ):
+            if not least <= value <= largest:
+                reason = f"has {what.format(f'{value:.3g}')}, must be from {least:g} to {largest:g}"
+                raise ScanError(self.name, key, f"{reason}: its size or its heights are in another unit than is stated")
+
+    def _rms_slope(self):
+        """Rms slope between neighbours, with the tilt of the map [-]; NaN without neighbours."""
+        steps = [np.diff(self.heights, axis=axis) / pixel for axis, pixel in enumerate(self.frame.pixel)]
+        known = [step[np.isfinite(step)] for step in steps]
+        return float(np.sqrt(sum(np.mean(step**2) if step.size else np.nan for step in known)))
 
     @property
     def frame(self) -> Frame:
@@ -73,3 +107,31 @@ class Scan:
     def undefined_share(self) -> float:
         """Share of the points without a height [-]."""
         return 1 - float(self.defined.mean())
+
+    @property
+    def stopped(self) -> str:
+        """Lines along either axis without a height, in words; empty if there are none.
+
+        Examples
+        --------
+        >>> heights = np.random.default_rng(1).normal(0, 1e-9, (32, 40))
+        >>> heights[:, 37:] = 0
+        >>> Scan(heights, (1e-6, 1e-6)).stopped
+        '3 empty, constant or repeated lines, as where a scan was stopped'
+        """
+        lines = sum(int((~self.defined.any(axis=axis)).sum()) for axis in (0, 1))
+        counted = f"{lines} empty, constant or repeated line{'s' * (lines > 1)}"
+        return f"{counted}, as where a scan was stopped" if lines else ""
+
+
+def _without_repeats(heights):
+    """Heights in which lines along both axes that are constant, or equal to an earlier one, are undefined [m]."""
+    across, along = _repeated(heights), _repeated(heights.T)
+    return np.where(across[:, None] | along, np.nan, heights)
+
+
+def _repeated(rows):
+    """Rows (n, points) that are constant or equal to an earlier one, (n,) bool."""
+    first = {}
+    earlier = [first.setdefault(row.tobytes(), number) != number for number, row in enumerate(rows)]
+    return np.array(earlier) | (np.fmax.reduce(rows, axis=1) == np.fmin.reduce(rows, axis=1))

@@ -8,7 +8,7 @@ from scipy import fft
 
 from stiction.kernels import kernel
 from stiction.surface.normals import standard_normal
-from stiction.surface.spectrum import Spectrum, radial_spectrum
+from stiction.surface.spectrum import Spectrum, radial_spectrum, require_resolved
 from stiction.surface.translation import LARGEST_SCORE, TranslationMap
 
 
@@ -22,15 +22,18 @@ class StripGrid:
     margin: float  #: smallest distance between opposite edges of a strip across the period of its field [m]
 
     def __post_init__(self):
-        if not 0 < self.spacing <= min(self.length, self.width):
+        if not (self.spacing > 0 and all(self.spacing <= side < np.inf for side in (self.length, self.width))):
             raise ValueError(
                 f"need 0 < spacing <= strip, got {self.spacing:.3g} and {self.length:.3g} x {self.width:.3g} m"
             )
+        if not 0 <= self.margin < np.inf:
+            raise ValueError(f"need a margin of at least 0, got {self.margin:.3g} m")
 
     @classmethod
     def periodic(cls, side: float, spacing: float) -> "StripGrid":
         """Square of about a side [m] that is a whole period, so that its spectrum has no leakage."""
-        length = fft.next_fast_len(round(side / spacing), real=True) * spacing
+        points, _ = cls(side, side, spacing, margin=0.0).shape
+        length = fft.next_fast_len(points, real=True) * spacing
         return cls(length, length, spacing, margin=0.0)
 
     @property
@@ -63,12 +66,9 @@ class RoughSurface:
     grid: StripGrid
 
     def __post_init__(self):
-        nyquist = np.pi / self.grid.spacing
-        if not self.underlying.cutoff <= nyquist:
-            raise ValueError(
-                f"cut-off {self.underlying.cutoff:.4g} rad/m is beyond the Nyquist wave number of the grid, "
-                f"{nyquist:.4g} rad/m"
-            )
+        require_resolved(self.underlying.cutoff, self.grid.spacing)
+        if not 0 < self.rms < np.inf:
+            raise ValueError(f"need an rms above 0, got {self.rms:.3g} m")
 
     @cached_property
     def _modes(self):

@@ -20,6 +20,8 @@ _CORNERS = (0.01, 0.95)
 _STEP = 0.04
 #: Change of the logarithms below which the search ends, and largest number of its iterations.
 _TOLERANCE, _MAX_EVALUATIONS = 1e-4, 40
+#: Plateau of a spectrum before its rms is known [m⁴]: a power of two, by which numbers are multiplied without rounding.
+_TRIAL = 2.0**-110
 
 
 @dataclass(frozen=True)
@@ -119,8 +121,8 @@ def _spectrum(parameters, target):
     """Eq. (7) with (ln of corner / cut-off, ln -slope) and the rms and cut-off of the target."""
     corner, slope = np.exp(parameters) * [target.cutoff, 1.0]
     floor = (target.cutoff / corner) ** -slope
-    shape = CutoffSelfAffine(1.0, floor, corner, target.cutoff)
-    plateau = target.rms**2 / shape.variance
+    shape = CutoffSelfAffine(_TRIAL, floor * _TRIAL, corner, target.cutoff)
+    plateau = target.rms**2 / (shape.variance / _TRIAL)
     return CutoffSelfAffine(plateau, floor * plateau, corner, target.cutoff)
 
 

@@ -97,7 +97,7 @@ def solve(skewness: float, kurtosis: float, tolerance: float = 1e-10, max_iterat
     if not kurtosis > skewness**2 + 1:
         raise ValueError(f"need kurtosis > skewness² + 1 = {skewness**2 + 1:.4g}, got kurtosis {kurtosis}")
     target = np.array([0.0, 1.0, skewness, kurtosis])
-    multipliers = np.array(GAUSSIAN.multipliers)
+    multipliers, residual = np.array(GAUSSIAN.multipliers), np.inf
     for _ in range(max_iterations):
         objective, moments, covariance = _dual(multipliers, target)
         residual = np.abs(moments - target).max()

@@ -16,6 +16,11 @@ import numpy as np
 from scipy import fft
 from scipy.special import j0
 
+#: ASSUME: largest density of a surface [m⁴], which only numbers in nm⁴ exceed. The fourth root is a millimetre.
+_LARGEST_DENSITY = 1e-12
+#: Relative difference of a cut-off and a Nyquist wave number that are equal in other units.
+_ROUNDING = 1e-9
+
 
 class Spectrum(Protocol):
     """An isotropic spectrum; all classes with this signature are interchangeable."""
@@ -46,10 +51,14 @@ class CutoffSelfAffine:
     cutoff: float  #: ζ_max, no roughness beyond [rad m⁻¹]
 
     def __post_init__(self):
-        if not 0 < self.corner < self.cutoff:
+        if not 0 < self.corner < self.cutoff < np.inf:
             raise ValueError(f"need 0 < corner < cutoff, got {self.corner:.4g}, {self.cutoff:.4g} rad/m")
         if not 0 < self.floor <= self.plateau:
             raise ValueError(f"need 0 < floor <= plateau, got {self.floor:.4g}, {self.plateau:.4g} m⁴")
+        if not self.plateau <= _LARGEST_DENSITY:
+            raise ValueError(
+                f"need plateau <= {_LARGEST_DENSITY:g}, got {self.plateau:.4g} m⁴: convert nm⁴ by the factor 1e-36"
+            )
 
     @property
     def slope(self) -> float:
@@ -83,6 +92,19 @@ class TabulatedSpectrum:
     wavenumber: np.ndarray  #: |ζ|, (n,); below the first the density is constant [rad m⁻¹]
     density: np.ndarray  #: s_Z, (n,) [m⁴] or, for unit variance, [m²]
     cutoff: float  #: no roughness beyond [rad m⁻¹]
+
+    def __post_init__(self):
+        zeta, density = np.asarray(self.wavenumber, float), np.asarray(self.density, float)
+        if zeta.ndim != 1 or zeta.shape != density.shape or len(zeta) < 2:
+            raise ValueError(f"need a density for each of two or more wave numbers, got {density.shape}, {zeta.shape}")
+        rising = (zeta >= 0) & (zeta < np.inf) & (np.diff(zeta, prepend=-1.0) > 0)
+        if not rising.all():
+            raise ValueError(f"need wave numbers from 0 on that increase, got {zeta[np.argmin(rising)]:.4g} rad/m")
+        possible = (density >= 0) & (density < np.inf)
+        if not possible.all():
+            raise ValueError(f"need densities of 0 or more, got {density[np.argmin(possible)]:.4g}")
+        if not (0 < self.cutoff < np.inf and np.any(density[zeta <= self.cutoff])):
+            raise ValueError(f"need a density above 0 below the cut-off, {self.cutoff:.4g} rad/m")
 
     def __call__(self, wavenumber: float | np.ndarray) -> float | np.ndarray:
         """s_Z at |ζ|, shape of ``wavenumber`` [rad m⁻¹], in the unit of ``density``."""
@@ -131,6 +153,16 @@ class NayakSummits:
     def mean_curvature(self) -> float:
         """Mean curvature of the summits [m⁻¹]."""
         return 8 / 3 * np.sqrt(self.profile_moments[2] / np.pi)
+
+
+def require_resolved(cutoff: float, spacing: float) -> None:
+    """Refuse points at a distance [m] that do not resolve the waves up to a cut-off [rad m⁻¹]."""
+    if not 0 < spacing < np.inf:
+        raise ValueError(f"need a distance of the points above 0, got {spacing:.4g} m")
+    if not cutoff <= np.pi / spacing * (1 + _ROUNDING):
+        raise ValueError(
+            f"cut-off {cutoff:.4g} rad/m is beyond the Nyquist wave number of the grid, {np.pi / spacing:.4g} rad/m"
+        )
 
 
 def autocovariance(spectrum: Spectrum, lag: np.ndarray, panels: int = 4000) -> np.ndarray:

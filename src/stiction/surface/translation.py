@@ -17,7 +17,7 @@ from scipy import fft
 
 from stiction.errors import NotConverged
 from stiction.kernels import kernel
-from stiction.surface.spectrum import Spectrum, TabulatedSpectrum, ring_means
+from stiction.surface.spectrum import Spectrum, TabulatedSpectrum, require_resolved, ring_means
 
 #: Largest normal score considered; the probability of a larger one is 1e-15.
 LARGEST_SCORE = 8.0
@@ -91,7 +91,7 @@ class Translation:
                 f"autocorrelations of this surface are at least {lowest:.4g}, got {np.min(autocorrelation):.4g}"
             )
         slope = np.polynomial.polynomial.polyder(self._series)
-        rho = np.array(autocorrelation, float)
+        rho, error = np.array(autocorrelation, float), np.inf
         for _ in range(max_iterations):
             error = self.autocorrelation(rho) - autocorrelation
             if np.abs(error).max() < tolerance:
@@ -164,7 +164,13 @@ def underlying_spectrum(
         Radial, of unit variance [m²].
     defect : float
         Share of the variance that no Gaussian field can represent: negative s_ZG, and s_ZG beyond the cut-off [-].
+
+    Raises
+    ------
+    ValueError
+        If the grid does not resolve the target.
     """
+    require_resolved(target.cutoff, spacing)
     zeta, cell = _square(spacing, points)
     correlation = fft.fft2(_on_square(target, zeta)).real
     rho = _of_even(translation.underlying_autocorrelation, correlation / correlation[0, 0])
@@ -177,11 +183,12 @@ def underlying_spectrum(
 def spectrum_of_heights(
     underlying: Spectrum, translation: TranslationMap, spacing: float, points: int = 1024
 ) -> TabulatedSpectrum:
-    """Spectrum of the translated field, of unit variance: the inverse of `underlying_spectrum`."""
+    """Spectrum of the translated field, of unit variance: the inverse of `underlying_spectrum`; the same errors."""
+    require_resolved(underlying.cutoff, spacing)
     zeta, cell = _square(spacing, points)
     correlation = fft.fft2(_on_square(underlying, zeta)).real
     heights = fft.ifft2(_of_even(translation.autocorrelation, correlation / correlation[0, 0])).real / cell
-    return _radial(heights, zeta, np.inf)
+    return _radial(np.maximum(heights, 0), zeta, np.inf)  # rounding may make it negative
 
 
 def _square(spacing, points):

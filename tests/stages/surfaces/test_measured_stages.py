@@ -80,7 +80,7 @@ def test_a_scan_keeps_heights_size_name_and_what_is_undefined(tmp_path, through_
 
 
 def test_a_scan_is_read_as_the_configuration_says(tmp_path):
-    z = np.outer(np.arange(40.0), np.ones(64)) ** 2
+    z = np.outer(np.arange(1.0, 41), np.linspace(0.5, 1, 64)) ** 2
     np.save(tmp_path / "z.npy", z)
     source = Source(fast_axis="y", size=(4e-6, 6.4e-6), height_unit="nm")
     found = scan.scan_of(scan.compute(tmp_path / "z.npy", scan.Settings("z.npy", "0", source)))
