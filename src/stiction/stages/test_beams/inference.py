@@ -175,8 +175,8 @@ def with_discrepancy(
 ) -> tuple[Knowledge, np.ndarray]:
     """As `stiction.devices.inference.with_discrepancy`; responses are those of test beams and, after them, of others.
 
-    ASSUME: cracks say nothing about how much the model errs at tips, at the middle of a bridge and at stoppers. Without
-    a discrepancy, these have the uncertainty of their budget; no model holds shorter arcs than saturated air does.
+    ASSUME: cracks say nothing about how much the model errs at the middle of a bridge and at stoppers, and at tips only
+    what `with_adhesion_of_tips` takes from them. Without a discrepancy, these have the uncertainty of their budget.
     """
     results = [*beams, *others]
     responses = np.zeros((len(results), len(inputs.names)))
