@@ -2,8 +2,8 @@
 
 import re
 
-#: Signs that begin a formula, a tag, a reference, an emphasis outside or at the edge of a word, the address of a link.
-_SIGNS = re.compile(r"[\\$<&]|\*(?=\S)|(?<![^\W_])_|_(?![^\W_])|(?<=\])\(")
+#: Signs that begin a formula, a tag, a reference, an emphasis or the address of a link, or that end a word's emphasis.
+_SIGNS = re.compile(r"[\\$<&]|\*(?=\S)|_(?![^\W_])|(?<=\])\(")
 
 
 def literal(text: str) -> str:
