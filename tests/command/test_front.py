@@ -1,14 +1,19 @@
 """Front page of the report: answers, links, checks, warnings and provenance of finished results."""
 
 import copy
+import json
 import re
+from pathlib import Path
 
 import pytest
+import yaml
+from hostile import HOSTILE, MADE, Reading
 
 from stiction.command.front import answers, front_page, is_finished, provenance
 from stiction.config.files import paper
 from stiction.report.devices.pages import Page
 from stiction.run.provenance import record
+from stiction.stages.beams.pair_warnings import as_markdown
 
 #: Part of Table III of two pairs.
 TABLE = """pair,relative_humidity,model,crack_length_um,crack_length_std_um,share_s_shape,share_arc,share_free
@@ -56,7 +61,7 @@ def test_the_page_holds_verdict_warnings_provenance_and_what_differs_from_the_pa
     assert version
     for part in (
         "All 3 checks",
-        "Too &lt;dry&gt; &amp; {{ thin }}.",
+        "Too &lt;dry&gt; &amp; &#123;&#123; thin &#125;&#125;.",
         "C1: Too long.",
         "the last of 2 runs",
         "seed: 7\n",
@@ -101,10 +106,59 @@ def test_a_run_is_finished_when_all_that_its_configuration_names_is_there(tmp_pa
     assert not is_finished(tmp_path)
 
 
-def test_templates_and_indentation_survive_in_restructured_text(tmp_path):
+def filled(page):
+    """The page as Snakemake makes it of a template in restructured text, and what is on it."""
     jinja2, core = (pytest.importorskip(name) for name in ("jinja2", "docutils.core"))
+    environment = jinja2.Environment(trim_blocks=True, lstrip_blocks=True)
+    html = core.publish_parts(environment.from_string(page).render(), writer="html")["html_body"]
+    return html, Reading(html)
+
+
+def test_indentation_survives_in_restructured_text(tmp_path):
     finished(tmp_path)
-    filled = jinja2.Environment().from_string(front_page(tmp_path)).render()
-    shown = core.publish_parts(filled, writer="html")["html_body"]
-    assert "{{ thin }}" in shown
-    assert shown.count("<h2>") == 6
+    html, shown = filled(front_page(tmp_path))
+    assert any("{{ thin }}" in item for item in shown.text["li"])
+    assert html.count("<h2>") == 6
+
+
+def with_text(value, text):
+    """A value of JSON in which every text is another one."""
+    if isinstance(value, dict):
+        return {key: with_text(inner, text) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [with_text(inner, text) for inner in value]
+    return text if isinstance(value, str) else value
+
+
+def test_text_of_configurations_files_and_names_is_on_the_page_as_it_is(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # where the hostile template would make a folder
+    config = finished(tmp_path, ["C1"])
+    config["surfaces"]["B2"] = {"scans": {"files": [HOSTILE], "channel": HOSTILE}}
+    record(tmp_path / "provenance.json", tmp_path, config)
+    runs = json.loads((tmp_path / "provenance.json").read_text())
+    git = {"commit": HOSTILE, "changed": [HOSTILE], "untracked": [HOSTILE]}
+    run = with_text(runs[-1] | {"git": git}, HOSTILE) | {"started": runs[-1]["started"]}
+    (tmp_path / "provenance.json").write_text(json.dumps([*runs, run]))
+    (tmp_path / "verdict.txt").write_text(HOSTILE)
+    (tmp_path / "warnings.md").write_text(as_markdown({HOSTILE: [HOSTILE]}))
+    (tmp_path / "devices" / "C1.html").write_text(Page(HOSTILE, {}, [HOSTILE]).html)
+    _, shown = filled(front_page(tmp_path))
+    assert not (tmp_path / MADE).exists()
+    opening = (
+        r'new ButtonViewManager\(app\)\.handleSelectedResult\("results/[\w/.]+"\)\.props\.onClick\(\); return false'
+    )
+    assert [code for code in shown.code if not re.fullmatch(opening, code)] == []
+    assert shown.text["h2"][0] == f"Results of pairs {HOSTILE}, {HOSTILE} and device C1"
+    assert shown.text["p"] == [HOSTILE, "Keys that differ from those of the paper:"]
+    files = [f"Files that are {state} in its folder: {HOSTILE}" for state in ("changed", "untracked")]
+    scans = f"Scans of B2: {Path(HOSTILE).name}"
+    assert {f"Device C1: {HOSTILE}", f"{HOSTILE}: {HOSTILE}", *files, scans} < {*shown.text["li"]}
+    assert sum(HOSTILE in item for item in shown.text["li"]) == 4 + len(["commit", "machine", "libraries"])
+    (written,) = shown.text["pre"]
+    assert yaml.safe_load(written)["surfaces"]["B2"] == {"scans": {"files": [HOSTILE], "channel": HOSTILE}}
+
+
+def test_names_of_other_files_in_the_folder_open_nothing(tmp_path):
+    finished(tmp_path, ["C1"])
+    (tmp_path / "devices" / "x');alert(1);('.html").touch()
+    assert "alert" not in front_page(tmp_path)

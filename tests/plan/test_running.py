@@ -7,8 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import xarray as xr
+from docutils import core
+from hostile import HOSTILE, MADE, Reading
 from jinja2 import Template
 
+from stiction.config.files import paper
 from stiction.plan import running
 from stiction.plan.stage import Shown, Stage
 from stiction.run import labels, storage
@@ -109,14 +112,23 @@ def test_a_caption_has_the_settings_of_its_job_and_what_the_figure_adds(files, t
     assert (tmp_path / "sheet.txt").read_text() == "Sheet: B2\n\nTimes 10.\n\n(1) Too wet.\n"
 
 
-CAPTIONS = [
-    path
-    for path in sorted((Path(__file__).parents[2] / "workflow" / "report").glob("*.rst"))
-    if '["humidity"]' in path.read_text(encoding="utf-8")
-]
+CAPTIONS = sorted((Path(__file__).parents[2] / "workflow" / "report").glob("*.rst"))
+WITH_HUMIDITY = [path for path in CAPTIONS if '["humidity"]' in path.read_text(encoding="utf-8")]
 
 
 @pytest.mark.parametrize("path", CAPTIONS, ids=lambda path: path.stem)
+def test_names_in_the_caption_of_a_figure_are_no_part_of_its_template(path, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # where the hostile template would make a folder
+    params = SimpleNamespace(settings={"pair": HOSTILE, "humidity": 0.5, "moments": [HOSTILE]})
+    config = paper() | {"pairs": {HOSTILE: {"beam": HOSTILE}}}
+    figure = SimpleNamespace(params=params, config=config, wildcards=SimpleNamespace(surface=HOSTILE))
+    caption = Template(path.read_text(encoding="utf-8")).render(snakemake=figure)
+    shown = Reading(core.publish_parts(caption, writer="html", settings_overrides={"report_level": 5})["body"])
+    assert shown.code == []
+    assert not (tmp_path / MADE).exists()
+
+
+@pytest.mark.parametrize("path", WITH_HUMIDITY, ids=lambda path: path.stem)
 def test_no_caption_of_a_figure_in_dry_air_has_a_humidity(path):
     said = {}
     for stated, shown in ((0.0, 0.0), (0.0, "dry"), (0.65, 0.65)):

@@ -7,10 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from hostile import HOSTILE, HOSTILE_FILE, Reading
 from numpy.testing import assert_allclose
 
 from stiction.models import surface_model
-from stiction.report import published, tables, tables_beams, tables_studies, tables_surfaces
+from stiction.report import checks, published, tables, tables_beams, tables_studies, tables_surfaces
+from stiction.run.markdown import plain
+from stiction.stages.beams.pair_warnings import as_markdown
 from stiction.stages.contact import model_error
 from stiction.stages.laws import forces as stage_forces
 
@@ -281,3 +284,35 @@ def test_errors_by_scans_are_columns_of_their_own_and_only_of_measured_pairs():
         assert_allclose(found.adhesion_energy_scans_se_J_per_m2, 0.1 * found.adhesion_energy_J_per_m2)
     assert list(scanned.cells["se, scans"]) == ["–", "16", "16"]
     assert list(scanned.cells).index("se, scans") == list(scanned.cells).index("se") + 1
+
+
+def test_text_of_users_in_a_table_is_shown_as_it_is():
+    columns = {"file": (str, "file"), "channel": (str, "channel")}
+    row = {"file": HOSTILE_FILE, "channel": HOSTILE}
+    table = tables.Table.of([row, row], tables.with_list(f"Scans {HOSTILE}.", [HOSTILE]), columns)
+    for html in (table.html, rendered(table.markdown)):
+        shown = Reading(html)
+        assert [code for code in shown.code if code != "meta"] == []
+        assert shown.text["td"] == [HOSTILE_FILE, HOSTILE] * 2
+        assert f"Scans {HOSTILE}." in "".join(shown.text["p"])
+    assert shown.text["li"] == [HOSTILE]
+    assert "eq" not in shown.text, "a formula"
+    two_lines = tables.Table.of([row | {"channel": "x\ny"}], "", columns)
+    assert two_lines.markdown.count("\n") == len(["", "", "head", "rule", "row"])
+
+
+def test_text_of_users_in_checks_and_warnings_is_shown_as_it_is():
+    failed = checks.table([checks.Check("name", HOSTILE, False, HOSTILE)])
+    for markdown in (checks.markdown(failed), as_markdown({HOSTILE: [HOSTILE]})):
+        shown = Reading(rendered(markdown))
+        assert shown.code == []
+        assert shown.text["li"][0].removeprefix("FAILED ") == f"{HOSTILE}: {HOSTILE}"
+        assert "eq" not in shown.text
+        (line,) = [line for line in markdown.splitlines() if line.startswith("- ")]
+        assert plain(line.removeprefix("- ").removeprefix("**FAILED** ")) == f"{HOSTILE}: {HOSTILE}"
+
+
+def rendered(markdown):
+    """HTML of Markdown with tables, formulas and HTML."""
+    parser = pytest.importorskip("markdown_it").MarkdownIt().enable("table")
+    return parser.use(pytest.importorskip("mdit_py_plugins.dollarmath").dollarmath_plugin).render(markdown)

@@ -1,4 +1,8 @@
-"""Front page of the report: the answer in words, what to open first, checks, warnings and provenance."""
+"""Front page of the report: the answer in words, what to open first, checks, warnings and provenance.
+
+Snakemake fills the page in as a template, with all that Jinja can do. Text of configurations, files and names is on the
+page only as characters: HTML shows it as it is, and Jinja finds no brace in it.
+"""
 
 import csv
 import json
@@ -15,12 +19,14 @@ from stiction.config.cases import air
 from stiction.config.files import paper
 from stiction.report.format import with_error
 from stiction.run import made
+from stiction.run.markdown import plain
 
 #: Where the command leaves the page for Snakemake, relative to the folder of the run.
 FRONT = Path(".snakemake", "front.rst")
+#: Braces as HTML reads them, but not Jinja.
+_BRACES = str.maketrans({"{": "&#123;", "}": "&#125;"})
 #: Results of the report to open first, below ``results/``, and what each is; those of devices only if there are any.
 _OF_DEVICES = {
-    "devices/*.html": "Device {name}: what to build",
     "tables/safe_lengths.html": "Safe lengths",
     "tables/stoppers.html": "Forces of stoppers",
     "figures/risk.png": "Share of stuck devices over their length",
@@ -32,7 +38,7 @@ _OF_PAIRS = {
     "tables/table_1.html": "Table I: statistics of the surfaces",
 }
 #: Opens a result as its button in the menu does.
-_OPEN = "new ButtonViewManager(app).handleSelectedResult('{path}').props.onClick(); return false"
+_OPEN = "new ButtonViewManager(app).handleSelectedResult({path}).props.onClick(); return false"
 
 
 def front_page(results: Path) -> str:
@@ -49,7 +55,7 @@ def front_page(results: Path) -> str:
     }
     page = "\n".join(f"<h2>{escape(title)}</h2>\n{body}" for title, body in sections.items())
     indented = "\n".join(f"   {line}" for line in page.splitlines())
-    return f"{{% raw %}}\n.. raw:: html\n\n{indented}\n\n{{% endraw %}}\n"  # Snakemake fills in templates first
+    return f".. raw:: html\n\n{indented.translate(_BRACES)}\n"
 
 
 def is_finished(results: Path) -> bool:
@@ -112,18 +118,19 @@ def _ends(row):
 
 def _links(results, config):
     """Links to the results to open first."""
-    shown = (_OF_DEVICES if config.get("devices") else {}) | (_OF_PAIRS if config["run"]["pairs"] else {})
-    for pattern, title in shown.items():
-        for path in sorted(results.glob(pattern)):
-            opens = _OPEN.format(path=f"results/{path.relative_to(results)}")
-            yield f'<a href="#" onclick="{opens}">{escape(title.format(name=path.stem))}</a>'
+    devices = {f"devices/{name}.html": f"Device {name}: what to build" for name in config.get("devices", {})}
+    shown = (devices | _OF_DEVICES if devices else {}) | (_OF_PAIRS if config["run"]["pairs"] else {})
+    for path, title in shown.items():
+        if (results / path).exists():
+            opens = _OPEN.format(path=json.dumps(f"results/{path}"))
+            yield f'<a href="#" onclick="{escape(opens)}">{escape(title)}</a>'
 
 
 def _warnings(results, config):
     """Sentences about results beyond the limits of the model."""
     pages = {"warnings.md": config["run"]["pairs"], "devices/warnings.md": config.get("devices")}
     lines = (line for page, subjects in pages.items() if subjects for line in _text(results / page).splitlines())
-    return (line.removeprefix("- ") for line in lines if line.startswith("- "))
+    return (plain(line.removeprefix("- ")) for line in lines if line.startswith("- "))
 
 
 def provenance(run: Mapping[str, Any], number: int) -> Iterator[str]:

@@ -9,6 +9,7 @@ import contextlib
 import hashlib
 import json
 import math
+import re
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import cache
@@ -32,6 +33,12 @@ _SMOOTHEST, _ROUGHEST = 1e-3, 1e3
 #: moments of scans with less may become impossible when the bias of levelling is removed.
 _OF_TWO_HEIGHTS = 1.1
 _OF_SCANS = {"fast_axis": "x", "level": "plane", "lines": "none"}
+#: Signs in the path of a file that stand for something else: Snakemake leaves no way to write them.
+_MISREAD = {
+    "[{}]": "braces in its path, which Snakemake reads as wildcards",
+    "<[a-z][a-z0-9_]*>": "a word between < and > in its path, which Snakemake reads as a variable",
+    "[\x01-\x1f\x7f-\x9f\u2028\u2029]": "a line break or control character in its path, which no list can show",
+}
 #: Keys that say how a file is read, and how its map is evaluated.
 _READING = ("channel", "fast_axis", "size_um", "height_unit")
 _EVALUATION = ("tip_radius_nm", "shortest_nm")
@@ -164,16 +171,11 @@ def _labels(entry):
 
 
 def _contents(files):
-    """Name and SHA-256 of every file, by label; refuses equal contents, because scans are independent samples.
-
-    Snakemake leaves no way to write a brace in the name of a file.
-    """
+    """Name and SHA-256 of every file, by label; refuses equal contents, because scans are independent samples."""
     seen = {}
     for label, path in files.items():
-        if set("{}") & set(str(path)):
-            raise ScanError(
-                label, "files", f"has braces in its path ({path}), which Snakemake reads as wildcards: rename it"
-            )
+        if found := next((words for signs, words in _MISREAD.items() if re.search(signs, str(path))), None):
+            raise ScanError(label, "files", f"has {found} ({str(path)!r}): rename it")
         try:
             content = digest(path)
         except OSError as reason:

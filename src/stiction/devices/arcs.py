@@ -19,6 +19,10 @@ import numpy as np
 
 from stiction.beam.cantilever import Beam
 
+#: Power with which the length that a tip holds falls with its attraction. ASSUME: that of an attraction P that is the
+#: same at all slopes, the safe end. On smooth surfaces P grows as 1/θ, and it is -1/4; rough ones are between.
+LENGTH_POWER = -1 / 3
+
 
 def tip_slope(length: float | np.ndarray, gap: float | np.ndarray) -> float | np.ndarray:
     """Slope of an arc at its tip, 3h/2L [-]; length of the beam and gap [m] broadcast."""

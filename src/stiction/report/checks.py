@@ -33,6 +33,7 @@ from stiction.plan.stage import File, Stage, chosen, select
 from stiction.report.format import TO_MJ, TO_NM, TO_UM, number, with_error
 from stiction.report.tables_surfaces import surface_statistics
 from stiction.run.atomic import save_text
+from stiction.run.markdown import literal
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
 from stiction.stages.beams.releases import stuck_energies, stuck_lengths
 from stiction.stages.laws import forces as stage_forces
@@ -394,9 +395,12 @@ def markdown(table: pd.DataFrame) -> str:
     """Checks for reading: the verdict, counts by name, then the numbers of every check."""
     counts = table.groupby("name", sort=False).passed.agg(["sum", "count"]).reset_index()
     counts.columns = ["check", "passed", "of"]
-    parts = ["# Checks of the results", verdict(table), counts.to_markdown(index=False)]
+    parts = ["# Checks of the results", literal(verdict(table)), counts.to_markdown(index=False)]
     for name, rows in table.groupby("name", sort=False):
-        lines = [f"- {'' if row.passed else '**FAILED** '}{row.case}: {row.message}" for row in rows.itertuples()]
+        lines = [
+            f"- {'' if row.passed else '**FAILED** '}{literal(f'{row.case}: {row.message}')}"
+            for row in rows.itertuples()
+        ]
         parts.append(f"## {name[0].upper()}{name[1:]}\n\n" + "\n".join(lines))
     return "\n\n".join(parts) + "\n"
 

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from html import escape
 from typing import Any
 
 import pandas as pd
 
 from stiction.plan.stage import Shown, Stage, named, titled
 from stiction.report.format import humidity_text, number
+from stiction.run import markdown
 from stiction.run.atomic import save_text
 
 _PAGE = """<!DOCTYPE html>
@@ -51,13 +53,13 @@ class Table:
     @property
     def markdown(self) -> str:
         """Caption and cells; a cell keeps all its digits, even if it looks like a number."""
-        grid = self.cells.to_markdown(index=False, disable_numparse=True, stralign="right")
-        return f"{self.caption}\n\n{grid}\n"
+        grid = self.cells.map(markdown.cell).to_markdown(index=False, disable_numparse=True, stralign="right")
+        return "\n".join([*map(markdown.literal, self.caption.split("\n")), "", grid, ""])
 
     @property
     def html(self) -> str:
         """Page of caption and cells."""
-        return _PAGE.format(caption=self.caption, cells=self.cells.to_html(index=False, border=0))
+        return _PAGE.format(caption=escape(self.caption, quote=False), cells=self.cells.to_html(index=False, border=0))
 
 
 def as_text(frame: pd.DataFrame, columns: Columns) -> pd.DataFrame:

@@ -5,8 +5,11 @@ import json
 import re
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
+from hostile import HOSTILE, Reading
+from matplotlib.figure import Figure
 from test_device_outputs import charted
 from test_tables_budget import BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_dataset
 
@@ -273,9 +276,15 @@ def test_a_saved_page_ends_with_date_version_and_commit_of_the_last_run_and_diff
     assert sum(one != other for one, other in zip(*lines, strict=True)) == 2
 
 
-def test_text_is_escaped():
-    html = Page("A < B", {"x & y": "<1"}, ["a < b", "c < d"], [Section("s > t", ["p & q"])], words={"<w>": "&"}).html
-    assert "<title>A &lt; B</title>" in html
-    assert "x &amp; y" in html
-    assert "<p><strong>a &lt; b</strong></p>\n<p>c &lt; d</p>" in html
-    assert "<w>" not in html
+def test_text_is_shown_as_it_is():
+    figure, cells = Figure(figsize=(1, 1)), pd.DataFrame({HOSTILE: [HOSTILE]})
+    sections, words = [Section(HOSTILE, [HOSTILE], cells, figure)], {HOSTILE: HOSTILE}
+    page = Page(HOSTILE, {HOSTILE: HOSTILE}, [HOSTILE, HOSTILE], sections, [HOSTILE], words, [HOSTILE])
+    shown = Reading(page.html)
+    assert [code for code in shown.code if code != "meta"] == []
+    for tag, number in {"title": 1, "h1": 1, "strong": 1, "th": 1, "td": 3, "dt": 1, "dd": 1}.items():
+        assert shown.text[tag] == [HOSTILE] * number
+    assert [text for text in shown.text["p"] if text == HOSTILE] == [HOSTILE] * 5
+    assert len(shown.text["p"]) == 6, "with what is not in the model"
+    assert shown.text["h2"] == [HOSTILE, "Limits of this prediction", "Terms"]
+    assert shown.alt == [HOSTILE]

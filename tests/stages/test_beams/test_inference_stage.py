@@ -17,9 +17,11 @@ from stiction.contact.environment import Gaps, Water
 from stiction.devices import arcs
 from stiction.devices.inference import FACTOR, SLOPE, Discrepancy, expected_share, lognormal
 from stiction.report import style
-from stiction.report.devices import figures_inference, tables_inference
+from stiction.report.devices import figures_inference, tables_inference, warnings_page
 from stiction.run import storage
+from stiction.run.markdown import plain
 from stiction.stages.contact import curves
+from stiction.stages.devices import device_warnings
 from stiction.stages.devices.releases import ARC, EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam
 from stiction.stages.test_beams import inference
 from stiction.stages.test_beams.inference import CrackLengths, Settings, Stuck
@@ -140,6 +142,21 @@ def test_tips_have_the_uncertainty_of_their_budget_and_follow_the_inputs():
     assert_allclose(factors.sel(shape=EITHER), np.exp(tip.result_shift), rtol=1e-12)
     assert_allclose(factors.sel(shape=S_SHAPE), np.exp(of(found, 0.67).result_shift), rtol=1e-12)
     assert 1 < float(factors.sel(shape=EITHER)) < float(factors.sel(shape=S_SHAPE))
+
+
+def test_tips_adhere_as_much_more_as_cracks_show_that_no_input_explains():
+    exact, adhesion = dict.fromkeys(DEVIATIONS, 0.0), 2.4
+    model = Discrepancy(10.0, 1e-6, 1e-6)
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in exact.items():
+            patch.setitem(DEVIATIONS, name, value)
+        more, less = (computed(as_computed(power**-0.25), stated=model) for power in (adhesion, 1 / adhesion))
+    moved = (more.updated_safe / more.safe).isel(share=0)
+    assert_allclose(moved.sel(shape=S_SHAPE), adhesion**-0.25, rtol=1e-4)
+    assert_allclose(moved.sel(shape=EITHER), adhesion ** (-1 / 3), rtol=1e-4)
+    assert_allclose((less.updated_safe / less.safe).sel(shape=EITHER), 1, rtol=1e-6)
+    assert "up to 2.4 times the adhesion that the inputs explain: tips" in tables_inference.built(more)
+    assert "no more adhesion than the inputs explain" in tables_inference.built(less)
 
 
 def test_two_equal_arrays_that_share_their_dimensions_are_one_of_twice_as_many_beams():
@@ -381,6 +398,15 @@ def counts(lengths, stuck, of, humidities=HUMIDITIES):
     )
 
 
+@pytest.mark.usefixtures("shapes")
+def test_tips_that_were_counted_show_themselves_how_much_they_adhere():
+    shorter = as_computed(0.8)
+    assert np.all(computed(shorter).adhesion_of_tips[3:] > 1.5)
+    found = computed(shorter, stuck=counts(as_computed(0.7), [10] * 3, 20))
+    assert_array_equal(found.adhesion_of_tips, 1)
+    assert not re.search("adhesion|adhere", tables_inference.built(found))
+
+
 def test_counts_say_about_the_device_what_the_crack_lengths_of_the_same_beams_say(shapes):
     shapes(10.0)  # no tip holds
     rng, number, centres = np.random.default_rng(2), 4000, np.array(as_computed())
@@ -484,8 +510,41 @@ def test_data_that_only_the_model_explains_say_so_with_its_factor():
 def test_data_that_nothing_explains_are_refused_in_words():
     zigzag = np.array(as_computed()) * [1.3, 0.7, 1.3]
     sentences = tables_inference.warnings(computed(zigzag))
-    assert "Do not rely on the update." in sentences[0]
+    assert "rely neither on the update" in sentences[0]
     assert any(sentence.startswith("arrayA, RH 0.67: -") for sentence in sentences)
+
+
+def contradicted(found, p_value=2e-6):
+    return found.assign(p_value=((), p_value))
+
+
+@pytest.mark.parametrize("found", [lambda: computed(as_computed()), of_bridge, of_stopper])
+def test_an_update_that_nothing_explains_recommends_nothing_and_its_warning_counts(found):
+    reliable, refused = found(), contradicted(found())
+    words, refusal = tables_inference.built(reliable), tables_inference.built(refused)
+    assert re.search(r"\d (µm|µN)", words)
+    assert not re.search(r"\d (µm|µN)", refusal)
+    assert "(p = 2e-06)" in refusal
+    assert refusal.endswith("rely neither on the update nor on what is stated without it.")
+    assert tables_inference.stuck(reliable)
+    assert tables_inference.stuck(refused) == []
+    safe, others = (of_safe_sizes(each) for each in (reliable, refused))
+    assert safe.after.notnull().all()
+    assert others.after.isnull().all()
+    assert_array_equal(safe.before, others.before)
+    (warned,) = [line for line in warnings_page.page(NO_LIMITS, {"C1": refused}).splitlines() if "rely" in line]
+    assert plain(warned) == f"- C1, test beams: {refusal.partition('. ')[2]}"
+    assert not any("rely" in line for line in warnings_page.page(NO_LIMITS, {"C1": reliable}).splitlines())
+
+
+#: Devices without other warnings.
+NO_LIMITS = device_warnings.OfDevices({}, {}, {})
+
+
+def of_safe_sizes(found):
+    """Rows of the table with safe lengths or forces, and the shares that stick at them."""
+    frame = tables_inference.test_beams({"C1": found}).frame
+    return frame[frame.part.str.contains("safe|stuck at")]
 
 
 def test_humidities_and_dimensions_beyond_those_of_the_test_beams_are_extrapolations():

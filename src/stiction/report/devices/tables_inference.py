@@ -10,7 +10,7 @@ from stiction.plan.names import by_name
 from stiction.report.format import TO_UM, airs, number, with_error
 from stiction.report.tables import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.releases import FORCE, S_SHAPE
+from stiction.stages.devices.releases import ARC, FORCE, MIDDLE, S_SHAPE
 from stiction.stages.test_beams.inference import OWN, shape_of
 
 #: p value below which data count as not explained; number of standard deviations beyond which an input counts as wrong;
@@ -22,6 +22,8 @@ ADHESION = 0.1
 #: Combinations whose standard deviation falls to less than this part count as determined; inputs with a correlation of
 #: less than this part of the largest one are not named.
 DETERMINED, NAMED = 0.5, 0.25
+#: Smallest factor of the adhesion that is worth a sentence.
+NOTICED = 1.01
 #: Standard errors beyond which the linear update and its rerun count as different.
 DIFFERENT = 3.0
 _MORE = {True: "more", False: "less"}
@@ -32,6 +34,11 @@ _STUCK = ("expected_stuck", "updated_stuck", 100)
 
 
 # Sentences
+
+
+def is_reliable(update: xr.Dataset) -> bool:
+    """Whether inputs and model, as stated, explain the data: otherwise, no result may rest on them."""
+    return float(update.p_value) >= UNLIKELY
 
 
 def combinations(update: xr.Dataset) -> list[str]:
@@ -81,9 +88,11 @@ def built(update: xr.Dataset) -> str:
 
     As `stiction.report.devices.pages.build_sentence`: the least safe length, less twice the largest uncertainty of what
     holds the devices, here with the error of the model as far as it applies; of a stopper the largest safe force, with
-    twice the uncertainty added.
+    twice the uncertainty added. Where nothing explains the test beams, they give no length, but a warning.
     """
     responses = list(dict.fromkeys(map(str, update.response.values)))
+    if not is_reliable(update):
+        return f"With the test beams, no {'force' if FORCE in responses else 'length'} is stated. {_wrong(update)}"
     (before, after), *others = (_built(update, response) for response in sorted(responses, key=_WEAKEST.index))
     if FORCE in responses:
         return (
@@ -96,7 +105,21 @@ def built(update: xr.Dataset) -> str:
     return (
         f"With the test beams, build it no longer than {after:.0f} µm, without them {before:.0f} µm{alone}. Twice the "
         "uncertainty of the lengths is subtracted, with that of the model for devices that cracks along the beam hold."
+        f"{_beyond_cracks(update)}"
     )
+
+
+def _beyond_cracks(update):
+    """What the cracks say about errors of the model where no crack holds the device; empty if tips were counted."""
+    if MIDDLE in update.response.values:
+        return " Cracks do not say how much the model errs at bridges."
+    if ARC not in update.response.values or update.sizes["count"]:
+        return ""
+    more = float(update.adhesion_of_tips.max())
+    if more < NOTICED:
+        return " Cracks show no more adhesion than the inputs explain: that of tips is computed with the inputs alone."
+    shown = f" Cracks show up to {more:.3g} times the adhesion that the inputs explain"
+    return f"{shown}: tips are taken to adhere as much more."
 
 
 def _built(update, response):
@@ -134,7 +157,12 @@ def _change(result):
 
 
 def stuck(update: xr.Dataset) -> list[str]:
-    """P(stuck) before and after the measurement at every humidity, averaged over the uncertainty of the inputs."""
+    """P(stuck) before and after the measurement at every humidity, averaged over the uncertainty of the inputs.
+
+    Nothing, where nothing explains the test beams.
+    """
+    if not is_reliable(update):
+        return []
     shape = shape_of(min(map(str, update.response.values), key=_WEAKEST.index))
     chosen = update.sel(shape=shape)
     if "share" in chosen.expected_stuck.dims:
@@ -244,8 +272,9 @@ def _of_inputs(device, update):
 
 
 def _both(update, before, after, scale):
-    """Numbers before and after the measurement."""
-    return {"before": scale * float(update[before]), "after": scale * float(update[after])}
+    """Numbers before and after the measurement, the latter only if they are to be relied on."""
+    updated = float(update[after]) if is_reliable(update) else np.nan
+    return {"before": scale * float(update[before]), "after": scale * updated}
 
 
 def _of_length(length, before, shift, after):
@@ -282,13 +311,9 @@ def warnings(update: xr.Dataset) -> list[str]:
 
 def _contradictions(update):
     """Data that the inputs, or inputs and model together, do not explain."""
-    of_inputs, together = float(update.p_value_of_inputs), float(update.p_value)
-    if together < UNLIKELY:
-        yield (
-            f"Neither the errors of the inputs nor those of the model, as stated, explain the test beams (p = "
-            f"{together:.1g}): something else is wrong, such as a dimension, a humidity or plastic contact. Do not "
-            "rely on the update."
-        )
+    of_inputs = float(update.p_value_of_inputs)
+    if not is_reliable(update):
+        yield _wrong(update)
     elif of_inputs < UNLIKELY:
         factor, slope = (float(update["shift"].sel(input=name)) for name in (inference.FACTOR, inference.SLOPE))
         yield (
@@ -302,6 +327,15 @@ def _contradictions(update):
             f"{datum}: computed cracks of {TO_UM * float(at.computed):.0f} µm are longer than the beams, "
             f"{TO_UM * float(at.beam_length):.0f} µm: mean lengths of the beams that stick are too short."
         )
+
+
+def _wrong(update):
+    """That nothing explains the data."""
+    return (
+        "Neither the errors of the inputs nor those of the model, as stated, explain the test beams (p = "
+        f"{float(update.p_value):.1g}): something else is wrong, such as a dimension, a humidity or plastic contact. "
+        "Until it is found, rely neither on the update nor on what is stated without it."
+    )
 
 
 def _moved(update):

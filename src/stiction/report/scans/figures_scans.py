@@ -36,16 +36,16 @@ def surface_sheet(name: str, estimate: xr.Dataset, spectrum: xr.Dataset) -> Figu
     _summits(axes[1, 1], estimate)
     letter(axes, ["levelled heights", "density of the heights", "spectrum", "summits at the pixels of the scans"])
     figure.suptitle(_title(name, estimate), x=0.01, ha="left", fontsize=8)
-    figure.supxlabel("\n".join(lines), x=0.01, ha="left", fontsize=7)
+    figure.supxlabel("\n".join(lines), x=0.01, ha="left", fontsize=7, parse_math=False)
     return figure
 
 
 def _lines(sentences: Sequence[str]):
-    """Sentences as lines of text, each with a mark; no character has a special meaning in them."""
+    """Sentences as lines of text, each with a mark."""
     if not sentences:
         return ["No flags."]
     wrapped = {"width": _LINE, "initial_indent": "– ", "subsequent_indent": "   "}
-    return [line.replace("$", r"\$") for sentence in sentences for line in textwrap.wrap(sentence, **wrapped)]
+    return [line for sentence in sentences for line in textwrap.wrap(sentence, **wrapped)]
 
 
 def _title(name, estimate):

@@ -15,6 +15,7 @@ from stiction.devices import limits
 from stiction.plan.names import by_name, by_outcome
 from stiction.plan.stage import Stage, select
 from stiction.run.atomic import save_text
+from stiction.run.markdown import literal
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
 from stiction.stages.beams.releases import ended, stuck_lengths
 
@@ -129,8 +130,8 @@ def with_numbers(warnings: Mapping[Any, list[str]]) -> list[str]:
 def as_markdown(warnings: Warnings) -> str:
     """Warnings as a page, each sentence with all its subjects."""
     sentences, _ = numbered(warnings)
-    about = [[subject for subject, said in warnings.items() if sentence in said] for sentence in sentences]
-    lines = [f"- {'; '.join(names)}: {sentence}" for names, sentence in zip(about, sentences, strict=True)]
+    about = ["; ".join(name for name, said in warnings.items() if sentence in said) for sentence in sentences]
+    lines = [f"- {literal(f'{names}: {sentence}')}" for names, sentence in zip(about, sentences, strict=True)]
     none = ["No result is beyond the limits of the model that are checked."]
     return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", limits.NOT_MODELLED, ""])
 

@@ -21,7 +21,6 @@ from stiction.stages.beams.pair_warnings import (
     Plastic,
     StatedProperties,
     Warnings,
-    as_markdown,
     contact_warnings,
     plastic_contact,
 )
@@ -200,15 +199,5 @@ STAGES = (
         compute=_of_one_device,
         save=lambda warnings, paths: save_text(json.dumps(warnings, ensure_ascii=False, indent=1), paths["json"]),
         message="Where the results of device {device} are beyond the model.",
-    ),
-    Stage(
-        name="device_limits",
-        files={"markdown": "devices/warnings.md"},
-        inputs=lambda plan, at: {"warnings": files_of(*plan.devices.sections)},
-        compute=lambda data, at, settings: as_markdown(subjects(read(data["warnings"]))),
-        save=lambda page, paths: save_text(page, paths["markdown"]),
-        message="Where the results of devices are beyond the model.",
-        jobs=lambda plan: [{}] if plan.devices.sections else [],
-        targets=("devices",),
     ),
 )

@@ -13,7 +13,7 @@ import xarray as xr
 from scipy.interpolate import PPoly
 from scipy.special import ndtr, ndtri
 
-from stiction.beam.energy import arrest_length
+from stiction.beam.energy import CRACK_LENGTH_POWER, arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.config.arrays import humidities
 from stiction.config.cases import air, case_id
@@ -35,6 +35,8 @@ FURTHER = (10, 100)
 _SMALL = 50
 #: What may hold a counted beam.
 _COUNTED = (S_SHAPE, ARC)
+#: Logarithms of lengths of a device, less those that were computed.
+_MOVED_BY_TIPS = ("result_shift",)
 #: Keys of the data of the configuration.
 _COLUMNS = {
     "crack_lengths": ("humidity", "mean_um", "std_um", "beams"),
@@ -154,7 +156,7 @@ def compute(
         of_further(beams, responses, of_device, device, posterior),
         of_agreement(prior, lengths, counts, own),
     ]
-    merged = xr.merge(parts, combine_attrs="no_conflicts")
+    merged = with_adhesion_of_tips(xr.merge(parts, combine_attrs="no_conflicts"))
     return with_forces(merged, predicted) if settings.device is None else with_lengths(merged, predicted)
 
 
@@ -173,8 +175,8 @@ def with_discrepancy(
 ) -> tuple[Knowledge, np.ndarray]:
     """As `stiction.devices.inference.with_discrepancy`; responses are those of test beams and, after them, of others.
 
-    ASSUME: cracks say nothing about how much the model errs at tips, at the middle of a bridge and at stoppers. Without
-    a discrepancy, these have the uncertainty of their budget; no model holds shorter arcs than saturated air does.
+    ASSUME: cracks say nothing about how much the model errs at the middle of a bridge and at stoppers, and at tips only
+    what `with_adhesion_of_tips` takes from them. Without a discrepancy, these have the uncertainty of their budget.
     """
     results = [*beams, *others]
     responses = np.zeros((len(results), len(inputs.names)))
@@ -359,6 +361,26 @@ def of_results(
             "humidity_of_result": ("result", [result.humidity for result in of_device]),
         },
     )
+
+
+def with_adhesion_of_tips(update: xr.Dataset) -> xr.Dataset:
+    """The dataset with results of tips that adhere as much more than the inputs explain as the cracks show.
+
+    ASSUME: an error of the model in the adhesion is that of the surfaces, and acts on tips as well. Where cracks show
+    less adhesion than computed, tips do not adhere less, which is the safe side; where tips were counted, they show it
+    themselves.
+    """
+    errors = update["shift"].sel(input=[inference.FACTOR, inference.SLOPE]).values
+    of_model = errors[0] + errors[1] * (update.result_reduced - update.datum_reduced.mean()).values
+    rows = list(zip(update.humidity_of_result.values, update.response.values, of_model, strict=True))
+    shown = {humidity: min(error, 0.0) for humidity, response, error in rows if response == S_SHAPE}
+    of_tips = [
+        shown.get(humidity, 0.0) if response == ARC and not update.sizes["count"] else 0.0
+        for humidity, response, _ in rows
+    ]
+    adhesion = update.result_shift.copy(data=np.exp(np.array(of_tips) / CRACK_LENGTH_POWER))
+    moved = {name: update[name] + arcs.LENGTH_POWER * np.log(adhesion) for name in _MOVED_BY_TIPS}
+    return update.assign(moved | {"adhesion_of_tips": adhesion})
 
 
 def of_further(
