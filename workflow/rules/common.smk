@@ -1,6 +1,7 @@
 """Configuration and plan of a run, and what the rules of all stages share."""
 
 import atexit
+import uuid
 from functools import cache
 
 from snakemake.logging import logger
@@ -93,7 +94,8 @@ def unlike_this_run():
     return found
 
 
-#: Newer than any file that a run must not use; an input of the jobs that write these files anew.
+#: Newer than any file that a run must not use, and never the same, because Snakemake takes a newer input of the same
+#: content for unchanged; an input of the jobs that write these files anew.
 STALE = Path(".snakemake/stale")
 
 
@@ -107,7 +109,7 @@ def unusable():
         logger.warning(line)
     if found:
         STALE.parent.mkdir(exist_ok=True)
-        STALE.touch()
+        STALE.write_text(uuid.uuid4().hex)
     return found
 
 
