@@ -65,10 +65,11 @@ except messages.ConfigError as error:
     raise WorkflowError(f"The configuration is invalid:\n{error}")
 
 config.update(files.normalised(config))
-planner = Planner(config, preliminary, remember)
+remember_jobs = DiskCache(".snakemake/jobs.json")
+planner = Planner(config, preliminary, remember, remember_jobs)
 
 if snakemake_patches.is_main(workflow):
-    atexit.register(planner.save)
+    atexit.register(remember_jobs.save)
 
 
 def refuse_what_samples_show():
