@@ -17,6 +17,7 @@
 #   make report     results/report.html                      (takes CONFIG=... too)
 #
 #   make test       format, lint and tests                   make test-all   the slow tests as well
+#   make test-slow  the slow tests alone; those that fail are run a second time
 #   make format     format the code                          make mutants    break the code, name undetected errors
 #   make bench      time the stages                          make times      time the commands (half an hour)
 #   make docs       build the documentation                  make numbers    take its numbers and pictures from results/
@@ -46,7 +47,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-beams measured-beams devices model-error asperities pressing sealed tails full-contact-times deformed attraction figures run report test test-all lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-beams measured-beams devices model-error asperities pressing sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -120,6 +121,13 @@ test: lint
 test-all: lint
 	$(BIN)/python -m stiction.run.warmup
 	$(BIN)/python -m pytest $(WORKERS) -m "not cluster" $(ARGS)
+
+# Those that fail are run again, alone, and must then pass. With status 1 of pytest all were run, with any other some were not.
+test-slow: SLOW := slow and not browser and not cluster
+test-slow: lint
+	$(BIN)/python -m stiction.run.warmup
+	$(BIN)/python -m pytest $(WORKERS) -m "$(SLOW)" $(ARGS) || \
+	  { [ $$? = 1 ] && $(BIN)/python -m pytest -m "$(SLOW)" --last-failed --last-failed-no-failures none; }
 
 lint: $(VENV)/ready
 	$(BIN)/ruff format --check src tests workflow docs examples

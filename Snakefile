@@ -5,7 +5,6 @@ import gc
 import os
 import signal
 import sys
-import threading
 from pathlib import Path
 
 BASE = Path(workflow.current_basedir)
@@ -119,9 +118,9 @@ HELD = []  # open file that holds the lock on the folder of this run
 
 
 onstart:
-    # Snakemake's handler of SIGTERM acquires a lock and would deadlock if this thread already holds it.
-    if callable(handler := signal.getsignal(signal.SIGTERM)):
-        signal.signal(signal.SIGTERM, lambda *received: threading.Thread(target=handler, args=received).start())
+    # As Ctrl-C. Snakemake's own handler acquires a lock and would deadlock if this thread already holds it.
+    interrupt = signal.getsignal(signal.SIGINT)
+    signal.signal(signal.SIGTERM, interrupt if callable(interrupt) else signal.default_int_handler)
     try:
         HELD.append(run_lock.reserved(".snakemake/running"))
         refuse_what_samples_show()

@@ -163,15 +163,18 @@ def test_only_a_quiet_run_shows_its_progress_in_a_line(tmp_path, monkeypatch, qu
     assert [display is not None for display in shown] == [quiet and progress]
 
 
-def test_jobs_that_ctrl_c_keeps_from_starting_are_no_warning(tmp_path, monkeypatch):
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_jobs_that_a_signal_keeps_from_starting_are_no_warning(tmp_path, monkeypatch, how):
     async def prepare():
         """As Snakemake does before it starts a job."""
 
-    monkeypatch.setattr("snakemake.cli.main", lambda _: [prepare(), signal.raise_signal(signal.SIGINT)])
+    monkeypatch.setattr("snakemake.cli.main", lambda _: [prepare(), signal.raise_signal(how)])
+    before = signal.getsignal(how)
     with warnings.catch_warnings(record=True) as caught:
         assert launch.snakemake([], tmp_path, True, False) == (1, True)
         gc.collect()
     assert caught == []
+    assert signal.getsignal(how) is before
 
 
 def test_a_path_of_python_that_snakemake_does_not_support_is_refused(asked, capsys, monkeypatch):

@@ -15,6 +15,7 @@ from stiction.plan.plan import Plan
 from stiction.plan.planner import NotPlanned, Planner
 from stiction.plan.stage import File, Stage
 from stiction.report.style import STUDIES
+from stiction.run.disk_cache import DiskCache
 from stiction.run.fingerprint import PACKAGE
 
 ROOT = Path(__file__).parents[2]
@@ -162,11 +163,15 @@ def test_figures_of_devices_have_the_data_and_warnings_of_their_tables(figure, t
     assert drawn["warnings"]
 
 
-def test_without_pairs_only_devices_and_scans_are_wanted(tmp_path):
+def computed(_, compute):
+    """Result that nothing keeps."""
+    return compute()
+
+
+def test_without_pairs_only_devices_and_scans_are_wanted():
     config = PLAN.config | {"run": {"pairs": []}}
     whole, devices = (
-        {rule["name"]: rule for rule in Planner(each, {}, lambda _, compute: compute(), tmp_path / "jobs.json").rules}
-        for each in (PLAN.config, config)
+        {rule["name"]: rule for rule in Planner(each, {}, computed, computed).rules} for each in (PLAN.config, config)
     )
     wanted = {name for name, rule in devices.items() if rule["wanted"]}
     assert wanted == {name for name, rule in whole.items() if "devices" in rule["targets"] and rule["wanted"]}
@@ -174,8 +179,14 @@ def test_without_pairs_only_devices_and_scans_are_wanted(tmp_path):
 
 
 @pytest.fixture
-def planner(tmp_path):
-    return Planner(PLAN.config, {}, lambda _, compute: compute(), tmp_path / "jobs.json")
+def jobs(tmp_path):
+    """What is kept of the jobs of a plan."""
+    return DiskCache(tmp_path / "jobs.json")
+
+
+@pytest.fixture
+def planner(jobs):
+    return Planner(PLAN.config, {}, computed, jobs)
 
 
 def test_the_workflow_plans_the_jobs_of_the_declarations(planner):
@@ -209,19 +220,21 @@ def test_a_key_that_a_declaration_lacks_is_no_fault_of_the_name_of_a_file(planne
         planner.inputs(pressed, {"pair": "a"})
 
 
-def test_a_repeated_plan_needs_no_declaration_and_a_change_of_the_configuration_does(planner, tmp_path, monkeypatch):
+def test_a_repeated_plan_needs_no_declaration_and_a_change_of_the_configuration_does(
+    planner, jobs, tmp_path, monkeypatch
+):
     job = {"case": "b_rh067", "model": "NG"}
     first = planner.rules, planner.job("beams", job), planner.settings("results/beams/b_rh067_NG.nc")
-    planner.save()
+    jobs.save()
 
     def forbidden(*_):
         raise AssertionError("a declaration was read")
 
     monkeypatch.setattr(Graph, "job", forbidden)
     monkeypatch.setattr(Stage, "patterns", forbidden)
-    again = Planner(PLAN.config, {}, lambda _, compute: compute(), tmp_path / "jobs.json")
+    again = Planner(PLAN.config, {}, computed, DiskCache(tmp_path / "jobs.json"))
     assert (again.rules, again.job("beams", job), again.settings("results/beams/b_rh067_NG.nc")) == first
-    other = Planner(PLAN.config | {"seed": 2}, {}, lambda _, compute: compute(), tmp_path / "jobs.json")
+    other = Planner(PLAN.config | {"seed": 2}, {}, computed, DiskCache(tmp_path / "jobs.json"))
     with pytest.raises(AssertionError, match="a declaration was read"):
         other.rules  # noqa: B018
 
@@ -234,7 +247,7 @@ def test_what_is_kept_depends_on_all_code_also_where_fingerprints_leave_it_out(p
     monkeypatch.setattr("stiction.plan.planner.PACKAGE", copy)
 
     def planned():
-        return Planner(PLAN.config, {}, lambda _, compute: compute(), tmp_path / "jobs.json")
+        return Planner(PLAN.config, {}, computed, computed)
 
     assert planned()._determined_by == planner._determined_by
     with (copy / file).open("a", encoding="utf-8") as text:

@@ -17,6 +17,13 @@ def test_a_result_is_computed_once_for_equal_arguments_and_again_for_others(tmp_
     assert remember({"a": [3], "b": 1}, lambda: "second") == "second"
 
 
+def test_a_result_is_the_same_whether_it_is_computed_or_known(tmp_path):
+    for _ in range(2):
+        remember = DiskCache(tmp_path / "kept.json")
+        assert repr(remember("a", lambda: {"x": (1, 2.5), 3: None})) == "{'x': [1, 2.5], '3': None}"
+        remember.save()
+
+
 def test_the_next_run_knows_the_results_that_were_used_and_no_others(tmp_path):
     path = tmp_path / "folder" / "kept.json"
     for used in (["a", "b"], ["b"]):

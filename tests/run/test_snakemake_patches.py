@@ -1,5 +1,6 @@
 """Snakemake with the changes of a plan and a run: the same jobs, the same messages, one look, one timer."""
 
+import importlib
 import inspect
 import json
 import os
@@ -335,6 +336,27 @@ def test_this_version_of_snakemake_plans_with_the_changes(monkeypatch):
     snakemake_patches.look_for_scripts_once()
     assert common.get_function_params is rules.get_function_params is not before[0]
     assert dag.ScriptProcessor.process_job is not before[1]
+
+
+@pytest.mark.parametrize("module", ["common", "dag", "persistence", "rules", "script"])
+def test_a_snakemake_without_a_private_module_remains_as_it_is(monkeypatch, module):
+    private = common, rules, dag.ScriptProcessor, persistence.PersistenceBase, PythonScript
+    for known in private:  # restored after the test
+        for name in ("get_function_params", "process_job", "_serialize_param_pandas", "execute_script"):
+            if hasattr(known, name):
+                monkeypatch.setattr(known, name, getattr(known, name))
+    before = dict(vars(sys.modules[f"snakemake.{module}"]))
+    hidden = sys.modules[f"snakemake.{module}"]
+    monkeypatch.setitem(sys.modules, f"snakemake.{module}", None)
+    monkeypatch.delitem(sys.modules, "stiction.run.snakemake_patches")
+    monkeypatch.setattr("stiction.run.snakemake_patches", snakemake_patches)
+    patches = importlib.import_module("stiction.run.snakemake_patches")
+    patches.compare_without_pandas()
+    patches.look_for_scripts_once()
+    patches.remember_signatures()
+    assert dict(vars(hidden)) == before
+    if module == "script":
+        assert not patches.fork_jobs()
 
 
 @pytest.fixture

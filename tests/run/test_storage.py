@@ -1,5 +1,9 @@
 import json
 import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -109,3 +113,50 @@ def test_files_have_the_permissions_that_the_user_gives_all_files(tmp_path):
         os.umask(before)
     assert {path.stat().st_mode & 0o777 for path in tmp_path.iterdir()} == {0o640}
     assert (tmp_path / "x.txt").read_bytes() == b"\xce\x94"
+
+
+#: Forks jobs that save 20 MB, interrupts each at a moment of its write, and prints how and when it ended.
+INTERRUPTED = """
+import os, runpy, signal, sys, time
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import xarray as xr
+
+from stiction.plan import running
+from stiction.run import storage
+
+script, file, *moments = sys.argv[1:]
+fields = np.random.default_rng(1).standard_normal((5, 500_000))
+data = xr.Dataset({f"x{number}": ("sample", values) for number, values in enumerate(fields)})
+storage.save(data[["x0"]], file, "forces", {})
+running.run = lambda job: storage.save(data, file, "forces", {})
+for moment in map(float, moments):
+    before = set(Path(file).parent.glob(".*"))
+    job = os.fork()
+    if job == 0:
+        signal.alarm(10)
+        runpy.run_path(script, {"snakemake": SimpleNamespace(log=[f"{file}.log"], output=[file])}, "__main__")
+        os._exit(0)
+    while set(Path(file).parent.glob(".*")) <= before:
+        time.sleep(0.001)
+    time.sleep(moment)
+    os.kill(job, signal.SIGINT)
+    sent = time.perf_counter()
+    _, status = os.waitpid(job, 0)
+    print(os.waitstatus_to_exitcode(status), time.perf_counter() - sent)
+storage.save(data[["x1"]], file, "forces", {})
+"""
+
+
+@pytest.mark.slow
+def test_a_job_that_is_interrupted_while_it_saves_ends_within_a_second_and_leaves_its_draft_to_the_next(tmp_path):
+    script = Path(__file__).parents[2] / "workflow" / "scripts" / "stage.py"
+    moments = ["0.0", "0.05", "0.1", "0.15", "0.2", "0.25"]
+    words = [sys.executable, "-c", INTERRUPTED, script, tmp_path / "x.nc", *moments]
+    ends = [line.split() for line in subprocess.check_output(list(map(str, words)), text=True).splitlines()]
+    assert [int(status) for status, _ in ends] == [-signal.SIGINT] * len(moments)
+    assert max(float(seconds) for _, seconds in ends) < 1
+    assert {path.name for path in tmp_path.iterdir()} == {"x.nc", "x.nc.log"}
+    assert list(storage.load(tmp_path / "x.nc", "forces")) == ["x1"]

@@ -137,8 +137,18 @@ def test_the_end_of_a_whole_run_names_verdict_warnings_and_what_to_open(smoke, t
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("stage", ["heights", "contact"])
-def test_ctrl_c_says_how_to_continue_and_continuing_gives_the_same_bytes(undisturbed, tiny, tmp_path, stage):
+@pytest.mark.parametrize(
+    ("stage", "send", "number"),
+    [
+        ("heights", os.killpg, signal.SIGINT),
+        ("contact", os.killpg, signal.SIGINT),
+        ("heights", os.kill, signal.SIGTERM),
+        ("contact", os.killpg, signal.SIGTERM),
+    ],
+)
+def test_a_run_that_is_stopped_says_how_to_continue_and_continuing_gives_the_same_bytes(
+    undisturbed, tiny, tmp_path, stage, send, number
+):
     run = subprocess.Popen(
         **words(tmp_path, "run", tiny, "--", BEAMS),
         stdout=subprocess.PIPE,
@@ -147,7 +157,7 @@ def test_ctrl_c_says_how_to_continue_and_continuing_gives_the_same_bytes(undistu
     )
     while run.poll() is None and not (tmp_path / "results" / "logs" / stage).exists():
         time.sleep(0.01)
-    os.killpg(run.pid, signal.SIGINT)
+    send(run.pid, number)
     printed, _ = run.communicate(timeout=60)
     assert run.returncode == 130
     last = printed.splitlines()[-1]

@@ -212,6 +212,29 @@ def test_a_dataset_that_is_damaged_or_of_other_settings_is_computed_again(undist
 
 
 @pytest.mark.slow
+def test_a_dataset_that_is_damaged_a_second_time_is_computed_a_second_time(undisturbed, tiny, tmp_path):
+    folder = copied(undisturbed, tmp_path / "run")
+    for _ in range(2):
+        flipped(folder / "results" / "chaos" / "b_rh088_NG.nc")
+        snakemake(folder, BEAMS, configs=[tiny])
+        assert datasets(folder) == datasets(undisturbed)
+
+
+@pytest.mark.slow
+def test_datasets_of_another_seed_are_not_used_because_snakemake_touched_them(undisturbed, tiny, tmp_path, overlay):
+    folder, configs = copied(undisturbed, tmp_path / "run"), [tiny, overlay("seed: 2\n")]
+
+    def planned():
+        printed = snakemake(folder, BEAMS, "-n", configs=configs).stdout
+        return re.findall(r"^total +(\d+)$", printed, re.MULTILINE), printed.count("this run does not use it")
+
+    before = planned()
+    assert before[1] > 0
+    snakemake(folder, BEAMS, "--touch", configs=configs)
+    assert planned() == before
+
+
+@pytest.mark.slow
 def test_a_file_that_is_damaged_during_a_run_is_reported_and_never_used(undisturbed, tiny, tmp_path):
     folder = copied(undisturbed, tmp_path / "run", ["beams"])
     truncated(folder / "results" / "chaos" / "b_rh088_NG.nc")

@@ -1,6 +1,7 @@
 """Configuration and plan of a run, and what the rules of all stages share."""
 
 import atexit
+import uuid
 from functools import cache
 
 from snakemake.logging import logger
@@ -64,10 +65,11 @@ except messages.ConfigError as error:
     raise WorkflowError(f"The configuration is invalid:\n{error}")
 
 config.update(files.normalised(config))
-planner = Planner(config, preliminary, remember)
+remember_jobs = DiskCache(".snakemake/jobs.json")
+planner = Planner(config, preliminary, remember, remember_jobs)
 
 if snakemake_patches.is_main(workflow):
-    atexit.register(planner.save)
+    atexit.register(remember_jobs.save)
 
 
 def refuse_what_samples_show():
@@ -93,7 +95,8 @@ def unlike_this_run():
     return found
 
 
-#: Newer than any file that a run must not use; an input of the jobs that write these files anew.
+#: Newer than any file that a run must not use, and never the same, because Snakemake takes a newer input of the same
+#: content for unchanged; an input of the jobs that write these files anew.
 STALE = Path(".snakemake/stale")
 
 
@@ -107,7 +110,7 @@ def unusable():
         logger.warning(line)
     if found:
         STALE.parent.mkdir(exist_ok=True)
-        STALE.touch()
+        STALE.write_text(uuid.uuid4().hex)
     return found
 
 

@@ -17,7 +17,7 @@ class Status(IntEnum):
     FAILED = 1  #: a job failed, or the command itself
     REFUSED = 2  #: nothing was computed: wrong input, or another run uses the folder
     CHECKS = 3  #: everything was computed, but checks of the results failed
-    STOPPED = 130  #: by Ctrl-C
+    STOPPED = 130  #: by Ctrl-C or SIGTERM
 
 
 #: Job that fails if a check of the results does.

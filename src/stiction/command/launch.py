@@ -58,7 +58,7 @@ def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: 
     Returns
     -------
     tuple of int and bool
-        Exit status of Snakemake, and whether Ctrl-C stopped it.
+        Exit status of Snakemake, and whether Ctrl-C or SIGTERM stopped it.
     """
     from snakemake import cli
 
@@ -69,7 +69,7 @@ def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: 
         warnings.filterwarnings("ignore", "coroutine .* was never awaited", RuntimeWarning)  # of jobs about to start
         signal.default_int_handler(*received)
 
-    signal.signal(signal.SIGINT, interrupt)
+    before = {number: signal.signal(number, interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
     RUN.quiet = quiet
     try:
         with _kept_errors(directory) if quiet else contextlib.nullcontext() as terminal:
@@ -81,11 +81,12 @@ def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: 
                 sys.stderr.write(f"{RUN.fault}\n")
             return code, bool(stopped)
     finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _code(program, arguments):
-    """Exit status of a program that ends as ``sys.exit`` does, or by Ctrl-C."""
+    """Exit status of a program that ends as ``sys.exit`` does, or by Ctrl-C or SIGTERM."""
     try:
         program(list(map(str, arguments)))
     except SystemExit as end:

@@ -17,8 +17,8 @@ from stiction.models import SIDES
 _PURPOSE = "From the statistics of two rough surfaces to the crack lengths and safe lengths of MEMS beams that stick."
 _STATUS = """
 exit status: 0 done, 1 a job or stiction itself failed, 2 refused (wrong input, or another run uses
-the folder), 3 checks of the results failed, 130 stopped by Ctrl-C. Results are in results/, below the
-current folder or --directory. Everything after -- is passed to Snakemake.
+the folder), 3 checks of the results failed, 130 stopped by Ctrl-C or SIGTERM. Results are in results/,
+below the current folder or --directory. Everything after -- is passed to Snakemake.
 """
 
 

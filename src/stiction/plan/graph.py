@@ -74,6 +74,10 @@ class Graph:
 
     plan: Plan
 
+    def __reduce__(self):
+        """Pickle the plan alone: declarations hold functions that other processes find in the modules of the stages."""
+        return Graph, (self.plan,)
+
     @cached_property
     def _expressions(self):
         """Stage and regular expression of all names of files."""

@@ -14,7 +14,6 @@ from typing import Any
 
 from stiction.plan.plan import Plan
 from stiction.plan.stage import WILDCARDS, At, expression
-from stiction.run.atomic import DataError, save_text
 from stiction.run.fingerprint import PACKAGE, fingerprint
 from stiction.run.provenance import version_of
 
@@ -29,30 +28,13 @@ class NotPlanned(ValueError):
 class Planner:
     """Rules and jobs of one configuration: complete, valid and in normal form.
 
-    Preliminary numbers of measured surfaces are those of `stiction.config.measured`, fingerprints are kept by a
-    `stiction.run.disk_cache.DiskCache`, and jobs between plans in a file.
+    Preliminary numbers of measured surfaces are those of `stiction.config.measured`. Fingerprints and jobs are kept
+    between plans, each by a `stiction.run.disk_cache.DiskCache`.
     """
 
-    def __init__(
-        self,
-        config: dict,
-        preliminary: Mapping[str, Any],
-        remember: Callable,
-        kept: str | Path = ".snakemake/jobs.json",
-    ):
-        self.plan, self._remember = Plan(config, preliminary), remember
-        self._file = Path(kept).absolute()  # Snakemake leaves its working directory before it ends
+    def __init__(self, config: dict, preliminary: Mapping[str, Any], remember: Callable, remember_jobs: Callable):
+        self.plan, self._remember, self._remember_jobs = Plan(config, preliminary), remember, remember_jobs
         self._codes = {}
-        self._kept = self._read()
-        self._number_read = len(self._kept)
-
-    def _read(self):
-        """What an earlier plan with the same code and configuration kept."""
-        try:
-            known = json.loads(self._file.read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            known = {}
-        return known if known.get("determined_by") == self._determined_by else {"determined_by": self._determined_by}
 
     @cached_property
     def _determined_by(self):
@@ -70,19 +52,9 @@ class Planner:
             self._codes[file] = fingerprint(file, self._remember)
         return self._codes[file]
 
-    def save(self) -> None:
-        """Keep the jobs for the next plan; nothing is lost but time if the file cannot be written."""
-        if len(self._kept) > self._number_read:
-            try:
-                save_text(json.dumps(self._kept), self._file)
-            except (OSError, DataError):
-                return
-
     def _known(self, key, compute):
         """What is kept under a key, or computed now; plain numbers, strings, lists and dicts."""
-        if key not in self._kept:
-            self._kept[key] = json.loads(json.dumps(compute()))
-        return self._kept[key]
+        return self._remember_jobs([self._determined_by, key], compute)
 
     @cached_property
     def _graph(self):

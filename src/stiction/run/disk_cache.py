@@ -18,7 +18,7 @@ class DiskCache:
 
     def __init__(self, path: str | Path):
         """Results in a file; none if it cannot be read."""
-        self._path, self._used = Path(path), {}
+        self._path, self._used = Path(path).absolute(), {}  # Snakemake leaves its working directory before it ends
         try:
             self._known = dict(json.loads(self._path.read_text(encoding="utf-8")))
         except (OSError, ValueError, TypeError):
@@ -28,11 +28,12 @@ class DiskCache:
         """Result that is known, or computed now; if this raises an error, nothing is kept.
 
         Plain numbers, strings, lists and dicts determine the result, which is of the same kind; its code is among them.
+        A result that is computed now is as the file will give it back, in which tuples are lists.
         """
         text = json.dumps(determined_by, sort_keys=True, default=str)
         key = hashlib.sha256(text.encode()).hexdigest()
         if key not in self._used:
-            self._used[key] = self._known[key] if key in self._known else compute()
+            self._used[key] = self._known[key] if key in self._known else json.loads(json.dumps(compute()))
         return self._used[key]
 
     def save(self) -> None:

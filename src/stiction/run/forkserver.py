@@ -3,6 +3,9 @@
 A new interpreter spends about a second on imports and compiled kernels before a job can begin; a fork of a process that
 has done so begins within hundredths of a second. `Server` starts that process, ``python -m stiction.run.forkserver``,
 and asks it to run scripts. The process has a single thread, because only then a fork is safe.
+
+The fork server of ``multiprocessing`` is for callers of one thread: a start reads the ends of children for which other
+threads wait. Of 1000 jobs without errors that four threads started, 161 were reported as failed (Python 3.11).
 """
 
 import contextlib

@@ -4,6 +4,8 @@ Every use of a private part is one function here, which says what happens in a v
 Changes save time only: another version remains as it is and is slower.
 """
 
+import contextlib
+import importlib
 import inspect
 import os
 import subprocess
@@ -14,16 +16,19 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import snakemake.api  # noqa: F401  first, because its imports are circular
-from snakemake import common, dag, persistence, rules
 from snakemake.logging import logger
-from snakemake.script import PythonScript
 
 from stiction.run.forkserver import Server
 
 #: Variables in which Snakemake passes the number of threads and the folder of temporary files to a job.
 THREADS = ("OMP_NUM", "GOTO_NUM", "OPENBLAS_NUM", "MKL_NUM", "VECLIB_MAXIMUM", "NUMEXPR_NUM")
 FOLDERS = ("TMPDIR", "TMP", "TEMPDIR", "TEMP")
+
+
+def _part(module, name):
+    """Object of a module of Snakemake; ``None`` if this version has no such module or no such object."""
+    with contextlib.suppress(ImportError):
+        return getattr(importlib.import_module(f"snakemake.{module}"), name, None)
 
 
 def environment(threads: int, folder: str) -> dict[str, str]:
@@ -39,26 +44,27 @@ def fork_jobs() -> bool:
     container, an environment or threads of its own still starts as a new interpreter, like every script if forking is
     not possible; the reason is then printed.
     """
-    start = PythonScript.execute_script
+    script = _part("script", "PythonScript")
+    start = getattr(script, "execute_script", None)
     if sys.platform != "linux":  # the libraries of macOS do not survive a fork
         return _refused("forks of loaded libraries are safe on Linux only")
-    if list(inspect.signature(start).parameters) != ["self", "fname", "edit"]:
+    if start is None or list(inspect.signature(start).parameters) != ["self", "fname", "edit"]:
         return _refused("this version of Snakemake starts scripts in a way not known here")
     try:
         server = Server(environment(1, tempfile.gettempdir()))
     except ConnectionError as error:
         return _refused(str(error))
 
-    def execute_script(script, fname, edit=False):
-        if _plain(script, server):
+    def execute_script(job, fname, edit=False):
+        if _plain(job, server):
             try:
                 return _run(server, fname)
             except BrokenPipeError:
-                PythonScript.execute_script = start
+                script.execute_script = start
                 _refused("the server of jobs was stopped")
-        return start(script, fname, edit)
+        return start(job, fname, edit)
 
-    PythonScript.execute_script = execute_script
+    script.execute_script = execute_script
     return True
 
 
@@ -97,7 +103,7 @@ def compare_without_pandas() -> None:
     Snakemake imports pandas to recognise its objects among the parameters of jobs; the import takes longer than the
     comparison of all parameters.
     """
-    records = getattr(persistence, "PersistenceBase", None)
+    records = _part("persistence", "PersistenceBase")
     if not hasattr(records, "_serialize_param_builtin") or not hasattr(records, "_serialize_param_pandas"):
         return
     compared = records._serialize_param_pandas
@@ -110,7 +116,7 @@ def compare_without_pandas() -> None:
 
 def look_for_scripts_once() -> None:
     """Let Snakemake look for the script of a rule once, not for every job; an unknown way to look for it remains."""
-    processor = getattr(dag, "ScriptProcessor", None)
+    processor = _part("dag", "ScriptProcessor")
     look_for = getattr(processor, "process_job", None)
     if look_for is None or list(inspect.signature(look_for).parameters) != ["self", "job"]:
         return
@@ -127,8 +133,8 @@ def look_for_scripts_once() -> None:
 
 def remember_signatures() -> None:
     """Let Snakemake read the signature of a function once, not nine times for every job; an unknown way remains."""
-    inspected = getattr(common, "get_function_params", None)
-    if inspected is None or getattr(rules, "get_function_params", None) is not inspected:
+    inspected = _part("common", "get_function_params")
+    if inspected is None or _part("rules", "get_function_params") is not inspected:
         return
     if list(inspect.signature(inspected).parameters) != ["func"]:
         return
@@ -140,7 +146,8 @@ def remember_signatures() -> None:
         except TypeError:  # it has no hash
             return inspected(func)
 
-    common.get_function_params = rules.get_function_params = get_function_params
+    for module in ("common", "rules"):
+        sys.modules[f"snakemake.{module}"].get_function_params = get_function_params
 
 
 def limit_timers(workflow: Any) -> None:

@@ -1,0 +1,130 @@
+"""Continuous integration: every test is part of it, and none that fails or is cut off goes unnoticed."""
+
+import itertools
+import os
+import re
+import shutil
+import stat
+import subprocess
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["pytest"]["ini_options"]
+MARKS = [mark.partition(":")[0] for mark in SETTINGS["markers"]]
+#: Stands for Python: notes what it is asked, and ends with the status of the first line whose words are part of that.
+PYTHON = """#!/usr/bin/env bash
+[ "$1" = -V ] && echo "Python 3.14.0"
+[ "$1" = -c ] && [[ "$0" == *.venv/* ]] && exit 1
+[ "$2" = pytest ] || exit 0
+{ printf '%s\\t' "$0" "$@"; echo; } >> asked
+while read -r status words; do
+  if [[ "$0 $*;" == *"$words"* ]]; then
+    [ "$status" = hang ] && exec sleep 20
+    exit "$status"
+  fi
+done < ends
+"""
+WORKERS = ["--numprocesses", "auto", "--maxprocesses", "4", "--dist", "loadfile", "--no-loadscope-reorder"]
+#: Words of the call of each part, which ends with a semicolon.
+PARTS = {
+    "fast tests": " ".join([".venv/bin/python -m pytest", *WORKERS]) + ";",
+    "tests with SLURM": "-m cluster",
+    "tests in a browser": "-m browser",
+    "fast tests on Python 3.14.0": "newest/bin/python -m pytest",
+    "slow tests": "-m slow",
+}
+
+
+def executable(path, text):
+    """Write a program."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+
+
+@pytest.fixture
+def project(tmp_path):
+    """Folder with the programs of continuous integration, in which nothing is installed and no test is run."""
+    for name in ("Makefile", "pyproject.toml", "requirements.lock", ".ci/run"):
+        executable(tmp_path / name, (ROOT / name).read_text(encoding="utf-8"))
+    for environment in (".venv", ".venv/newest"):
+        executable(tmp_path / environment / "bin" / "python", PYTHON)
+        for tool in ("ruff", "snakefmt", "snakemake"):
+            executable(tmp_path / environment / "bin" / tool, "#!/bin/sh\n")
+        (tmp_path / environment / "ready").touch()
+    executable(tmp_path / "bin" / "id", "#!/bin/sh\necho 1000\n")  # installs nothing
+    executable(tmp_path / "bin" / "python3.14", PYTHON)
+    return tmp_path
+
+
+def run(folder, words, *ends):
+    """Exit status, last lines and calls of pytest; ``ends`` are statuses with the words to which they belong."""
+    (folder / "ends").write_text("".join(f"{end}\n" for end in ends))
+    (folder / "asked").write_text("")
+    search = os.pathsep.join([str(folder / "bin"), os.environ["PATH"]])
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("MAKE")} | {"PATH": search}
+    done = subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True)
+    asked = [line.rstrip("\t").split("\t") for line in (folder / "asked").read_text().splitlines()]
+    return done.returncode, done.stdout, asked
+
+
+def marks_of(asked):
+    """Expression of the marks of the tests that a call of pytest selects."""
+    arguments = [*SETTINGS["addopts"], *asked[3:]]
+    return [after for word, after in itertools.pairwise(arguments) if word == "-m"][-1]
+
+
+def test_every_test_is_in_a_part_of_continuous_integration(project):
+    status, printed, asked = run(project, [".ci/run"])
+    assert status == 0
+    assert "FAILED" not in printed
+    assert len(asked) == len(PARTS)
+    for present in itertools.product([False, True], repeat=len(MARKS)):
+        marks = dict(zip(MARKS, present, strict=True))
+        assert any(eval(marks_of(call), {}, marks) for call in asked), marks
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_a_part_that_fails_fails_the_whole_after_all_others(project, part):
+    status, printed, asked = run(project, [".ci/run"], f"1 {PARTS[part]}")
+    assert status == 1
+    assert printed.splitlines()[-1] == f"FAILED: {part}"
+    assert len(asked) == len(PARTS) + (part == "slow tests"), "which have a second try"
+
+
+def test_a_part_that_is_missing_fails_the_whole(project):
+    makefile = project / "Makefile"
+    makefile.write_text(makefile.read_text().replace("cluster", "other"))
+    status, printed, _ = run(project, [".ci/run"])
+    assert status == 1
+    assert printed.splitlines()[-1] == "FAILED: tests with SLURM"
+
+
+def test_a_part_that_is_cut_off_fails_the_whole(project):
+    script = project / ".ci" / "run"
+    script.write_text(re.sub("limit=[0-9]+", "limit=2", script.read_text()))
+    status, printed, _ = run(project, [".ci/run"], "hang -m slow")
+    assert status == 1
+    assert "FAILED: slow tests (cut off)" in printed
+
+
+@pytest.mark.parametrize(
+    ("ends", "tries", "passed"),
+    [
+        ([], 1, True),
+        (["0 --last-failed", "1 slow"], 2, True),
+        (["1 slow"], 2, False),
+        (["5 --last-failed", "1 slow"], 2, False),
+        (["0 --last-failed", "2 slow"], 1, False),
+        (["0 --last-failed", "3 slow"], 1, False),
+        (["0 --last-failed", "5 slow"], 1, False),
+        (["0 --last-failed", "130 slow"], 1, False),
+    ],
+)
+def test_slow_tests_have_a_second_try_only_if_all_were_run(project, ends, tries, passed):
+    status, _, asked = run(project, [shutil.which("make"), "test-slow"], *ends)
+    assert (status == 0) == passed
+    assert len(asked) == tries
