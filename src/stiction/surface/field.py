@@ -7,6 +7,7 @@ import numpy as np
 from scipy import fft
 
 from stiction.kernels import kernel
+from stiction.numbers import is_at_most
 from stiction.surface.normals import standard_normal
 from stiction.surface.spectrum import Spectrum, radial_spectrum
 from stiction.surface.translation import LARGEST_SCORE, TranslationMap
@@ -22,7 +23,7 @@ class StripGrid:
     margin: float  #: smallest distance between opposite edges of a strip across the period of its field [m]
 
     def __post_init__(self):
-        if not 0 < self.spacing <= min(self.length, self.width):
+        if not (self.spacing > 0 and is_at_most(self.spacing, min(self.length, self.width))):
             raise ValueError(
                 f"need 0 < spacing <= strip, got {self.spacing:.3g} and {self.length:.3g} x {self.width:.3g} m"
             )
@@ -64,7 +65,7 @@ class RoughSurface:
 
     def __post_init__(self):
         nyquist = np.pi / self.grid.spacing
-        if not self.underlying.cutoff <= nyquist:
+        if not is_at_most(self.underlying.cutoff, nyquist):
             raise ValueError(
                 f"cut-off {self.underlying.cutoff:.4g} rad/m is beyond the Nyquist wave number of the grid, "
                 f"{nyquist:.4g} rad/m"
