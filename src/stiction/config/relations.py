@@ -55,8 +55,8 @@ def lists_have_no_duplicates(config):
 @relation
 def something_is_computed(config):
     """A run without pairs computes devices or evaluates scans."""
-    names, devices, surfaces = config["run.pairs"], config["devices"], config["surfaces"]
-    if not (names or devices or any("scans" in surface for surface in surfaces.values())):
+    names, devices, surfaces = config["run.pairs"], config["devices"], config["surfaces"].values()
+    if not (names or devices or config.files or any("scans" in surface for surface in surfaces)):
         yield "run.pairs", "must name a pair: there are neither devices nor scans"
 
 
