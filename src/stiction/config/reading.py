@@ -6,6 +6,7 @@ file. This module imports little, so that the check takes a fraction of a second
 
 import re
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from pathlib import Path
 
 import yaml
@@ -16,6 +17,10 @@ from stiction.regular import require_regular
 #: Numbers that YAML 1.1 reads in base 60 and in base 8.
 _BASE_60 = re.compile(r"[-+]?\d[\d_]*(:[0-5]?\d)+(\.[\d_]*)?")
 _BASE_8 = re.compile(r"[-+]?0[0-7_]+")
+#: Most characters of a value, those of a path in Linux.
+LONGEST = 4096
+#: Most values of a file. An alias counts as what it repeats: a few lines can stand for more values than a memory holds.
+MOST = 100_000
 #: Messages of the parser and their likely causes.
 _CAUSES = {
     "'\\t' that cannot start any token": "indent with spaces, not with tabs",
@@ -66,7 +71,22 @@ def text(path: str | Path) -> str:
 
 
 class _Strict(yaml.SafeLoader):
-    """YAML loader that rejects duplicate keys, of which PyYAML drops the first value, and numbers in base 60 or 8."""
+    """YAML loader that rejects duplicate keys, of which PyYAML drops the first value, and numbers in base 60 or 8.
+
+    It also rejects texts and files so large that nothing else is sure to end, such as a message that shows a value.
+    """
+
+    def construct_document(self, node):
+        if (values := _number_of_values(node, {})) > MOST:
+            message = f"the file has {values:.6g} values, with aliases written out, must have at most {MOST}"
+            raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
+        return super().construct_document(node)
+
+    def construct_scalar(self, node):
+        if isinstance(node, yaml.ScalarNode) and len(node.value) > LONGEST:
+            message = f"a value has {len(node.value)} characters, must have at most {LONGEST}"
+            raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
+        return super().construct_scalar(node)
 
     def construct_mapping(self, node, deep=False):  # noqa: ARG002
         keys = [key for key, _ in node.value if key.tag != "tag:yaml.org,2002:merge"]
@@ -85,6 +105,16 @@ class _Strict(yaml.SafeLoader):
                 message = f"YAML reads {text} in base {base}, as {shown(value)}: write the number that is meant"
                 raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
         return value
+
+
+def _number_of_values(node, counted):
+    """Number of values of a node, with those of its aliases; a node in itself is refused when it is constructed."""
+    if id(node) not in counted:
+        counted[id(node)] = 0
+        parts = node.value if isinstance(node, yaml.CollectionNode) else ()
+        parts = chain.from_iterable(parts) if isinstance(node, yaml.MappingNode) else parts
+        counted[id(node)] = 1 + sum(_number_of_values(part, counted) for part in parts)
+    return counted[id(node)]
 
 
 _Strict.add_constructor("tag:yaml.org,2002:map", _Strict.construct_mapping)
