@@ -138,6 +138,13 @@ def test_a_setting_that_snakemake_cannot_take_is_refused_in_one_line(asked, caps
     assert main(["paper", "--", "--config", "seed=1"]) == 0
 
 
+@pytest.mark.parametrize("words", ["-c 0", "--cores=-1", "-c0", "-- --cores 0", "-- -j0"])
+def test_a_run_without_a_job_at_a_time_would_never_end_and_is_refused(asked, capsys, words):
+    assert main(["run", "mine.yaml", *words.split()]) == 2
+    assert capsys.readouterr().err.startswith("the number of jobs at the same time is ")
+    assert asked == []
+
+
 def test_without_snakemake_the_command_says_what_to_install(asked, capsys, monkeypatch):
     monkeypatch.setattr(launch.importlib.util, "find_spec", {}.get)
     assert main(["paper"]) == 2

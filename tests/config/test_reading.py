@@ -199,6 +199,15 @@ def test_settings_that_snakemake_cannot_take_are_reported(monkeypatch, arguments
     assert all("must be a key of the first level" in line or "nowhere.yaml cannot be read" in line for line in found)
 
 
+@pytest.mark.parametrize("option", ["--cores", "-c", "--jobs", "-j", "--local-cores"])
+@pytest.mark.parametrize(("number", "count"), [("0", 1), ("-1", 1), ("00", 1), ("1", 0), ("all", 0), ("unlimited", 0)])
+def test_no_number_of_jobs_with_which_a_run_never_ends_is_accepted(option, number, count):
+    written = [[option, number, "-n"], [f"{option}={number}"], ["-n", option, number, "tables"]]
+    for arguments in [*written, [f"{option}{number}"]] if len(option) == 2 else written:
+        found = list(problems([], arguments))
+        assert found == [f"the number of jobs at the same time is {number}, must be at least 1, or all"] * count
+
+
 def test_the_command_imports_no_library_for_numbers_before_it_checks_its_files():
     code = "import sys, stiction.command.main; print(*sys.modules)"
     modules = subprocess.run([sys.executable, "-c", code], text=True, capture_output=True, check=True).stdout.split()

@@ -168,9 +168,9 @@ def _run(arguments, *targets):
     """Run the workflow, or a part of it."""
     launch.require_snakemake()
     directory = Path(arguments.directory)
-    if problems := list(reading.problems(arguments.files, arguments.more)):
-        raise launch.RefusedError("\n".join(problems))
     options = ["--cores", arguments.cores] * bool(arguments.cores) + ["--dry-run"] * arguments.dry_run
+    if problems := list(reading.problems(arguments.files, [*options, *arguments.more])):
+        raise launch.RefusedError("\n".join(problems))
     words = launch.words(arguments.files, arguments.directory, [*options, *targets, *arguments.more])
     verbose = arguments.verbose or "--verbose" in arguments.more
     dry = arguments.dry_run or bool({"-n", "--dry-run", "--dryrun"} & set(arguments.more))

@@ -122,8 +122,15 @@ _Strict.add_constructor("tag:yaml.org,2002:int", _Strict.construct_number)
 _Strict.add_constructor("tag:yaml.org,2002:float", _Strict.construct_number)
 
 
+#: Options of Snakemake that take a number of jobs.
+_NUMBERS = ("--cores", "-c", "--jobs", "-j", "--local-cores")
+
+
 def problems(files: Iterable[str], arguments: Iterable[str]) -> Iterator[str]:
-    """One line for each file that cannot be read and each setting among Snakemake's arguments that it cannot take."""
+    """One line for each file that cannot be read, and each of Snakemake's arguments that it cannot take.
+
+    With less than one job at a time, Snakemake waits for ever.
+    """
     arguments = list(arguments)
     for file in [*files, *_values(arguments, ("--configfile", "--configfiles"))]:
         try:
@@ -137,16 +144,22 @@ def problems(files: Iterable[str], arguments: Iterable[str]) -> Iterator[str]:
                 f"--config {setting} must be a key of the first level and its value, such as --config seed=1; "
                 "put other changes into a file: CONFIG=mine.yaml"
             )
+    for number in _values(arguments, _NUMBERS):
+        if _NEGATIVE.fullmatch(number) or (number.isdecimal() and int(number) == 0):
+            yield f"the number of jobs at the same time is {number}, must be at least 1, or all"
+
+
+_NEGATIVE = re.compile(r"-\d+")
 
 
 def _values(arguments, options):
-    """Words that follow one of some options, up to the next option."""
+    """Words that follow one of some options, up to the next option, and those attached to one, as in -c2."""
     taken = False
     for word in arguments:
-        if word.startswith("-"):
-            option, equals, value = word.partition("=")
+        if word.startswith("-") and not _NEGATIVE.fullmatch(word):
+            option, equals, value = word.partition("=") if word.startswith("--") else (word[:2], word[2:], word[2:])
             taken = option in options
             if taken and equals:
-                yield value
+                yield value.removeprefix("=")
         elif taken:
             yield word
