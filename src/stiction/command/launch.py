@@ -14,6 +14,7 @@ from typing import TextIO
 from stiction.command.display import Display
 from stiction.command.ending import PRINTED
 from stiction.command.follow import RUN
+from stiction.temporary import is_writable, own_folder
 
 PACKAGE = Path(__file__).parents[1]
 #: Folder of Snakefile, configuration and profiles: within an installed package, or the root of a checkout.
@@ -62,6 +63,8 @@ def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: 
     """
     from snakemake import cli
 
+    if not is_writable(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()):
+        os.environ["XDG_CACHE_HOME"] = str(own_folder())  # Snakemake keeps sources there
     stopped = []
 
     def interrupt(*received):
