@@ -1,7 +1,6 @@
 """Front page of the report: the answer in words, what to open first, checks, warnings and provenance."""
 
 import csv
-import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape, unescape
@@ -15,6 +14,7 @@ from stiction.config.cases import air
 from stiction.config.files import paper
 from stiction.report.format import with_error
 from stiction.run import made
+from stiction.run.provenance import recorded
 
 #: Where the command leaves the page for Snakemake, relative to the folder of the run.
 FRONT = Path(".snakemake", "front.rst")
@@ -37,7 +37,7 @@ _OPEN = "new ButtonViewManager(app).handleSelectedResult('{path}').props.onClick
 
 def front_page(results: Path) -> str:
     """Front page of the results of a finished run, as Snakemake takes it: HTML within reStructuredText."""
-    runs = _runs(results)
+    runs = recorded(results / "provenance.json")
     last, config = runs[-1], runs[-1]["config"]
     sections = {
         f"Results of {' and '.join(_subjects(config))}": _list(answers(results, config)),
@@ -54,15 +54,11 @@ def front_page(results: Path) -> str:
 
 def is_finished(results: Path) -> bool:
     """Whether a run has computed all pairs and devices of its configuration."""
-    if not (results / "provenance.json").exists():
+    runs = recorded(results / "provenance.json")
+    if not runs:
         return False
-    has_pairs = _runs(results)[-1]["config"]["run"]["pairs"]
+    has_pairs = runs[-1]["config"]["run"]["pairs"]
     return (results / ("verdict.txt" if has_pairs else "devices/warnings.md")).exists()
-
-
-def _runs(results):
-    """Records of all runs in a folder of results."""
-    return json.loads(_text(results / "provenance.json"))
 
 
 def _text(path):

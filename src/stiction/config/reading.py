@@ -132,7 +132,7 @@ def problems(files: Iterable[str], arguments: Iterable[str]) -> Iterator[str]:
     With less than one job at a time, Snakemake waits for ever.
     """
     arguments = list(arguments)
-    for file in [*files, *_values(arguments, ("--configfile", "--configfiles"))]:
+    for file in _files(files, arguments):
         try:
             read(file)
         except ConfigError as error:
@@ -147,6 +147,16 @@ def problems(files: Iterable[str], arguments: Iterable[str]) -> Iterator[str]:
     for number in _values(arguments, _NUMBERS):
         if _NEGATIVE.fullmatch(number) or (number.isdecimal() and int(number) == 0):
             yield f"the number of jobs at the same time is {number}, must be at least 1, or all"
+
+
+def contents(files: Iterable[str], arguments: Iterable[str]) -> list[dict]:
+    """Content of every file, also of those among Snakemake's arguments; raises the errors of `read`."""
+    return [read(file) for file in _files(files, arguments)]
+
+
+def _files(files, arguments):
+    """Files of the configuration, those of the command first."""
+    return [*files, *_values(arguments, ("--configfile", "--configfiles"))]
 
 
 _NEGATIVE = re.compile(r"-\d+")
