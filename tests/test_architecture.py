@@ -11,7 +11,18 @@ from stiction.run.fingerprint import SILENT, fingerprint
 PACKAGE = Path(__file__).parents[1] / "src" / "stiction"
 #: Modules outside of folders, and folders, in the order in which they may import: from those before them.
 ORDER = [
-    *("constants", "errors", "streams", "estimates", "numbers", "models", "progress", "regular", "kernels"),
+    *(
+        "constants",
+        "errors",
+        "streams",
+        "estimates",
+        "numbers",
+        "models",
+        "progress",
+        "regular",
+        "temporary",
+        "kernels",
+    ),
     *("surface", "scans", "contact", "chaos", "beam", "analysis", "devices"),
     *("run", "config", "plan"),
     *(
@@ -49,7 +60,7 @@ FILES = sorted(path for path in PACKAGE.rglob("*.py") if path.name != "__init__.
 MODULES = sorted(map(module_name, FILES))
 PHYSICS = [name for name in MODULES if ORDER.index(room(name)) < ORDER.index("run")]
 #: Physics that knows files, and the compiler that keeps its results in files.
-PHYSICS = [name for name in PHYSICS if name not in {"scans.reading", "regular", "kernels"}]
+PHYSICS = [name for name in PHYSICS if name not in {"scans.reading", "regular", "temporary", "kernels"}]
 SCRIPTS = sorted((PACKAGE.parents[1] / "workflow" / "scripts").glob("*.py"))
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from numba.core.caching import FunctionCache
 
-from stiction import kernels
+from stiction import kernels, temporary
 from stiction.run import fingerprint
 from stiction.surface.translation import _horner
 
@@ -67,7 +67,8 @@ def toy(tmp_path):
     folder.mkdir()
     for name, text in SOURCES.items():
         (folder / f"{name}.py").write_text(text)
-    shutil.copy(kernels.__file__, folder)
+    for copied in (kernels, temporary):
+        shutil.copy(copied.__file__, folder)
     return folder
 
 
@@ -181,6 +182,55 @@ def test_kernels_are_saved_although_their_folder_was_removed(monkeypatch, tmp_pa
     monkeypatch.setattr(FunctionCache, "save_overload", lambda *data: saved.append(data))
     cache.save_overload(None, None)
     assert saved == [(cache, None, None)]
+
+
+def test_a_kernel_that_cannot_be_saved_runs(monkeypatch):
+    monkeypatch.setattr(FunctionCache, "save_overload", lambda *_: os.open("no such file", os.O_RDONLY))
+    kernels._Cache(_horner.py_func).save_overload(None, None)
+
+
+@pytest.fixture
+def nowhere(toy):
+    """Environment in which neither the package nor the home can be written, not even by root; and temporary files."""
+    (toy / "__pycache__").touch()
+    (toy.parent / "tmp").mkdir()
+    return {"XDG_CACHE_HOME": "/proc/nowhere", "HOME": "/proc/nowhere", "TMPDIR": str(toy.parent / "tmp")}
+
+
+def test_machine_code_is_kept_for_this_user_alone_where_neither_package_nor_home_can_be_written(toy, nowhere):
+    assert called(toy, **nowhere) == (21, True)
+    assert called(toy, **nowhere) == (21, False)
+    (folder,) = Path(nowhere["TMPDIR"]).glob("stiction-*")
+    assert folder.stat().st_mode & 0o777 == 0o700
+    assert len(stored(folder)) == 6
+
+
+TRAPS = {
+    "writable by others": lambda path, _: [path.mkdir(), path.chmod(0o777)],
+    "a link": lambda path, trap: path.symlink_to(trap),
+    "a file": lambda path, _: path.touch(),
+}
+
+
+@pytest.mark.parametrize("trap", TRAPS)
+def test_machine_code_is_never_kept_where_others_can_write(monkeypatch, tmp_path, trap):
+    monkeypatch.setattr(temporary.tempfile, "tempdir", str(tmp_path))
+    path, other = tmp_path / f"stiction-{os.getuid()}", tmp_path / "other"
+    other.mkdir()
+    TRAPS[trap](path, other)
+    found = temporary.own_folder.__wrapped__()
+    assert found not in (path, other)
+    assert found.stat().st_mode & 0o777 == 0o700
+    assert not list(other.iterdir())
+
+
+def test_a_kernel_is_compiled_where_nothing_can_be_kept(monkeypatch):
+    def refuse(*_):
+        raise RuntimeError("cannot cache function: no locator available")
+
+    monkeypatch.setattr(kernels, "_Cache", refuse)
+    monkeypatch.setattr(kernels, "own_folder", lambda: os.open("no such file", os.O_RDONLY))
+    assert kernels.kernel(_horner.py_func).py_func is _horner.py_func
 
 
 def test_sources_of_a_kernel_are_the_imports_in_its_syntax_tree():

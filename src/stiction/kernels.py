@@ -16,8 +16,10 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from numba import njit
+from numba import config, njit
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
+
+from stiction.temporary import own_folder
 
 _PACKAGE = Path(__file__).parent
 #: Module, and names in it. A syntax tree takes 30 times as long, at every start.
@@ -36,8 +38,21 @@ def kernel(function: Callable | None = None, **options: Any) -> Callable:
     if function is None:
         return partial(kernel, **options)
     compiled = njit(nogil=True, **options)(function)
-    compiled._cache = _Cache(function)  # as with njit(cache=True), which has no choice of the class
+    with suppress(OSError):  # where no folder at all can be written, every process compiles
+        compiled._cache = _cache(function)  # as with njit(cache=True), which has no choice of the class
     return compiled
+
+
+def _cache(function):
+    """Files of a kernel; among temporary files where neither the package nor the home can be written."""
+    try:
+        return _Cache(function)
+    except RuntimeError:
+        before, config.CACHE_DIR = config.CACHE_DIR, str(own_folder())
+        try:
+            return _Cache(function)
+        finally:
+            config.CACHE_DIR = before
 
 
 class _Names(CompileResultCacheImpl):
@@ -54,6 +69,10 @@ class _Cache(FunctionCache):
     _impl_class = _Names
 
     def save_overload(self, sig, data):
+        with suppress(OSError):  # a full disk costs time alone
+            self._save(sig, data)
+
+    def _save(self, sig, data):
         # Processes that saved a kernel for different types at once could exchange their machine code.
         folder = Path(self.cache_path)
         folder.mkdir(parents=True, exist_ok=True)  # it may have been removed since this module was imported

@@ -1,6 +1,9 @@
-"""Comparison of lengths up to rounding."""
+"""Comparison of numbers up to rounding."""
 
 import numpy as np
+
+#: Relative error that a number has if it was computed in other units or in another order.
+_ROUNDING = 1e-9
 
 
 def is_multiple(whole: float, part: float) -> bool:
@@ -11,4 +14,15 @@ def is_multiple(whole: float, part: float) -> bool:
     >>> is_multiple(0.3, 0.1), is_multiple(0.3, 0.2), is_multiple(0.1, 0.3)
     (True, False, False)
     """
-    return bool(np.isclose(whole / part, max(1, round(whole / part)), rtol=1e-9))
+    return bool(np.isclose(whole / part, max(1, round(whole / part)), rtol=_ROUNDING))
+
+
+def is_at_most(value: float, limit: float) -> bool:
+    """Whether ``value`` is at most ``limit``, up to rounding: a limit in other units is another floating-point number.
+
+    Examples
+    --------
+    >>> is_at_most(0.1 + 0.2, 0.3), is_at_most(0.2, 0.3), is_at_most(0.3001, 0.3)
+    (True, True, False)
+    """
+    return bool(value - limit <= _ROUNDING * abs(limit))

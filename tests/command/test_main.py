@@ -39,6 +39,7 @@ def asked(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.yaml").write_text("seed: 1\n")
     (tmp_path / "more.yaml").write_text("seed: 2\n")
+    (tmp_path / "both.yaml").write_text("devices: {C1: {}}\nsurfaces: {B1: {scans: {}}}\n")
     return calls
 
 
@@ -58,9 +59,9 @@ def options(asked):
         ("run mine.yaml", [], ["mine.yaml"]),
         ("run mine.yaml more.yaml --cores 2", ["--cores", "2"], ["mine.yaml", "more.yaml"]),
         ("run mine.yaml -- --forceall tables", ["--forceall", "tables"], ["mine.yaml"]),
-        ("devices mine.yaml --dry-run", ["--dry-run", "devices"], ["mine.yaml"]),
+        ("devices both.yaml --dry-run", ["--dry-run", "devices"], ["both.yaml"]),
         ("devices", ["devices"], [str(ROOT / "examples" / "devices.yaml")]),
-        ("scans mine.yaml", ["scans"], ["mine.yaml"]),
+        ("scans both.yaml", ["scans"], ["both.yaml"]),
         ("figures", ["figures"], []),
         ("figures mine.yaml", ["figures"], ["mine.yaml"]),
         ("explain mine.yaml", ["--dry-run"], ["mine.yaml"]),
@@ -138,6 +139,13 @@ def test_a_setting_that_snakemake_cannot_take_is_refused_in_one_line(asked, caps
     assert main(["paper", "--", "--config", "seed=1"]) == 0
 
 
+@pytest.mark.parametrize("words", ["-c 0", "--cores=-1", "-c0", "-- --cores 0", "-- -j0"])
+def test_a_run_without_a_job_at_a_time_would_never_end_and_is_refused(asked, capsys, words):
+    assert main(["run", "mine.yaml", *words.split()]) == 2
+    assert capsys.readouterr().err.startswith("the number of jobs at the same time is ")
+    assert asked == []
+
+
 def test_without_snakemake_the_command_says_what_to_install(asked, capsys, monkeypatch):
     monkeypatch.setattr(launch.importlib.util, "find_spec", {}.get)
     assert main(["paper"]) == 2
@@ -201,6 +209,20 @@ def test_the_study_that_is_written_is_valid_and_never_overwritten(tmp_path, caps
     assert main(["init", "--directory", str(study / "below")]) == 2
 
 
+def test_no_file_is_overwritten_beside_a_study_or_through_a_link(tmp_path, capsys):
+    schema, other = tmp_path / "stiction.schema.json", tmp_path / "other"
+    for content in (lambda: schema.write_text("mine"), lambda: schema.symlink_to(other), lambda: schema.mkdir()):
+        content()
+        assert main(["init", "--directory", str(tmp_path)]) == 2
+        assert capsys.readouterr().err == f"{schema} exists already: nothing was written\n"
+        assert not other.exists()
+        assert not (tmp_path / "study.yaml").exists()
+        schema.rmdir() if schema.is_dir() else schema.unlink()
+    assert main(["init", "--directory", str(tmp_path)]) == 0
+    (tmp_path / "study.yaml").rename(other)
+    assert main(["init", "--directory", str(tmp_path)]) == 0, "the same schema serves both"
+
+
 def test_a_table_of_test_beams_is_written_once(tmp_path, capsys):
     assert main(["init", "--test-beams", "--directory", str(tmp_path)]) == 0
     assert [file.name for file in tmp_path.iterdir()] == ["test_beams.csv"]
@@ -243,6 +265,41 @@ def test_a_check_draws_the_first_samples_and_remembers_what_they_showed(tmp_path
     monkeypatch.delattr("stiction.pilot.contacts_of_samples")
     assert main(words) == 2
     assert capsys.readouterr().err == refusal
+
+
+@pytest.mark.parametrize("command", ["run", "devices", "scans", "figures", "explain"])
+@pytest.mark.parametrize("place", ["folder", "folder/below", "link", "."])
+def test_a_folder_that_is_none_is_refused_in_one_sentence(asked, capsys, command, place):
+    Path("folder").touch()
+    Path("link").symlink_to("nowhere")
+    Path("results").touch()
+    assert main([command, "both.yaml", "--directory", place]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.endswith(" is no folder: remove it, or choose another --directory")
+    assert asked == []
+
+
+@pytest.mark.parametrize("content", ["", "{}", "[1]", "[{}]", "\x00"])
+def test_a_damaged_record_of_runs_is_named_with_what_to_do(asked, capsys, content):
+    Path("results").mkdir()
+    Path("results", "provenance.json").write_text(content)
+    assert main(["report"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("results/provenance.json ")
+    assert line.endswith("; delete it")
+    assert asked == []
+
+
+@pytest.mark.parametrize("dry", [[], ["-n"]])
+@pytest.mark.parametrize(
+    ("command", "missing"), [("devices", "no devices: add"), ("scans", "no surface by scans: add")]
+)
+def test_a_file_without_what_a_command_computes_is_not_up_to_date(asked, capsys, command, missing, dry):
+    assert main([command, "mine.yaml", *dry]) == 2
+    assert missing in capsys.readouterr().err
+    for words in (["mine.yaml", "both.yaml"], ["mine.yaml", "--", "--configfile", "both.yaml"]):
+        assert main([command, *words]) == 0
+    assert len(asked) == 2
 
 
 @pytest.mark.parametrize("words", [["--help"], ["run", "--help"]])

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+import yaml
 
 from stiction.config import merging
 from stiction.config.files import load
@@ -108,3 +109,63 @@ def test_what_is_no_list_of_different_values_is_refused(compare):
 def test_without_the_section_nothing_changes():
     config = load(BASE)
     assert merging.expanded(config) is config
+
+
+OWN = {
+    "surfaces.B2Rms3": {"rms_nm": 7},
+    "materials.OxideRms3": {"young_modulus_GPa": 60},
+    "pairs.bRms3": {"beam": "B2", "substrate": "Sub1", "gap_um": 3, "humidities": [0.5]},
+    "test_beams.TRms3": ARRAY,
+    "devices.S1Rms3": S1 | {"restoring_force_uN": 30},
+    "studies.plasticity.distance_nm.bRms3": 4,
+}
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_an_entry_that_has_the_name_of_a_copy_is_refused_and_not_replaced(name):
+    own = OWN[name]
+    for part in reversed(name.split(".")):
+        own = {part: own}
+    compared = {"compare": {"surfaces.B2.rms_nm": [3, 5]}}
+    if name == "materials.OxideRms3":  # no copy of a material is made
+        assert merging.expanded(merging.merged(single("seed", 1), merging.merged(own, compared)))
+        return
+    with pytest.raises(ConfigError) as error:
+        load(BASE, own, compared)
+    assert error.value.problems == (
+        f"{name} must have another name: compare.surfaces.B2.rms_nm makes a copy of this name",
+    )
+
+
+def test_copies_that_are_there_already_are_those_of_the_same_key():
+    found = load(BASE, {"compare": {"surfaces.B2.rms_nm": [3, 5]}})
+    assert load(found) == found
+
+
+MALFORMED = ["studies: [1]", "studies: {plasticity: 5}", "studies: {plasticity: {distance_nm: [1]}}", "devices: 5"]
+MALFORMED += [
+    "pairs: 5",
+    "pairs: {5: {beam: B2}}",
+    "pairs: {b: [B2]}",
+    "run: 5",
+    "run: {pairs: [{}, 1]}",
+    "materials: [1]",
+]
+MALFORMED += [
+    "surfaces: {5: {material: Oxide}}",
+    "devices: {5: {pair: b}}",
+    "devices: {S: {pair: [b]}}",
+    "run: {pairs: b}",
+]
+
+
+@pytest.mark.parametrize("wrong", MALFORMED)
+def test_copies_hide_nothing_that_is_wrong(wrong):
+    wrong, compared = yaml.safe_load(wrong), {"compare": {"surfaces.B2.rms_nm": [3, 5]}}
+    (key,) = wrong
+    with pytest.raises(ConfigError) as alone:
+        load(wrong)
+    with pytest.raises(ConfigError) as beside:
+        load(wrong, compared)
+    assert alone.value.problems[0].startswith(key)
+    assert alone.value.problems[0] in [line.replace("Rms3", "") for line in beside.value.problems]

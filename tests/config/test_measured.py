@@ -55,6 +55,13 @@ def both(folder):
     return sorted(folder.glob("B2-*.gwy"))
 
 
+def test_scans_are_evaluated_without_pairs_and_devices(folder):
+    alone = {"run": {"pairs": []}}
+    assert problems(merged(configured(*both(folder)), alone)) == ()
+    (line,) = problems(merged(PAPER, alone))
+    assert line == "run.pairs is [], must name a pair: there are neither devices nor scans"
+
+
 # Schema and normal form
 
 

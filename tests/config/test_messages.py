@@ -250,3 +250,16 @@ def test_any_configuration_runs_or_is_rejected_in_lines_that_name_a_key(config):
     for line in problems(config):
         assert re.match(r"\S.* (is|cannot) .*must ", line)
         assert "\n" not in line
+
+
+@pytest.mark.parametrize(
+    ("former", "now"),
+    [
+        ("studies: {readings: {samples: 600}}", "studies.readings is called studies.variants since version"),
+        ("design: {tip_um: 1}", "design.tip_um is no longer needed, must be left out: "),
+    ],
+)
+def test_a_key_of_an_older_version_is_refused_with_what_it_is_called_now(former, now):
+    (line,) = problems(changed(former))
+    assert line.startswith(now)
+    assert "did you mean" not in line

@@ -1,5 +1,6 @@
 """Files are read strictly, and problems are one line with the name of the file; also before Snakemake reads them."""
 
+import json
 import os
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from configurations import ROOT
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from stiction.config.files import load
 from stiction.config.messages import ConfigError
 from stiction.config.reading import problems, read
 
@@ -35,7 +37,10 @@ from stiction.config.reading import problems, read
         (b"a: !!python/object:os.system x\n", "could not determine a constructor"),
         (b"a: 2021-13-45\n", "cannot be read"),
         (b"a: 1\n---\na: 2\n", "remove the line --- that starts a second document"),
-        (b"a: " + b"1" * 5000, "cannot be read"),
+        (b"a: " + b"1" * 5000, "line 1, column 4: a value has 5000 characters, must have at most 4096"),
+        (b"a:\n  b: " + b"x" * 5000, "line 2, column 6: a value has 5000 characters"),
+        (b"? " + b"x" * 5000 + b"\n: 1\n", "a value has 5000 characters"),
+        (b"a: &x [" + b"1, " * 999 + b"1]\nb: [" + b"*x, " * 100 + b"]", "the file has 101105 values"),
         (b"[" * 2000, "cannot be read"),
     ],
 )
@@ -47,6 +52,43 @@ def test_an_invalid_file_is_rejected_in_one_line_with_its_name(tmp_path, content
     assert str(path) in str(refused.value)
     assert message in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+def laughs(levels, kind):
+    """A file of a few lines in which every level repeats the one before nine times."""
+    repeated = {
+        "list": "[{}]".format(", ".join(["*{0}"] * 9)),
+        "section": "{{" + ", ".join(f"k{k}: *{{0}}" for k in range(9)) + "}}",
+    }
+    lines = [f"l{k}: &l{k} " + repeated[kind].format(f"l{k - 1}") for k in range(1, levels)]
+    return "\n".join(["l0: &l0 [lol, lol]", *lines, f"seed: *l{levels - 1}", f"pairs: {{a: *l{levels - 1}}}"])
+
+
+@pytest.mark.parametrize("kind", ["list", "section"])
+@pytest.mark.parametrize("levels", [12, 200])
+def test_aliases_that_stand_for_more_values_than_memory_holds_are_refused_at_once(tmp_path, kind, levels):
+    path = tmp_path / "mine.yaml"
+    path.write_text(laughs(levels, kind))
+    with pytest.raises(ConfigError, match="values, with aliases written out, must have at most 100000"):
+        load(path)
+    path.write_text(laughs(3, kind))
+    with pytest.raises(ConfigError, match="l0 is unknown"):
+        load(path)
+
+
+def test_a_message_about_any_text_of_the_largest_size_ends(tmp_path):
+    """Texts that a pattern or a suggestion could need long for, at a number, a choice, a name, a list and as a key."""
+    path = tmp_path / "mine.yaml"
+    texts = [part * (4000 // len(part)) for part in ("1", "a", "1,111", "1e", "water", " x", "+1", "a.", "1 ", "[")]
+    for text in (*texts, *(f"{text}%" for text in texts), *(f"1{text}" for text in texts)):
+        for place in ("beam: {{thickness_um: {}}}", "van_der_waals: {}", "figures: {{pair: {}}}", "run: {{pairs: {}}}"):
+            path.write_text(place.format(json.dumps(text)))
+            with pytest.raises(ConfigError) as refused:
+                load(path)
+            assert len(str(refused.value)) < 5000
+        path.write_text(f"beam: {{? {json.dumps(text)} : 1}}")
+        with pytest.raises(ConfigError, match="is unknown"):
+            load(path)
 
 
 def test_a_missing_file_is_reported_by_name(tmp_path):
@@ -155,6 +197,15 @@ def test_settings_that_snakemake_cannot_take_are_reported(monkeypatch, arguments
     found = list(problems(["config.yaml"], arguments))
     assert len(found) == count
     assert all("must be a key of the first level" in line or "nowhere.yaml cannot be read" in line for line in found)
+
+
+@pytest.mark.parametrize("option", ["--cores", "-c", "--jobs", "-j", "--local-cores"])
+@pytest.mark.parametrize(("number", "count"), [("0", 1), ("-1", 1), ("00", 1), ("1", 0), ("all", 0), ("unlimited", 0)])
+def test_no_number_of_jobs_with_which_a_run_never_ends_is_accepted(option, number, count):
+    written = [[option, number, "-n"], [f"{option}={number}"], ["-n", option, number, "tables"]]
+    for arguments in [*written, [f"{option}{number}"]] if len(option) == 2 else written:
+        found = list(problems([], arguments))
+        assert found == [f"the number of jobs at the same time is {number}, must be at least 1, or all"] * count
 
 
 def test_the_command_imports_no_library_for_numbers_before_it_checks_its_files():

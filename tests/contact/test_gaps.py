@@ -1,3 +1,5 @@
+import tracemalloc
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -6,6 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 from stiction.constants import HAMAKER_CONSTANT
+from stiction.contact import gaps
 from stiction.contact.gaps import RETARDATION, FlatAttraction, gap_pressures, work_across_film
 from stiction.contact.pair import bearing_area
 from stiction.contact.vanderwaals import DugdaleAttraction, attraction
@@ -194,7 +197,7 @@ def test_bearing_area_gives_the_pressure_of_the_map_point_by_point(flats):
     rng = stream(1, "gaps")
     heights = (3 * NM * rng.standard_normal((400, 400))).astype(np.float32)
     distance = heights.max() + np.array([2, 5, 10]) * NM  # nearer, the few highest points are spread over their step
-    pressure, _ = of_heights(heights, distance, flats.work)
+    pressure = np.concatenate([of_heights(heights, at, flats.work)[0] for at in distance[:, None]])
     half = 0.01 * NM
     gaps = distance[:, None, None] - heights.astype(float)
     one_by_one = np.mean(flats.work(gaps + half) - flats.work(gaps - half), axis=(1, 2)) / (2 * half)
@@ -240,3 +243,38 @@ def test_attraction_grows_with_the_roughness_at_the_same_distance():
 def test_impossible_attraction_is_refused(wrong, message):
     with pytest.raises(ValueError, match=message):
         FlatAttraction(1e-19, **wrong)
+
+
+# Memory
+
+
+def areas(steps):
+    """Bearing areas of 3 samples on a number of steps."""
+    return np.sort(stream(2, "gaps").random((3, steps + 1)), axis=1)[:, ::-1].astype(np.float32)
+
+
+def test_pressures_do_not_depend_on_how_many_are_held_at_once(monkeypatch):
+    arguments = areas(500), -250 * STEP, STEP * np.arange(300), STEP, AIR.work
+    whole, beyond = gap_pressures(*arguments)
+    monkeypatch.setattr(gaps, "_BLOCK", 3000)
+    parts, the_same = gap_pressures(*arguments)
+    assert_allclose(parts, whole, rtol=1e-6)
+    assert_allclose(the_same, beyond, rtol=1e-12)
+
+
+def test_memory_is_that_of_a_block_on_surfaces_of_any_roughness(monkeypatch):
+    monkeypatch.setattr(gaps, "_BLOCK", 2**18)
+    peaks = []
+    for steps in (2**11, 2**13):  # of 16 times as many pressures
+        arguments = areas(steps), -steps / 2 * STEP, STEP * np.arange(steps // 2), STEP, AIR.work
+        tracemalloc.start()
+        gap_pressures(*arguments)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] < 4 * peaks[0]
+
+
+def test_distances_of_another_step_are_refused():
+    for distance in (STEP * np.arange(3) * 2, STEP * np.array([0, 1, 3])):
+        with pytest.raises(ValueError, match="distances must be 5e-11 m apart"):
+            gap_pressures(areas(10), 0.0, distance, STEP, AIR.work)

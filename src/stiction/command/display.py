@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TextIO
 
 from stiction.command.follow import Run
+from stiction.command.streams import put
 
 #: Time between two lines of a file, and between two drawings on a terminal [s].
 _APART, _REDRAWN = 30.0, 1.0
@@ -41,8 +42,7 @@ class Display:
             self._write(f"{line(self._run, now)}\n")
 
     def _write(self, text):
-        self._stream.write(text)
-        self._stream.flush()
+        put(text, self._stream)
 
     def close(self) -> None:
         """Remove the line from a terminal."""

@@ -5,7 +5,6 @@ page only as characters: HTML shows it as it is, and Jinja finds no brace in it.
 """
 
 import csv
-import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape, unescape
@@ -20,6 +19,7 @@ from stiction.config.files import paper
 from stiction.report.format import with_error
 from stiction.run import made
 from stiction.run.markdown import plain
+from stiction.run.provenance import recorded
 
 #: Where the command leaves the page for Snakemake, relative to the folder of the run.
 FRONT = Path(".snakemake", "front.rst")
@@ -43,7 +43,7 @@ _OPEN = "new ButtonViewManager(app).handleSelectedResult({path}).props.onClick()
 
 def front_page(results: Path) -> str:
     """Front page of the results of a finished run, as Snakemake takes it: HTML within reStructuredText."""
-    runs = _runs(results)
+    runs = recorded(results / "provenance.json")
     last, config = runs[-1], runs[-1]["config"]
     sections = {
         f"Results of {' and '.join(_subjects(config))}": _list(answers(results, config)),
@@ -60,15 +60,11 @@ def front_page(results: Path) -> str:
 
 def is_finished(results: Path) -> bool:
     """Whether a run has computed all pairs and devices of its configuration."""
-    if not (results / "provenance.json").exists():
+    runs = recorded(results / "provenance.json")
+    if not runs:
         return False
-    has_pairs = _runs(results)[-1]["config"]["run"]["pairs"]
+    has_pairs = runs[-1]["config"]["run"]["pairs"]
     return (results / ("verdict.txt" if has_pairs else "devices/warnings.md")).exists()
-
-
-def _runs(results):
-    """Records of all runs in a folder of results."""
-    return json.loads(_text(results / "provenance.json"))
 
 
 def _text(path):

@@ -14,6 +14,7 @@ from typing import TextIO
 from stiction.command.display import Display
 from stiction.command.ending import PRINTED
 from stiction.command.follow import RUN
+from stiction.temporary import is_writable, own_folder
 
 PACKAGE = Path(__file__).parents[1]
 #: Folder of Snakefile, configuration and profiles: within an installed package, or the root of a checkout.
@@ -40,6 +41,13 @@ def require_snakemake() -> None:
         )
 
 
+def require_folder(directory: Path) -> None:
+    """Raise an error if the folder of a run, or that of its results, is something else."""
+    for path in (directory / "results", directory, *directory.absolute().parents):
+        if os.path.lexists(path) and not path.is_dir():
+            raise RefusedError(f"{path} is no folder: remove it, or choose another --directory")
+
+
 def words(configs: Sequence[str], directory: str, arguments: Sequence[str]) -> list[str]:
     """Arguments of Snakemake: files that change single keys of the paper's configuration, and the folder of the run.
 
@@ -62,6 +70,8 @@ def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: 
     """
     from snakemake import cli
 
+    if not is_writable(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()):
+        os.environ["XDG_CACHE_HOME"] = str(own_folder())  # Snakemake keeps sources there
     stopped = []
 
     def interrupt(*received):

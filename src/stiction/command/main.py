@@ -1,15 +1,16 @@
 """The command line: ``stiction COMMAND [FILE ...] [OPTIONS] [-- ARGUMENTS OF SNAKEMAKE]``."""
 
 import argparse
+import os
 import sys
 import traceback
 from collections.abc import Callable, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 
-from stiction.command import explain, launch
+from stiction.command import explain, launch, streams
 from stiction.command.ending import PRINTED, Status, fault, last_lines, status
 from stiction.command.follow import RUN
+from stiction.command.streams import say
 from stiction.config import reading
 from stiction.config.messages import ConfigError
 from stiction.models import SIDES
@@ -24,30 +25,39 @@ below the current folder or --directory. Everything after -- is passed to Snakem
 
 def main(words: Sequence[str] | None = None) -> int:
     """Run a command, and return its exit status."""
-    words = list(sys.argv[1:] if words is None else words)
-    cut = words.index("--") if "--" in words else len(words)
-    arguments = _parser().parse_args(words[:cut])
-    arguments.more = words[cut + 1 :]
+    streams.open_closed()
+    words, log = list(sys.argv[1:] if words is None else words), PRINTED
     try:
+        arguments = _parsed(words)
+        log = Path(arguments.directory) / PRINTED
         return arguments.run(arguments)
     except (launch.RefusedError, ConfigError) as error:
-        _say(str(error), sys.stderr)
+        say(str(error), sys.stderr)
         return Status.REFUSED
     except KeyboardInterrupt:
-        _say("stopped; run the same command to continue", sys.stderr)
+        say("stopped; run the same command to continue", sys.stderr)
         return Status.STOPPED
+    except (OSError, MemoryError) as error:
+        say(str(error) or "the memory is full", sys.stderr)
+        return Status.FAILED
     except Exception as error:
-        path = Path(arguments.directory) / PRINTED
-        with launch.opened(path) as log:
-            traceback.print_exc(file=log)
-        for line in (f"{type(error).__name__}: {error}", *fault(path)):
-            _say(line, sys.stderr)
+        with launch.opened(log) as file:
+            traceback.print_exc(file=file)
+        for line in (f"{type(error).__name__}: {error}", *fault(log)):
+            say(line, sys.stderr)
         return Status.FAILED
 
 
-def _say(line, stream=None):
-    """Print one line."""
-    print(line, file=stream, flush=True)  # noqa: T201
+def _parsed(words):
+    """Arguments of the command, and those of Snakemake."""
+    cut = words.index("--") if "--" in words else len(words)
+    try:
+        arguments = _parser().parse_args(words[:cut])
+    except SystemExit:
+        say("", end="")  # the help that was asked for
+        raise
+    arguments.more = words[cut + 1 :]
+    return arguments
 
 
 def _parser():
@@ -74,7 +84,7 @@ class _Version(argparse.Action):
     def __call__(self, parser, *_):
         from importlib import metadata
 
-        _say(f"stiction {metadata.version('stiction')}")
+        say(f"stiction {metadata.version('stiction')}")
         parser.exit()
 
 
@@ -103,13 +113,11 @@ def _init(arguments):
     if arguments.test_beams:
         return _init_test_beams(Path(arguments.directory) / "test_beams.csv")
     target = Path(arguments.directory) / "study.yaml"
-    with _new(target) as file:
-        file.write(Path(__file__).with_name("study.yaml").read_text(encoding="utf-8"))
-        schema = launch.PACKAGE / "config" / "schema.json"
-        target.with_name("stiction.schema.json").write_text(schema.read_text(encoding="utf-8"), encoding="utf-8")
-    _say(f"{target} describes a surface, a pair and a beam: change them into yours. Then")
-    _say(f"  stiction check {target}     says whether it can run")
-    _say(f"  stiction run {target}       computes it: tables and figures in results/")
+    schema = launch.PACKAGE / "config" / "schema.json"
+    _write({target.with_name("stiction.schema.json"): schema, target: Path(__file__).with_name("study.yaml")})
+    say(f"{target} describes a surface, a pair and a beam: change them into yours. Then")
+    say(f"  stiction check {target}     says whether it can run")
+    say(f"  stiction run {target}       computes it: tables and figures in results/")
     return Status.DONE
 
 
@@ -117,23 +125,29 @@ def _init_test_beams(target):
     """Write a table of test beams."""
     from stiction.config.arrays import TEMPLATE
 
-    with _new(target) as file:
-        file.write(TEMPLATE)
-    _say(f"{target} has a row for every test beam: put yours there, and name the file in test_beams.NAME.file.")
+    _write({target: TEMPLATE})
+    say(f"{target} has a row for every test beam: put yours there, and name the file in test_beams.NAME.file.")
     return Status.DONE
 
 
-@contextmanager
-def _new(target):
-    """A file that did not exist."""
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with target.open("x", encoding="utf-8") as file:
-            yield file
-    except FileExistsError:
-        raise launch.RefusedError(f"{target} exists already: nothing was written") from None
-    except OSError as error:
-        raise launch.RefusedError(f"{target} cannot be written: {error.strerror}") from error
+def _write(contents):
+    """Write new files from texts, or from the files that hold them; a file of the same content remains."""
+    texts = {target: _text(content) for target, content in contents.items()}
+    missing = {target: text for target, text in texts.items() if not (target.is_file() and _text(target) == text)}
+    if there := [target for target in missing or texts if os.path.lexists(target)]:
+        raise launch.RefusedError(f"{there[0]} exists already: nothing was written")
+    for target, text in missing.items():
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            with target.open("x", encoding="utf-8") as file:
+                file.write(text)
+        except OSError as error:
+            raise launch.RefusedError(f"{target} cannot be written: {error.strerror}") from error
+
+
+def _text(content):
+    """Text itself, or that of a file."""
+    return content if isinstance(content, str) else content.read_text(encoding="utf-8", errors="replace")
 
 
 def _check(arguments):
@@ -154,10 +168,10 @@ def _check(arguments):
     scanned = [name for name, entry in config["surfaces"].items() if "scans" in entry]
     named = {f"pair{'s' * (len(pairs) > 1)}": pairs, "devices": devices, "scans of": scanned}
     parts = [f"{what} {', '.join(names)}" for what, names in named.items() if names]
-    _say(f"{' '.join(arguments.files)} can run: {' and '.join(parts) or 'nothing'}.")
+    say(f"{' '.join(arguments.files)} can run: {' and '.join(parts) or 'nothing'}.")
     of_pairs = {name: {pair[side] for side in SIDES} for name, pair in config["pairs"].items()}
     if long := [name for name, device in devices.items() if of_pairs[device["pair"]] & {*scanned}]:
-        _say(
+        say(
             f"The budget of {', '.join(long)} draws the measured surfaces again with every quantity changed, which "
             "takes most of the time. Without it: stiction run FILE -- results/tables/safe_lengths.md (or stoppers.md)"
         )
@@ -168,9 +182,10 @@ def _run(arguments, *targets):
     """Run the workflow, or a part of it."""
     launch.require_snakemake()
     directory = Path(arguments.directory)
-    if problems := list(reading.problems(arguments.files, arguments.more)):
-        raise launch.RefusedError("\n".join(problems))
     options = ["--cores", arguments.cores] * bool(arguments.cores) + ["--dry-run"] * arguments.dry_run
+    if problems := list(reading.problems(arguments.files, [*options, *arguments.more])):
+        raise launch.RefusedError("\n".join(problems))
+    launch.require_folder(directory)
     words = launch.words(arguments.files, arguments.directory, [*options, *targets, *arguments.more])
     verbose = arguments.verbose or "--verbose" in arguments.more
     dry = arguments.dry_run or bool({"-n", "--dry-run", "--dryrun"} & set(arguments.more))
@@ -181,18 +196,24 @@ def _run(arguments, *targets):
     asked += [Path(word).stem for word in (*targets, *arguments.more)]
     lines = explain.explained(RUN) if dry and not ended else last_lines(RUN, ended, directory, printed, asked)
     for line in lines:
-        _say(line, sys.stderr if ended else None)
+        say(line, sys.stderr if ended else None)
     return ended
 
 
 def _devices(arguments):
     """Run what devices need."""
     arguments.files = arguments.files or [str(launch.WORKFLOW / "examples" / "devices.yaml")]
+    if not any(content.get("devices") for content in reading.contents(arguments.files, arguments.more)):
+        raise launch.RefusedError(f"{' '.join(arguments.files)} describes no devices: add a section devices")
     return _run(arguments, "devices")
 
 
 def _scans(arguments):
     """Evaluate scans without the pairs of their surfaces."""
+    from stiction.config import measured  # takes longer than all other imports
+
+    if not any(map(measured.has_scans, reading.contents(arguments.files, arguments.more))):
+        raise launch.RefusedError(f"{' '.join(arguments.files)} describes no surface by scans: add surfaces.NAME.scans")
     return _run(arguments, "scans")
 
 
@@ -206,7 +227,11 @@ def _report(arguments):
     from stiction.command import front  # imports the libraries for numbers
 
     results = Path(arguments.directory) / "results"
-    if not front.is_finished(results):
+    try:
+        finished = front.is_finished(results)
+    except ValueError as damaged:
+        raise launch.RefusedError(str(damaged)) from None
+    if not finished:
         raise launch.RefusedError(
             f"there are no results for a report in {results}: run stiction paper or stiction run FILE first "
             "(stiction devices is not enough)"
@@ -218,7 +243,7 @@ def _report(arguments):
     options = ("--report-stylesheet", str(files / "style.css"), "--report-metadata", str(files / "guide.yaml"))
     ended = _run(arguments, "--report", "results/report.html", *options)
     if ended == Status.DONE and not arguments.dry_run:
-        _say(f"The report is one file: {results / 'report.html'}.")
+        say(f"The report is one file: {results / 'report.html'}.")
     return ended
 
 

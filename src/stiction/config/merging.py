@@ -5,6 +5,7 @@ on B2, and so on. The copies are entries like any others: nothing else knows of 
 """
 
 from collections.abc import Mapping
+from itertools import chain
 from typing import Any
 
 from stiction.config.messages import ConfigError
@@ -54,7 +55,8 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
     Raises
     ------
     ConfigError
-        If the key does not describe an entry of one of the sections whose entries are copied.
+        If the key does not describe an entry of one of the sections whose entries are copied, or if an entry has the
+        name of a copy.
     """
     if not _is_valid(config.get("compare")):
         return config
@@ -68,18 +70,31 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
             known = {section: entries}
         listed = "; ".join(f"{kind}.NAME.KEY with NAME {' or '.join(map(str, names))}" for kind, names in known.items())
         raise ConfigError(f"compare.{path} is no key of an entry that exists, must be {listed}")
-    copied = _affected(config, section, name)
-    for end, value in values(config).items():
+    copied, stated, ends = _affected(config, section, name), config, values(config)
+    for end, value in ends.items():
         config = _with_copies(config, copied, end)
-        change = value
-        for key in reversed(keys.split(".")):
-            change = {key: change}
-        config = merged(config, {section: {name + end: change}})
-    runs = _list(config, "run", "pairs")
-    ends = values(config)
-    pairs = [pair + end for pair in runs for end in (ends if pair in copied["pairs"] else [""])]
-    devices = {key: device for key, device in config.get("devices", {}).items() if key not in copied["devices"]}
-    return merged(config, {"run": {"pairs": pairs}}) | ({"devices": devices} if devices else {})
+        config = merged(config, _nested(value, section, name + end, *keys.split(".")))
+    if replaced := next(_changed(stated, config), None):
+        raise ConfigError(f"{replaced} must have another name: compare.{path} makes a copy of this name")
+    return _in_place(config, copied, ends)
+
+
+def _changed(before, after):
+    """Dotted names of entries, also of those below studies, that differ between two configurations."""
+    for place in _places(before):
+        entries, now = _section(before, *place), _section(after, *place)
+        yield from (".".join((*place, name)) for name in now if name in entries and entries[name] != now[name])
+
+
+def _in_place(config, copied, ends):
+    """Configuration in which copies take the place of pairs that run and of devices."""
+    runs, devices = _section(config, "run").get("pairs"), _section(config, "devices")
+    if isinstance(runs, list):
+        copies = ([pair + end for end in ends] if pair in copied["pairs"] else [pair] for pair in runs)
+        config = merged(config, {"run": {"pairs": list(chain.from_iterable(copies))}})
+    if copied["devices"]:
+        config = config | {"devices": {name: devices[name] for name in devices if name not in copied["devices"]}}
+    return config
 
 
 def _is_valid(compare):
@@ -92,11 +107,26 @@ def _is_valid(compare):
     )
 
 
-def _list(config, section, key):
-    """Names in a list of a section, empty if there are none."""
-    names = config.get(section)
-    names = names.get(key) if isinstance(names, dict) else None
-    return [name for name in names if isinstance(name, str)] if isinstance(names, list) else []
+def _section(config, *place):
+    """Nested section of a configuration, which need not be valid; empty where there is none."""
+    for name in place:
+        config = config.get(name) if isinstance(config, dict) else None
+    return config if isinstance(config, dict) else {}
+
+
+def _nested(value, *place):
+    """Configuration that has nothing but a value at a place."""
+    for name in reversed(place):
+        value = {name: value}
+    return value
+
+
+def _places(config):
+    """Places of the sections whose entries may be copied, and of those that state something by the name of a pair."""
+    yield from ((section,) for section in _NAMED)
+    yield from (
+        ("studies", study, key) for study in _section(config, "studies") for key in _section(config, "studies", study)
+    )
 
 
 def _affected(config, section, name):
@@ -104,9 +134,9 @@ def _affected(config, section, name):
     copied = {kind: [] for kind in _NAMED}
     copied[section] = [name]
     for kind in _NAMED:
-        entries = config.get(kind)
-        for other, entry in entries.items() if isinstance(entries, dict) else ():
-            if other not in copied[kind] and _renamed(entry, kind, copied, "x") != entry:
+        for other, entry in _section(config, kind).items():
+            uses = isinstance(other, str) and _renamed(entry, kind, copied, "x") != entry
+            if uses and other not in copied[kind]:
                 copied[kind].append(other)
     return copied
 
@@ -134,13 +164,9 @@ def _with_copies(config, copied, end):
         for section, names in copied.items()
         if names
     }
-    studies = {
-        study: {
-            key: {name + end: value[name] for name in copied["pairs"] if name in value}
-            for key, value in section.items()
-            if isinstance(value, dict)
-        }
-        for study, section in (config.get("studies") or {}).items()
-        if isinstance(section, dict)
-    }
-    return merged(config, added | {"studies": studies})
+    config = merged(config, added)
+    for place in _places(config):
+        stated = _section(config, *place) if place[0] == "studies" else {}
+        if of_copies := {name + end: stated[name] for name in copied["pairs"] if name in stated}:
+            config = merged(config, _nested(of_copies, *place))
+    return config

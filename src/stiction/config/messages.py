@@ -83,7 +83,8 @@ def _explained(error, schema):
         return [Problem(key, f"is missing, must be {_allowed(_entry(schema, key))}") for key in missing]
     if error.validator == "additionalProperties":
         known = list(error.schema["properties"])
-        return [Problem((*path, key), _unknown(key, value[key], known)) for key in value if key not in known]
+        strange = [(*path, key) for key in value if key not in known]
+        return [Problem(place, _FORMER.get(place) or _unknown(place[-1], value[place[-1]], known)) for place in strange]
     stated = shown(in_words(value, path))
     return [Problem(path, f"is {stated}, must be {_allowed(error.schema)}{_hint(path, value, error.schema)}")]
 
@@ -113,6 +114,13 @@ def _allowed(entry):
     elif "minItems" in entry or "minProperties" in entry:
         words.append("with at least one entry")
     return f"{' '.join(filter(None, words))}: {entry['description']}"
+
+
+#: Keys of older versions, and what they are called now.
+_FORMER = {
+    ("studies", "readings"): "is called studies.variants since version 0.2",
+    ("design", "tip_um"): "is no longer needed, must be left out: the contact of a tip follows from its slope",
+}
 
 
 def _unknown(key, value, known):

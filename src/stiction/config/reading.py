@@ -6,6 +6,7 @@ file. This module imports little, so that the check takes a fraction of a second
 
 import re
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from pathlib import Path
 
 import yaml
@@ -16,6 +17,10 @@ from stiction.regular import require_regular
 #: Numbers that YAML 1.1 reads in base 60 and in base 8.
 _BASE_60 = re.compile(r"[-+]?\d[\d_]*(:[0-5]?\d)+(\.[\d_]*)?")
 _BASE_8 = re.compile(r"[-+]?0[0-7_]+")
+#: Most characters of a value, those of a path in Linux.
+LONGEST = 4096
+#: Most values of a file. An alias counts as what it repeats: a few lines can stand for more values than a memory holds.
+MOST = 100_000
 #: Messages of the parser and their likely causes.
 _CAUSES = {
     "'\\t' that cannot start any token": "indent with spaces, not with tabs",
@@ -66,7 +71,22 @@ def text(path: str | Path) -> str:
 
 
 class _Strict(yaml.SafeLoader):
-    """YAML loader that rejects duplicate keys, of which PyYAML drops the first value, and numbers in base 60 or 8."""
+    """YAML loader that rejects duplicate keys, of which PyYAML drops the first value, and numbers in base 60 or 8.
+
+    It also rejects texts and files so large that nothing else is sure to end, such as a message that shows a value.
+    """
+
+    def construct_document(self, node):
+        if (values := _number_of_values(node, {})) > MOST:
+            message = f"the file has {values:.6g} values, with aliases written out, must have at most {MOST}"
+            raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
+        return super().construct_document(node)
+
+    def construct_scalar(self, node):
+        if isinstance(node, yaml.ScalarNode) and len(node.value) > LONGEST:
+            message = f"a value has {len(node.value)} characters, must have at most {LONGEST}"
+            raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
+        return super().construct_scalar(node)
 
     def construct_mapping(self, node, deep=False):  # noqa: ARG002
         keys = [key for key, _ in node.value if key.tag != "tag:yaml.org,2002:merge"]
@@ -87,15 +107,32 @@ class _Strict(yaml.SafeLoader):
         return value
 
 
+def _number_of_values(node, counted):
+    """Number of values of a node, with those of its aliases; a node in itself is refused when it is constructed."""
+    if id(node) not in counted:
+        counted[id(node)] = 0
+        parts = node.value if isinstance(node, yaml.CollectionNode) else ()
+        parts = chain.from_iterable(parts) if isinstance(node, yaml.MappingNode) else parts
+        counted[id(node)] = 1 + sum(_number_of_values(part, counted) for part in parts)
+    return counted[id(node)]
+
+
 _Strict.add_constructor("tag:yaml.org,2002:map", _Strict.construct_mapping)
 _Strict.add_constructor("tag:yaml.org,2002:int", _Strict.construct_number)
 _Strict.add_constructor("tag:yaml.org,2002:float", _Strict.construct_number)
 
 
+#: Options of Snakemake that take a number of jobs.
+_NUMBERS = ("--cores", "-c", "--jobs", "-j", "--local-cores")
+
+
 def problems(files: Iterable[str], arguments: Iterable[str]) -> Iterator[str]:
-    """One line for each file that cannot be read and each setting among Snakemake's arguments that it cannot take."""
+    """One line for each file that cannot be read, and each of Snakemake's arguments that it cannot take.
+
+    With less than one job at a time, Snakemake waits for ever.
+    """
     arguments = list(arguments)
-    for file in [*files, *_values(arguments, ("--configfile", "--configfiles"))]:
+    for file in _files(files, arguments):
         try:
             read(file)
         except ConfigError as error:
@@ -107,16 +144,32 @@ def problems(files: Iterable[str], arguments: Iterable[str]) -> Iterator[str]:
                 f"--config {setting} must be a key of the first level and its value, such as --config seed=1; "
                 "put other changes into a file: CONFIG=mine.yaml"
             )
+    for number in _values(arguments, _NUMBERS):
+        if _NEGATIVE.fullmatch(number) or (number.isdecimal() and int(number) == 0):
+            yield f"the number of jobs at the same time is {number}, must be at least 1, or all"
+
+
+def contents(files: Iterable[str], arguments: Iterable[str]) -> list[dict]:
+    """Content of every file, also of those among Snakemake's arguments; raises the errors of `read`."""
+    return [read(file) for file in _files(files, arguments)]
+
+
+def _files(files, arguments):
+    """Files of the configuration, those of the command first."""
+    return [*files, *_values(arguments, ("--configfile", "--configfiles"))]
+
+
+_NEGATIVE = re.compile(r"-\d+")
 
 
 def _values(arguments, options):
-    """Words that follow one of some options, up to the next option."""
+    """Words that follow one of some options, up to the next option, and those attached to one, as in -c2."""
     taken = False
     for word in arguments:
-        if word.startswith("-"):
-            option, equals, value = word.partition("=")
+        if word.startswith("-") and not _NEGATIVE.fullmatch(word):
+            option, equals, value = word.partition("=") if word.startswith("--") else (word[:2], word[2:], word[2:])
             taken = option in options
             if taken and equals:
-                yield value
+                yield value.removeprefix("=")
         elif taken:
             yield word

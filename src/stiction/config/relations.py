@@ -26,7 +26,7 @@ from stiction.devices import limits
 from stiction.devices.materials import COATING, COATING_ATTRACTION
 from stiction.errors import NotConverged
 from stiction.models import SIDES
-from stiction.numbers import is_multiple
+from stiction.numbers import is_at_most, is_multiple
 from stiction.surface.feasible import nearest_feasible
 from stiction.surface.identify import SummitTarget, estimated_spectrum
 from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
@@ -55,8 +55,8 @@ def lists_have_no_duplicates(config):
 @relation
 def something_is_computed(config):
     """A run without pairs computes devices or evaluates scans."""
-    names, devices, surfaces = config["run.pairs"], config["devices"], config["surfaces"]
-    if not (names or devices or any("scans" in surface for surface in surfaces.values())):
+    names, devices, surfaces = config["run.pairs"], config["devices"], config["surfaces"].values()
+    if not (names or devices or config.files or any("scans" in surface for surface in surfaces)):
         yield "run.pairs", "must name a pair: there are neither devices nor scans"
 
 
@@ -197,7 +197,7 @@ def spectra_fall(config):
     corner, floor, plateau = (f"published_psd.{key}" for key in ("corner_rad_per_um", "floor_nm4", "plateau_nm4"))
     for low, high, words in ((corner, _CUTOFF, "cut-off"), (floor, plateau, "plateau")):
         for name, value, bound in config.entries("surfaces", low, high):
-            if value >= bound:
+            if is_at_most(bound, value):
                 yield f"surfaces.{name}.{low}", f"must be below the {words}", f"surfaces.{name}.{high}"
 
 
@@ -207,7 +207,7 @@ def grid_carries_the_roughness(config):
     nyquist = math.pi / config["sampling.spacing_nm"] * NM_PER_UM
     message = f"must be at most the Nyquist wave number of the grid, {nyquist:.6g} rad/µm"
     for name, cutoff in config.entries("surfaces", _CUTOFF):
-        if cutoff > nyquist:
+        if not is_at_most(cutoff, nyquist):
             yield f"surfaces.{name}.{_CUTOFF}", message, "sampling.spacing_nm"
 
 
@@ -217,7 +217,7 @@ def other_grids_carry_the_roughness(config):
     for key, spacing in config.items("studies.variants.spacing_nm"):
         for name, cutoff in config.entries("surfaces", _CUTOFF):
             largest = math.pi / cutoff * NM_PER_UM
-            if spacing > largest:
+            if not is_at_most(spacing, largest):
                 message = f"must be at most {largest:.6g} nm, for the Nyquist wave number of the grid"
                 yield key, message, f"surfaces.{name}.{_CUTOFF}"
 
@@ -341,7 +341,7 @@ def strips_can_hold_a_summit(config):
     """A summit has eight neighbours."""
     coarse = config["character.spacing_nm"]
     for key, side in config.known("beam.width_um", "sampling.strip_length_um", "identification.patch_um"):
-        if 3 * coarse > side * NM_PER_UM:
+        if not is_at_most(3 * coarse, side * NM_PER_UM):
             yield "character.spacing_nm", f"must be at most a third of a side of {side} µm", key
 
 

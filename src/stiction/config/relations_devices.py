@@ -39,6 +39,7 @@ from stiction.config.relations import (
 from stiction.config.stated_materials import hamaker_constant
 from stiction.config.units import NM_PER_UM
 from stiction.devices.materials import COATING_ATTRACTION, OF_CONTACT
+from stiction.numbers import is_at_most
 from stiction.surface.feasible import largest_kurtosis
 
 #: Relations between the keys of devices.
@@ -136,7 +137,7 @@ def corrections_are_not_extrapolated(config):
         used |= {f"devices.{name}.chart.humidities": chart["humidities"] for chart in [device.get("chart")] if chart}
         used |= {} if kind_of(device).is_beam else {"design.worst_humidities": config["design.worst_humidities"]}
         for key, humidities in used.items():
-            if min(humidities) < min(known) or max(humidities) > max(known):
+            if not (is_at_most(min(known), min(humidities)) and is_at_most(max(humidities), max(known))):
                 message = (
                     f"must be, with its uncertainty, within the humidities of pair {device['pair']}, to which the "
                     "correction of contact.model full is restricted"
@@ -441,7 +442,7 @@ def varied_corners_are_those_of_spectra(config):
             continue
         psd, (low, high) = section["published_psd"], ends
         cutoff, plateau = psd["cutoff_rad_per_um"], psd["plateau_nm4"]
-        if high >= cutoff:
+        if is_at_most(cutoff, high):
             yield key, f"must be below the cut-off of surface {surface}, {cutoff:g} rad/µm", *config.scanned(surface)
             continue
         slope = math.log(psd["floor_nm4"] / plateau) / math.log(cutoff / psd["corner_rad_per_um"])

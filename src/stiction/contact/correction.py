@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stiction.numbers import is_at_most
+
 
 def interpolated(ratios: np.ndarray, humidities: np.ndarray, at: float | np.ndarray) -> float | np.ndarray:
     """Ratios at some humidities, from those (h,) at the computed ones, which increase; NaN beyond them [-].
@@ -39,12 +41,13 @@ class Correction:
             If the humidity is beyond those at which full contact was computed.
         """
         low, high = self.humidities[[0, -1]]
-        if not low <= humidity <= high:
+        if not (is_at_most(low, humidity) and is_at_most(humidity, high)):
             raise ValueError(
                 f"full elastic contact was computed at relative humidities from {low:g} to {high:g} and is not "
                 f"extrapolated to {humidity:g}: add it to those of the pair, or choose contact.model: summits"
             )
-        energy, pull_off = (interpolated(ratios, self.humidities, humidity) for ratios in (self.energy, self.pull_off))
+        within = np.clip(humidity, low, high)  # rounding can leave it a little outside
+        energy, pull_off = (interpolated(ratios, self.humidities, within) for ratios in (self.energy, self.pull_off))
         return float(energy), float(pull_off)
 
     def vectors(self, vectors: np.ndarray, limit: float, humidity: float) -> tuple[np.ndarray, float]:

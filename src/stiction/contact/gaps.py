@@ -16,11 +16,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from stiction.contact.vanderwaals import DugdaleAttraction
 
 #: Strength b of the retardation of flats [-]; J. Gregory, J. Colloid Interface Sci. 83, 138 (1981).
 RETARDATION = 5.32
+#: Most pressures, between a distance and a step of the bearing area, that are held at once; an rms of 200 nm has 2e9.
+_BLOCK = 2**20
 
 
 @dataclass(frozen=True)
@@ -100,9 +103,9 @@ def gap_pressures(
     first : float
         Height at its first node [m].
     distance : (n_d,) array
-        Distances d between the mean planes [m].
+        Distances d between the mean planes, one step apart [m].
     step : float
-        Spacing of the nodes of the bearing area [m].
+        Spacing of the distances, and of the nodes of the bearing area [m].
     work : callable
         ``work(g)`` is the work per area that the gap g still needs [J m⁻²], for gaps >= 0 [m].
 
@@ -112,11 +115,23 @@ def gap_pressures(
         Negative in attraction [Pa].
     beyond : (...) float64 array
         Work from the last distance to infinity [J m⁻²].
+
+    Raises
+    ------
+    ValueError
+        If the distances are not one step apart.
     """
-    heights = first + step * np.arange(bearing.shape[-1])
-    needed = work(np.maximum(distance[:, None] - heights, 0.0))
-    pressure = np.diff(needed, axis=1) / -step
-    energy = 0.5 * (needed[-1, 1:] + needed[-1, :-1])
+    if not np.allclose(np.diff(distance), step, rtol=1e-6, atol=0):
+        raise ValueError(f"distances must be {step:.3g} m apart, as the nodes of the bearing area are")
+    steps, number = bearing.shape[-1] - 1, len(distance)
+    # Every gap between a distance and a node, increasing: those of all steps at one distance are a window of them.
+    needed = work(np.maximum(distance[0] - first + step * np.arange(-steps, number), 0.0))
+    pressures = sliding_window_view((np.diff(needed) / step).astype(np.float32), steps)
+    energy = 0.5 * (needed[number:] + needed[number - 1 : -1])[::-1].astype(np.float32)
     shares = -np.diff(bearing, axis=-1).astype(np.float32, copy=False)
-    found = shares @ np.vstack([pressure, energy]).astype(np.float32).T
-    return found[..., :-1], found[..., -1].astype(float)
+    pressure, rows = np.empty((*shares.shape[:-1], number), np.float32), max(_BLOCK // steps, 1)
+    for start in range(0, number, rows):
+        block = slice(start, start + rows)
+        found = shares @ np.vstack([pressures[block, ::-1], energy]).T
+        pressure[..., block] = found[..., :-1]
+    return pressure, found[..., -1].astype(float)

@@ -39,19 +39,25 @@ def record(path: str | Path, checkout: str | Path, config: dict) -> None:
         If the file cannot be written.
     """
     path = Path(path)
-    runs = [*_recorded(path), _run(checkout, config)]
+    runs = [*recorded(path), _run(checkout, config)]
     save_text(json.dumps(runs, indent=1, sort_keys=True) + "\n", path)
 
 
-def _recorded(path):
-    """Runs in a record; empty if there is no record."""
+def recorded(path: Path) -> list[dict]:
+    """Runs in a record, oldest first; empty if there is no record.
+
+    Raises
+    ------
+    ValueError
+        If the file exists and is not a list of runs.
+    """
     if not path.exists():
         return []
     try:
         runs = json.loads(path.read_text(encoding="utf-8"))
     except ValueError as reason:
         raise ValueError(f"{path} cannot be read ({reason}); delete it") from reason
-    if not isinstance(runs, list):
+    if not (isinstance(runs, list) and all(isinstance(run, dict) and "config" in run for run in runs)):
         raise ValueError(f"{path} does not contain a list of runs; delete it")
     return runs
 

@@ -7,6 +7,7 @@ import numpy as np
 from scipy import fft
 
 from stiction.kernels import kernel
+from stiction.numbers import is_at_most
 from stiction.surface.normals import standard_normal
 from stiction.surface.spectrum import Spectrum, radial_spectrum, require_resolved
 from stiction.surface.translation import LARGEST_SCORE, TranslationMap
@@ -22,7 +23,8 @@ class StripGrid:
     margin: float  #: smallest distance between opposite edges of a strip across the period of its field [m]
 
     def __post_init__(self):
-        if not (self.spacing > 0 and all(self.spacing <= side < np.inf for side in (self.length, self.width))):
+        sides = self.length, self.width
+        if not (self.spacing > 0 and is_at_most(self.spacing, min(sides)) and max(sides) < np.inf):
             raise ValueError(
                 f"need 0 < spacing <= strip, got {self.spacing:.3g} and {self.length:.3g} x {self.width:.3g} m"
             )

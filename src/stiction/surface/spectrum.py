@@ -16,10 +16,10 @@ import numpy as np
 from scipy import fft
 from scipy.special import j0
 
+from stiction.numbers import is_at_most
+
 #: ASSUME: largest density of a surface [m⁴], which only numbers in nm⁴ exceed. The fourth root is a millimetre.
 _LARGEST_DENSITY = 1e-12
-#: Relative difference of a cut-off and a Nyquist wave number that are equal in other units.
-_ROUNDING = 1e-9
 
 
 class Spectrum(Protocol):
@@ -159,7 +159,7 @@ def require_resolved(cutoff: float, spacing: float) -> None:
     """Refuse points at a distance [m] that do not resolve the waves up to a cut-off [rad m⁻¹]."""
     if not 0 < spacing < np.inf:
         raise ValueError(f"need a distance of the points above 0, got {spacing:.4g} m")
-    if not cutoff <= np.pi / spacing * (1 + _ROUNDING):
+    if not is_at_most(cutoff, np.pi / spacing):
         raise ValueError(
             f"cut-off {cutoff:.4g} rad/m is beyond the Nyquist wave number of the grid, {np.pi / spacing:.4g} rad/m"
         )

@@ -8,6 +8,7 @@ import xarray as xr
 
 from stiction.config.units import from_si
 from stiction.errors import NotConverged
+from stiction.numbers import is_at_most
 from stiction.plan.stage import Stage, select
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import parameters
@@ -55,7 +56,7 @@ def cutoff_and_clipping(end: float, settings: Settings) -> tuple[float, str]:
     The measured spectrum ends at the Nyquist wave number of the scans at most [rad m⁻¹].
     """
     grid = np.pi / settings.spacing
-    if end <= grid:
+    if is_at_most(end, grid):
         return (end if settings.beyond == "cut" else grid), ""
     ends, measured = (f"{from_si(wavenumber, 'rad_per_um'):.4g} rad/µm" for wavenumber in (grid, end))
     return grid, (

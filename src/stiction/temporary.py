@@ -1,0 +1,38 @@
+"""Folder of this user among temporary files, where neither the package nor the home can be written."""
+
+import os
+import stat
+import tempfile
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+
+@cache
+def own_folder() -> Path:
+    """Folder that nobody else can write, the same for all processes of a user: machine code in it will be run.
+
+    A folder of its name that belongs to somebody else, or that others can write, is left alone: the process gets one of
+    its own.
+
+    Raises
+    ------
+    OSError
+        If no folder for temporary files can be written.
+    """
+    folder = Path(tempfile.gettempdir(), f"stiction-{os.getuid()}")
+    with suppress(FileExistsError):
+        folder.mkdir(mode=0o700)
+    status = folder.lstat()
+    safe = stat.S_ISDIR(status.st_mode) and status.st_uid == os.getuid() and not status.st_mode & 0o022
+    return folder if safe else Path(tempfile.mkdtemp(prefix="stiction-"))
+
+
+def is_writable(folder: str | Path) -> bool:
+    """Whether files can be written in a folder, which is made if it does not exist."""
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        return False
+    return True

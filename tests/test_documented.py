@@ -1,0 +1,145 @@
+"""What the docs say can be written passes ``stiction check``: blocks of YAML, snippets, keys, choices."""
+
+import importlib.util
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import reduce
+from pathlib import Path
+
+import pytest
+import yaml
+
+from stiction.command.main import main
+from stiction.config.arrays import TEMPLATE
+from stiction.config.files import paper
+from stiction.config.merging import merged
+from stiction.config.relations import schema
+
+pytestmark = pytest.mark.slow
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "examples").rglob("*.md"))]
+TEXT = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
+BLOCKS = re.findall(r"^```yaml\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
+#: Two keys have to agree with a file of scans: tests/scans/test_scan_reading.py reads such files.
+OF_FILES = {("surfaces", "*", "scans", "channel"), ("surfaces", "*", "scans", "height_unit")}
+#: A study of the paper's pair b alone, and another whose beam is of a material of its own.
+PAIR_B = {"run": {"pairs": ["b"]}}
+OXIDE = {
+    "materials": {"Oxide": {"hamaker_constant_zJ": {"water": 5, "dry": 65}}},
+    "surfaces": {"B2": {"material": "Oxide"}},
+}
+#: Snippets such as `level: plane`, `attraction.reach: all` and `run: {pairs: []}`; those with other values in words.
+SNIPPETS = sorted(
+    set(re.findall(r"`([a-z_]+(?:\.[a-z_]+)*: [^`<>…]+)`", re.sub(r"```.*?```", "", TEXT, flags=re.DOTALL)))
+)
+EXAMPLES = ("examples/scans/mine", "examples/devices", "examples/roughness", "examples/drawn_beams/mine")
+EXAMPLES += ("examples/test_beams", "examples/sealed", "workflow/smoke")
+
+
+def module(path):
+    """Import a module that is not part of the package."""
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    loaded = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = loaded
+    spec.loader.exec_module(loaded)
+    return loaded
+
+
+KEYS = list(module(ROOT / "docs" / "keys.py").keys(schema()))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Folder with files of scans and of test beams, smaller than those of the examples."""
+    pytest.importorskip("SurfaceTopography")
+    path = tmp_path_factory.mktemp("documented")
+    draw = module(ROOT / "examples" / "scans" / "draw.py")
+    draw.main(path, [replace(scans, side=5e-6, pixel=20e-9) for scans in draw.SCANS])
+    for name in ("arrayA.csv", "wafer.csv"):
+        (path / name).write_text(TEMPLATE, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def accepts(folder):
+    """Whether ``stiction check`` accepts a study, which remembers what the samples of a base have shown."""
+
+    def accepts(study, base="any"):
+        file = folder / "mine.yaml"
+        file.write_text(study if isinstance(study, str) else yaml.safe_dump(study), encoding="utf-8")
+        return main(["check", str(file), "--directory", str(folder / base)]) == 0
+
+    return accepts
+
+
+def bases() -> dict[str, dict]:
+    """Studies that a key may be added to, by name."""
+    found = {Path(name).parent.name + Path(name).name: (ROOT / f"{name}.yaml").read_text() for name in EXAMPLES}
+    found |= {f"block{number}": block for number, block in enumerate(BLOCKS)}
+    return {"paper": PAIR_B, "oxide": PAIR_B | OXIDE} | {name: yaml.safe_load(text) for name, text in found.items()}
+
+
+BASES = bases()
+
+
+def places(path: tuple[str, ...], config) -> Iterator[tuple[str, ...]]:
+    """Paths of a key in a study, with names that are there in place of ``*``."""
+    found = [()]
+    for part in path:
+        found = [(*place, name) for place in found for name in (_names(config, place) if part == "*" else [part])]
+    return found
+
+
+def _names(config, place):
+    section = reduce(lambda section, name: section.get(name, {}), place, config)
+    return list(section) if isinstance(section, dict) else []
+
+
+def is_accepted(accepts, path, value) -> bool:
+    """Whether a key may have a value in some study."""
+    if path == ("compare", "*"):
+        path = ("compare", "surfaces.B2.rms_nm")
+    for name, base in BASES.items():
+        for place in places(path, merged(paper(), base)):
+            change = reduce(lambda inner, key: {key: inner}, reversed(place), value)
+            if accepts(merged(base, change), name):
+                return True
+    return False
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=range(len(BLOCKS)))
+def test_a_block_can_run(accepts, block):
+    assert accepts(block)
+    assert not accepts(block + "\nsead: 1\n")
+
+
+@pytest.mark.parametrize("snippet", SNIPPETS)
+def test_a_snippet_is_accepted_in_some_study(accepts, snippet):
+    ((dotted, value),) = yaml.safe_load(snippet).items()
+    *parents, last = dotted.split(".")
+    ends = [key.path for key in KEYS if key.path[-len(parents) - 1 :] == (*parents, last)]
+    assert any(
+        is_accepted(accepts, path, value) for path in [(*parents, last)] * (last in schema()["properties"]) + ends
+    )
+
+
+def choices(key) -> list:
+    """Values to try: the example of the docs, and every choice."""
+    of_items = key.entry.get("items", {}).get("enum", ())
+    return [key.example, *key.entry.get("enum", ()), *([choice] for choice in of_items)]
+
+
+CHECKED = [key for key in KEYS if key.path not in OF_FILES]
+
+
+@pytest.mark.parametrize("key", CHECKED, ids=lambda key: ".".join(key.path))
+def test_every_key_takes_its_example_and_every_choice_in_some_study(accepts, key):
+    refused = [value for value in choices(key) if not is_accepted(accepts, key.path, value)]
+    assert refused == []
+
+
+def test_a_choice_that_does_not_exist_is_accepted_in_no_study(accepts):
+    assert not is_accepted(accepts, ("surfaces", "*", "beyond"), "stretched")
