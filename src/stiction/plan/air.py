@@ -15,6 +15,7 @@ from stiction.contact.vanderwaals import combined
 from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS
 from stiction.models import SIDES
 from stiction.plan.pair_materials import PairMaterials
+from stiction.plan.paper import is_pair
 from stiction.plan.stage import chosen
 
 
@@ -23,6 +24,22 @@ class Air:
     """Contacts of the pairs at the humidities of a configuration, and the forces in them."""
 
     config: dict  #: complete and valid
+    of_devices: bool = False  #: whether devices stick in it, none of which is a case of the paper
+
+    def reach(self, pair: str) -> str:
+        """Where the solids of a pair attract each other, ``touching`` or ``all``: as stated.
+
+        ASSUME: otherwise across all gaps, which is the safe side. The cases of the paper, in humid air, have its model,
+        and corrections to full elastic contact are ratios of forces without attraction across gaps.
+        """
+        if stated := self.config["attraction"].get("reach"):
+            return stated
+        of_paper = not self.of_devices and self._is_of_paper(PairInAir(pair).pair)
+        return "touching" if of_paper or self.config["contact"].get("model") == "full" else "all"
+
+    def _is_of_paper(self, pair):
+        humidities = *self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]
+        return min(humidities) > 0 and is_pair(self.config, pair)
 
     @property
     def _materials(self):
@@ -40,7 +57,7 @@ class Air:
         """
         if humidity > 0 and self.is_wetted(pair):
             return PairInAir(pair)
-        if self.config["attraction"]["reach"] == "touching":
+        if self.reach(pair) == "touching":
             raise ValueError(f"pair {pair} in dry air needs attraction.reach: all: {TOO_LITTLE}")
         return PairInAir(pair) if self.config["van_der_waals"] == "dry" else PairInAir.in_dry_air(pair)
 
@@ -66,17 +83,21 @@ class Air:
         gaps = self._gaps(contact, self.around(contact, config))
         return self.config["water"] | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
 
+    def without_gaps(self, contact: str) -> dict[str, Any]:
+        """As `water`, without attraction across gaps."""
+        return {key: value for key, value in self.water(contact).items() if key != "gaps"}
+
     def _contact_angles(self, pair):
         """Contact angles on both surfaces of a pair [°]."""
         return [material.get("contact_angle_deg", 0) for material in self._materials.stated(pair)]
 
     def _gaps(self, pair, config):
         """Attraction across the gaps between the solids of a pair, if there is any."""
-        reach, summits = config["attraction"], config["van_der_waals"]
-        if reach["reach"] == "touching" or summits == "none":
+        across, summits = config["attraction"], config["van_der_waals"]
+        if across.get("reach", self.reach(pair)) == "touching" or summits == "none":
             return {}
         constants = {medium: self._hamaker_constant(pair, medium) for medium in (summits, "dry")}
-        retarded = {"wavelength_nm": reach["wavelength_nm"]} if reach["retarded"] else {}
+        retarded = {"wavelength_nm": across["wavelength_nm"]} if across["retarded"] else {}
         stated = self._materials.stated(pair)
         spacer = sum(material.get(COATING, 0) for material in stated)
         coated = {"spacer_nm": spacer} if spacer else {}

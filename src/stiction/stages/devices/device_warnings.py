@@ -166,7 +166,7 @@ def _settings(plan, at):
     own = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
     if plan.devices.kind(at.device).is_beam:
         return {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}
-    return {"stopper": select(OfStopper, section | own | {"water": plan.air.water(section["pair"])})}
+    return {"stopper": select(OfStopper, section | own | {"water": plan.air_of_devices.water(section["pair"])})}
 
 
 def _of_one_device(data, _at, settings):

@@ -111,7 +111,7 @@ def contacts_of(plan: Any, device: str, number: int) -> dict[str, dict[bool, str
     """
     section = plan.config["devices"][device]
     folders = {"contact": FOLDER} | ({"tips": f"{FOLDER}/tips"} if plan.devices.kind(device).has_tip else {})
-    airs = {humidity > 0: plan.air.contact(section["pair"], humidity) for humidity in section["humidities"]}
+    airs = {humidity > 0: plan.air_of_devices.contact(section["pair"], humidity) for humidity in section["humidities"]}
     names = {is_humid: f"{device}{pair.removeprefix(pair.pair)}_{number}" for is_humid, pair in airs.items()}
     return {
         kind: {is_humid: f"{folder}/roughness/{name}" for is_humid, name in names.items()}

@@ -288,8 +288,9 @@ def _rows(dimension, rows, *names):
 def _settings(plan, at):
     """What is required of a device, and everything that its length or force depends on apart from the contact."""
     section = plan.config["devices"][at.device]
-    wettest = plan.air.contact(section["pair"], max(section["humidities"]))
-    own = plan.config["design"] | section | section["requirement"] | {"water": plan.air.water(wettest)}
+    air = plan.air_of_devices
+    wettest = air.contact(section["pair"], max(section["humidities"]))
+    own = plan.config["design"] | section | section["requirement"] | {"water": air.water(wettest)}
     if not plan.devices.kind(at.device).is_beam:
         return select(OfStopper, own)
     common = {key: plan.config[key] for key in ("seed", "chaos")}
