@@ -53,6 +53,17 @@ def lists_have_no_duplicates(config):
 
 
 @relation
+def compared_values_make_different_copies(config):
+    """Keys that change together have as many values, and no two copies have the same."""
+    paths, compared = zip(*config["compare"].items(), strict=True)
+    for path, listed in zip(paths, compared, strict=True):
+        if len(listed) != len(compared[0]):
+            yield "compare", f"must list as many values of {path} as of {paths[0]}, {len(compared[0])}"
+    for twice in duplicates(zip(*compared, strict=False)):
+        yield "compare", f"must list each copy once; {', '.join(map(shown, twice))} is listed twice"
+
+
+@relation
 def something_is_computed(config):
     """A run without pairs computes devices or evaluates scans."""
     names, devices, surfaces = config["run.pairs"], config["devices"], config["surfaces"]

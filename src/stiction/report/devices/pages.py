@@ -548,7 +548,7 @@ def _how_rough(name, roughness):
         return []
     cells = tables_roughness.roughness({name: roughness}).cells.drop(columns="device")
     of_map = "other" in roughness.dims
-    said = [*tables_roughness.answers(roughness), tables_roughness.FORM_OF_MAPS if of_map else tables_roughness.FORM]
+    said = [*tables_roughness.answers(roughness), tables_roughness.form(roughness)]
     sections = [Section("How rough must it be?", said, cells, figures_roughness.roughness(roughness))]
     if of_map:
         sections.append(Section("Over two quantities", _OF_MAPS, None, figures_roughness.roughness_map(roughness)))
