@@ -32,11 +32,21 @@ SHORTER, STRONGER = "beams that were pressed stick at shorter lengths", "stopper
 #: How to let plastic contact be checked, and how where the list of studies leaves it out.
 DISTANCE = "give its distance in studies.plasticity.distance_nm"
 NAMED = f"{DISTANCE}, and name plasticity in run.studies"
-#: Relevant to stiction, but not in the model at any setting.
-NOT_MODELLED = (
-    "Not in the model: drying after release, the time that water needs to condense, electric charge and voltage, wear, "
-    "conformal films, which correlate both surfaces, and curl by a stress gradient."
-)
+
+
+def not_modelled(left_out: Sequence[str] = (), humid: bool = True) -> str:
+    """What is relevant to stiction and not in the model: at no settings, and what those in force leave out."""
+    time = ["the time that water needs to condense and to evaporate"] * humid
+    never = [
+        "drying after release",
+        *time,
+        "electric charge and voltage",
+        "wear",
+        "conformal films, which correlate both",
+    ]
+    sentence = f"Not in the model: {', '.join([*left_out, *never])} surfaces, and curl by a stress gradient."
+    fast = " Surfaces that separate faster than water evaporates hold more than computed, which is the unsafe side."
+    return sentence + fast * humid
 
 
 def arcs_of_elements(share: float, strip: float) -> str | None:

@@ -4,6 +4,7 @@ The one module that decides which contacts a pair has in its airs. Their names, 
 humidities, are in `stiction.config.cases`.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +13,7 @@ from stiction.config.stated_materials import hamaker_constant, hamaker_constants
 from stiction.config.units import to_si
 from stiction.contact.meniscus import is_wetted
 from stiction.contact.vanderwaals import combined
+from stiction.devices import limits
 from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS
 from stiction.models import SIDES
 from stiction.plan.pair_materials import PairMaterials
@@ -68,6 +70,19 @@ class Air:
     def humid(self, pair: str) -> list[float]:
         """Humidities of a pair at which water condenses: studies over the humidity leave out dry air."""
         return [rh for rh in self.config["pairs"][pair]["humidities"] if rh > 0] if self.is_wetted(pair) else []
+
+    def not_modelled(self, cases: Iterable[tuple[str, float]]) -> str:
+        """Sentence on what is not in the results of some cases, each a pair and a humidity."""
+        cases = list(cases)
+        pairs = list(dict.fromkeys(pair for pair, _ in cases))
+        touching = [pair for pair in pairs if self.reach(pair) == "touching"]
+        of_some = f" (pairs {', '.join(touching)})" * (len(touching) < len(pairs))
+        left_out = [f"attraction of solids across gaps{of_some}"] * bool(touching)
+        if self.config["van_der_waals"] == "none":
+            left_out = ["van der Waals attraction of solids"]
+        if self.config["contact"].get("model") != "full":
+            left_out.append("interaction of neighbouring summits")
+        return limits.not_modelled(left_out, any(humidity > 0 and self.is_wetted(pair) for pair, humidity in cases))
 
     def around(self, contact: str, config: dict | None = None) -> dict[str, Any]:
         """Configuration in which the summits of a contact attract each other through its own medium."""

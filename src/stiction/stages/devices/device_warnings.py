@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import xarray as xr
 
@@ -186,6 +186,14 @@ def _of_one_device(data, _at, settings):
     return lengths, curves, []
 
 
+def not_modelled(plan: Any, *devices: str) -> str:
+    """Sentence on what is not in the results of some devices."""
+    sections = (plan.config["devices"][name] for name in devices)
+    return plan.air_of_devices.not_modelled(
+        (section["pair"], humidity) for section in sections for humidity in section["humidities"]
+    )
+
+
 def files_of(*devices: str) -> dict[str, File]:
     """Files of the warnings about devices, for `read`."""
     return {name: File(f"results/devices/warnings/{name}.json") for name in devices}
@@ -205,7 +213,8 @@ STAGES = (
         name="device_limits",
         files={"markdown": "devices/warnings.md"},
         inputs=lambda plan, at: {"warnings": files_of(*plan.devices.sections)},
-        compute=lambda data, at, settings: as_markdown(subjects(read(data["warnings"]))),
+        settings=lambda plan, at: {"not_modelled": not_modelled(plan, *plan.devices.sections)},
+        compute=lambda data, at, settings: as_markdown(subjects(read(data["warnings"])), **settings),
         save=lambda page, paths: save_text(page, paths["markdown"]),
         message="Where the results of devices are beyond the model.",
         jobs=lambda plan: [{}] if plan.devices.sections else [],
