@@ -153,8 +153,8 @@ _OF_MATERIALS = {"contact_angle_deg": ("contact angle", "°"), "coating_nm": ("c
 #: What shares are of.
 _TOUCHDOWNS = (
     "The share is that of one touchdown in one air. Of devices that touch n times and meet other summits each time, "
-    "1 - (1 - p)^n stick, about n p: for 1 in 1000 after n touchdowns, or at n humidities, take p = 0.001 / n. Those "
-    "that meet the same summits each time stick at the first or never."
+    "1 - (1 - p)^n stick, about n p: for a share q after n touchdowns, or at n humidities, take p = q / n. Those that "
+    "meet the same summits each time stick at the first or never."
 )
 _OF_BEAMS = {
     "Safe length": (
