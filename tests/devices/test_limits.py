@@ -83,6 +83,7 @@ def test_every_limit_is_tested():
         limits.of_beam,
         limits.least_gap,
         limits.not_modelled,
+        limits.without_gaps,
     }
 
 

@@ -4,7 +4,7 @@ Lengths are in metres, angles of rotation in radians, shares between 0 and 1.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from stiction.constants import WATER_MOLECULE
 from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
@@ -107,6 +107,26 @@ def spacer(name: str, stated: Sequence[str]) -> str | None:
         f"The coating of {name} counts as a spacer that attracts no more than the air or water around it. Real "
         "coatings attract, so that this result is on the unsafe side; the one without coating_nm is on the safe side. "
         f"{COATING_ATTRACTION} includes it."
+    )
+
+
+def without_gaps(changes: Mapping[float, tuple[float, float]], shorter: bool = False) -> str | None:
+    """Attraction across gaps that is left out, and how much it would change a length (``shorter``) or force.
+
+    The changes and their standard errors are relative, by humidity.
+    """
+    if not changes:
+        return None
+    by = [
+        f"{100 * change:+.2g} ± {100 * error:.1g} %{f' at RH {humidity:g}' * (len(changes) > 1)}"
+        for humidity, (change, error) in changes.items()
+    ]
+    what, unsafe = ("the length", min) if shorter else ("the force", max)
+    worst = unsafe(change for change, _ in changes.values())
+    side = ", which is the unsafe side" if (worst < 0) == shorter else ""
+    return (
+        f"Attraction of solids across gaps is left out. On these surfaces it would change {what} that holds by "
+        f"{', '.join(by)}{side}. contact.model summits and attraction.reach all include it."
     )
 
 

@@ -98,6 +98,10 @@ class Air:
         gaps = self._gaps(contact, self.around(contact, config))
         return self.config["water"] | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
 
+    def across_gaps(self, contact: str) -> dict[str, Any]:
+        """As `water`, with attraction across gaps."""
+        return self.water(contact, self.config | {"attraction": self.config["attraction"] | {"reach": "all"}})
+
     def without_gaps(self, contact: str) -> dict[str, Any]:
         """As `water`, without attraction across gaps."""
         return {key: value for key, value in self.water(contact).items() if key != "gaps"}

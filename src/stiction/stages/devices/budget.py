@@ -329,7 +329,7 @@ def _with_choices(plan, pair, settings, choices):
     return settings | {"budget": own, "choices": choices}
 
 
-def _settings_of_tips(plan, at, share=None):
+def settings_of_tips(plan: Any, at: At, share: float | None = None) -> dict[str, Any]:
     """As `settings_of`, of the length that a share of the tips of a cantilever hold, by default the middle one."""
     settings, shares = settings_of(plan, at), plan.config["design"]["shares"]
     own = {key: value for key, value in settings["budget"].items() if key not in ("beams", "waters")}
@@ -408,7 +408,7 @@ STAGES = (
         "tip_budget",
         "devices/budget/{case}_tip",
         inputs=lambda plan, at: _inputs(plan, at.case.device) | contacts_of_tip_budget(plan, at.case),
-        settings=_settings_of_tips,
+        settings=settings_of_tips,
         memory=lambda plan: _memory_of_tips(
             plan, plan, [name for name in plan.devices.budgeted if name in plan.devices.with_tips]
         ),
@@ -427,7 +427,7 @@ STAGES = (
         "test_beam_tip_budget",
         OF_ARRAYS + "/{case}_tip",
         inputs=_inputs_of_test_beams(contacts_of_tip_budget),
-        settings=lambda plan, at: _with_choices(plan, "", _settings_of_tips(plan.of_test_beams, at, HALF), []),
+        settings=lambda plan, at: _with_choices(plan, "", settings_of_tips(plan.of_test_beams, at, HALF), []),
         memory=lambda plan: _memory_of_tips(plan, plan.of_test_beams, arrays.counted(plan.config)),
         label="budget",
         message="Budget of the tips of test beams {case}.",
