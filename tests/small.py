@@ -17,6 +17,7 @@ PLAN = Plan(
         {
             "run": {"pairs": ["b"]},
             "contact": {"samples": 20},
+            "attraction": {"reach": "touching"},
             "beam": {"samples": 3, "width_um": 6, "elements": 200},
             "chaos": {"order": 2},
             "character": {"strips": 3},

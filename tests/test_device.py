@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 import stiction
+from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.devices import limits
 from stiction.models import MOMENT_QUANTITIES
@@ -75,7 +76,9 @@ def test_a_stopper_has_its_whole_area_and_the_forces_of_its_stage():
     stopper = stiction.Device.of(CONFIG, "S1")
     assert stopper.tips is None
     found = stopper.forces()
-    pulls = curves.pull_offs(stopper.contact, 0.5, Water(300.0))
+    water = in_si(Water, Plan(CONFIG).air_of_devices.water("b"))
+    assert water.gaps is not None
+    pulls = curves.pull_offs(stopper.contact, 0.5, water)
     np.testing.assert_allclose(found.pull_off.sel(humidity=0.5), 9e-12 * pulls, rtol=1e-12)
     assert stopper.warnings(found) == [limits.plastic_contact(np.nan, np.nan)]
 

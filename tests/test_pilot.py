@@ -251,7 +251,7 @@ def test_answers_are_remembered_until_something_changes_on_which_they_depend(tmp
     assert drawn(config) == 0
     assert drawn(merged(config, {"beam": {"thickness_um": 3}})) == 0
     assert drawn(config, "other code") == 2
-    for changed in ({"attraction": {"reach": "all"}}, {"surfaces": {"B2": {"rms_nm": 4}}}, {"seed": 2}):
+    for changed in ({"attraction": {"reach": "touching"}}, {"surfaces": {"B2": {"rms_nm": 4}}}, {"seed": 2}):
         assert drawn(config) == 2, "the last configuration is remembered"
         assert drawn(merged(config, changed)) == 2
 

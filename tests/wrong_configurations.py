@@ -125,6 +125,8 @@ UNCERTAIN += "uncertainty: {"
 #: A cantilever in dry and in humid air, without the braces at its end.
 IN_DRY_AIR = "devices: {C1: {kind: cantilever, pair: b, thickness_um: 3, gap_um: 10, width_um: 30, "
 IN_DRY_AIR += "humidities: [dry, 0.8], "
+#: Attraction as in the paper, stated.
+TOUCHING = "attraction: {reach: touching}\n"
 #: Coatings as thick as they may be.
 COATED = "materials: {SAM: {coating_nm: 100}}\nsurfaces: {B1: {material: SAM}, Sub1: {material: SAM}}\n"
 # As above, for relations between keys
@@ -157,9 +159,15 @@ WRONG_RELATIONS = [
     ("figures: {humidity: 0.01}", "figures.humidity", "0.01", "must be at least 0.2903"),
     ("pairs: {b: {humidities: [dry, 0.29]}}\nattraction: {reach: all}", "pairs.b.humidities", "['dry', 0.29]",
      "which are no liquid; results for dry air and for the driest air that is allowed bracket those between"),
-    ("pairs: {b: {humidities: [dry, 0.6]}}", "attraction.reach", "'touching'",
+    (TOUCHING + "pairs: {b: {humidities: [dry, 0.6]}}", "attraction.reach", "'touching'",
      "must be all for pair b, in dry air: without attraction across gaps, energies in dry air are 5 to 30 times too"),
-    (IN_DRY_AIR + "}}", "attraction.reach", "'touching'", "must be all for pair b, in dry air: without attraction"),
+    (TOUCHING + IN_DRY_AIR + "}}", "attraction.reach", "'touching'",
+     "must be all for pair b, in dry air: without attraction"),
+    ("van_der_waals: none\npairs: {b: {humidities: [dry, 0.6]}}", "van_der_waals", "'none'",
+     "must be water or dry for pair b, in dry air: without attraction"),
+    ("van_der_waals: none\n" + IN_DRY_AIR + "}}", "van_der_waals", "'none'", "must be water or dry for pair b, in dry"),
+    ("run: {pairs: [b]}\ncontact: {model: full}\npairs: {b: {humidities: [dry, 0.67]}}", "contact.model", "'full'",
+     "must be summits for pair b, in dry air: without attraction"),
     (IN_DRY_AIR.replace(", 0.8", "") + "uncertainty: {humidity: 0.01}}}\nattraction: {reach: all}",
      "devices.C1.uncertainty.humidity", "0.01",
      "must be left out, because dry air has no humidity that could be uncertain"),
@@ -176,8 +184,10 @@ WRONG_RELATIONS = [
      "attraction: {reach: all}",
      "run.studies", "['sensitivity']",
      "must be without sensitivity, which is computed in humid air alone: pair c of the figures is in none"),
-    ("figures: {humidity: dry}\nrun: {pairs: [c]}", "attraction.reach", "'touching'", "must be all for pair c, in dry"),
-    ("materials: {Wax: {contact_angle_deg: 180}}\nsurfaces: {B2: {material: Wax}}", "attraction.reach", "'touching'",
+    (TOUCHING + "figures: {humidity: dry}\nrun: {pairs: [c]}", "attraction.reach", "'touching'",
+     "must be all for pair c, in dry"),
+    (TOUCHING + "materials: {Wax: {contact_angle_deg: 180}}\nsurfaces: {B2: {material: Wax}}", "attraction.reach",
+     "'touching'",
      "must be all for pair b, where no water condenses at contact angles of 180 and 0 degrees: without attraction"),
     ("figures: {humidity: 0.4}\nwater: {temperature_K: 373}", "figures.humidity", "0.4", "at least 0.4272: in drier"),
     ("run: {pairs: [c]}\npairs: {c: {humidities: [0.9]}}\nfigures: {humidity: 0.67}\n"
@@ -279,8 +289,6 @@ WRONG_RELATIONS = [
      "surfaces: {B2: {material: SAM}}\n" + UNCERTAIN + "hamaker_constant_zJ: 9}}}",
      "devices.C1.uncertainty.hamaker_constant_zJ", "9",
      "must be left out if the material states coating_hamaker_constant_zJ"),
-    ("attraction: {reach: all}\n" + UNCERTAIN + "hamaker_constant_zJ: 9}}}",
-     "devices.C1.uncertainty.hamaker_constant_zJ", "9", "must be left out if attraction.reach is all"),
 ]  # fmt: skip
 
 WRONG = [*WRONG_VALUES, *WRONG_RELATIONS]

@@ -49,6 +49,33 @@ def test_between_humidities_the_logarithm_is_linear_and_beyond_them_there_is_no_
     assert 0 < errors[1] < np.inf
 
 
+@pytest.mark.parametrize("power", [1, 1.5, 2, 3])
+@pytest.mark.parametrize("size", [0.3, -1.5])
+def test_the_error_between_humidities_contains_that_of_the_interpolation(power, size):
+    at = np.linspace(0.4, 0.9, 41)
+    truth, nodes = (np.exp(-size * (1 - humidities) ** power) for humidities in (at, HUMIDITIES))
+    _, summits = strips(20)
+    found, errors = mean_ratios(summits * nodes, summits, HUMIDITIES, at)  # strips without scatter of their ratio
+    off, computed = np.abs(found - truth), np.isin(at, HUMIDITIES)
+    np.testing.assert_allclose(errors[computed], 0, atol=1e-9)
+    between = ~np.isclose(at[:, None], HUMIDITIES, atol=0.02).any(axis=1)
+    assert np.all(off <= 2 * errors + 1e-9)
+    assert power == 1 or np.all(errors[between] < 3 * off[between])  # control: it is no bound that says nothing
+
+
+def test_with_two_humidities_or_one_the_saturated_air_shows_the_curvature():
+    ratio = np.array([0.5, 0.9])
+    _, (error, _) = mean_ratios(
+        *(np.array([each]) * np.ones((3, 1)) for each in (ratio, ratio**0)), HUMIDITIES[:2], np.array([0.5, 0.6])
+    )
+    parabola = np.polyfit([0.4, 0.6, 1.0], [*np.log(ratio), 0], 2)
+    linear = np.log(ratio).mean()
+    assert error == pytest.approx(np.exp(linear) * abs(np.polyval(parabola, 0.5) - linear))
+    assert mean_ratios(np.full((3, 1), 0.5), np.ones((3, 1)), HUMIDITIES[:1], HUMIDITIES[:1])[1] == pytest.approx(
+        0, abs=1e-9
+    )
+
+
 def test_a_response_to_several_means_follows_their_ratios():
     full, summits = (np.stack([one, one**2], axis=-1) for one in strips(20))
     found, errors = factors(lambda means: np.sqrt(means[:, 0] * means[:, 1]), full, summits, HUMIDITIES, HUMIDITIES)

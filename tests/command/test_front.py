@@ -140,7 +140,7 @@ def test_text_of_configurations_files_and_names_is_on_the_page_as_it_is(tmp_path
     run = with_text(runs[-1] | {"git": git}, HOSTILE) | {"started": runs[-1]["started"]}
     (tmp_path / "provenance.json").write_text(json.dumps([*runs, run]))
     (tmp_path / "verdict.txt").write_text(HOSTILE)
-    (tmp_path / "warnings.md").write_text(as_markdown({HOSTILE: [HOSTILE]}))
+    (tmp_path / "warnings.md").write_text(as_markdown({HOSTILE: [HOSTILE]}, ""))
     (tmp_path / "devices" / "C1.html").write_text(Page(HOSTILE, {}, [HOSTILE]).html)
     _, shown = filled(front_page(tmp_path))
     assert not (tmp_path / MADE).exists()

@@ -150,14 +150,14 @@ def test_counts_have_budgets_of_beams_and_tips_on_the_contacts_of_the_device():
 def test_test_beams_in_dry_air_need_attraction_across_gaps_and_have_no_uncertain_humidity(kind):
     array = {key: value for key, value in ARRAY.items() if key != "crack_lengths"} | kind
     config = SECTIONS | {"test_beams": {"first": array}}
-    (problem,) = problems(merged(PAPER, config))
+    (problem,) = problems(merged(PAPER, config | {"attraction": {"reach": "touching"}}))
     assert problem.startswith("attraction.reach is 'touching', must be all for pair b, in dry air")
     assert "[0].humidity = 'dry')" in problem
-    across = Plan(load(merged(config, {"attraction": {"reach": "all"}})))
+    across = Plan(load(config))
     assert "humidity" in across.config["devices"]["C1"]["uncertainty"]
     assert "humidity" not in across.of_test_beams.config["devices"]["first"]["uncertainty"]
     mixed = config | {"test_beams": {"first": array | {"stuck": [COUNTS[0], COUNTS[0] | {"humidity": "dry"}]}}}
-    assert problems(merged(PAPER, mixed | {"attraction": {"reach": "all"}})) == ()
+    assert problems(merged(PAPER, mixed)) == ()
 
 
 def test_tips_of_counted_beams_are_drawn_with_their_own_slopes():

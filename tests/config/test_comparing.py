@@ -65,6 +65,41 @@ def test_copies_are_the_entries_of_single_values(path):
     assert any(copies[section, name] != other[section][name] for section, name in copies)
 
 
+#: Keys of one surface, and of both surfaces of a pair, that change together.
+TOGETHER = [
+    {"surfaces.B2.skewness": [-0.5, 0], "surfaces.B2.kurtosis": [3.4, 3]},
+    {"surfaces.B2.rms_nm": [3, 4], "surfaces.Sub1.rms_nm": [0.3, 0.2]},
+]
+
+
+@pytest.mark.parametrize("number", [0, 1])
+@pytest.mark.parametrize("compare", [dict(sorted(keys.items(), reverse=way)) for keys in TOGETHER for way in (0, 1)])
+def test_keys_that_change_together_make_one_copy_for_each_place_of_their_lists(compare, number):
+    found = load(BASE, {"compare": compare})
+    end, alone = list(merging.values(found))[number], BASE
+    for path, listed in compare.items():
+        section, name, key = path.split(".")
+        alone = merging.merged(alone, {section: {name: {key: listed[number]}}})
+    assert settings(found, end) == settings(load(alone))
+    assert {pair for pair in found["run"]["pairs"] if pair[0] == "b"} == {f"b{end}" for end in merging.values(found)}
+
+
+@pytest.mark.parametrize(
+    ("compare", "message"),
+    [
+        (
+            {"surfaces.B2.skewness": [0, -0.5], "surfaces.B2.kurtosis": [3, 3.4, 3.9]},
+            "must list as many values of .*kurtosis",
+        ),
+        ({"surfaces.B2.skewness": [0, 0], "surfaces.B2.kurtosis": [3, 3]}, "must list each copy once; 3, 0 is|0, 3 is"),
+        ({"surfaces.B2.rms_nm": [2, 2]}, "must list each copy once; 2 is listed twice"),
+    ],
+)
+def test_values_that_make_no_different_copies_are_refused(compare, message):
+    with pytest.raises(ConfigError, match=f"^compare is .*({message})"):
+        load(BASE, {"compare": compare})
+
+
 def test_jobs_of_copies_have_the_settings_of_single_values():
     path = "surfaces.B2.rms_nm"
     found = load(BASE, {"compare": {path: [3, 4.5]}})

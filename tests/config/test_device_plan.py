@@ -192,7 +192,7 @@ def test_the_warnings_of_a_stopper_have_its_water_its_patch_and_all_humidities_t
     assert job_settings(PLAN, "devices/warnings/S1.json")["stopper"] == {
         "pair": "b",
         "materials": [],
-        "water": {"temperature_K": 300},
+        "water": PLAN.air_of_devices.water("b"),
         "contact_um": section["contact_um"],
         "humidities": section["humidities"],
         "worst_humidities": PLAN.config["design"]["worst_humidities"],

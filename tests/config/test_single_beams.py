@@ -164,7 +164,7 @@ def test_values_that_no_beam_has_are_refused_with_their_row_as_well(study, lines
 
 def test_rows_are_named_where_other_keys_depend_on_them(study):
     with pytest.raises(ConfigError, match=r"is 'touching', .*beams\.csv', row 2: humidity = 'dry'\)$"):
-        files.load(study(HEAD, "dry,300,,yes"))
+        files.load(study(HEAD, "dry,300,,yes"), {"attraction": {"reach": "touching"}})
 
 
 def test_data_that_replace_those_of_a_file_have_no_row(study):

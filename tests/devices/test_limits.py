@@ -78,7 +78,13 @@ def test_every_limit_is_tested():
     functions = {
         value for name, value in vars(limits).items() if callable(value) and value.__module__ == limits.__name__
     }
-    assert functions == {case[0] for case in CASES} | {limits.given, limits.of_beam, limits.least_gap}
+    assert functions == {case[0] for case in CASES} | {
+        limits.given,
+        limits.of_beam,
+        limits.least_gap,
+        limits.not_modelled,
+        limits.without_gaps,
+    }
 
 
 #: Ratio, as a function of the limit, of a quantity that scales with one argument; its warning appears just beyond it.
@@ -110,5 +116,8 @@ def test_a_beam_beyond_all_limits_has_all_warnings():
 
 
 def test_what_is_not_in_the_model_is_said():
-    for word in ("drying", "charge", "wear", "curl", "condense"):
-        assert word in limits.NOT_MODELLED
+    for word in ("drying", "charge", "wear", "curl", "condense", "separate faster"):
+        assert word in limits.not_modelled()
+    dry = limits.not_modelled(["friction"], humid=False)
+    assert "friction" in dry
+    assert "water" not in dry

@@ -249,3 +249,17 @@ def test_one_monte_carlo_of_long_beams_answers_all_lengths():
     error = np.sqrt(np.multiply(predicted, 1 - np.array(predicted)) / n)
     assert np.all(np.abs(np.subtract(found, predicted)) < 3 * error)
     assert neglected[1] - found[1] > 3 * error[1]  # control: without the hold of 2 l_f the shares differ
+
+
+@pytest.mark.parametrize("medians", [(1, 1, 1), (1, 1.02, 1.5)])
+def test_the_least_of_several_safe_lengths_is_safe_in_all_airs_with_its_confidence_but_not_each_in_its_own(medians):
+    # It is unsafe in one of them only if that of the worst air is; every one of n is safe with 1 - 0.05 n alone.
+    share, trials, rng = 0.01, 1000, np.random.default_rng(2)
+    lengths = np.array(medians)[:, None, None] * lognormal(rng, (len(medians), trials, 299))
+    safe = np.array([[risk.sampled_bound(one, share)[0] for one in of_air] for of_air in lengths])
+    true = true_length(share) * np.array(medians)[:, None]
+    scatter = np.sqrt(0.05 * 0.95 / trials)
+    assert np.mean(safe.min(axis=0) > true.min()) < 0.05 + 3 * scatter
+    each = np.mean((safe > true).any(axis=0))
+    assert each > 0.05 + 10 * scatter  # control
+    assert each < 0.15 + 3 * scatter

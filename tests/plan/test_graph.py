@@ -60,7 +60,9 @@ def reached():
     wanted += [f"devices/chart/{case}" for name in PLAN.devices.charted for case in PLAN.devices.chart_cases(name)]
     wanted += [f"devices/stoppers/{name}" for name in PLAN.devices.stoppers]
     wanted += [f"devices/budget/{name}" for name in PLAN.devices.budgets()]
-    wanted += [f"devices/model_error/{name}" for name in PLAN.devices.sections]
+    wanted += [
+        f"devices/{stage}/{name}" for stage in ("model_error", "left_out_gaps") for name in PLAN.devices.sections
+    ]
     wanted += [f"studies/model_error/{pair}" for pair in PLAN.pairs]
     return behind(GRAPH, wanted)
 

@@ -4,6 +4,7 @@ import pytest
 
 from stiction.config.cases import Case
 from stiction.config.files import load
+from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.models import surface_model
@@ -284,8 +285,42 @@ def test_full_elastic_contact_is_a_variant_on_the_contact_of_the_base():
     assert ("b", "contact_full") not in corrected.variants.pairs
 
 
-def test_budgets_leave_out_choices_of_the_medium_if_solids_attract_each_other_across_gaps():
-    across = plan(attraction={"reach": "all"})
-    media = {name for name in PAPER.variants.choices("b") if name.startswith("van_der_waals")}
-    assert media == {"van_der_waals_dry", "van_der_waals_none"}
-    assert set(PAPER.variants.choices("b")) - set(across.variants.choices("b")) == media
+def test_choices_of_the_medium_change_the_attraction_of_devices_across_gaps_as_well():
+    choices = PAPER.variants.choices("b")
+    waters = PAPER.variants.water_of_choices("b", choices)
+    assert [name for name in choices if name.startswith("van_der_waals")] == list(waters)
+    for medium in ("dry", "none"):
+        expected = plan(van_der_waals=medium).air_of_devices.water("b")
+        assert waters[f"van_der_waals_{medium}"] == expected != PAPER.air_of_devices.water("b")
+    assert plan(attraction={"reach": "touching"}).variants.water_of_choices("b", choices) == {}
+
+
+@pytest.mark.parametrize(
+    ("changes", "pairs", "devices"),
+    [
+        ({}, "touching", "all"),
+        ({"contact": {"samples": 9}, "chaos": {"order": 1}, "seed": 3}, "touching", "all"),
+        ({"pairs": {"b": {"humidities": [0.5]}}}, "touching", "all"),
+        ({"pairs": {"b": {"gap_um": 10}}}, "all", "all"),
+        ({"pairs": {"b": {"humidities": ["dry", 0.5]}}}, "all", "all"),
+        ({"figures": {"humidity": "dry"}}, "all", "all"),
+        ({"surfaces": {"B2": {"rms_nm": 3}}}, "all", "all"),
+        ({"beam": {"width_um": 20}}, "all", "all"),
+        ({"attraction": {"reach": "touching"}, "beam": {"width_um": 20}}, "touching", "touching"),
+        ({"attraction": {"reach": "all"}}, "all", "all"),
+        ({"contact": {"model": "full"}, "pairs": {"b": {"gap_um": 10}}}, "touching", "touching"),
+    ],
+)
+def test_solids_attract_across_gaps_unless_the_case_is_of_the_paper_or_it_cannot_be_combined(changes, pairs, devices):
+    found = plan(**changes)
+    assert (found.air.reach("b"), found.air_of_devices.reach("b")) == (pairs, devices)
+    for air, reach in ((found.air, pairs), (found.air_of_devices, devices)):
+        explicit = plan(**merged(changes, {"attraction": {"reach": reach}})) if reach == "all" else None
+        assert ("gaps" in air.water("b")) == (reach == "all")
+        assert explicit is None or air.water("b") == explicit.air.water("b")
+
+
+@pytest.mark.parametrize("changes", [{}, {"beam": {"thickness_um": 2}}, {"surfaces": {"Sub1": {"rms_nm": 0.2}}}])
+def test_pairs_that_are_compared_with_published_values_are_those_that_keep_the_attraction_of_the_paper(changes):
+    found = plan(**changes)
+    assert found.paper.pairs == [pair for pair in found.pairs if found.air.reach(pair) == "touching"]

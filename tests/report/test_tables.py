@@ -303,7 +303,7 @@ def test_text_of_users_in_a_table_is_shown_as_it_is():
 
 def test_text_of_users_in_checks_and_warnings_is_shown_as_it_is():
     failed = checks.table([checks.Check("name", HOSTILE, False, HOSTILE)])
-    for markdown in (checks.markdown(failed), as_markdown({HOSTILE: [HOSTILE]})):
+    for markdown in (checks.markdown(failed), as_markdown({HOSTILE: [HOSTILE]}, HOSTILE)):
         shown = Reading(rendered(markdown))
         assert shown.code == []
         assert shown.text["li"][0].removeprefix("FAILED ") == f"{HOSTILE}: {HOSTILE}"

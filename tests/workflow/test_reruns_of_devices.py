@@ -90,6 +90,8 @@ MATRIX = [
     ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
      "device_choice_contact tip_choice_contact", (), "none|identified|slopes|modulus|stoppers|cracks"),
     ("water", "water: {temperature_K: 310}", "cracks safe_lengths chart stoppers budget tip_budget", (), "contact"),
+    ("attraction across gaps", "attraction: {wavelength_nm: 90}", "cracks safe_lengths chart stoppers budget tip_budget", (),
+     "contact"),
     ("skewness of a surface", "surfaces: {B2: {skewness: -0.7}}", "heights device_choice_summits", (), "Sub1.nc"),
     ("skewness of another surface", "surfaces: {B1: {skewness: -0.7}}", "", (), ""),
     ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (), "slopes|modulus|choices|tip"),

@@ -5,6 +5,7 @@ page only as characters: HTML shows it as it is, and Jinja finds no brace in it.
 """
 
 import csv
+import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape, unescape

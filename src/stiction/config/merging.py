@@ -1,7 +1,8 @@
 """Changes of single keys of a configuration or of the settings of a job, and copies of entries with other values.
 
 ``compare: {surfaces.B2.rms_nm: [3, 5]}`` makes the surfaces B2Rms3 and B2Rms5, the pairs bRms3 and bRms5 of each pair b
-on B2, and so on. The copies are entries like any others: nothing else knows of the section but tables and figures.
+on B2, and so on. Several keys change together, each copy with the values at one place of their lists. The copies are
+entries like any others: nothing else knows of the section but tables and figures.
 """
 
 from collections.abc import Mapping
@@ -28,22 +29,36 @@ def merged(base: Any, overlay: Any) -> Any:
     return {**base, **{key: merged(base.get(key), value) for key, value in overlay.items()}}
 
 
-# Values of one key side by side
+# Values of one key, or of several together, side by side
 
 
-def values(config: Mapping[str, Any]) -> dict[str, float]:
-    """Compared values by the ends of the names of their copies; empty without the section.
+def values(config: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
+    """Compared values by the ends of the names of their copies, in alphabetical order of their keys.
+
+    Empty without the section.
 
     Examples
     --------
-    >>> values({"compare": {"surfaces.B2.rms_nm": [3, 2.5]}}), values({"compare": {"surfaces.B2.skewness": [-0.5]}})
-    ({'Rms3': 3, 'Rms2p5': 2.5}, {'Skewnessm0p5': -0.5})
+    >>> values({"compare": {"surfaces.B2.rms_nm": [3, 2.5]}})
+    {'Rms3': (3,), 'Rms2p5': (2.5,)}
+    >>> values({"compare": {"surfaces.B2.skewness": [-0.5, 0], "surfaces.B2.kurtosis": [3.4, 3]}})
+    {'Kurtosis3p4Skewnessm0p5': (3.4, -0.5), 'Kurtosis3Skewness0': (3, 0)}
     """
-    for path, listed in config.get("compare", {}).items():
-        words = without_unit(path.rpartition(".")[2]).split("_")
-        key = "".join(word[:1].upper() + word[1:] for word in words)
-        return {key + str(value).replace("-", "m").replace(".", "p"): value for value in listed}
-    return {}
+    together = zip(*([(path, value) for value in listed] for path, listed in _compared(config)), strict=False)
+    return {"".join(map(_end, numbers)): tuple(value for _, value in numbers) for numbers in together}
+
+
+def _compared(config):
+    """Compared keys with their values, in alphabetical order."""
+    return sorted(config.get("compare", {}).items())
+
+
+def _end(number):
+    """End of the name of a copy with a value of a key."""
+    path, value = number
+    words = without_unit(path.rpartition(".")[2]).split("_")
+    key = "".join(word[:1].upper() + word[1:] for word in words)
+    return key + str(value).replace("-", "m").replace(".", "p")
 
 
 def expanded(config: dict[str, Any]) -> dict[str, Any]:
@@ -55,27 +70,20 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
     Raises
     ------
     ConfigError
-        If the key does not describe an entry of one of the sections whose entries are copied, or if an entry has the
-        name of a copy.
+        If a key does not describe an entry of one of the sections whose entries are copied, or if an entry has the name
+        of a copy.
     """
     if not _is_valid(config.get("compare")):
         return config
-    (path,) = config["compare"]
-    section, _, rest = path.partition(".")
-    name, _, keys = rest.partition(".")
-    entries = config.get(section) if section in _NAMED else None
-    if not isinstance(entries, dict) or not isinstance(entries.get(name), dict) or not keys:
-        known = {kind: config[kind] for kind in _NAMED if isinstance(config.get(kind), dict)}
-        if isinstance(entries, dict):
-            known = {section: entries}
-        listed = "; ".join(f"{kind}.NAME.KEY with NAME {' or '.join(map(str, names))}" for kind, names in known.items())
-        raise ConfigError(f"compare.{path} is no key of an entry that exists, must be {listed}")
-    copied, stated, ends = _affected(config, section, name), config, values(config)
-    for end, value in ends.items():
+    paths = [_of_entry(config, path) for path, _ in _compared(config)]
+    copied, stated, ends = _affected(config, *((section, name) for section, name, _ in paths)), config, values(config)
+    for end, numbers in ends.items():
         config = _with_copies(config, copied, end)
-        config = merged(config, _nested(value, section, name + end, *keys.split(".")))
+        for (section, name, keys), number in zip(paths, numbers, strict=True):
+            config = merged(config, _nested(number, section, name + end, *keys.split(".")))
     if replaced := next(_changed(stated, config), None):
-        raise ConfigError(f"{replaced} must have another name: compare.{path} makes a copy of this name")
+        compared = " and ".join(f"compare.{path}" for path, _ in _compared(stated))
+        raise ConfigError(f"{replaced} must have another name: {compared} makes a copy of this name")
     return _in_place(config, copied, ends)
 
 
@@ -97,11 +105,24 @@ def _in_place(config, copied, ends):
     return config
 
 
+def _of_entry(config, path):
+    """Section, name of the entry, and key below it of a compared key; raises a ConfigError without such an entry."""
+    section, _, rest = path.partition(".")
+    name, _, keys = rest.partition(".")
+    entries = config.get(section) if section in _NAMED else None
+    if isinstance(entries, dict) and isinstance(entries.get(name), dict) and keys:
+        return section, name, keys
+    known = {kind: config[kind] for kind in _NAMED if isinstance(config.get(kind), dict)}
+    if isinstance(entries, dict):
+        known = {section: entries}
+    listed = "; ".join(f"{kind}.NAME.KEY with NAME {' or '.join(map(str, names))}" for kind, names in known.items())
+    raise ConfigError(f"compare.{path} is no key of an entry that exists, must be {listed}")
+
+
 def _is_valid(compare):
     """Whether section ``compare`` is as the schema demands, as far as its use here needs it."""
     return (
         isinstance(compare, dict)
-        and len(compare) == 1
         and all(isinstance(path, str) for path in compare)
         and all(isinstance(listed, list) for listed in compare.values())
     )
@@ -129,10 +150,9 @@ def _places(config):
     )
 
 
-def _affected(config, section, name):
-    """Names by section of an entry and of all that use it."""
-    copied = {kind: [] for kind in _NAMED}
-    copied[section] = [name]
+def _affected(config, *entries):
+    """Names by section of some entries and of all that use them."""
+    copied = {kind: list(dict.fromkeys(name for section, name in entries if section == kind)) for kind in _NAMED}
     for kind in _NAMED:
         for other, entry in _section(config, kind).items():
             uses = isinstance(other, str) and _renamed(entry, kind, copied, "x") != entry

@@ -53,6 +53,17 @@ def lists_have_no_duplicates(config):
 
 
 @relation
+def compared_values_make_different_copies(config):
+    """Keys that change together have as many values, and no two copies have the same."""
+    paths, compared = zip(*config["compare"].items(), strict=True)
+    for path, listed in zip(paths, compared, strict=True):
+        if len(listed) != len(compared[0]):
+            yield "compare", f"must list as many values of {path} as of {paths[0]}, {len(compared[0])}"
+    for twice in duplicates(zip(*compared, strict=False)):
+        yield "compare", f"must list each copy once; {', '.join(map(shown, twice))} is listed twice"
+
+
+@relation
 def something_is_computed(config):
     """A run without pairs computes devices or evaluates scans."""
     names, devices, surfaces = config["run.pairs"], config["devices"], config["surfaces"].values()
@@ -591,18 +602,31 @@ def attraction_reaches_across_dry_gaps(config):
     """Where no water condenses, surfaces attract each other mostly where they do not touch."""
     for pair, meeting, humidities, given in _running(config, "humidities"):
         for key, shown_humidity in config.known("figures.humidity"):
-            refusal = too_short(config, pair, meeting, [*humidities, shown_humidity])
-            yield "attraction.reach", refusal, key, f"pairs.{pair}.humidities", *given
+            for refused, refusal in without_attraction(config, pair, meeting, [*humidities, shown_humidity]):
+                yield refused, refusal, key, f"pairs.{pair}.humidities", *given
 
 
-def too_short(config: Keys, pair: str, meeting: Meeting, humidities: list[float]) -> str | None:
-    """Refusal of attraction that ends where surfaces touch, if no water condenses between those of a pair."""
+#: Values with which attraction ends where surfaces touch, and those that have it across gaps.
+_TOO_SHORT = {
+    "attraction.reach": ("touching", "all"),
+    "contact.model": ("full", "summits"),
+    "van_der_waals": ("none", "water or dry"),
+}
+
+
+def without_attraction(
+    config: Keys, pair: str, meeting: Meeting, humidities: list[float]
+) -> Iterator[tuple[str, str | None]]:
+    """Refusals of attraction that ends where surfaces touch, if no water condenses between those of a pair."""
     wetted = not meeting.sides or wetting(meeting.sides, meeting.materials)
-    if config["attraction.reach"] == "all" or (wetted and min(humidities) > 0):
-        return None
+    if wetted and min(humidities) > 0:
+        return
     stated = " and ".join(f"{material.get('contact_angle_deg', 0):g}" for material in of_material(*meeting[:2]))
     why = "in dry air" if wetted else f"where no water condenses at contact angles of {stated} degrees"
-    return f"must be all for pair {pair}, {why}: {TOO_LITTLE}"
+    for key, value in config.known(*_TOO_SHORT):
+        refused, allowed = _TOO_SHORT[key]
+        if value == refused:
+            yield key, f"must be {allowed} for pair {pair}, {why}: {TOO_LITTLE}"
 
 
 @relation

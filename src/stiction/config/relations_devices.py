@@ -32,8 +32,8 @@ from stiction.config.relations import (
     sides_of,
     surfaces_of,
     too_dry,
-    too_short,
     wetting,
+    without_attraction,
     without_density,
 )
 from stiction.config.stated_materials import hamaker_constant
@@ -190,8 +190,10 @@ def _seeks_worst_air(device):
 def attraction_reaches_across_dry_gaps_of_devices(config):
     """As for pairs, at the humidities of a device."""
     for name, humidities in config.entries("devices", "humidities"):
-        refusal = too_short(config, config["devices"][name]["pair"], _meeting(config, name), humidities)
-        yield "attraction.reach", refusal, f"devices.{name}.humidities", *_scanned(config, name)
+        for key, refusal in without_attraction(
+            config, config["devices"][name]["pair"], _meeting(config, name), humidities
+        ):
+            yield key, refusal, f"devices.{name}.humidities", *_scanned(config, name)
 
 
 @relation
@@ -293,13 +295,10 @@ def uncertain_hamaker_constants_stay_positive(config):
 
 
 @relation
-def uncertain_hamaker_constants_are_those_of_summits(config):
-    """The budget changes that of the summits alone, and those across gaps and of coatings would have to follow."""
+def uncertain_hamaker_constants_are_those_of_bare_solids(config):
+    """The budget changes that of the solids alone, and that of their coating would have to follow."""
     key = "uncertainty.hamaker_constant_zJ"
     for name, deviation in config.entries("devices", key):
-        if deviation and config["attraction.reach"] == "all":
-            message = "must be left out if attraction.reach is all"
-            yield f"devices.{name}.{key}", message, "attraction.reach"
         if deviation and COATING_ATTRACTION in _material(config, name):
             message = f"must be left out if the material states {COATING_ATTRACTION}"
             yield f"devices.{name}.{key}", message

@@ -3,7 +3,7 @@
 The contact of the solids does not depend on it. Force curves at any humidity follow from the contact and the water.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import NamedTuple
@@ -14,6 +14,7 @@ from stiction.contact import forcelaw, gaps, vanderwaals
 from stiction.contact.correction import Correction
 from stiction.contact.meniscus import film
 from stiction.contact.solids import Solid, attraction_between, interfaces
+from stiction.models import SIDES
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,14 @@ class Gaps:
         """
         across = gaps.work_across_film(gap, height, self.through(self.summits), self.through("dry"))
         return across - self._counted.work(gap)
+
+    def scaled(self, factor: float, sides: Collection[str]) -> "Gaps":
+        """The same with a factor of the Hamaker constants of the solids on some sides, see `combined`."""
+        scales = {side: factor if side in sides else 1.0 for side in SIDES}
+        both = vanderwaals.combined(*scales.values())
+        constants = {medium: both * constant for medium, constant in self.hamaker_constant.items()}
+        bodies = {side: body.attracting(scales[side]) for side, body in self.bodies.items()}
+        return replace(self, hamaker_constant=constants, bodies=bodies)
 
     @property
     def _counted(self):

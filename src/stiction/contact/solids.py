@@ -4,7 +4,7 @@ Each body is a `Solid`; the default is polysilicon as in the paper. Two equal bo
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
@@ -45,6 +45,11 @@ class Solid:
                 raise ValueError(
                     f"the Hamaker constant of a coating ({medium}) must be from 0 to that of its solid, got {value} J"
                 )
+
+    def attracting(self, factor: float) -> "Solid":
+        """The same with a factor of its Hamaker constants; those of its coating stay."""
+        scaled = {medium: factor * constant for medium, constant in self.hamaker_constant.items()}
+        return replace(self, hamaker_constant=scaled)
 
 
 def composite_modulus(first: Solid, second: Solid) -> float:

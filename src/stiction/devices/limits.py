@@ -4,7 +4,7 @@ Lengths are in metres, angles of rotation in radians, shares between 0 and 1.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from stiction.constants import WATER_MOLECULE
 from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
@@ -32,11 +32,21 @@ SHORTER, STRONGER = "beams that were pressed stick at shorter lengths", "stopper
 #: How to let plastic contact be checked, and how where the list of studies leaves it out.
 DISTANCE = "give its distance in studies.plasticity.distance_nm"
 NAMED = f"{DISTANCE}, and name plasticity in run.studies"
-#: Relevant to stiction, but not in the model at any setting.
-NOT_MODELLED = (
-    "Not in the model: drying after release, the time that water needs to condense, electric charge and voltage, wear, "
-    "conformal films, which correlate both surfaces, and curl by a stress gradient."
-)
+
+
+def not_modelled(left_out: Sequence[str] = (), humid: bool = True) -> str:
+    """What is relevant to stiction and not in the model: at no settings, and what those in force leave out."""
+    time = ["the time that water needs to condense and to evaporate"] * humid
+    never = [
+        "drying after release",
+        *time,
+        "electric charge and voltage",
+        "wear",
+        "conformal films, which correlate both",
+    ]
+    sentence = f"Not in the model: {', '.join([*left_out, *never])} surfaces, and curl by a stress gradient."
+    fast = " Surfaces that separate faster than water evaporates hold more than computed, which is the unsafe side."
+    return sentence + fast * humid
 
 
 def arcs_of_elements(share: float, strip: float) -> str | None:
@@ -97,6 +107,26 @@ def spacer(name: str, stated: Sequence[str]) -> str | None:
         f"The coating of {name} counts as a spacer that attracts no more than the air or water around it. Real "
         "coatings attract, so that this result is on the unsafe side; the one without coating_nm is on the safe side. "
         f"{COATING_ATTRACTION} includes it."
+    )
+
+
+def without_gaps(changes: Mapping[float, tuple[float, float]], shorter: bool = False) -> str | None:
+    """Attraction across gaps that is left out, and how much it would change a length (``shorter``) or force.
+
+    The changes and their standard errors are relative, by humidity.
+    """
+    if not changes:
+        return None
+    by = [
+        f"{100 * change:+.2g} ± {100 * error:.1g} %{f' at RH {humidity:g}' * (len(changes) > 1)}"
+        for humidity, (change, error) in changes.items()
+    ]
+    what, unsafe = ("the length", min) if shorter else ("the force", max)
+    worst = unsafe(change for change, _ in changes.values())
+    side = ", which is the unsafe side" if (worst < 0) == shorter else ""
+    return (
+        f"Attraction of solids across gaps is left out. On these surfaces it would change {what} that holds by "
+        f"{', '.join(by)}{side}. contact.model summits and attraction.reach all include it."
     )
 
 

@@ -4,6 +4,7 @@ The one module that decides which contacts a pair has in its airs. Their names, 
 humidities, are in `stiction.config.cases`.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,9 +13,11 @@ from stiction.config.stated_materials import hamaker_constant, hamaker_constants
 from stiction.config.units import to_si
 from stiction.contact.meniscus import is_wetted, require_humidity
 from stiction.contact.vanderwaals import combined
+from stiction.devices import limits
 from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS
 from stiction.models import SIDES
 from stiction.plan.pair_materials import PairMaterials
+from stiction.plan.paper import is_pair
 from stiction.plan.stage import chosen
 
 
@@ -23,6 +26,22 @@ class Air:
     """Contacts of the pairs at the humidities of a configuration, and the forces in them."""
 
     config: dict  #: complete and valid
+    of_devices: bool = False  #: whether devices stick in it, none of which is a case of the paper
+
+    def reach(self, pair: str) -> str:
+        """Where the solids of a pair attract each other, ``touching`` or ``all``: as stated.
+
+        ASSUME: otherwise across all gaps, which is the safe side. The cases of the paper, in humid air, have its model,
+        and corrections to full elastic contact are ratios of forces without attraction across gaps.
+        """
+        if stated := self.config["attraction"].get("reach"):
+            return stated
+        of_paper = not self.of_devices and self._is_of_paper(PairInAir(pair).pair)
+        return "touching" if of_paper or self.config["contact"].get("model") == "full" else "all"
+
+    def _is_of_paper(self, pair):
+        humidities = *self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]
+        return min(humidities) > 0 and is_pair(self.config, pair)
 
     @property
     def _materials(self):
@@ -41,7 +60,7 @@ class Air:
         require_humidity(humidity)
         if humidity > 0 and self.is_wetted(pair):
             return PairInAir(pair)
-        if self.config["attraction"]["reach"] == "touching":
+        if self.reach(pair) == "touching":
             raise ValueError(f"pair {pair} in dry air needs attraction.reach: all: {TOO_LITTLE}")
         return PairInAir(pair) if self.config["van_der_waals"] == "dry" else PairInAir.in_dry_air(pair)
 
@@ -52,6 +71,19 @@ class Air:
     def humid(self, pair: str) -> list[float]:
         """Humidities of a pair at which water condenses: studies over the humidity leave out dry air."""
         return [rh for rh in self.config["pairs"][pair]["humidities"] if rh > 0] if self.is_wetted(pair) else []
+
+    def not_modelled(self, cases: Iterable[tuple[str, float]]) -> str:
+        """Sentence on what is not in the results of some cases, each a pair and a humidity."""
+        cases = list(cases)
+        pairs = list(dict.fromkeys(pair for pair, _ in cases))
+        touching = [pair for pair in pairs if self.reach(pair) == "touching"]
+        of_some = f" (pairs {', '.join(touching)})" * (len(touching) < len(pairs))
+        left_out = [f"attraction of solids across gaps{of_some}"] * bool(touching)
+        if self.config["van_der_waals"] == "none":
+            left_out = ["van der Waals attraction of solids"]
+        if self.config["contact"].get("model") != "full":
+            left_out.append("interaction of neighbouring summits")
+        return limits.not_modelled(left_out, any(humidity > 0 and self.is_wetted(pair) for pair, humidity in cases))
 
     def around(self, contact: str, config: dict | None = None) -> dict[str, Any]:
         """Configuration in which the summits of a contact attract each other through its own medium."""
@@ -67,17 +99,25 @@ class Air:
         gaps = self._gaps(contact, self.around(contact, config))
         return self.config["water"] | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
 
+    def across_gaps(self, contact: str) -> dict[str, Any]:
+        """As `water`, with attraction across gaps."""
+        return self.water(contact, self.config | {"attraction": self.config["attraction"] | {"reach": "all"}})
+
+    def without_gaps(self, contact: str) -> dict[str, Any]:
+        """As `water`, without attraction across gaps."""
+        return {key: value for key, value in self.water(contact).items() if key != "gaps"}
+
     def _contact_angles(self, pair):
         """Contact angles on both surfaces of a pair [°]."""
         return [material.get("contact_angle_deg", 0) for material in self._materials.stated(pair)]
 
     def _gaps(self, pair, config):
         """Attraction across the gaps between the solids of a pair, if there is any."""
-        reach, summits = config["attraction"], config["van_der_waals"]
-        if reach["reach"] == "touching" or summits == "none":
+        across, summits = config["attraction"], config["van_der_waals"]
+        if across.get("reach", self.reach(pair)) == "touching" or summits == "none":
             return {}
         constants = {medium: self._hamaker_constant(pair, medium) for medium in (summits, "dry")}
-        retarded = {"wavelength_nm": reach["wavelength_nm"]} if reach["retarded"] else {}
+        retarded = {"wavelength_nm": across["wavelength_nm"]} if across["retarded"] else {}
         stated = self._materials.stated(pair)
         spacer = sum(material.get(COATING, 0) for material in stated)
         coated = {"spacer_nm": spacer} if spacer else {}

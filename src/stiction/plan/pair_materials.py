@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from stiction.config.cases import PairInAir
 from stiction.config.files import paper
 from stiction.config.stated_materials import material_of
-from stiction.devices.materials import COATING, OF_COATINGS, PROPERTIES
+from stiction.devices.materials import COATING, ELASTIC, OF_COATINGS, PROPERTIES
 from stiction.models import SIDES
 from stiction.plan.stage import chosen
 
@@ -38,6 +38,11 @@ class PairMaterials:
             return {}
         others = solid or self.config["solid"]
         return {"materials": {side: others | material for side, material in zip(SIDES, stated, strict=True)}}
+
+    def alike(self, pair: str) -> list[str]:
+        """Sides of a pair whose bodies have the material of the beam."""
+        bodies = self.settings(pair, ELASTIC).get("materials", {})
+        return [side for side in SIDES if bodies.get(side) == bodies.get("beam")]
 
     def in_words(self, pair: str) -> list:
         """Names of the materials of a pair, each with its stated properties in words; section solid if it is one."""

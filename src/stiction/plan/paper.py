@@ -6,6 +6,7 @@ from typing import Any
 
 from stiction.config.cases import Case
 from stiction.config.files import paper
+from stiction.models import SIDES
 
 #: Keys of the measured statistics of a surface: moments of the heights and summit statistics.
 MOMENTS = ("rms_nm", "skewness", "kurtosis")
@@ -24,6 +25,26 @@ def _same(section, other, only=None, but=()):
     return all(section.get(key) == other.get(key) for key in keys)
 
 
+def _has(config, sections):
+    """Whether some keys of sections have the values of the paper."""
+    return all(_same(config[section], paper()[section], only=keys) for section, keys in sections.items())
+
+
+def is_surface(config: dict, name: str) -> bool:
+    """Whether a surface has the measured statistics and the published spectrum of the paper."""
+    return _same(config["surfaces"][name], paper()["surfaces"].get(name), but=["psd"])
+
+
+def is_pair(config: dict, name: str) -> bool:
+    """Whether a pair has the surfaces, gap and beam of the paper, so that published values can be compared with it."""
+    pair = config["pairs"][name]
+    return (
+        _has(config, _OF_BEAM)
+        and _same(pair, paper()["pairs"].get(name), but=["humidities"])
+        and all(is_surface(config, pair[side]) for side in SIDES)
+    )
+
+
 @dataclass(frozen=True)
 class PaperCase:
     """What a plan shares with the case study of the paper."""
@@ -37,22 +58,13 @@ class PaperCase:
 
     @cached_property
     def surfaces(self) -> list[str]:
-        """Surfaces of the paper: measured statistics and published spectrum as in its case study."""
-        known = paper()["surfaces"]
-        own = self.config["surfaces"]
-        return [name for name in self.plan.surfaces if _same(own[name], known.get(name), but=["psd"])]
+        """Surfaces of the paper among those that are computed."""
+        return [name for name in self.plan.surfaces if is_surface(self.config, name)]
 
     @cached_property
     def pairs(self) -> list[str]:
-        """Pairs of the paper: same surfaces, gap and beam."""
-        if not self._has(_OF_BEAM):
-            return []
-        return [
-            pair
-            for pair in self.plan.pairs
-            if _same(self.config["pairs"][pair], paper()["pairs"].get(pair), but=["humidities"])
-            and set(self.plan.sides(pair)) <= set(self.surfaces)
-        ]
+        """Pairs of the paper among those that run."""
+        return [pair for pair in self.plan.pairs if is_pair(self.config, pair)]
 
     def has_mesh(self, case: Case) -> bool:
         """Whether the beams of a case have the elements of the paper, whatever their force laws.
@@ -65,7 +77,7 @@ class PaperCase:
     @cached_property
     def _highest_on_mesh(self):
         """Highest humidity of the paper of each pair whose beams may have the elements of the paper."""
-        if not self._has(_OF_MESH):
+        if not _has(self.config, _OF_MESH):
             return {}
         return {
             pair: max(of_paper["humidities"])
@@ -74,10 +86,6 @@ class PaperCase:
             and self._has_modulus(pair)
             and all(self._has_heights(name) for name in self.plan.sides(pair))
         }
-
-    def _has(self, sections):
-        """Whether some keys of sections have the values of the paper."""
-        return all(_same(self.config[section], paper()[section], only=keys) for section, keys in sections.items())
 
     def _has_modulus(self, pair):
         """Whether the beam of a pair has the Young's modulus of the paper."""

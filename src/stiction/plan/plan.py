@@ -46,6 +46,11 @@ class Plan:
         return Air(self.config)
 
     @cached_property
+    def air_of_devices(self) -> Air:
+        """Air around devices, and around test beams."""
+        return Air(self.config, of_devices=True)
+
+    @cached_property
     def scans(self) -> Scans:
         """Surfaces described by scans."""
         return Scans(self.config)
@@ -80,7 +85,7 @@ class Plan:
 
     def contact_of_device(self, case: Case) -> PairInAir:
         """As `contact`, of a case of a device."""
-        return self.air.contact(self.config["devices"][case.device]["pair"], case.humidity)
+        return self.air_of_devices.contact(self.config["devices"][case.device]["pair"], case.humidity)
 
     @cached_property
     def surfaces(self) -> list[str]:

@@ -1,5 +1,6 @@
 """Variants of a configuration: one changed model choice each, where the paper leaves the choice open."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -130,14 +131,10 @@ class Variants:
         return self._all_summits(pair, variant), contact, *after
 
     def choices(self, pair: str) -> list[str]:
-        """Variants that change the contact of a pair, which need not run; devices have summits under all of them.
-
-        Those with other forces across gaps are left out: a budget has the same water under all of its choices.
-        """
+        """Variants that change the contact of a pair, which need not run; devices have summits under all of them."""
         contacts = [
             name for name in self.changes if self.contact_under(name) == name != "base" and not self.has_islands(name)
         ]
-        contacts = [name for name in contacts if self.water(pair, name) == self.water(pair, "base")]
         return [name for name in contacts if self._under(pair, name) != self._under(pair, "base")]
 
     def choices_of_solids(self, pair: str) -> list[str]:
@@ -148,6 +145,12 @@ class Variants:
         """Those of `choices` for a device at a humidity: short strips have those of the solids alone."""
         of_pair = self.choices_of_solids if self.plan.devices.kind(case.device).has_short_strips else self.choices
         return of_pair(self.plan.contact_of_device(case))
+
+    def water_of_choices(self, contact: str, choices: Sequence[str]) -> dict[str, dict]:
+        """Section ``water`` of a contact of devices under those of `choices` that change attraction across gaps."""
+        air = self.plan.air_of_devices
+        waters = {name: air.water(contact, merged(self.config, self.changes[name])) for name in choices}
+        return {name: water for name, water in waters.items() if water != air.water(contact)}
 
     @cached_property
     def pairs(self) -> list[tuple[str, str]]:

@@ -47,8 +47,8 @@ def caption(errors: Mapping[Any, xr.Dataset]) -> str:
     does = "has changed what is stated" if applied else "would change what is stated"
     return (
         f"Model error: by how much full elastic contact of the surfaces {does}, ± standard error over its strips; * "
-        "interpolated between the humidities at which it was computed; – not known. It has one sign and is no random "
-        "error: it is part of no standard error."
+        "interpolated between the humidities at which it was computed, with the error of the interpolation; – not "
+        "known. It has one sign and is no random error: it is part of no standard error."
     )
 
 

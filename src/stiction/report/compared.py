@@ -1,6 +1,6 @@
-"""Values of one key side by side (section ``compare``): tables and figures of the numbers of all copies of an entry."""
+"""Values of a key, or of several together, side by side (section ``compare``): numbers of all copies of an entry."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import pandas as pd
@@ -45,10 +45,10 @@ SOURCES = (
 )
 
 
-def rows(table: pd.DataFrame, source: Source, ends: Mapping[str, float]) -> pd.DataFrame:
-    """Rows of all copies under the names of their originals, with the compared value; values increase.
+def rows(table: pd.DataFrame, source: Source, ends: Mapping[str, Sequence[float]]) -> pd.DataFrame:
+    """Rows of all copies under the names of their originals, with the compared values, which increase.
 
-    ``ends`` maps the end of the names of copies to their value, see `stiction.config.merging.values`.
+    ``ends`` maps the end of the names of copies to their values, see `stiction.config.merging.values`.
     """
     table = table.dropna(subset="relative_humidity")  # a stopper also has its worst values in any air
     if "estimate_se_beams_um" in table:
@@ -56,29 +56,45 @@ def rows(table: pd.DataFrame, source: Source, ends: Mapping[str, float]) -> pd.D
         table = table.assign(estimate_se_um=(errors**2).sum(axis=1) ** 0.5)
     names = table[source.subject].astype(str)
     copies = {end: table[names.str.endswith(end)] for end in ends}
+    of_values = _columns(next(iter(ends.values()), ()))
     parts = [
-        copy.assign(**{source.subject: names[copy.index].str.removesuffix(end), "value": ends[end]})
+        copy.assign(
+            **{source.subject: names[copy.index].str.removesuffix(end)} | dict(zip(of_values, ends[end], strict=True))
+        )
         for end, copy in copies.items()
     ]
-    order = [source.subject, "relative_humidity", source.panels, *(["share"] if "share" in table else []), "value"]
+    order = [source.subject, "relative_humidity", source.panels, *(["share"] if "share" in table else []), *of_values]
     return pd.concat(parts).sort_values(list(dict.fromkeys(order)))
 
 
-def compared(table: pd.DataFrame, source: Source, key: str, ends: Mapping[str, float]) -> Table:
+def _columns(keys):
+    """Columns with the values of some keys."""
+    return [f"value_{k}" if k > 1 else "value" for k in range(1, len(keys) + 1)]
+
+
+def compared(table: pd.DataFrame, source: Source, keys: Sequence[str], ends: Mapping[str, Sequence[float]]) -> Table:
     """Numbers of all copies, those of different values below each other."""
     caption = (
-        f"The {source.words.partition(' [')[0]} for values of {key}, ± standard error. The copies have random numbers "
-        "of their own: the standard error of a difference is the root of the sum of the squares."
+        f"The {source.words.partition(' [')[0]} for values of {' and '.join(keys)}, ± standard error. The copies have "
+        "random numbers of their own: the standard error of a difference is the root of the sum of the squares."
     )
     columns = {source.subject: (str, source.subject)} | HUMIDITY | source.more
-    columns |= {key: ("g", "value"), source.words: (with_error, *source.numbers)}
+    columns |= {key: ("g", column) for key, column in zip(keys, _columns(keys), strict=True)}
+    columns |= {source.words: (with_error, *source.numbers)}
     return Table.of(rows(table, source, ends).to_dict("records"), caption, columns)
 
 
 @styled
-def drawn(table: pd.DataFrame, source: Source, key: str, ends: Mapping[str, float]) -> Figure:
-    """The compared number over the values of a key: a line for each humidity, of the middle one of the shares."""
+def drawn(table: pd.DataFrame, source: Source, keys: Sequence[str], ends: Mapping[str, Sequence[float]]) -> Figure:
+    """The compared number over the values of a key: a line for each humidity, of the middle one of the shares.
+
+    Copies whose keys change together are one beside the other.
+    """
     frame = rows(table, source, ends)
+    copies = sorted(map(tuple, ends.values()))
+    if len(keys) > 1:
+        places = frame[_columns(keys)].apply(tuple, axis=1).map(copies.index)
+        frame = frame.assign(value=places)
     if "share" in frame:
         shares = sorted(set(frame.share))
         frame = frame[frame.share == shares[len(shares) // 2]]
@@ -89,7 +105,9 @@ def drawn(table: pd.DataFrame, source: Source, key: str, ends: Mapping[str, floa
             at, error = line.sort_values("value"), source.numbers[1]
             style = {"color": f"C{k}", "linestyle": dashes(k), "marker": marker(k), "capsize": 2}
             panel.errorbar(at.value, at[source.numbers[0]], at[error], label=air(humidity), **style)
-        panel.set(xlabel=key)
+        panel.set_xlabel(", ".join(keys))
+        if len(keys) > 1:
+            panel.set_xticks(range(len(copies)), [", ".join(f"{value:g}" for value in copy) for copy in copies])
         panel.legend()
     axes[0, 0].set_ylabel(source.words if "share" not in frame else f"{source.words}, p = {frame.share.iloc[0]:g}")
     letter(axes, [", ".join(name) for name in parts])
@@ -106,7 +124,8 @@ def _stages(source):
         return [{}] if any(one.endswith(tuple(values(plan.config))) for one in subjects) else []
 
     def settings(plan, _at):
-        return {"key": next(iter(plan.config.get("compare", {})), ""), "ends": values(plan.config)}
+        ends = {end: list(numbers) for end, numbers in values(plan.config).items()}
+        return {"keys": sorted(plan.config.get("compare", {})), "ends": ends}
 
     declared = {
         "inputs": lambda plan, at: {"table": File(f"results/tables/{source.table}.csv")},
@@ -117,7 +136,7 @@ def _stages(source):
     shows = f"{source.words.partition(' [')[0]} for values of one key"
 
     def made(show):
-        return lambda data, at, settings: show(pd.read_csv(data["table"]), source, settings["key"], settings["ends"])
+        return lambda data, at, settings: show(pd.read_csv(data["table"]), source, settings["keys"], settings["ends"])
 
     return (
         table_stage(name, shows, compute=made(compared), **declared),

@@ -36,7 +36,7 @@ _CAPTION = (
     "crack lengths of Table III, model NG, without and with it. Beams: the same by beams on corrected force laws, in "
     "which e and f_max of all samples are multiplied by their ratios, ± standard error over beams. It has one sign and "
     "is no random error: it is not part of any standard error. * interpolated between the humidities at which full "
-    "contact was computed."
+    "contact was computed, with the error of the interpolation."
 )
 
 

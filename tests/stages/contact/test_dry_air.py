@@ -179,6 +179,6 @@ def test_a_study_of_a_pair_takes_the_word_and_the_number(dry):
 
 
 def test_dry_air_without_attraction_across_gaps_is_refused_with_its_error():
-    plan = Plan(load(SIZES))
+    plan = Plan(load(SIZES, {"attraction": {"reach": "touching"}}))
     with pytest.raises(ValueError, match=r"pair b in dry air needs attraction.reach: all: .* 5 to 30 times too small"):
         plan.air.contact("b", 0.0)

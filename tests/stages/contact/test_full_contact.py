@@ -7,11 +7,14 @@ import small
 from numpy.testing import assert_array_equal
 from plans import job_settings
 
+from stiction.analysis.model_error import interpolation_error, mean_ratios
+from stiction.config.merging import merged
 from stiction.contact import elements
 from stiction.plan.graph import Results
 from stiction.stages.contact import full_contact
 from stiction.stages.contact.pairs import bodies
 from stiction.stages.laws import forces
+from stiction.stages.surfaces.rough_surfaces import both
 
 SETTINGS = small.settings_of(full_contact, job_settings(small.PLAN, "studies/full_contact/b"))
 
@@ -79,3 +82,21 @@ def test_attraction_across_gaps_is_refused_in_one_sentence():
     across = replace(SETTINGS, strips=1, water=replace(SETTINGS.water, gaps=object()))
     with pytest.raises(ValueError, match="no attraction across gaps"):
         full_contact.compute(small.surfaces(), "b", across)
+
+
+@pytest.mark.slow
+def test_between_humidities_the_stated_error_is_that_of_the_interpolation_on_pair_a():
+    config = merged(small.PLAN.config, {"run": {"pairs": ["a"]}, "figures": {"pair": "a"}, "beam": {"width_um": 3}})
+    results = Results.of(config)
+    job = results.graph.job("studies/full_contact/a")
+    at = (0.45, 0.5, 0.575, 0.65, 0.70, 0.75, 0.80, 0.85, 0.90)
+    settings = replace(small.settings_of(full_contact, job.settings), humidities=at)
+    found = full_contact.compute(both(results.inputs(job)), "a", settings)
+    humidities, *energies = full_contact.energies(found)
+    computed = np.isin(humidities, job.settings["humidities"])
+    truth, _ = mean_ratios(*energies, humidities, humidities)
+    ratios, errors = mean_ratios(*(of[:, computed] for of in energies), humidities[computed], humidities)
+    between = ratios * interpolation_error(np.log(ratios[computed]), humidities[computed], humidities)
+    off, between = np.abs(ratios - truth)[~computed], between[~computed]
+    assert np.all((off < 2 * between) & (between < 2 * off))
+    assert np.all(errors[~computed] > between)

@@ -115,7 +115,7 @@ def test_humid_air_is_as_without_dry_air():
 
 def test_choices_of_the_medium_are_none_in_dry_air():
     dry, humid = (PLAN.variants.choices_of_device(Case(case)) for case in ("C1_dry", "C1_rh067"))
-    assert dry == humid  # across gaps, other media are left out anyway
+    assert dry == [name for name in humid if not name.startswith("van_der_waals")]
     assert not [name for name in dry if name.startswith("van_der_waals")]
     assert [name for name in dry if name.startswith("poisson_ratio")]
 

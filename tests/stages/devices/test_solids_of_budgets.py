@@ -8,18 +8,21 @@ import small
 from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
 
+from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.devices.materials import OF_CONTACT
 from stiction.plan.plan import Plan
-from stiction.stages.contact import contact
+from stiction.stages.contact import contact, curves
 from stiction.stages.devices import budget
 from stiction.stages.devices.uncertain_inputs import Uncertainty
 
 WATER = Water(300.0)
 STOPPER = budget.PatchBudget(1, WATER, 0.5, Uncertainty(), ("B2", "Sub1"), 164e9, contact=(3e-6, 2e-6))
 PATCH = "b", 1500, 6000
+SIDES = {"B2": "beam", "Sub1": "substrate"}
+GAPS = np.linspace(0, 2e-8, 50)
 E, RATIO = 164.0, 0.23
 
 
@@ -99,6 +102,45 @@ def test_without_van_der_waals_forces_the_hamaker_constant_has_no_effect():
     assert slopes(Uncertainty(hamaker_constant=2e-20), {"hamaker_constant": (less, more)}) == {
         "Hamaker constant": (0, 0)
     }
+
+
+#: Properties of both surfaces with a material; with none, both are of polysilicon.
+GLASS, COATED = ({"hamaker_constant_zJ": {"water": 40, "dry": 90}} | more for more in ({}, {"coating_nm": 1.2}))
+COATED |= {"coating_hamaker_constant_zJ": {"water": 4, "dry": 50}}
+
+
+@pytest.mark.parametrize(
+    "materials", [{}, {"Sub1": GLASS}, {"B2": GLASS}, {"Sub1": COATED}, {"B2": GLASS, "Sub1": GLASS}]
+)
+def test_the_hamaker_constant_of_a_device_acts_across_gaps_like_that_of_other_solids(materials):
+    def plan(factor):
+        solids = {
+            name: {"hamaker_constant_zJ": {"water": 97.5, "dry": 186.5}} | materials.get(name, {}) for name in SIDES
+        }
+        for name in [name for name in SIDES if solids[name] == solids["B2"]]:
+            constants = solids[name]["hamaker_constant_zJ"].items()
+            solids[name] |= {"hamaker_constant_zJ": {medium: factor * value for medium, value in constants}}
+        surfaces = {name: {"material": f"Of{name}"} for name in solids}
+        return Plan(load({"materials": {f"Of{name}": solid for name, solid in solids.items()}, "surfaces": surfaces}))
+
+    gaps = {factor: in_si(Water, plan(factor).air_of_devices.water("b")).gaps for factor in (1, 1.2)}
+    found, height = gaps[1].scaled(1.2, plan(1).materials.alike("b")), 1.4e-9
+    assert_allclose(found.work(GAPS, height), gaps[1.2].work(GAPS, height), rtol=1e-12)
+    assert abs(found.work(GAPS, height) / gaps[1].work(GAPS, height) - 1).max() > 0.03  # control
+
+
+def test_the_slope_of_the_hamaker_constant_is_that_of_summits_and_gaps_together():
+    across = Plan(merged(small.PLAN.config, {"attraction": {"reach": "all"}}))
+    water = in_si(Water, across.air_of_devices.water("b"))
+    solids = changed("hamaker_constant", across)
+    settings = replace(STOPPER, water=water, uncertainty=Uncertainty(hamaker_constant=2e-20), hamaker_constant=97.5e-21)
+    found = budget.compute(small.contact_of_pair(), {}, {"hamaker_constant": solids}, {}, {}, settings)
+    step = OF_CONTACT["hamaker_constant"].step
+    waters = [replace(water, gaps=water.gaps.scaled(end, SIDES.values())) for end in step.ends(1.0)]
+    less, more = (curves.pull_offs(one, 0.5, air).mean() for one, air in zip(solids, waters, strict=True))
+    assert float(found.slope[0]) == pytest.approx(np.log(more / less) / step.difference)
+    alone = [curves.pull_offs(one, 0.5, water).mean() for one in solids]
+    assert float(found.slope[0]) > 1.2 * np.log(alone[1] / alone[0]) / step.difference  # control: summits alone
 
 
 @pytest.mark.parametrize("medium", ["water", "dry"])

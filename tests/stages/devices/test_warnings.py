@@ -14,7 +14,6 @@ from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import film, surface_energy
 from stiction.devices import limits
-from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.stages.beams import pair_warnings
@@ -368,9 +367,9 @@ def test_a_stopper_has_the_warnings_of_its_contact(warned):
 
 
 def test_the_page_has_each_sentence_once_with_its_subjects_and_what_is_not_modelled():
-    page = pair_warnings.as_markdown({"pair a": [], "pair b": ["One.", "Two."], "pair c": ["Two."]})
+    page = pair_warnings.as_markdown({"pair a": [], "pair b": ["One.", "Two."], "pair c": ["Two."]}, "Not all.")
     assert [line for line in page.splitlines() if line.startswith("-")] == ["- pair b: One.", "- pair b; pair c: Two."]
-    assert NOT_MODELLED in page
+    assert page.endswith("Not all.\n")
 
 
 def test_subjects_are_named_in_words():
@@ -385,4 +384,49 @@ def test_subjects_are_named_in_words():
 
 
 def test_a_page_without_warnings_says_so():
-    assert "No result is beyond the limits" in pair_warnings.as_markdown({"pair a": []})
+    assert "No result is beyond the limits" in pair_warnings.as_markdown({"pair a": []}, "Not all.")
+
+
+#: Settings, and what is not in the results of devices with them.
+IN_FORCE = [
+    ({}, ["interaction of neighbouring summits"]),
+    (
+        {"attraction": {"reach": "touching"}},
+        ["attraction of solids across gaps", "interaction of neighbouring summits"],
+    ),
+    ({"contact": {"model": "full"}}, ["attraction of solids across gaps"]),
+    ({"van_der_waals": "none"}, ["van der Waals attraction of solids", "interaction of neighbouring summits"]),
+]
+
+
+@pytest.mark.parametrize(("changes", "left_out"), IN_FORCE)
+def test_what_is_not_in_the_model_follows_from_the_settings_in_force(changes, left_out):
+    devices = {"C1": {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}}
+    devices["S1"] = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20}
+    devices = {name: section | {"humidities": [0.55, 0.8]} for name, section in devices.items()}
+    plan = Plan(load({"devices": devices, "design": {"worst_humidities": [0.5, 0.9]}}, changes))
+    everything = {words for _, listed in IN_FORCE for words in listed}
+    files = [
+        "devices/C1.html",
+        "devices/S1.html",
+        "devices/warnings.md",
+        "tables/safe_lengths.csv",
+        "tables/stoppers.csv",
+    ]
+    for file in files:
+        said = Graph(plan).job(file).settings["not_modelled"]
+        assert {words for words in everything if words in said} == set(left_out)
+        assert "water" in said
+
+
+def test_what_is_not_in_the_model_of_dry_devices_is_about_no_water():
+    dry = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": ["dry"]}
+    said = Graph(Plan(load({"devices": {"S1": dry}}))).job("devices/S1.html").settings["not_modelled"]
+    assert "water" not in said
+    assert "across gaps" not in said
+
+
+def test_what_pairs_leave_out_is_named_with_those_of_the_paper():
+    mine = {"beam": "B1", "substrate": "Sub1", "gap_um": 20, "humidities": [0.5]}
+    said = Graph(Plan(load({"pairs": {"mine": mine}, "run": {"pairs": ["a", "mine"]}}))).job("warnings.md")
+    assert "attraction of solids across gaps (pairs a)," in said.settings["not_modelled"]

@@ -17,6 +17,7 @@ from stiction.report.style import png
 from stiction.stages.devices.releases import S_SHAPE
 from stiction.stages.roughness import contacts, curves
 from stiction.stages.roughness.contacts import POINTS, Varied
+from stiction.surface.feasible import largest_kurtosis
 
 SAMPLES, SHARE = 200, 0.05
 S1 = {"kind": "stopper", "pair": "b", "contact_um": [1, 1], "restoring_force_uN": 3, "humidities": [0.45, 0.6]}
@@ -54,7 +55,7 @@ def test_the_curve_of_a_stopper_at_the_given_roughness_is_todays_result(stopper)
     given = found.sel(roughness=float(found.given))
     np.testing.assert_array_equal(given.stuck[:, 0], today.stuck.T)
     contact = stopper.results[f"devices/contact/roughness/S1_{POINTS - 1}"]
-    xr.testing.assert_identical(contact.drop_vars("roughness"), stopper.contact)
+    xr.testing.assert_identical(contact.drop_vars(["roughness", "kurtosis"]), stopper.contact)
     assert float(found.given) == float(stopper.results["heights/B2"].rms)
 
 
@@ -308,7 +309,8 @@ def test_a_map_is_told_curve_by_curve_and_drawn(mapped):
     said = tables_roughness.answers(found)
     assert len(said) == found.sizes["other"] == 3
     assert said[0].startswith(
-        "Where the skewness of B2 is -1: For a restoring force of 3 µN, at a relative humidity of 0.6, "
+        "Where the skewness of B2 is -1 and the kurtosis 3.9: For a restoring force of 3 µN, at a relative humidity of "
+        "0.6, "
     )
     given = [sentence.partition(", as given: ")[2] for sentence in said if ", as given: " in sentence]
     assert len(given) == len(tables_roughness.briefly(found)) == 1
@@ -320,16 +322,59 @@ def test_a_map_is_told_curve_by_curve_and_drawn(mapped):
         assert png(drawn(found))[:4] == b"\x89PNG"
 
 
+def skewed(rms, skewness):
+    """Point of a map over rms and skewness, as given without skewness."""
+    return point(rms).assign(other=skewness, other_given=0.0, kurtosis=3 + skewness**2)
+
+
+@pytest.mark.parametrize("varied", [{"skewness": [-1, 0.5]}, {"rms_nm": [2, 8], "skewness": [-1, 0.5]}])
+def test_a_skewness_comes_with_the_largest_kurtosis_up_to_that_of_the_surface_and_states_it(varied):
+    section = {"surface": "B2"} | varied
+    plan = Plan(stiction.load({"devices": {"S1": S1 | {"roughness": section, "humidities": [0.6]}}}))
+    seen = []
+    with patch.object(contacts.stage_contact, "compute", lambda surfaces, *_: seen.append(surfaces) or xr.Dataset()):
+        for number in contacts.points_of(plan, "S1")[:: POINTS if len(varied) > 1 else 3]:
+            job = Graph(plan).job(f"devices/contact/roughness/S1_{number}")
+            found = job.compute(Results(Graph(plan)).inputs(job))
+            skewness = seen[-1][0][0].skewness
+            assert float(found.kurtosis) == float(seen[-1][0][0].kurtosis)
+            assert float(found.kurtosis) == pytest.approx(min(3.9, largest_kurtosis(abs(float(skewness)))), rel=1e-6)
+    assert len({float(surfaces[0][0].kurtosis) for surfaces in seen}) > 1  # control: it does change
+
+
+def test_the_kurtosis_stands_beside_every_skewness_in_sentences_tables_and_figures():
+    over_both = curves.mapped(
+        [skewed(rms, value) for value in (0, -1, 0.5) for rms in RANGE8], "B2", "rms_nm", "skewness"
+    )
+    alone = [point(3e-9).assign(roughness=value, kurtosis=3 + value**2) for value in (-1.0, 0.5, 0.0)]
+    over_one = curves.joined(alone, "skewness", "B2")
+    for found, axis in ((over_both, "yaxis"), (over_one, "xaxis")):
+        draw = figures_roughness.roughness_map if "other" in found.dims else figures_roughness.roughness
+        labels = [text.get_text() for text in getattr(draw(found).axes[0], axis).get_ticklabels()]
+        assert labels == ["-1\n(4)", "0\n(3)", "0.5\n(3.25)"]
+        table = tables_roughness.roughness({"S1": found})
+        assert set(table.cells["kurtosis"]) == {"4", "3", "3.25"}
+        assert "kurtosis" in table.caption
+        assert "kurtosis" in tables_roughness.form(found)
+    assert [sentence.partition(": ")[0] for sentence in tables_roughness.answers(over_both)] == [
+        "Where the skewness of B2 is -1 and the kurtosis 4",
+        "Where the skewness of B2 is 0 and the kurtosis 3, as given",
+        "Where the skewness of B2 is 0.5 and the kurtosis 3.25",
+    ]
+    plain = curves.joined([point(rms) for rms in RANGE8], "rms_nm", "B2")  # control: nothing of it elsewhere
+    assert "kurtosis" not in tables_roughness.roughness({"S1": plain}).caption + tables_roughness.form(plain)
+
+
 def test_a_second_value_that_is_the_given_one_is_there_once():
-    points = [point(rms).assign(other=value, other_given=0.0) for value in (0, -1, -0.5, 1e-14, 1) for rms in RANGE8]
-    points[:POINTS] = [point(rms) for rms in RANGE8]
+    points = [skewed(rms, value) for value in (0, -1, -0.5, 1e-14, 1) for rms in RANGE8]
+    points[:POINTS] = [point(rms).assign(kurtosis=3.0) for rms in RANGE8]
     found = curves.mapped(points, "B2", "rms_nm", "skewness")
     assert found.other.values.tolist() == [-1, -0.5, 0, 1]
     assert [len(one.crossing) for one in curves.curves_of(found)] == [1] * 4
 
 
 def test_a_map_of_a_stopper_has_positive_margins_where_the_restoring_force_exceeds_the_adhesion():
-    points = [point(rms).assign(other=value, other_given=0.0) for value in (0, -1) for rms in RANGE8]
+    points = [skewed(rms, value) for value in (0, -1) for rms in RANGE8]
     figure = figures_roughness.roughness_map(curves.mapped(points, "B2", "rms_nm", "skewness"))
     panel, bar = figure.axes
     assert bar.get_ylabel() == "lg (restoring force / required)"

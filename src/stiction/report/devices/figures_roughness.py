@@ -24,7 +24,7 @@ from stiction.report.style import (
 )
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import FORCE
-from stiction.stages.roughness.curves import curves_of
+from stiction.stages.roughness.curves import KURTOSIS, curves_of
 
 #: Lightest colour of a curve.
 _LIGHTEST = 0.25
@@ -42,18 +42,15 @@ def roughness(dataset: xr.Dataset) -> Figure:
     curve = next(as_given)
     shapes = list(map(str, curve["shape"].values))
     figure, axes = panels(1, len(shapes), (min(DOUBLE, 1.3 * SINGLE * len(shapes)), 3.0))
-    what = ROUGHNESSES[curve.attrs["key"]]
     for panel, shape in zip(axes[0], shapes, strict=True):
         for humidity, shade in zip(curve.humidity.values, shades(curve.sizes["humidity"], _LIGHTEST), strict=True):
             _curve(panel, curve.sel(humidity=humidity, shape=shape), shade)
             _crossings(panel, curve, (float(humidity), shape), shade)
         panel.axhline(TO_UM * float(curve.required), color="black", linewidth=0.8, label="required")
         panel.axvline(in_unit(curve, float(curve.given)), color="0.6", linestyle=":", label="as given")
-        panel.set(yscale="log", xlabel=labelled(curve))
+        panel.set_yscale("log")
         plain_log(panel.yaxis)
-        if what.logarithmic:
-            panel.set_xscale("log")
-            plain_log(panel.xaxis)
+        _axis(panel.xaxis, panel.set_xscale, curve)
     axes[0, 0].set_ylabel(
         f"{'restoring force [µN]' if shapes == [FORCE] else 'length [µm]'}, p = {float(curve.share):g}"
     )
@@ -118,18 +115,26 @@ def roughness_map(data: xr.Dataset) -> Figure:
                     panel.contour(x, y, np.ma.masked_invalid(values), [0], colors="black", linestyles=line)
             panel.plot(*map(np.ravel, np.meshgrid(x, y)), ".", color="0.3", markersize=2)
             panel.plot(in_unit(data, float(data.given)), in_unit(data, float(data.other_given), "other_key"), "k+")
-            _axes(panel, data)
+            _axis(panel.xaxis, panel.set_xscale, data)
+            _axis(panel.yaxis, panel.set_yscale, data, "other")
             panel.set_title(f"{END_STATES[shape].by}, {air(humidity)}")
     return figure
 
 
-def _axes(panel, curves):
-    """Scales and labels of both quantities."""
-    panel.set(xlabel=labelled(curves), ylabel=labelled(curves, "other_key"))
-    for axis, scale, key in ((panel.xaxis, panel.set_xscale, "key"), (panel.yaxis, panel.set_yscale, "other_key")):
-        if ROUGHNESSES[curves.attrs[key]].logarithmic:
-            scale("log")
-            plain_log(axis)
+def _axis(axis, scale, data, dimension="roughness"):
+    """Scale and label of a varied quantity; a skewness has its kurtosis in brackets at every computed value."""
+    key = "key" if dimension == "roughness" else "other_key"
+    axis.set_label_text(labelled(data, key))
+    if ROUGHNESSES[data.attrs[key]].logarithmic:
+        scale("log")
+        plain_log(axis)
+    if data.attrs[key] == "skewness":
+        along = data[KURTOSIS].isel({other: 0 for other in data[KURTOSIS].dims if other != dimension})
+        texts = [
+            f"{at:.3g}\n({kurtosis:.3g})" for at, kurtosis in zip(along[dimension].values, along.values, strict=True)
+        ]
+        axis.set_ticks(along[dimension].values, texts)
+        axis.set_label_text(f"{labelled(data, key)} (kurtosis)")
 
 
 def _stage(name, shows, draw, devices):

@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 from stiction.config.cases import DRY, case_id
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of
 from stiction.config.stated_materials import material_of
-from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
 from stiction.report.devices import (
@@ -86,12 +85,13 @@ class Page:
     warnings: Sequence[str] = ()  #: where the model ends for this device
     words: Mapping[str, str] = field(default_factory=dict)  #: terms and what they mean
     made: Sequence[str] = ()  #: when and by which code
+    not_modelled: str = ""  #: what is not in the model
 
     @property
     def html(self) -> str:
         """The page as one file: figures are part of it."""
         parts = [_answer(self.answer), _facts(self.facts), *map(_section, self.sections)]
-        parts += ["<h2>Limits of this prediction</h2>", _block("warning", [*self.warnings, NOT_MODELLED])]
+        parts += ["<h2>Limits of this prediction</h2>", _block("warning", [*self.warnings, self.not_modelled])]
         parts += ["<h2>Terms</h2>", _words(self.words), _block("made", self.made)]
         return _PAGE.format(title=escape(self.title), body="\n".join(parts))
 
@@ -150,12 +150,21 @@ _OF_SURFACES = {
 }
 #: The same of its material.
 _OF_MATERIALS = {"contact_angle_deg": ("contact angle", "°"), "coating_nm": ("coating", " nm")}
+#: What shares are of.
+_TOUCHDOWNS = (
+    "The share is that of one touchdown in one air. Of devices that touch n times and meet other summits each time, "
+    "1 - (1 - p)^n stick, about n p: for a share q after n touchdowns, or at n humidities, take p = q / n. Those that "
+    "meet the same summits each time stick at the first or never."
+)
 _OF_BEAMS = {
     "Safe length": (
         "Largest length at which at most the stated share sticks, with a confidence of 95 %. The confidence is that of "
         "the simulated beams, given the drawn surfaces. The error due to the number of drawn surfaces is next to the "
-        "estimate (se, surfaces), the uncertainty due to the measurements further below."
+        "estimate (se, surfaces), the uncertainty due to the measurements further below. The least of the lengths at "
+        "several humidities is safe at all of them with at least 95 %; that every one of n lengths is safe at its own, "
+        "with at least 100 - 5 n %."
     ),
+    "P(stuck), share": _TOUCHDOWNS,
     "Estimate": "Length at which exactly the stated share sticks, as well as it is known; it is no bound.",
     "Sampled, fitted, extrapolated": (
         "What a length rests on: simulated beams alone; a line through the shortest 5 % of them, within what many more "
@@ -187,10 +196,11 @@ _OF_STOPPERS = {
         "an area that moves as a whole. One that tilts, or is so large that it bends, comes off part by part and holds "
         "less: for it, this force is an upper bound."
     ),
-    "P(stuck)": "Share of equal stoppers whose pull-off force exceeds the restoring force.",
+    "P(stuck)": f"Share of equal stoppers whose pull-off force exceeds the restoring force. {_TOUCHDOWNS}",
     "Safe force": (
         "Restoring force that is exceeded by the pull-off force of at most the stated share of stoppers, with a "
-        "confidence of 95 %."
+        "confidence of 95 %. The largest of the forces at several humidities suffices at all of them with at least "
+        "95 %; that every one of n forces suffices at its own, with at least 100 - 5 n %."
     ),
 }
 _WORST = {"Worst humidity": "Humidity of the largest mean pull-off force. Wetter air wets more area, but pulls less."}
@@ -548,7 +558,7 @@ def _how_rough(name, roughness):
         return []
     cells = tables_roughness.roughness({name: roughness}).cells.drop(columns="device")
     of_map = "other" in roughness.dims
-    said = [*tables_roughness.answers(roughness), tables_roughness.FORM_OF_MAPS if of_map else tables_roughness.FORM]
+    said = [*tables_roughness.answers(roughness), tables_roughness.form(roughness)]
     sections = [Section("How rough must it be?", said, cells, figures_roughness.roughness(roughness))]
     if of_map:
         sections.append(Section("Over two quantities", _OF_MAPS, None, figures_roughness.roughness_map(roughness)))
@@ -595,7 +605,8 @@ def _settings(plan, at):
         part: f"{name}: {described(plan.config['surfaces'][name], material)}"
         for (part, name), material in zip(names.items(), materials, strict=True)
     }
-    return section | {"surfaces": surfaces}
+    not_modelled = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
+    return section | {"surfaces": surfaces} | not_modelled
 
 
 def _page(data, at, settings):
@@ -603,10 +614,11 @@ def _page(data, at, settings):
     warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
     more = {name: data.get(name) for name in ("test_beams", "errors", "roughness")}
     if "stopper" in data:
-        return of_stopper(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
-    lengths, charts = data["safe_lengths"], data["charts"]
-    limits = warnings.lengths | warnings.curves
-    return of_beam(at.device, settings, lengths, charts, budgets, limits, **more)
+        page = of_stopper(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
+    else:
+        lengths, charts = data["safe_lengths"], data["charts"]
+        page = of_beam(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
+    return replace(page, not_modelled=settings["not_modelled"])
 
 
 def _save(page, paths):

@@ -8,7 +8,6 @@ import xarray as xr
 
 from stiction.config.cases import air
 from stiction.devices.budget import advice
-from stiction.devices.limits import NOT_MODELLED
 from stiction.estimates import mean_with_error
 from stiction.plan.names import by_name
 from stiction.report import beside
@@ -57,8 +56,12 @@ def stoppers(
     datasets: Mapping[str, xr.Dataset],
     warnings: Mapping[str, Sequence[str]],
     errors: Mapping[str, xr.Dataset] | None = None,
+    not_modelled: str = "",
 ) -> Table:
-    """Stoppers: pull-off force, P(stuck), restoring force needed, worst humidity; everything is by device."""
+    """Stoppers: pull-off force, P(stuck), restoring force needed, worst humidity; everything is by device.
+
+    The caption ends with what is not in the model.
+    """
     rows = [row for device, dataset in datasets.items() for row in _of_stopper(device, dataset)]
     rows = [row | model_errors.of_device(errors, row["device"], row["relative_humidity"], FORCE) for row in rows]
     rows = [row | {"warnings": " ".join(warnings[row["device"]])} for row in rows]
@@ -80,7 +83,7 @@ def stoppers(
     if 0 < len(humid) < len(datasets):
         caption += " One in dry air alone has no such row."
     listed = [f"{device}: {sentence}" for device, of_device in warnings.items() for sentence in of_device]
-    said = [caption, *([beside.caption(errors)] if errors else []), NOT_MODELLED, *(["Warnings:"] if listed else [])]
+    said = [caption, *([beside.caption(errors)] if errors else []), not_modelled, *(["Warnings:"] if listed else [])]
     columns = _columns_of_stoppers(rows) | (_WORST if humid else {}) | (beside.COLUMN if errors else {})
     return Table.of(rows, with_list(" ".join(said), listed), columns)
 
@@ -273,8 +276,9 @@ STAGES = (
             }
             | model_errors.of_devices(plan, *plan.devices.stoppers)
         ),
+        settings=lambda plan, at: {"not_modelled": device_warnings.not_modelled(plan, *plan.devices.stoppers)},
         compute=lambda data, at, settings: stoppers(
-            data["stoppers"], device_warnings.read(data["warnings"]).patches, data.get("errors")
+            data["stoppers"], device_warnings.read(data["warnings"]).patches, data.get("errors"), **settings
         ),
         jobs=lambda plan: [{}] if plan.devices.stoppers else [],
         targets=("devices",),

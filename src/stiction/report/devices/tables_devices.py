@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.names import by_case
 from stiction.report import beside
 from stiction.report.devices import model_errors
@@ -16,7 +15,7 @@ from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_lis
 from stiction.stages.beams.pair_warnings import numbered, with_numbers
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import charts
-from stiction.stages.devices.device_warnings import curves
+from stiction.stages.devices.device_warnings import curves, not_modelled
 from stiction.stages.devices.end_states import END_STATES
 
 _SAFE_LENGTHS = (
@@ -63,8 +62,12 @@ def safe_lengths(
     datasets: Mapping[tuple[str, float], xr.Dataset],
     warnings: Mapping[tuple[str, float, str], list],
     errors: Mapping[str, xr.Dataset] | None = None,
+    not_modelled: str = "",
 ) -> Table:
-    """Safe lengths of all beams, one row per device, humidity, shape and share; errors of the model are by device."""
+    """Safe lengths of all beams, one row per device, humidity, shape and share; errors of the model are by device.
+
+    The caption ends with what is not in the model.
+    """
     rows, marks = [], []
     numbers = numbered(warnings)[1]
     for (device, humidity), dataset in datasets.items():
@@ -78,7 +81,7 @@ def safe_lengths(
     text, columns = f"{_SAFE_LENGTHS} {about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY)}", _LENGTHS
     if errors:
         text, columns = f"{text} {beside.caption(errors)}", columns | beside.COLUMN
-    return Table(frame, _caption(text, warnings), as_text(frame, columns).assign(warnings=marks))
+    return Table(frame, _caption(text, warnings, not_modelled), as_text(frame, columns).assign(warnings=marks))
 
 
 def about_bounds(datasets: Mapping[Any, xr.Dataset], humid: str, dry: str, where_dry: str) -> str:
@@ -92,10 +95,10 @@ def about_bounds(datasets: Mapping[Any, xr.Dataset], humid: str, dry: str, where
     return f"{humid} {where_dry}" if any(without_water) else humid
 
 
-def _caption(text, warnings):
+def _caption(text, warnings, not_modelled):
     """Caption with what is not modelled and, below each other, numbered warnings."""
     listed = with_numbers(warnings)
-    return with_list(" ".join([text, NOT_MODELLED, *(["Warnings:"] if listed else [])]), listed)
+    return with_list(" ".join([text, not_modelled, *(["Warnings:"] if listed else [])]), listed)
 
 
 def _safe_length(point):
@@ -132,11 +135,13 @@ _LENGTHS = DEVICE | {
 
 
 def chart(
-    datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, float, str], list]
+    datasets: Mapping[tuple[str, float], xr.Dataset],
+    warnings: Mapping[tuple[str, float, float, str], list],
+    not_modelled: str = "",
 ) -> Table:
     """Safe lengths along the axes of all charts, curve by curve; a line of text has the lengths of all shares.
 
-    Warnings are by name, thickness [m], gap [m] and shape.
+    Warnings are by name, thickness [m], gap [m] and shape. The caption ends with what is not in the model.
     """
     numbers = numbered(warnings)[1]
     rows, cells = [], []
@@ -151,7 +156,7 @@ def chart(
             cells.append(_beam_as_text(beam, lengths) | marks)
     bounds = about_bounds(datasets, _CHART_BOUND, _DRY_CHART_BOUND, _WHERE_DRY)
     text = " ".join([_CHART, bounds, _CHART_WARNINGS])
-    return Table(pd.DataFrame(rows), _caption(text, warnings), pd.DataFrame(cells))
+    return Table(pd.DataFrame(rows), _caption(text, warnings, not_modelled), pd.DataFrame(cells))
 
 
 def _beam(point):
@@ -193,8 +198,9 @@ STAGES = (
             }
             | model_errors.of_devices(plan, *plan.devices.beams)
         ),
+        settings=lambda plan, at: {"not_modelled": not_modelled(plan, *plan.devices.beams)},
         compute=lambda data, at, settings: safe_lengths(
-            data["lengths"], device_warnings.read(data["warnings"]).lengths, data.get("errors")
+            data["lengths"], device_warnings.read(data["warnings"]).lengths, data.get("errors"), **settings
         ),
         jobs=lambda plan: [{}] if plan.devices.cases else [],
         targets=("devices",),
@@ -203,7 +209,10 @@ STAGES = (
         "chart",
         "safe length over the relative humidity",
         inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.charted)},
-        compute=lambda data, at, settings: chart(data["charts"], device_warnings.read(data["warnings"]).curves),
+        settings=lambda plan, at: {"not_modelled": not_modelled(plan, *plan.devices.charted)},
+        compute=lambda data, at, settings: chart(
+            data["charts"], device_warnings.read(data["warnings"]).curves, **settings
+        ),
         jobs=lambda plan: [{}] if plan.devices.charted else [],
         targets=("devices",),
     ),

@@ -13,20 +13,30 @@ from stiction.report.format import UM, airs, with_error
 from stiction.report.tables import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import FORCE
-from stiction.stages.roughness.curves import curves_of
+from stiction.stages.roughness.curves import KURTOSIS, curves_of
 
 #: Standard errors beyond which two forces count as different.
 DIFFERENT = 3
-#: What stays while one quantity is varied.
-FORM = (
-    "One quantity of one surface is varied. The form of its heights and the shape of its spectrum stay; a process that "
-    "changes one of them usually changes all."
-)
-#: The same of a map.
-FORM_OF_MAPS = FORM.replace("One quantity of one surface is", "Two quantities of one surface are")
 
 
 # Sentences
+
+
+def form(*datasets: xr.Dataset) -> str:
+    """What stays while the quantities of some curves and maps are varied, and what changes with them."""
+    varied = (
+        "Two quantities of one surface are varied."
+        if any("other" in dataset.dims for dataset in datasets)
+        else "One quantity of one surface is varied."
+    )
+    stays = "The form of its heights and the shape of its spectrum stay"
+    if any(KURTOSIS in dataset for dataset in datasets):
+        stays = (
+            "A skewness comes with the kurtosis of the surface or, where no density of maximum entropy has both, with "
+            "the largest one that such a density has, which is stated beside it. All else of the form of its heights "
+            "and the shape of its spectrum stays"
+        )
+    return f"{varied} {stays}; a process that changes one of them usually changes all."
 
 
 def in_unit(dataset: xr.Dataset, values: float | np.ndarray, key: str = "key") -> float | np.ndarray:
@@ -87,7 +97,15 @@ def _at_other(curve):
     if "other" not in curve.coords:
         return ""
     key, given = "other_key", "" if _is_changed(curve) else ", as given"
-    return f"Where the {name_of(curve, key)} is {_shown(curve, curve.other, key)}{_unit(curve, key)}{given}: "
+    value = f"{_shown(curve, curve.other, key)}{_unit(curve, key)}{_peaked(curve)}"
+    return f"Where the {name_of(curve, key)} is {value}{given}: "
+
+
+def _peaked(curve):
+    """Kurtosis of a curve of a map over the skewness; nothing for others."""
+    if curve.attrs["other_key"] != "skewness":
+        return ""
+    return f" and the kurtosis {float(curve[KURTOSIS][0]):.3g}"
 
 
 def _is_changed(curve):
@@ -216,10 +234,11 @@ def roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
         "Safe length of a beam, or safe restoring force of a stopper, over the roughness of a surface: with a "
         "confidence of 95 % given the drawn surfaces, at most a share p sticks. Estimate: where a share p sticks, ± "
         "standard error due to the numbers of devices and of drawn surfaces. P(stuck): at the required length or "
-        f"force, with its 95 % band. {FORM_OF_MAPS if of_maps else FORM} Devices: number of simulated devices at every "
+        f"force, with its 95 % band. {form(*datasets.values())} Devices: number of simulated devices at every "
         "roughness."
     )
-    columns = {name: column for name, column in _COLUMNS.items() if of_maps or name != "and"}
+    shown = {"and": of_maps, KURTOSIS: any(KURTOSIS in row for row in rows)}
+    columns = {name: column for name, column in _COLUMNS.items() if shown.get(name, True)}
     return Table.of(rows, with_list(caption, sentences), columns)
 
 
@@ -233,23 +252,27 @@ def _points(device, curve):
             for value in curve.roughness.values:
                 point = curve.sel(humidity=humidity, shape=shape, roughness=value)
                 stuck, low, high = (100 * point.stuck.values).tolist()
-                yield {
-                    "device": device,
-                    "relative_humidity": float(humidity),
-                    "held_by": END_STATES[shape].by,
-                    "varied": labelled(curve),
-                    "value": float(in_unit(curve, value)),
-                    "share": float(curve.share),
-                    "unit": _required_unit(curve),
-                    "safe": float(point.safe) / UM,
-                    "estimate": float(point.estimate) / UM,
-                    "estimate_se": float(point.error) / UM,
-                    "required": float(curve.required) / UM,
-                    "stuck_percent": stuck,
-                    "stuck_low_percent": low,
-                    "stuck_high_percent": high,
-                    "devices": int(curve.samples),
-                } | other
+                yield (
+                    {
+                        "device": device,
+                        "relative_humidity": float(humidity),
+                        "held_by": END_STATES[shape].by,
+                        "varied": labelled(curve),
+                        "value": float(in_unit(curve, value)),
+                        "share": float(curve.share),
+                        "unit": _required_unit(curve),
+                        "safe": float(point.safe) / UM,
+                        "estimate": float(point.estimate) / UM,
+                        "estimate_se": float(point.error) / UM,
+                        "required": float(curve.required) / UM,
+                        "stuck_percent": stuck,
+                        "stuck_low_percent": low,
+                        "stuck_high_percent": high,
+                        "devices": int(curve.samples),
+                    }
+                    | other
+                    | ({KURTOSIS: float(point[KURTOSIS])} if KURTOSIS in curve else {})
+                )
 
 
 def _stuck(stuck, low, high):
@@ -262,11 +285,17 @@ def _second(name, value):
     return f"{name}: {value:.3g}" if isinstance(name, str) else ""
 
 
+def _kurtosis(value):
+    """Kurtosis that comes with a skewness, if one is varied."""
+    return "" if np.isnan(value) else f"{value:.3g}"
+
+
 _COLUMNS = DEVICE | {
     "held by": (str, "held_by"),
     "varied": (str, "varied"),
     "value": (".3g", "value"),
     "and": (_second, "other", "other_value"),
+    KURTOSIS: (_kurtosis, KURTOSIS),
     "p": ("g", "share"),
     "unit": (str, "unit"),
     "safe": (".4g", "safe"),

@@ -13,10 +13,10 @@ from stiction.stages.devices import device_warnings
 from stiction.stages.devices.device_warnings import OfDevices, subjects
 
 
-def page(limits: OfDevices, test_beams: Mapping[str, xr.Dataset]) -> str:
+def page(limits: OfDevices, test_beams: Mapping[str, xr.Dataset], not_modelled: str) -> str:
     """Warnings about devices, and about what their test beams say, by name of the device."""
     said = {f"{name}, test beams": tables_inference.warnings(update) for name, update in test_beams.items()}
-    return as_markdown(subjects(limits) | said)
+    return as_markdown(subjects(limits) | said, not_modelled)
 
 
 STAGES = (
@@ -27,7 +27,8 @@ STAGES = (
             "warnings": device_warnings.files_of(*plan.devices.sections),
             "test_beams": by_name("devices/test_beams/rerun", plan.devices.tested),
         },
-        compute=lambda data, at, settings: page(device_warnings.read(data["warnings"]), data["test_beams"]),
+        settings=lambda plan, at: {"not_modelled": device_warnings.not_modelled(plan, *plan.devices.sections)},
+        compute=lambda data, at, settings: page(device_warnings.read(data["warnings"]), data["test_beams"], **settings),
         save=lambda page, paths: save_text(page, paths["markdown"]),
         message="Where the results of devices are beyond the model.",
         jobs=lambda plan: [{}] if plan.devices.sections else [],

@@ -127,20 +127,21 @@ def with_numbers(warnings: Mapping[Any, list[str]]) -> list[str]:
     return [f"({k}) {sentence}" for k, sentence in enumerate(numbered(warnings)[0], 1)]
 
 
-def as_markdown(warnings: Warnings) -> str:
-    """Warnings as a page, each sentence with all its subjects."""
+def as_markdown(warnings: Warnings, not_modelled: str) -> str:
+    """Warnings as a page, each sentence with all its subjects, and a sentence on what is not in the model."""
     sentences, _ = numbered(warnings)
     about = ["; ".join(name for name, said in warnings.items() if sentence in said) for sentence in sentences]
     lines = [f"- {literal(f'{names}: {sentence}')}" for names, sentence in zip(about, sentences, strict=True)]
     none = ["No result is beyond the limits of the model that are checked."]
-    return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", limits.NOT_MODELLED, ""])
+    return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", literal(not_modelled), ""])
 
 
 def _of_pairs(data, _at, settings):
     """Warnings about all pairs as a page."""
     nominal = in_si(OfPairs, settings["pairs"])
     remedy = limits.DISTANCE if settings["plasticity_runs"] else limits.NAMED
-    return as_markdown(of_pairs(data["beams"], data["plasticity"], settings["materials"], nominal, remedy))
+    warnings = of_pairs(data["beams"], data["plasticity"], settings["materials"], nominal, remedy)
+    return as_markdown(warnings, settings["not_modelled"])
 
 
 STAGES = (
@@ -159,6 +160,7 @@ STAGES = (
             | sections(plan, *plan.pairs),
             "materials": {pair: plan.materials.in_words(pair) for pair in plan.pairs},
             "plasticity_runs": "plasticity" in plan.studies,
+            "not_modelled": plan.air.not_modelled((case.pair, case.humidity) for case in plan.cases),
         },
         compute=_of_pairs,
         save=lambda page, paths: save_text(page, paths["markdown"]),

@@ -146,14 +146,17 @@ def cost(study: xr.Dataset, spacing: float, reading: str, attraction: str) -> fl
 
 
 def _settings(plan, at):
-    """Surfaces of the pair, on the grid of the contact and on one twice as fine; solids, water and sizes."""
+    """Surfaces of the pair, on the grid of the contact and on one twice as fine; solids, water and sizes.
+
+    ASSUME: attraction across gaps is left out, as in `stiction.stages.contact.full_contact.settings_of`.
+    """
     study, surfaces = plan.config["studies"]["asperities"], plan.variants.summits(at.pair, "base")
     del surfaces["base"]["contact"]["samples"]  # of the variants
     return {
         "surfaces": surfaces | {"changes": {"sampling": {"spacing_nm": plan.config["sampling"]["spacing_nm"] / 2}}},
         "study": {
             "solids": plan.variants.solids(at.pair, "base"),
-            "water": plan.air.water(at.pair),
+            "water": plan.air.without_gaps(at.pair),
             "humidities": sorted(plan.air.humid(at.pair)),
             "strips": study["samples"],
             "shapes": min(study["shapes"], study["samples"]),

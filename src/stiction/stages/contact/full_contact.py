@@ -134,9 +134,8 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
     all_of_pair = sorted(plan.air.humid(at.pair))
     chosen = dict.fromkeys(all_of_pair[k] for k in (0, (len(all_of_pair) - 1) // 2, -1))
     study = {"humidities": list(chosen), "strips": plan.config["studies"]["full_contact"]["samples"]}
-    water = {key: value for key, value in plan.air.water(at.pair).items() if key != "gaps"}
     seen = plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None)
-    return select(Settings, seen | study | {"water": water})
+    return select(Settings, seen | study | {"water": plan.air.without_gaps(at.pair)})
 
 
 STAGES = (

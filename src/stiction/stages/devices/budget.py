@@ -70,7 +70,7 @@ class BeamBudget(Settings):
 
     def state(self, contact: xr.Dataset) -> State:
         """State with the stated inputs."""
-        return State(contact, self.humidity, self.water, self.device)
+        return State(contact, self.humidity, self.water, self.device, alike=self.alike)
 
     def responder(self, state: State) -> Respond:
         """How the devices respond: cracks of long beams."""
@@ -105,7 +105,7 @@ class PatchBudget(Settings):
 
     def state(self, contact: xr.Dataset) -> State:
         """State with the stated inputs."""
-        return State(contact, self.humidity, self.water, area=self.contact[0] * self.contact[1])
+        return State(contact, self.humidity, self.water, area=self.contact[0] * self.contact[1], alike=self.alike)
 
     def responder(self, _state: State) -> Respond:
         """How the devices respond: pull-off forces of all patches."""
@@ -143,7 +143,7 @@ def compute(
     for name, changed in choices.items():
         base = replace(state, contact=first(contact, changed.sizes["sample"]))
         with explain_errors(f"This is the contact under the choice {name}."):
-            changes[name] = effect(base, replace(state, contact=changed), respond)
+            changes[name] = effect(base, replace(state, contact=changed, water=settings.water_under(name)), respond)
     return layout(inputs, slopes_with_errors, covariance, respond([state]), changes, settings)
 
 
@@ -310,22 +310,32 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
     own = {"uncertainty": section.get("uncertainty", {}), "humidity": at.case.humidity}
     own |= chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.materials.beam_modulus(pair)
     if "hamaker_constant" in devices.uncertain_solids(name):
-        own |= {"hamaker_constant_zJ": plan.air.beam_hamaker_constant(pair)}
+        own |= {"hamaker_constant_zJ": plan.air.beam_hamaker_constant(pair), "alike": plan.materials.alike(pair)}
     if devices.kind(name).is_beam:
         own |= {"device": section_of_beam(plan, name, pair), "beams": plan.config["design"]["budget_beams"]}
     else:
         own |= chosen(section, ["contact_um"])
-    own |= {"seed": plan.config["seed"], "water": plan.air.water(pair), "surfaces": plan.sides(pair)}
+    own |= {"seed": plan.config["seed"], "water": plan.air_of_devices.water(pair), "surfaces": plan.sides(pair)}
     quantities = list(map(list, devices.quantities(name)))
-    return {"budget": own, "quantities": quantities, "choices": plan.variants.choices_of_device(at.case)}
+    return _with_choices(
+        plan, pair, {"budget": own, "quantities": quantities}, plan.variants.choices_of_device(at.case)
+    )
 
 
-def _settings_of_tips(plan, at, share=None):
+def _with_choices(plan, pair, settings, choices):
+    """Settings of a budget with its choices of the model, and with the water under those that change it."""
+    changed = plan.variants.water_of_choices(pair, choices)
+    own = settings["budget"] | ({"waters": changed} if changed else {})
+    return settings | {"budget": own, "choices": choices}
+
+
+def settings_of_tips(plan: Any, at: At, share: float | None = None) -> dict[str, Any]:
     """As `settings_of`, of the length that a share of the tips of a cantilever hold, by default the middle one."""
     settings, shares = settings_of(plan, at), plan.config["design"]["shares"]
-    own = {key: value for key, value in settings["budget"].items() if key != "beams"}
-    choices = plan.variants.choices_of_solids(plan.contact_of_device(at.case))
-    return settings | {"budget": own | {"share": share or shares[len(shares) // 2]}, "choices": choices}
+    own = {key: value for key, value in settings["budget"].items() if key not in ("beams", "waters")}
+    settings |= {"budget": own | {"share": share or shares[len(shares) // 2]}}
+    pair = plan.contact_of_device(at.case)
+    return _with_choices(plan, pair, settings, plan.variants.choices_of_solids(pair))
 
 
 def _computed(data, _at, settings):
@@ -398,7 +408,7 @@ STAGES = (
         "tip_budget",
         "devices/budget/{case}_tip",
         inputs=lambda plan, at: _inputs(plan, at.case.device) | contacts_of_tip_budget(plan, at.case),
-        settings=_settings_of_tips,
+        settings=settings_of_tips,
         memory=lambda plan: _memory_of_tips(
             plan, plan, [name for name in plan.devices.budgeted if name in plan.devices.with_tips]
         ),
@@ -409,7 +419,7 @@ STAGES = (
         "test_beam_budget",
         OF_ARRAYS + "/{case}",
         inputs=_inputs_of_test_beams(contacts_of_budget),
-        settings=lambda plan, at: settings_of(plan.of_test_beams, at) | {"choices": []},
+        settings=lambda plan, at: _with_choices(plan, "", settings_of(plan.of_test_beams, at), []),
         label="budget",
         message="Budget of test beams {case}.",
     ),
@@ -417,7 +427,7 @@ STAGES = (
         "test_beam_tip_budget",
         OF_ARRAYS + "/{case}_tip",
         inputs=_inputs_of_test_beams(contacts_of_tip_budget),
-        settings=lambda plan, at: _settings_of_tips(plan.of_test_beams, at, HALF) | {"choices": []},
+        settings=lambda plan, at: _with_choices(plan, "", settings_of_tips(plan.of_test_beams, at, HALF), []),
         memory=lambda plan: _memory_of_tips(plan, plan.of_test_beams, arrays.counted(plan.config)),
         label="budget",
         message="Budget of the tips of test beams {case}.",

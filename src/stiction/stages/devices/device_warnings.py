@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import xarray as xr
 
@@ -24,8 +24,9 @@ from stiction.stages.beams.pair_warnings import (
     contact_warnings,
     plastic_contact,
 )
+from stiction.stages.devices import left_out_gaps
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.releases import DesignedBeam, section_of_beam
+from stiction.stages.devices.releases import ARC, EITHER, DesignedBeam, section_of_beam
 
 
 @dataclass(frozen=True)
@@ -156,7 +157,7 @@ def _inputs(plan, at):
         "lengths": by_case("devices/safe_lengths", cases),
         "charts": by_case("devices/chart", charts),
         "plasticity": by_name("studies/plasticity", devices.pressed(at.device)),
-    }
+    } | left_out_gaps.of_device(plan, at.device)
 
 
 def _settings(plan, at):
@@ -165,24 +166,40 @@ def _settings(plan, at):
     own = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
     if plan.devices.kind(at.device).is_beam:
         return {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}
-    return {"stopper": select(OfStopper, section | own | {"water": plan.air.water(section["pair"])})}
+    return {"stopper": select(OfStopper, section | own | {"water": plan.air_of_devices.water(section["pair"])})}
 
 
 def _of_one_device(data, _at, settings):
     """Warnings about a device: about its lengths, its curves and its patch, each with what follows its name."""
+    changes = left_out_gaps.changes_of(data["left_out_gaps"]) if "left_out_gaps" in data else {}
     if "stopper" in settings:
         of = in_si(OfStopper, settings["stopper"])
-        return [], [], [[[], of_stopper(of, plastic_contact(data["plasticity"], of.pair))]]
+        gaps = limits.given(limits.without_gaps({humidity: change for (humidity, _), change in changes.items()}))
+        return [], [], [[[], of_stopper(of, plastic_contact(data["plasticity"], of.pair)) + gaps]]
     of = in_si(OfDevice, settings["beam"])
     plastic = plastic_contact(data["plasticity"], of.device.pair)
     lengths = [
-        [[humidity, shape], sentences]
+        [[humidity, shape], sentences + _without_gaps(changes, humidity, shape)]
         for (_, humidity), dataset in data["lengths"].items()
         for shape, sentences in of_device(dataset, of, plastic, humidity).items()
     ]
     charts = list(data["charts"].values())
     curves = [[curve, sentences] for curve, sentences in of_chart(charts, of, plastic).items()] if charts else []
     return lengths, curves, []
+
+
+def _without_gaps(changes, humidity, shape):
+    """Warning about what attraction across gaps would change of a beam at a humidity, if it is left out."""
+    change = changes.get((humidity, ARC if shape == EITHER else shape))
+    return limits.given(limits.without_gaps({humidity: change} if change else {}, shorter=True))
+
+
+def not_modelled(plan: Any, *devices: str) -> str:
+    """Sentence on what is not in the results of some devices."""
+    sections = (plan.config["devices"][name] for name in devices)
+    return plan.air_of_devices.not_modelled(
+        (section["pair"], humidity) for section in sections for humidity in section["humidities"]
+    )
 
 
 def files_of(*devices: str) -> dict[str, File]:

@@ -77,7 +77,7 @@ def _settings(plan, at):
     section = plan.config["devices"][at.device]
     own = {"device": section_of_beam(plan, at.device)} if plan.devices.kind(at.device).is_beam else {}
     applied = {"applied": True} if plan.variants.is_corrected() else {}
-    gaps = {"across_gaps": True} if "gaps" in plan.air.water(section["pair"]) else {}
+    gaps = {"across_gaps": True} if "gaps" in plan.air_of_devices.water(section["pair"]) else {}
     return select(Settings, {"humidities": section["humidities"]} | own | applied | gaps)
 
 

@@ -191,7 +191,7 @@ def settings_of_beam(plan: Any, case: Case) -> dict[str, Any]:
     """A device at a humidity: force laws, dimensions and number of beams; more than any one stage needs."""
     pair = plan.contact_of_device(case)
     own = {"device": section_of_beam(plan, case.device, pair), "humidity": case.humidity}
-    return plan.seen_by(pair) | plan.config["design"] | own
+    return plan.seen_by(pair) | plan.config["design"] | own | {"water": plan.air_of_devices.water(pair)}
 
 
 def section_of_beam(plan: Any, name: str, contact: str | None = None) -> dict[str, Any]:

@@ -156,9 +156,9 @@ def shares_stuck(dataset: xr.Dataset) -> Sequence[tuple[float, float, float, flo
 
 def _settings(plan, at):
     """Water, patch, restoring force and humidities of a stopper, and its fine axis of humidities."""
-    section = plan.config["devices"][at.device]
-    pair = plan.air.contact(section["pair"], max(section["humidities"]))
-    return select(Settings, plan.config["design"] | section | {"water": plan.air.water(pair)})
+    section, air = plan.config["devices"][at.device], plan.air_of_devices
+    pair = air.contact(section["pair"], max(section["humidities"]))
+    return select(Settings, plan.config["design"] | section | {"water": air.water(pair)})
 
 
 def _inputs(plan, at):

@@ -7,7 +7,7 @@ cannot be below zero in one direction only. A new input is an entry of ``OF_BEAM
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, make_dataclass, replace
+from dataclasses import dataclass, field, make_dataclass, replace
 from itertools import groupby
 from typing import NamedTuple
 
@@ -40,6 +40,12 @@ class State:
     water: Water
     device: DesignedBeam | None = None  #: a beam; none for a stopper
     area: float = 0.0  #: of a stopper [m²]
+    alike: tuple[str, ...] = SIDES  #: bodies of the material of the beam or stopper
+
+    def attracting(self, factor: float) -> "State":
+        """State in which the Hamaker constants of these bodies have a factor across gaps; its contact stays."""
+        gaps = self.water.gaps
+        return replace(self, water=replace(self.water, gaps=gaps and gaps.scaled(factor, self.alike)))
 
 
 @dataclass(frozen=True)
@@ -133,8 +139,8 @@ _OF_SOLIDS = {name: without_unit(one.key) for name, one in OF_CONTACT.items()}
 Uncertainty = make_dataclass(
     "Uncertainty",
     [
-        (field, float, 0.0)
-        for field in dict.fromkeys([*(one.field for one in (*OF_BEAMS, *OF_AIR)), *_OF_SOLIDS.values(), "scan"])
+        (key, float, 0.0)
+        for key in dict.fromkeys([*(one.field for one in (*OF_BEAMS, *OF_AIR)), *_OF_SOLIDS.values(), "scan"])
     ],
     frozen=True,
 )
@@ -151,6 +157,14 @@ class Settings:
     surfaces: tuple[str, ...]  #: names of those of the pair
     young_modulus: float  #: E of the body of the beam or stopper [Pa]
     hamaker_constant: float | None = None  #: of two bodies like the beam or stopper [J], if it is uncertain
+    alike: tuple[str, ...] = SIDES  #: as of `State`
+    waters: dict[str, Water] = field(
+        default_factory=dict
+    )  #: by choices of the model that change attraction across gaps
+
+    def water_under(self, choice: str) -> Water:
+        """Water, and attraction across gaps, under a choice of the model."""
+        return replace(self.waters.get(choice, self.water), correction=self.water.correction)
 
 
 def uncertain(
@@ -175,7 +189,10 @@ def uncertain(
 
 
 def changed(state: State, errors: Mapping[str, float]) -> State:
-    """State whose dimensions, air and modulus of the beam err, by the names of the inputs; its contact stays."""
+    """State whose dimensions, air, modulus of the beam and attraction across gaps err, by the names of the inputs.
+
+    Its contact stays.
+    """
     for entry in (*OF_BEAMS, *OF_AIR):
         if entry.name in errors:
             state = entry.moved(state, errors[entry.name])
@@ -183,7 +200,7 @@ def changed(state: State, errors: Mapping[str, float]) -> State:
     if modulus.words in errors and state.device:
         stiffer = modulus.step.moved(state.device.young_modulus, errors[modulus.words])
         state = replace(state, device=replace(state.device, young_modulus=stiffer))
-    return state
+    return state.attracting(np.exp(errors.get(OF_CONTACT["hamaker_constant"].words, 0.0)))
 
 
 def countable(sizes: Sequence[str], settings: Settings) -> list[str]:
@@ -209,8 +226,8 @@ def of_surface(
 
 def of_numbers(state: State, varied: Sequence[Varied], stated: Uncertainty) -> Iterator[Block]:
     """Blocks of those of some inputs that are uncertain."""
-    for field, together in groupby(varied, lambda number: number.field):
-        if deviation := getattr(stated, field):
+    for key, together in groupby(varied, lambda number: number.field):
+        if deviation := getattr(stated, key):
             inputs, deviations = zip(*(number.around(state, deviation) for number in together), strict=True)
             yield Block(list(inputs), np.full((len(inputs), len(inputs)), deviations[0] ** 2))
 
@@ -220,7 +237,7 @@ def of_solids(state: State, solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
 
     ASSUME: a beam bends with Young's modulus alone, without the 1 - ν² of a plate; only the contact has the other two.
     """
-    for name, field in _OF_SOLIDS.items():
+    for name, key in _OF_SOLIDS.items():
         if name not in solids:
             continue
         states, step = [replace(state, contact=contact) for contact in solids[name]], OF_CONTACT[name].step
@@ -228,8 +245,10 @@ def of_solids(state: State, solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
             moduli = step.ends(settings.young_modulus)
             beams = [replace(state.device, young_modulus=modulus) for modulus in moduli]
             states = [replace(of, device=beam) for of, beam in zip(states, beams, strict=True)]
-        deviation = getattr(settings.uncertainty, field)
-        relative = deviation / getattr(settings, field) if step.relative else deviation
+        if name == "hamaker_constant":
+            states = [of.attracting(end) for of, end in zip(states, step.ends(1.0), strict=True)]
+        deviation = getattr(settings.uncertainty, key)
+        relative = deviation / getattr(settings, key) if step.relative else deviation
         entry = Input(OF_CONTACT[name].words, OF_CONTACT[name].group, tuple(states), step.difference)
         yield Block([entry], np.array([[relative**2]]))
 

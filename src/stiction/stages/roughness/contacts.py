@@ -70,7 +70,10 @@ class Settings:
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Settings) -> xr.Dataset:
-    """Dataset of stage contact with the value of the quantity, and of another one with that as given, as variables."""
+    """Dataset of stage contact with the value of the quantity, and of another one with that as given, as variables.
+
+    So is the kurtosis, which may change with the skewness, see `stiction.analysis.shifts.with_value`.
+    """
     names = settings.contact.surfaces
     given = changed = description(*surfaces[names.index(settings.surface)])
     wanted = {settings.quantity: settings.value, settings.other: settings.other_value}
@@ -81,7 +84,8 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Setting
         drawn = drawn_as(changed, settings.contact.sampling.spacing)
         surfaces = [drawn if name == settings.surface else same for name, same in zip(names, surfaces, strict=True)]
     contact = stage_contact.compute(surfaces, settings.pair, "NG", settings.contact)
-    contact = contact.assign(roughness=float(value_of(changed, settings.quantity)))
+    values = {"roughness": value_of(changed, settings.quantity), "kurtosis": changed.kurtosis}
+    contact = contact.assign({name: float(value) for name, value in values.items()})
     if not settings.other:
         return contact
     others = {"other": changed, "other_given": given}
@@ -111,7 +115,7 @@ def contacts_of(plan: Any, device: str, number: int) -> dict[str, dict[bool, str
     """
     section = plan.config["devices"][device]
     folders = {"contact": FOLDER} | ({"tips": f"{FOLDER}/tips"} if plan.devices.kind(device).has_tip else {})
-    airs = {humidity > 0: plan.air.contact(section["pair"], humidity) for humidity in section["humidities"]}
+    airs = {humidity > 0: plan.air_of_devices.contact(section["pair"], humidity) for humidity in section["humidities"]}
     names = {is_humid: f"{device}{pair.removeprefix(pair.pair)}_{number}" for is_humid, pair in airs.items()}
     return {
         kind: {is_humid: f"{folder}/roughness/{name}" for is_humid, name in names.items()}

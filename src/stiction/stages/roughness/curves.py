@@ -31,6 +31,8 @@ from stiction.stages.roughness.contacts import POINTS, contacts_of, points_of, r
 
 #: Value of a second quantity of a point of a map, and that of the surface as it is given.
 OTHERS = ("other", "other_given")
+#: Kurtosis of a point, which curves and maps over the skewness have.
+KURTOSIS = "kurtosis"
 #: Dimensions of what is found on a curve.
 _TABLES = ("crossing", "range")
 #: Groups of the samples whose scatter gives the error of a length due to their number.
@@ -155,7 +157,7 @@ def compute(
             refused.append(str(reason))
     contact = next(iter(contacts.values()))
     point = layout(responses, refused, roughness_of(contact), contact.sizes["sample"], settings)
-    return point.assign({name: contact[name] for name in OTHERS if name in contact})
+    return point.assign({name: contact[name] for name in (*OTHERS, KURTOSIS) if name in contact})
 
 
 def layout(
@@ -229,6 +231,8 @@ def mapped(points: Sequence[xr.Dataset], surface: str, key: str, other: str = ""
 
     The first curve has the second quantity as it is given; others at the same value are left out.
     """
+    if "skewness" not in (key, other):
+        points = [point.drop_vars(KURTOSIS, errors="ignore") for point in points]
     first, *more = [
         joined([point.drop_vars(OTHERS, errors="ignore") for point in points[k : k + POINTS]], key, surface)
         for k in range(0, len(points), POINTS)
@@ -288,8 +292,9 @@ def _rows(dimension, rows, *names):
 def _settings(plan, at):
     """What is required of a device, and everything that its length or force depends on apart from the contact."""
     section = plan.config["devices"][at.device]
-    wettest = plan.air.contact(section["pair"], max(section["humidities"]))
-    own = plan.config["design"] | section | section["requirement"] | {"water": plan.air.water(wettest)}
+    air = plan.air_of_devices
+    wettest = air.contact(section["pair"], max(section["humidities"]))
+    own = plan.config["design"] | section | section["requirement"] | {"water": air.water(wettest)}
     if not plan.devices.kind(at.device).is_beam:
         return select(OfStopper, own)
     common = {key: plan.config[key] for key in ("seed", "chaos")}

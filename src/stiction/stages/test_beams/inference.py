@@ -523,7 +523,8 @@ def _settings(plan, at):
         data["crack_lengths"][name]["length_um"] = arrays[name]["length_um"]
     for name in data["stuck"]:
         wettest = case_id(name, max(data["stuck"][name]["humidity"]))
-        data["stuck"][name]["water"] = plan.air.water(plan.of_test_beams.contact_of_device(wettest))
+        contact = plan.of_test_beams.contact_of_device(wettest)
+        data["stuck"][name]["water"] = plan.air_of_devices.water(contact)
     is_beam = plan.devices.kind(at.device).is_beam
     return (
         data

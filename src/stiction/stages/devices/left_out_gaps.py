@@ -1,0 +1,89 @@
+"""Stage left_out_gaps: what attraction across gaps would change of a device whose results are without it.
+
+Devices attract across gaps, unless a configuration states otherwise or corrects them to full elastic contact, whose
+ratios are without it. The change is an effect of a choice of the model, as in a budget: of the same devices on the same
+contact, whose force curves alone differ.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stiction.config.cases import case_id
+from stiction.config.units import in_si
+from stiction.contact.environment import Water
+from stiction.plan.stage import At, Stage
+from stiction.stages.contact.corrections import corrected
+from stiction.stages.devices.budget import AnyBudget, effect, of_job, settings_of, settings_of_tips
+from stiction.stages.devices.patch_settings import contact_of, corrections_of, tips_of
+
+
+def compute(contacts: Sequence[xr.Dataset], budgets: Sequence[AnyBudget], waters: Sequence[Water]) -> xr.Dataset:
+    """Change of ln l, or ln F, of each budget by attraction across gaps, with its standard error [-].
+
+    Each budget has its own contact, and the water with attraction across gaps.
+    """
+    changes = []
+    for contact, budget, water in zip(contacts, budgets, waters, strict=True):
+        state = budget.state(contact)
+        across = replace(state, water=replace(water, correction=state.water.correction))
+        changes.append(effect(state, across, budget.responder(state)))
+    columns = np.reshape(changes, (-1, 2)).T
+    responses = [budget.response for budget in budgets]
+    return xr.Dataset(
+        {name: ("case", column, {"units": "1"}) for name, column in zip(("change", "error"), columns, strict=True)},
+        coords={"humidity": ("case", [budget.humidity for budget in budgets]), "response": ("case", responses)},
+    )
+
+
+def changes_of(dataset: xr.Dataset) -> dict[tuple[float, str], tuple[float, float]]:
+    """Change and its standard error by humidity and response, see `stiction.stages.devices.budget.response_of`."""
+    keys = zip(map(float, dataset.humidity.values), map(str, dataset.response.values), strict=True)
+    return dict(zip(keys, zip(dataset.change.values.tolist(), dataset.error.values.tolist(), strict=True), strict=True))
+
+
+def of_device(plan: Any, device: str) -> dict[str, str]:
+    """Dataset of a device whose results are without attraction across gaps, as input of a stage; none for others."""
+    pair = plan.config["devices"][device]["pair"]
+    is_left_out = plan.air_of_devices.reach(pair) == "touching" and plan.config["van_der_waals"] != "none"
+    return {"left_out_gaps": f"devices/left_out_gaps/{device}"} if is_left_out else {}
+
+
+def _parts(plan, device):
+    """Contact and settings of everything that may hold a device, at each of its humidities."""
+    for humidity in plan.config["devices"][device]["humidities"]:
+        case = case_id(device, humidity)
+        yield contact_of(plan, case), settings_of(plan, At(case=case))["budget"]
+        for contact in tips_of(plan, case).values():
+            yield contact, settings_of_tips(plan, At(case=case))["budget"]
+
+
+def _settings(plan, at):
+    """Settings of the budgets, with the water that has attraction across gaps."""
+    pair = plan.config["devices"][at.device]["pair"]
+    across = plan.air_of_devices.across_gaps(pair)
+    own = [budget for _, budget in _parts(plan, at.device)]
+    return {"budgets": [{key: value for key, value in one.items() if key != "waters"} for one in own], "water": across}
+
+
+def _computed(data: Mapping[str, Any], _at: At, settings: Mapping[str, Any]) -> xr.Dataset:
+    """Changes of everything that may hold a device."""
+    budgets = [corrected(of_job(budget), data) for budget in settings["budgets"]]
+    return compute(data["contacts"], budgets, [in_si(Water, settings["water"])] * len(budgets))
+
+
+STAGES = (
+    Stage.writing(
+        "left_out_gaps",
+        "devices/left_out_gaps/{device}",
+        inputs=lambda plan, at: (
+            {"contacts": [contact for contact, _ in _parts(plan, at.device)]} | corrections_of(plan, at.device)
+        ),
+        settings=_settings,
+        compute=_computed,
+        message="What attraction across gaps would change of device {device}.",
+    ),
+)

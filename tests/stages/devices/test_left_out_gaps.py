@@ -1,0 +1,82 @@
+"""Devices without attraction across gaps: what it would change of them, beside their results."""
+
+import numpy as np
+import pytest
+import small
+
+from stiction.config.files import load
+from stiction.config.merging import merged
+from stiction.config.units import in_si
+from stiction.contact.environment import Water
+from stiction.devices import limits
+from stiction.plan.graph import Graph, Results
+from stiction.plan.plan import Plan
+from stiction.stages.contact import curves
+from stiction.stages.devices import device_warnings, left_out_gaps
+from stiction.stages.devices.releases import ARC, EITHER, FORCE, S_SHAPE
+
+BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 6, "humidities": [0.44, 0.8]}
+STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [1.5, 6], "restoring_force_uN": 20, "humidities": [0.44, 0.8]}
+SIZES = {"devices": {"C1": BEAM, "S1": STOPPER}, "design": {"beams": 200, "budget_beams": 20, "chart_points": 2}}
+SIZES |= {"design": SIZES["design"] | {"worst_humidities": [0.44, 0.9]}}
+TOUCHING = Results.of(merged(small.PLAN.config, SIZES))
+
+
+def test_the_force_of_a_stopper_would_change_as_that_of_one_with_attraction_across_gaps():
+    found = left_out_gaps.changes_of(TOUCHING["devices/left_out_gaps/S1"])
+    contact, across = TOUCHING["devices/contact/b_1500x6000"], load({"attraction": {"reach": "all"}})
+    waters = [in_si(Water, plan.air_of_devices.water("b")) for plan in (TOUCHING.graph.plan, Plan(across))]
+    for humidity in (0.44, 0.8):
+        without, with_gaps = (curves.pull_offs(contact, humidity, water).mean() for water in waters)
+        assert found[humidity, FORCE][0] == pytest.approx(np.log(with_gaps / without))
+    assert found[0.44, FORCE][0] > 2 * found[0.8, FORCE][0] > 0
+
+
+def test_beams_and_tips_would_stick_at_shorter_lengths_in_drier_air():
+    found = left_out_gaps.changes_of(TOUCHING["devices/left_out_gaps/C1"])
+    assert set(found) == {(humidity, response) for humidity in (0.44, 0.8) for response in (S_SHAPE, ARC)}
+    for humidity in (0.44, 0.8):
+        shorter, error = found[humidity, S_SHAPE]
+        assert shorter < -2 * error < 0
+        assert found[humidity, ARC][0] < 2 * found[humidity, ARC][1]
+
+
+def test_every_result_has_its_change_as_a_warning():
+    graph = TOUCHING.graph
+    job = graph.job("devices/warnings/S1.json")
+    *_, [[_, said]] = job.compute({"plasticity": {}, "left_out_gaps": TOUCHING["devices/left_out_gaps/S1"]})
+    assert any("across gaps is left out" in one and "RH 0.44" in one and "unsafe" in one for one in said)
+    changes = left_out_gaps.changes_of(TOUCHING["devices/left_out_gaps/C1"])
+    for shape in (S_SHAPE, EITHER):
+        (sentence,) = device_warnings._without_gaps(changes, 0.44, shape)
+        number = 100 * changes[0.44, ARC if shape == EITHER else shape][0]
+        assert f"change the length that holds by {number:+.2g} ±" in sentence
+    assert device_warnings._without_gaps({}, 0.44, S_SHAPE) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "is_left_out"),
+    [
+        ({}, False),
+        ({"attraction": {"reach": "all"}}, False),
+        ({"attraction": {"reach": "touching"}}, True),
+        ({"contact": {"model": "full"}}, True),
+        ({"van_der_waals": "none"}, False),  # nothing attracts at all, as the list of what is not in the model says
+    ],
+)
+def test_the_change_is_computed_where_attraction_across_gaps_is_left_out(changes, is_left_out):
+    humid = {"devices": {name: section | {"humidities": [0.55, 0.8]} for name, section in SIZES["devices"].items()}}
+    graph = Graph(Plan(load(SIZES, humid, {"design": {"worst_humidities": [0.5, 0.9]}}, changes)))
+    for device in ("C1", "S1"):
+        assert ("left_out_gaps" in graph.job(f"devices/warnings/{device}.json").inputs) == is_left_out
+    inputs = graph.job("devices/left_out_gaps/C1").inputs
+    assert ("model_error" in inputs) == (changes == {"contact": {"model": "full"}})
+
+
+def test_the_side_of_what_is_left_out_is_that_of_lengths_and_forces():
+    assert "unsafe" in limits.without_gaps({0.5: (-0.03, 0.01)}, shorter=True)
+    assert "unsafe" not in limits.without_gaps({0.5: (0.03, 0.01)}, shorter=True)
+    assert "+10 ± 1 % at RH 0.5, -2 ± 1 % at RH 0.9, which is the unsafe" in limits.without_gaps(
+        {0.5: (0.1, 0.01), 0.9: (-0.02, 0.01)}
+    )
+    assert limits.without_gaps({}) is None
