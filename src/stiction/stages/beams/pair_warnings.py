@@ -17,6 +17,7 @@ from stiction.plan.stage import Stage, select
 from stiction.run.atomic import save_text
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
 from stiction.stages.beams.releases import ended, stuck_lengths
+from stiction.stages.surfaces import surface_flags
 
 #: Warnings by their subject, such as ``pair b, RH 0.67, G``.
 Warnings = dict[str, list[str]]
@@ -135,21 +136,33 @@ def as_markdown(warnings: Warnings) -> str:
     return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", limits.NOT_MODELLED, ""])
 
 
+def of_surfaces(data: Mapping[str, Mapping[str, xr.Dataset]], surfaces: Mapping[str, Sequence[str]]) -> Warnings:
+    """Flags of the measured surfaces of every pair, from the datasets of `surface_flags.inputs`; surfaces by pair."""
+    flags = surface_flags.sentences(data)
+    return {pair: [sentence for name in names for sentence in flags[name]] for pair, names in surfaces.items()}
+
+
 def _of_pairs(data, _at, settings):
     """Warnings about all pairs as a page."""
     nominal = in_si(OfPairs, settings["pairs"])
     remedy = limits.DISTANCE if settings["plasticity_runs"] else limits.NAMED
-    return as_markdown(of_pairs(data["beams"], data["plasticity"], settings["materials"], nominal, remedy))
+    warnings = of_pairs(data["beams"], data["plasticity"], settings["materials"], nominal, remedy)
+    for pair, flags in of_surfaces(data, settings["surfaces"]).items():
+        warnings[f"pair {pair}"] += flags
+    return as_markdown(warnings)
 
 
 STAGES = (
     Stage(
         name="model_limits",
         files={"markdown": "warnings.md"},
-        inputs=lambda plan, at: {
-            "beams": by_outcome("beams", plan.outcomes),
-            "plasticity": by_name("studies/plasticity", plan.pressed_pairs),
-        },
+        inputs=lambda plan, at: (
+            {
+                "beams": by_outcome("beams", plan.outcomes),
+                "plasticity": by_name("studies/plasticity", plan.pressed_pairs),
+            }
+            | surface_flags.inputs(plan, *plan.pairs)
+        ),
         settings=lambda plan, at: {
             "pairs": {
                 "sampling": select(StripLength, plan.config["sampling"]),
@@ -158,6 +171,7 @@ STAGES = (
             | sections(plan, *plan.pairs),
             "materials": {pair: plan.materials.in_words(pair) for pair in plan.pairs},
             "plasticity_runs": "plasticity" in plan.studies,
+            "surfaces": {pair: plan.scans.sides(pair) for pair in plan.pairs},
         },
         compute=_of_pairs,
         save=lambda page, paths: save_text(page, paths["markdown"]),

@@ -27,6 +27,7 @@ from stiction.stages.beams.pair_warnings import (
 )
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import DesignedBeam, section_of_beam
+from stiction.stages.surfaces import surface_flags
 
 
 @dataclass(frozen=True)
@@ -157,7 +158,7 @@ def _inputs(plan, at):
         "lengths": by_case("devices/safe_lengths", cases),
         "charts": by_case("devices/chart", charts),
         "plasticity": by_name("studies/plasticity", devices.pressed(at.device)),
-    }
+    } | surface_flags.inputs(plan, plan.config["devices"][at.device]["pair"])
 
 
 def _settings(plan, at):
@@ -171,18 +172,21 @@ def _settings(plan, at):
 
 def _of_one_device(data, _at, settings):
     """Warnings about a device: about its lengths, its curves and its patch, each with what follows its name."""
+    flags = surface_flags.together(data)
     if "stopper" in settings:
         of = in_si(OfStopper, settings["stopper"])
-        return [], [], [[[], of_stopper(of, plastic_contact(data["plasticity"], of.pair))]]
+        return [], [], [[[], of_stopper(of, plastic_contact(data["plasticity"], of.pair)) + flags]]
     of = in_si(OfDevice, settings["beam"])
     plastic = plastic_contact(data["plasticity"], of.device.pair)
     lengths = [
-        [[humidity, shape], sentences]
+        [[humidity, shape], sentences + flags]
         for (_, humidity), dataset in data["lengths"].items()
         for shape, sentences in of_device(dataset, of, plastic, humidity).items()
     ]
     charts = list(data["charts"].values())
-    curves = [[curve, sentences] for curve, sentences in of_chart(charts, of, plastic).items()] if charts else []
+    curves = (
+        [[curve, sentences + flags] for curve, sentences in of_chart(charts, of, plastic).items()] if charts else []
+    )
     return lengths, curves, []
 
 
