@@ -71,6 +71,7 @@ def above(rings: Rings, within: Reach, floor: Floor) -> Reach:
 def white_floor(rings: Rings, within: Reach) -> Floor:
     """Floor of the measured spectrum of scans that are alike; zero where they do not show one.
 
+    ASSUME: noise is independent from point to point, and aliases follow the power law of the spectrum up to its end.
     It shows beyond the end of the spectrum, or as a flat octave below the Nyquist wave number. Otherwise it is fitted
     together with Eq. (7), its aliases and its end. Such a floor counts if the rings do not contradict this fit, and
     contradict the one without a floor.

@@ -214,9 +214,7 @@ def fit(rings: Rings, within: Reach) -> WhittleFit:
         plateau = np.average(density / relative, weights=weight)
         return np.log(plateau) + np.average(np.log(relative), weights=weight)  # P / s is 1 on average at its optimum
 
-    decades = np.log10(wavenumber[-1] / wavenumber[0])
-    corners = np.linspace(*np.log(wavenumber[[0, -1]]), int(_CORNERS * decades) + 3)[:-1]
-    start = min(((corner, slope) for corner in corners for slope in _SLOPES), key=objective)
+    start = _start(known)
     bounds = [(np.log(wavenumber[0] / 4), np.log(wavenumber[-1])), _BOUNDS]
     corner, slope = minimize(
         objective, start, method="Nelder-Mead", bounds=bounds, options={"xatol": 1e-5, "fatol": 1e-10}
@@ -226,6 +224,17 @@ def fit(rings: Rings, within: Reach) -> WhittleFit:
     chi2, freedom = float(np.sum(known.modes * (density / (plateau * relative) - 1) ** 2)), len(wavenumber) - 3
     covariance = max(chi2 / freedom, 1.0) * _covariance(wavenumber, weight, corner, slope)
     return WhittleFit(float(plateau), float(np.exp(corner)), float(slope), covariance, chi2, freedom)
+
+
+def _start(known):
+    """Logarithm of the corner and slope of the best of a grid of both, by the objective of `fit`."""
+    logarithm, share = np.log(known.wavenumber), known.weight / known.weight.sum()
+    decades = (logarithm[-1] - logarithm[0]) / np.log(10)
+    corners = np.linspace(*logarithm[[0, -1]], int(_CORNERS * decades) + 3)[:-1]
+    decay = np.maximum(logarithm - corners[:, None], 0.0)
+    columns = [np.log(np.exp(-slope * decay) @ (share * known.density)) + slope * decay @ share for slope in _SLOPES]
+    corner, slope = np.unravel_index(np.argmin(np.transpose(columns)), (len(corners), len(_SLOPES)))
+    return corners[corner], _SLOPES[slope]
 
 
 def shape(wavenumber: np.ndarray, log_corner: float, slope: float) -> np.ndarray:
