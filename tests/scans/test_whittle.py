@@ -173,7 +173,7 @@ def test_a_spectrum_that_becomes_steeper_has_no_end():
             return up_to(1e9)(wavenumber) / (1 + (wavenumber / 3e7) ** bend)
 
         found, within = fit_to_the_end(measured(stream(1, "steeper", round(2 * bend)), steeper, 10 * MODES), REACH)
-        assert (found.contradicted, within) == (True, REACH)
+        assert (found.contradicted, within.high) == (True, REACH.high)
 
 
 @pytest.mark.slow

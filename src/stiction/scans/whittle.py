@@ -24,8 +24,8 @@ _TIP_SAFETY = 0.5
 NON_GAUSSIAN = 1.15
 #: A spectrum has ended where it is below this share of the fit in all further rings, and the fewest of these.
 _ENDED, _RINGS_BEYOND = 0.5, 4
-#: Parts of the reach differ by this factor, and so do ends that are the same; largest ratio of an end to a part that
-#: shows it.
+#: Parts of the reach differ by this factor, and so do ends that are the same at most; parts from the end over this
+#: factor up to it show it, and the power law is as long.
 _STEP, _SOON = 1.1, 2.0
 #: Fewest rings of a fit.
 FEWEST_RINGS = 8
@@ -150,8 +150,8 @@ class _Part:
         return end / _SOON <= self.high <= end
 
     def shows(self, end):
-        """Whether it shows an end, as far as parts of the reach can tell."""
-        return 1 / _STEP < self.end / end < _STEP
+        """Whether it shows an end, as far as parts of the reach can tell, with a power law that is long enough."""
+        return 1 / _STEP < self.end / end < _STEP and self.fitted.corner <= end / _SOON
 
 
 def _showing(parts, nyquist):
