@@ -1,7 +1,7 @@
 """Fit spectra of scans of known surfaces with several pixels, noise, tips and filters: ``python spectra.py SEEDS``.
 
-Prints corner and slope, end, χ² per degree of freedom, noise [pm] and rms [nm] that the scans give: means over the seeds ± their
-scatter, wave numbers in rad/µm. The table of docs/measured-surfaces.md is of three seeds.
+Prints corner, slope and end of the spectrum, χ² per degree of freedom, noise [pm] and rms [nm] that the scans give: means
+over the seeds ± their scatter, wave numbers in rad/µm. The table of docs/measured-surfaces.md is of three seeds.
 """
 
 import sys
