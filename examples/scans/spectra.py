@@ -1,6 +1,6 @@
 """Fit spectra of scans of known surfaces with several pixels, noise, tips and filters: ``python spectra.py SEEDS``.
 
-Prints corner, slope and end of the spectrum, χ² per degree of freedom, noise [pm] and rms [nm] that the scans give: means
+Prints corner, slope, end of the spectrum, χ² per degree of freedom, noise [pm] and rms [nm] that the scans give: means
 over the seeds ± their scatter, wave numbers in rad/µm. The table of docs/measured-surfaces.md is of three seeds.
 """
 
