@@ -89,6 +89,7 @@ def test_flags_of_a_surface_stand_beside_everything_that_rests_on_it(warned):
     for flag in FLAGS:
         (line,) = (line for line in page.splitlines() if flag in line)
         assert line.startswith("- pair a: ")
+    assert pair_warnings.of_surfaces(MEASURED, settings["surfaces"]) == {"a": FLAGS, "b": []}, "in Table III"
     assert warned({"S1": stopper()}, surfaces=MEASURED).patches["S1"][-2:] == FLAGS
     assert not set(FLAGS) & set(warned({"S1": stopper()}).patches["S1"])
     lengths = {("C1", 0.67): device()[0]}
