@@ -7,7 +7,7 @@ from published import SPACING, SURFACES
 from scipy import stats
 
 from stiction.scans.estimate import Settings, estimate, inspect
-from stiction.scans.noise import without_noise
+from stiction.scans.noise import can_be_noise, without_noise
 from stiction.scans.scan import Scan
 from stiction.streams import stream
 from stiction.surface.field import StripGrid
@@ -39,6 +39,12 @@ def test_moments_without_noise_are_those_of_the_surface():
     np.testing.assert_allclose(found, of(z), atol=0.08)
     assert np.abs(of(both) - of(z)).max() > 0.5
     np.testing.assert_array_equal(without_noise(of(z), 0.0), of(z))
+
+
+def test_heights_that_no_surface_has_without_noise_have_none():
+    assert can_be_noise(np.array([0.0, 0.1, 1.2]), 0.02)
+    assert not can_be_noise(np.array([0.0, 0.1, 1.2]), 0.1)
+    assert not can_be_noise(np.array([0.0, 0.0, 3.0]), 1.0)
 
 
 @pytest.mark.slow

@@ -18,7 +18,7 @@ from stiction.scans import periodogram as spectra
 from stiction.scans.holes import filled
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.moments import moments, powers
-from stiction.scans.noise import Floor, above, slopes_with_noise, white_floor, without_noise
+from stiction.scans.noise import Floor, above, can_be_noise, slopes_with_noise, white_floor, without_noise
 from stiction.scans.periodogram import Periodogram, Rings, in_order
 from stiction.scans.quantiles import correlation_areas, quantiles
 from stiction.scans.remainder import Remainder, remainders
@@ -71,6 +71,8 @@ class Maps:
         tip = np.inf if settings.tip_radius is None else tip_reach(complete, frame.pixel[0], settings.tip_radius)
         within = reach(frame.size, frame.pixel, settings.shortest, tip)
         floor = white_floor(spectra.rings(noisy), within)
+        if not can_be_noise(moments(np.mean([powers(z) for z in levelled], axis=0)), floor.variance(frame.pixel)[0]):
+            floor = Floor()
         within, clean = above(spectra.rings(noisy), within, floor), spectra.without_floor(noisy, floor.density)
         names = tuple(scan.name for scan in scans)
         return cls(names, tuple(alike), frame, levelled, complete, clean, spectra.rings(clean), within, floor)

@@ -53,6 +53,14 @@ def without_noise(moments: np.ndarray, variance: float) -> np.ndarray:
     return np.array([log_rms - np.log(ratio) / 2, skewness * ratio**1.5, 3 + (kurtosis - 3) * ratio**2])
 
 
+def can_be_noise(moments: np.ndarray, variance: float) -> bool:
+    """Whether heights with these moments can contain Gaussian noise of a variance [m²]: kurtosis above 1 + skewness²."""
+    if variance >= np.exp(2 * moments[0]):
+        return False
+    _, skewness, kurtosis = without_noise(moments, variance)
+    return bool(kurtosis > 1 + skewness**2)
+
+
 def slopes_with_noise(moments: np.ndarray) -> np.ndarray:
     """Derivatives of moments without noise (ln rms, skewness, kurtosis) by its variance, (3,) [m⁻²]."""
     log_rms, skewness, kurtosis = moments
