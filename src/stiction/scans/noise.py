@@ -54,7 +54,7 @@ def without_noise(moments: np.ndarray, variance: float) -> np.ndarray:
 
 
 def can_be_noise(moments: np.ndarray, variance: float) -> bool:
-    """Whether heights with these moments can contain Gaussian noise of a variance [m²]: kurtosis above 1 + skewness²."""
+    """Whether heights with these moments can have Gaussian noise of a variance [m²]: kurtosis above 1 + skewness²."""
     if variance >= np.exp(2 * moments[0]):
         return False
     _, skewness, kurtosis = without_noise(moments, variance)
