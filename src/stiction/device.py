@@ -16,6 +16,7 @@ from stiction.plan.graph import Results
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.patch_settings import contact_of, tips_of
+from stiction.stages.surfaces import surface_flags
 
 
 @dataclass(frozen=True)
@@ -142,11 +143,14 @@ class Device:
         Plasticity is not checked, which is one of the sentences.
         """
         settings = self.results.graph.job(f"devices/warnings/{self.name}.json").settings
+        measured = surface_flags.inputs(self._plan, self._section["pair"])
+        flags = surface_flags.together(
+            {stage: {name: self.results[file] for name, file in files.items()} for stage, files in measured.items()}
+        )
         if "stopper" in settings:
-            return device_warnings.of_stopper(in_si(device_warnings.OfStopper, settings["stopper"]))
-        return pair_warnings.numbered(
-            device_warnings.of_device(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
-        )[0]
+            return device_warnings.of_stopper(in_si(device_warnings.OfStopper, settings["stopper"])) + flags
+        of_beam = device_warnings.of_device(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
+        return pair_warnings.numbered(of_beam)[0] + flags
 
     def _result(self, stage, humidity, end=""):
         """Dataset of a stage at a humidity."""

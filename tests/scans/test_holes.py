@@ -89,14 +89,11 @@ def test_scattered_holes_change_neither_spectrum_nor_statistics(share, monkeypat
     before = inspect([scan], Settings())
     noise, white = (end_of_spectrum(one) - end_of_spectrum(whole) for one in (found, before))
     assert 0 < noise < 0.02 * white, "holes at the level are white noise"
-    if share > 0.005:
-        assert before.reach.end > 1.2 * whole.reach.end
-        assert np.any(np.abs(parameters(before) - parameters(whole)) > errors)
 
 
 def end_of_spectrum(found):
-    """Mean spectrum of the waves that the surface does not have."""
-    return found.rings.between(1.3e8, found.reach.nyquist).density.mean()
+    """Mean spectrum of the waves that the surface does not have, with the floor of noise that they show."""
+    return found.rings.between(1.3e8, found.reach.nyquist).density.mean() + found.largest.floor.density
 
 
 def parameters(found):

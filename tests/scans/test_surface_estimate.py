@@ -257,7 +257,8 @@ FLAGS = {
         lambda: changed(tile_errors=of_b2().errors * [1, 1, 2.5]),
     "the scans differ in rms, kurtosis by more than their errors":
         lambda: changed(homogeneity=(np.ones(3), np.array([0.001, 0.2, 0.009]))),
-    "the spectrum is not of the form of Eq. (7) (chi²/dof 4); psd: tabulated follows it":
+    "the spectrum is not of the form of Eq. (7) (chi²/dof 4); the measured spectrum is used instead, as with "
+    "psd: tabulated":
         lambda: fit_with(chi2=400.0, freedom=100),
     "the spectrum ends near 101 rad/µm; beyond: cut ends there, too":
         lambda: with_inspection(reach=dataclasses.replace(of_b2().inspection.reach, end=1.01e8)),

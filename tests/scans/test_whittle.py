@@ -12,7 +12,7 @@ from stiction.estimates import mean_with_error
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.periodogram import Rings, periodogram, rings
 from stiction.scans.scan import Scan
-from stiction.scans.whittle import fit, fit_to_the_end, reach, tabulated, tip_reach
+from stiction.scans.whittle import fit, fit_to_the_end, reach, spectrum, tabulated, tip_reach
 from stiction.streams import stream
 from stiction.surface.field import StripGrid
 
@@ -137,18 +137,74 @@ def test_a_spectrum_that_goes_on_has_no_end(name):
     assert fit_to_the_end(rings_of(published(name, SIDE, 1)), REACH)[1] == REACH
 
 
-def test_noise_hides_the_end_of_a_spectrum():
-    (scan,) = published("B2", SIDE, 1)
-    noise = 0.1e-9 * stream(1, "noise").standard_normal(scan.heights.shape)
-    assert fit_to_the_end(rings_of([Scan(scan.heights + noise, SIZE)]), REACH)[1] == REACH
+def empty_beyond(spectrum, rng, pixel):
+    """Rings of a scan with a pixel [m], and its reach; beyond its end, the spectrum falls as that of drawn scans."""
+    within = reach(SIZE, (pixel, pixel))
+    wavenumber = 2 * np.pi / SIDE * np.arange(1.0, round(SIDE / (2 * pixel)))
+    modes, end = 0.6 * np.pi * np.arange(1.0, len(wavenumber) + 1), spectrum.cutoff
+    beyond = 0.1 * float(spectrum(end)) * np.maximum(wavenumber / end, 1.0) ** -20
+    density = np.where(wavenumber <= end, spectrum(wavenumber), beyond)
+    return Rings(wavenumber, density * rng.gamma(modes) / modes, modes, modes), within
+
+
+def up_to(end, spectrum=B2):
+    """Spectrum with another end [rad m⁻¹]."""
+    floor = spectrum.plateau * (end / spectrum.corner) ** spectrum.slope
+    return dataclasses.replace(spectrum, floor=floor, cutoff=end)
+
+
+@pytest.mark.parametrize("pixel", [10e-9, 5e-9, 2.5e-9])
+@pytest.mark.parametrize("end", [30e6, 60e6, 125e6])
+def test_waves_that_a_surface_does_not_have_change_nothing(end, pixel):
+    rings_, within = empty_beyond(up_to(end), stream(1, "empty", round(end)), pixel)
+    found, seen = fit_to_the_end(rings_, within)
+    errors = np.sqrt(np.diag(found.covariance))
+    assert seen.end == pytest.approx(end, rel=0.02)
+    assert not found.contradicted
+    assert np.all(np.abs(parameters(found) - TRUTH) < 4 * errors)
+    whole = fit(rings_, dataclasses.replace(within, high=3 * end))
+    assert np.abs(parameters(whole) - TRUTH).max() > 10 * errors.max(), "control: empty rings bend a fit"
+
+
+def test_a_spectrum_that_becomes_steeper_has_no_end():
+    for bend in (1.5, 2, 4):
+
+        def steeper(wavenumber, bend=bend):
+            return up_to(1e9)(wavenumber) / (1 + (wavenumber / 3e7) ** bend)
+
+        found, within = fit_to_the_end(measured(stream(1, "steeper", round(2 * bend)), steeper, 10 * MODES), REACH)
+        assert (found.contradicted, within.high) == (True, REACH.high)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(2))
+def test_a_finer_pixel_of_the_same_map_gives_the_same_spectrum(seed):
+    drawn = SURFACES["B2"].on(StripGrid(SIDE, SIDE, 5e-9, 1e-6)).draw(stream(1, "pixels", seed)).astype(float)
+    coarse, *finer = (
+        fit_to_the_end(rings_of([Scan(drawn[::every, ::every], SIZE)]), reach(SIZE, (every * 5e-9,) * 2))
+        for every in (4, 2, 1)
+    )
+    errors = np.sqrt(np.diag(coarse[0].covariance))
+    for found, within in finer:
+        assert np.all(np.abs(parameters(found) - parameters(coarse[0])) < 1.5 * errors)
+        assert within.end == pytest.approx(coarse[1].end, rel=0.01)
+
+
+def test_a_spectrum_that_rings_contradict_is_the_measured_one():
+    knee = measured(stream(1), lambda wavenumber: B2(wavenumber) / (1 + (wavenumber / 3e7) ** 2), 10 * MODES)
+    exact, smooth = (fit(ring, REACH) for ring in (measured(stream(1)), knee))
+    assert (exact.contradicted, smooth.contradicted) == (False, True)
+    assert spectrum("fitted", exact, knee, REACH, 1e8) == exact.spectrum(1e8)
+    np.testing.assert_array_equal(
+        spectrum("fitted", smooth, knee, REACH, 1e8).density, tabulated(knee, REACH, smooth.slope, 1e8).density
+    )
 
 
 @pytest.mark.slow
 def test_chance_is_no_end_even_in_few_rings():
-    power_law = dataclasses.replace(B2, cutoff=1e9, floor=B2.plateau * (1e9 / B2.corner) ** B2.slope)
     within = dataclasses.replace(REACH, nyquist=16.5 * 2e6 * np.pi / 10, high=11.5 * 2e6 * np.pi / 10)
     for k in range(300):
-        drawn = measured(stream(1, "chance", k), power_law, MODES[:16] / 3)
+        drawn = measured(stream(1, "chance", k), up_to(1e9), MODES[:16] / 3)
         assert fit_to_the_end(drawn, within)[1].end == within.nyquist
 
 

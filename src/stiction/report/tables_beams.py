@@ -21,6 +21,7 @@ from stiction.stages.beams import pair_warnings
 from stiction.stages.beams.releases import STATES, ended, stuck_energies, stuck_lengths
 from stiction.stages.laws import forces as stage_forces
 from stiction.stages.laws.scan_uncertainty import pair_errors
+from stiction.stages.surfaces import surface_flags
 
 #: Columns of the published Table III: mean and standard deviation of each model.
 _PUBLISHED = {"NG": ("ng", "ng_std"), "GEO": ("geo", "geo_std")}
@@ -246,6 +247,8 @@ def _table_3(data, _at, settings):
     by_scans = {(pair, humidity): error for pair, errors in scanned for humidity, error in errors.items()}
     water = {pair: in_si(Water, section) for pair, section in settings["water"].items()}
     warnings = pair_warnings.of_films(data["beams"], water)
+    flags = pair_warnings.of_surfaces(data, settings["surfaces"])
+    warnings += [f"Pair {pair}: {sentence}" for pair, said in flags.items() for sentence in said]
     known = published.compared(data, settings)
     return table_3(data["beams"], data["forces"], known, by_scans, warnings, data.get("errors"))
 
@@ -262,9 +265,11 @@ STAGES = (
                 "published": published.file("table_3"),
             }
             | beside.of_pairs(plan)
+            | surface_flags.inputs(plan, *plan.pairs)
         ),
         settings=lambda plan, at: {
             "of_paper": plan.paper.pairs,
+            "surfaces": {pair: plan.scans.sides(pair) for pair in plan.pairs},
             "water": {pair: plan.air.water(pair) for pair in plan.pairs},
         },
         compute=_table_3,

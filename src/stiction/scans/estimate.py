@@ -16,7 +16,7 @@ from stiction.scans.model_scans import SurfaceModel, draw_model_scans, summits_o
 from stiction.scans.moments import homogeneity, moments, tile_errors, tiles
 from stiction.scans.quantiles import COMPARED, SCORES, Feasible, compared_slopes, feasible, goodness, measured_density
 from stiction.scans.scan import Frame, Scan
-from stiction.scans.whittle import tabulated
+from stiction.scans.whittle import spectrum
 from stiction.streams import stream
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import LARGEST_DISTANCE_OF_SCANS
@@ -44,8 +44,8 @@ class SurfaceEstimate:
     """A surface measured by scans. Moments are (ln rms, skewness, kurtosis), the rms in metres."""
 
     inspection: Inspection
-    moments: np.ndarray  #: without the bias of levelling and finite size, (3,)
-    covariance: np.ndarray  #: of the moments, by the finite scans and model scans; see `widened`, (3, 3)
+    moments: np.ndarray  #: without white noise and without the bias of levelling and finite size, (3,)
+    covariance: np.ndarray  #: of the moments, by finite scans, model scans and noise; see `widened`, (3, 3)
     closed_form_errors: np.ndarray  #: standard errors of the moments if the heights have the density of the model, (3,)
     tile_errors: np.ndarray  #: standard errors of the moments from the scatter of tiles, (3,)
     homogeneity: tuple[np.ndarray, np.ndarray]  #: χ² of the scatter between scans of one size and p, (3,) each
@@ -83,11 +83,9 @@ class SurfaceEstimate:
         return self.feasible.density
 
     def spectrum(self, psd: str, cutoff: float) -> CutoffSelfAffine | TabulatedSpectrum:
-        """Spectrum ``fitted`` or ``tabulated`` up to a cut-off [rad m⁻¹]."""
+        """Spectrum ``fitted``, unless the scans contradict it, or ``tabulated``, up to a cut-off [rad m⁻¹]."""
         inspection = self.inspection
-        if psd == "fitted":
-            return inspection.fit.spectrum(cutoff)
-        return tabulated(inspection.rings, inspection.reach, inspection.fit.slope, cutoff)
+        return spectrum(psd, inspection.fit, inspection.rings, inspection.reach, cutoff)
 
     @property
     def flags(self) -> tuple[str, ...]:
@@ -133,14 +131,14 @@ def estimate(
         model, nearest = _model(inspection, values, heights, farthest)
     largest, count = inspection.largest, len(inspection.largest.names)
     covariances = [
-        seen(inspection, model, maps).covariance / len(maps.names) + part.bias_covariance
+        seen(inspection, model, maps).covariance / len(maps.names) + part.bias_covariance + maps.noise_covariance
         for maps, part in zip(inspection.counted, drawn, strict=False)
     ]
     closed_form = inspection.propagated(covariances)
     by_tiles = np.sqrt(
         inspection.propagated([tile_errors(maps.levelled, settings.tiles) ** 2 for maps in inspection.counted])
     )
-    fitness = goodness(_residual(nearest, largest.quantiles, largest.moments), np.vstack(residuals), count)
+    fitness = goodness(_residual(nearest, largest.quantiles, largest.noisy_moments), np.vstack(residuals), count)
     described = nearest is not None and not fitness[1] < UNLIKELY
     resolved = inspection.reach.low, min(inspection.reach.high, largest.reach.high)
     sectors, sector_errors = spectra.sectors(largest.periodogram, inspection.rings, *resolved)

@@ -13,13 +13,15 @@ from stiction.scans.levelling import LEVELS
 
 #: Wavelengths of the corner along a scan from which errors are reliable.
 ENOUGH_WAVELENGTHS = 10
-#: Limits: error by tiles over that of the closed form, χ² per degree of freedom, sector ratio, p, step between lines
-#: over step along them, and difference of the summits in standard errors.
-_TILES, _MISFIT, _ANISOTROPY, UNLIKELY, _JUMP, _SUMMITS = 2.0, 2.0, 1.5, 0.01, 2.0, 4.0
+#: Limits: error by tiles over that of the closed form, sector ratio, p, step between lines over step along them, and
+#: difference of the summits in standard errors.
+_TILES, _ANISOTROPY, UNLIKELY, _JUMP, _SUMMITS = 2.0, 1.5, 0.01, 2.0, 4.0
 #: Names of the moments, and a factor of an error that is worth a flag.
 _MOMENTS, _WIDER = ("rms", "skewness", "kurtosis"), 1.1
 #: Ratio of the spectra of scans of different sizes that is worth a flag.
 _STEP = 1.1
+#: Change of a moment by noise in standard errors that is worth a flag.
+_NOISE = 0.1
 #: Difference of the largest and the smallest of 8 normal values that is exceeded with the probability 0.01, in standard
 #: deviations (studentized range).
 _RANGE_OF_SECTORS = 4.99
@@ -97,10 +99,26 @@ def _small_scans(estimate):
 
 def _spectrum_misfits(estimate):
     fit = estimate.inspection.fit
-    ratio = fit.chi2 / fit.freedom
-    if ratio > _MISFIT and chdtrc(fit.freedom, fit.chi2) < UNLIKELY:
-        return f"the spectrum is not of the form of Eq. (7) (chi²/dof {ratio:.2g}); psd: tabulated follows it"
+    if fit.contradicted:
+        reason = "the measured spectrum is used instead, as with psd: tabulated"
+        return f"the spectrum is not of the form of Eq. (7) (chi²/dof {fit.misfit:.2g}); {reason}"
     return ""
+
+
+def _noise(estimate):
+    """White noise that changes the moments by more than a small part of their errors."""
+    noisy = [maps for maps in estimate.inspection.counted if np.any(_by_noise(maps) > _NOISE * estimate.errors)]
+    if not noisy:
+        return ""
+    levels = " and ".join(f"{1e9 * maps.noise:.2g} nm in scans of {maps.size}" for maps in noisy)
+    return (
+        f"white noise of {levels} is subtracted from rms, skewness, kurtosis and spectrum, not from heights: measured"
+    )
+
+
+def _by_noise(maps):
+    """Change of the moments by white noise, (3,)."""
+    return np.abs(maps.noisy_moments - maps.moments)
 
 
 def _spectrum_ends(estimate):
@@ -191,6 +209,7 @@ _FLAGS = (
     _spectra_differ,
     _small_scans,
     _spectrum_misfits,
+    _noise,
     _spectrum_ends,
     _anisotropic,
     _moments_have_no_density,

@@ -18,12 +18,13 @@ from stiction.scans import periodogram as spectra
 from stiction.scans.holes import filled
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.moments import moments, powers
+from stiction.scans.noise import Floor, above, can_be_noise, slopes_with_noise, white_floor, without_noise
 from stiction.scans.periodogram import Periodogram, Rings, in_order
 from stiction.scans.quantiles import correlation_areas, quantiles
 from stiction.scans.remainder import Remainder, remainders
 from stiction.scans.scan import Frame, Scan
-from stiction.scans.whittle import NON_GAUSSIAN, Reach, WhittleFit, fit_to_the_end, reach, tip_reach
-from stiction.surface.spectrum import CutoffSelfAffine
+from stiction.scans.whittle import NON_GAUSSIAN, Reach, WhittleFit, fit_to_the_end, reach, spectrum, tip_reach
+from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 
 #: Fewest wavelengths of the corner along a scan: for a plateau at all.
 FEWEST_WAVELENGTHS = 4
@@ -55,8 +56,9 @@ class Maps:
     levelled: tuple[np.ndarray, ...]  #: heights, NaN where undefined, (n1, n2) each [m]
     complete: tuple[np.ndarray, ...]  #: the same with undefined points filled from their neighbours [m]
     periodogram: Periodogram
-    rings: Rings
+    rings: Rings  #: without the floor of the noise
     reach: Reach
+    floor: Floor  #: of white noise
 
     @classmethod
     def of(cls, alike: Mapping[int, Scan], settings: Settings) -> "Maps":
@@ -65,11 +67,15 @@ class Maps:
         frame = scans[0].frame
         levelled = tuple(level(scan.heights, settings.levelling) for scan in scans)
         complete = tuple(filled(z, frame.pixel) for z in levelled)
-        spectrum = spectra.periodogram(complete, frame.size)
+        noisy = spectra.periodogram(complete, frame.size)
         tip = np.inf if settings.tip_radius is None else tip_reach(complete, frame.pixel[0], settings.tip_radius)
         within = reach(frame.size, frame.pixel, settings.shortest, tip)
+        floor = white_floor(spectra.rings(noisy), within)
+        if not can_be_noise(moments(np.mean([powers(z) for z in levelled], axis=0)), floor.variance(frame.pixel)[0]):
+            floor = Floor()
+        within, clean = above(spectra.rings(noisy), within, floor), spectra.without_floor(noisy, floor.density)
         names = tuple(scan.name for scan in scans)
-        return cls(names, tuple(alike), frame, levelled, complete, spectrum, spectra.rings(spectrum), within)
+        return cls(names, tuple(alike), frame, levelled, complete, clean, spectra.rings(clean), within, floor)
 
     @property
     def size(self) -> str:
@@ -87,9 +93,26 @@ class Maps:
         return np.array([powers(z) for z in self.levelled])
 
     @property
-    def moments(self) -> np.ndarray:
-        """Moments (ln rms, skewness, kurtosis) of all scans together, (3,)."""
+    def noisy_moments(self) -> np.ndarray:
+        """Moments (ln rms, skewness, kurtosis) of all scans together, with the noise, (3,)."""
         return moments(self.powers.mean(axis=0))
+
+    @property
+    def moments(self) -> np.ndarray:
+        """The same without white noise, (3,)."""
+        return without_noise(self.noisy_moments, self.floor.variance(self.frame.pixel)[0])
+
+    @property
+    def noise(self) -> float:
+        """Root mean square of white noise [m]."""
+        return float(np.sqrt(self.floor.variance(self.frame.pixel)[0]))
+
+    @property
+    def noise_covariance(self) -> np.ndarray:
+        """Covariance of the moments by the error of the variance of the noise, (3, 3)."""
+        variance, error = self.floor.variance(self.frame.pixel)
+        slope = slopes_with_noise(self.moments)
+        return error**2 * np.outer(slope, slope)
 
     @cached_property
     def quantiles(self) -> np.ndarray:
@@ -169,9 +192,9 @@ class Inspection:
         """Fit, up to the end of the measured spectrum."""
         return self.fit.spectrum(self.reach.end)
 
-    def spectrum_in(self, maps: Maps) -> CutoffSelfAffine:
-        """The same, without the waves that are shorter than two pixels of some scans."""
-        return self.fit.spectrum(min(self.reach.end, maps.reach.nyquist))
+    def spectrum_in(self, maps: Maps) -> CutoffSelfAffine | TabulatedSpectrum:
+        """Spectrum that the scans do not contradict, without the waves that are shorter than two pixels of some."""
+        return spectrum("fitted", self.fit, self.rings, self.reach, min(self.reach.end, maps.reach.nyquist))
 
     @property
     def filled_share(self) -> float:

@@ -5,7 +5,7 @@ microscope holds drift and jumps of lines; the wave numbers next to it are left 
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from itertools import product
 
 import numpy as np
@@ -19,6 +19,8 @@ _SLOW_BAND = 3
 SECTORS = 8
 #: Values of a tapered periodogram farther apart than this number of steps along an axis are not correlated.
 _CORRELATED = 2
+#: Standard errors by which a ring stands out of a floor of noise: none does by chance.
+_SEEN = 4
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,7 @@ class Periodogram:
     size: tuple[float, float]  #: of a scan [m]
     scans: int  #: number of scans
     correlation: np.ndarray  #: by the taper, of values 0, 1, 2 steps apart along either axis, (2, 3) [-]
+    floor: float = 0.0  #: of white noise, which the power does not contain any more [m⁴]
 
     @property
     def independence(self) -> float:
@@ -84,6 +87,11 @@ def periodogram(scans: Sequence[np.ndarray], size: tuple[float, float]) -> Perio
     return Periodogram(scale * power, size, len(scans), np.array(list(map(_correlation, tapers))))
 
 
+def without_floor(spectrum: Periodogram, floor: float) -> Periodogram:
+    """Spectrum less a floor of white noise [m⁴]."""
+    return replace(spectrum, power=spectrum.power - floor, floor=spectrum.floor + floor)
+
+
 def _correlation(taper):
     """Squared correlation of the waves of tapered white noise that are 0, 1, 2 steps apart, (3,) [-]."""
     overlap = np.abs(fft.rfft(taper**2)[: _CORRELATED + 1])
@@ -93,7 +101,8 @@ def _correlation(taper):
 def rings(spectrum: Periodogram, inside: np.ndarray | None = None) -> Rings:
     """Means over rings that are one wave number of the shorter side wide, without the rings that have no value.
 
-    Wave numbers (n1, n2) that are ``inside`` are included, by default all but those near the slow axis.
+    Wave numbers (n1, n2) that are ``inside`` are included, by default all but those near the slow axis. Rings that a
+    floor of noise hides are 0 and without weight; others err as much as with the noise.
     """
     first, second = spectrum.wavenumbers
     radius = np.hypot(first, second)
@@ -101,9 +110,14 @@ def rings(spectrum: Periodogram, inside: np.ndarray | None = None) -> Rings:
     number = np.where(counted, np.rint(radius * min(spectrum.size) / (2 * np.pi)).astype(np.int32), -1)
     count = np.bincount(number[counted])
     taken = np.flatnonzero(count)
-    mean = [np.bincount(number[counted], values[counted])[taken] / count[taken] for values in (radius, spectrum.power)]
+    wavenumber, density = (
+        np.bincount(number[counted], values[counted])[taken] / count[taken] for values in (radius, spectrum.power)
+    )
     modes = spectrum.scans / 2 * count**2 / np.maximum(_correlated(number, count, spectrum.correlation), 1)
-    return Rings(*mean, modes[taken], spectrum.independence * count[taken])
+    share = (density / (density + spectrum.floor)) ** 2
+    hidden = (density < spectrum.floor) & ((density < 0) | (modes[taken] * share < _SEEN**2))
+    density, share = (np.where(hidden, 0.0, values) for values in (density, share))
+    return Rings(wavenumber, density, share * modes[taken], share * spectrum.independence * count[taken])
 
 
 def _correlated(number, count, correlation):

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import minimize
+from scipy.special import chdtrc
 
 from stiction.scans.periodogram import Rings
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
@@ -23,6 +24,13 @@ _TIP_SAFETY = 0.5
 NON_GAUSSIAN = 1.15
 #: A spectrum has ended where it is below this share of the fit in all further rings, and the fewest of these.
 _ENDED, _RINGS_BEYOND = 0.5, 4
+#: Parts of the reach differ by this factor, and so do ends that are the same at most; parts from the end over this
+#: factor up to it show it, and the power law is as long.
+_STEP, _SOON = 1.1, 2.0
+#: Fewest rings of a fit.
+FEWEST_RINGS = 8
+#: Largest χ² per degree of freedom of a fit, unless chance exceeds it with this probability.
+_MISFIT, UNLIKELY = 2.0, 0.01
 #: Starting points of the search: corners per decade of the range, and exponents of the power law.
 _CORNERS, _SLOPES = 12, -np.geomspace(0.5, 12, 16)
 #: Steepest and flattest exponent of the search.
@@ -87,6 +95,21 @@ class WhittleFit:
     chi2: float  #: sum over the rings of the squared relative deviations in standard errors [-]
     freedom: int  #: rings less parameters
 
+    @property
+    def misfit(self) -> float:
+        """χ² per degree of freedom."""
+        return self.chi2 / self.freedom
+
+    @property
+    def contradicted(self) -> bool:
+        """Whether the spectrum is not of the form of Eq. (7)."""
+        return self.misfit > _MISFIT and chdtrc(self.freedom, self.chi2) < UNLIKELY
+
+    @property
+    def likely(self) -> bool:
+        """Whether a spectrum of the form of Eq. (7) has such deviations by chance."""
+        return chdtrc(self.freedom, self.chi2 / NON_GAUSSIAN**2) >= UNLIKELY
+
     def spectrum(self, cutoff: float) -> CutoffSelfAffine:
         """Eq. (7) with a cut-off [rad m⁻¹]."""
         return CutoffSelfAffine(self.plateau, self.plateau * (cutoff / self.corner) ** self.slope, self.corner, cutoff)
@@ -96,14 +119,70 @@ def fit_to_the_end(rings: Rings, within: Reach) -> tuple[WhittleFit, Reach]:
     """`fit` up to the end of the measured spectrum at most, and the reach with that end.
 
     Aliases and noise raise a spectrum, so that a drop is real: the surface, or what tip and instrument leave of it, has
-    no shorter waves.
+    no shorter waves. A fit that includes waves beyond the end bends towards them, and hides it. Where the rings
+    contradict the fit, parts of the reach are therefore fitted, too. An end is one that all parts show which reach from
+    half of it up to it; a spectrum that only becomes steeper has none, because longer parts show later ends.
     """
-    while True:
-        fitted = fit(rings, within)
-        end = _end(rings, within, fitted)
-        if end >= within.high:
-            return fitted, replace(within, end=end)
-        within = replace(within, high=end)
+    fitted, high = fit(rings, within), within.high
+    if fitted.contradicted:
+        known = rings.between(within.low, within.high)
+        parts = [_Part(fitted, high, _end(rings, within, fitted))]
+        for shorter in _shorter(known):
+            part = fit(rings, replace(within, high=shorter))
+            parts.append(_Part(part, shorter, _end(rings, within, part)))
+        showing = _showing(parts, within.nyquist)
+        likely = (part for part in showing if part.fitted.likely)
+        best = next(likely, None) or min(showing or parts, key=lambda part: _deviance(known, part))
+        fitted, high = best.fitted, best.high
+    return _up_to_the_end(rings, within, fitted, high)
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Fit to a part of the reach, and the end that it shows."""
+
+    fitted: WhittleFit
+    high: float  #: [rad m⁻¹]
+    end: float  #: [rad m⁻¹]
+
+    def near(self, end):
+        """Whether this part reaches from half of an end or more up to it, at most."""
+        return end / _SOON <= self.high <= end
+
+    def shows(self, end):
+        """Whether it shows an end, as far as parts of the reach can tell, with a power law that is long enough."""
+        return 1 / _STEP < self.end / end < _STEP and self.fitted.corner <= end / _SOON
+
+
+def _showing(parts, nyquist):
+    """Parts near the ends that all parts near them show, those near the last end first, and then the longest."""
+    ends = sorted({part.end for part in parts if parts[-1].high <= part.end / _SOON < nyquist / _SOON}, reverse=True)
+    near = [[part for part in parts if part.near(end)] for end in ends]
+    shown = (of_end for end, of_end in zip(ends, near, strict=True) if all(part.shows(end) for part in of_end))
+    return [part for of_end in shown for part in of_end]
+
+
+def _shorter(known):
+    """Wave numbers at which a fit to rings may end before these do, the largest first [rad m⁻¹]."""
+    steps = int(np.log(len(known.wavenumber) / FEWEST_RINGS) / np.log(_STEP))
+    return known.wavenumber[np.geomspace(len(known.wavenumber), FEWEST_RINGS, steps + 1).astype(int)[1:] - 1]
+
+
+def _deviance(known, part):
+    """Deviance of rings from the fit to a part; rings beyond it count as if they were at half of the fit [-]."""
+    ratio = known.density / part.fitted.spectrum(2 * known.wavenumber[-1])(known.wavenumber)
+    ratio = np.where(known.wavenumber <= part.high, np.maximum(ratio, np.finfo(float).tiny), _ENDED)
+    return 2 * np.sum(known.modes * (ratio - 1 - np.log(ratio)))
+
+
+def _up_to_the_end(rings, within, fitted, high):
+    """Fit with all rings up to the end that a fit up to ``high`` shows, unless they are unlikely, and its reach."""
+    last = min(_end(rings, within, fitted), within.high)
+    whole = fit(rings, replace(within, high=last))
+    if whole.likely or whole.misfit <= fitted.misfit:
+        fitted, high = whole, last
+    end = _end(rings, within, fitted)
+    return fitted, replace(within, high=min(within.high if fitted.contradicted else high, end), end=end)
 
 
 def _end(rings, within, fitted):
@@ -127,30 +206,39 @@ def fit(rings: Rings, within: Reach) -> WhittleFit:
     """
     known = rings.between(within.low, within.high)
     wavenumber, density, weight = known.wavenumber, known.density, known.weight
-    if len(wavenumber) < 8:
-        raise ValueError(f"8 rings are needed within the reach of the scan, there are {len(wavenumber)}")
+    if len(wavenumber) < FEWEST_RINGS:
+        raise ValueError(f"{FEWEST_RINGS} rings are needed within the reach of the scan, there are {len(wavenumber)}")
 
     def objective(parameters):
-        shape = _shape(wavenumber, *parameters)
-        plateau = np.average(density / shape, weights=weight)
-        return np.log(plateau) + np.average(np.log(shape), weights=weight)  # P / s is 1 on average at its optimum
+        relative = shape(wavenumber, *parameters)
+        plateau = np.average(density / relative, weights=weight)
+        return np.log(plateau) + np.average(np.log(relative), weights=weight)  # P / s is 1 on average at its optimum
 
-    decades = np.log10(wavenumber[-1] / wavenumber[0])
-    corners = np.linspace(*np.log(wavenumber[[0, -1]]), int(_CORNERS * decades) + 3)[:-1]
-    start = min(((corner, slope) for corner in corners for slope in _SLOPES), key=objective)
+    start = _start(known)
     bounds = [(np.log(wavenumber[0] / 4), np.log(wavenumber[-1])), _BOUNDS]
     corner, slope = minimize(
         objective, start, method="Nelder-Mead", bounds=bounds, options={"xatol": 1e-5, "fatol": 1e-10}
     ).x
-    shape = _shape(wavenumber, corner, slope)
-    plateau = np.average(density / shape, weights=weight)
-    chi2, freedom = float(np.sum(known.modes * (density / (plateau * shape) - 1) ** 2)), len(wavenumber) - 3
+    relative = shape(wavenumber, corner, slope)
+    plateau = np.average(density / relative, weights=weight)
+    chi2, freedom = float(np.sum(known.modes * (density / (plateau * relative) - 1) ** 2)), len(wavenumber) - 3
     covariance = max(chi2 / freedom, 1.0) * _covariance(wavenumber, weight, corner, slope)
     return WhittleFit(float(plateau), float(np.exp(corner)), float(slope), covariance, chi2, freedom)
 
 
-def _shape(wavenumber, log_corner, slope):
-    """Eq. (7) with a plateau of 1 and without cut-off."""
+def _start(known):
+    """Logarithm of the corner and slope of the best of a grid of both, by the objective of `fit`."""
+    logarithm, share = np.log(known.wavenumber), known.weight / known.weight.sum()
+    decades = (logarithm[-1] - logarithm[0]) / np.log(10)
+    corners = np.linspace(*logarithm[[0, -1]], int(_CORNERS * decades) + 3)[:-1]
+    decay = np.maximum(logarithm - corners[:, None], 0.0)
+    columns = [np.log(np.exp(-slope * decay) @ (share * known.density)) + slope * decay @ share for slope in _SLOPES]
+    corner, slope = np.unravel_index(np.argmin(np.transpose(columns)), (len(corners), len(_SLOPES)))
+    return corners[corner], _SLOPES[slope]
+
+
+def shape(wavenumber: np.ndarray, log_corner: float, slope: float) -> np.ndarray:
+    """Eq. (7) with a plateau of 1 and without cut-off, shape of the wave numbers [-]."""
     return np.maximum(wavenumber / np.exp(log_corner), 1.0) ** slope
 
 
@@ -162,6 +250,15 @@ def _covariance(wavenumber, weight, log_corner, slope):
     return NON_GAUSSIAN**2 * np.linalg.pinv(gradient * weight @ gradient.T, hermitian=True)
 
 
+def spectrum(
+    psd: str, fitted: WhittleFit, rings: Rings, within: Reach, cutoff: float
+) -> CutoffSelfAffine | TabulatedSpectrum:
+    """Spectrum ``fitted``, unless the rings contradict it, or ``tabulated``, up to a cut-off [rad m⁻¹]."""
+    if psd == "fitted" and not fitted.contradicted:
+        return fitted.spectrum(cutoff)
+    return tabulated(rings, within, fitted.slope, cutoff)
+
+
 def tabulated(rings: Rings, within: Reach, slope: float, cutoff: float) -> TabulatedSpectrum:
     """Measured spectrum itself: log-log interpolation of the rings within the reach, up to a cut-off [rad m⁻¹].
 
@@ -169,7 +266,8 @@ def tabulated(rings: Rings, within: Reach, slope: float, cutoff: float) -> Tabul
     rings beyond the reach hold aliases.
     """
     inside = rings.between(within.low, within.high)
-    known, wavenumber = inside.wavenumber, np.linspace(0, cutoff, _POINTS)
-    inner = np.interp(np.log(np.maximum(wavenumber, known[0])), np.log(known), np.log(inside.density))
+    shown = inside.density > 0  # noise hides the others
+    known, wavenumber = inside.wavenumber[shown], np.linspace(0, cutoff, _POINTS)
+    inner = np.interp(np.log(np.maximum(wavenumber, known[0])), np.log(known), np.log(inside.density[shown]))
     beyond = slope * np.log(np.maximum(wavenumber / known[-1], 1.0))
     return TabulatedSpectrum(wavenumber, np.exp(inner + beyond), cutoff)

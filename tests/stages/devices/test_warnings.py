@@ -73,6 +73,30 @@ def about_pairs(cases, plasticity, plan=PLAN):
     return pair_warnings.of_pairs(cases, plasticity, settings["materials"], nominal)
 
 
+NOT_MEASURED = {"estimates": {}, "spectra": {}}
+#: Two flags of a measured surface, as the datasets of its estimate and spectrum hold them.
+MEASURED = {
+    "estimates": {"Etched": xr.Dataset({"flags": "the spectrum ends near 125 rad/µm"})},
+    "spectra": {"Etched": xr.Dataset({"flags": "cut by the grid"})},
+}
+FLAGS = ["surface Etched: the spectrum ends near 125 rad/µm", "surface Etched: cut by the grid"]
+
+
+def test_flags_of_a_surface_stand_beside_everything_that_rests_on_it(warned):
+    settings = job_settings(PLAN, "warnings.md") | {"surfaces": {"a": ["Etched"], "b": []}}
+    page = pair_warnings.STAGES[0].compute({"beams": {}, "plasticity": PLASTIC} | MEASURED, None, settings)
+    for flag in FLAGS:
+        (line,) = (line for line in page.splitlines() if flag in line)
+        assert line.startswith("- pair a: ")
+    assert pair_warnings.of_surfaces(MEASURED, settings["surfaces"]) == {"a": FLAGS, "b": []}, "in Table III"
+    assert warned({"S1": stopper()}, surfaces=MEASURED).patches["S1"][-2:] == FLAGS
+    assert not set(FLAGS) & set(warned({"S1": stopper()}).patches["S1"])
+    lengths = {("C1", 0.67): device()[0]}
+    found = warned({"C1": {"beam": BEYOND}}, lengths, surfaces=MEASURED).lengths
+    assert found
+    assert all(said[-2:] == FLAGS for said in found.values())
+
+
 SHARES = {"a": 0.0, "b": 0.02, "c": 0.58}
 PLASTIC = {pair: xr.Dataset({"plastic_share": share, "pressure": 1.04e8}) for pair, share in SHARES.items()}
 
@@ -95,7 +119,8 @@ def test_pairs_whose_plasticity_was_not_studied_are_said_to_be_unchecked():
 @pytest.mark.parametrize(("studies", "named"), [([], True), (["plasticity"], False), (None, False)])
 def test_the_remedy_names_the_list_of_studies_where_it_leaves_plasticity_out(studies, named):
     plan = Plan(load({"run": {"pairs": ["b"]} | ({} if studies is None else {"studies": studies})}))
-    page = pair_warnings.STAGES[0].compute({"beams": {}, "plasticity": {}}, None, job_settings(plan, "warnings.md"))
+    data = {"beams": {}, "plasticity": {}} | NOT_MEASURED
+    page = pair_warnings.STAGES[0].compute(data, None, job_settings(plan, "warnings.md"))
     assert "give its distance in studies.plasticity.distance_nm" in page
     assert (", and name plasticity in run.studies." in page) == named
 
@@ -220,14 +245,14 @@ def warned(tmp_path):
     """Warnings about devices as the workflow writes and reads them, from their settings and datasets."""
     stage = next(stage for stage in device_warnings.STAGES if stage.name == "device_warnings")
 
-    def read(sections, lengths=(), charts=()):
+    def read(sections, lengths=(), charts=(), surfaces=NOT_MEASURED):
         files = {}
         for name, section in sections.items():
             own = [
                 {key: found for key, found in dict(datasets).items() if key[0] == name}
                 for datasets in (lengths, charts)
             ]
-            data = {"lengths": own[0], "charts": own[1], "plasticity": PLASTIC}
+            data = {"lengths": own[0], "charts": own[1], "plasticity": PLASTIC} | surfaces
             files[name] = tmp_path / f"{name}.json"
             stage.save(stage.compute(data, None, section), {"json": files[name]})
         return device_warnings.read(files)

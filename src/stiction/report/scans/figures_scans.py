@@ -112,7 +112,7 @@ def _density(panel, estimate):
 def _spectrum(panel, estimate):
     """Rings with their errors, the band near the slow axis and Eq. (7); grey beyond the reach of the microscope."""
     rings, reach = stage_estimate.rings(estimate), stage_estimate.reach(estimate)
-    inside = rings.wavenumber > 0
+    inside = (rings.wavenumber > 0) & (rings.density > 0)  # the others are hidden by noise
     zeta, density = rings.wavenumber[inside] / TO_UM, TO_NM**4 * rings.density[inside]
     error = density / np.sqrt(rings.modes[inside])
     panel.fill_between(zeta, np.maximum(density - error, density / 10), density + error, **_BAND)

@@ -18,6 +18,7 @@ from stiction.run.atomic import save_text
 from stiction.run.markdown import literal
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
 from stiction.stages.beams.releases import ended, stuck_lengths
+from stiction.stages.surfaces import surface_flags
 
 #: Warnings by their subject, such as ``pair b, RH 0.67, G``.
 Warnings = dict[str, list[str]]
@@ -136,11 +137,19 @@ def as_markdown(warnings: Warnings, not_modelled: str) -> str:
     return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", literal(not_modelled), ""])
 
 
+def of_surfaces(data: Mapping[str, Mapping[str, xr.Dataset]], surfaces: Mapping[str, Sequence[str]]) -> Warnings:
+    """Flags of the measured surfaces of every pair, from the datasets of `surface_flags.inputs`; surfaces by pair."""
+    flags = surface_flags.sentences(data)
+    return {pair: [sentence for name in names for sentence in flags[name]] for pair, names in surfaces.items()}
+
+
 def _of_pairs(data, _at, settings):
     """Warnings about all pairs as a page."""
     nominal = in_si(OfPairs, settings["pairs"])
     remedy = limits.DISTANCE if settings["plasticity_runs"] else limits.NAMED
     warnings = of_pairs(data["beams"], data["plasticity"], settings["materials"], nominal, remedy)
+    for pair, flags in of_surfaces(data, settings["surfaces"]).items():
+        warnings[f"pair {pair}"] += flags
     return as_markdown(warnings, settings["not_modelled"])
 
 
@@ -148,10 +157,13 @@ STAGES = (
     Stage(
         name="model_limits",
         files={"markdown": "warnings.md"},
-        inputs=lambda plan, at: {
-            "beams": by_outcome("beams", plan.outcomes),
-            "plasticity": by_name("studies/plasticity", plan.pressed_pairs),
-        },
+        inputs=lambda plan, at: (
+            {
+                "beams": by_outcome("beams", plan.outcomes),
+                "plasticity": by_name("studies/plasticity", plan.pressed_pairs),
+            }
+            | surface_flags.inputs(plan, *plan.pairs)
+        ),
         settings=lambda plan, at: {
             "pairs": {
                 "sampling": select(StripLength, plan.config["sampling"]),
@@ -161,6 +173,7 @@ STAGES = (
             "materials": {pair: plan.materials.in_words(pair) for pair in plan.pairs},
             "plasticity_runs": "plasticity" in plan.studies,
             "not_modelled": plan.air.not_modelled((case.pair, case.humidity) for case in plan.cases),
+            "surfaces": {pair: plan.scans.sides(pair) for pair in plan.pairs},
         },
         compute=_of_pairs,
         save=lambda page, paths: save_text(page, paths["markdown"]),

@@ -27,6 +27,7 @@ from stiction.stages.beams.pair_warnings import (
 from stiction.stages.devices import left_out_gaps
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import ARC, EITHER, DesignedBeam, section_of_beam
+from stiction.stages.surfaces import surface_flags
 
 
 @dataclass(frozen=True)
@@ -150,14 +151,15 @@ def subjects(warnings: OfDevices) -> Warnings:
 
 def _inputs(plan, at):
     """Everything that the warnings about a device are about."""
-    devices, humidities = plan.devices, plan.config["devices"][at.device]["humidities"]
-    cases = [case_id(at.device, humidity) for humidity in humidities] if at.device in devices.beams else []
+    devices, section = plan.devices, plan.config["devices"][at.device]
+    cases = [case_id(at.device, humidity) for humidity in section["humidities"]] if at.device in devices.beams else []
     charts = devices.chart_cases(at.device) if at.device in devices.charted else []
-    return {
+    limited = {
         "lengths": by_case("devices/safe_lengths", cases),
         "charts": by_case("devices/chart", charts),
         "plasticity": by_name("studies/plasticity", devices.pressed(at.device)),
-    } | left_out_gaps.of_device(plan, at.device)
+    }
+    return limited | left_out_gaps.of_device(plan, at.device) | surface_flags.inputs(plan, section["pair"])
 
 
 def _settings(plan, at):
@@ -171,20 +173,23 @@ def _settings(plan, at):
 
 def _of_one_device(data, _at, settings):
     """Warnings about a device: about its lengths, its curves and its patch, each with what follows its name."""
+    flags = surface_flags.together(data)
     changes = left_out_gaps.changes_of(data["left_out_gaps"]) if "left_out_gaps" in data else {}
     if "stopper" in settings:
         of = in_si(OfStopper, settings["stopper"])
         gaps = limits.given(limits.without_gaps({humidity: change for (humidity, _), change in changes.items()}))
-        return [], [], [[[], of_stopper(of, plastic_contact(data["plasticity"], of.pair)) + gaps]]
+        return [], [], [[[], of_stopper(of, plastic_contact(data["plasticity"], of.pair)) + gaps + flags]]
     of = in_si(OfDevice, settings["beam"])
     plastic = plastic_contact(data["plasticity"], of.device.pair)
     lengths = [
-        [[humidity, shape], sentences + _without_gaps(changes, humidity, shape)]
+        [[humidity, shape], sentences + _without_gaps(changes, humidity, shape) + flags]
         for (_, humidity), dataset in data["lengths"].items()
         for shape, sentences in of_device(dataset, of, plastic, humidity).items()
     ]
     charts = list(data["charts"].values())
-    curves = [[curve, sentences] for curve, sentences in of_chart(charts, of, plastic).items()] if charts else []
+    curves = (
+        [[curve, sentences + flags] for curve, sentences in of_chart(charts, of, plastic).items()] if charts else []
+    )
     return lengths, curves, []
 
 

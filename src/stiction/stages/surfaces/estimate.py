@@ -95,7 +95,11 @@ def _moments(estimate):
     return {
         "moments": ("moment", estimate.moments, _MOMENT),
         "covariance": (("moment", "other_moment"), estimate.covariance, {"long_name": "of the moments"}),
-        "raw_moments": ("moment", inspection.moments, {"long_name": "of the levelled scans, with their bias"}),
+        "raw_moments": (
+            "moment",
+            inspection.moments,
+            {"long_name": "of the levelled scans without noise, with their bias"},
+        ),
         "scan_moments": (("scan", "moment"), moments(powers), {"long_name": "of every scan"}),
         "closed_form_errors": ("moment", estimate.closed_form_errors, {"long_name": closed_form}),
         "tile_errors": ("moment", estimate.tile_errors, {"long_name": "standard errors from the scatter of tiles"}),
@@ -115,7 +119,11 @@ def _spectrum(estimate):
     reach = zip(_REACH.items(), astuple(inspection.reach), strict=True)
     return {
         "wavenumber": ("ring", rings.wavenumber, _WAVE),
-        "density": ("ring", rings.density, {"units": "m4"}),
+        "density": (
+            "ring",
+            rings.density,
+            {"units": "m4", "long_name": "without noise; 0 where it hides the spectrum"},
+        ),
         "modes": ("ring", rings.modes, {"units": "1", "long_name": "independent values of a ring"}),
         "weight": ("ring", rings.weight, {"units": "1", "long_name": "independent values of a ring among many"}),
         "slow_wavenumber": ("slow_ring", slow.wavenumber, _WAVE),
@@ -168,6 +176,7 @@ def _scans(estimate, notes):
     inspection = estimate.inspection
     return {
         "line_jump": ("axis", list(estimate.line_jump[::-1]), {"units": "m", "long_name": "typical step"}),
+        "noise": ("size", [maps.noise for maps in inspection.sizes], {"units": "m", "long_name": "rms of white noise"}),
         "scans": ("size", [len(maps.names) for maps in inspection.sizes], {"long_name": "number of each size"}),
         "counted": ((), len(inspection.counted), {"long_name": "number of sizes that count for the moments"}),
         "pixel": (("size", "axis"), [maps.frame.pixel for maps in inspection.sizes], {"units": "m"}),
@@ -270,10 +279,8 @@ def density(estimate: xr.Dataset, heights: str) -> HeightDensity | MeasuredDensi
 
 
 def spectrum(estimate: xr.Dataset, psd: str, cutoff: float) -> CutoffSelfAffine | TabulatedSpectrum:
-    """Spectrum ``fitted`` or ``tabulated`` up to a cut-off [rad m⁻¹]."""
-    if psd == "fitted":
-        return fit(estimate).spectrum(cutoff)
-    return whittle.tabulated(rings(estimate), reach(estimate), fit(estimate).slope, cutoff)
+    """Spectrum ``fitted``, unless the scans contradict it, or ``tabulated``, up to a cut-off [rad m⁻¹]."""
+    return whittle.spectrum(psd, fit(estimate), rings(estimate), reach(estimate), cutoff)
 
 
 def statistics(estimate: xr.Dataset) -> dict[str, float]:

@@ -1,0 +1,32 @@
+"""Flags of measured surfaces, as warnings beside every number that rests on them."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import xarray as xr
+
+from stiction.plan.names import by_name
+from stiction.stages.surfaces import estimate as stage_estimate
+from stiction.stages.surfaces import measured_spectrum
+
+
+def inputs(plan: Any, *pairs: str) -> dict[str, dict[str, str]]:
+    """Estimates and spectra of the measured surfaces of some pairs."""
+    names = list(dict.fromkeys(name for pair in pairs for name in plan.scans.sides(pair)))
+    return {"estimates": by_name("estimate", names), "spectra": by_name("spectrum", names)}
+
+
+def sentences(data: Mapping[str, Mapping[str, xr.Dataset]]) -> dict[str, list[str]]:
+    """Flags of every measured surface, each with the name of the surface, from the datasets of `inputs`."""
+    return {name: list(_of_one(name, estimate, data["spectra"][name])) for name, estimate in data["estimates"].items()}
+
+
+def _of_one(name, estimate, spectrum):
+    """Flags of one surface."""
+    for flag in (*stage_estimate.flags(estimate), *measured_spectrum.flags(spectrum)):
+        yield f"surface {name}: {flag}"
+
+
+def together(data: Mapping[str, Mapping[str, xr.Dataset]]) -> list[str]:
+    """Flags of all measured surfaces."""
+    return [sentence for flags in sentences(data).values() for sentence in flags]
