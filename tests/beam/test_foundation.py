@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from beams import E_BAR, PAPER, uniform_laws
+from beams import PAPER, uniform_laws
 from numpy.testing import assert_allclose
 
 from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP, foundation_length
@@ -32,7 +32,7 @@ def crack(strip, element, beam=PAPER):
     elements = round(beam.length / (element * LENGTH))
     fitted = replace(beam, length=elements * element * LENGTH, elements=elements)
     laws = np.tile(LAW, (elements * round(element / strip), 1))
-    return released_beam(fitted, laws, E_BAR).crack_length
+    return released_beam(fitted, laws).crack_length
 
 
 @pytest.mark.parametrize(("thickness", "error"), [(0.5e-6, -0.115), (1e-6, -0.011), (1.5e-6, 0.0), (2.6e-6, 0.0)])
@@ -42,7 +42,7 @@ def test_the_mesh_of_the_paper_stops_the_cracks_of_thin_beams_too_early(thicknes
     def relative(gap):
         beam = replace(PAPER, length=900e-6, thickness=thickness, gap=gap)
         coarse, fine = (
-            released_beam(replace(beam, elements=n), np.tile(LAW, (5 * n, 1)), E_BAR).crack_length for n in (120, 1800)
+            released_beam(replace(beam, elements=n), np.tile(LAW, (5 * n, 1))).crack_length for n in (120, 1800)
         )
         return coarse / fine - 1
 

@@ -6,27 +6,27 @@ from beams import E_BAR, PAPER, lognormal, scattered_laws, uniform_laws
 from numpy.testing import assert_allclose
 
 from stiction.beam.energy import apparent_adhesion_energy, arrest_length
-from stiction.beam.release import EndState, crack_length, end_state, holding_load, release, released_beam, s_shape
+from stiction.beam.release import EndState, crack_length, end_state, release, released_beam, s_shape
 from stiction.contact import forcelaw
 
 
 def released_crack(beam, laws, start=None):
-    start = start or arrest_length(forcelaw.energy(laws).mean(), beam) / 3
+    start = start or arrest_length(forcelaw.energy(laws).max(), beam) / 2
     return crack_length(beam, laws, release(beam, laws, start).deflection)
 
 
-def test_the_artificial_load_bends_the_beam_to_the_s_shape():
+def test_the_first_shape_is_the_s_shape_of_eq_13():
     crack, beam = 300e-6, PAPER
     nodes = beam.nodes <= crack
     u, slope = s_shape(beam, beam.gap, crack)[nodes].T
-    quartic = np.polynomial.Polynomial.fit(beam.nodes[nodes], u, 4)
-    assert_allclose(
-        beam.bending_stiffness * quartic.deriv(4)(0.5 * crack), holding_load(beam, crack), rtol=1e-6
-    )  # EI u⁗ = q
-    assert_allclose(quartic.deriv()(beam.nodes[nodes]), slope, atol=1e-9)
-    assert_allclose([quartic(0), quartic(crack)], [0, beam.gap], atol=1e-6 * beam.gap)
-    assert_allclose(quartic.deriv()([0, crack]), 0, atol=1e-9)
-    assert_allclose(quartic.deriv(2)(crack), 0, atol=1e-6 * quartic.deriv(2)(0))
+    cubic = np.polynomial.Polynomial.fit(beam.nodes[nodes], u, 3)
+    assert_allclose(cubic(beam.nodes[nodes]), u, atol=1e-12 * beam.gap)  # EI u⁗ = 0
+    assert_allclose(cubic.deriv()(beam.nodes[nodes]), slope, atol=1e-9)
+    assert_allclose([cubic(0), cubic(crack)], [0, beam.gap], atol=1e-9 * beam.gap)
+    assert_allclose(cubic.deriv()([0, crack]), 0, atol=1e-9)
+    energy = beam.bending_stiffness / 2 * (cubic.deriv(2) ** 2).integ()
+    release_rate = 3 * (energy(crack) - energy(0)) / crack  # the energy of a given depth falls as l⁻³
+    assert_allclose(release_rate / beam.width, apparent_adhesion_energy(crack, beam), rtol=1e-9)
 
 
 def test_crack_length_is_where_a_straight_beam_crosses_d_max():
@@ -74,6 +74,18 @@ def test_the_arrest_does_not_depend_on_the_start(variation):
     laws = scattered_laws(np.random.default_rng(5), 1000, variation) if variation else uniform_laws(1000)
     cracks = [released_crack(PAPER, laws, start) for start in (150e-6, 200e-6, 240e-6, 300e-6)]
     assert_allclose(cracks, cracks[0], rtol=1e-7)  # tolerance on forces: 1e-6 of a pull-off force
+
+
+def test_shallow_places_of_arrest_are_not_passed():
+    # As on pair a: little scatter, and elements three foundation lengths long. Every creep may pass a place of arrest
+    # that is nearly none; creeps from other starts do not pass the same ones.
+    rng, passed = np.random.default_rng(11), 0
+    for _ in range(200):
+        laws = scattered_laws(rng, 1000, 0.1)
+        strongest = arrest_length(forcelaw.energy(laws).max(), PAPER)
+        cracks = [released_crack(PAPER, laws, share * strongest) for share in (0.45, 0.55, 0.7)]
+        passed += np.ptp(cracks) > 1e-6 * cracks[0]
+    assert passed <= 2
 
 
 def test_a_start_beyond_the_arrest_is_never_the_result():
@@ -173,18 +185,22 @@ def rough_laws(seed, strength=1.0):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_beam_on_very_rough_ground_ends_free_or_on_its_tip(seed):
-    end = released_beam(PAPER, rough_laws(seed), 4e-6)
+    end = released_beam(PAPER, rough_laws(seed))
     assert end.state in (EndState.FREE, EndState.ARC)
     assert end.equilibrium.iterations < 2000
     assert end.crack_length > 0.99 * PAPER.length
 
 
-def test_strong_adhesion_holds_a_beam_on_very_rough_ground():
-    laws = rough_laws(0, strength=1e4)
-    end = released_beam(PAPER, laws, forcelaw.energy(laws).mean())
-    assert end.state is EndState.S_SHAPE
-    starts = [released_crack(PAPER, laws, start) for start in (100e-6, 150e-6)]
-    assert_allclose(starts, end.crack_length, rtol=1e-6)
+def test_a_crack_on_uneven_ground_starts_again_where_it_could_pass_an_arrest():
+    again = 0
+    for seed in range(5):
+        laws = rough_laws(seed, strength=1e4)
+        end, strongest = released_beam(PAPER, laws), arrest_length(forcelaw.energy(laws).max(), PAPER)
+        assert end.state is EndState.S_SHAPE
+        starts = [released_crack(PAPER, laws, start) for start in (100e-6, 120e-6)]
+        assert_allclose(starts, end.crack_length, rtol=1e-6)
+        again += end.crack_length < 0.9 * strongest
+    assert again >= 3  # bending between the contact points arrests cracks that Eq. (13) would open
 
 
 def test_end_states_have_names():
@@ -199,11 +215,19 @@ def test_a_crack_shorter_than_the_elements_is_an_error():
 
 
 @pytest.mark.parametrize("energy", [E_BAR, 1e-8])  # a crack on the beam, and one that would be longer than it
-def test_a_beam_is_released_from_a_third_of_its_expected_crack_length_or_of_its_own_length(energy):
+def test_a_beam_is_released_from_a_share_of_its_shortest_crack_or_of_its_own_length(energy):
     laws = uniform_laws(1000, energy, 2e6 * energy / E_BAR)
-    end = released_beam(PAPER, laws, energy)
-    started = release(PAPER, laws, min(arrest_length(energy, PAPER), PAPER.length) / 3)
+    end = released_beam(PAPER, laws)
+    started = release(PAPER, laws, 0.7 * min(arrest_length(energy, PAPER), PAPER.length))
     assert_allclose(end.equilibrium.deflection, started.deflection, rtol=0, atol=0)
     assert end.equilibrium.iterations == started.iterations
     assert end.crack_length == crack_length(PAPER, laws, started.deflection)
     assert end.state is end_state(PAPER, laws, started.deflection)
+
+
+def test_one_strong_place_is_never_passed_wherever_it_is():
+    # The start follows the strongest place, however weak the rest: 81 times the energy arrests a third of the length.
+    for place in (340, 420, 500):
+        laws = uniform_laws(1000)
+        laws[place // 3 * 2 : place // 3 * 2 + 40] = uniform_laws(1, 81 * E_BAR, 81 * 2e6)
+        assert released_beam(PAPER, laws).crack_length < 1.02 * (place // 3 * 2) * 1.5e-6

@@ -9,7 +9,7 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
 from stiction.beam.release import released_beam
-from stiction.beam.resolution import ALONG_START, resolved
+from stiction.beam.resolution import ALONG_SHORTEST, resolved
 
 LAW = uniform_laws(1)
 LENGTH = foundation_length(PAPER, LAW)
@@ -45,9 +45,9 @@ def test_the_crack_from_which_a_beam_is_released_has_several_elements():
     found = resolved(beam, 3000, LAW)
     start = arrest_length(E_BAR, beam) / 3
     coarser = max(n for n in range(1, found.elements) if 3000 % n == 0)
-    assert start / ALONG_START < ELEMENT * LENGTH
-    assert found.element_length <= start / ALONG_START < beam.length / coarser
-    end = released_beam(found, np.tile(LAW, (3000, 1)), E_BAR)
+    assert start / ALONG_SHORTEST < ELEMENT * LENGTH
+    assert found.element_length <= start / ALONG_SHORTEST < beam.length / coarser
+    end = released_beam(found, np.tile(LAW, (3000, 1)))
     assert_allclose(end.crack_length, arrest_length(E_BAR, beam), atol=LENGTH)
 
 

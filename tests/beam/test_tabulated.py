@@ -20,7 +20,7 @@ def lengths(factor=1.0):
     laws = uniform_laws(POINTS, energy=4 * E_BAR)
     table = factor * forcelaw.pressure(laws[:1, None], STEP * np.arange(2000))
     start = arrest_length(4 * E_BAR, beam) / 3
-    return released_beam(beam, laws, 4 * E_BAR).crack_length, tails.crack_length(
+    return released_beam(beam, laws).crack_length, tails.crack_length(
         beam, (laws, table, np.zeros(POINTS, int), STEP), start, 1.0
     )
 

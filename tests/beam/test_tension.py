@@ -12,7 +12,7 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy, arrest_length
 from stiction.beam.equilibrium import equilibrate
 from stiction.beam.montecarlo import Experiment, columns, simulate
-from stiction.beam.release import EndState, crack_length, holding_load, release
+from stiction.beam.release import EndState, crack_length, release
 from stiction.contact import forcelaw
 from stiction.streams import stream
 
@@ -153,22 +153,6 @@ def test_the_deflection_of_a_free_beam_under_tension_is_that_of_the_closed_form(
     accuracy = 3e-5 if k * end < tension.SLACK else 1e-6  # rounding of this test: 1e-16 e^kL
     for values, expected in zip(found.T, (u, slope), strict=True):
         assert_allclose(values, expected, atol=accuracy * np.abs(expected).max())
-
-
-@pytest.mark.parametrize("stress", [1e5, 10e6, 200e6])
-def test_the_holding_load_presses_a_beam_under_tension_to_its_crack(stress):
-    # Clamped at both ends, with the load: u = h, u' = 0 and, at the end of the crack only, no moment.
-    crack = 150e-6
-    beam = tensed(stress)
-    ei, k, q = beam.bending_stiffness, beam.decay, holding_load(beam, crack)
-    force, coupling, _, _ = tension.end_stiffness(k * crack)
-    moment = q * crack**2 / (2 * coupling) - coupling * ei * beam.gap / crack**2
-    assert abs(moment) < 1e-12 * q * crack**2
-    assert force > coupling
-
-
-def test_without_tension_the_holding_load_is_that_of_a_cantilever():
-    assert_allclose(holding_load(tensed(1.0), 150e-6), holding_load(HALF, 150e-6), rtol=1e-5)
 
 
 @pytest.mark.parametrize("stress", [1e6, 200e6])

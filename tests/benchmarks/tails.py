@@ -107,20 +107,20 @@ def relax(u, ground, mesh, finer, tolerance):
     laws = ground[0]
     limits = laws * np.array([1.0, 1.0, finer, finer])
     system = equilibrium.System(np.zeros((u.size + 3, 4)), np.zeros(u.size + 3), np.zeros(len(laws)))
-    steepest = 0.5 * np.max(laws[:, 0] * laws[:, 3]) * mesh.area
-    viscosity, residual = steepest, np.inf
+    slopes = 0.5 * mesh.area * laws[:, 0] * laws[:, 3]
+    viscosity, slope, residual = slopes.max(), slopes.mean(), np.inf
     for _ in range(STEPS):
         residual = assemble(u, ground, system, mesh, viscosity)
         if residual <= tolerance:
             return residual
         move = equilibrium.newton_step(u, limits, system, mesh, (0, u.size // 2 - 1))
-        viscosity = max(viscosity, 0.01 * steepest * (move > 1)) * min(max(move, 0.25), 4.0)
+        viscosity = equilibrium.next_viscosity(viscosity, move, slope)
     return residual
 
 
-def relaxed(beam, ground, deflection, finer, load=0.0):
+def relaxed(beam, ground, deflection, finer):
     """Deflection (elements + 1, 2) after a beam has crept downhill to its next equilibrium on the ground."""
-    mesh, scale = equilibrium.mesh_of(beam, ground[0], load, 0.0), np.array([1, beam.element_length])
+    mesh, scale = equilibrium.mesh_of(beam, ground[0], 0.0, 0.0), np.array([1, beam.element_length])
     u, tolerance = (deflection * scale).ravel(), equilibrium.allowed_imbalance(beam, ground[0][:, 0].mean() * mesh.area)
     residual = relax(u, ground, mesh, finer, tolerance)
     if not residual <= tolerance:
@@ -135,9 +135,8 @@ def crack_length(beam, ground, start, finer):
     point has (points,), and the spacing of their nodes [m].
     """
     laws = ground[0]
-    pressed = release.s_shape(beam, beam.gap - laws[:, 1].mean(), start)
-    held = relaxed(beam, ground, pressed, finer, release.holding_load(beam, start))
-    return release.crack_length(beam, laws, relaxed(beam, ground, held, finer))
+    adhering = release.s_shape(beam, beam.gap - laws[:, 1].mean(), start)
+    return release.crack_length(beam, laws, relaxed(beam, ground, adhering, finer))
 
 
 # Samples of a pair, their laws, and laws of which one part is that of the curve
@@ -210,13 +209,12 @@ def resolved_beam(beam, strip, laws):
 def cracks(beam, curves, step, laws, drawn):
     """ln l_s on the curves of each of SHAPES for the drawn samples (strips,), and by the beam of the package."""
     ground = np.ascontiguousarray(laws[drawn])
-    energy = forcelaw.energy(ground).mean()
-    start = release.START * min(arrest_length(energy, beam), beam.length)
+    start = release.START * min(arrest_length(forcelaw.energy(ground).max(), beam), beam.length)
     lengths = [
         crack_length(beam, (ground, table, drawn, step), start, finer)
         for table, finer in zip(curves, SHAPES.values(), strict=True)
     ]
-    return np.log([*lengths, release.released_beam(beam, ground, energy).crack_length])
+    return np.log([*lengths, release.released_beam(beam, ground).crack_length])
 
 
 def row(pair, humidity, reach, beams, samples):

@@ -37,7 +37,7 @@ def arrest_on_uniform_ground(beam: Beam, law: np.ndarray, points: int) -> Arrest
     NotConverged
         If no equilibrium is found, for example because the elements are much longer than the foundation length.
     """
-    end = released_beam(beam, np.tile(law, (points, 1)), float(energy(law)))
+    end = released_beam(beam, np.tile(law, (points, 1)))
     if end.state != EndState.S_SHAPE:
         return Arrest(np.nan, np.nan)
     return Arrest(end.crack_length, apparent_adhesion_energy(end.crack_length, beam))

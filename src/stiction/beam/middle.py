@@ -16,6 +16,7 @@ from stiction.beam.equilibrium import (
     allowed_imbalance,
     mesh_of,
     newton_step,
+    next_viscosity,
 )
 from stiction.beam.tension import add_tension, end_stiffness
 from stiction.errors import NotConverged
@@ -79,8 +80,8 @@ def _relax(u, laws, mesh, arm, tolerance, system):
 
     It is free as soon as all points are beyond the largest attraction of their law.
     """
-    steepest = 0.5 * np.max(laws[:, 0] * laws[:, 3]) * mesh.area
-    viscosity, window = steepest, (0, u.size // 2 - 1)
+    slopes = 0.5 * mesh.area * laws[:, 0] * laws[:, 3]
+    viscosity, slope, window = slopes.max(), slopes.mean(), (0, u.size // 2 - 1)
     for _ in range(MAX_ITERATIONS):
         residual = _assemble(u, laws, system, mesh, arm, viscosity)
         if system.stretch.min() > 0:
@@ -88,7 +89,7 @@ def _relax(u, laws, mesh, arm, tolerance, system):
         if residual <= tolerance:
             return _HELD
         move = newton_step(u, laws, system, mesh, window)
-        viscosity = max(viscosity, 0.01 * steepest * (move > 1)) * min(max(move, 0.25), 4.0)
+        viscosity = next_viscosity(viscosity, move, slope)
     return _OPEN
 
 

@@ -12,7 +12,6 @@ import numpy as np
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.beam.release import EndState, released_beam
-from stiction.contact import forcelaw
 from stiction.progress import progress
 
 #: Dimensions that scatter in the model GEO, in the order in which they are drawn.
@@ -75,7 +74,7 @@ def release_beam(experiment: Experiment, sample: int, rng: np.random.Generator) 
     """
     laws = experiment.draw_laws(experiment.points, rng)
     beam = scattered_beam(experiment.beam, experiment.scatter, rng)
-    end = released_beam(beam, laws, forcelaw.energy(laws).mean())
+    end = released_beam(beam, laws)
     return Outcome(
         sample=sample,
         state=end.state,

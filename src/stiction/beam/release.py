@@ -1,17 +1,26 @@
-"""Release of a beam that was pressed down: its crack opens until the adhesion arrests it (Sec. III-C)."""
+"""Release of a beam that was pressed down: its crack opens until the adhesion arrests it (Sec. III-C).
+
+A crack of length l drives its front with the energy release rate of Eq. (13), which falls as l⁻⁴. No place arrests it
+while that exceeds the largest adhesion energy along the beam. The crack therefore starts at a safe fraction of the
+length at which it would stop on the strongest place.
+"""
 
 from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
 
-from stiction.beam import tension
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
 from stiction.beam.equilibrium import Equilibrium, distances, equilibrate
+from stiction.contact import forcelaw
 
-#: Crack length under the artificial load, relative to the one that Eq. (13) predicts from the mean adhesion energy.
-START = 1 / 3
+#: First crack length, relative to the one that Eq. (13) predicts from the largest adhesion energy along the beam, or to
+#: the length of the beam if that is shorter.
+START = 0.7
+#: A crack that opens by less than this factor may have started beyond a place of arrest. On uneven ground the beam is
+#: bent between its contact points, which can arrest a crack that Eq. (13) would open; otherwise it opens by 1 / START.
+OPENS = 1.35
 #: Deepest start of any point below its d_max, in lengths 1/a_left. Each makes a law stiffer by e², and beyond 18 the
 #: linear system loses all other stiffness to rounding. Points on the surfaces of the paper start within 14.
 PRESSED = -np.log(np.finfo(float).eps) / 2
@@ -40,23 +49,14 @@ class ReleasedBeam:
     crack_length: float  #: l_s [m]; the length of the beam if it is free
 
 
-def holding_load(beam: Beam, crack: float) -> float:
-    """Uniform load that presses a beam without adhesion to an S-shape of this crack length, 72 EI h / l⁴ [N/m].
-
-    It follows from EI u⁽⁴⁾ = q with u = u⁽¹⁾ = 0 at the clamp and u = h, u⁽¹⁾ = u⁽²⁾ = 0 at the end of the crack.
-    """
-    if beam.tension:
-        return tension.holding_load(beam, crack)
-    return 72 * beam.bending_stiffness * beam.gap / crack**4
-
-
 def s_shape(beam: Beam, depth: float, crack: float) -> np.ndarray:
-    """Deflection under `holding_load` of a beam that touches down at ``depth`` [m]; (elements + 1, 2) [m, -].
+    """Deflection of a beam that touches down at ``depth`` [m] beyond a crack [m]; (elements + 1, 2) [m, -].
 
-    That of a beam without tension; for others it is where the search for the equilibrium starts.
+    It follows from u⁽⁴⁾ = 0 with u = u⁽¹⁾ = 0 at the clamp and u = depth, u⁽¹⁾ = 0 at the end of the crack; tension is
+    left out.
     """
     s = np.minimum(beam.nodes / crack, 1)
-    return depth * np.stack([s**2 * (6 - 8 * s + 3 * s**2), 12 * s * (1 - s) ** 2 / crack], axis=-1)
+    return depth * np.stack([s**2 * (3 - 2 * s), 6 * s * (1 - s) / crack], axis=-1)
 
 
 def _touching(laws):
@@ -69,14 +69,14 @@ def _touching(laws):
 
 
 def _release_from(beam, laws, crack):
-    """Press a beam down to a crack length [m], then remove the load; returns the equilibrium."""
-    start = s_shape(beam, beam.gap - _touching(laws), crack)
-    held = equilibrate(beam, laws, start, holding_load(beam, crack))
-    return equilibrate(beam, laws, held.deflection)
+    """Equilibrium of a beam that first adheres to the ground beyond a crack of this length [m]."""
+    held = int(np.searchsorted(beam.nodes, crack, side="right")) - 1
+    start = s_shape(beam, beam.gap - _touching(laws), beam.nodes[held])
+    return equilibrate(beam, laws, start, held=held)
 
 
 def release(beam: Beam, laws: np.ndarray, start_crack: float) -> Equilibrium:
-    """Press a beam down and release it: the crack opens up to the first place that arrests it (Sec. III-C).
+    """Release a beam from a short crack, which opens up to the first place that arrests it (Sec. III-C).
 
     Parameters
     ----------
@@ -84,8 +84,8 @@ def release(beam: Beam, laws: np.ndarray, start_crack: float) -> Equilibrium:
     laws : (points, 4) float64
         Rows [f_max, d_max, a_left, a_right], SI.
     start_crack : float
-        Crack length under the artificial load [m], well below the expected one. A beam that does not open by half of it
-        is pressed down again on half the length, so that the result does not depend on the start.
+        First crack length [m], at least two elements. A crack that does not open by the factor `OPENS` starts again at
+        half the length, so that the result does not depend on the start.
 
     Raises
     ------
@@ -94,10 +94,11 @@ def release(beam: Beam, laws: np.ndarray, start_crack: float) -> Equilibrium:
     NotConverged
         If no equilibrium is found.
     """
-    # DEPARTS: the load is removed at once, not progressively: the beam creeps, so that the crack cannot pass an arrest.
+    # DEPARTS: no load presses the beam down. Beyond the first crack it adheres to the ground, in equilibrium, as a load
+    # would leave it; then the crack creeps, so that it cannot pass an arrest.
     while not start_crack < 2 * beam.element_length:
         end = _release_from(beam, laws, start_crack)
-        if crack_length(beam, laws, end.deflection) > 1.5 * start_crack:
+        if crack_length(beam, laws, end.deflection) > OPENS * start_crack:
             return end
         start_crack /= 2
     raise ValueError(
@@ -133,16 +134,14 @@ def end_state(beam: Beam, laws: np.ndarray, deflection: np.ndarray) -> EndState:
     return EndState.ARC if slope > 0.75 * beam.gap / crack else EndState.S_SHAPE
 
 
-def released_beam(beam: Beam, laws: np.ndarray, energy: float) -> ReleasedBeam:
-    """`release` from a start that is well below the crack length that Eq. (13) predicts from an adhesion energy [J
-    m⁻²].
-
-    The energy is that which is expected, for example the mean of the laws.
+def released_beam(beam: Beam, laws: np.ndarray) -> ReleasedBeam:
+    """Release a beam from a crack that no place along it can arrest.
 
     Raises
     ------
     ValueError, NotConverged
         As `release`.
     """
-    end = release(beam, laws, START * min(arrest_length(energy, beam), beam.length))
+    start = START * min(arrest_length(forcelaw.energy(laws).max(), beam), beam.length)
+    end = release(beam, laws, max(start, 2 * beam.element_length))
     return ReleasedBeam(end, end_state(beam, laws, end.deflection), crack_length(beam, laws, end.deflection))

@@ -7,19 +7,18 @@ import numpy as np
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
-from stiction.beam.release import START
 from stiction.contact import forcelaw
 
-#: Elements along the crack from which a beam is released: `stiction.beam.release.release` needs two, and halves that
-#: crack once for a beam that adheres much more strongly than its mean law.
-ALONG_START = 4
+#: Elements along the shortest crack that a mesh resolves, and that crack relative to the one that Eq. (13) predicts
+#: from the mean adhesion energy: `stiction.beam.release.release` needs two elements.
+ALONG_SHORTEST, SHORTEST = 4, 1 / 3
 
 
 def longest(beam: Beam, laws: np.ndarray) -> tuple[float, float]:
     """Longest strip and longest element with which a beam resolves a crack on force laws (n, 4) [m]."""
     foundation = foundation_length(beam, laws)
-    start = START * min(arrest_length(forcelaw.energy(laws).mean(), beam), beam.length)
-    element = min(ELEMENT * foundation, start / ALONG_START)
+    shortest = SHORTEST * min(arrest_length(forcelaw.energy(laws).mean(), beam), beam.length)
+    element = min(ELEMENT * foundation, shortest / ALONG_SHORTEST)
     return min(STRIP * foundation, element), element
 
 

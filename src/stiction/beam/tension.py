@@ -130,11 +130,3 @@ def arrest_length(energy: float | np.ndarray, beam: Beam) -> float | np.ndarray:
     for _ in range(_HALVINGS):
         crack = np.sqrt(_coupling(crack, beam) / pull)
     return crack
-
-
-def holding_load(beam: Beam, crack: float) -> float:
-    """Uniform load that presses a beam under tension, without adhesion, to an S-shape of this crack length [N/m].
-
-    It follows from EI u⁽⁴⁾ - N u⁽²⁾ = q, u = u⁽¹⁾ = 0 at the clamp and u = h, u⁽¹⁾ = u⁽²⁾ = 0 at the end of the crack.
-    """
-    return 2 * beam.bending_stiffness * beam.gap * float(_coupling(crack, beam)) ** 2 / crack**4
