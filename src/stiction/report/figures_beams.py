@@ -292,7 +292,7 @@ def _percent(share):
     return f"{100 * share:.2g} %" if share < 0.995 else "> 99 %"
 
 
-def _adhesion_energies(data, _at, settings):
+def _adhesion_energies(data, settings):
     """Energies of all pairs over the humidity, with the published and measured ones."""
     nominal = in_si(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
     waters = {pair: in_si(Water, water) for pair, water in settings["water"].items()}

@@ -135,7 +135,7 @@ def _curves(panel, distance, curves, highest):
     panel.axhline(0, color="black", linewidth=0.5)
 
 
-def _force_curves(data, _at, settings):
+def _force_curves(data, settings):
     """Computed curves of every pair, and as many generated force laws as curves were kept."""
     drawn = {}
     for pair, case in settings["cases"].items():

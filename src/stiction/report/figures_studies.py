@@ -416,7 +416,7 @@ def _curve(panel, humidity, change, error, style):
     panel.errorbar(humidity, 100 * change, 100 * error, markevery=marked, errorevery=marked, **style)
 
 
-def _sensitivities(data, _at, settings):
+def _sensitivities(data, settings):
     """Sensitivities to the moments, and the published ones."""
     stated = published.compared(data, settings)
     stated = stated[(stated.pair == settings["pair"]) & stated.moment.isin(settings["moments"])]
@@ -424,7 +424,7 @@ def _sensitivities(data, _at, settings):
     return sensitivities(data["studies"], slopes)
 
 
-def _variants(data, _at, settings):
+def _variants(data, settings):
     """All pairs and variants; a variant that changes nothing for a pair, which the plan leaves out, equals the base."""
     known = by_pair(data["studies"])
     pairs, names = (dict.fromkeys(parts) for parts in zip(*known, strict=True))

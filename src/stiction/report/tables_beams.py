@@ -240,7 +240,7 @@ _RESAMPLING = PAIR | {
 }
 
 
-def _table_3(data, _at, settings):
+def _table_3(data, settings):
     """Averages over the beams of every case, with published and measured lengths."""
     scanned = ((pair, pair_errors(study)) for pair, study in data["by_scans"].items())
     by_scans = {(pair, humidity): error for pair, errors in scanned for humidity, error in errors.items()}

@@ -162,7 +162,7 @@ _TABLE_2 = {
 }
 
 
-def _table_1(data, _at, settings):
+def _table_1(data, settings):
     """Simulated, published and measured statistics."""
     substitutions = {name: substitution(heights) for name, heights in data["heights"].items()}
     measured = settings["measured"] | {name: estimate.statistics(one) for name, one in data["estimates"].items()}

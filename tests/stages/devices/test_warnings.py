@@ -17,6 +17,7 @@ from stiction.devices import limits
 from stiction.devices.limits import NOT_MODELLED
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
+from stiction.plan.stage import At
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE
@@ -96,7 +97,7 @@ def test_pairs_whose_plasticity_was_not_studied_are_said_to_be_unchecked():
 @pytest.mark.parametrize(("studies", "named"), [([], True), (["plasticity"], False), (None, False)])
 def test_the_remedy_names_the_list_of_studies_where_it_leaves_plasticity_out(studies, named):
     plan = Plan(load({"run": {"pairs": ["b"]} | ({} if studies is None else {"studies": studies})}))
-    page = pair_warnings.STAGES[0].compute({"beams": {}, "plasticity": {}}, None, job_settings(plan, "warnings.md"))
+    page = pair_warnings.STAGES[0].result({"beams": {}, "plasticity": {}}, At(), job_settings(plan, "warnings.md"))
     assert "give its distance in studies.plasticity.distance_nm" in page
     assert (", and name plasticity in run.studies." in page) == named
 
@@ -230,7 +231,7 @@ def warned(tmp_path):
             ]
             data = {"lengths": own[0], "charts": own[1], "plasticity": PLASTIC}
             files[name] = tmp_path / f"{name}.json"
-            stage.save(stage.compute(data, None, section), {"json": files[name]})
+            stage.save(stage.result(data, At(), section), {"json": files[name]})
         return device_warnings.read(files)
 
     return read

@@ -135,7 +135,7 @@ def as_markdown(warnings: Warnings) -> str:
     return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", limits.NOT_MODELLED, ""])
 
 
-def _of_pairs(data, _at, settings):
+def _of_pairs(data, settings):
     """Warnings about all pairs as a page."""
     nominal = in_si(OfPairs, settings["pairs"])
     remedy = limits.DISTANCE if settings["plasticity_runs"] else limits.NAMED

@@ -22,7 +22,7 @@ from stiction.stages.contact import curves
 from stiction.stages.contact.contact import surface_rms
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.error_notes import on_patch
-from stiction.stages.devices.patch_settings import contact_of, corrections_of
+from stiction.stages.devices.contact_names import contact_of, corrections_of
 from stiction.stages.devices.releases import (
     BEAMS,
     LAWS,

@@ -169,7 +169,7 @@ def _settings(plan, at):
     return {"stopper": select(OfStopper, section | own | {"water": plan.air.water(section["pair"])})}
 
 
-def _of_one_device(data, _at, settings):
+def _of_one_device(data, settings):
     """Warnings about a device: about its lengths, its curves and its patch, each with what follows its name."""
     if "stopper" in settings:
         of = in_si(OfStopper, settings["stopper"])

@@ -10,8 +10,8 @@ from stiction.analysis.sensitivity import energy_sensitivity
 from stiction.contact.environment import Water
 from stiction.models import SHIFTS
 from stiction.plan.stage import Stage, select
+from stiction.stages.contact.changes.moments import moment
 from stiction.stages.contact.curves import energies
-from stiction.stages.contact.sensitivity_contact import moment
 
 _STATISTICS = ("mean", "standard deviation")
 

@@ -10,8 +10,8 @@ from stiction.contact.environment import Water
 from stiction.devices.budget import log_slope
 from stiction.models import SHIFTS
 from stiction.plan.stage import Stage, select
+from stiction.stages.contact.changes.quantities import difference
 from stiction.stages.contact.curves import energies
-from stiction.stages.contact.slope_contact import difference
 
 
 @dataclass(frozen=True)
