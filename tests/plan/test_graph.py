@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from inspect import Parameter, signature
 from pathlib import Path
 
 import pytest
@@ -102,6 +103,13 @@ def test_no_input_or_file_of_a_job_has_a_name_that_snakemake_reserves():
     assert "update" in reserved
     for name, job in JOBS.items():
         assert not reserved & {*job.inputs, *job.stage.files}, name
+
+
+def test_every_computation_gets_what_its_parameters_name():
+    for name, job in JOBS.items():
+        known = {*job.inputs, *vars(job.at), "settings", "data", "at"}
+        parameters = signature(job.stage.compute).parameters.values()
+        assert {parameter.name for parameter in parameters if parameter.default is Parameter.empty} <= known, name
 
 
 def test_no_two_of_the_inputs_and_wildcards_of_a_job_have_the_same_name():

@@ -117,7 +117,7 @@ def _stages(source):
     shows = f"{source.words.partition(' [')[0]} for values of one key"
 
     def made(show):
-        return lambda data, at, settings: show(pd.read_csv(data["table"]), source, settings["key"], settings["ends"])
+        return lambda data, settings: show(pd.read_csv(data["table"]), source, settings["key"], settings["ends"])
 
     return (
         table_stage(name, shows, compute=made(compared), **declared),

@@ -313,7 +313,7 @@ STAGES = (
         _CATEGORY,
         inputs=lambda plan, at: {"beams": f"beams/{plan.figure_case}_NG"},
         settings=lambda plan, at: plan.figure_settings,
-        compute=lambda data, at, settings: beam_shapes(data["beams"]),
+        compute=beam_shapes,
         targets=("figures",),
     ),
     figure_stage(

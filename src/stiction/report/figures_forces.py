@@ -153,7 +153,7 @@ STAGES = (
         _CATEGORY,
         inputs=lambda plan, at: {stage: f"{stage}/{plan.figure_case}_NG" for stage in ("forces", "fit")},
         settings=lambda plan, at: plan.figure_settings,
-        compute=lambda data, at, settings: fitted_curve(data["forces"], data["fit"]),
+        compute=fitted_curve,
         targets=("figures",),
     ),
     figure_stage(

@@ -464,7 +464,7 @@ STAGES = (
         "stress of the touching summits",
         study="plasticity",
         inputs=lambda plan, at: {"studies": by_name("studies/plasticity", plan.pressed_pairs)},
-        compute=lambda data, at, settings: summit_stresses(data["studies"]),
+        compute=lambda data: summit_stresses(data["studies"]),
         jobs=lambda plan: [{}] if plan.pressed_pairs else [],
     ),
     _study(
@@ -473,7 +473,7 @@ STAGES = (
         study="sample_shares",
         inputs=lambda plan, at: {"sizes": "studies/sample_sizes", "chaos": by_case("chaos", plan.cases, "_NG")},
         settings=lambda plan, at: plan.figure_settings | {"tolerance": plan.config["chaos"]["dimension_tolerance"]},
-        compute=lambda data, at, settings: sample_convergence(
+        compute=lambda data, settings: sample_convergence(
             data["sizes"],
             {key: chaos_model(chaos).dimension_error for key, chaos in data["chaos"].items()},
             settings["tolerance"],
@@ -485,7 +485,7 @@ STAGES = (
         study="orders",
         inputs=lambda plan, at: {"orders": "studies/orders"},
         settings=lambda plan, at: plan.figure_settings,
-        compute=lambda data, at, settings: order_convergence(data["orders"]),
+        compute=order_convergence,
     ),
     _study(
         "figure_19",
@@ -493,7 +493,7 @@ STAGES = (
         study="mesh",
         inputs=lambda plan, at: {"mesh": "studies/mesh", "correlation": "studies/correlation"},
         settings=lambda plan, at: plan.figure_settings,
-        compute=lambda data, at, settings: mesh_convergence(data["mesh"], data["correlation"]),
+        compute=mesh_convergence,
     ),
     _study(
         "variants",

@@ -275,7 +275,7 @@ STAGES = (
         "fit of the force curves by Eq. (12)",
         name="fit_quality",
         inputs=lambda plan, at: {"fits": by_outcome("fit", plan.laws)},
-        compute=lambda data, at, settings: fit_quality(data["fits"]),
+        compute=fit_quality,
         targets=("figures",),
     ),
     table_stage(
@@ -285,7 +285,7 @@ STAGES = (
             "beams": by_case("beams", plan.cases, "_NG"),
             "resampled": by_case("studies/resampling", plan.cases),
         },
-        compute=lambda data, at, settings: resampling(data["beams"], data["resampled"]),
+        compute=resampling,
         study="resampling",
         targets=("figures", "study_figures"),
     ),

@@ -60,22 +60,23 @@ def test_every_contact_of_the_table_is_found_by_its_name():
         assert Graph(PLAN).job(named(change, place)).stage.name == rule
 
 
-def test_every_change_keeps_all_settings_of_the_patch_but_its_own():
-    """Of contacts that draw their surfaces: those of variants have their own settings."""
-    own = {
-        table.AS_IT_IS: set(),
-        table.QUANTITY: set(),
-        table.MOMENTS: {"moments", "step"},
-        table.SCAN_OPTION: {"sources"},
-        table.SOLID: {"solid"},
-        table.VARIANT_OF_SOLIDS: {"solid"},
-    }
-    for change, place in (cell for cell in CELLS if cell[0] in own):
-        found = job_settings(PLAN, named(change, place))
-        samples = found["contact"]["samples"]
-        plain = place.settings(PLAN, At(**SIDES[place]), samples)
-        assert {key for key in {*found, *plain} if found.get(key) != plain.get(key)} == own[change]
-        assert samples == (700 if place is TIPS else 5000 if change is table.AS_IT_IS else samples)
+#: Samples and further settings of the changes that draw their surfaces; variants have settings of their own.
+OWN = {
+    table.AS_IT_IS: (PLAN.config["contact"]["samples"], set()),
+    table.QUANTITY: (30, set()),
+    table.MOMENTS: (PLAN.config["studies"]["sensitivity"]["samples"], {"moments", "step"}),
+    table.SCAN_OPTION: (30, {"sources"}),
+    table.SOLID: (30, {"solid"}),
+    table.VARIANT_OF_SOLIDS: (30, {"solid"}),
+}
+
+
+def test_every_change_keeps_all_settings_of_the_patch_but_its_own_and_all_tips_are_those_of_the_beams():
+    for change, place in (cell for cell in CELLS if cell[0] in OWN):
+        samples, own = OWN[change]
+        found, plain = job_settings(PLAN, named(change, place)), place.settings(PLAN, At(**SIDES[place]), samples)
+        assert {key for key in {*found, *plain} if found.get(key) != plain.get(key)} == own
+        assert found["contact"]["samples"] == (700 if place is TIPS else samples)
 
 
 def test_a_patch_of_the_size_of_the_strips_has_their_settings_and_tips_have_a_tilt_and_larger_steps():

@@ -193,7 +193,7 @@ STAGES = (
             }
             | model_errors.of_devices(plan, *plan.devices.beams)
         ),
-        compute=lambda data, at, settings: safe_lengths(
+        compute=lambda data: safe_lengths(
             data["lengths"], device_warnings.read(data["warnings"]).lengths, data.get("errors")
         ),
         jobs=lambda plan: [{}] if plan.devices.cases else [],
@@ -203,7 +203,7 @@ STAGES = (
         "chart",
         "safe length over the relative humidity",
         inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.charted)},
-        compute=lambda data, at, settings: chart(data["charts"], device_warnings.read(data["warnings"]).curves),
+        compute=lambda data: chart(data["charts"], device_warnings.read(data["warnings"]).curves),
         jobs=lambda plan: [{}] if plan.devices.charted else [],
         targets=("devices",),
     ),

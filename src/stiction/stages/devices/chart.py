@@ -164,7 +164,7 @@ STAGES = (
         ),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], data.get("tips"), corrected(settings, data)),
+        compute=lambda data, settings: compute(data["contact"], data.get("tips"), corrected(settings, data)),
         message="Chart of {case}.",
         cluster=True,
         minutes=120,

@@ -97,7 +97,7 @@ STAGES = (
         inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | tips_of(plan, at.case),
         settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["cracks"], data.get("tips"), settings),
+        compute=lambda data, settings: compute(data["cracks"], data.get("tips"), settings),
         message="Safe lengths of {case}.",
     ),
 )

@@ -176,7 +176,7 @@ STAGES = (
         inputs=_inputs,
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], corrected(settings, data), data.get("dry")),
+        compute=lambda data, settings: compute(data["contact"], corrected(settings, data), data.get("dry")),
         message="Pull-off force of stopper {device}.",
     ),
 )

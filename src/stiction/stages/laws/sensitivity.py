@@ -56,7 +56,7 @@ STAGES = (
         },
         settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contacts"], settings),
+        compute=compute,
         message="Sensitivity of the adhesion of pair {pair} to {moment} (Fig. 13).",
     ),
 )

@@ -80,7 +80,7 @@ STAGES = (
         inputs=_inputs,
         settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
         kind=Settings,
-        compute=lambda data, at, settings: compute(
+        compute=lambda data, settings: compute(
             {name: [less, data["more"][name]] for name, less in data["less"].items()}, settings
         ),
         message="Slopes of the adhesion of pair {pair} to the quantities of {surface}.",

@@ -309,7 +309,7 @@ STAGES = (
         # ASSUME: a correction to full elastic contact is that of the given surfaces at every roughness.
         inputs=lambda plan, at: contacts_of(plan, at.device, int(at.number)) | corrections_of(plan, at.device),
         settings=_settings,
-        compute=lambda data, at, settings: compute(
+        compute=lambda data, settings: compute(
             data["contact"], data.get("tips", {}), corrected(of_job(settings), data)
         ),
         message="Device {device} at roughness {number}.",
@@ -323,7 +323,7 @@ STAGES = (
             "points": [f"devices/roughness/points/{at.device}_{number}" for number in points_of(plan, at.device)]
         },
         settings=lambda plan, at: _what(plan, at.device),
-        compute=lambda data, at, settings: mapped(data["points"], **settings),
+        compute=lambda data, settings: mapped(data["points"], **settings),
         message="Roughness that device {device} needs.",
     ),
 )

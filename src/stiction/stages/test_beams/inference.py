@@ -549,9 +549,7 @@ STAGES = (
         ),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(
-            data["budgets"], data["test_beams"], data["predicted"], data["grounds"], data["tips"], settings
-        ),
+        compute=compute,
         message="Test beams of device {device}.",
     ),
 )
