@@ -13,7 +13,8 @@ from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.plan.plan import Plan
 from stiction.stages.beams import releases, variant_beams
-from stiction.stages.contact import pairs, variant_contact, variant_summits
+from stiction.stages.contact import pairs
+from stiction.stages.contact.changes import variants
 from stiction.stages.laws import chaos
 from stiction.stages.surfaces import heights, identification, spectrum
 from stiction.stages.surfaces.parameters import spectrum_of
@@ -33,9 +34,9 @@ def under(config, name):
     sizes = {"variants": {"samples": 40, "beams": 3}}
     plan = Plan(merged(config, {"pairs": {"b": {"humidities": [HUMIDITY]}}, "studies": sizes}))
     plain = plan.variants.summits("b", name)
-    settings = [in_si(variant_summits.Settings, merged(plain["base"], changes)) for changes in ({}, plain["changes"])]
-    summits = variant_summits.compute({}, "b", *settings)
-    found = variant_contact.compute(summits, in_si(variant_contact.Settings, plan.variants.solids("b", name)))
+    settings = [in_si(variants.Settings, merged(plain["base"], changes)) for changes in ({}, plain["changes"])]
+    summits = variants.summits_under({}, "b", *settings)
+    found = variants.contact_of(summits, in_si(variants.Solids, plan.variants.solids("b", name)))
     case = case_id("b", HUMIDITY)
     return variant_beams.compute(
         found, case, in_si(variant_beams.Settings, job_settings(plan, f"studies/variants/{case}_{name}"))
@@ -53,9 +54,9 @@ def test_crack_length_of_the_mean_energy_is_the_published_one(study, humidity, p
 def test_a_finer_grid_gives_the_same_surfaces():
     plan = Plan(CONFIG)
     plain = plan.variants.summits("b", "base")["base"]
-    base = in_si(variant_summits.Settings, plain)
-    surfaces = variant_summits.surfaces_of(base.pairs["b"], base.surfaces, base.sampling.spacing, {})
-    finer = in_si(variant_summits.Settings, merged(plain, {"sampling": {"spacing_nm": 5}}))
+    base = in_si(variants.Settings, plain)
+    surfaces = variants.surfaces_of(base.pairs["b"], base.surfaces, base.sampling.spacing, {})
+    finer = in_si(variants.Settings, merged(plain, {"sampling": {"spacing_nm": 5}}))
     coarse, fine = (
         pairs.equivalent_surface(surfaces, "NG", s).draw(*map(np.random.default_rng, (1, 2))) for s in (base, finer)
     )

@@ -15,7 +15,7 @@ from stiction.config.units import in_si
 from stiction.plan.graph import Results
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings
-from stiction.stages.devices.patch_settings import contact_of, tips_of
+from stiction.stages.devices.contact_names import contact_of, tips_of
 from stiction.stages.surfaces import surface_flags
 
 

@@ -35,8 +35,8 @@ from stiction.models import SURFACE_MODELS
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At, select
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
+from stiction.stages.contact.changes.patches import GROUND
 from stiction.stages.contact.pairs import Settings, streams_of_sides, surface_pair
-from stiction.stages.devices.patch_settings import on_patch
 from stiction.stages.devices.releases import DesignedBeam, section_of_beam
 from stiction.stages.surfaces import heights, spectrum
 from stiction.surface.empirical import MeasuredDensity
@@ -296,7 +296,7 @@ class Samples:
     def _settings(self):
         """Settings of the contact of as many samples as the time allows."""
         at = At(pair=self.patch.pair, length=str(self.patch.length), width=str(self.patch.width))
-        return on_patch(self.plan, at, self.plan.config["contact"]["samples"])
+        return GROUND.settings(self.plan, at, self.plan.config["contact"]["samples"])
 
     @cached_property
     def _contact(self):

@@ -7,8 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stiction.command.follow import Run
-from stiction.stages.contact import slope_contact
-from stiction.stages.devices import budget, choice_contacts, contacts, slope_contacts
+from stiction.stages.contact.changes.patches import STRIPS
+from stiction.stages.contact.changes.table import AS_IT_IS, TABLE
+from stiction.stages.devices import budget
 
 
 def record(message=None, level=logging.INFO, at=0.0, **extra):
@@ -42,9 +43,10 @@ def heard(*records):
     return run
 
 
-def test_rules_of_budgets_are_those_of_their_modules():
-    modules = budget, choice_contacts, slope_contacts, slope_contact, contacts
-    rules = {stage.name for module in modules for stage in module.STAGES} - {"device_contact", "tip_contact"}
+def test_rules_of_budgets_are_those_of_their_module_and_of_the_changes_on_patches_of_devices():
+    changes = [row for change, row in TABLE.items() if change is not AS_IT_IS]
+    contacts = {rule for row in changes for place, (rule, _) in row.items() if place is not STRIPS}
+    rules = {stage.name for stage in budget.STAGES} | contacts | {"slope_contact"}
     assert heard(plan(**dict.fromkeys(rules, 1), beams=1)).budgets == rules
     assert heard(plan(beams=1)).budgets == set()
 

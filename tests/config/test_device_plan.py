@@ -15,8 +15,8 @@ from stiction.devices.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
-from stiction.stages.contact import contact, slope_contact
-from stiction.stages.contact import variant_summits as summits
+from stiction.stages.contact import contact
+from stiction.stages.contact.changes import variants
 from stiction.stages.devices import budget, stoppers
 from stiction.stages.devices import uncertain_inputs as inputs
 
@@ -51,10 +51,10 @@ JOBS = [
         job_settings(PLAN, f"devices/contact/tips/choices/{TIP}_van_der_waals_dry"),
     ),
     (
-        slope_contact.Settings,
+        contact.Settings,
         job_settings(PLAN, f"devices/contact/slopes/{PATCH}_B2_rms_less"),
     ),
-    (summits.Settings, job_settings(PLAN, f"devices/contact/summits/{PATCH}_every_2")["base"]),
+    (variants.Settings, job_settings(PLAN, f"devices/contact/summits/{PATCH}_every_2")["base"]),
 ]
 
 

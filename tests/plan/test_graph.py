@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from inspect import Parameter, signature
 from pathlib import Path
 
 import pytest
@@ -16,7 +17,7 @@ from stiction.plan.planner import NotPlanned, Planner
 from stiction.plan.stage import File, Stage
 from stiction.report.style import STUDIES
 from stiction.run.disk_cache import DiskCache
-from stiction.run.fingerprint import PACKAGE
+from stiction.run.fingerprint import PACKAGE, SILENT, fingerprint
 
 ROOT = Path(__file__).parents[2]
 #: The paper, and the devices of the examples, which need every stage that no measured surface needs.
@@ -105,6 +106,28 @@ def test_no_input_or_file_of_a_job_has_a_name_that_snakemake_reserves():
     assert "update" in reserved
     for name, job in JOBS.items():
         assert not reserved & {*job.inputs, *job.stage.files}, name
+
+
+def test_every_computation_gets_what_its_parameters_name():
+    for name, job in JOBS.items():
+        known = {*job.inputs, *vars(job.at), "settings", "data", "at"}
+        parameters = signature(job.stage.compute).parameters.values()
+        assert {parameter.name for parameter in parameters if parameter.default is Parameter.empty} <= known, name
+
+
+def test_no_two_of_the_inputs_and_wildcards_of_a_job_have_the_same_name():
+    """A computation takes them by their names."""
+    for name, job in JOBS.items():
+        assert not {*job.inputs, "data", "at", "settings"} & {*vars(job.at)}, name
+        assert not {"data", "at", "settings"} & {*job.inputs}, name
+
+
+def test_the_code_of_a_stage_has_all_that_its_jobs_run_and_no_declaration():
+    for name, (stage, _) in stages().items():
+        code = fingerprint(PACKAGE.parent / f"{stage.code.replace('.', '/')}.py")
+        run = {part.__module__ for part in (stage.compute, stage.save, stage.first, stage.kind) if part}
+        assert run - {"builtins"} <= code.keys(), name
+        assert stage.code not in SILENT, name
 
 
 def test_a_name_of_no_stage_is_refused():
@@ -242,7 +265,7 @@ def test_a_repeated_plan_needs_no_declaration_and_a_change_of_the_configuration_
 
 
 @pytest.mark.parametrize(
-    "file", ["plan/plan.py", "plan/stage.py", "stages/devices/patch_settings.py", "models.py", "config/paper.yaml"]
+    "file", ["plan/plan.py", "plan/stage.py", "stages/contact/changes/table.py", "models.py", "config/paper.yaml"]
 )
 def test_what_is_kept_depends_on_all_code_also_where_fingerprints_leave_it_out(planner, tmp_path, monkeypatch, file):
     copy = shutil.copytree(PACKAGE, tmp_path / "stiction", ignore=shutil.ignore_patterns("__pycache__"))

@@ -51,7 +51,7 @@ def run(monkeypatch, stage, *described):
 
 
 def test_inputs_come_by_key_in_an_order_or_alone(files, tmp_path, monkeypatch):
-    def compute(data, _at, settings):
+    def compute(data, settings):
         seen.update(data)
         return dataset(settings["factor"] * data["all"]["b", 0.5].x[0])
 
@@ -92,7 +92,7 @@ def test_a_dataset_of_another_stage_is_refused(files, tmp_path, monkeypatch):
 
 def test_a_stage_with_ends_writes_its_datasets_in_their_order(files, tmp_path, monkeypatch):
     stage = Stage.writing(
-        "two", "two_{each}", message="", each=lambda plan: plan, compute=lambda data, at, s: [dataset(4), dataset(5)]
+        "two", "two_{each}", message="", each=lambda plan: plan, compute=lambda: [dataset(4), dataset(5)]
     )
     outputs = {end: str(tmp_path / f"two_{end}.nc") for end in ("less", "more")}
     run(monkeypatch, stage, {"one": files["B2"]}, {"one": ["heights", None]}, outputs)

@@ -1,6 +1,6 @@
 """Declarations: names of files, settings that follow from the fields of a dataclass."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import pytest
 
@@ -54,6 +54,22 @@ def test_settings_are_converted_to_the_class_and_stay_plain_without_one():
     assert stage.converted({"thickness_um": 2}).thickness == pytest.approx(2e-6)
     plain = Stage.writing("one", "one", message="", compute=lambda data, at, settings: settings)
     assert plain.converted({"thickness_um": 2}) == {"thickness_um": 2}
+
+
+def test_a_computation_takes_the_inputs_wildcards_and_settings_that_its_parameters_name():
+    def compute(forces, model, settings, fit="no fit"):
+        return forces, model, settings, fit
+
+    def of_all(data, at):
+        return data, at
+
+    stage = Stage.writing("one", "one_{model}", message="", compute=compute)
+    data, at = {"forces": 1, "unused": 2}, At(model="NG", case="b_rh067")
+    assert stage.result(data, at, 3) == (1, "NG", 3, "no fit")
+    assert stage.result(data | {"fit": 4}, at, 3) == (1, "NG", 3, 4)
+    assert replace(stage, compute=of_all).result(data, at, 3) == (data, at)
+    with pytest.raises(TypeError, match="forces"):
+        stage.result({}, at, 3)
 
 
 @pytest.mark.parametrize(

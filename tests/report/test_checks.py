@@ -12,6 +12,7 @@ from stiction.beam.equilibrium import ROUNDING, TOLERANCE
 from stiction.contact.environment import Gaps, Water
 from stiction.contact.meniscus import flooded_energy
 from stiction.contact.vanderwaals import DugdaleAttraction
+from stiction.plan.stage import At
 from stiction.report import checks
 from stiction.stages.laws import forces as stage_forces
 from stiction.stages.surfaces import heights
@@ -345,10 +346,10 @@ def test_the_last_job_ends_with_the_sentence_of_failed_checks_and_writes_that_of
     for passed, sentence in ((True, "All 1 checks of the results passed."), (False, "1 of 1 checks of the results")):
         checks.table([checks.Check("growth", "b", passed, "grows")]).to_csv(path, index=False)
         if passed:
-            assert verdict.compute({"checks": path}, None, None) == sentence
+            assert verdict.result({"checks": path}, At(), None) == sentence
         else:
             with pytest.raises(SystemExit, match=sentence):
-                verdict.compute({"checks": path}, None, None)
+                verdict.result({"checks": path}, At(), None)
 
 
 def test_messages_give_as_many_digits_as_their_error_allows():

@@ -12,6 +12,7 @@ from stiction.analysis.mesh import Arrest
 from stiction.config.files import load
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
+from stiction.plan.stage import At
 from stiction.report import figures_studies, published, tables_studies
 from stiction.report.style import save
 from stiction.stages.beams import mesh as study_mesh
@@ -340,6 +341,6 @@ def test_the_table_of_fig_13_is_of_the_pair_of_its_plan_and_has_the_slopes_of_it
         "published": Path(published.__file__).with_name("resources") / "sensitivity.csv",
     }
     stage = tables_studies.STAGES[0]
-    table = stage.compute(data, None, {"pair": "b", "of_paper": ["b"]})
+    table = stage.result(data, At(), {"pair": "b", "of_paper": ["b"]})
     assert set(table.frame.pair) == {"b"}
     assert set(table.frame.slope) == {-6.0}

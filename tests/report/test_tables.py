@@ -11,6 +11,7 @@ from hostile import HOSTILE, HOSTILE_FILE, Reading
 from numpy.testing import assert_allclose
 
 from stiction.models import surface_model
+from stiction.plan.stage import At
 from stiction.report import checks, published, tables, tables_beams, tables_studies, tables_surfaces
 from stiction.run.markdown import plain
 from stiction.stages.beams.pair_warnings import as_markdown
@@ -201,7 +202,7 @@ def test_measured_statistics_are_those_of_the_configuration_and_those_estimated_
     }
     with patch.object(tables_surfaces.estimate, "statistics", return_value=estimated):
         frame = (
-            tables_surfaces.STAGES[0].compute(data, None, {"measured": {"B1": {"rms_nm": 1.7}}, "of_paper": []}).frame
+            tables_surfaces.STAGES[0].result(data, At(), {"measured": {"B1": {"rms_nm": 1.7}}, "of_paper": []}).frame
         )
     assert_allclose([frame.rms_nm_afm[0], frame.skewness_afm[1]], [1.7, 0.3])
 

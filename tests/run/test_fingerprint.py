@@ -112,7 +112,7 @@ def test_a_module_that_does_not_affect_results_does_not_count(package, monkeypat
 def test_neither_declarations_nor_settings_of_jobs_count_for_any_figure_or_table():
     counted = {name for path in fingerprint.PACKAGE.glob("report/**/*.py") for name in fingerprint.fingerprint(path)}
     assert "stiction.stages.devices.device_warnings" in counted
-    settings = {"stiction.plan.stage", "stiction.plan.names", "stiction.stages.devices.patch_settings"}
+    settings = {"stiction.plan.stage", "stiction.plan.names", "stiction.stages.contact.changes.table"}
     assert counted.isdisjoint(settings)
 
 

@@ -1,7 +1,6 @@
 """Studies of small size: what they compute from the stages, and the laws that it obeys."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,7 +17,6 @@ from stiction.beam.montecarlo import Experiment, release_beam
 from stiction.beam.resolution import resolved
 from stiction.chaos.model import draw_laws, fit, resample_laws, truncated
 from stiction.config.cases import Case, case_id
-from stiction.config.merging import merged
 from stiction.contact.asperity import reduced_modulus
 from stiction.contact.environment import Water
 from stiction.contact.forcelaw import admissible, coefficients, energy, pressure
@@ -26,21 +24,13 @@ from stiction.contact.solids import Solid
 from stiction.stages.beams import mesh, resampling, variant_beams
 from stiction.stages.beams.cantilevers import cantilever
 from stiction.stages.contact import contact as stage_contact
-from stiction.stages.contact import (
-    curves,
-    plasticity,
-    sensitivity_contact,
-    slope_contact,
-    variant_contact,
-    variant_islands,
-    variant_summits,
-)
+from stiction.stages.contact import curves, plasticity
+from stiction.stages.contact.changes import moments, quantities
 from stiction.stages.contact.pairs import streams_of_sides, surface_pair
 from stiction.stages.laws import chaos, forces, humidity, orders, sample_sizes, sensitivity, slopes
 from stiction.stages.laws import fit as study_fit
-from stiction.stages.surfaces import correlation, heights, iteration, measured_heights, parameters, spectrum
+from stiction.stages.surfaces import correlation, iteration, spectrum
 from stiction.streams import stream
-from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.spectrum import autocovariance
 from stiction.surface.summits import find_summits
 
@@ -58,64 +48,18 @@ def of_vectors(vectors, limit=None):
 
 @pytest.fixture(scope="module")
 def shifted():
-    """Datasets of less and more skewness, and their settings."""
+    """Contacts of less and more skewness."""
     plain = job_settings(small.PLAN, "studies/sensitivity/contact/b_rms_less") | {"moments": ["skewness"]}
-    settings = small.settings_of(sensitivity_contact, plain)
-    of_heights, spectra = zip(*small.surfaces(), strict=True)
-    data, at = {"heights": of_heights, "spectrum": spectra}, SimpleNamespace(pair="b")
-    return stage_of(sensitivity_contact).compute(data, at, settings), settings
-
-
-def test_less_and_more_of_a_moment_bracket_that_of_the_surface(shifted):
-    less, more = map(sensitivity_contact.moment, shifted[0])
-    assert (less, more) == pytest.approx((-0.76 * 1.05, -0.76 * 0.95))
-
-
-@pytest.fixture
-def asked(monkeypatch):
-    """Arguments of the calls that would draw surfaces."""
-    found, contact = [], small.contact_of_pair()
-    monkeypatch.setattr(
-        stage_contact, "compute_each", lambda *given: found.append(given) or [contact for _ in given[0]]
-    )
-    return found
-
-
-@pytest.mark.parametrize(
-    ("moment", "place", "factor"),
-    [
-        ("rms", 0, 0.95),
-        *(pytest.param(*row, marks=pytest.mark.slow) for row in (("rms", 1, 1.05), ("kurtosis", 3, 1.05))),
-    ],
-)
-def test_a_shifted_moment_changes_that_of_the_beams_surface_alone(asked, shifted, moment, place, factor):
-    settings = replace(shifted[1], moments=("rms", "kurtosis"))
-    found = sensitivity_contact.compute(small.surfaces(), "b", settings)[place]
-    ((alternatives, pair, model, _),) = asked
-    (changed, shape), substrate = alternatives[place]
-    assert sensitivity_contact.names(settings)[place] == f"{moment}_{'less' if factor < 1 else 'more'}"
-    before = heights.moments(small.heights_of("B2"))
-    assert heights.moments(changed) == replace(before, **{moment: getattr(before, moment) * factor})
-    assert sensitivity_contact.moment(found) == pytest.approx(getattr(before, moment) * factor, rel=1e-14)
-    assert parameters.spectrum_of(shape) == SURFACES["B2"].published_psd
-    assert_array_equal(shape.wavenumber, small.spectrum_of("B2").wavenumber)
-    assert substrate is small.surfaces()[1]
-    assert (pair, model) == ("b", "NG")
-
-
-def test_a_step_of_nothing_is_the_contact_of_the_pair(shifted):
-    found, _ = sensitivity_contact.compute(small.surfaces(), "b", replace(shifted[1], step=0.0))
-    assert_allclose(found.solid_pressure, small.contact_of_pair().solid_pressure[:4], rtol=1e-5, atol=1)
-    assert_allclose(found.bearing_area, small.contact_of_pair().bearing_area[:4], rtol=1e-6)
+    return moments.compute(small.surfaces(), "b", small.settings_of(moments, plain))
 
 
 def test_sensitivity_is_that_of_the_energies_at_both_values(shifted):
     settings = small.settings_of(sensitivity, job_settings(small.PLAN, "studies/sensitivity/b_rms"))
-    found = sensitivity.compute(shifted[0], settings)
+    found = sensitivity.compute(shifted, settings)
     assert list(found.humidity) == [0.44, 0.55, 0.67, 0.80, 0.88, 0.92]
-    assert list(found.moment) == [sensitivity_contact.moment(contact) for contact in shifted[0]]
+    assert list(found.moment) == [moments.moment(contact) for contact in shifted]
     for k, h in enumerate(found.humidity.values):
-        energies = [curves.energies(contact, h, WATER) for contact in shifted[0]]
+        energies = [curves.energies(contact, h, WATER) for contact in shifted]
         assert_array_equal(found.adhesion_energy[:, k], energies)
         slopes, errors = energy_sensitivity(energies, list(found.moment.values))
         assert_allclose(found.slope[:, k], slopes, rtol=1e-9)
@@ -129,43 +73,6 @@ def test_sensitivity_is_that_of_the_energies_at_both_values(shifted):
 # Slopes with common random numbers
 
 
-def slope_settings(**changes):
-    return replace(
-        small.settings_of(slope_contact, job_settings(small.PLAN, "studies/slopes/contact/b_B2_rms_less")), **changes
-    )
-
-
-@pytest.mark.parametrize(("surface", "changed"), [("B2", (True, False)), ("Sub1", (False, True))])
-@pytest.mark.parametrize("side", [0, 1])
-def test_a_shifted_quantity_changes_the_named_surface_alone(asked, surface, changed, side):
-    found = slope_contact.compute(small.surfaces(), "b", surface, "corner", slope_settings())[side]
-    ((alternatives, pair, model, _),) = asked
-    for ours, theirs, is_changed in zip(alternatives[side], small.surfaces(), changed, strict=True):
-        assert (ours is not theirs) == is_changed
-        corner, before = (parameters.spectrum_of(spectrum).corner for _, spectrum in (ours, theirs))
-        assert corner / before == pytest.approx(np.exp((-0.05, 0.05)[side]) if is_changed else 1)
-        assert heights.moments(ours[0]) == heights.moments(theirs[0])
-    assert (pair, model) == ("b", "NG")
-    assert slope_contact.difference(found) == pytest.approx(0.1)
-
-
-def test_a_surface_on_both_sides_is_shifted_on_both(asked):
-    twice = [small.surfaces()[0]] * 2
-    slope_contact.compute(twice, "b", "B2", "rms", slope_settings(surfaces=("B2", "B2")))
-    more = asked[0][0][1]
-    assert [heights.moments(changed[0]).rms for changed in more] == pytest.approx([3.4e-9 * np.exp(0.05)] * 2)
-
-
-def test_modes_are_shifted_around_the_measured_heights_of_an_estimate(asked, monkeypatch):
-    kept, moments = [], heights.moments(small.surfaces()[0][0])
-    form = heights.layout(MeasuredDensity(np.linspace(-2, 2, 9), np.linspace(-2, 2, 9)), moments)
-    monkeypatch.setattr(measured_heights, "compute", lambda *given: kept.append(given) or form)
-    slope_contact.compute(small.surfaces(), "b", "B2", "mode3", slope_settings(), "estimate of B2")
-    assert kept == [("estimate of B2", measured_heights.Settings("B2", "measured"))]
-    less, more = (heights.density(changed[0][0], "NG").quantile_of_normal(2.0) for changed in asked[0][0])
-    assert more > less
-
-
 def test_slopes_and_their_errors_are_those_of_the_chosen_quantities():
     values = np.arange(6.0).reshape(3, 2)
     dataset = slopes.layout(["rms", "skewness", "kurtosis"], (0.44, 0.88), values, 0.1 * values)
@@ -174,7 +81,8 @@ def test_slopes_and_their_errors_are_those_of_the_chosen_quantities():
 
 
 def test_slopes_are_those_of_the_energies_at_both_values_and_of_their_own_quantity():
-    both = slope_contact.compute(small.surfaces(), "b", "B2", "rms", slope_settings())
+    settings = small.settings_of(quantities, job_settings(small.PLAN, "studies/slopes/contact/b_B2_rms_less"))
+    both = quantities.compute(small.surfaces(), "b", "B2", "rms", settings)
     wanted = small.settings_of(slopes, job_settings(small.PLAN, "studies/sensitivity/b_rms"))
     found = slopes.compute({"rms": both, "kurtosis": both[::-1]}, wanted)
     for k, h in enumerate(wanted.humidities):
@@ -534,66 +442,3 @@ def test_cases_of_a_pair_are_joined_from_dry_to_humid():
     assert list(found) == [("b", "dry"), ("a", "base")]
     assert_array_equal(found["b", "dry"].humidity, [0.655, 0.8])
     assert_array_equal(found["b", "dry"].crack_length[:, 1], [1.31, 1.6])
-
-
-def contact_under(variant, samples=3):
-    """Contact of pair b under a variant."""
-    plain = small.PLAN.variants.summits("b", variant)
-    base, changed = (small.settings_of(variant_summits, merged(plain["base"], c)) for c in ({}, plain["changes"]))
-    fewer = replace(changed, contact=replace(changed.contact, samples=samples))
-    solids = small.settings_of(variant_contact, small.PLAN.variants.solids("b", variant))
-    return variant_contact.compute(variant_summits.compute({}, "b", base, fewer), solids)
-
-
-@pytest.mark.parametrize("variant", ["asperity_island", "base"])
-def test_the_contact_of_islands_under_a_variant_is_that_of_pairs_of_its_settings(variant):
-    """If the asperities of the base are islands, those of all its variants are found in this way."""
-    plain = small.PLAN.variants.summits("b", variant)
-    solids = {"solids": small.PLAN.variants.solids("b", variant)}
-    plain = merged(plain, {"base": {"contact": {"samples": 3}}}) | solids
-    at, data = SimpleNamespace(pair="b", variant=variant), {"identifications": {}, "heights": {}, "spectrum": {}}
-    found = stage_of(variant_islands).compute(data, at, plain)
-    changed = merged(job_settings(small.PLAN, "contact/b_NG"), small.PLAN.variants.changes[variant])
-    settings = small.settings_of(stage_contact, merged(changed, {"contact": {"samples": 3}}))
-    plain_way = stage_contact.compute(small.surfaces(), "b", "NG", settings)
-    for name in found:
-        assert_array_equal(found[name], plain_way[name])
-    assert np.array_equal(found.solid_pressure, contact_under("base").solid_pressure) == (variant == "base")
-
-
-def stage_of(module):
-    """The only stage of a module."""
-    (stage,) = module.STAGES
-    return stage
-
-
-def test_the_contact_of_the_base_variant_is_that_of_the_pair():
-    found, pair = contact_under("base"), small.contact_of_pair().isel(sample=slice(3))
-    assert set(found) == set(pair)
-    for name in [*found, *found.coords]:
-        assert_array_equal(found[name], pair[name])
-        assert found[name].dtype == pair[name].dtype
-
-
-@pytest.mark.parametrize(
-    "variant",
-    ["van_der_waals_none", *(pytest.param(name, marks=pytest.mark.slow) for name in ("poisson_ratio_0.28", "every_2"))],
-)
-def test_the_contact_of_a_variant_is_that_of_pairs_of_its_settings(variant):
-    plain = merged(job_settings(small.PLAN, "contact/b_NG"), small.PLAN.variants.changes[variant])
-    settings = small.settings_of(stage_contact, merged(plain, {"contact": {"samples": 3}}))
-    plain_way = stage_contact.compute(small.surfaces(), "b", "NG", settings)
-    found = contact_under(variant)
-    for name in found:
-        assert_array_equal(found[name], plain_way[name])
-    assert not np.array_equal(found.solid_pressure, contact_under("base").solid_pressure)
-
-
-def test_a_measured_surface_is_the_same_under_every_variant():
-    plain = small.PLAN.variants.summits("b", "base")
-    base = small.settings_of(variant_summits, plain["base"])
-    described = {name: entry for name, entry in base.surfaces.items() if name != "B2"}
-    changed = replace(base, contact=replace(base.contact, samples=3))
-    measured = {"B2": small.surfaces()[0]}
-    found = variant_summits.compute({}, "b", replace(base, surfaces=described), changed, measured)
-    assert_array_equal(found.top, variant_summits.compute({}, "b", base, changed).top)

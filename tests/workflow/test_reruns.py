@@ -380,16 +380,17 @@ SPOTS = [
     ("config/files", "", " ".join(RULES)),
     ("config/merging", "variant_summits", "heights spectrum contact_chunk forces beams"),
     ("plan/names", "", " ".join(RULES)),
-    ("stages/devices/patch_settings", "", " ".join(RULES)),
+    ("stages/contact/changes/table", "", " ".join(RULES)),
+    ("stages/devices/contact_names", "", " ".join(RULES)),
     (
-        "stages/contact/variant_summits",
-        "variant_summits",
-        "heights spectrum contact_chunk plasticity sensitivity_contact",
+        "stages/contact/changes/variants",
+        "variant_summits variant_contact",
+        "heights spectrum contact_chunk plasticity sensitivity_contact device_contact",
     ),
     (
-        "stages/contact/variant_contact",
-        "variant_contact",
-        "variant_summits contact_chunk plasticity sensitivity_contact",
+        "stages/contact/changes/moments",
+        "sensitivity_contact",
+        "contact_chunk variant_summits plasticity device_contact",
     ),
     ("study", "", " ".join(RULES)),
     ("stages/devices/releases", "cracks chart", "heights spectrum contact_chunk tip_contact beams"),
@@ -426,6 +427,7 @@ LAYOUTS = {
         "pressed",
         "readings",
         "sensitivity_contact",
+        "variant_summits",  # in one module with the contact of solids on them
         "variant_contact",
         "device_contact",
         "tip_contact",
@@ -447,7 +449,7 @@ LAYOUTS = {
     "stages/beams/mesh": {"mesh"},
     "stages/surfaces/correlation": {"correlation"},
     "stages/beams/resampling": {"resampling"},
-    "stages/contact/variant_summits": {"variant_summits", "readings"},
+    "stages/contact/changes/variants": {"variant_summits", "readings"},
     "stages/beams/variant_beams": {"variant"},
     "stages/devices/cracks": {"cracks", "safe_lengths"},
     "stages/devices/safe_lengths": {"safe_lengths"},
@@ -511,7 +513,10 @@ def imported(path):
 #: Modules that affect no result, or only settings and names of inputs, which count themselves.
 SILENT = {
     PACKAGE / f"{name}.py"
-    for name in ("progress", "run/logs", "config/messages", "plan/stage", "plan/names", "stages/devices/patch_settings")
+    for name in (
+        *("progress", "run/logs", "config/messages", "plan/stage", "plan/names"),
+        *("stages/contact/changes/patches", "stages/contact/changes/table", "stages/devices/contact_names"),
+    )
 }
 
 
@@ -535,7 +540,7 @@ CODE = sorted(
 def test_every_module_and_script_reruns_its_rules_and_their_readers(tree, path):
     tree.append(path, "\nCHANGED = 1\n")
     script = ROOT / "workflow" / "scripts" / "stage.py"
-    modules = {name: ROOT / "src" / f"{module.replace('.', '/')}.py" for name, (_, module) in stages().items()}
+    modules = {name: ROOT / "src" / f"{stage.code.replace('.', '/')}.py" for name, (stage, _) in stages().items()}
     if path.parts[0] == "workflow":
         met = set(RULES)
     else:

@@ -65,7 +65,7 @@ class Job:
 
     def compute(self, data: Mapping[str, Any]) -> Any:
         """Result for the data of the inputs."""
-        return self.stage.compute(data, self.at, self.stage.converted(self.settings))
+        return self.stage.result(data, self.at, self.stage.converted(self.settings))
 
 
 @dataclass(frozen=True)

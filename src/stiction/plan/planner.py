@@ -83,6 +83,7 @@ class Planner:
         taken = ("name", "targets", "temporary", "cluster", "minutes", "priority", "libraries")
         return {key: getattr(stage, key) for key in taken} | {
             "module": module,
+            "code": stage.code,
             "memory": stage.memory(self.plan) if stage.memory else 0,
             "dataset": stage.save is None,
             "files": {key: path_of(stage, name) for key, name in stage.patterns(self.plan).items()},
@@ -100,8 +101,8 @@ class Planner:
         return [file for rule in self.rules if target in rule["targets"] for file in rule["wanted"]]
 
     def code(self, rule: Mapping[str, Any]) -> dict[str, str | None]:
-        """Fingerprint of the module that declares a stage and of all modules that it imports; versions of libraries."""
-        file = PACKAGE.joinpath(*rule["module"].split(".")[1:]).with_suffix(".py")
+        """Fingerprint of the module in which a stage computes and of all that it imports; versions of libraries."""
+        file = PACKAGE.joinpath(*rule["code"].split(".")[1:]).with_suffix(".py")
         return self._code(str(file)) | {name: version_of(name) for name in rule["libraries"]}
 
     # Jobs

@@ -17,7 +17,7 @@ def run(job: Any) -> None:
     settings = stage.converted(stated)
     part = stage.first(settings) if stage.first else {}
     data = {name: _loaded(job.input.get(name, []), *how, part, stage) for name, how in job.params.inputs.items()}
-    result = stage.compute(data, At(**job.wildcards), settings)
+    result = stage.result(data, At(**job.wildcards), settings)
     if stage.save is not None:
         stage.save(result, dict(job.output.items()))
         if template := job.input.get("caption"):

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
 from functools import cache
 from importlib import import_module
+from inspect import signature
 from types import SimpleNamespace
 from typing import Any, get_args, get_origin, get_type_hints
 
@@ -132,14 +133,14 @@ class Stage:
     """What the jobs of a stage write, read and compute.
 
     ``inputs`` and ``settings`` are functions of the plan of a configuration (`stiction.plan.plan.Plan`) and of the
-    wildcards of a job. ``compute`` takes the data of the inputs, structured as ``inputs`` structures their names, the
-    wildcards and the settings.
+    wildcards of a job. ``compute`` takes what its parameters name: an input, structured as ``inputs`` structures its
+    names, a wildcard, or the ``settings``; and all inputs as ``data``, all wildcards as ``at``.
     """
 
     name: str  #: of the rule
     files: Mapping[str, str]  #: names of the files by key; a dataset has the key ``dataset``
     message: str  #: what a job does; may contain wildcards
-    compute: Callable[[dict, At, Any], Any]
+    compute: Callable[..., Any]
     inputs: Callable[[Any, At], Mapping[str, Names]] = _nothing
     settings: Callable[[Any, At], dict] = _nothing
     kind: type | None = None  #: dataclass to which the settings are converted
@@ -187,9 +188,19 @@ class Stage:
         """Wildcards of the jobs whose files the targets want."""
         return self.jobs(plan) if self.targets and (not self.study or self.study in plan.studies) else []
 
+    @property
+    def code(self) -> str:
+        """Module of ``compute``, whose code and that of its imports is the code of a job; the declaration is not."""
+        return self.compute.__module__
+
     def converted(self, settings: dict) -> Any:
         """Plain settings of a job as ``compute`` takes them."""
         return settings if self.kind is None else in_si(self.kind, settings)
+
+    def result(self, data: Mapping[str, Any], at: At, settings: Any) -> Any:
+        """Compute from the data of the inputs, the wildcards and the converted settings."""
+        known = vars(at) | {"settings": settings, "data": data, "at": at} | data
+        return self.compute(**{name: known[name] for name in signature(self.compute).parameters if name in known})
 
     def patterns(self, plan: Any) -> dict[str, str]:
         """Names of all files of a job by key, with wildcards."""

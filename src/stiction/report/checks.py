@@ -405,7 +405,7 @@ def markdown(table: pd.DataFrame) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _checked(data, _at, settings):
+def _checked(data, settings):
     """All checks, whether passed or failed."""
     nominal = in_si(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
     beams = {pair: cantilever(nominal, pair) for pair in settings["pairs"]}
@@ -442,7 +442,7 @@ def _skewed(plan):
     return [pair for pair, values in skewness.items() if max(values) <= 0 > min(values)]
 
 
-def _verdict(data, _at, _settings):
+def _verdict(data):
     """Sentence about the checks; ends the job with it if a check has failed."""
     checked = read(data["checks"])
     sentence = verdict(checked)

@@ -136,7 +136,7 @@ def _stages(source):
     shows = f"{source.words.partition(' [')[0]} for values of one key"
 
     def made(show):
-        return lambda data, at, settings: show(pd.read_csv(data["table"]), source, settings["keys"], settings["ends"])
+        return lambda data, settings: show(pd.read_csv(data["table"]), source, settings["keys"], settings["ends"])
 
     return (
         table_stage(name, shows, compute=made(compared), **declared),

@@ -292,7 +292,7 @@ def _percent(share):
     return f"{100 * share:.2g} %" if share < 0.995 else "> 99 %"
 
 
-def _adhesion_energies(data, _at, settings):
+def _adhesion_energies(data, settings):
     """Energies of all pairs over the humidity, with the published and measured ones."""
     nominal = in_si(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
     waters = {pair: in_si(Water, water) for pair, water in settings["water"].items()}
@@ -313,7 +313,7 @@ STAGES = (
         _CATEGORY,
         inputs=lambda plan, at: {"beams": f"beams/{plan.figure_case}_NG"},
         settings=lambda plan, at: plan.figure_settings,
-        compute=lambda data, at, settings: beam_shapes(data["beams"]),
+        compute=beam_shapes,
         targets=("figures",),
     ),
     figure_stage(

@@ -135,7 +135,7 @@ def _curves(panel, distance, curves, highest):
     panel.axhline(0, color="black", linewidth=0.5)
 
 
-def _force_curves(data, _at, settings):
+def _force_curves(data, settings):
     """Computed curves of every pair, and as many generated force laws as curves were kept."""
     drawn = {}
     for pair, case in settings["cases"].items():
@@ -153,7 +153,7 @@ STAGES = (
         _CATEGORY,
         inputs=lambda plan, at: {stage: f"{stage}/{plan.figure_case}_NG" for stage in ("forces", "fit")},
         settings=lambda plan, at: plan.figure_settings,
-        compute=lambda data, at, settings: fitted_curve(data["forces"], data["fit"]),
+        compute=fitted_curve,
         targets=("figures",),
     ),
     figure_stage(

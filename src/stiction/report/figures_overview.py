@@ -149,7 +149,7 @@ STAGES = (
             "published": published.file("table_3"),
         },
         settings=lambda plan, at: plan.figure_settings | {"of_paper": plan.paper.pairs},
-        compute=lambda data, at, settings: overview(
+        compute=lambda data, settings: overview(
             settings["pair"],
             *(data[stage] for stage in ("character", "forces", "beams", "released")),
             published.compared(data, settings),

@@ -416,7 +416,7 @@ def _curve(panel, humidity, change, error, style):
     panel.errorbar(humidity, 100 * change, 100 * error, markevery=marked, errorevery=marked, **style)
 
 
-def _sensitivities(data, _at, settings):
+def _sensitivities(data, settings):
     """Sensitivities to the moments, and the published ones."""
     stated = published.compared(data, settings)
     stated = stated[(stated.pair == settings["pair"]) & stated.moment.isin(settings["moments"])]
@@ -424,7 +424,7 @@ def _sensitivities(data, _at, settings):
     return sensitivities(data["studies"], slopes)
 
 
-def _variants(data, _at, settings):
+def _variants(data, settings):
     """All pairs and variants; a variant that changes nothing for a pair, which the plan leaves out, equals the base."""
     known = by_pair(data["studies"])
     pairs, names = (dict.fromkeys(parts) for parts in zip(*known, strict=True))
@@ -464,7 +464,7 @@ STAGES = (
         "stress of the touching summits",
         study="plasticity",
         inputs=lambda plan, at: {"studies": by_name("studies/plasticity", plan.pressed_pairs)},
-        compute=lambda data, at, settings: summit_stresses(data["studies"]),
+        compute=lambda data: summit_stresses(data["studies"]),
         jobs=lambda plan: [{}] if plan.pressed_pairs else [],
     ),
     _study(
@@ -473,7 +473,7 @@ STAGES = (
         study="sample_shares",
         inputs=lambda plan, at: {"sizes": "studies/sample_sizes", "chaos": by_case("chaos", plan.cases, "_NG")},
         settings=lambda plan, at: plan.figure_settings | {"tolerance": plan.config["chaos"]["dimension_tolerance"]},
-        compute=lambda data, at, settings: sample_convergence(
+        compute=lambda data, settings: sample_convergence(
             data["sizes"],
             {key: chaos_model(chaos).dimension_error for key, chaos in data["chaos"].items()},
             settings["tolerance"],
@@ -485,7 +485,7 @@ STAGES = (
         study="orders",
         inputs=lambda plan, at: {"orders": "studies/orders"},
         settings=lambda plan, at: plan.figure_settings,
-        compute=lambda data, at, settings: order_convergence(data["orders"]),
+        compute=order_convergence,
     ),
     _study(
         "figure_19",
@@ -493,7 +493,7 @@ STAGES = (
         study="mesh",
         inputs=lambda plan, at: {"mesh": "studies/mesh", "correlation": "studies/correlation"},
         settings=lambda plan, at: plan.figure_settings,
-        compute=lambda data, at, settings: mesh_convergence(data["mesh"], data["correlation"]),
+        compute=mesh_convergence,
     ),
     _study(
         "variants",

@@ -236,7 +236,7 @@ def _figure_11(file, shows, surfaces):
             "gaussian": by_name("character", surfaces(plan), "_G"),
             "other": by_name("character", surfaces(plan), "_NG"),
         },
-        compute=lambda data, at, settings: summits(
+        compute=lambda data: summits(
             {name: {"G": gaussian, "NG": data["other"][name]} for name, gaussian in data["gaussian"].items()}
         ),
         jobs=lambda plan: [{}] if plan.pairs and surfaces(plan) else [],
@@ -251,7 +251,7 @@ STAGES = (
         "densities of the heights",
         _CATEGORY,
         inputs=lambda plan, at: {"heights": by_name("heights", plan.surfaces)},
-        compute=lambda data, at, settings: height_densities(data["heights"]),
+        compute=height_densities,
         targets=("figures",),
     ),
     figure_stage(
@@ -259,7 +259,7 @@ STAGES = (
         "simulated surfaces",
         _CATEGORY,
         inputs=lambda plan, at: {"characters": by_name("character", plan.surfaces, "_NG")},
-        compute=lambda data, at, settings: elevation_maps(data["characters"]),
+        compute=elevation_maps,
         targets=("figures",),
     ),
     figure_stage(
@@ -270,7 +270,7 @@ STAGES = (
             "characters": {model: f"character/{plan.figure_surface}_{model}" for model in SURFACE_MODELS}
         },
         settings=lambda plan, at: {"surface": plan.figure_surface},
-        compute=lambda data, at, settings: profiles(settings["surface"], data["characters"]),
+        compute=lambda data, settings: profiles(settings["surface"], data["characters"]),
         targets=("figures",),
     ),
     figure_stage(
@@ -283,7 +283,7 @@ STAGES = (
             "character": by_name("character", plan.surfaces, "_NG"),
             "iteration": by_name("iteration", plan.surfaces),
         },
-        compute=lambda data, at, settings: spectra(_of_surfaces(data)),
+        compute=lambda data: spectra(_of_surfaces(data)),
         study="iteration",
         targets=("figures",),
     ),

@@ -174,7 +174,7 @@ def _stage(kind, shows, draw, **declared):
             ),
         },
         settings=lambda plan, at: {"of_paper": plan.paper.pairs},
-        compute=lambda data, at, settings: draw(
+        compute=lambda data, settings: draw(
             data["errors"], data["beams"], published.compared(data, settings), data["variants"]
         ),
         study="full_contact",

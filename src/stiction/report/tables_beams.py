@@ -241,7 +241,7 @@ _RESAMPLING = PAIR | {
 }
 
 
-def _table_3(data, _at, settings):
+def _table_3(data, settings):
     """Averages over the beams of every case, with published and measured lengths."""
     scanned = ((pair, pair_errors(study)) for pair, study in data["by_scans"].items())
     by_scans = {(pair, humidity): error for pair, errors in scanned for humidity, error in errors.items()}
@@ -280,7 +280,7 @@ STAGES = (
         "fit of the force curves by Eq. (12)",
         name="fit_quality",
         inputs=lambda plan, at: {"fits": by_outcome("fit", plan.laws)},
-        compute=lambda data, at, settings: fit_quality(data["fits"]),
+        compute=fit_quality,
         targets=("figures",),
     ),
     table_stage(
@@ -290,7 +290,7 @@ STAGES = (
             "beams": by_case("beams", plan.cases, "_NG"),
             "resampled": by_case("studies/resampling", plan.cases),
         },
-        compute=lambda data, at, settings: resampling(data["beams"], data["resampled"]),
+        compute=resampling,
         study="resampling",
         targets=("figures", "study_figures"),
     ),

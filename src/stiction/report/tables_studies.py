@@ -185,7 +185,7 @@ STAGES = (
             "published": published.file("sensitivity"),
         },
         settings=lambda plan, at: {"pair": plan.figure_pair, "of_paper": plan.paper.pairs},
-        compute=lambda data, at, settings: sensitivity(
+        compute=lambda data, settings: sensitivity(
             data["studies"], settings["pair"], published.compared(data, settings)
         ),
         study="sensitivity",
@@ -199,7 +199,7 @@ STAGES = (
             "published": published.file("table_3"),
         },
         settings=lambda plan, at: {"of_paper": plan.paper.pairs},
-        compute=lambda data, at, settings: variants(by_pair(data["studies"]), published.compared(data, settings)),
+        compute=lambda data, settings: variants(by_pair(data["studies"]), published.compared(data, settings)),
         study="variants",
         targets=("figures", "study_figures"),
     ),

@@ -162,7 +162,7 @@ _TABLE_2 = {
 }
 
 
-def _table_1(data, _at, settings):
+def _table_1(data, settings):
     """Simulated, published and measured statistics."""
     substitutions = {name: substitution(heights) for name, heights in data["heights"].items()}
     measured = settings["measured"] | {name: estimate.statistics(one) for name, one in data["estimates"].items()}
@@ -201,7 +201,7 @@ STAGES = (
             "sources": {name: plan.config["surfaces"][name]["psd"] for name in plan.with_summits},
             "of_paper": plan.paper.surfaces,
         },
-        compute=lambda data, at, settings: table_2(
+        compute=lambda data, settings: table_2(
             data["identifications"], data["spectra"], published.compared(data, settings), settings["sources"]
         ),
         jobs=lambda plan: [{}] if plan.with_summits else [],

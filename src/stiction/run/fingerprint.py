@@ -15,7 +15,10 @@ PACKAGE = Path(__file__).parents[1]
 #: Modules that do not affect any result: they report progress and errors, or reject a configuration.
 SILENT = {"stiction.progress", "stiction.run.logs", "stiction.config.messages"}
 #: Declarations and settings of jobs, which are parameters of the rules themselves.
-SILENT |= {"stiction.plan.stage", "stiction.plan.names", "stiction.stages.devices.patch_settings"}
+SILENT |= {"stiction.plan.stage", "stiction.plan.names"}
+SILENT |= {
+    f"stiction.stages.{name}" for name in ("contact.changes.patches", "contact.changes.table", "devices.contact_names")
+}
 SILENT |= {f"stiction.config.{name}" for name in ("conditions", "relations", "relations_devices", "validation")}
 #: Fields of a syntax tree that do not affect what the code does.
 _WITHOUT_MEANING = {"kind", "type_comment", "type_ignores"}

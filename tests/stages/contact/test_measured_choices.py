@@ -21,8 +21,8 @@ from stiction.scans.levelling import Levelling, level
 from stiction.scans.moments import mode_covariance, overlap_integrals
 from stiction.scans.quantiles import quantiles
 from stiction.stages.contact import contact as stage_contact
-from stiction.stages.contact import scan_option_contact as choices
-from stiction.stages.contact import slope_contact
+from stiction.stages.contact.changes import quantities
+from stiction.stages.contact.changes import scan_options as choices
 from stiction.stages.devices import uncertain_inputs as inputs
 from stiction.stages.laws import scan_uncertainty
 from stiction.stages.surfaces import descriptions, estimate, parameters, scan
@@ -168,8 +168,8 @@ def test_slopes_of_measured_heights_keep_their_form_but_for_a_mode(files, estima
     monkeypatch.setattr(stage_contact, "compute_each", lambda *given: asked.extend(given[0]) or [contact, contact])
     plan = plan_of(files, heights="measured")
     given = surfaces(plan, estimated)
-    settings = small.settings_of(slope_contact, job_settings(plan, "studies/slopes/contact/b_B2_rms_less"))
-    _, found = slope_contact.compute(given, "b", "Etched", quantity, settings)
+    settings = small.settings_of(quantities, job_settings(plan, "studies/slopes/contact/b_B2_rms_less"))
+    _, found = quantities.compute(given, "b", "Etched", quantity, settings)
     changed, before = asked[1][0][0], given[0][0]
     u = np.array([-2.0, 0.0, 2.0])
     forms = [stage_heights.density(of, "NG").quantile_of_normal(u) for of in (changed, before)]
@@ -180,7 +180,7 @@ def test_slopes_of_measured_heights_keep_their_form_but_for_a_mode(files, estima
         # u² - 1 raises both tails against the middle.
         assert np.all((forms[0] - forms[1])[[0, 2]] > (forms[0] - forms[1])[1])
         assert float(changed.rms) == float(before.rms)
-    assert slope_contact.difference(found) == pytest.approx(0.1 if quantity == "rms" else 0.04)
+    assert quantities.difference(found) == pytest.approx(0.1 if quantity == "rms" else 0.04)
 
 
 def test_modes_of_a_surface_with_the_heights_of_its_moments_are_those_of_its_measured_heights(
@@ -189,8 +189,8 @@ def test_modes_of_a_surface_with_the_heights_of_its_moments_are_those_of_its_mea
     asked, contact = [], small.contact_of_pair()
     monkeypatch.setattr(stage_contact, "compute_each", lambda *given: asked.append(given[0]) or [contact, contact])
     for plan in (plan_of(files), plan_of(files, heights="measured")):
-        settings = small.settings_of(slope_contact, job_settings(plan, "studies/slopes/contact/b_B2_rms_less"))
-        slope_contact.compute(surfaces(plan, estimated), "b", "Etched", "mode4", settings, estimated)
+        settings = small.settings_of(quantities, job_settings(plan, "studies/slopes/contact/b_B2_rms_less"))
+        quantities.compute(surfaces(plan, estimated), "b", "Etched", "mode4", settings, estimated)
     for from_moments, from_measured in zip(*asked, strict=True):
         for ours, theirs in zip(from_moments[0], from_measured[0], strict=True):
             xr.testing.assert_allclose(ours, theirs, rtol=1e-6)

@@ -11,7 +11,7 @@ from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.asperity import HertzAsperity
 from stiction.plan.plan import Plan
 from stiction.stages.contact import contact, pairs
-from stiction.stages.contact.variant_summits import Sides, Surface, surfaces_of
+from stiction.stages.contact.changes.variants import Sides, Surface, surfaces_of
 from stiction.stages.surfaces import heights, spectrum
 from stiction.stages.surfaces.parameters import spectrum_of
 from stiction.streams import stream

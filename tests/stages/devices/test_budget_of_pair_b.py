@@ -14,7 +14,8 @@ from stiction.devices.budget import Budget
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES
 from stiction.plan.plan import Plan
-from stiction.stages.contact import contact, curves, slope_contact
+from stiction.stages.contact import contact, curves
+from stiction.stages.contact.changes import quantities
 from stiction.stages.devices import budget
 from stiction.stages.devices import uncertain_inputs as inputs
 
@@ -48,10 +49,8 @@ def base(surfaces):
 @pytest.fixture(scope="module")
 def changed(surfaces):
     """Contacts with less and with more of every quantity of B2."""
-    settings = in_si(slope_contact.Settings, job_settings(PLAN, "studies/slopes/contact/b_B2_rms_less"))
-    return {
-        ("B2", name): tuple(slope_contact.compute(surfaces, "b", "B2", name, settings)) for name in MOMENT_QUANTITIES
-    }
+    settings = in_si(quantities.Settings, job_settings(PLAN, "studies/slopes/contact/b_B2_rms_less"))
+    return {("B2", name): tuple(quantities.compute(surfaces, "b", "B2", name, settings)) for name in MOMENT_QUANTITIES}
 
 
 @pytest.fixture(scope="module")

@@ -19,6 +19,8 @@ BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "w
 STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [1.5, 6], "restoring_force_uN": 20, "humidities": [0.44, 0.8]}
 SIZES = {"devices": {"C1": BEAM, "S1": STOPPER}, "design": {"beams": 200, "budget_beams": 20, "chart_points": 2}}
 SIZES |= {"design": SIZES["design"] | {"worst_humidities": [0.44, 0.9]}}
+#: Inputs of warnings that say nothing.
+NOTHING = {"plasticity": {}, "estimates": {}, "spectra": {}}
 TOUCHING = Results.of(merged(small.PLAN.config, SIZES))
 
 
@@ -44,7 +46,7 @@ def test_beams_and_tips_would_stick_at_shorter_lengths_in_drier_air():
 def test_every_result_has_its_change_as_a_warning():
     graph = TOUCHING.graph
     job = graph.job("devices/warnings/S1.json")
-    *_, [[_, said]] = job.compute({"plasticity": {}, "left_out_gaps": TOUCHING["devices/left_out_gaps/S1"]})
+    *_, [[_, said]] = job.compute(NOTHING | {"left_out_gaps": TOUCHING["devices/left_out_gaps/S1"]})
     assert any("across gaps is left out" in one and "RH 0.44" in one and "unsafe" in one for one in said)
     changes = left_out_gaps.changes_of(TOUCHING["devices/left_out_gaps/C1"])
     for shape in (S_SHAPE, EITHER):

@@ -16,6 +16,7 @@ from stiction.contact.meniscus import film, surface_energy
 from stiction.devices import limits
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
+from stiction.plan.stage import At
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE
@@ -84,7 +85,7 @@ FLAGS = ["surface Etched: the spectrum ends near 125 rad/µm", "surface Etched: 
 
 def test_flags_of_a_surface_stand_beside_everything_that_rests_on_it(warned):
     settings = job_settings(PLAN, "warnings.md") | {"surfaces": {"a": ["Etched"], "b": []}}
-    page = pair_warnings.STAGES[0].compute({"beams": {}, "plasticity": PLASTIC} | MEASURED, None, settings)
+    page = pair_warnings.STAGES[0].result({"beams": {}, "plasticity": PLASTIC} | MEASURED, At(), settings)
     for flag in FLAGS:
         (line,) = (line for line in page.splitlines() if flag in line)
         assert line.startswith("- pair a: ")
@@ -120,7 +121,7 @@ def test_pairs_whose_plasticity_was_not_studied_are_said_to_be_unchecked():
 def test_the_remedy_names_the_list_of_studies_where_it_leaves_plasticity_out(studies, named):
     plan = Plan(load({"run": {"pairs": ["b"]} | ({} if studies is None else {"studies": studies})}))
     data = {"beams": {}, "plasticity": {}} | NOT_MEASURED
-    page = pair_warnings.STAGES[0].compute(data, None, job_settings(plan, "warnings.md"))
+    page = pair_warnings.STAGES[0].result(data, At(), job_settings(plan, "warnings.md"))
     assert "give its distance in studies.plasticity.distance_nm" in page
     assert (", and name plasticity in run.studies." in page) == named
 
@@ -254,7 +255,7 @@ def warned(tmp_path):
             ]
             data = {"lengths": own[0], "charts": own[1], "plasticity": PLASTIC} | surfaces
             files[name] = tmp_path / f"{name}.json"
-            stage.save(stage.compute(data, None, section), {"json": files[name]})
+            stage.save(stage.result(data, At(), section), {"json": files[name]})
         return device_warnings.read(files)
 
     return read

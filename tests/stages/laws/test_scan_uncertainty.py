@@ -25,7 +25,8 @@ from stiction.scans.quantiles import SCORES, measured_density
 from stiction.scans.reading import ScanFile
 from stiction.scans.scan import Frame
 from stiction.stages.contact import contact as stage_contact
-from stiction.stages.contact import curves, slope_contact
+from stiction.stages.contact import curves
+from stiction.stages.contact.changes import quantities
 from stiction.stages.laws import scan_uncertainty, slopes
 from stiction.stages.laws.scan_uncertainty import GOAL, Errors, scans_needed
 from stiction.stages.surfaces import estimate as stage_estimate
@@ -184,12 +185,12 @@ def wide(name, samples):
 @cache
 def slopes_of_b2():
     """Slopes of ln ē of pair b to the quantities of B2."""
-    settings = small.settings_of(slope_contact, wide("studies/slopes/contact/b_B2_rms_less", 300))
+    settings = small.settings_of(quantities, wide("studies/slopes/contact/b_B2_rms_less", 300))
     (moments, spectrum), substrate = small.surfaces()
     form = measured_density(SURFACES["B2"].density.quantile_of_normal(SCORES), 2036)
     measured = stage_heights.layout(form, stage_heights.moments(moments))
     contacts = {
-        name: slope_contact.compute(
+        name: quantities.compute(
             [(measured if name in MODES else moments, spectrum), substrate], "b", "B2", name, settings
         )
         for name in QUANTITIES

@@ -222,7 +222,7 @@ def _stage(kind, shows, draw, **declared):
             "published": published.file("table_3"),
         },
         settings=lambda plan, at: {"of_paper": plan.paper.pairs},
-        compute=lambda data, at, settings: draw(
+        compute=lambda data, settings: draw(
             data["studies"], data["full"], data["beams"], published.compared(data, settings)
         ),
         study="asperities",
@@ -240,7 +240,7 @@ STAGES = (
             "studies": by_name("studies/asperities", plan.humid_pairs),
             "full": by_name("studies/full_contact", plan.humid_pairs),
         },
-        compute=lambda data, at, settings: parts(data["studies"], data["full"]),
+        compute=parts,
         study="asperities",
         targets=("asperities",),
     ),

@@ -112,7 +112,7 @@ def _stage(kind, shows, draw, **declared):
         "pressing",
         shows,
         inputs=lambda plan, at: {"studies": by_name("studies/pressing", _pairs(plan))},
-        compute=lambda data, at, settings: draw(data["studies"]),
+        compute=lambda data: draw(data["studies"]),
         jobs=lambda plan: [{}] if _pairs(plan) else [],
         study="pressing",
         targets=("pressing",),

@@ -119,7 +119,7 @@ STAGES = (
         "what test beams say about {device}",
         "Devices",
         inputs=lambda plan, at: {"test_beams": f"devices/test_beams/{at.device}"},
-        compute=lambda data, at, settings: test_beams(data["test_beams"]),
+        compute=lambda data: test_beams(data["test_beams"]),
         jobs=lambda plan: [{"device": name} for name in plan.devices.tested],
         targets=("devices",),
     ),

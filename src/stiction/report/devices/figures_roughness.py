@@ -144,7 +144,7 @@ def _stage(name, shows, draw, devices):
         shows,
         "Devices",
         inputs=lambda plan, at: {"roughness": f"devices/roughness/{at.device}"},
-        compute=lambda data, at, settings: draw(data["roughness"]),
+        compute=lambda data: draw(data["roughness"]),
         jobs=lambda plan: [{"device": device} for device in devices(plan)],
         targets=("devices",),
     )

@@ -277,7 +277,7 @@ STAGES = (
             | model_errors.of_devices(plan, *plan.devices.stoppers)
         ),
         settings=lambda plan, at: {"not_modelled": device_warnings.not_modelled(plan, *plan.devices.stoppers)},
-        compute=lambda data, at, settings: stoppers(
+        compute=lambda data, settings: stoppers(
             data["stoppers"], device_warnings.read(data["warnings"]).patches, data.get("errors"), **settings
         ),
         jobs=lambda plan: [{}] if plan.devices.stoppers else [],
@@ -290,7 +290,7 @@ STAGES = (
             {"budgets": budgets_of(plan, *plan.devices.budgeted)}
             | model_errors.of_devices(plan, *plan.devices.budgeted)
         ),
-        compute=lambda data, at, settings: budget(data["budgets"], data.get("errors")),
+        compute=lambda data: budget(data["budgets"], data.get("errors")),
         jobs=lambda plan: [{}] if plan.devices.budgeted else [],
         targets=("devices",),
     ),

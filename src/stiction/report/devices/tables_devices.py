@@ -199,7 +199,7 @@ STAGES = (
             | model_errors.of_devices(plan, *plan.devices.beams)
         ),
         settings=lambda plan, at: {"not_modelled": not_modelled(plan, *plan.devices.beams)},
-        compute=lambda data, at, settings: safe_lengths(
+        compute=lambda data, settings: safe_lengths(
             data["lengths"], device_warnings.read(data["warnings"]).lengths, data.get("errors"), **settings
         ),
         jobs=lambda plan: [{}] if plan.devices.cases else [],
@@ -210,9 +210,7 @@ STAGES = (
         "safe length over the relative humidity",
         inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.charted)},
         settings=lambda plan, at: {"not_modelled": not_modelled(plan, *plan.devices.charted)},
-        compute=lambda data, at, settings: chart(
-            data["charts"], device_warnings.read(data["warnings"]).curves, **settings
-        ),
+        compute=lambda data, settings: chart(data["charts"], device_warnings.read(data["warnings"]).curves, **settings),
         jobs=lambda plan: [{}] if plan.devices.charted else [],
         targets=("devices",),
     ),

@@ -405,7 +405,7 @@ STAGES = (
         "test_beams",
         "what test beams say about devices",
         inputs=lambda plan, at: {"test_beams": by_name("devices/test_beams/rerun", plan.devices.tested)},
-        compute=lambda data, at, settings: test_beams(data["test_beams"]),
+        compute=lambda data: test_beams(data["test_beams"]),
         jobs=lambda plan: [{}] if plan.devices.tested else [],
         targets=("devices",),
     ),

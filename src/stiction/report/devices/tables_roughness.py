@@ -311,7 +311,7 @@ STAGES = (
         "roughness",
         "how rough a surface must be",
         inputs=lambda plan, at: {"roughness": by_name("devices/roughness", plan.devices.roughened)},
-        compute=lambda data, at, settings: roughness(data["roughness"]),
+        compute=lambda data: roughness(data["roughness"]),
         jobs=lambda plan: [{}] if plan.devices.roughened else [],
         targets=("devices",),
     ),

@@ -28,7 +28,7 @@ STAGES = (
             "test_beams": by_name("devices/test_beams/rerun", plan.devices.tested),
         },
         settings=lambda plan, at: {"not_modelled": device_warnings.not_modelled(plan, *plan.devices.sections)},
-        compute=lambda data, at, settings: page(device_warnings.read(data["warnings"]), data["test_beams"], **settings),
+        compute=lambda data, settings: page(device_warnings.read(data["warnings"]), data["test_beams"], **settings),
         save=lambda page, paths: save_text(page, paths["markdown"]),
         message="Where the results of devices are beyond the model.",
         jobs=lambda plan: [{}] if plan.devices.sections else [],

@@ -170,7 +170,7 @@ STAGES = (
         "Surfaces (Sec. II)",
         name="surface_sheet",
         inputs=lambda plan, at: {stage: f"{stage}/{at.surface}" for stage in ("estimate", "spectrum")},
-        compute=lambda data, at, settings: surface_sheet(at.surface, data["estimate"], data["spectrum"]),
+        compute=lambda data, at: surface_sheet(at.surface, data["estimate"], data["spectrum"]),
         jobs=lambda plan: [{"surface": name} for name in plan.scans.surfaces],
         targets=("figures", "measured", "scans"),
     ),

@@ -139,7 +139,7 @@ STAGES = (
             "spectra": by_name("spectrum", plan.scans.surfaces),
             "scans": {(name, k): f"scan/{name}_{k}" for name in plan.scans.surfaces for k in plan.scans.files(name)},
         },
-        compute=lambda data, at, settings: scans(
+        compute=lambda data: scans(
             data["estimates"],
             data["spectra"],
             {name: [scan for key, scan in data["scans"].items() if key[0] == name] for name in data["estimates"]},
@@ -151,7 +151,7 @@ STAGES = (
         "scan_uncertainty",
         "uncertainty due to finite scans",
         inputs=lambda plan, at: {"studies": by_name("studies/scan_uncertainty", plan.scanned_pairs)},
-        compute=lambda data, at, settings: scan_uncertainty(data["studies"]),
+        compute=scan_uncertainty,
         jobs=lambda plan: [{}] if plan.scanned_pairs else [],
         targets=("tables", "measured"),
     ),

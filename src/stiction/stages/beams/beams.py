@@ -64,7 +64,7 @@ STAGES = (
         inputs=lambda plan, at: {"chaos": f"chaos/{at.case}_{surface_model(at.model)}"},
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["chaos"], at.case, settings),
+        compute=compute,
         message="Release the beams of {case}, {model} (Sec. III-C).",
         cluster=True,
     ),

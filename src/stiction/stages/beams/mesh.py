@@ -105,7 +105,7 @@ STAGES = (
             | sections(plan, plan.figure_pair)
         ),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["forces"], settings),
+        compute=compute,
         message="Convergence of the crack length in the mesh of the beam (App. C).",
     ),
 )

@@ -143,7 +143,7 @@ def of_surfaces(data: Mapping[str, Mapping[str, xr.Dataset]], surfaces: Mapping[
     return {pair: [sentence for name in names for sentence in flags[name]] for pair, names in surfaces.items()}
 
 
-def _of_pairs(data, _at, settings):
+def _of_pairs(data, settings):
     """Warnings about all pairs as a page."""
     nominal = in_si(OfPairs, settings["pairs"])
     remedy = limits.DISTANCE if settings["plasticity_runs"] else limits.NAMED

@@ -1,6 +1,6 @@
-"""Release of the beams of a case, shared by stage beams and the studies that release beams.
+"""Release of the beams of a case: settings, computation and columns of results.
 
-Separate from `stiction.stages.beams.beams`, so that a change of the dataset of that stage does not rerun the studies.
+Stage beams, the studies of resampling and of variants, and their figures and tables share it.
 """
 
 from collections.abc import Callable

@@ -48,7 +48,7 @@ STAGES = (
             releases.sections(plan, at.case) | {"beams": plan.config["studies"]["resampling"]["beams"]}
         ),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["forces"], at.case, settings),
+        compute=compute,
         message="Release the beams of {case} on force laws resampled from the contact samples (App. B).",
         cluster=True,
     ),

@@ -21,7 +21,7 @@ from stiction.contact.pair import solid_pressure as pressure_of_spheres
 from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.plan.stage import At, Stage
 from stiction.progress import progress
-from stiction.stages.contact import variant_contact, variant_summits
+from stiction.stages.contact.changes import variants
 from stiction.stages.contact.pairs import bodies, streams_of_sides
 
 #: A sphere on every summit, one of the area of every island, one fitted to it; every island with its true shape.
@@ -32,7 +32,7 @@ READINGS = (*map(str, Definition), "shape")
 class Settings:
     """Solids, water, humidities and numbers of strips."""
 
-    solids: variant_contact.Settings
+    solids: variants.Solids
     water: Water
     humidities: tuple[float, ...]  #: [-]
     strips: int  #: number of pairs of strips: the first samples of stage contact
@@ -164,18 +164,18 @@ def _settings(plan, at):
     }
 
 
-def _compute(data, at, settings):
+def _compute(data, pair, settings):
     """Study of the surfaces on both grids."""
-    *known, base, fine, measured = variant_summits.arguments(data, at, settings["surfaces"])
-    grids = [variant_summits.equivalent_under(*known, base, changed, measured) for changed in (base, fine)]
-    return compute(grids, at.pair, base.seed, in_si(Settings, settings["study"]))
+    *known, base, fine, measured = variants.arguments(data, pair, settings["surfaces"])
+    grids = [variants.equivalent_under(*known, base, changed, measured) for changed in (base, fine)]
+    return compute(grids, pair, base.seed, in_si(Settings, settings["study"]))
 
 
 STAGES = (
     Stage.writing(
         "readings",
         "studies/asperities/{pair}",
-        inputs=lambda plan, at: variant_summits.inputs(plan, At(pair=at.pair, variant="base")),
+        inputs=lambda plan, at: variants.inputs(plan, At(pair=at.pair, variant="base")),
         settings=_settings,
         compute=_compute,
         message="Readings of an asperity, pair {pair}.",

@@ -1,16 +1,19 @@
-"""Stage contact (Sec. III-A): solid pressure and bearing area of the sampled pairs, independent of humidity."""
+"""Contact of a pair (Sec. III-A): solid pressure and bearing area of its samples, independent of humidity.
 
-from collections.abc import Iterable, Sequence
+`stiction.stages.contact.changes.table` declares all stages with such a dataset.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from stiction.contact.pair import DistanceGrid, contacts_of_samples
 from stiction.contact.tilted import TiltedPair
-from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.contact.pairs import Settings, streams_of_sides, surface_pairs
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both
 
 
 def compute(
@@ -48,6 +51,11 @@ def compute_each(
     return [of_tips(*each) for each in zip(datasets, pairs, strict=True)] if settings.tilt else datasets
 
 
+def drawn(data: Mapping[str, Any], pair: str, settings: Settings) -> xr.Dataset:
+    """Compute from the datasets of both surfaces by stage."""
+    return compute(both(data), pair, "NG", settings)
+
+
 def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceGrid, samples: range) -> xr.Dataset:
     """Dataset of p_s(sample, distance) and A(sample, height), independent of humidity; float32.
 
@@ -80,14 +88,21 @@ def chunk(samples: int, number: int, chunks: int) -> range:
     return range(samples * number // chunks, samples * (number + 1) // chunks)
 
 
-def joined(chunks: Iterable[xr.Dataset], samples: int) -> xr.Dataset:
-    """Contact of all samples, joined from the chunks in their order; of an iterator, one chunk is held at a time.
+def drawn_chunk(data: Mapping[str, Any], at: Any, settings: Settings) -> xr.Dataset:
+    """Compute the samples of one chunk from the datasets of both surfaces by stage and the wildcards of a job."""
+    samples = chunk(settings.contact.samples, int(at.chunk), int(at.number))
+    return compute(both(data), at.pair, at.model, settings, samples)
+
+
+def joined(chunks: Iterable[xr.Dataset], settings: Settings) -> xr.Dataset:
+    """Join the contact of all samples from the chunks in their order; of an iterator, one chunk is held at a time.
 
     Raises
     ------
     ValueError
         If a chunk has other distances than those before it, or if samples are missing or repeated.
     """
+    samples = settings.contact.samples
     pressures = areas = grid = None
     joined_samples = 0
     for chunk in chunks:
@@ -126,38 +141,3 @@ def tables(contact: xr.Dataset) -> tuple[np.ndarray, np.ndarray, tuple[float, fl
     """Solid pressures (m, n_s) [Pa], bearing areas (m, n_b) [-], first distance of each and common step [m]."""
     starts = float(contact.distance[0]), float(contact.height[0])
     return contact.solid_pressure.values, contact.bearing_area.values, starts, float(contact.step)
-
-
-def _chunks(plan, at):
-    """Chunks of the samples of a pair in their order."""
-    number = plan.config["contact"]["chunks"]
-    return {"chunks": [f"contact/{at.pair}_{at.model}/{chunk}-of-{number}" for chunk in range(number)]}
-
-
-STAGES = (
-    Stage.writing(
-        "contact_chunk",
-        "contact/{pair}_{model}/{chunk}-of-{number}",
-        inputs=lambda plan, at: of_pair(plan, at.pair),
-        settings=lambda plan, at: select(Settings, plan.seen_by(at.pair)),
-        kind=Settings,
-        compute=lambda data, at, settings: compute(
-            both(data), at.pair, at.model, settings, chunk(settings.contact.samples, int(at.chunk), int(at.number))
-        ),
-        label="contact",
-        message="Contact of {model} surfaces of pair {pair}, chunk {chunk} of {number}.",
-        temporary=True,
-        cluster=True,
-        minutes=30,
-    ),
-    Stage.writing(
-        "contact",
-        "contact/{pair}_{model}",
-        inputs=_chunks,
-        streamed=True,
-        settings=lambda plan, at: select(Settings, plan.seen_by(at.pair)),
-        kind=Settings,
-        compute=lambda data, at, settings: joined(data["chunks"], settings.contact.samples),
-        message="Join the contact of {model} surfaces of pair {pair} (Sec. III-A).",
-    ),
-)

@@ -1,7 +1,4 @@
-"""Correction of force laws to full elastic contact: which stages apply it, and how; not a stage itself.
-
-Separate from stage pair_model_error, so that the force laws do not depend on the code of full contact.
-"""
+"""Correction of force laws to full elastic contact, for every stage that makes force laws from a contact."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,7 +1,4 @@
-"""Error of the model of the contact at all humidities of a pair: ratios of full contact to the sum over summits.
-
-Separate from study full_contact, so that stages and tables that need no more than ratios do not depend on its code.
-"""
+"""Error of the model of the contact at all humidities of a pair: ratios of full contact to the sum over summits."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -67,7 +64,7 @@ STAGES = (
             | ({"applied": True} if plan.variants.is_corrected() else {})
         ),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["study"], settings),
+        compute=compute,
         message="Error of the model of the contact of pair {pair}.",
     ),
 )

@@ -1,6 +1,6 @@
 """Pairs of rough surfaces in contact, from the datasets of stages heights and spectrum.
 
-Separate from `stiction.stages.contact.contact`, because studies use the same pairs for other purposes.
+Contacts, full contact, plasticity and variants draw their samples from the same pairs.
 """
 
 from collections.abc import Callable, Sequence

@@ -29,7 +29,7 @@ from stiction.stages.contact import curves
 from stiction.stages.contact.contact import first
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.error_notes import explain_errors
-from stiction.stages.devices.patch_settings import contacts_of_budget, contacts_of_tip_budget
+from stiction.stages.devices.contact_names import contacts_of_budget, contacts_of_tip_budget
 from stiction.stages.devices.releases import ARC, FORCE, DesignedBeam, addresses, arrests, section_of_beam
 from stiction.stages.devices.uncertain_inputs import Input, Known, Settings, State, countable, covariances, uncertain
 
@@ -338,7 +338,7 @@ def settings_of_tips(plan: Any, at: At, share: float | None = None) -> dict[str,
     return _with_choices(plan, pair, settings, plan.variants.choices_of_solids(pair))
 
 
-def _computed(data, _at, settings):
+def _computed(data, settings):
     """Budget from the contacts with less and with more of every input, and those under other choices of the model."""
     wanted = corrected(of_job(settings["budget"]), data)
     described = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}

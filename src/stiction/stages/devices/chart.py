@@ -20,7 +20,7 @@ from stiction.plan.stage import Stage, chosen, select
 from stiction.stages.contact.contact import surface_rms
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.devices import sticking
-from stiction.stages.devices.patch_settings import contact_of, corrections_of, tips_of
+from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
 from stiction.stages.devices.releases import DesignedBeam, settings_of_beam
 
 
@@ -164,7 +164,7 @@ STAGES = (
         ),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], data.get("tips"), corrected(settings, data)),
+        compute=lambda data, settings: compute(data["contact"], data.get("tips"), corrected(settings, data)),
         message="Chart of {case}.",
         cluster=True,
         minutes=120,

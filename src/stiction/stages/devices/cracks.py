@@ -22,7 +22,7 @@ from stiction.stages.contact import curves
 from stiction.stages.contact.contact import surface_rms
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.error_notes import on_patch
-from stiction.stages.devices.patch_settings import contact_of, corrections_of
+from stiction.stages.devices.contact_names import contact_of, corrections_of
 from stiction.stages.devices.releases import (
     BEAMS,
     LAWS,
@@ -109,7 +109,7 @@ STAGES = (
         inputs=lambda plan, at: {"contact": contact_of(plan, at.case)} | corrections_of(plan, at.case.device),
         settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], corrected(settings, data)),
+        compute=lambda data, settings: compute(data["contact"], corrected(settings, data)),
         message="Release long beams of {case}.",
         cluster=True,
         minutes=120,

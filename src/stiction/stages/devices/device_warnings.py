@@ -171,7 +171,7 @@ def _settings(plan, at):
     return {"stopper": select(OfStopper, section | own | {"water": plan.air_of_devices.water(section["pair"])})}
 
 
-def _of_one_device(data, _at, settings):
+def _of_one_device(data, settings):
     """Warnings about a device: about its lengths, its curves and its patch, each with what follows its name."""
     flags = surface_flags.together(data)
     changes = left_out_gaps.changes_of(data["left_out_gaps"]) if "left_out_gaps" in data else {}

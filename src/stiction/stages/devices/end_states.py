@@ -1,7 +1,4 @@
-"""What holds a device that sticks, in words: of its lengths and of what the inputs of its budget move.
-
-Separate from the stages that find lengths and budgets, so that a word reruns none of them.
-"""
+"""End states of devices in words, for their warnings, tables, figures and pages."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

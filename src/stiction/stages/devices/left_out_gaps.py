@@ -18,7 +18,7 @@ from stiction.contact.environment import Water
 from stiction.plan.stage import At, Stage
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.devices.budget import AnyBudget, effect, of_job, settings_of, settings_of_tips
-from stiction.stages.devices.patch_settings import contact_of, corrections_of, tips_of
+from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
 
 
 def compute(contacts: Sequence[xr.Dataset], budgets: Sequence[AnyBudget], waters: Sequence[Water]) -> xr.Dataset:
@@ -69,7 +69,7 @@ def _settings(plan, at):
     return {"budgets": [{key: value for key, value in one.items() if key != "waters"} for one in own], "water": across}
 
 
-def _computed(data: Mapping[str, Any], _at: At, settings: Mapping[str, Any]) -> xr.Dataset:
+def _computed(data: Mapping[str, Any], settings: Mapping[str, Any]) -> xr.Dataset:
     """Changes of everything that may hold a device."""
     budgets = [corrected(of_job(budget), data) for budget in settings["budgets"]]
     return compute(data["contacts"], budgets, [in_si(Water, settings["water"])] * len(budgets))

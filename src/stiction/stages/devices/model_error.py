@@ -88,7 +88,7 @@ STAGES = (
         inputs=lambda plan, at: {"study": f"studies/full_contact/{plan.config['devices'][at.device]['pair']}"},
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["study"], settings),
+        compute=compute,
         message="Error of the model of the contact in the predictions of {device}.",
     ),
 )

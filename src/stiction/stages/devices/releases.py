@@ -1,9 +1,7 @@
-"""Release of the beams of a device at a humidity, shared by stage cracks, charts and budgets.
+"""Release of the beams of a device at a humidity, for cracks, charts, budgets and curves of roughness.
 
 Cantilevers are longer than their cracks; bridges are shortened until their middle comes free: `BEAMS` has what the
 stages need to know of each kind.
-
-Separate from stage cracks, so that a change of the dataset of that stage reruns no chart and no budget.
 
 Random numbers have the address of the pair, not of the device, its dimensions or the humidity, so that devices are
 compared with common random numbers.

@@ -12,7 +12,7 @@ from stiction.devices.risk import SafeLength
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import curves
 from stiction.stages.devices import cracks as stage_cracks
-from stiction.stages.devices.patch_settings import tips_of
+from stiction.stages.devices.contact_names import tips_of
 from stiction.stages.devices.releases import DesignedBeam, settings_of_beam
 from stiction.stages.devices.sticking import bound, flooded_lengths, safe_lengths, sticking_lengths
 
@@ -97,7 +97,7 @@ STAGES = (
         inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | tips_of(plan, at.case),
         settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["cracks"], data.get("tips"), settings),
+        compute=lambda data, settings: compute(data["cracks"], data.get("tips"), settings),
         message="Safe lengths of {case}.",
     ),
 )

@@ -1,7 +1,4 @@
-"""Sticking lengths of a device at a humidity and its safe lengths, shared by stage safe_lengths, charts and roughness.
-
-Separate from stage safe_lengths, so that a change of the dataset of that stage does not rerun charts.
-"""
+"""Sticking lengths of a device at a humidity and its safe lengths, for safe lengths, charts and curves of roughness."""
 
 from dataclasses import dataclass, replace
 from functools import partial

@@ -17,7 +17,7 @@ from stiction.progress import progress
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.curves import pull_offs
 from stiction.stages.contact.error_notes import on_patch
-from stiction.stages.devices.patch_settings import contact_of, corrections_of
+from stiction.stages.devices.contact_names import contact_of, corrections_of
 
 #: Shares of stuck patches for which a restoring force is stated, as far as there are enough patches.
 SHARES = (1e-2, 1e-3, 1e-4)
@@ -176,7 +176,7 @@ STAGES = (
         inputs=_inputs,
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], corrected(settings, data), data.get("dry")),
+        compute=lambda data, settings: compute(data["contact"], corrected(settings, data), data.get("dry")),
         message="Pull-off force of stopper {device}.",
     ),
 )

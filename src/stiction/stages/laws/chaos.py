@@ -87,7 +87,7 @@ STAGES = (
         inputs=lambda plan, at: {"forces": f"forces/{at.case}_{at.model}"},
         settings=lambda plan, at: select(Settings, plan.config),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["forces"], at.case, at.model, settings),
+        compute=compute,
         message="Chaos model of the force law of {case}, {model} (App. B).",
     ),
 )

@@ -47,7 +47,7 @@ STAGES = (
         },
         settings=lambda plan, at: select(Settings, plan.at(at.case)),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], data["forces"], settings),
+        compute=compute,
         message="Errors of Eq. (12) in {case}, {model} (Sec. III-B1).",
     ),
 )

@@ -106,7 +106,7 @@ STAGES = (
         ),
         settings=lambda plan, at: select(Settings, plan.at(at.case)),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], corrections.corrected(settings, data)),
+        compute=lambda data, settings: compute(data["contact"], corrections.corrected(settings, data)),
         message="Force curves of {case}, {model} (Sec. III-B1).",
     ),
 )

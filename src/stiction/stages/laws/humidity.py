@@ -62,7 +62,7 @@ STAGES = (
         ),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contact"], corrections.corrected(settings, data)),
+        compute=lambda data, settings: compute(data["contact"], corrections.corrected(settings, data)),
         message="Adhesion energy of {model} surfaces of pair {pair} over the relative humidity.",
     ),
 )

@@ -99,7 +99,7 @@ STAGES = (
             Settings, plan.config, draws=plan.config["studies"]["orders"]["draws"], case=plan.figure_case
         ),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["forces"], data["chaos"], settings),
+        compute=lambda data, settings: compute(data["forces"], data["chaos"], settings),
         message="Convergence of the chaos model in the order of its polynomials (App. B).",
         cluster=True,
     ),

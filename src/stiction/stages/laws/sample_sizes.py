@@ -56,7 +56,7 @@ STAGES = (
         inputs=lambda plan, at: {"forces": f"forces/{plan.figure_case}_NG"},
         settings=lambda plan, at: {"shares": plan.config["studies"]["sample_shares"], "case": plan.figure_case},
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["forces"], settings),
+        compute=compute,
         message="Convergence of the adhesion energy in the number of samples (App. B).",
     ),
 )

@@ -210,7 +210,7 @@ def _inputs(plan, at):
     }
 
 
-def _computed(data, _at, settings):
+def _computed(data, settings):
     """Uncertainty of a pair, with as many samples of the base as of the other evaluations."""
     base = first(data["base"], max(choice.sizes["sample"] for choice in data["choices"].values()))
     errors = errors_by_surface(data["slopes"], data["estimates"])

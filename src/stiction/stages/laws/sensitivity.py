@@ -10,8 +10,8 @@ from stiction.analysis.sensitivity import energy_sensitivity
 from stiction.contact.environment import Water
 from stiction.models import SHIFTS
 from stiction.plan.stage import Stage, select
+from stiction.stages.contact.changes.moments import moment
 from stiction.stages.contact.curves import energies
-from stiction.stages.contact.sensitivity_contact import moment
 
 _STATISTICS = ("mean", "standard deviation")
 
@@ -56,7 +56,7 @@ STAGES = (
         },
         settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["contacts"], settings),
+        compute=compute,
         message="Sensitivity of the adhesion of pair {pair} to {moment} (Fig. 13).",
     ),
 )

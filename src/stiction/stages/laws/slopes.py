@@ -10,8 +10,8 @@ from stiction.contact.environment import Water
 from stiction.devices.budget import log_slope
 from stiction.models import SHIFTS
 from stiction.plan.stage import Stage, select
+from stiction.stages.contact.changes.quantities import difference
 from stiction.stages.contact.curves import energies
-from stiction.stages.contact.slope_contact import difference
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ STAGES = (
         inputs=_inputs,
         settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
         kind=Settings,
-        compute=lambda data, at, settings: compute(
+        compute=lambda data, settings: compute(
             {name: [less, data["more"][name]] for name, less in data["less"].items()}, settings
         ),
         message="Slopes of the adhesion of pair {pair} to the quantities of {surface}.",

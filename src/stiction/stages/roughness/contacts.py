@@ -19,11 +19,12 @@ from stiction.devices.risk import samples_for
 from stiction.plan.stage import At, Stage
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
-from stiction.stages.devices import patch_settings
-from stiction.stages.devices.patch_settings import FOLDER
+from stiction.stages.contact.changes.patches import GROUND, TIPS
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import both, of_pair
 
+#: Folder of the contacts of patches; those of tips have one in it.
+FOLDER = "devices/contact"
 #: Points of a curve, the last of which has the surface as it is given.
 POINTS = 8
 #: Curves of a map over two quantities, the first of which has the second quantity as it is given.
@@ -132,12 +133,13 @@ def _of_patch(plan, pair, device):
     samples = plan.config["contact"]["samples"]
     if not plan.devices.kind(device).is_beam:
         samples = max(samples, samples_for(share))
-    return patch_settings.on_patch(plan, At(**ground._replace(pair=pair)._asdict()), samples)
+    return GROUND.settings(plan, At(**ground._replace(pair=pair)._asdict()), samples)
 
 
 def _of_tips(plan, pair, device):
     """As `_of_patch`, of the tips of a cantilever."""
-    return patch_settings.of_tips(plan, At(**plan.devices.tips(device)._replace(pair=pair)._asdict()))
+    tips = plan.devices.tips(device)._replace(pair=pair)
+    return TIPS.settings(plan, At(**tips._asdict()), plan.config["design"]["beams"])
 
 
 def _stage(name, folder, contact, words, in_air=PairInAir):
@@ -164,7 +166,7 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
         inputs=lambda plan, at: of_pair(plan, plan.config["devices"][at.device]["pair"]),
         settings=settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(both(data), settings),
+        compute=lambda data, settings: compute(both(data), settings),
         label="contact",
         message=f"Contact of {words} of {{device}}, roughness {{number}}.",
         temporary=True,

@@ -25,7 +25,7 @@ from stiction.plan.stage import Stage, select
 from stiction.stages.contact import curves
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.devices import sticking, stoppers
-from stiction.stages.devices.patch_settings import corrections_of
+from stiction.stages.devices.contact_names import corrections_of
 from stiction.stages.devices.releases import FORCE, DesignedBeam, section_of_beam
 from stiction.stages.roughness.contacts import POINTS, contacts_of, points_of, roughness_of, varied
 
@@ -314,7 +314,7 @@ STAGES = (
         # ASSUME: a correction to full elastic contact is that of the given surfaces at every roughness.
         inputs=lambda plan, at: contacts_of(plan, at.device, int(at.number)) | corrections_of(plan, at.device),
         settings=_settings,
-        compute=lambda data, at, settings: compute(
+        compute=lambda data, settings: compute(
             data["contact"], data.get("tips", {}), corrected(of_job(settings), data)
         ),
         message="Device {device} at roughness {number}.",
@@ -328,7 +328,7 @@ STAGES = (
             "points": [f"devices/roughness/points/{at.device}_{number}" for number in points_of(plan, at.device)]
         },
         settings=lambda plan, at: _what(plan, at.device),
-        compute=lambda data, at, settings: mapped(data["points"], **settings),
+        compute=lambda data, settings: mapped(data["points"], **settings),
         message="Roughness that device {device} needs.",
     ),
 )

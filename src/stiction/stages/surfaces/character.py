@@ -135,7 +135,7 @@ STAGES = (
         inputs=lambda plan, at: {stage: f"{stage}/{at.surface}" for stage in ("heights", "spectrum")},
         settings=lambda plan, at: select(Settings, plan.config),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["heights"], data["spectrum"], at.surface, at.model, settings),
+        compute=compute,
         message="Statistics of simulated {model} surfaces {surface} (Table I).",
         cluster=True,
     ),

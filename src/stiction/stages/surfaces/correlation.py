@@ -47,7 +47,7 @@ STAGES = (
         inputs=lambda plan, at: {"spectra": {name: f"spectrum/{name}" for name in plan.surfaces}},
         settings=lambda plan, at: {"surfaces": plan.surfaces},
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["spectra"], settings),
+        compute=compute,
         message="Autocorrelation of the surfaces (App. C).",
     ),
 )

@@ -1,7 +1,4 @@
-"""Surfaces described by numbers, to be changed and drawn again; shared by studies, not a study itself.
-
-Separate from stage slope_contact, so that a change of what is read from scans does not rerun Fig. 13.
-"""
+"""Surfaces described by numbers, to be changed and drawn again."""
 
 import xarray as xr
 

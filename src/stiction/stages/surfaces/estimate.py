@@ -304,7 +304,7 @@ STAGES = (
         inputs=lambda plan, at: {"scans": [f"scan/{at.surface}_{number}" for number in plan.scans.files(at.surface)]},
         settings=lambda plan, at: plan.scans.estimate(at.surface),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["scans"], at.surface, settings),
+        compute=compute,
         message="Estimate surface {surface} from its scans.",
         cluster=True,
     ),

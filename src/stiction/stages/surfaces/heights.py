@@ -130,7 +130,7 @@ STAGES = (
         surfaces=lambda plan: plan.scans.others,
         settings=lambda plan, at: select(Settings, plan.config["surfaces"][at.surface]),
         kind=Settings,
-        compute=lambda data, at, settings: compute(settings),
+        compute=compute,
         message="Maximum-entropy height density of {surface} (Sec. II-A).",
     ),
 )

@@ -89,7 +89,7 @@ STAGES = (
             target=select(Summits, plan.config["surfaces"][at.surface]),
         ),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["heights"], at.surface, settings),
+        compute=compute,
         message="Identify the spectrum of {surface} from its summits (Sec. II-C).",
         cluster=True,
     ),

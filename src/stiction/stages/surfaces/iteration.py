@@ -87,7 +87,7 @@ STAGES = (
             spacing_nm=plan.config["sampling"]["spacing_nm"],
         ),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["heights"], data["spectrum"], at.surface, settings),
+        compute=compute,
         message="Iterative spectrum of {surface}, for comparison with the closed form (Fig. 4).",
         cluster=True,
     ),

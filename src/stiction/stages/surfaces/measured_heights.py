@@ -48,7 +48,7 @@ STAGES = (
         inputs=lambda plan, at: {"estimate": f"estimate/{at.surface}"},
         settings=lambda plan, at: select(Settings, plan.config["surfaces"][at.surface], surface=at.surface),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["estimate"], settings),
+        compute=compute,
         label="heights",
         message="Height density of measured surface {surface} (Sec. II-A).",
     ),

@@ -85,7 +85,7 @@ STAGES = (
         inputs=lambda plan, at: {stage: f"{stage}/{at.surface}" for stage in ("estimate", "heights")},
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["estimate"], data["heights"], settings),
+        compute=compute,
         label="spectrum",
         message="Spectrum of measured surface {surface} and of the underlying Gaussian field (Sec. II-B).",
     ),

@@ -1,6 +1,6 @@
-"""Common to stages identification and spectrum: Eq. (7), or a table, in a dataset, and conditions on its use.
+"""Spectrum of a surface in a dataset, as parameters of Eq. (7) or as a table, and conditions on its use.
 
-A separate module, so that a change of the identification does not rerun published spectra.
+Published, identified and measured spectra share it.
 """
 
 from collections.abc import Mapping

@@ -79,7 +79,7 @@ STAGES = (
         inputs=lambda plan, at: {"file": File(plan.scans.path(at.surface, at.number))},
         settings=lambda plan, at: plan.scans.scan(at.surface, at.number),
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["file"], settings),
+        compute=lambda data, settings: compute(data["file"], settings),
         libraries=("SurfaceTopography",),
         message="Read scan {number} of surface {surface}.",
     ),

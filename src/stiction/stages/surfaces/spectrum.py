@@ -151,7 +151,7 @@ STAGES = (
         inputs=_inputs,
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(data["heights"], data.get("identification"), settings),
+        compute=lambda data, settings: compute(data["heights"], data.get("identification"), settings),
         message="Spectrum of {surface} and of the underlying Gaussian field (Sec. II-B).",
     ),
 )

@@ -23,7 +23,7 @@ from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths
 from stiction.plan.stage import Stage
 from stiction.stages.contact import curves
 from stiction.stages.devices.budget import budgets_of, budgets_of_arrays, response_of, shared_laws
-from stiction.stages.devices.patch_settings import contact_of, tips_of
+from stiction.stages.devices.contact_names import contact_of, tips_of
 from stiction.stages.devices.releases import ARC, EITHER, FORCE, LONG, S_SHAPE, DesignedBeam, section_of_beam
 from stiction.stages.devices.uncertain_inputs import OF_BEAMS
 
@@ -572,9 +572,7 @@ STAGES = (
         ),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, at, settings: compute(
-            data["budgets"], data["test_beams"], data["predicted"], data["grounds"], data["tips"], settings
-        ),
+        compute=compute,
         message="Test beams of device {device}.",
     ),
 )

@@ -20,12 +20,14 @@ from stiction.devices.materials import OF_CONTACT
 from stiction.errors import NotConverged
 from stiction.plan.stage import At, Stage
 from stiction.stages.contact import contact as stage_contact
+from stiction.stages.contact.changes.patches import GROUND
+from stiction.stages.contact.changes.solids import with_property
 from stiction.stages.contact.contact import first
 from stiction.stages.contact.corrections import corrected, of_pair
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices import budget as stage_budget
 from stiction.stages.devices.budget import AnyBudget, budgets_of, budgets_of_arrays, effect, of_job
-from stiction.stages.devices.patch_settings import contact_of, of_rerun, patch_of, with_property
+from stiction.stages.devices.contact_names import contact_of, patch_of
 from stiction.stages.devices.uncertain_inputs import changed
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.test_beams.inference import Result
@@ -134,11 +136,16 @@ def _settings(plan, at):
     return {
         "budgets": [stage_budget.settings_of(of, At(case=case))["budget"] for of, case, _ in cases],
         "patches": [patch.name for patch in patches],
-        "contacts": {patch.name: [str(patch.pair), of_rerun(plan, patch)] for patch in patches},
+        "contacts": {patch.name: [str(patch.pair), _settings_of_contact(plan, patch)] for patch in patches},
     }
 
 
-def _computed(data, _at, settings):
+def _settings_of_contact(plan, patch):
+    """Settings of a contact that is compared with the first samples of that of a patch."""
+    return GROUND.settings(plan, At(**patch._asdict()), plan.samples_of_slopes)
+
+
+def _computed(data, settings):
     """Contacts with the errors of the update, and everything that is computed again; or the reason why it is not."""
     surfaces = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     update = data["updated"]

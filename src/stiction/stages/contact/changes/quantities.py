@@ -1,17 +1,18 @@
-"""Contact of a pair with one quantity of one surface slightly decreased and increased.
+"""Contacts of a pair with one quantity of one surface slightly decreased and increased.
 
 The datasets are those of stage contact with an additional variable, the difference of the quantity between both sides.
 Every slope with common random numbers uses them: of energies in `stiction.stages.laws.slopes`, of results of the laws.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import xarray as xr
 
 from stiction.analysis.shifts import bracketed
 from stiction.models import MODE_QUANTITIES, SHIFTS
-from stiction.plan.stage import Stage, select
 from stiction.stages.contact import contact as stage_contact
+from stiction.stages.contact.changes.patches import Change
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.surfaces import measured_heights
 from stiction.stages.surfaces.descriptions import description, drawn_as
@@ -36,14 +37,18 @@ def compute(
     if estimate is not None:
         heights = measured_heights.compute(estimate, measured_heights.Settings(surface, "measured"))
     shifted, difference = bracketed(description(heights, spectrum), quantity)
-    alternatives = []
-    for changed in shifted:
-        drawn = drawn_as(changed, settings.sampling.spacing)
-        alternatives.append(
-            [drawn if name == surface else same for name, same in zip(settings.surfaces, surfaces, strict=True)]
-        )
+    changed = [drawn_as(one, settings.sampling.spacing) for one in shifted]
+    alternatives = [
+        [other if name == surface else same for name, same in zip(settings.surfaces, surfaces, strict=True)]
+        for other in changed
+    ]
     contacts = stage_contact.compute_each(alternatives, pair, "NG", settings)
     return [contact.assign(difference=((), difference, {"units": "1"})) for contact in contacts]
+
+
+def drawn(data: Mapping[str, Any], pair: str, surface: str, quantity: str, settings: Settings) -> list[xr.Dataset]:
+    """Compute from the datasets of both surfaces by stage, and from the estimate if there is one."""
+    return compute(both(data), pair, surface, quantity, settings, data.get("estimate"))
 
 
 def difference(contact: xr.Dataset) -> float:
@@ -51,7 +56,7 @@ def difference(contact: xr.Dataset) -> float:
     return float(contact.difference)
 
 
-def _inputs(plan, at):
+def _with_estimate(plan, at, _named):
     """The two surfaces, and the estimate of the surface if one of its modes is shifted.
 
     Modes are those of the measured heights, which the surface may not have.
@@ -60,20 +65,12 @@ def _inputs(plan, at):
     return of_pair(plan, at.pair) | estimate
 
 
-SHIFTED_CONTACT = Stage.writing(
-    "slope_contact",
-    "studies/slopes/contact/{pair}_{surface}_{quantity}_{each}",
+#: A quantity of one surface.
+QUANTITY = Change(
+    words="with less and more {quantity} of {surface}",
+    end="_{surface}_{quantity}_{each}",
     each=lambda plan: SHIFTS,
-    inputs=_inputs,
-    settings=lambda plan, at: select(
-        Settings, plan.seen_by(at.pair, samples=plan.config["studies"]["slopes"]["samples"])
-    ),
-    kind=Settings,
-    compute=lambda data, at, settings: compute(
-        both(data), at.pair, at.surface, at.quantity, settings, data.get("estimate")
-    ),
-    label="contact",
-    message="Contact of pair {pair} with less and more {quantity} of {surface}.",
-    cluster=True,
+    inputs=_with_estimate,
+    settings=lambda plan, at, place: place.settings(plan, at, plan.config["studies"]["slopes"]["samples"]),
+    compute=drawn,
 )
-STAGES = (SHIFTED_CONTACT,)

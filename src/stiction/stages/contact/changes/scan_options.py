@@ -2,14 +2,16 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from stiction.models import ALTERNATIVES_OF_SCANS
-from stiction.plan.stage import Stage, select
+from stiction.plan.stage import select
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
+from stiction.stages.contact.changes.patches import Change
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import measured_heights, measured_spectrum
 from stiction.stages.surfaces.rough_surfaces import both, of_pair
@@ -51,6 +53,11 @@ def compute(
     return stage_contact.compute(with_options, pair, "NG", settings)
 
 
+def drawn(data: Mapping[str, Any], pair: str, choice: str, settings: Settings) -> xr.Dataset:
+    """Compute from the datasets of both surfaces by stage and the estimates of the measured ones."""
+    return compute(both(data), data["estimates"], pair, choice, settings)
+
+
 def _otherwise(name, estimate, choice, settings):
     """Datasets of stages heights and spectrum of a measured surface with the other value of a choice."""
     source = other(settings.sources[name], choice)
@@ -75,25 +82,24 @@ def other(source: Source, choice: str) -> Source:
     return replace(source, **{choice: second if getattr(source, choice) == first else first})
 
 
-def _settings(plan, at):
-    """As those of the contact, with the samples of the slopes, at most its own, and sources of measured surfaces."""
+def _with_sources(plan, at, place):
+    """Settings with the sources of the measured surfaces."""
     entries = {name: plan.config["surfaces"][name] for name in plan.scans.sides(at.pair)}
     sources = {name: select(Source, entry) for name, entry in entries.items()}
-    return select(Settings, plan.seen_by(at.pair, samples=plan.samples_of_slopes) | {"sources": sources})
+    return place.settings(plan, at, plan.samples_of_slopes) | {"sources": sources}
 
 
-STAGES = (
-    Stage.writing(
-        "choice_contact",
-        "studies/choices/{pair}_{choice}",
-        inputs=lambda plan, at: (
-            of_pair(plan, at.pair) | {"estimates": {name: f"estimate/{name}" for name in plan.scans.sides(at.pair)}}
-        ),
-        settings=_settings,
-        kind=Settings,
-        compute=lambda data, at, settings: compute(both(data), data["estimates"], at.pair, at.choice, settings),
-        label="contact",
-        message="Contact of pair {pair} with the other value of {choice}.",
-        cluster=True,
-    ),
+def _with_estimates(plan, at, _named):
+    """The two surfaces, and the estimates of the measured ones."""
+    return of_pair(plan, at.pair) | {"estimates": {name: f"estimate/{name}" for name in plan.scans.sides(at.pair)}}
+
+
+#: An option for the evaluation of scans.
+SCAN_OPTION = Change(
+    words="with the other value of {choice}",
+    end="_{choice}",
+    inputs=_with_estimates,
+    settings=_with_sources,
+    kind=Settings,
+    compute=drawn,
 )

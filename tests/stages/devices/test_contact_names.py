@@ -8,7 +8,8 @@ from stiction.config.files import load
 from stiction.models import SIDES
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
-from stiction.stages.devices import choice_contacts, contacts, patch_settings, slope_contacts
+from stiction.stages.contact.changes import table
+from stiction.stages.devices import contact_names
 
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 20, "humidities": [0.67]}
 BEAM |= {"uncertainty": {"scan_um": 10, "young_modulus_GPa": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20}}
@@ -22,20 +23,20 @@ def of_budget(contacts_of):
     return [name for group in groups for name in ([group] if isinstance(group, str) else group.values())]
 
 
-@pytest.mark.parametrize("contacts_of", [patch_settings.contacts_of_budget, patch_settings.contacts_of_tip_budget])
+@pytest.mark.parametrize("contacts_of", [contact_names.contacts_of_budget, contact_names.contacts_of_tip_budget])
 def test_all_contacts_of_a_budget_are_declared_by_stages_of_contacts_of_devices(contacts_of):
-    declared = {stage.name for module in (contacts, slope_contacts, choice_contacts) for stage in module.STAGES}
+    declared = {stage.name for stage in table.STAGES}
     named = of_budget(contacts_of)
     assert len(named) == len(set(named)) > 12
     assert {GRAPH.job(name).stage.name for name in named} <= declared
 
 
 def test_the_contacts_of_tips_have_as_many_samples_as_beams_and_a_tilt_and_those_of_strips_do_not():
-    for name in of_budget(patch_settings.contacts_of_tip_budget):
+    for name in of_budget(contact_names.contacts_of_tip_budget):
         settings = job_settings(PLAN, name)
         assert settings["contact"]["samples"] == 700
         assert settings["tilt"]["slopes"]
-    for name in patch_settings.contacts_of_budget(PLAN, Case("C1_rh067"))["less"].values():
+    for name in contact_names.contacts_of_budget(PLAN, Case("C1_rh067"))["less"].values():
         settings = job_settings(PLAN, name)
         assert settings["contact"]["samples"] == 300
         assert "tilt" not in settings
@@ -45,10 +46,10 @@ def test_the_contacts_of_tips_have_as_many_samples_as_beams_and_a_tilt_and_those
 def test_less_and_more_of_a_property_change_it_in_both_bodies_of_polysilicon_by_opposite_steps():
     solid = PLAN.config["solid"]["young_modulus_GPa"]
     less, more = (
-        job_settings(PLAN, patch_settings.contacts_of_budget(PLAN, Case("C1_rh067"))[f"solids_{side}"]["modulus"])
+        job_settings(PLAN, contact_names.contacts_of_budget(PLAN, Case("C1_rh067"))[f"solids_{side}"]["modulus"])
         for side in ("less", "more")
     )
     assert less["solid"]["young_modulus_GPa"] + more["solid"]["young_modulus_GPa"] == pytest.approx(2 * solid)
     assert less["solid"]["young_modulus_GPa"] < solid
-    hamaker = patch_settings.contacts_of_budget(PLAN, Case("C1_rh067"))["solids_less"]["hamaker_constant"]
+    hamaker = contact_names.contacts_of_budget(PLAN, Case("C1_rh067"))["solids_less"]["hamaker_constant"]
     assert job_settings(PLAN, hamaker)["materials"].keys() == set(SIDES)

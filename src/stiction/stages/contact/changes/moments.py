@@ -1,20 +1,21 @@
-"""Contact of a pair with each moment of the beam's surface slightly decreased and increased (Fig. 13).
+"""Contacts of a pair with each moment of the beam's surface slightly decreased and increased (Fig. 13).
 
 The datasets are those of stage contact with an additional variable, the value of the moment.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import xarray as xr
 
 from stiction.analysis.sensitivity import shifted
 from stiction.models import SHIFTS
-from stiction.plan.stage import Stage, select
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
+from stiction.stages.contact.changes.patches import Change
 from stiction.stages.surfaces.descriptions import description, drawn_as
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,9 +37,9 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
     return [contact.assign(moment=value) for contact, (_, value) in zip(contacts, at, strict=True)]
 
 
-def names(settings: Settings) -> list[str]:
-    """Names of the contacts in the order of `compute`, such as ``rms_less``."""
-    return [f"{moment}_{shift}" for moment in settings.moments for shift in SHIFTS]
+def drawn(data: Mapping[str, Any], pair: str, settings: Settings) -> list[xr.Dataset]:
+    """Compute from the datasets of both surfaces by stage."""
+    return compute(both(data), pair, settings)
 
 
 def moment(dataset: xr.Dataset) -> float:
@@ -46,27 +47,20 @@ def moment(dataset: xr.Dataset) -> float:
     return float(dataset.moment)
 
 
-def _settings(plan, at):
-    """As those of the contact, with the number of samples, the moments and the step of Fig. 13."""
+def _with_moments(plan, at, place):
+    """Settings with the number of samples, the moments and their step of Fig. 13."""
     study = plan.config["studies"]["sensitivity"]
-    shifts = {"moments": plan.shifted_moments, "step": study["step"]}
-    return select(Settings, plan.seen_by(at.pair, samples=study["samples"]) | shifts)
+    return place.settings(plan, at, study["samples"]) | {"moments": plan.shifted_moments, "step": study["step"]}
 
 
-STAGES = (
-    Stage.writing(
-        "sensitivity_contact",
-        "studies/sensitivity/contact/{pair}_{each}",
-        each=lambda plan: [f"{moment}_{shift}" for moment in plan.shifted_moments for shift in SHIFTS],
-        inputs=lambda plan, at: of_pair(plan, at.pair),
-        settings=_settings,
-        kind=Settings,
-        compute=lambda data, at, settings: compute(both(data), at.pair, settings),
-        label="contact",
-        message="Contact of pair {pair} with less and more of each moment (Fig. 13).",
-        # The longest job; it begins early, so that no core waits for it at the end.
-        priority=1,
-        cluster=True,
-        minutes=30,
-    ),
+#: Each moment of the surface of the beam. The longest job begins early, so that no core waits for it at the end.
+MOMENTS = Change(
+    words="with less and more of each moment (Fig. 13)",
+    end="_{each}",
+    each=lambda plan: [f"{moment}_{shift}" for moment in plan.shifted_moments for shift in SHIFTS],
+    settings=_with_moments,
+    kind=Settings,
+    compute=drawn,
+    minutes=30,
+    priority=1,
 )

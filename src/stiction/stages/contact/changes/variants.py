@@ -1,10 +1,11 @@
-"""Summits of a pair under a variant. Variants of the solids share them.
+"""Contact of a pair under a variant, i.e. one changed model choice: its summits, and the contact of solids on them.
 
-The dataset depends neither on the elasticity of the solids nor on their attraction.
+The summits depend neither on the elasticity of the solids nor on their attraction, so that variants of the solids share
+them. Islands are found again at every distance instead: there are many times as many.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,10 +13,19 @@ import xarray as xr
 
 from stiction.config.merging import merged
 from stiction.config.units import in_si
-from stiction.contact.pair import DistanceGrid, EquivalentSurface, Summits
-from stiction.plan.stage import At, Stage
+from stiction.contact.pair import (
+    DistanceGrid,
+    EquivalentSurface,
+    Summits,
+    SurfacePair,
+    contacts_of_samples,
+    solid_pressure,
+)
+from stiction.contact.solids import Solid
 from stiction.progress import progress
-from stiction.stages.contact.pairs import Contact, equivalent_surface, streams_of_sides
+from stiction.stages.contact import contact as stage_contact
+from stiction.stages.contact.changes.patches import Change
+from stiction.stages.contact.pairs import Contact, SolidBySide, asperity_of, equivalent_surface, streams_of_sides
 from stiction.stages.surfaces import heights as stage_heights
 from stiction.stages.surfaces import spectrum as stage_spectrum
 from stiction.stages.surfaces.rough_surfaces import Sampling, Width
@@ -53,22 +63,16 @@ class Settings:
     surfaces: dict[str, Surface]
 
 
-def compute(
-    identifications: Mapping[str, xr.Dataset],
-    pair: str,
-    base: Settings,
-    changed: Settings,
-    measured: Mapping[str, tuple[xr.Dataset, xr.Dataset]] | None = None,
-) -> xr.Dataset:
-    """Summits of all samples under the changed settings, arguments of `equivalent_under`."""
-    equivalent = equivalent_under(identifications, pair, base, changed, measured)
-    streams = streams_of_sides(changed.seed, pair)
-    summits, areas = [], []
-    for k in progress(range(changed.contact.samples), "surface pairs"):
-        drawn = equivalent.draw(*streams(k))
-        summits.append(equivalent.summits(drawn))
-        areas.append(equivalent.bearing_area(drawn))
-    return layout(summits, areas, equivalent.distances)
+@dataclass(frozen=True)
+class Solids:
+    """Solids of a pair; everything else about the contact is determined by the summits."""
+
+    solid: Solid
+    van_der_waals: str
+    materials: SolidBySide = field(default_factory=dict)
+
+
+# Surfaces
 
 
 def equivalent_under(
@@ -121,6 +125,27 @@ def _datasets(surface, spacing, identification):
     return heights, stage_spectrum.compute(heights, identification, stage_spectrum.Settings(spacing, psd))
 
 
+# Summits
+
+
+def summits_under(
+    identifications: Mapping[str, xr.Dataset],
+    pair: str,
+    base: Settings,
+    changed: Settings,
+    measured: Mapping[str, tuple[xr.Dataset, xr.Dataset]] | None = None,
+) -> xr.Dataset:
+    """Summits of all samples under the changed settings, arguments of `equivalent_under`."""
+    equivalent = equivalent_under(identifications, pair, base, changed, measured)
+    streams = streams_of_sides(changed.seed, pair)
+    summits, areas = [], []
+    for k in progress(range(changed.contact.samples), "surface pairs"):
+        drawn = equivalent.draw(*streams(k))
+        summits.append(equivalent.summits(drawn))
+        areas.append(equivalent.bearing_area(drawn))
+    return layout(summits, areas, equivalent.distances)
+
+
 def layout(summits: Sequence[Summits], bearing_areas: Sequence[np.ndarray], grid: DistanceGrid) -> xr.Dataset:
     """Dataset of the summits of all samples above the mean plane, found in equal areas, and of their bearing areas."""
     above = [of_sample.tops > 0 for of_sample in summits]
@@ -156,7 +181,7 @@ def distances(dataset: xr.Dataset) -> DistanceGrid:
     return DistanceGrid(float(dataset.step), below, dataset.sizes["height"] - below)
 
 
-def inputs(plan: Any, at: At) -> dict[str, dict[str, str]]:
+def inputs(plan: Any, at: Any) -> dict[str, dict[str, str]]:
     """Identifications of the surfaces under a variant, and datasets of the measured surfaces of the pair."""
     identified = plan.variants.summits(at.pair, at.variant)["identified"]
     measured = plan.scans.sides(at.pair)
@@ -165,21 +190,87 @@ def inputs(plan: Any, at: At) -> dict[str, dict[str, str]]:
     }
 
 
-def arguments(data: dict, at: At, settings: dict) -> tuple:
-    """Arguments of `compute` from plain settings: those without the variant and its changes."""
+def summits_of_job(data: Mapping[str, Any], pair: str, settings: dict[str, Any]) -> xr.Dataset:
+    """Summits of all samples, from the inputs and plain settings of a job."""
+    return summits_under(*arguments(data, pair, settings))
+
+
+def arguments(data: Mapping[str, Any], pair: str, settings: dict[str, Any]) -> tuple:
+    """Arguments of `equivalent_under` from the inputs and plain settings of a job."""
     measured = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     wanted = (in_si(Settings, part) for part in (settings["base"], merged(settings["base"], settings["changes"])))
-    return data["identifications"], at.pair, *wanted, measured
+    return data["identifications"], pair, *wanted, measured
 
 
-SUMMITS = Stage.writing(
-    "variant_summits",
-    "studies/variants/summits/{pair}_{variant}",
-    inputs=inputs,
-    settings=lambda plan, at: plan.variants.summits(at.pair, at.variant),
-    compute=lambda data, at, settings: compute(*arguments(data, at, settings)),
-    message="Summits of pair {pair} under variant {variant}.",
-    cluster=True,
+# Contact
+
+
+def contact_of(summits: xr.Dataset, settings: Solids) -> xr.Dataset:
+    """Contact of solids on the summits of a pair, as in stage contact."""
+    model, grid = asperity_of(settings), distances(summits)
+    pressures = [solid_pressure(model, sample, grid) for sample in samples_of(summits)]
+    areas = summits.bearing_area.values
+    return stage_contact.layout(np.array(pressures), areas, grid, range(len(areas)))
+
+
+def contact_of_islands(data: Mapping[str, Any], pair: str, settings: dict[str, Any]) -> xr.Dataset:
+    """Contact of all samples whose asperities are islands, from the inputs and plain settings of a job."""
+    surfaces, solids = arguments(data, pair, settings), in_si(Solids, settings["solids"])
+    _, _, _, changed, _ = surfaces
+    islands = SurfacePair(**vars(equivalent_under(*surfaces)), asperity=asperity_of(solids))
+    samples = range(changed.contact.samples)
+    streams = streams_of_sides(changed.seed, pair)
+    (curves,) = contacts_of_samples([islands], streams, progress(samples, "surface pairs"))
+    return stage_contact.layout(*curves, islands.distances, samples)
+
+
+def _of_summits(plan, at, place):
+    """Settings of the summits without the variant, and its changes. Patches of devices have the samples of slopes."""
+    settings, size = plan.variants.summits(at.pair, at.variant), place.size(plan, at)
+    if size:
+        size |= {"contact": {"samples": plan.samples_of_slopes}}
+    return settings | {"base": merged(settings["base"], size)}
+
+
+#: The summits under a variant of the model, which variants of the solids share.
+SUMMITS = Change(
+    subject="Summits",
+    words="under variant {variant}",
+    end="_{variant}",
+    inputs=lambda plan, at, named: inputs(plan, at),
+    settings=_of_summits,
+    kind=None,
+    compute=summits_of_job,
+    label="variant_summits",
     minutes=30,
 )
-STAGES = (SUMMITS,)
+
+
+def _on_summits(plan, at, named):
+    """Summits of the first variant with the same."""
+    return {"summits": named(SUMMITS, pair=at.pair.pair, variant=plan.variants.with_summits_of(at.pair, at.variant))}
+
+
+#: A variant of the model: its solids on its summits.
+VARIANT = Change(
+    words="under variant {variant}",
+    end="_{variant}",
+    inputs=_on_summits,
+    settings=lambda plan, at, place: plan.variants.solids(at.pair, at.variant),
+    kind=Solids,
+    compute=contact_of,
+    cluster=False,
+)
+#: A variant of the model whose asperities are islands.
+VARIANT_OF_ISLANDS = Change(
+    subject="Contact of islands",
+    words="under variant {variant}",
+    end="_{variant}",
+    inputs=lambda plan, at, named: inputs(plan, at),
+    settings=lambda plan, at, place: (
+        _of_summits(plan, at, place) | {"solids": plan.variants.solids(at.pair, at.variant)}
+    ),
+    kind=None,
+    compute=contact_of_islands,
+    minutes=30,
+)

@@ -1,0 +1,1 @@
+"""Contacts of a pair with one thing changed: a table, and a module for what each change computes."""

@@ -1,0 +1,67 @@
+"""Kinds of patch on which the surfaces of a pair meet, and what the declaration of a change there consists of."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from stiction.config.device_plan import OF_TIPS, Patch
+from stiction.config.merging import merged
+from stiction.config.units import NM_PER_UM
+from stiction.plan.stage import Names, select
+from stiction.stages.contact import contact
+from stiction.stages.contact.pairs import Settings
+from stiction.stages.surfaces.rough_surfaces import of_pair
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """Kind of patch on which the two surfaces of a pair meet."""
+
+    file: str  #: patch in the names of files
+    words: str  #: patch in messages, after its pair
+    size: Callable[[Any, Any], dict]  #: settings that differ from those of the strips, by the plan and the wildcards
+
+    def settings(self, plan: Any, at: Any, samples: int) -> dict[str, Any]:
+        """Settings of the contact of a patch as it is; of tips, the number of samples is that of the beams."""
+        return merged(select(Settings, plan.seen_by(at.pair, samples=samples)), self.size(plan, at))
+
+
+def _size(_plan, at):
+    """Length and width of a patch."""
+    length, width = (int(side) / NM_PER_UM for side in (at.length, at.width))
+    return {"sampling": {"strip_length_um": length}, "beam": {"width_um": width}}
+
+
+def _size_of_tips(plan, at):
+    """Tilted strips with larger steps of the distance. Every beam has its own tip."""
+    step = OF_TIPS * plan.config["contact"]["distance_step_nm"]
+    tilt = plan.devices.tilt(Patch(at.pair, int(at.length), int(at.width)))
+    own = {"distance_step_nm": step, "samples": plan.config["design"]["beams"]}
+    return _size(plan, at) | {"contact": own, "tilt": tilt}
+
+
+#: Strips along the beam, as in the paper.
+STRIPS = Place("{pair}", "", lambda plan, at: {})
+#: Patch on which a device sticks: strips of another size, or the whole area of a stopper.
+GROUND = Place("{pair}_{length}x{width}", ", {length} x {width} nm,", _size)
+#: Tilted strips that hold the tips of cantilevers.
+TIPS = Place(GROUND.file, f"{GROUND.words} at the tips of beams,", _size_of_tips)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Change:
+    """What is changed in the contact of a patch."""
+
+    settings: Callable[[Any, Any, Place], dict]  #: by the plan, the wildcards and the kind of patch
+    kind: type | None = Settings  #: dataclass of the settings
+    #: By the plan, the wildcards, and a function that names the contact of the patch with another change.
+    inputs: Callable[[Any, Any, Callable], Mapping[str, Names]] = lambda plan, at, named: of_pair(plan, at.pair)
+    compute: Callable[..., Any] = contact.drawn
+    each: Callable[[Any], Sequence[str]] | None = None  #: ends of the names of files that one job writes, by the plan
+    end: str = ""  #: of the names of files
+    subject: str = "Contact"  #: what is computed, in messages
+    words: str = ""  #: change in messages, after the patch
+    label: str = "contact"  #: name in the labels of the datasets
+    cluster: bool = True  #: whether a job is worth one of its own on a cluster
+    minutes: int = 10  #: longest run time of such a job, for strips
+    priority: int = 0

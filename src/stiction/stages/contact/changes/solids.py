@@ -1,0 +1,55 @@
+"""Less and more of a property of the solids in contact: other settings, and nothing else.
+
+A body that is not of the material of the beam keeps its properties.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from stiction.config.stated_materials import hamaker_constants
+from stiction.devices.materials import OF_CONTACT
+from stiction.models import SHIFTS, SIDES
+from stiction.stages.contact.changes.patches import Change
+
+
+def less_or_more(settings: dict[str, Any], name: str, shift: str) -> dict[str, Any]:
+    """Settings of a contact with less or more of a property, a key of `stiction.devices.materials.OF_CONTACT`."""
+    return with_property(settings, name, lambda value: OF_CONTACT[name].step.ends(value)[SHIFTS.index(shift)])
+
+
+def with_property(settings: dict[str, Any], name: str, change: Callable[[float], float]) -> dict[str, Any]:
+    """Settings of a contact with another value of a property of the beam's material, in both bodies of it."""
+    key, solid = OF_CONTACT[name].key, settings["solid"]
+    if "materials" not in settings and key in solid:
+        return settings | {"solid": _with_other(solid, name, change)}
+    bodies = settings.get("materials", dict.fromkeys(SIDES, solid))
+    of_beam = _with_other(bodies["beam"], name, change)
+    changed = {body: of_beam if material == bodies["beam"] else material for body, material in bodies.items()}
+    return settings | {"materials": changed}
+
+
+def _with_other(material, name, change):
+    """Material with another value of a property; of its Hamaker constants through all media by the same factor."""
+    key = OF_CONTACT[name].key
+    value = (material | {"hamaker_constant_zJ": hamaker_constants(material)})[key]
+    if isinstance(value, dict):
+        return material | {key: {medium: change(constant) for medium, constant in value.items()}}
+    return material | {key: change(value)}
+
+
+#: A property of the material of the beam.
+SOLID = Change(
+    words="with {side} {solid_property} of the solids",
+    end="_{side}",
+    settings=lambda plan, at, place: less_or_more(
+        place.settings(plan, at, plan.samples_of_slopes), at.solid_property, at.side
+    ),
+)
+#: The solids of a variant of the model, on surfaces drawn for it.
+VARIANT_OF_SOLIDS = Change(
+    words="under variant {variant}",
+    end="_{variant}",
+    settings=lambda plan, at, place: (
+        place.settings(plan, at, plan.samples_of_slopes) | plan.variants.solids(at.pair, at.variant)
+    ),
+)

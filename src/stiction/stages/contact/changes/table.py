@@ -1,0 +1,126 @@
+"""Contacts of a pair: what is changed x the kind of patch on which its surfaces meet.
+
+A row of `TABLE` is a change, and a cell of it a kind of patch for which it is computed. Each change is described in its
+module, with the function that computes it. All contacts of a patch have the same random numbers, so that their
+differences are those of the changes.
+"""
+
+from stiction.plan.stage import Stage
+from stiction.stages.contact import contact
+from stiction.stages.contact.changes.moments import MOMENTS
+from stiction.stages.contact.changes.patches import GROUND, STRIPS, TIPS, Change, Place
+from stiction.stages.contact.changes.quantities import QUANTITY
+from stiction.stages.contact.changes.scan_options import SCAN_OPTION
+from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
+from stiction.stages.contact.changes.variants import SUMMITS, VARIANT, VARIANT_OF_ISLANDS
+from stiction.stages.contact.pairs import Settings
+from stiction.stages.surfaces.rough_surfaces import of_pair
+
+#: No change.
+AS_IT_IS = Change(settings=lambda plan, at, place: place.settings(plan, at, plan.config["contact"]["samples"]))
+#: Rule and folder of each contact, by change and kind of patch. Strips as they are follow below.
+TABLE = {
+    AS_IT_IS: {
+        GROUND: ("device_contact", "devices/contact"),
+        TIPS: ("tip_contact", "devices/contact/tips"),
+    },
+    QUANTITY: {
+        STRIPS: ("slope_contact", "studies/slopes/contact"),
+        GROUND: ("device_slope_contact", "devices/contact/slopes"),
+        TIPS: ("tip_slope_contact", "devices/contact/tips/slopes"),
+    },
+    MOMENTS: {
+        STRIPS: ("sensitivity_contact", "studies/sensitivity/contact"),
+    },
+    SCAN_OPTION: {
+        STRIPS: ("choice_contact", "studies/choices"),
+    },
+    SOLID: {
+        GROUND: ("solid_contact", "devices/contact/{solid_property}"),
+        TIPS: ("tip_solid_contact", "devices/contact/tips/{solid_property}"),
+    },
+    VARIANT_OF_SOLIDS: {
+        TIPS: ("tip_choice_contact", "devices/contact/tips/choices"),
+    },
+    SUMMITS: {
+        STRIPS: ("variant_summits", "studies/variants/summits"),
+        GROUND: ("device_choice_summits", "devices/contact/summits"),
+    },
+    VARIANT: {
+        STRIPS: ("variant_contact", "studies/variants/contact"),
+        GROUND: ("device_choice_contact", "devices/contact/choices"),
+    },
+    VARIANT_OF_ISLANDS: {
+        STRIPS: ("variant_islands", "studies/variants/islands"),
+    },
+}
+
+
+def file_of(change: Change, place: Place, **wildcards: str) -> str:
+    """Name of a contact."""
+    return _pattern(change, place).format(**wildcards)
+
+
+def _pattern(change, place):
+    """Name of a contact with its wildcards."""
+    _, folder = TABLE[change][place]
+    return f"{folder}/{place.file}{change.end}"
+
+
+def _stage(change, place):
+    """Stage of a cell of the table."""
+
+    def inputs(plan, at):
+        return change.inputs(plan, at, lambda other, **different: file_of(other, place, **vars(at) | different))
+
+    rule, _ = TABLE[change][place]
+    message = f"{change.subject} of pair {{pair}}{place.words} {change.words}"
+    return Stage.writing(
+        rule,
+        _pattern(change, place),
+        inputs=inputs,
+        settings=lambda plan, at: change.settings(plan, at, place),
+        kind=change.kind,
+        compute=change.compute,
+        each=change.each,
+        label=change.label,
+        message=message.rstrip(" ,") + ".",
+        cluster=change.cluster,
+        minutes=change.minutes if place is STRIPS else 120,
+        priority=change.priority,
+    )
+
+
+def _chunks(plan, at):
+    """Chunks of the samples of a pair in their order."""
+    number = plan.config["contact"]["chunks"]
+    return {"chunks": [f"contact/{at.pair}_{at.model}/{chunk}-of-{number}" for chunk in range(number)]}
+
+
+#: Strips as they are, of Gaussian surfaces as well. They are the most, and drawn in chunks.
+OF_PAIR = (
+    Stage.writing(
+        "contact_chunk",
+        "contact/{pair}_{model}/{chunk}-of-{number}",
+        inputs=lambda plan, at: of_pair(plan, at.pair),
+        settings=lambda plan, at: AS_IT_IS.settings(plan, at, STRIPS),
+        kind=Settings,
+        compute=contact.drawn_chunk,
+        label="contact",
+        message="Contact of {model} surfaces of pair {pair}, chunk {chunk} of {number}.",
+        temporary=True,
+        cluster=True,
+        minutes=30,
+    ),
+    Stage.writing(
+        "contact",
+        "contact/{pair}_{model}",
+        inputs=_chunks,
+        streamed=True,
+        settings=lambda plan, at: AS_IT_IS.settings(plan, at, STRIPS),
+        kind=Settings,
+        compute=contact.joined,
+        message="Join the contact of {model} surfaces of pair {pair} (Sec. III-A).",
+    ),
+)
+STAGES = (*OF_PAIR, *(_stage(change, place) for change, row in TABLE.items() for place in row))

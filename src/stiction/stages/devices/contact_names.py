@@ -1,0 +1,85 @@
+"""Names of the contacts that the stages of devices read."""
+
+from typing import Any
+
+from stiction.config.cases import Case
+from stiction.config.device_plan import Patch
+from stiction.models import SHIFTS
+from stiction.stages.contact.changes.patches import GROUND, STRIPS, TIPS
+from stiction.stages.contact.changes.quantities import QUANTITY
+from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
+from stiction.stages.contact.changes.table import AS_IT_IS, file_of
+from stiction.stages.contact.changes.variants import VARIANT
+from stiction.stages.contact.corrections import of_pair
+
+
+def contact_of(plan: Any, case: Case) -> str:
+    """Contact of the patch on which a device sticks at a humidity: that of its pair in the main line if it is equal."""
+    if plan.devices.has_strips_of_pair(case.device):
+        return f"contact/{plan.contact_of_device(case)}_NG"
+    return file_of(AS_IT_IS, GROUND, **patch_of(plan, case)._asdict())
+
+
+def patch_of(plan: Any, case: Case) -> Patch:
+    """Patch on which a device sticks, with the name of its pair in the air of a case, see `stiction.plan.air.Air`."""
+    return plan.devices.ground(case.device)._replace(pair=plan.contact_of_device(case))
+
+
+def tips_of(plan: Any, case: Case) -> dict[str, str]:
+    """Contact of the strips that hold the tips of a cantilever at a humidity; none for a bridge."""
+    if not plan.devices.kind(case.device).has_tip:
+        return {}
+    return {"tips": file_of(AS_IT_IS, TIPS, **_tips(plan, case)._asdict())}
+
+
+def _tips(plan, case):
+    """As `patch_of`, of the tips of a cantilever."""
+    return plan.devices.tips(case.device)._replace(pair=plan.contact_of_device(case))
+
+
+def corrections_of(plan: Any, device: str) -> dict[str, str]:
+    """As `stiction.stages.contact.corrections.of_pair`, of the pair of a device."""
+    return of_pair(plan, plan.config["devices"][device]["pair"])
+
+
+def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:
+    """Contact of the patch of a device, with less and more of every uncertain input, and under other choices."""
+    device, patch = case.device, patch_of(plan, case)
+    strips = STRIPS if plan.devices.has_strips_of_pair(device) else GROUND
+    choices = plan.variants.choices_of_device(case)
+    return {
+        "contact": contact_of(plan, case),
+        **corrections_of(plan, device),
+        **_less_and_more(plan, device, patch, strips, GROUND),
+        "choices": {name: file_of(VARIANT, GROUND, **patch._asdict(), variant=name) for name in choices},
+    }
+
+
+def contacts_of_tip_budget(plan: Any, case: Case) -> dict[str, Any]:
+    """Contact of the tips of a cantilever, with less and more of every uncertain input, and under other choices."""
+    device, tips = case.device, _tips(plan, case)
+    choices = plan.variants.choices_of_solids(tips.pair)
+    return {
+        "contact": file_of(AS_IT_IS, TIPS, **tips._asdict()),
+        **_less_and_more(plan, device, tips, TIPS, TIPS),
+        "choices": {name: file_of(VARIANT_OF_SOLIDS, TIPS, **tips._asdict(), variant=name) for name in choices},
+    }
+
+
+def _less_and_more(plan, device, patch, of_surfaces, of_solids):
+    """Contacts of a patch with less and more of every uncertain input of a device, by the kind of patch of each."""
+    sides, quantities, solids = patch._asdict(), plan.devices.quantities(device), plan.devices.uncertain_solids(device)
+    shifted = {
+        shift: {
+            (surface, quantity): file_of(QUANTITY, of_surfaces, **sides, surface=surface, quantity=quantity, each=shift)
+            for surface, quantity in quantities
+        }
+        for shift in SHIFTS
+    }
+    uncertain = {
+        f"solids_{shift}": {
+            name: file_of(SOLID, of_solids, **sides, solid_property=name, side=shift) for name in solids
+        }
+        for shift in SHIFTS
+    }
+    return shifted | uncertain
