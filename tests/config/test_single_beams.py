@@ -136,6 +136,10 @@ def test_a_file_takes_the_place_of_data(study):
         (["0.67,300,,no", "0.67,15,,yes"], "row 8: length_um is 15.0, must be in µm, above the thickness"),
         (["0.67,300000,,yes"], "row 7: length_um is 300000.0, must be a number at least 0.1 and at most 100000"),
         (["0.8,1500,2,", "0.8,1500,3,"], "row 7: the mean of crack_length_um at its humidity is 2.5, must be in µm"),
+        (
+            ["0.8,1500,700.0000001,", "0.8,1500,700,"],
+            "row 7: the standard deviation of crack_length_um at its humidity is 7.07",
+        ),
         (["0.8,1500,30,", "0.8,1500,1400,"], "row 7: the standard deviation of crack_length_um at its humidity is"),
     ],
 )
