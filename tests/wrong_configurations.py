@@ -37,7 +37,7 @@ WRONG_VALUES = [
     ("materials: {SAM: {coating_nm: -1}}", "materials.SAM.coating_nm", "-1", "at least 0 and at most 100: thickness"),
     ("attraction: {reach: far}", "attraction.reach", "'far'", "one of touching, all"),
     ("attraction: {retarded: 5}", "attraction.retarded", "5", "must be true or false"),
-    ("attraction: {wavelength_nm: 0}", "attraction.wavelength_nm", "0", "above 0"),
+    ("attraction: {wavelength_nm: 1.0e-300}", "attraction.wavelength_nm", "1e-300", "at least 1"),
     ("contact: {samples: 0}", "contact.samples", "0", "at least 5"),
     ("contact: {chunks: 0}", "contact.chunks", "0", "at least 1"),
     ("contact: {every: 0}", "contact.every", "0", "at least 1"),

@@ -52,6 +52,11 @@ def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
         ({"datum": {"mean_um": 1600}}, "test_beams.first.crack_lengths[0].mean_um", "below the length of the beams"),
         ({"datum": {"mean_um": 15, "std_um": 1}}, "test_beams.first.crack_lengths[0].mean_um", "above the thickness"),
         ({"datum": {"std_um": 800}}, "test_beams.first.crack_lengths[0].std_um", "must be below the mean (given"),
+        (
+            {"datum": {"std_um": 1e-300}},
+            "test_beams.first.crack_lengths[0].std_um",
+            "must be at least 0.0001 of the mean",
+        ),
         ({"datum": {"beams": 1}}, "test_beams.first.crack_lengths[0].beams", "at least 2"),
         ({"datum": {"humidity": 67}}, "test_beams.first.crack_lengths[0].humidity", "as a fraction of 1"),
         ({"datum": {"humidity": 0.2}}, "test_beams.first.crack_lengths[0].humidity", "must be at least 0.2903: in dr"),

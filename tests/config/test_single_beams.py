@@ -153,6 +153,10 @@ def test_a_file_takes_the_place_of_data(study):
             ["0.8,1500,50,", "0.8,1500,50,", "0.8,1500,1400,"],
             "row 7: the standard deviation of crack_length_um at its humidity is",
         ),
+        (
+            ["0.8,1500,700.0000001,", "0.8,1500,700,"],
+            "row 7: the standard deviation of crack_length_um at its humidity is 7.07",
+        ),
     ],
 )
 def test_values_that_no_beam_has_are_refused_with_their_row_as_well(study, lines, words):

@@ -42,6 +42,9 @@ from stiction.devices.materials import COATING_ATTRACTION, OF_CONTACT
 from stiction.numbers import is_at_most
 from stiction.surface.feasible import largest_kurtosis
 
+#: Least standard deviation of crack lengths, in parts of their mean. ASSUME: beams differ by more than 1 nm in 10 µm.
+LEAST_SCATTER = 1e-4
+
 #: Relations between the keys of devices.
 relation = Relations()
 
@@ -530,12 +533,15 @@ def crack_lengths_have_one_mean_at_a_humidity(config):
 
 @relation
 def cracks_end_on_the_beams(config):
-    """Mean crack lengths are shorter than the beams, and scatter by less than themselves."""
+    """Mean crack lengths are shorter than the beams, and scatter by less than themselves, but measurably."""
     for array, key, datum, length in _data(config, "crack_lengths", "length_um"):
         if datum["mean_um"] >= length:
             yield f"{key}.mean_um", "must be below the length of the beams", f"{array}.length_um"
         if datum["std_um"] >= datum["mean_um"]:
             yield f"{key}.std_um", "must be below the mean", f"{key}.mean_um"
+        if datum["std_um"] < LEAST_SCATTER * datum["mean_um"]:
+            message = f"must be at least {LEAST_SCATTER:g} of the mean: no measured cracks differ by less"
+            yield f"{key}.std_um", message, f"{key}.mean_um"
 
 
 @relation

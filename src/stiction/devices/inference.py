@@ -15,26 +15,34 @@ their responses H (n, k) and the covariance R of their errors, the knowledge aft
 
 Counts are no logarithms of lengths. Of beams of length L, a shape holds the share :math:`\Phi(z_i(\ln L - h_i^T x))`,
 where :math:`z_i` is the normal score of its lengths as computed, and a beam sticks if any shape holds it,
-:math:`P = 1 - \prod_i \Phi(-z_i)`. Newton steps on the probit of P find the most probable errors of the inputs.
+:math:`P = 1 - \prod_i \Phi(-z_i)`. Where all or none of the beams stick, the knowledge after the measurement is nearly
+a box, and its curvature at the most probable errors says little about its width. Counts depend on few combinations of
+the inputs, the ln l of the counted beams: these are drawn and weighted (`stiction.devices.draws`), and with each of
+them all inputs are normal.
 """
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator, PPoly
+from scipy.interpolate import PchipInterpolator, PPoly, make_interp_spline
 from scipy.linalg import block_diag
-from scipy.special import chdtrc, log_ndtr, logsumexp, ndtr, ndtri_exp, xlogy
+from scipy.optimize import minimize
+from scipy.special import chdtrc, log_ndtr, logsumexp, ndtr, xlogy
 
+from stiction.devices.draws import weighted
 from stiction.devices.tail import fit_tail
-from stiction.errors import NotConverged
 
 #: Names of the discrepancy of the model among the inputs: of its factor and of its slope.
 FACTOR, SLOPE = "factor of the model", "slope of the model"
-#: Newton steps for counts, and the change in prior standard deviations at which they end.
-_STEPS, _CLOSE = 50, 1e-7
-#: Curvature of the logarithm of a probability that tells nothing.
-_NOTHING = 1e-12
+#: Normal scores at which quantiles of a result are given.
+SCORES = np.linspace(-4, 4, 17)
+#: Number of draws that stand for the knowledge after counts, and halvings of the interval in which a quantile is.
+_KEPT, _HALVINGS = 4096, 40
+#: Step of second derivatives, in standard deviations.
+_STEP = 1e-4
+#: Standard deviation that is added to the knowledge of a logarithm, so that its quantiles are apart.
+_APART = 1e-12
 #: Normal scores at which the lengths of a shape are tabulated: on the fitted line, as quantiles, and beyond them.
 _SHORT, _QUANTILES, _FAR = (-8.0, -4.0, -2.0), np.linspace(-1.5, 2.0, 8), 8.0
 #: Variance below which a direction of the prior counts as exactly known, relative to that of single inputs.
@@ -42,12 +50,33 @@ _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
+class Draws:
+    """Equally probable normal distributions of the errors of inputs, which make up their distribution."""
+
+    centres: np.ndarray  #: (m, k)
+    covariance: np.ndarray  #: of each of them (k, k)
+
+    def quantiles(self, response: np.ndarray, scores: np.ndarray) -> np.ndarray:
+        """Quantiles of the linear response of a result (k,) at normal scores (s,), (s,)."""
+        centres = self.centres @ response
+        deviation = max(np.sqrt(max(response @ self.covariance @ response, 0.0)), np.finfo(float).tiny)
+        reach = (np.abs(scores).max() + 1) * deviation
+        low, high = (np.full(len(scores), end) for end in (centres.min() - reach, centres.max() + reach))
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2
+            is_low = ndtr((middle[:, None] - centres) / deviation).mean(axis=1) < ndtr(scores)
+            low, high = np.where(is_low, middle, low), np.where(is_low, high, middle)
+        return (low + high) / 2
+
+
+@dataclass(frozen=True)
 class Knowledge:
-    """Normal distribution of the errors of inputs."""
+    """Distribution of the errors of inputs, normal unless there are draws."""
 
     names: tuple[str, ...]  #: of the inputs
     mean: np.ndarray  #: (k,), zero before a measurement, in the units of the inputs
     covariance: np.ndarray  #: (k, k)
+    draws: Draws | None = None
 
     @property
     def deviations(self) -> np.ndarray:
@@ -58,6 +87,14 @@ class Knowledge:
         """Mean and standard deviation of the linear response of some results to the inputs, (..., k) -> (...)."""
         variance = np.einsum("...i,ij,...j->...", response, self.covariance, response)
         return response @ self.mean, np.sqrt(np.maximum(variance, 0.0))
+
+    def quantiles(self, responses: np.ndarray, scores: np.ndarray = SCORES) -> np.ndarray:
+        """Quantiles of the linear responses of some results (n, k) at normal scores (s,), (n, s)."""
+        if self.draws is None:
+            mean, deviation = self.of(responses)
+            return mean[:, None] + deviation[:, None] * scores
+        rows = [self.draws.quantiles(response, scores) for response in responses]
+        return np.reshape(rows, (len(responses), len(scores)))
 
 
 @dataclass(frozen=True)
@@ -83,29 +120,39 @@ class Counts:
         return len(self.stuck)
 
     def scored(self, errors: np.ndarray, order: int = 0) -> np.ndarray:
-        """Normal scores of all shapes at errors of the inputs (k,), or their derivatives by ln l (n, s)."""
-        at = np.log(self.lengths) - self.responses @ errors
-        scores = [[s(x, order) for s, x in zip(*shapes, strict=True)] for shapes in zip(self.scores, at, strict=True)]
-        return np.reshape(scores, self.lengths.shape)
+        """Normal scores of all shapes at errors of inputs, or their derivatives by ln l, (..., k) -> (..., n, s)."""
+        at = np.log(self.lengths) - np.tensordot(errors, self.responses, (-1, -1))
+        scores = [score(at[..., i, j], order) for i, shapes in enumerate(self.scores) for j, score in enumerate(shapes)]
+        return np.reshape(np.moveaxis(scores, 0, -1), at.shape)
 
     def logarithms(self, errors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Logarithms of P(stuck) and P(free) at errors of the inputs (k,), (n,) each."""
+        """Logarithms of P(stuck) and P(free) at errors of the inputs, (..., k) -> (..., n) each."""
         scores = self.scored(errors)
-        free = log_ndtr(-scores).cumsum(axis=1)
+        free = log_ndtr(-scores).cumsum(axis=-1)
         # The first shape that holds a beam: no difference of nearly equal numbers.
-        before = np.column_stack([np.zeros(len(scores)), free[:, :-1]])
-        return logsumexp(log_ndtr(scores) + before, axis=1), free[:, -1]
+        before = np.concatenate([np.zeros_like(free[..., :1]), free[..., :-1]], axis=-1)
+        return logsumexp(log_ndtr(scores) + before, axis=-1), free[..., -1]
 
     def share(self, errors: np.ndarray) -> np.ndarray:
         """P(stuck) at errors of the inputs (k,), (n,) [-]."""
         return np.exp(self.logarithms(errors)[0])
 
-    def deviance(self, errors: np.ndarray) -> float:
-        """Twice the logarithm by which shares equal to those that were counted are more probable [-]."""
+    def deviance(self, errors: np.ndarray) -> float | np.ndarray:
+        """Twice the logarithm by which fractions equal to the counted ones are more probable, (..., k) -> (...)."""
         stuck, free = self.logarithms(errors)
         others = self.beams - self.stuck
         best = xlogy(self.stuck, self.stuck / self.beams) + xlogy(others, others / self.beams)
-        return float(2 * np.sum(best - self.stuck * stuck - others * free))
+        return 2 * np.sum(best - self.stuck * stuck - others * free, axis=-1)
+
+    def slope(self, errors: np.ndarray) -> np.ndarray:
+        """Derivative of the deviance by the errors of the inputs (k,), (k,)."""
+        stuck, free = self.logarithms(errors)
+        scores = self.scored(errors)
+        # d ln P(free) = -φ(z) / Φ(-z) dz, and P(stuck) is the rest of 1.
+        of_free = -(scores**2 + np.log(2 * np.pi)) / 2 - log_ndtr(-scores)
+        of_stuck = of_free + (free - stuck)[:, None]
+        by_score = (self.beams - self.stuck)[:, None] * np.exp(of_free) - self.stuck[:, None] * np.exp(of_stuck)
+        return -2 * np.einsum("ns,nsk->k", by_score * self.scored(errors, 1), self.responses)
 
 
 def lognormal(centre: float, scatter: float) -> PPoly:
@@ -199,76 +246,67 @@ def _spread(prior, data):
     return data.responses @ prior.covariance @ data.responses.T + np.diag(data.errors**2)
 
 
-def given(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> Knowledge:
-    """Knowledge after crack lengths were measured and stuck beams counted.
-
-    With counts, it is the normal distribution around the most probable errors of the inputs that has their curvature
-    (Laplace), but for the curvature of the probit of several shapes (Gauss and Newton). Steps are halved as long as
-    that leads to more probable errors: where counts contradict the prior, whole steps may lead away from them.
+def given(
+    prior: Knowledge, lengths: Lengths, counts: Counts | None = None, rng: np.random.Generator | None = None
+) -> Knowledge:
+    """Knowledge after crack lengths were measured and stuck beams counted, for which errors are drawn.
 
     Raises
     ------
     NotConverged
-        If the steps do not reach the most probable errors.
+        If too few draws are probable.
     """
     known = given_lengths(prior, lengths)
     if counts is None or not len(counts):
         return known
-    mean, scale = known.mean, _scale(prior)
-    for _ in range(_STEPS):
-        known = given_lengths(prior, _joined(lengths, linearised(counts, mean)))
-        step = known.mean - mean
-        change = np.abs(step / scale).max()
-        if change < _CLOSE:
-            return known
-        left = [_misfit(prior, lengths, counts, mean + share * step) for share in (1.0, 0.5)]
-        while left[-1] < left[-2]:
-            left.append(_misfit(prior, lengths, counts, mean + step / 2 ** len(left)))
-        mean = mean + step / 2 ** (len(left) - 2)
-    raise NotConverged("errors of the inputs, in standard deviations", change, _CLOSE, _STEPS)
+    gain = _counted_directions(known, counts)
+    misfit = _Misfit(known.mean, gain, counts)
+    mode = misfit.most_probable()
+    errors, weights = weighted(misfit.log_likelihood, mode, misfit.curvature(mode), rng)
+    mean, others = weights @ errors, known.covariance - gain @ gain.T
+    spread = (errors - mean).T @ ((errors - mean) * weights[:, None])
+    kept = np.searchsorted(np.cumsum(weights), (np.arange(_KEPT) + 0.5) / _KEPT)
+    draws = Draws(known.mean + errors[kept] @ gain.T, others)
+    return Knowledge(prior.names, known.mean + gain @ mean, others + gain @ spread @ gain.T, draws)
 
 
-def _scale(prior):
-    """Standard deviations of the inputs, 1 for those that are known."""
-    return np.where(prior.deviations > 0, prior.deviations, 1)
+def _counted_directions(known, counts):
+    """Expected inputs per independent standard normal error (k, r); counts depend on these errors alone."""
+    responses = counts.responses.reshape(-1, len(known.mean))
+    shared = known.covariance @ responses.T
+    variances, axes = np.linalg.eigh(responses @ shared)
+    uncertain = variances > _ROUNDING * variances.max()
+    return shared @ (axes[:, uncertain] / np.sqrt(variances[uncertain]))
 
 
-def _misfit(prior, lengths, counts, errors):
-    """Sum of the squares of all pulls, on the data and on the inputs, at errors of the inputs; deviance of counts."""
-    pulls, scale = (lengths.differences - lengths.responses @ errors) / lengths.errors, _scale(prior)
-    moved = (errors - prior.mean) / scale
-    inverse = np.linalg.pinv(prior.covariance / np.outer(scale, scale), rcond=_ROUNDING, hermitian=True)
-    return pulls @ pulls + moved @ inverse @ moved + counts.deviance(errors)
+@dataclass(frozen=True)
+class _Misfit:
+    """Half the sum of the squares of independent standard normal errors, and of the deviance of counts."""
 
+    mean: np.ndarray  #: inputs without errors (k,)
+    gain: np.ndarray  #: inputs per error (k, r)
+    counts: Counts
 
-def linearised(counts: Counts, errors: np.ndarray) -> Lengths:
-    """Lengths whose normal likelihood has slope and curvature of that of the counts, at errors of the inputs (k,).
+    def log_likelihood(self, errors: np.ndarray) -> np.ndarray:
+        """Logarithm of the probability of the counts, up to a constant, (..., r) -> (...)."""
+        return -self.counts.deviance(self.mean + errors @ self.gain.T) / 2
 
-    The slope is that of the probit of P(stuck), which is z for one shape.
-    """
-    stuck, free = counts.logarithms(errors)
-    scores, slopes = counts.scored(errors), counts.scored(errors, 1)
-    probit = np.where(stuck < free, ndtri_exp(np.minimum(stuck, free)), -ndtri_exp(np.minimum(stuck, free)))
-    # dΦ(-probit) = Σ_i Φ(-z_1) … φ(z_i) … Φ(-z_s) dz_i
-    weights = np.exp(_log_density(scores) - log_ndtr(-scores) + (free - _log_density(probit))[:, None])
-    responses = np.einsum("ns,nsk->nk", weights * slopes, counts.responses)
-    above, below = np.exp(_log_density(probit) - stuck), np.exp(_log_density(probit) - free)
-    others = counts.beams - counts.stuck
-    slope = counts.stuck * above - others * below
-    curvature = counts.stuck * above * (above + probit) + others * below * (below - probit)
-    curvature = np.maximum(curvature, _NOTHING)  # beams of which it was certain that all, or none, would stick
-    return Lengths(responses, responses @ errors - slope / curvature, 1 / np.sqrt(curvature))
+    def __call__(self, errors: np.ndarray) -> float:
+        return errors @ errors / 2 - self.log_likelihood(errors)
 
+    def slope(self, errors: np.ndarray) -> np.ndarray:
+        """Derivative by the errors (r,), (r,)."""
+        return errors + self.counts.slope(self.mean + errors @ self.gain.T) @ self.gain / 2
 
-def _log_density(score):
-    """Logarithm of φ."""
-    return -(score**2 + np.log(2 * np.pi)) / 2
+    def curvature(self, errors: np.ndarray) -> np.ndarray:
+        """Second derivatives by the errors (r,), (r, r)."""
+        steps = _STEP * np.eye(len(errors))
+        rows = [(self.slope(errors + step) - self.slope(errors - step)) / (2 * _STEP) for step in steps]
+        return np.reshape(np.add(rows, np.transpose(rows)) / 2, steps.shape)
 
-
-def _joined(one, other):
-    """Both sets of lengths."""
-    fields = ("responses", "differences", "errors")
-    return Lengths(*(np.concatenate([getattr(one, name), getattr(other, name)]) for name in fields))
+    def most_probable(self) -> np.ndarray:
+        """Errors with the least misfit (r,)."""
+        return minimize(self, np.zeros(self.gain.shape[1]), jac=self.slope, method="BFGS").x
 
 
 # What the data say
@@ -283,11 +321,13 @@ def p_value(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) ->
     ASSUME: the prior predictive one; after an update, the data would be used twice, and hide what they contradict. The
     chi-squared distribution of deviances is that of many beams; that of few, all or none of them stuck, is narrower.
     """
-    if counts is None or not len(counts):
-        away = lengths.differences - lengths.responses @ prior.mean
-        return float(chdtrc(len(away), away @ np.linalg.solve(_spread(prior, lengths), away)))
-    total = _misfit(prior, lengths, counts, given(prior, lengths, counts).mean)
-    return float(chdtrc(len(lengths.differences) + len(counts), total))
+    away = lengths.differences - lengths.responses @ prior.mean
+    total, number = away @ np.linalg.solve(_spread(prior, lengths), away), len(away)
+    if counts is not None and len(counts):
+        known = given_lengths(prior, lengths)
+        misfit = _Misfit(known.mean, _counted_directions(known, counts), counts)
+        total, number = total + 2 * misfit(misfit.most_probable()), number + len(counts)
+    return float(chdtrc(number, total))
 
 
 @dataclass(frozen=True)
@@ -304,7 +344,7 @@ def combinations(prior: Knowledge, posterior: Knowledge) -> list[Combination]:
     Data determine as many of them as there are independent data. Inputs that are correlated with the same combination
     are not told apart.
     """
-    scale = _scale(prior)
+    scale = np.where(prior.deviations > 0, prior.deviations, 1)
     variances, axes = np.linalg.eigh(prior.covariance / np.outer(scale, scale))
     uncertain = variances > _ROUNDING
     root = axes[:, uncertain] * np.sqrt(variances[uncertain])
@@ -319,13 +359,14 @@ def _signed(values):
     return values * np.sign(values[np.argmax(np.abs(values))])
 
 
-def expected_share(margins: np.ndarray, weights: np.ndarray, shift: float, deviation: float) -> float:
-    """P(stuck) of devices if ln of the lengths that stick has a shift that is normal, with a standard deviation [-].
+def expected_share(margins: np.ndarray, weights: np.ndarray, quantiles: np.ndarray) -> float:
+    """P(stuck) of devices if ln of the lengths that stick has a shift with these quantiles at normal scores `SCORES`.
 
     The margins are ln(length of the devices / length that sticks), as computed, and the weights the shares of the
-    devices with each of these (n,) [-]; the others never stick.
+    devices with each of these (n,) [-]; the others never stick. Beyond the quantiles, their distances stay as they are.
     """
-    return float(weights @ ndtr((margins - shift) / max(deviation, np.finfo(float).tiny)))
+    score = make_interp_spline(quantiles + _APART * SCORES, SCORES, k=1)
+    return float(weights @ ndtr(score(margins)))
 
 
 def further_beams(knowledge: Knowledge, target: np.ndarray, response: np.ndarray, error: float) -> float:

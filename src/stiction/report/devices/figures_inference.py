@@ -64,13 +64,13 @@ def _lengths(panel, data, room):
     computed, shift = TO_UM * data.computed.values, data.datum_shift.values
     entries, on_the_left = [], _on_the_left(placed)
     cases = (
-        ("before", computed, data.datum_before, _BEFORE),
-        ("after", computed * np.exp(shift), data.datum_after, _AFTER),
+        ("before", computed, data.datum_before * data.score, _BEFORE),
+        ("after", computed * np.exp(shift), data.datum_quantile, _AFTER),
     )
-    for name, centre, deviation, colour in cases:
-        reach = np.exp(INTERVAL * deviation.values)
+    for name, centre, quantiles, colour in cases:
+        low, high = (computed * np.exp(quantiles.interp(score=end).values) for end in (-INTERVAL, INTERVAL))
         for along, order in bands:
-            panel.fill_between(along, (centre / reach)[order], (centre * reach)[order], color=colour, alpha=0.25, lw=0)
+            panel.fill_between(along, low[order], high[order], color=colour, alpha=0.25, lw=0)
             entries += panel.plot(along, centre[order], color=colour, label=f"{name} the measurement, 95 %")
     if data.measured.notnull().any():
         error = INTERVAL * TO_UM * (data.measured * data.datum_measured_error).values

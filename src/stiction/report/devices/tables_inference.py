@@ -126,8 +126,10 @@ def _built(update, response):
     """Lengths, or forces, to build before and after the measurement for one way in which a device is held [µm, µN]."""
     share = update.share.values[update.sizes["share"] // 2]
     chosen = update.isel(result=np.flatnonzero(update.response.values == response))
-    for safe, name in (("safe", "result_before"), ("updated_safe", "result_after")):
-        sizes, doubt = update[safe].sel(share=share, shape=shape_of(response)), 2 * float(chosen[name].max())
+    sign = 1 if response == FORCE else -1
+    updated = sign * (chosen.result_quantile.sel(score=2 * sign) - chosen.result_shift)
+    for safe, doubts in (("safe", 2 * chosen.result_before), ("updated_safe", updated)):
+        sizes, doubt = update[safe].sel(share=share, shape=shape_of(response)), float(doubts.max())
         least, most = (TO_UM * float(size) for size in (sizes.min(), sizes.max()))
         yield most * (1 + doubt) if response == FORCE else least * max(1 - doubt, 0.0)
 

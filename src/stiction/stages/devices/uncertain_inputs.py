@@ -200,7 +200,8 @@ def changed(state: State, errors: Mapping[str, float]) -> State:
     if modulus.words in errors and state.device:
         stiffer = modulus.step.moved(state.device.young_modulus, errors[modulus.words])
         state = replace(state, device=replace(state.device, young_modulus=stiffer))
-    return state.attracting(np.exp(errors.get(OF_CONTACT["hamaker_constant"].words, 0.0)))
+    attraction = OF_CONTACT["hamaker_constant"].words
+    return state.attracting(np.exp(errors[attraction])) if attraction in errors else state
 
 
 def countable(sizes: Sequence[str], settings: Settings) -> list[str]:

@@ -26,6 +26,7 @@ from stiction.stages.devices.budget import budgets_of, budgets_of_arrays, respon
 from stiction.stages.devices.contact_names import contact_of, tips_of
 from stiction.stages.devices.releases import ARC, EITHER, FORCE, LONG, S_SHAPE, DesignedBeam, section_of_beam
 from stiction.stages.devices.uncertain_inputs import OF_BEAMS
+from stiction.streams import stream
 
 #: Inputs that are those of one device or array alone: its dimensions.
 OWN = tuple(one.name for one in OF_BEAMS if one.step)
@@ -36,7 +37,7 @@ _SMALL = 50
 #: What may hold a counted beam.
 _COUNTED = (S_SHAPE, ARC)
 #: Logarithms of lengths of a device, less those that were computed.
-_MOVED_BY_TIPS = ("result_shift",)
+_MOVED_BY_TIPS = ("result_shift", "result_quantile")
 #: Keys of the data of the configuration.
 _COLUMNS = {
     "crack_lengths": ("humidity", "mean_um", "std_um", "beams"),
@@ -70,6 +71,7 @@ class Stuck:
 class Settings:
     """Everything that the update depends on apart from budgets and safe lengths."""
 
+    seed: int
     discrepancy: Discrepancy
     arrays: dict[str, DesignedBeam]  #: test beams by the name of their array
     crack_lengths: dict[str, CrackLengths]  #: by array
@@ -146,7 +148,7 @@ def compute(
     prior, responses = with_discrepancy(inputs, beams, [*of_tips, *of_device], settings.discrepancy)
     lengths = measured(beams, responses, settings.crack_lengths)
     counts = counted([*beams, *of_tips], responses, settings.stuck, grounds, tips)
-    posterior = inference.given(prior, lengths, counts)
+    posterior = inference.given(prior, lengths, counts, stream(settings.seed, "test beams", "counts"))
     device, own = responses[len(of_arrays) :], len(inputs.names)
     parts = [
         of_inputs(prior, posterior, own + 2),
@@ -287,7 +289,8 @@ def of_data(
     numbers |= {"rest": posterior.mean[[posterior.names.index(inference.rest(beam.condition)) for beam in beams]]}
     return xr.Dataset(
         {name: ("datum", value, {"units": "m"}) for name, value in lengths.items()}
-        | {f"datum_{name}": ("datum", value, {"units": "1"}) for name, value in numbers.items()},
+        | {f"datum_{name}": ("datum", value, {"units": "1"}) for name, value in numbers.items()}
+        | _quantiles("datum", posterior, responses[: len(beams)]),
         coords={
             "datum": [beam.condition for beam in beams],
             "array": ("datum", [beam.owner for beam in beams]),
@@ -308,7 +311,7 @@ def _measured_length(result, crack_lengths):
 
 
 def of_counts(counts: Counts, posterior: Knowledge, stuck: Mapping[str, Stuck]) -> xr.Dataset:
-    """Counted beams and their P(stuck) before and after the measurement, for the most probable inputs."""
+    """Counted beams and their P(stuck) before and after the measurement, for the expected inputs."""
     rows = [(name, *row) for name, data in stuck.items() for row in zip(data.humidity, data.length, strict=True)]
     names, humidities, lengths = zip(*rows, strict=True) if rows else ((), (), ())
     return xr.Dataset(
@@ -343,6 +346,12 @@ def _both(prior, posterior, responses):
     return {"before": prior.of(responses)[1], "shift": shift, "after": after}
 
 
+def _quantiles(of, posterior, responses):
+    """Quantiles of ln l after the measurement, less ln l as computed, by their normal scores."""
+    quantiles = posterior.quantiles(responses)
+    return {f"{of}_quantile": ((of, "score"), quantiles, {"units": "1"}), "score": ("score", inference.SCORES)}
+
+
 def of_results(
     of_device: Sequence[Result], responses: np.ndarray, inputs: Knowledge, prior: Knowledge, posterior: Knowledge
 ) -> xr.Dataset:
@@ -354,7 +363,8 @@ def of_results(
     return xr.Dataset(
         {"centre": ("result", *centre)}
         | {f"own_{size}": ("result", values, {"units": "m"}) for size, values in sizes.items()}
-        | {f"result_{name}": ("result", value, {"units": "1"}) for name, value in numbers.items()},
+        | {f"result_{name}": ("result", value, {"units": "1"}) for name, value in numbers.items()}
+        | _quantiles("result", posterior, responses),
         coords={
             "result": [result.condition for result in of_device],
             "response": ("result", [result.response for result in of_device]),
@@ -429,9 +439,9 @@ def with_lengths(update: xr.Dataset, safe_lengths: Mapping[float, xr.Dataset]) -
         humidity=list(safe_lengths)
     )
 
-    def share(humidity, shape, length, shift, deviation):
+    def share(humidity, shape, length, quantiles):
         lengths, shares = sticking(safe_lengths[humidity].sel(shape=shape))
-        return inference.expected_share(np.log(length / lengths), np.diff(shares, prepend=0.0), shift, deviation)
+        return inference.expected_share(np.log(length / lengths), np.diff(shares, prepend=0.0), quantiles)
 
     return update.assign(_before_and_after(update, safe) | _shares(update, safe, share))
 
@@ -460,9 +470,9 @@ def with_forces(update: xr.Dataset, stopper: xr.Dataset) -> xr.Dataset:
     safe = stopper.safe_force.sel(part="safe", drop=True).expand_dims(shape=[FORCE])
     stated = xr.full_like(safe.isel(share=0, drop=True), float(stopper.restoring_force))
 
-    def share(humidity, _, force, shift, deviation):
+    def share(humidity, _, force, quantiles):
         held = np.maximum(stopper.pull_off.sel(humidity=humidity).values, np.finfo(float).tiny)
-        return inference.expected_share(np.log(held / force), np.full(len(held), 1 / len(held)), -shift, deviation)
+        return inference.expected_share(np.log(held / force), np.full(len(held), 1 / len(held)), -quantiles[::-1])
 
     return update.assign(_before_and_after(update, safe) | _shares(update, stated, share))
 
@@ -490,14 +500,16 @@ def _of_shapes(update, name):
 
 def _shares(update, sizes, share):
     """P(stuck) of some sizes before and after the measurement, averaged over the uncertainty of the inputs."""
-    shift, before, after = (_of_shapes(update, f"result_{name}") for name in ("shift", "before", "after"))
+    quantiles = {
+        "expected_stuck": _of_shapes(update, "result_before") * update.score,
+        "updated_stuck": _of_shapes(update, "result_quantile"),
+    }
     stacked = sizes.stack(at=sizes.dims)
-    expected = {"expected_stuck": [], "updated_stuck": []}
+    expected = {name: [] for name in quantiles}
     for size in stacked:
         at = {"humidity": float(size.humidity), "shape": str(size["shape"].values)}
-        moved = float(shift.sel(at)), float(after.sel(at))
-        for name, numbers in zip(expected, ((0.0, float(before.sel(at))), moved), strict=True):
-            expected[name].append(share(*at.values(), float(size), *numbers))
+        for name, each in quantiles.items():
+            expected[name].append(share(*at.values(), float(size), each.sel(at).values))
     return {
         name: stacked.copy(data=values).unstack("at").transpose(*sizes.dims).reindex_like(sizes).assign_attrs(units="1")
         for name, values in expected.items()
@@ -530,6 +542,7 @@ def _settings(plan, at):
         data
         | ({"device": section_of_beam(plan, at.device)} if is_beam else {})
         | {
+            "seed": plan.config["seed"],
             "discrepancy": plan.config["design"]["discrepancy"],
             "arrays": {name: section_of_beam(plan.of_test_beams, name) for name in names},
         }
