@@ -62,10 +62,10 @@ def test_a_shortest_wave_and_a_blunt_tip_limit_the_reach():
 @given(st.floats(4, 30), st.floats(-8, -1), st.floats(-2, 2))
 def test_an_exact_spectrum_is_found_again(corner, slope, scale):
     exact = dataclasses.replace(
-        fit(measured(stream(1)), REACH), plateau=np.exp(scale), corner=1e6 * corner, slope=slope
+        fit(measured(stream(1)), REACH), plateau=1e-33 * np.exp(scale), corner=1e6 * corner, slope=slope
     )
     density = exact.spectrum(REACH.nyquist)(WAVENUMBER)
-    found = fit(Rings(WAVENUMBER, np.where(density > 0, density, 1.0), MODES, MODES), REACH)
+    found = fit(Rings(WAVENUMBER, np.where(density > 0, density, 1e-33), MODES, MODES), REACH)
     np.testing.assert_allclose(parameters(found), parameters(exact), rtol=1e-3, atol=1e-3)
     assert found.chi2 < 1e-3
 

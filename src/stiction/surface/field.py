@@ -24,7 +24,7 @@ class StripGrid:
 
     def __post_init__(self):
         sides = self.length, self.width
-        if not (self.spacing > 0 and is_at_most(self.spacing, min(sides)) and max(sides) < np.inf):
+        if not (self.spacing > 0 and all(is_at_most(self.spacing, side) and side < np.inf for side in sides)):
             raise ValueError(
                 f"need 0 < spacing <= strip, got {self.spacing:.3g} and {self.length:.3g} x {self.width:.3g} m"
             )
