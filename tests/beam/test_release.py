@@ -6,6 +6,7 @@ from beams import E_BAR, PAPER, lognormal, scattered_laws, uniform_laws
 from numpy.testing import assert_allclose
 
 from stiction.beam.energy import apparent_adhesion_energy, arrest_length
+from stiction.beam.equilibrium import distances
 from stiction.beam.release import EndState, crack_length, end_state, release, released_beam, s_shape
 from stiction.contact import forcelaw
 
@@ -189,6 +190,16 @@ def test_a_beam_on_very_rough_ground_ends_free_or_on_its_tip(seed):
     assert end.state in (EndState.FREE, EndState.ARC)
     assert end.equilibrium.iterations < 2000
     assert end.crack_length > 0.99 * PAPER.length
+
+
+@pytest.mark.parametrize("strength", [1.0, 1e3, 1e5])
+def test_no_beam_passes_through_its_ground_however_rough(strength):
+    # Beyond the reach of its laws nothing but the length of a step holds a beam back.
+    for seed in range(30):
+        laws = rough_laws(seed, strength)
+        end = released_beam(PAPER, laws).equilibrium
+        assert end.iterations < 2000
+        assert np.all(distances(PAPER, laws, end.deflection) > laws[:, 1] - 20 / laws[:, 2])
 
 
 def test_a_crack_on_uneven_ground_starts_again_where_it_could_pass_an_arrest():

@@ -208,32 +208,41 @@ def solve(band, x, start, stop):
 
 
 @kernel
-def largest_move(laws, system, mesh, window):
-    """Largest change of distance in the solved step, relative to the allowed change [-]."""
-    points, step, move = mesh.points_per_element, system.force, 0.0
+def largest_moves(laws, system, mesh, window):
+    """Largest changes of distance in the solved step [-].
+
+    The first is within reach of the laws, relative to the allowed change. The second is towards the ground, beyond their
+    reach, relative to the distance from d_max.
+    """
+    points, step, move, approach = mesh.points_per_element, system.force, 0.0, 0.0
     for element in range(window[0], window[1]):
         i = 2 * element
         for p in range(points):
             r = element * points + p
-            t = system.stretch[r]
+            t, n = system.stretch[r], mesh.hermite[p]
+            change = n[0] * step[i] + n[1] * step[i + 1] + n[2] * step[i + 2] + n[3] * step[i + 3]
+            a = laws[r, 2] if t < 0 else laws[r, 3]
             if t < REACH:
-                n = mesh.hermite[p]
-                change = n[0] * step[i] + n[1] * step[i + 1] + n[2] * step[i + 2] + n[3] * step[i + 3]
-                a = laws[r, 2] if t < 0 else laws[r, 3]
                 move = max(move, a * abs(change) / (1 + max(t, 0.0)))
-    return move / STEP
+            else:
+                approach = max(approach, a * change / t)
+    return move / STEP, approach
 
 
 @kernel
 def newton_step(u, laws, system, mesh, window):
-    """Solve and take the step unless it is too long; returns its relative length (`largest_move`) [-], or infinity."""
+    """Solve and take the step unless it is too long; returns its relative length (`largest_moves`) [-], or infinity.
+
+    The step is shortened where a point beyond the reach of its law would pass through the ground.
+    """
     rows = slice(2 * window[0], 2 * window[1] + 2)
     if not solve(system.band, system.force, rows.start, rows.stop):
         return np.inf
-    move = largest_move(laws, system, mesh, window)
-    if move <= 2:
-        u[rows] += system.force[rows]
-    return move
+    move, approach = largest_moves(laws, system, mesh, window)
+    share = min(1.0, STEP / approach) if approach > 0 else 1.0
+    if share * move <= 2:
+        u[rows] += share * system.force[rows]
+    return share * move
 
 
 @kernel
