@@ -211,8 +211,8 @@ def solve(band, x, start, stop):
 def largest_moves(laws, system, mesh, window):
     """Largest changes of distance in the solved step [-].
 
-    The first is within reach of the laws, relative to the allowed change. The second is towards the ground, beyond their
-    reach, relative to the distance from d_max.
+    The first is within reach of the laws, relative to the allowed change. The second is beyond their reach, towards the
+    ground, relative to the distance from d_max.
     """
     points, step, move, approach = mesh.points_per_element, system.force, 0.0, 0.0
     for element in range(window[0], window[1]):
