@@ -10,7 +10,7 @@ from written_scans import BAD, bad_files, etched, scans_of
 
 from stiction.config.files import load
 from stiction.run.storage import load as dataset
-from stiction.stages.surfaces import estimate
+from stiction.stages.surfaces import estimate, surface_flags
 from stiction.study import PairStudy
 
 #: Results that depend on the stages of measured surfaces in different ways.
@@ -60,7 +60,7 @@ def test_table_1_compares_with_the_estimate(finished):
 @pytest.mark.slow
 def test_flags_are_in_the_log_and_in_the_dataset(finished):
     run, _ = finished
-    flags = estimate.flags(dataset(run / "results/estimate/Etched.nc", "estimate"))
+    flags = surface_flags.flags(dataset(run / "results/estimate/Etched.nc", "estimate"))
     log = (run / "results/logs/estimate/Etched.log").read_text()
     assert any(flag.startswith("only") for flag in flags)
     assert all(f"UserWarning: surface Etched: {flag}\n" in log for flag in flags)

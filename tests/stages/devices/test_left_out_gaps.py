@@ -12,7 +12,7 @@ from stiction.devices import limits
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.stages.contact import curves
-from stiction.stages.devices import device_warnings, left_out_gaps
+from stiction.stages.devices import device_warnings
 from stiction.stages.devices.releases import ARC, EITHER, FORCE, S_SHAPE
 
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 6, "humidities": [0.44, 0.8]}
@@ -25,7 +25,7 @@ TOUCHING = Results.of(merged(small.PLAN.config, SIZES))
 
 
 def test_the_force_of_a_stopper_would_change_as_that_of_one_with_attraction_across_gaps():
-    found = left_out_gaps.changes_of(TOUCHING["devices/left_out_gaps/S1"])
+    found = device_warnings.left_out_changes(TOUCHING["devices/left_out_gaps/S1"])
     contact, across = TOUCHING["devices/contact/b_1500x6000"], load({"attraction": {"reach": "all"}})
     waters = [in_si(Water, plan.air_of_devices.water("b")) for plan in (TOUCHING.graph.plan, Plan(across))]
     for humidity in (0.44, 0.8):
@@ -35,7 +35,7 @@ def test_the_force_of_a_stopper_would_change_as_that_of_one_with_attraction_acro
 
 
 def test_beams_and_tips_would_stick_at_shorter_lengths_in_drier_air():
-    found = left_out_gaps.changes_of(TOUCHING["devices/left_out_gaps/C1"])
+    found = device_warnings.left_out_changes(TOUCHING["devices/left_out_gaps/C1"])
     assert set(found) == {(humidity, response) for humidity in (0.44, 0.8) for response in (S_SHAPE, ARC)}
     for humidity in (0.44, 0.8):
         shorter, error = found[humidity, S_SHAPE]
@@ -48,7 +48,7 @@ def test_every_result_has_its_change_as_a_warning():
     job = graph.job("devices/warnings/S1.json")
     *_, [[_, said]] = job.compute(NOTHING | {"left_out_gaps": TOUCHING["devices/left_out_gaps/S1"]})
     assert any("across gaps is left out" in one and "RH 0.44" in one and "unsafe" in one for one in said)
-    changes = left_out_gaps.changes_of(TOUCHING["devices/left_out_gaps/C1"])
+    changes = device_warnings.left_out_changes(TOUCHING["devices/left_out_gaps/C1"])
     for shape in (S_SHAPE, EITHER):
         (sentence,) = device_warnings._without_gaps(changes, 0.44, shape)
         number = 100 * changes[0.44, ARC if shape == EITHER else shape][0]

@@ -18,7 +18,7 @@ from stiction.scans.histogram import histogram, histogram_errors
 from stiction.scans.moments import mode_covariance
 from stiction.scans.quantiles import Feasible
 from stiction.scans.reading import ScanFile, Source
-from stiction.stages.surfaces import estimate, parameters, scan
+from stiction.stages.surfaces import estimate, parameters, scan, surface_flags
 from stiction.stages.surfaces import heights as stage_heights
 from stiction.stages.surfaces import measured_heights as heights
 from stiction.stages.surfaces import measured_spectrum as spectrum
@@ -97,7 +97,7 @@ def test_notes_on_a_file_are_warnings_and_are_kept(tmp_path, through_a_file, mon
     assert len(caught) == 2
     assert scan.notes(found) == notes
     assert scan.notes(scans()[0]) == ()
-    flags = estimate.flags(estimate.layout(object_of_b2(), scan.notes(found)))
+    flags = surface_flags.flags(estimate.layout(object_of_b2(), scan.notes(found)))
     assert flags == (*object_of_b2().flags, *notes)
 
 
@@ -111,7 +111,7 @@ def test_an_estimate_comes_back_from_its_dataset(through_a_file):
     assert_array_equal(found.raw_moments, expected.inspection.moments)
     assert found.scan_moments.shape == (2, 3)
     assert estimate.files(found) == ("B2-scan-0.spm", "B2-scan-1.spm")
-    assert estimate.flags(found) == expected.flags
+    assert surface_flags.flags(found) == list(expected.flags)
     fit = estimate.fit(found)
     for field in dataclasses.fields(fit):
         assert_array_equal(getattr(fit, field.name), getattr(expected.inspection.fit, field.name))
@@ -151,10 +151,10 @@ def test_an_estimate_of_a_published_surface_is_within_its_errors():
 
 
 def test_limits_of_an_estimate_are_warnings():
-    (sentence,) = (flag for flag in estimate.flags(b2()) if flag.startswith("only 9"))
+    (sentence,) = (flag for flag in surface_flags.flags(b2()) if flag.startswith("only 9"))
     with pytest.warns(UserWarning, match="^surface Etched: ") as caught:
         estimate.compute(scans(), "Etched", SETTINGS)
-    assert {str(one.message) for one in caught} == {f"surface Etched: {flag}" for flag in estimate.flags(b2())}
+    assert {str(one.message) for one in caught} == {f"surface Etched: {flag}" for flag in surface_flags.flags(b2())}
     assert f"surface Etched: {sentence}" in {str(one.message) for one in caught}
 
 
@@ -291,9 +291,9 @@ def test_a_grid_that_cuts_the_spectrum_off_is_a_warning():
     ):
         found = spectrum_with(spacing=30e-9)
     assert float(found.cutoff) == pytest.approx(np.pi / 30e-9)
-    (sentence,) = spectrum.flags(found)
+    (sentence,) = surface_flags.flags(found)
     assert sentence.endswith("before that of the scans, 125.1 rad/µm; a finer sampling.spacing_nm keeps more")
-    assert spectrum.flags(spectrum_with()) == ()
+    assert surface_flags.flags(spectrum_with()) == []
 
 
 @pytest.mark.parametrize("psd", ["fitted", "tabulated"])

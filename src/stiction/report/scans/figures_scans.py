@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from stiction.report.format import PER_UM2, TO_NM, TO_UM, UM, with_error
 from stiction.report.style import DOUBLE, MODELS, OUTLINED, figure_stage, letter, panels, styled
 from stiction.stages.surfaces import estimate as stage_estimate
-from stiction.stages.surfaces import measured_spectrum
+from stiction.stages.surfaces import surface_flags
 
 _MEASURED, _MODEL = {"color": "black"}, {"color": MODELS["NG"]["color"]}
 _BAND, _BEYOND = {"color": "0.75", "linewidth": 0}, {"color": "0.92", "linewidth": 0, "zorder": 0}
@@ -28,7 +28,7 @@ _LINE, _LINE_HEIGHT, _PANELS = 150, 0.125, 5.92
 @styled
 def surface_sheet(name: str, estimate: xr.Dataset, spectrum: xr.Dataset) -> Figure:
     """Sheet of one measured surface: the measured quantities, their errors, and the model drawn from them."""
-    lines = _lines([*stage_estimate.flags(estimate), *measured_spectrum.flags(spectrum)])
+    lines = _lines(surface_flags.flags(estimate, spectrum))
     figure, axes = panels(2, 2, (DOUBLE, _PANELS + _LINE_HEIGHT * len(lines)))
     _map(figure, axes[0, 0], estimate)
     _density(axes[0, 1], estimate)

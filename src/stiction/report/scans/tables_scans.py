@@ -12,8 +12,8 @@ from stiction.report.format import NM, UM, signed, with_error
 from stiction.report.tables import PAIR, Table, table_stage, with_list
 from stiction.stages.laws.scan_uncertainty import GOAL
 from stiction.stages.surfaces import estimate as stage_estimate
-from stiction.stages.surfaces import measured_spectrum
 from stiction.stages.surfaces import scan as stage_scan
+from stiction.stages.surfaces import surface_flags
 
 #: Parts of an estimate as columns.
 _PARTS = {"rms": "rms", "shape": "skewness and kurtosis", "spectrum": "spectrum", "total": "total"}
@@ -28,10 +28,7 @@ def scans(
 
     All datasets are by surface; the maps of a surface are in the order of its files in the configuration.
     """
-    limits = {
-        name: [*stage_estimate.flags(estimate), *measured_spectrum.flags(spectra[name])]
-        for name, estimate in estimates.items()
-    }
+    limits = {name: surface_flags.flags(estimate, spectra[name]) for name, estimate in estimates.items()}
     rows = [
         row | {"flags": "; ".join(limits[name])}
         for name, estimate in estimates.items()

@@ -24,7 +24,6 @@ from stiction.stages.beams.pair_warnings import (
     contact_warnings,
     plastic_contact,
 )
-from stiction.stages.devices import left_out_gaps
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import ARC, EITHER, DesignedBeam, section_of_beam
 from stiction.stages.surfaces import surface_flags
@@ -149,6 +148,22 @@ def subjects(warnings: OfDevices) -> Warnings:
 # Stages
 
 
+def left_out_changes(dataset: xr.Dataset) -> dict[tuple[float, str], tuple[float, float]]:
+    """Change and its standard error by humidity and response, from a dataset of stage left_out_gaps.
+
+    Responses are those of `stiction.stages.devices.budget.response_of`.
+    """
+    keys = zip(map(float, dataset.humidity.values), map(str, dataset.response.values), strict=True)
+    return dict(zip(keys, zip(dataset.change.values.tolist(), dataset.error.values.tolist(), strict=True), strict=True))
+
+
+def left_out_gaps(plan: Any, device: str) -> dict[str, str]:
+    """Dataset of a device whose results are without attraction across gaps, as input of a stage; none for others."""
+    pair = plan.config["devices"][device]["pair"]
+    is_left_out = plan.air_of_devices.reach(pair) == "touching" and plan.config["van_der_waals"] != "none"
+    return {"left_out_gaps": f"devices/left_out_gaps/{device}"} if is_left_out else {}
+
+
 def _inputs(plan, at):
     """Everything that the warnings about a device are about."""
     devices, section = plan.devices, plan.config["devices"][at.device]
@@ -159,7 +174,7 @@ def _inputs(plan, at):
         "charts": by_case("devices/chart", charts),
         "plasticity": by_name("studies/plasticity", devices.pressed(at.device)),
     }
-    return limited | left_out_gaps.of_device(plan, at.device) | surface_flags.inputs(plan, section["pair"])
+    return limited | left_out_gaps(plan, at.device) | surface_flags.inputs(plan, section["pair"])
 
 
 def _settings(plan, at):
@@ -174,7 +189,7 @@ def _settings(plan, at):
 def _of_one_device(data, settings):
     """Warnings about a device: about its lengths, its curves and its patch, each with what follows its name."""
     flags = surface_flags.together(data)
-    changes = left_out_gaps.changes_of(data["left_out_gaps"]) if "left_out_gaps" in data else {}
+    changes = left_out_changes(data["left_out_gaps"]) if "left_out_gaps" in data else {}
     if "stopper" in settings:
         of = in_si(OfStopper, settings["stopper"])
         gaps = limits.given(limits.without_gaps({humidity: change for (humidity, _), change in changes.items()}))

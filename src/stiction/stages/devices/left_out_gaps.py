@@ -39,19 +39,6 @@ def compute(contacts: Sequence[xr.Dataset], budgets: Sequence[AnyBudget], waters
     )
 
 
-def changes_of(dataset: xr.Dataset) -> dict[tuple[float, str], tuple[float, float]]:
-    """Change and its standard error by humidity and response, see `stiction.stages.devices.budget.response_of`."""
-    keys = zip(map(float, dataset.humidity.values), map(str, dataset.response.values), strict=True)
-    return dict(zip(keys, zip(dataset.change.values.tolist(), dataset.error.values.tolist(), strict=True), strict=True))
-
-
-def of_device(plan: Any, device: str) -> dict[str, str]:
-    """Dataset of a device whose results are without attraction across gaps, as input of a stage; none for others."""
-    pair = plan.config["devices"][device]["pair"]
-    is_left_out = plan.air_of_devices.reach(pair) == "touching" and plan.config["van_der_waals"] != "none"
-    return {"left_out_gaps": f"devices/left_out_gaps/{device}"} if is_left_out else {}
-
-
 def _parts(plan, device):
     """Contact and settings of everything that may hold a device, at each of its humidities."""
     for humidity in plan.config["devices"][device]["humidities"]:

@@ -202,11 +202,6 @@ def files(estimate: xr.Dataset) -> tuple[str, ...]:
     return tuple(str(estimate.files.item()).splitlines())
 
 
-def flags(estimate: xr.Dataset) -> tuple[str, ...]:
-    """Sentences on everything that limits the estimate, and on the files."""
-    return tuple(str(estimate.flags.item()).splitlines())
-
-
 def rms(estimate: xr.Dataset) -> float:
     """Root mean square of the heights [m]."""
     return float(np.exp(estimate.moments.sel(moment="ln_rms")))

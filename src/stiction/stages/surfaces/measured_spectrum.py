@@ -65,11 +65,6 @@ def cutoff_and_clipping(end: float, settings: Settings) -> tuple[float, str]:
     )
 
 
-def flags(spectrum: xr.Dataset) -> tuple[str, ...]:
-    """Sentences on what the spectrum leaves out of the measured one."""
-    return tuple(str(spectrum["flags"].item()).splitlines())
-
-
 def _settings(plan, at):
     """Source of the spectrum of a measured surface, the strips it is used for, and the grid."""
     entry, sampling = plan.config["surfaces"][at.surface], plan.config["sampling"]

@@ -6,8 +6,11 @@ from typing import Any
 import xarray as xr
 
 from stiction.plan.names import by_name
-from stiction.stages.surfaces import estimate as stage_estimate
-from stiction.stages.surfaces import measured_spectrum
+
+
+def flags(*datasets: xr.Dataset) -> list[str]:
+    """Sentences on what limits a measured surface, from the datasets of its estimate and of its spectrum."""
+    return [flag for dataset in datasets for flag in str(dataset["flags"].item()).splitlines()]
 
 
 def inputs(plan: Any, *pairs: str) -> dict[str, dict[str, str]]:
@@ -18,13 +21,10 @@ def inputs(plan: Any, *pairs: str) -> dict[str, dict[str, str]]:
 
 def sentences(data: Mapping[str, Mapping[str, xr.Dataset]]) -> dict[str, list[str]]:
     """Flags of every measured surface, each with the name of the surface, from the datasets of `inputs`."""
-    return {name: list(_of_one(name, estimate, data["spectra"][name])) for name, estimate in data["estimates"].items()}
-
-
-def _of_one(name, estimate, spectrum):
-    """Flags of one surface."""
-    for flag in (*stage_estimate.flags(estimate), *measured_spectrum.flags(spectrum)):
-        yield f"surface {name}: {flag}"
+    return {
+        name: [f"surface {name}: {flag}" for flag in flags(estimate, data["spectra"][name])]
+        for name, estimate in data["estimates"].items()
+    }
 
 
 def together(data: Mapping[str, Mapping[str, xr.Dataset]]) -> list[str]:
