@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.testing import assert_allclose
 
 from stiction.beam.cantilever import Beam
-from stiction.beam.equilibrium import ROUNDING, TOLERANCE
+from stiction.beam.equilibrium import ROUNDING, TOLERANCE, allowed_imbalance
 from stiction.contact.environment import Gaps, Water
 from stiction.contact.meniscus import flooded_energy
 from stiction.contact.vanderwaals import DugdaleAttraction
@@ -20,6 +20,7 @@ from stiction.streams import stream
 
 BEAM = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 200)
 STRIP = 1.5e-6
+AREA = 30e-6 * STRIP
 LIMIT = 2e6
 TARGET = {"rms_nm": 1.7, "skewness": 0.0, "kurtosis": 3.0}
 
@@ -175,9 +176,22 @@ def test_draws_are_rejected_as_often_as_samples_have_no_law():
 def test_a_beam_out_of_equilibrium_fails():
     pull, bending = LIMIT * 30e-6 * STRIP, 12 * 164e9 * 30e-6 * 2.6e-6**3 / 12 / 7.5e-6**3 * 20e-6
     allowed = TOLERANCE * pull + ROUNDING * bending
-    assert checks.beams_are_in_equilibrium("b", beams(0.0, 0.99 * allowed), LIMIT, BEAM, STRIP).passed
-    assert not checks.beams_are_in_equilibrium("b", beams(0.0, 1.01 * allowed), LIMIT, BEAM, STRIP).passed
-    assert not checks.beams_are_in_equilibrium("b", beams(0.0, np.nan), LIMIT, BEAM, STRIP).passed
+    assert checks.beams_are_in_equilibrium("b", beams(0.0, 0.99 * allowed), LIMIT, BEAM, AREA).passed
+    assert not checks.beams_are_in_equilibrium("b", beams(0.0, 1.01 * allowed), LIMIT, BEAM, AREA).passed
+    assert not checks.beams_are_in_equilibrium("b", beams(0.0, np.nan), LIMIT, BEAM, AREA).passed
+
+
+def test_strips_of_beams_with_scattered_dimensions_may_be_larger():
+    samples = {("b", 0.67, "NG"): laws(7)}
+    allowed = allowed_imbalance(BEAM, float(samples["b", 0.67, "NG"].limit) * AREA)
+
+    def passed(model, factor):
+        found = cracks(90).assign(imbalance=("sample", np.full(cracks(90).sizes["sample"], factor * allowed)))
+        return next(checks.of_beams({("b", 0.67, model): found}, samples, {"b": BEAM}, STRIP, [], scatter=0.025)).passed
+
+    assert passed("GEO", 1.15)
+    assert not passed("GEO", 1.25)
+    assert not passed("NG", 1.15)
 
 
 def released(mean, n=400, stuck=1.0):

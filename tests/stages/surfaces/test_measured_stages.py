@@ -98,7 +98,7 @@ def test_notes_on_a_file_are_warnings_and_are_kept(tmp_path, through_a_file, mon
     assert scan.notes(found) == notes
     assert scan.notes(scans()[0]) == ()
     flags = surface_flags.flags(estimate.layout(object_of_b2(), scan.notes(found)))
-    assert flags == (*object_of_b2().flags, *notes)
+    assert flags == [*object_of_b2().flags, *notes]
 
 
 # Estimate
