@@ -63,6 +63,18 @@ def test_aliases_are_no_noise():
 
 
 @pytest.mark.parametrize(
+    ("name", "every"), [("B1", 3), ("B2", 8), ("B2", 10)]
+)  # corners at 0.6 and 0.8 of the Nyquist one
+def test_a_surface_whose_power_law_pixels_do_not_resolve_is_no_noise(name, every):
+    for seed in range(4):
+        heights = SURFACES[name].on(StripGrid(12e-6, 12e-6, 20e-9, 1e-6)).draw(stream(1, "coarse", name, seed))
+        points = len(heights) // every
+        coarse = heights.astype(float)[: every * points : every, : every * points : every]
+        maps = inspect([Scan(coarse, (every * points * 20e-9,) * 2)], Settings()).largest
+        np.testing.assert_allclose(maps.moments, maps.noisy_moments, atol=1e-3)
+
+
+@pytest.mark.parametrize(
     ("name", "rms"), [("Sub1", 50e-12), pytest.param("B2", 30e-12, marks=pytest.mark.slow), ("B2", 300e-12)]
 )
 def test_noise_is_found_and_leaves_moments_and_spectrum_as_they_are(name, rms):

@@ -312,22 +312,32 @@ class _Misfit:
 # What the data say
 
 
-def p_value(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> float:
-    r"""Probability of differences at least as large as the measured ones, before these are used [-].
+def least_misfits(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> list[tuple[float, int]]:
+    r"""Least misfits of lengths, and of counts after these, each with its number of data.
 
-    :math:`d^T S^{-1} d` has a chi-squared distribution if inputs and discrepancy err as stated. It also is the least
-    sum of the squares of all pulls, on the data and on the inputs: data that no input explains have a small p value.
-    Of counts, their deviance takes the place of a pull.
-    ASSUME: the prior predictive one; after an update, the data would be used twice, and hide what they contradict. The
-    chi-squared distribution of deviances is that of many beams; that of few, all or none of them stuck, is narrower.
+    :math:`d^T S^{-1} d` is the least sum of the squares of all pulls, on the data and on the inputs. Of counts, their
+    deviance takes the place of a pull.
     """
     away = lengths.differences - lengths.responses @ prior.mean
-    total, number = away @ np.linalg.solve(_spread(prior, lengths), away), len(away)
+    found = [(float(away @ np.linalg.solve(_spread(prior, lengths), away)), len(away))]
     if counts is not None and len(counts):
         known = given_lengths(prior, lengths)
         misfit = _Misfit(known.mean, _counted_directions(known, counts), counts)
-        total, number = total + 2 * misfit(misfit.most_probable()), number + len(counts)
-    return float(chdtrc(number, total))
+        found.append((2 * misfit(misfit.most_probable()), len(counts)))
+    return found
+
+
+def p_value(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> float:
+    """Probability of differences at least as large as the measured ones, before these are used [-].
+
+    Each of the `least_misfits` has a chi-squared distribution if inputs and discrepancy err as stated: data that no
+    input explains have a small p value. Those of lengths and of counts are independent, and the smaller p value counts.
+    In a sum, counts that anything explains would hide a contradiction between lengths.
+    ASSUME: the prior predictive one; after an update, the data would be used twice, and hide what they contradict. The
+    chi-squared distribution of deviances is that of many beams; that of few, all or none of them stuck, is narrower.
+    """
+    values = [chdtrc(number, misfit) for misfit, number in least_misfits(prior, lengths, counts) if number]
+    return float(-np.expm1(len(values) * np.log1p(-min(values)))) if min(values) < 1 else 1.0
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,8 @@ from stiction.scans.whittle import FEWEST_RINGS, NON_GAUSSIAN, UNLIKELY, Reach, 
 
 #: A floor is flat over this factor of wave numbers up to the Nyquist one, unless the spectrum ends before it.
 _OCTAVE = 2.0
+#: Scans resolve the power law if the fit falls below this part of its plateau.
+_FALLEN = 0.5
 #: Directions of a ring in an eighth of a turn, of which all have the same aliases.
 _DIRECTIONS = 4
 #: Ends of the spectrum that are tried on either side of the best one, and logarithms of their ratios.
@@ -82,11 +84,14 @@ def white_floor(rings: Rings, within: Reach) -> Floor:
     ASSUME: noise is independent from point to point, and aliases follow the power law of the spectrum up to its end.
     It shows beyond the end of the spectrum, or as a flat octave below the Nyquist wave number. Otherwise it is fitted
     together with Eq. (7), its aliases and its end. Such a floor counts if the rings do not contradict this fit, and
-    contradict the one without a floor.
+    contradict the one without a floor. Scans that do not resolve the power law show no floor: the surface itself is
+    nearly flat up to their Nyquist wave number.
     """
     if len(rings.between(within.low, within.high).wavenumber) < FEWEST_RINGS:
         return Floor()
     fitted, found = fit_to_the_end(rings, within)
+    if shape(found.high, np.log(fitted.corner), fitted.slope) > _FALLEN:
+        return Floor()
     ended = found.end < found.nyquist
     beyond = rings.between(found.end if ended else found.nyquist / _OCTAVE, found.nyquist)
     flat = _flat(beyond)

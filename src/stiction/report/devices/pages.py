@@ -152,9 +152,9 @@ _OF_SURFACES = {
 _OF_MATERIALS = {"contact_angle_deg": ("contact angle", "°"), "coating_nm": ("coating", " nm")}
 #: What shares are of.
 _TOUCHDOWNS = (
-    "The share is that of one touchdown in one air. Of devices that touch n times and meet other summits each time, "
-    "1 - (1 - p)^n stick, about n p: for a share q after n touchdowns, or at n humidities, take p = q / n. Those that "
-    "meet the same summits each time stick at the first or never."
+    "The share p is that of one touchdown at one humidity. Of devices that touch n times and meet other summits each "
+    "time, the share 1 - (1 - p)^n sticks, about n p: for a share q after n touchdowns, or at n humidities, take "
+    "p = q / n. Devices that meet the same summits each time stick at the first touchdown or never."
 )
 _OF_BEAMS = {
     "Safe length": (
