@@ -4,6 +4,7 @@ import gc
 import json
 import os
 import re
+import shlex
 import signal
 import sys
 import warnings
@@ -214,6 +215,15 @@ def test_the_study_that_is_written_is_valid_and_never_overwritten(tmp_path, caps
     for below in (study, study / "below"):
         assert main(["init", "--directory", str(below)]) == 2
         assert capsys.readouterr().err == f"{study} is no folder: move it away, or choose another --directory\n"
+
+
+def test_the_commands_that_follow_can_be_pasted_whatever_the_folder(tmp_path, capsys):
+    folder = tmp_path / "it's $mine (2)"
+    assert main(["init", "--directory", str(folder)]) == 0
+    _, *commands = capsys.readouterr().out.splitlines()
+    assert [shlex.split(line)[:3] for line in commands] == [
+        ["stiction", command, str(folder / "study.yaml")] for command in ("check", "run")
+    ]
 
 
 def test_no_file_is_overwritten_beside_a_study_or_through_a_link(tmp_path, capsys):

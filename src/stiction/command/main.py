@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import shlex
 import sys
 import traceback
 from collections.abc import Callable, Sequence
@@ -116,8 +117,9 @@ def _init(arguments):
     schema = launch.PACKAGE / "config" / "schema.json"
     _write({target: Path(__file__).with_name("study.yaml"), target.with_name("stiction.schema.json"): schema})
     say(f"{target} describes a surface, a pair and a beam: change them into yours. Then")
-    say(f"  stiction check {target}     says whether it can run")
-    say(f"  stiction run {target}       computes it: tables and figures in results/")
+    word = shlex.quote(str(target))
+    say(f"  stiction check {word}     says whether it can run")
+    say(f"  stiction run {word}       computes it: tables and figures in results/")
     return Status.DONE
 
 
