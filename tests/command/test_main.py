@@ -4,6 +4,7 @@ import gc
 import json
 import os
 import re
+import shlex
 import signal
 import sys
 import warnings
@@ -206,7 +207,23 @@ def test_the_study_that_is_written_is_valid_and_never_overwritten(tmp_path, caps
     assert main(["init", "--directory", str(tmp_path)]) == 2
     assert study.read_text() == changed
     assert main(["init", "--directory", str(tmp_path / "new" / "folder")]) == 0
-    assert main(["init", "--directory", str(study / "below")]) == 2
+    capsys.readouterr()
+    assert main(["init", "--directory", str(tmp_path / "new" / "folder")]) == 2
+    assert (
+        capsys.readouterr().err == f"{tmp_path / 'new' / 'folder' / 'study.yaml'} exists already: nothing was written\n"
+    )
+    for below in (study, study / "below"):
+        assert main(["init", "--directory", str(below)]) == 2
+        assert capsys.readouterr().err == f"{study} is no folder: move it away, or choose another --directory\n"
+
+
+def test_the_commands_that_follow_can_be_pasted_whatever_the_folder(tmp_path, capsys):
+    folder = tmp_path / "it's $mine (2)"
+    assert main(["init", "--directory", str(folder)]) == 0
+    _, *commands = capsys.readouterr().out.splitlines()
+    assert [shlex.split(line)[:3] for line in commands] == [
+        ["stiction", command, str(folder / "study.yaml")] for command in ("check", "run")
+    ]
 
 
 def test_no_file_is_overwritten_beside_a_study_or_through_a_link(tmp_path, capsys):
@@ -275,7 +292,7 @@ def test_a_folder_that_is_none_is_refused_in_one_sentence(asked, capsys, command
     Path("results").touch()
     assert main([command, "both.yaml", "--directory", place]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.endswith(" is no folder: remove it, or choose another --directory")
+    assert line.endswith(" is no folder: move it away, or choose another --directory")
     assert asked == []
 
 

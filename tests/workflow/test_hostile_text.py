@@ -28,7 +28,7 @@ def folder(tmp_path_factory):
     snakemake(folder, "scans", configs=[folder / "mine.yaml"])
     results = folder / "results"
     (results / "verdict.txt").write_text(HOSTILE)  # of a finished run of the pair, without its jobs
-    (results / "warnings.md").write_text(as_markdown({"pair b": [HOSTILE]}))
+    (results / "warnings.md").write_text(as_markdown({"pair b": [HOSTILE]}, ""))
     (results / "tables" / "table_3.csv").write_text("pair,model\n")
     (folder / FRONT).write_text(front_page(results), encoding="utf-8")
     snakemake(folder, "scans", "--report", "results/report.html", configs=[folder / "mine.yaml"])

@@ -45,7 +45,7 @@ def require_folder(directory: Path) -> None:
     """Raise an error if the folder of a run, or that of its results, is something else."""
     for path in (directory / "results", directory, *directory.absolute().parents):
         if os.path.lexists(path) and not path.is_dir():
-            raise RefusedError(f"{path} is no folder: remove it, or choose another --directory")
+            raise RefusedError(f"{path} is no folder: move it away, or choose another --directory")
 
 
 def words(configs: Sequence[str], directory: str, arguments: Sequence[str]) -> list[str]:

@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import shlex
 import sys
 import traceback
 from collections.abc import Callable, Sequence
@@ -114,10 +115,11 @@ def _init(arguments):
         return _init_test_beams(Path(arguments.directory) / "test_beams.csv")
     target = Path(arguments.directory) / "study.yaml"
     schema = launch.PACKAGE / "config" / "schema.json"
-    _write({target.with_name("stiction.schema.json"): schema, target: Path(__file__).with_name("study.yaml")})
+    _write({target: Path(__file__).with_name("study.yaml"), target.with_name("stiction.schema.json"): schema})
     say(f"{target} describes a surface, a pair and a beam: change them into yours. Then")
-    say(f"  stiction check {target}     says whether it can run")
-    say(f"  stiction run {target}       computes it: tables and figures in results/")
+    word = shlex.quote(str(target))
+    say(f"  stiction check {word}     says whether it can run")
+    say(f"  stiction run {word}       computes it: tables and figures in results/")
     return Status.DONE
 
 
@@ -137,6 +139,7 @@ def _write(contents):
     if there := [target for target in missing or texts if os.path.lexists(target)]:
         raise launch.RefusedError(f"{there[0]} exists already: nothing was written")
     for target, text in missing.items():
+        launch.require_folder(target.parent)
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
             with target.open("x", encoding="utf-8") as file:

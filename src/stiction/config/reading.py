@@ -124,6 +124,8 @@ _Strict.add_constructor("tag:yaml.org,2002:float", _Strict.construct_number)
 
 #: Options of Snakemake that take a number of jobs.
 _NUMBERS = ("--cores", "-c", "--jobs", "-j", "--local-cores")
+#: Value that begins as an option does.
+_NEGATIVE = re.compile(r"-\d+")
 
 
 def problems(files: Iterable[str], arguments: Iterable[str]) -> Iterator[str]:
@@ -157,9 +159,6 @@ def contents(files: Iterable[str], arguments: Iterable[str]) -> list[dict]:
 def _files(files, arguments):
     """Files of the configuration, those of the command first."""
     return [*files, *_values(arguments, ("--configfile", "--configfiles"))]
-
-
-_NEGATIVE = re.compile(r"-\d+")
 
 
 def _values(arguments, options):

@@ -21,7 +21,7 @@ from stiction.config.conditions import Keys, Relations
 from stiction.config.messages import did_you_mean, duplicates, shown
 from stiction.config.stated_materials import hamaker_constants
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, in_si, to_si
-from stiction.contact.meniscus import dry_air, meniscus_height
+from stiction.contact.meniscus import dry_air, is_wetted, meniscus_height
 from stiction.devices import limits
 from stiction.devices.materials import COATING, COATING_ATTRACTION
 from stiction.errors import NotConverged
@@ -536,7 +536,7 @@ def wetting(sides: list[dict], materials: dict, more: float = 0) -> tuple[float,
     """
     stated = (material.get("contact_angle_deg", 0) for material in of_material(sides, materials))
     angles = [to_si(angle + more, "deg") for angle in stated]
-    return tuple(angles) if sum(map(math.cos, angles)) > 1e-9 else ()
+    return tuple(angles) if is_wetted(angles) else ()
 
 
 @relation

@@ -42,9 +42,9 @@ def not_modelled(left_out: Sequence[str] = (), humid: bool = True) -> str:
         *time,
         "electric charge and voltage",
         "wear",
-        "conformal films, which correlate both",
+        "conformal films, which correlate both surfaces",
     ]
-    sentence = f"Not in the model: {', '.join([*left_out, *never])} surfaces, and curl by a stress gradient."
+    sentence = f"Not in the model: {', '.join([*left_out, *never])}, and curl by a stress gradient."
     fast = " Surfaces that separate faster than water evaporates hold more than computed, which is the unsafe side."
     return sentence + fast * humid
 
