@@ -30,8 +30,8 @@ from stiction.config.files import paper
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.plan.plan import Plan
-from stiction.report.devices import tables_inference
 from stiction.report.format import TO_UM, with_error
+from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run.storage import load
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
 from stiction.stages.laws.forces import vectors
@@ -81,9 +81,9 @@ ROUGHNESS_PICTURES = {"roughness_Bump": 700, "roughness_Lever": 1000, "roughness
 #: Sentences, and picture with its width [pixels], of ``make devices CONFIG=examples/test_beams.yaml``.
 TEST_BEAMS = "test_beams"
 TEST_BEAMS_SAID = {
-    "build": tables_inference.built,
-    "further": tables_inference.advised,
-    "warned": lambda update: " ".join(tables_inference.warnings(update)),
+    "build": tables_test_beams.built,
+    "further": tables_test_beams.advised,
+    "warned": lambda update: " ".join(tables_test_beams.warnings(update)),
 }
 TEST_BEAMS_PICTURE = ("test_beams_onB", 1100)
 #: Tables of studies with a command of their own: command, and width of the picture of the same name [pixels] or 0.

@@ -11,7 +11,7 @@ import pandas as pd
 
 from stiction.report.format import number, with_error
 from stiction.report.style import SINGLE, humidity_axis, panels, save, styled
-from stiction.report.tables import Table
+from stiction.report.table import Table
 
 #: Predictions by the columns of the table: words, colour and shift in the figure.
 PREDICTIONS = {"before": ("without test beams", "0.6", -0.004), "after": ("with test beams", "#0072B2", 0.004)}

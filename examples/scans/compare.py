@@ -11,7 +11,7 @@ import pandas as pd
 
 from stiction.report.format import error_alone, number, with_error
 from stiction.report.style import SINGLE, humidity_axis, panels, save, styled
-from stiction.report.tables import Table
+from stiction.report.table import Table
 
 #: Pairs of the measured and of the true surfaces.
 MEASURED, TRUE = "mine", "truth"

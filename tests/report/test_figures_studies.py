@@ -13,7 +13,9 @@ from stiction.config.files import load
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At
-from stiction.report import figures_studies, published, tables_studies
+from stiction.report import published
+from stiction.report.studies import figures as figures_studies
+from stiction.report.studies import tables as tables_studies
 from stiction.report.style import save
 from stiction.stages.beams import mesh as study_mesh
 from stiction.stages.beams import variant_beams as study_variant

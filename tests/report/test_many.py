@@ -15,10 +15,10 @@ from stiction.analysis.mesh import Arrest
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.contact import forcelaw
-from stiction.report import figures_studies
-from stiction.report.figures_beams import adhesion_energies
-from stiction.report.figures_forces import force_curves
-from stiction.report.figures_overview import overview
+from stiction.report.beams.figures import adhesion_energies
+from stiction.report.beams.overview import overview
+from stiction.report.laws.figures import force_curves
+from stiction.report.studies import figures as figures_studies
 from stiction.report.style import styled
 from stiction.stages.beams import beams as stage_beams
 from stiction.stages.beams import mesh as study_mesh

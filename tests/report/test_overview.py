@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.container import ErrorbarContainer
 
 from stiction.contact import forcelaw
-from stiction.report.figures_overview import _FOLLOWED, overview
+from stiction.report.beams.overview import _FOLLOWED, overview
 from stiction.report.style import save
 from stiction.stages.laws import forces as stage_forces
 from stiction.streams import stream

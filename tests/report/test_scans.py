@@ -12,8 +12,8 @@ from matplotlib.text import Text
 from numpy.testing import assert_allclose
 
 from stiction.report.format import with_error
-from stiction.report.scans.figures_scans import surface_sheet
-from stiction.report.scans.tables_scans import scan_uncertainty, scans
+from stiction.report.scans.figures import surface_sheet
+from stiction.report.scans.tables import scan_uncertainty, scans
 from stiction.report.style import save
 from stiction.scans.estimate import Settings
 from stiction.scans.reading import ScanFile

@@ -18,10 +18,10 @@ from stiction.beam.cantilever import Beam
 from stiction.config.files import load
 from stiction.contact import forcelaw
 from stiction.plan.plan import Plan
-from stiction.report.figures_beams import adhesion_energies, beam_shapes, converted
-from stiction.report.figures_forces import fitted_curve, force_curves, typical
-from stiction.report.figures_surfaces import elevation_maps, height_densities, profiles, spectra, summits
+from stiction.report.beams.figures import adhesion_energies, beam_shapes, converted
+from stiction.report.laws.figures import fitted_curve, force_curves, typical
 from stiction.report.style import humidity_axis, letter, panels, save
+from stiction.report.surfaces.figures import elevation_maps, height_densities, profiles, spectra, summits
 from stiction.stages.beams import beams as stage_beams
 from stiction.stages.laws import fit as study_fit
 from stiction.stages.laws import forces as stage_forces

@@ -12,7 +12,11 @@ from numpy.testing import assert_allclose
 
 from stiction.models import surface_model
 from stiction.plan.stage import At
-from stiction.report import checks, published, tables, tables_beams, tables_studies, tables_surfaces
+from stiction.report import checks, published
+from stiction.report import table as tables
+from stiction.report.beams import tables as tables_beams
+from stiction.report.studies import tables as tables_studies
+from stiction.report.surfaces import tables as tables_surfaces
 from stiction.run.markdown import plain
 from stiction.stages.beams.pair_warnings import as_markdown
 from stiction.stages.contact import model_error

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stiction.report.tables_beams import fit_quality
+from stiction.report.beams.tables import fit_quality
 from stiction.stages.laws import fit as study_fit
 
 

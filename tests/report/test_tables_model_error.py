@@ -5,7 +5,8 @@ import xarray as xr
 
 from stiction.config.files import load
 from stiction.plan.plan import Plan
-from stiction.report import model_error, style
+from stiction.report import style
+from stiction.report.model_error import table as model_error
 from stiction.stages.contact import full_contact
 from stiction.stages.contact import model_error as stage_model_error
 

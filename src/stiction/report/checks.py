@@ -31,7 +31,7 @@ from stiction.models import MOMENT_KEYS, SURFACE_MODELS, surface_model
 from stiction.plan.names import Outcome, by_case, by_model, by_name, by_outcome
 from stiction.plan.stage import File, Stage, chosen, select
 from stiction.report.format import TO_MJ, TO_NM, TO_UM, number, with_error
-from stiction.report.tables_surfaces import surface_statistics
+from stiction.report.surfaces.tables import surface_statistics
 from stiction.run.atomic import save_text
 from stiction.run.markdown import literal
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections

@@ -1,6 +1,6 @@
 """Common to all figures: style, sizes, labels and files; equal data give files that are equal byte for byte.
 
-The figures themselves are in the modules ``figures_*``: functions of datasets that return a matplotlib figure.
+Figures are drawn in the modules ``figures`` of each subject: functions of datasets that return a matplotlib figure.
 """
 
 import io

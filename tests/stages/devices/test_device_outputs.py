@@ -8,7 +8,8 @@ import xarray as xr
 from ground import safe_with_tips, safe_without_tips
 from legends import covering
 
-from stiction.report.devices import figures_devices, tables_devices
+from stiction.report.devices import figures as figures_devices
+from stiction.report.devices import tables as tables_devices
 from stiction.report.style import save
 
 S_SHAPE, EITHER = "S-shape", "S-shape or arc"

@@ -23,7 +23,11 @@ from stiction.devices.arcs import arc_length
 from stiction.devices.bridges import least_length
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
-from stiction.report.devices import figures_budget, figures_devices, pages, tables_budget, tables_devices
+from stiction.report.budget import figures as figures_budget
+from stiction.report.budget import tables as tables_budget
+from stiction.report.devices import figures as figures_devices
+from stiction.report.devices import pages
+from stiction.report.devices import tables as tables_devices
 from stiction.report.format import airs
 from stiction.stages.contact import contact, curves
 from stiction.stages.devices import stoppers

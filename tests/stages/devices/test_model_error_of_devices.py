@@ -9,7 +9,10 @@ from test_tables_budget import BUDGETS, STOPPERS
 from stiction.config.files import load
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
-from stiction.report.devices import model_errors, pages, tables_budget, tables_devices
+from stiction.report.budget import tables as tables_budget
+from stiction.report.devices import pages
+from stiction.report.devices import tables as tables_devices
+from stiction.report.model_error import sentences as model_errors
 from stiction.stages.devices import model_error
 from stiction.stages.devices.releases import EITHER, FORCE, S_SHAPE
 

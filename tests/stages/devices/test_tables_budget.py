@@ -9,7 +9,8 @@ from numpy.testing import assert_allclose
 from stiction.config.files import load
 from stiction.contact.environment import Water
 from stiction.plan.plan import Plan
-from stiction.report.devices import figures_budget, tables_budget
+from stiction.report.budget import figures as figures_budget
+from stiction.report.budget import tables as tables_budget
 from stiction.report.style import DOUBLE, legend_below, panels, save, styled
 from stiction.stages.devices import budget as study_budget
 from stiction.stages.devices import stoppers as study_stoppers

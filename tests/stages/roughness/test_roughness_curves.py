@@ -12,7 +12,8 @@ import stiction
 from stiction.contact.environment import Water
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
-from stiction.report.devices import figures_roughness, tables_roughness
+from stiction.report.roughness import figures as figures_roughness
+from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import png
 from stiction.stages.devices.releases import S_SHAPE
 from stiction.stages.roughness import contacts, curves

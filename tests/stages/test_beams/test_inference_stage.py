@@ -17,7 +17,9 @@ from stiction.contact.environment import Gaps, Water
 from stiction.devices import arcs
 from stiction.devices.inference import FACTOR, SCORES, SLOPE, Discrepancy, expected_share, lognormal
 from stiction.report import style
-from stiction.report.devices import figures_inference, tables_inference, warnings_page
+from stiction.report.devices import warnings_page
+from stiction.report.test_beams import figures as figures_test_beams
+from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import storage
 from stiction.run.markdown import plain
 from stiction.stages.contact import curves
@@ -155,8 +157,8 @@ def test_tips_adhere_as_much_more_as_cracks_show_that_no_input_explains():
     assert_allclose(moved.sel(shape=S_SHAPE), adhesion**-0.25, rtol=1e-4)
     assert_allclose(moved.sel(shape=EITHER), adhesion ** (-1 / 3), rtol=1e-4)
     assert_allclose((less.updated_safe / less.safe).sel(shape=EITHER), 1, rtol=1e-6)
-    assert "up to 2.4 times the adhesion that the inputs explain: tips" in tables_inference.built(more)
-    assert "no more adhesion than the inputs explain" in tables_inference.built(less)
+    assert "up to 2.4 times the adhesion that the inputs explain: tips" in tables_test_beams.built(more)
+    assert "no more adhesion than the inputs explain" in tables_test_beams.built(less)
 
 
 def test_two_equal_arrays_that_share_their_dimensions_are_one_of_twice_as_many_beams():
@@ -344,15 +346,15 @@ def test_small_shares_are_those_of_the_fit_and_not_those_of_the_few_counted_beam
 )
 def test_pages_state_what_follows_for_bridges_and_stoppers(found, built, stuck, rows):
     found = found()
-    assert tables_inference.built(found).startswith(built)
-    (sentence,) = tables_inference.stuck(found)
+    assert tables_test_beams.built(found).startswith(built)
+    (sentence,) = tables_test_beams.stuck(found)
     assert sentence.startswith(f"At a relative humidity of {float(found.humidity[0]):g}, ")
     assert stuck in sentence
-    (in_dry_air,) = tables_inference.stuck(found.assign_coords(humidity=[0.0]))
+    (in_dry_air,) = tables_test_beams.stuck(found.assign_coords(humidity=[0.0]))
     assert in_dry_air.startswith("In dry air, ")
-    frame = tables_inference.test_beams({"R1": found}).frame
+    frame = tables_test_beams.test_beams({"R1": found}).frame
     assert frame.part.str.contains("safe|stuck").sum() == rows
-    assert figures_inference.test_beams(found).axes
+    assert figures_test_beams.test_beams(found).axes
 
 
 def test_lengths_to_build_are_the_least_safe_ones_less_twice_the_uncertainty_of_what_holds_the_device():
@@ -369,7 +371,7 @@ def test_lengths_to_build_are_the_least_safe_ones_less_twice_the_uncertainty_of_
     ]
     lengths = [built(*case) for case in cases]
     assert len(set(lengths)) == 4
-    assert re.findall(r"\d+ µm", tables_inference.built(found)) == lengths
+    assert re.findall(r"\d+ µm", tables_test_beams.built(found)) == lengths
 
 
 # Counts
@@ -404,7 +406,7 @@ def test_tips_that_were_counted_show_themselves_how_much_they_adhere():
     assert np.all(computed(shorter).adhesion_of_tips[3:] > 1.5)
     found = computed(shorter, stuck=counts(as_computed(0.7), [10] * 3, 20))
     assert_array_equal(found.adhesion_of_tips, 1)
-    assert not re.search("adhesion|adhere", tables_inference.built(found))
+    assert not re.search("adhesion|adhere", tables_test_beams.built(found))
 
 
 def test_counts_say_about_the_device_what_the_crack_lengths_of_the_same_beams_say(shapes):
@@ -464,7 +466,7 @@ def test_lengths_to_build_after_counts_are_their_quantile_two_standard_deviation
     tips = found.isel(result=slice(3, None))
     doubt = float((tips.result_shift - tips.result_quantile.sel(score=-2)).max())
     least = float(found.updated_safe.sel(shape=EITHER).min()) / UM
-    assert tables_inference.built(found).startswith(
+    assert tables_test_beams.built(found).startswith(
         f"With the test beams, build it no longer than {least * (1 - doubt):.0f} µm"
     )
     assert doubt > 2.05 * float(tips.result_after.max())  # control
@@ -520,20 +522,20 @@ def test_the_dataset_is_stored_and_read_unchanged(tmp_path):
 
 
 def test_data_that_the_inputs_explain_give_no_warning():
-    assert tables_inference.warnings(computed(as_computed(1.01))) == []
-    assert tables_inference.explained(computed(as_computed(1.01))).startswith("The test beams are as computed, ")
-    assert tables_inference.explained(computed(as_computed(1.3))).startswith("Differences from the computed ")
+    assert tables_test_beams.warnings(computed(as_computed(1.01))) == []
+    assert tables_test_beams.explained(computed(as_computed(1.01))).startswith("The test beams are as computed, ")
+    assert tables_test_beams.explained(computed(as_computed(1.3))).startswith("Differences from the computed ")
 
 
 def test_data_that_only_the_model_explains_say_so_with_its_factor():
-    (sentence, *_) = tables_inference.warnings(computed(as_computed(1.3)))
+    (sentence, *_) = tables_test_beams.warnings(computed(as_computed(1.3)))
     assert sentence.startswith("The errors of the inputs, as stated, do not explain the test beams (p = ")
     assert "times as large as computed" in sentence
 
 
 def test_data_that_nothing_explains_are_refused_in_words():
     zigzag = np.array(as_computed()) * [1.3, 0.7, 1.3]
-    sentences = tables_inference.warnings(computed(zigzag))
+    sentences = tables_test_beams.warnings(computed(zigzag))
     assert "rely neither on the update" in sentences[0]
     assert any(sentence.startswith("arrayA, RH 0.67: -") for sentence in sentences)
 
@@ -545,13 +547,13 @@ def contradicted(found, p_value=2e-6):
 @pytest.mark.parametrize("found", [lambda: computed(as_computed()), of_bridge, of_stopper])
 def test_an_update_that_nothing_explains_recommends_nothing_and_its_warning_counts(found):
     reliable, refused = found(), contradicted(found())
-    words, refusal = tables_inference.built(reliable), tables_inference.built(refused)
+    words, refusal = tables_test_beams.built(reliable), tables_test_beams.built(refused)
     assert re.search(r"\d (µm|µN)", words)
     assert not re.search(r"\d (µm|µN)", refusal)
     assert "(p = 2e-06)" in refusal
     assert refusal.endswith("rely neither on the update nor on what is stated without it.")
-    assert tables_inference.stuck(reliable)
-    assert tables_inference.stuck(refused) == []
+    assert tables_test_beams.stuck(reliable)
+    assert tables_test_beams.stuck(refused) == []
     safe, others = (of_safe_sizes(each) for each in (reliable, refused))
     assert safe.after.notnull().all()
     assert others.after.isnull().all()
@@ -567,12 +569,12 @@ NO_LIMITS = device_warnings.OfDevices({}, {}, {})
 
 def of_safe_sizes(found):
     """Rows of the table with safe lengths or forces, and the shares that stick at them."""
-    frame = tables_inference.test_beams({"C1": found}).frame
+    frame = tables_test_beams.test_beams({"C1": found}).frame
     return frame[frame.part.str.contains("safe|stuck at")]
 
 
 def test_humidities_and_dimensions_beyond_those_of_the_test_beams_are_extrapolations():
-    dry = tables_inference.warnings(computed(as_computed(humidities=(0.67,)), humidities=(0.67,)))
+    dry = tables_test_beams.warnings(computed(as_computed(humidities=(0.67,)), humidities=(0.67,)))
     assert dry[:1] == [
         "Test beams were measured from RH 0.67 to 0.67: the prediction at relative humidities of 0.44, 0.92 is an "
         "extrapolation."
@@ -586,26 +588,28 @@ def test_humidities_and_dimensions_beyond_those_of_the_test_beams_are_extrapolat
     assert len(dry) == 3
     thin = replace(ARRAY, thickness=1.2 * UM)
     found = computed([length(thin, rh) for rh in HUMIDITIES], array=thin)
-    assert tables_inference.warnings(found)[0].startswith("The thickness of the device, 2.6 µm, differs by more than a")
+    assert tables_test_beams.warnings(found)[0].startswith(
+        "The thickness of the device, 2.6 µm, differs by more than a"
+    )
 
 
 def test_computed_cracks_that_are_longer_than_the_beams_are_named():
     long = replace(ARRAY, thickness=6 * UM, gap=40 * UM)
     found = computed([length(long, rh) for rh in HUMIDITIES], array=long)
     assert any(
-        sentence.startswith("arrayA, RH 0.44: computed cracks of") for sentence in tables_inference.warnings(found)
+        sentence.startswith("arrayA, RH 0.44: computed cracks of") for sentence in tables_test_beams.warnings(found)
     )
 
 
 def test_the_combination_that_one_length_determines_names_its_inputs():
     found = computed(as_computed(humidities=(0.67,)), humidities=(0.67,))
-    (sentence,) = tables_inference.combinations(found)
+    (sentence,) = tables_test_beams.combinations(found)
     assert f"more {FACTOR}" in sentence
     assert "more rms of B2" in sentence
     assert "thickness of C1" not in sentence
     assert "They do not tell these apart" in sentence
     largest = abs(found.correlation).max("input")
-    (single,) = tables_inference.combinations(
+    (single,) = tables_test_beams.combinations(
         found.assign(correlation=found.correlation.where(abs(found.correlation) == largest, 0.0))
     )
     assert "It is mostly this input" in single
@@ -613,7 +617,7 @@ def test_the_combination_that_one_length_determines_names_its_inputs():
 
 
 def test_the_table_has_data_lengths_safe_lengths_and_inputs():
-    table = tables_inference.test_beams({"C1": computed(as_computed(1.1))})
+    table = tables_test_beams.test_beams({"C1": computed(as_computed(1.1))})
     assert len(table.frame) == 3 + 6 + 12 + 8
     results = table.frame[table.frame.part.str.contains("tip|length") & (table.frame.name == "C1")]
     assert set(results.device) == {"C1"}
@@ -621,14 +625,14 @@ def test_the_table_has_data_lengths_safe_lengths_and_inputs():
     cells = table.cells.set_index("what").before
     assert cells["C1: safe length, beam or tip, p = 0.001 [µm]"].iloc[0] == "250.0"
     assert "C1: stuck at the safe length, beam or tip, p = 0.001, of column before [%]" in cells
-    assert [tables_inference._number(share, np.nan) for share in (19.46, 0.0134)] == ["19.5", "0.013"]
+    assert [tables_test_beams._number(share, np.nan) for share in (19.46, 0.0134)] == ["19.5", "0.013"]
     assert "Further test beams would help most with the dimensions and in the air of " in table.caption
 
 
 @pytest.mark.usefixtures("shapes")
 def test_the_table_has_counts_beside_the_expected_ones():
     found = computed([], stuck=counts(as_computed(0.7), [3, 4, 5], 20))
-    frame = tables_inference.test_beams({"C1": found}).frame
+    frame = tables_test_beams.test_beams({"C1": found}).frame
     rows = frame[frame.part.str.startswith("stuck of 20")]
     assert rows.measured.tolist() == [3, 4, 5]
     assert_allclose(rows.after, 20 * found.stuck_after)
@@ -637,12 +641,12 @@ def test_the_table_has_counts_beside_the_expected_ones():
 
 @pytest.mark.usefixtures("shapes")
 def test_the_figure_shows_counts_at_the_lengths_of_their_beams():
-    figure = figures_inference.test_beams(computed([], stuck=counts(as_computed(0.7), [3, 4, 5], 20)))
+    figure = figures_test_beams.test_beams(computed([], stuck=counts(as_computed(0.7), [3, 4, 5], 20)))
     assert [text.get_text() for text in figure.axes[0].texts[:3]] == ["3 of 20", "4 of 20", "5 of 20"]
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert "measured, 95 %" not in labels
     assert labels[-1].startswith("length of counted beams")
-    single = figures_inference.test_beams(computed([], stuck=counts(as_computed(0.7)[:1], [3], 20, HUMIDITIES[:1])))
+    single = figures_test_beams.test_beams(computed([], stuck=counts(as_computed(0.7)[:1], [3], 20, HUMIDITIES[:1])))
     assert single.legends[0].get_texts()[-1].get_text() == labels[-1]
 
 
@@ -652,7 +656,7 @@ def test_counts_in_dry_air_are_beside_the_axis(shapes, monkeypatch):
     monkeypatch.setitem(POWER, 0.0, -3.0)
     both = (0.0, 0.67)
     found = computed([], humidities=both, stuck=counts(as_computed(0.7, both), [3, 4], 20, both))
-    panel = figures_inference.test_beams(found).axes[0]
+    panel = figures_test_beams.test_beams(found).axes[0]
     at = {int(text.get_text()[0]): text.xy[0] for text in panel.texts if "of 20" in text.get_text()}
     assert at == {3: style.places(list(both))[0.0], 4: 0.67}
     assert 0 < at[3] < 0.67
@@ -666,7 +670,7 @@ def test_numbers_of_counts_cross_neither_the_line_of_dry_air_nor_the_frame(shape
     monkeypatch.setitem(POWER, 0.0, -3.0)
     both = (0.0, *humid)
     stuck = counts(as_computed(0.7, both), [100] * len(both), 120, both)
-    figure = figures_inference.test_beams(computed([], humidities=both, names=names, stuck=stuck))
+    figure = figures_test_beams.test_beams(computed([], humidities=both, names=names, stuck=stuck))
     figure.draw_without_rendering()
     panel = figure.axes[0]
     boxes = [text.get_window_extent() for text in panel.texts]
@@ -686,18 +690,18 @@ def _crosses(band, panel, at):
 
 def test_bands_at_one_humidity_have_a_width():
     for humidities in ((0.67,), (0.44, 0.67)):
-        panel = figures_inference.test_beams(computed(as_computed(1.1, humidities), humidities=humidities)).axes[0]
+        panel = figures_test_beams.test_beams(computed(as_computed(1.1, humidities), humidities=humidities)).axes[0]
         for band in panel.collections[:2]:
             assert np.ptp(band.get_paths()[0].vertices[:, 0]) >= 0.019
 
 
 def test_no_bar_of_the_inputs_touches_the_frame():
-    panel = figures_inference.test_beams(computed(as_computed(1.1))).axes[-1]
+    panel = figures_test_beams.test_beams(computed(as_computed(1.1))).axes[-1]
     left, right = panel.get_xlim()
     assert all(left < bar.get_x() and bar.get_x() + bar.get_width() < right for bar in panel.patches)
 
 
 def test_the_figure_has_a_panel_for_every_array_and_one_for_the_inputs():
-    figure = figures_inference.test_beams(computed(as_computed(1.1), names=("arrayA", "arrayB")))
+    figure = figures_test_beams.test_beams(computed(as_computed(1.1), names=("arrayA", "arrayB")))
     assert [panel.get_title(loc="left") for panel in figure.axes][-1].endswith("inputs")
     assert len(figure.axes) == 3

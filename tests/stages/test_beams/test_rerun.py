@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 import stiction
 from stiction.beam.energy import arrest_length
 from stiction.plan.graph import Results
-from stiction.report.devices import tables_inference
+from stiction.report.test_beams import tables as tables_test_beams
 from stiction.stages.devices import budget as stage_budget
 from stiction.stages.devices.budget import Responses
 from stiction.stages.devices.releases import S_SHAPE, DesignedBeam
@@ -62,7 +62,7 @@ def compared(exponent):
 def reported(numbers):
     """Warnings of a device with these numbers."""
     found = rerun.with_reruns(xr.Dataset(), ["C1, RH 0.6"], [numbers])
-    return list(tables_inference._nonlinear(found)), tables_inference.again(found)
+    return list(tables_test_beams._nonlinear(found)), tables_test_beams.again(found)
 
 
 def test_lengths_that_are_powers_of_the_inputs_change_as_in_the_linear_update():
@@ -173,4 +173,4 @@ def test_inputs_for_which_nothing_can_be_computed_are_named_with_the_reason(stop
     job = stopper.results.graph.job("devices/test_beams/rerun/S1")
     found = job.compute(stopper.results.inputs(job))
     assert found.sizes["again"] == 0
-    assert tables_inference.again(found).endswith("nothing can be computed again: no density.")
+    assert tables_test_beams.again(found).endswith("nothing can be computed again: no density.")

@@ -25,7 +25,7 @@ from stiction.report.style import (
     letter_lines,
     styled,
 )
-from stiction.report.tables import PAIR, Table, table_stage
+from stiction.report.table import PAIR, Table, table_stage
 from stiction.stages.beams.releases import stuck_lengths
 from stiction.stages.contact import full_contact
 from stiction.stages.contact.asperities import cost, energies_of_readings

@@ -22,7 +22,7 @@ from stiction.report.style import (
     shades,
     styled,
 )
-from stiction.report.tables import Table, table_stage
+from stiction.report.table import Table, table_stage
 
 _CAPTION = (
     "Adhesion after surfaces were pressed together once: ratio of the mean adhesion energy ē to that before, at each "

@@ -16,19 +16,17 @@ from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of
 from stiction.config.stated_materials import material_of
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
-from stiction.report.devices import (
-    figures_budget,
-    figures_devices,
-    figures_inference,
-    figures_roughness,
-    model_errors,
-    tables_budget,
-    tables_devices,
-    tables_inference,
-    tables_roughness,
-)
+from stiction.report.budget import figures as figures_budget
+from stiction.report.budget import tables as tables_budget
+from stiction.report.devices import figures as figures_devices
+from stiction.report.devices import tables as tables_devices
 from stiction.report.format import MISSING, UM, UN, airs, humidity_text
+from stiction.report.model_error import sentences as model_errors
+from stiction.report.roughness import figures as figures_roughness
+from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import STYLE, png
+from stiction.report.test_beams import figures as figures_test_beams
+from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import made
 from stiction.run.atomic import save_text
 from stiction.stages.beams import pair_warnings
@@ -262,12 +260,12 @@ def of_beam(
     answer = [build_sentence(safe_lengths, budgets), *_rough_enough(roughness)]
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
-        answer.append(tables_inference.built(test_beams))
+        answer.append(tables_test_beams.built(test_beams))
     answer += [safe_sentence(humidity, dataset) for humidity, dataset in safe_lengths.items()]
     answer += model_errors.sentences(name, errors)
     sections += _how_rough(name, roughness)
     listed = pair_warnings.with_numbers(warnings)
-    listed += [] if test_beams is None else tables_inference.warnings(test_beams)
+    listed += [] if test_beams is None else tables_test_beams.warnings(test_beams)
     shapes = next(iter(safe_lengths.values()))["shape"].values
     held = {term: text for shape in shapes for term, text in END_STATES[str(shape)].terms.items()}
     words = (
@@ -298,8 +296,8 @@ def of_stopper(
     answer, listed = [verdict(stopper), *_rough_enough(roughness)], list(warnings)
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
-        answer.append(tables_inference.built(test_beams))
-        listed += tables_inference.warnings(test_beams)
+        answer.append(tables_test_beams.built(test_beams))
+        listed += tables_test_beams.warnings(test_beams)
     answer += [stuck_sentence(*row, force=float(stopper.restoring_force)) for row in shares_stuck(stopper)]
     worst = [worst_sentence(stopper)] if ends(stopper) else []
     answer += [*safe_force_sentences(stopper), *worst, *model_errors.sentences(name, errors)]
@@ -538,13 +536,13 @@ def _sure(name, budgets, errors):
 def _of_test_beams(name, update):
     """Section on what the test beams of a device say."""
     said = [
-        tables_inference.explained(update),
-        *tables_inference.combinations(update),
-        tables_inference.advised(update),
+        tables_test_beams.explained(update),
+        *tables_test_beams.combinations(update),
+        tables_test_beams.advised(update),
     ]
-    said += [tables_inference.again(update), *tables_inference.stuck(update)]
-    cells = tables_inference.test_beams({name: update}).cells.drop(columns="device")
-    return Section("What the test beams say", said, cells, figures_inference.test_beams(update))
+    said += [tables_test_beams.again(update), *tables_test_beams.stuck(update)]
+    cells = tables_test_beams.test_beams({name: update}).cells.drop(columns="device")
+    return Section("What the test beams say", said, cells, figures_test_beams.test_beams(update))
 
 
 def _rough_enough(roughness):

@@ -6,7 +6,7 @@ import xarray as xr
 
 from stiction.plan.names import by_name
 from stiction.plan.stage import Stage
-from stiction.report.devices import tables_inference
+from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run.atomic import save_text
 from stiction.stages.beams.pair_warnings import as_markdown
 from stiction.stages.devices import device_warnings
@@ -15,7 +15,7 @@ from stiction.stages.devices.device_warnings import OfDevices, subjects
 
 def page(limits: OfDevices, test_beams: Mapping[str, xr.Dataset], not_modelled: str) -> str:
     """Warnings about devices, and about what their test beams say, by name of the device."""
-    said = {f"{name}, test beams": tables_inference.warnings(update) for name, update in test_beams.items()}
+    said = {f"{name}, test beams": tables_test_beams.warnings(update) for name, update in test_beams.items()}
     return as_markdown(subjects(limits) | said, not_modelled)
 
 

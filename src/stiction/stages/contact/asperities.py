@@ -11,13 +11,13 @@ import xarray as xr
 
 from stiction.config.units import in_si
 from stiction.contact import solids
-from stiction.contact.alone import Strip, alone, solid_pressure
 from stiction.contact.asperity import Asperity
 from stiction.contact.elements import Adhesion
 from stiction.contact.environment import Water
 from stiction.contact.halfspace import HalfSpace
 from stiction.contact.pair import Definition, EquivalentSurface
 from stiction.contact.pair import solid_pressure as pressure_of_spheres
+from stiction.contact.regions import Strip, alone, solid_pressure
 from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.plan.stage import At, Stage
 from stiction.progress import progress

@@ -8,7 +8,7 @@ import xarray as xr
 from stiction.devices import inference
 from stiction.plan.names import by_name
 from stiction.report.format import TO_UM, airs, number, with_error
-from stiction.report.tables import DEVICE, Table, table_stage, with_list
+from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import ARC, FORCE, MIDDLE, S_SHAPE
 from stiction.stages.test_beams.inference import OWN, shape_of

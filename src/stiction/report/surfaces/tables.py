@@ -13,7 +13,7 @@ from stiction.plan.stage import chosen
 from stiction.report import published
 from stiction.report.format import NM, PER_UM2, UM, percent, signed, with_error
 from stiction.report.published import rows, value
-from stiction.report.tables import Table, table_stage
+from stiction.report.table import Table, table_stage
 from stiction.stages.surfaces import estimate
 from stiction.stages.surfaces.character import statistics
 from stiction.stages.surfaces.heights import substitution

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from stiction.report import beside
+from stiction.report.model_error import column
 
 
 def error(factor=1.1, interpolated=False, applied=False):
@@ -21,20 +21,20 @@ def error(factor=1.1, interpolated=False, applied=False):
 
 
 def test_a_change_is_the_factor_less_one_in_percent():
-    found = beside.change(error(interpolated=True))
+    found = column.change(error(interpolated=True))
     assert found["model_error_percent"] == pytest.approx(10)
     assert found["model_error_se_percent"] == pytest.approx(0.4)
     assert found["interpolated"] is True
-    assert beside.change(error(), "force_factor")["model_error_percent"] == pytest.approx(-20)
-    assert beside.change(error(1.0))["model_error_percent"] == 0
+    assert column.change(error(), "force_factor")["model_error_percent"] == pytest.approx(-20)
+    assert column.change(error(1.0))["model_error_percent"] == 0
 
 
 def test_an_unknown_error_is_no_error_of_zero():
-    found = beside.change(None)
+    found = column.change(None)
     assert np.isnan(found["model_error_percent"])
-    assert beside.marked(*found.values()) == "–"
+    assert column.marked(*found.values()) == "–"
 
 
 @pytest.mark.parametrize(("applied", "words"), [(True, "has changed"), (False, "would change")])
 def test_the_caption_says_whether_it_is_in_the_prediction(applied, words):
-    assert words in beside.caption({"b": error(applied=applied), "c": error()})
+    assert words in column.caption({"b": error(applied=applied), "c": error()})

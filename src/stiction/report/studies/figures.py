@@ -17,6 +17,7 @@ from stiction.plan.names import by_case, by_name, by_outcome
 from stiction.report import published
 from stiction.report.format import TO_GPA, TO_MJ, TO_MPA, TO_NM, TO_UM, with_error
 from stiction.report.published import rows
+from stiction.report.studies.tables import variant_label
 from stiction.report.style import (
     DOUBLE,
     OUTLINED,
@@ -38,7 +39,6 @@ from stiction.report.style import (
     shades,
     styled,
 )
-from stiction.report.tables_studies import variant_label
 from stiction.stages.beams.variant_beams import by_pair, cases_of
 from stiction.stages.laws.chaos import chaos_model
 

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from stiction.analysis import variants as comparison
 from stiction.plan.names import CORRECTED, Outcome, by_case, by_name, by_outcome
 from stiction.report import published
-from stiction.report.beside import change, marked
 from stiction.report.format import UM, as_published, percent, signed, with_error
+from stiction.report.model_error.column import change, marked
 from stiction.report.published import value
 from stiction.report.style import (
     MODELS,
@@ -26,7 +26,7 @@ from stiction.report.style import (
     letter_lines,
     styled,
 )
-from stiction.report.tables import PAIR, Table, table_stage
+from stiction.report.table import PAIR, Table, table_stage
 from stiction.stages.beams.releases import stuck_lengths
 from stiction.stages.beams.variant_beams import cases_of
 

@@ -9,12 +9,12 @@ from published import SPACING, SURFACES
 from scipy.ndimage import label
 
 from stiction.contact import forcelaw
-from stiction.contact.alone import BETWEEN, Strip, alone, solid_pressure, together
 from stiction.contact.asperity import MaugisTable, hertz_force, reduced_modulus
 from stiction.contact.elements import Adhesion
 from stiction.contact.halfspace import HalfSpace
 from stiction.contact.meniscus import film
 from stiction.contact.pair import DistanceGrid, SurfacePair
+from stiction.contact.regions import BETWEEN, Strip, alone, solid_pressure, together
 from stiction.contact.vanderwaals import attraction
 from stiction.streams import stream
 from stiction.surface.field import StripGrid

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from stiction.config.cases import air
 from stiction.config.kinds import ROUGHNESSES
 from stiction.devices.roughness import margins
-from stiction.report.devices.tables_roughness import in_unit, labelled
 from stiction.report.format import TO_UM
+from stiction.report.roughness.tables import in_unit, labelled
 from stiction.report.style import (
     DOUBLE,
     INTERVAL,

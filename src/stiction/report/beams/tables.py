@@ -13,10 +13,11 @@ from stiction.contact.forcelaw import admissible
 from stiction.estimates import mean_on_shared_samples, mean_with_error
 from stiction.models import surface_model
 from stiction.plan.names import Outcome, by_case, by_name, by_outcome
-from stiction.report import beside, published
+from stiction.report import published
 from stiction.report.format import TO_MJ, UM, as_published, error_alone, number, percent, signed, with_error
+from stiction.report.model_error import column as beside
 from stiction.report.published import value
-from stiction.report.tables import PAIR, Table, table_stage, with_list
+from stiction.report.table import PAIR, Table, table_stage, with_list
 from stiction.stages.beams import pair_warnings
 from stiction.stages.beams.releases import STATES, ended, stuck_energies, stuck_lengths
 from stiction.stages.laws import forces as stage_forces

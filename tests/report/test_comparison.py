@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stiction.report.compared import SOURCES, compared, drawn, rows
+from stiction.report.comparison import SOURCES, compared, drawn, rows
 
 KEYS, ENDS = ["surfaces.B2.rms_nm"], {"Rms3": [3], "Rms10": [10]}
 TABLE_3, LENGTHS, STOPPERS = SOURCES

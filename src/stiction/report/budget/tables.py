@@ -10,10 +10,10 @@ from stiction.config.cases import air
 from stiction.devices.budget import advice
 from stiction.estimates import mean_with_error
 from stiction.plan.names import by_name
-from stiction.report import beside
-from stiction.report.devices import model_errors
 from stiction.report.format import UN, humidity_text, number, signed, with_error
-from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_list
+from stiction.report.model_error import column
+from stiction.report.model_error import sentences as model_errors
+from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, response_of
 from stiction.stages.devices.end_states import END_STATES
@@ -83,8 +83,8 @@ def stoppers(
     if 0 < len(humid) < len(datasets):
         caption += " One in dry air alone has no such row."
     listed = [f"{device}: {sentence}" for device, of_device in warnings.items() for sentence in of_device]
-    said = [caption, *([beside.caption(errors)] if errors else []), not_modelled, *(["Warnings:"] if listed else [])]
-    columns = _columns_of_stoppers(rows) | (_WORST if humid else {}) | (beside.COLUMN if errors else {})
+    said = [caption, *([column.caption(errors)] if errors else []), not_modelled, *(["Warnings:"] if listed else [])]
+    columns = _columns_of_stoppers(rows) | (_WORST if humid else {}) | (column.COLUMN if errors else {})
     return Table.of(rows, with_list(" ".join(said), listed), columns)
 
 
@@ -184,7 +184,7 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
         "pull-off force of stoppers, due to every measurement, the others being exact, ± standard error of the "
         "simulation. Remaining: what would be left if the measurement were exact. Scatter between devices and other "
         "choices of the model, with the sign of their effect, are no part of the total."
-        + (f" {beside.caption(errors)}" if errors else ""),
+        + (f" {column.caption(errors)}" if errors else ""),
         [*sentences, *omitted],
     )
     return Table(frame, caption, as_text(frame[frame.part != "input"], _BUDGET))
@@ -251,7 +251,7 @@ def _part(part, name):
 def _effect_as_text(part, effect, error):
     """Effect with its standard error, if it has one; that of a choice, or of the model, has a sign."""
     if part in MODEL:
-        return beside.marked(effect, error, part == MODEL[1])
+        return column.marked(effect, error, part == MODEL[1])
     if not error > 0:
         return number(effect, ".2g")
     return (signed if part == "choice" else with_error)(effect, error)

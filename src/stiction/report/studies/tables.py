@@ -12,7 +12,7 @@ from stiction.plan.names import by_outcome
 from stiction.report import published
 from stiction.report.format import MISSING, UM, percent, with_error
 from stiction.report.published import value
-from stiction.report.tables import Table, table_stage
+from stiction.report.table import Table, table_stage
 from stiction.stages.beams.variant_beams import by_pair, cases_of
 
 _LABELS = {

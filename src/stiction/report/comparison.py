@@ -11,7 +11,7 @@ from stiction.config.merging import values
 from stiction.plan.stage import File
 from stiction.report.format import number, with_error
 from stiction.report.style import DOUBLE, SINGLE, dashes, figure_stage, letter, marker, panels, styled
-from stiction.report.tables import HUMIDITY, Columns, Table, table_stage
+from stiction.report.table import HUMIDITY, Columns, Table, table_stage
 
 
 class Source(NamedTuple):

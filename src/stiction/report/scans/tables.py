@@ -9,7 +9,7 @@ from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.models import ALTERNATIVES_OF_SCANS
 from stiction.plan.names import by_name
 from stiction.report.format import NM, UM, signed, with_error
-from stiction.report.tables import PAIR, Table, table_stage, with_list
+from stiction.report.table import PAIR, Table, table_stage, with_list
 from stiction.stages.laws.scan_uncertainty import GOAL
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import scan as stage_scan

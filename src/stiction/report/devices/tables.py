@@ -8,10 +8,10 @@ import pandas as pd
 import xarray as xr
 
 from stiction.plan.names import by_case
-from stiction.report import beside
-from stiction.report.devices import model_errors
 from stiction.report.format import UM, error_alone, humidity_text, number
-from stiction.report.tables import DEVICE, Table, as_text, table_stage, with_list
+from stiction.report.model_error import column
+from stiction.report.model_error import sentences as model_errors
+from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
 from stiction.stages.beams.pair_warnings import numbered, with_numbers
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import charts
@@ -80,7 +80,7 @@ def safe_lengths(
     frame = pd.DataFrame(rows)
     text, columns = f"{_SAFE_LENGTHS} {about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY)}", _LENGTHS
     if errors:
-        text, columns = f"{text} {beside.caption(errors)}", columns | beside.COLUMN
+        text, columns = f"{text} {column.caption(errors)}", columns | column.COLUMN
     return Table(frame, _caption(text, warnings, not_modelled), as_text(frame, columns).assign(warnings=marks))
 
 

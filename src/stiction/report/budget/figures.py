@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 from stiction.config.cases import air
 from stiction.devices.risk import stuck_share
 from stiction.plan.names import by_name
-from stiction.report.devices.tables_budget import SCATTER, TOTAL, choice_label, response_text
+from stiction.report.budget.tables import SCATTER, TOTAL, choice_label, response_text
 from stiction.report.format import TO_UN
 from stiction.report.style import (
     DOUBLE,

@@ -7,8 +7,8 @@ import numpy as np
 import xarray as xr
 
 from stiction.plan.names import by_name
-from stiction.report.beside import change
 from stiction.report.format import airs, signed
+from stiction.report.model_error.column import change
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import EITHER, FORCE
 

@@ -1,0 +1,1 @@
+"""Tables and figures of released beams (Secs. IV and V)."""

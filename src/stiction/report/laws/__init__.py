@@ -1,0 +1,1 @@
+"""Figures of force laws (Sec. III)."""

@@ -1,0 +1,1 @@
+"""Tables and figures of surfaces (Secs. II and IV-A)."""
