@@ -401,12 +401,15 @@ def counts(lengths, stuck, of, humidities=HUMIDITIES):
 
 
 @pytest.mark.usefixtures("shapes")
-def test_tips_that_were_counted_show_themselves_how_much_they_adhere():
-    shorter = as_computed(0.8)
-    assert np.all(computed(shorter).adhesion_of_tips[3:] > 1.5)
-    found = computed(shorter, stuck=counts(as_computed(0.7), [10] * 3, 20))
-    assert_array_equal(found.adhesion_of_tips, 1)
-    assert not re.search("adhesion|adhere", tables_test_beams.built(found))
+def test_counts_that_say_nothing_lengthen_no_tip():
+    shorter, sure = as_computed(0.8), counts(as_computed(3.0), [10] * 3, 10)  # all of these beams stick in any case
+    alone, counted = computed(shorter), computed(shorter, stuck=sure)
+    assert np.all(alone.adhesion_of_tips[3:] > 1.5)
+    assert_allclose(counted.adhesion_of_tips, alone.adhesion_of_tips, rtol=0.02)
+    assert_allclose(counted.result_shift, alone.result_shift, atol=0.01)
+    assert "times the adhesion that the inputs explain" in tables_test_beams.built(counted)
+    nothing_measured = computed([], stuck=sure)
+    assert_array_equal(nothing_measured.adhesion_of_tips, 1)
 
 
 def test_counts_say_about_the_device_what_the_crack_lengths_of_the_same_beams_say(shapes):

@@ -110,10 +110,10 @@ def built(update: xr.Dataset) -> str:
 
 
 def _beyond_cracks(update):
-    """What the cracks say about errors of the model where no crack holds the device; empty if tips were counted."""
+    """What the cracks say about errors of the model where no crack holds the device; empty without crack lengths."""
     if MIDDLE in update.response.values:
         return " Cracks do not say how much the model errs at bridges."
-    if ARC not in update.response.values or update.sizes["count"]:
+    if ARC not in update.response.values or not update.sizes["datum"]:
         return ""
     more = float(update.adhesion_of_tips.max())
     if more < NOTICED:

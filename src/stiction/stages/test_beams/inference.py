@@ -377,16 +377,15 @@ def with_adhesion_of_tips(update: xr.Dataset) -> xr.Dataset:
     """The dataset with results of tips that adhere as much more than the inputs explain as the cracks show.
 
     ASSUME: an error of the model in the adhesion is that of the surfaces, and acts on tips as well. Where cracks show
-    less adhesion than computed, tips do not adhere less, which is the safe side; where tips were counted, they show it
-    themselves.
+    less adhesion than computed, tips do not adhere less, which is the safe side. Counts do not change this, because
+    tips have no error of the model that they could show. Counts without crack lengths show none.
     """
     errors = update["shift"].sel(input=[inference.FACTOR, inference.SLOPE]).values
     of_model = errors[0] + errors[1] * (update.result_reduced - update.datum_reduced.mean()).values
     rows = list(zip(update.humidity_of_result.values, update.response.values, of_model, strict=True))
     shown = {humidity: min(error, 0.0) for humidity, response, error in rows if response == S_SHAPE}
     of_tips = [
-        shown.get(humidity, 0.0) if response == ARC and not update.sizes["count"] else 0.0
-        for humidity, response, _ in rows
+        shown.get(humidity, 0.0) if response == ARC and update.sizes["datum"] else 0.0 for humidity, response, _ in rows
     ]
     adhesion = update.result_shift.copy(data=np.exp(np.array(of_tips) / CRACK_LENGTH_POWER))
     moved = {name: update[name] + arcs.LENGTH_POWER * np.log(adhesion) for name in _MOVED_BY_TIPS}
