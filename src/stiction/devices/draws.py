@@ -7,7 +7,7 @@ powers of the density after the measurement and, in turn, of :math:`\varphi` or 
 finds several maxima, the latter what was nearly impossible before. Draws from all N of these distributions :math:`q_i`
 have weights
 
-.. math:: w \propto L(z) \, \varphi(z) \, \Bigm/ \sum_{i=1}^N q_i(z)
+.. math:: w \propto L(z) \, \varphi(z) \, / \sum_{i=1}^N q_i(z)
 
 with the likelihood :math:`L`. They are bounded: one of the distributions is :math:`\varphi`.
 """
