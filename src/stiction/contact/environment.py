@@ -43,7 +43,7 @@ class Gaps:
         return across - self._counted.work(gap)
 
     def scaled(self, factor: float, sides: Collection[str]) -> "Gaps":
-        """The same with a factor of the Hamaker constants of the solids on some sides, see `combined`."""
+        """The same with a factor of the Hamaker constants of the solids on some sides, see ``combined``."""
         scales = {side: factor if side in sides else 1.0 for side in SIDES}
         both = vanderwaals.combined(*scales.values())
         constants = {medium: both * constant for medium, constant in self.hamaker_constant.items()}

@@ -138,7 +138,7 @@ def as_markdown(warnings: Warnings, not_modelled: str) -> str:
 
 
 def of_surfaces(data: Mapping[str, Mapping[str, xr.Dataset]], surfaces: Mapping[str, Sequence[str]]) -> Warnings:
-    """Flags of the measured surfaces of every pair, from the datasets of `surface_flags.inputs`; surfaces by pair."""
+    """Flags of the measured surfaces of every pair; datasets of ``surface_flags.inputs``, surfaces by pair."""
     flags = surface_flags.sentences(data)
     return {pair: [sentence for name in names for sentence in flags[name]] for pair, names in surfaces.items()}
 
