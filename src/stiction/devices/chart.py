@@ -12,7 +12,7 @@ import numpy as np
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
 from stiction.contact.meniscus import flooded_energy
-from stiction.numbers import is_at_most
+from stiction.rounding import is_at_most
 
 #: Largest relative error of a power law that is used.
 ALLOWED = 0.01

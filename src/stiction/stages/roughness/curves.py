@@ -21,13 +21,13 @@ from stiction.devices import risk
 from stiction.devices.roughness import crossings, margins, sufficient
 from stiction.devices.stoppers import safe_force, stuck_patches
 from stiction.errors import NotConverged
-from stiction.numbers import is_equal
 from stiction.plan.stage import Stage, select
+from stiction.rounding import is_equal
 from stiction.stages.contact import curves
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.devices import sticking, stoppers
 from stiction.stages.devices.contact_names import corrections_of
-from stiction.stages.devices.releases import FORCE, DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import FORCE, DesignedBeam, section_of_beam
 from stiction.stages.roughness.contacts import POINTS, contacts_of, points_of, roughness_of, varied
 
 #: Value of a second quantity of a point of a map, and that of the surface as it is given.

@@ -6,8 +6,8 @@ import time
 from collections.abc import Iterator
 from typing import TextIO
 
-from stiction.command.follow import Run
 from stiction.command.output_streams import put
+from stiction.command.run_state import Run
 
 #: Time between two lines of a file, and between two drawings on a terminal [s].
 _APART, _REDRAWN = 30.0, 1.0
