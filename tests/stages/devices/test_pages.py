@@ -18,7 +18,7 @@ from stiction.contact.environment import Water
 from stiction.report.devices import pages, sentences
 from stiction.report.page import Page, Section
 from stiction.stages.devices import device_warnings, safe_lengths, sticking
-from stiction.stages.devices.releases import EITHER, S_SHAPE, DesignedBeam
+from stiction.stages.devices.opening import EITHER, S_SHAPE, DesignedBeam
 from stiction.stages.roughness import curves
 from stiction.stages.roughness.curves import OfStopper, Response
 
@@ -263,7 +263,8 @@ def test_a_long_table_is_folded():
 def test_a_saved_page_ends_with_date_version_and_commit_of_the_last_run_and_differs_in_nothing_else(tmp_path):
     save, page, lines = pages.STAGES[0].save, Page("S1", {}, ["Build it."]), []
     for day, commit in (("01", "abc"), ("02", "def")):
-        runs = [{"started": f"2026-03-{day}T08:30:59+00:00", "versions": {"stiction": "1.2"}} for day in ("31", day)]
+        run = {"versions": {"stiction": "1.2"}, "config": {}}
+        runs = [run | {"started": f"2026-03-{day}T08:30:59+00:00"} for day in ("31", day)]
         runs[0]["git"], runs[1]["git"] = None, {"commit": commit, "changed": ["law.py"], "untracked": ["mine.gwy"]}
         (tmp_path / "provenance.json").write_text(json.dumps(runs))
         save(page, {"html": str(tmp_path / "devices" / "S1.html"), "answer": str(tmp_path / "devices" / "S1.txt")})

@@ -11,7 +11,7 @@ import yaml
 
 from stiction.config.cases import DRY, case_id
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of
-from stiction.config.stated_materials import material_of
+from stiction.config.materials import material_of
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
 from stiction.report import html
@@ -28,7 +28,7 @@ from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import STYLE
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
-from stiction.run import made
+from stiction.run import provenance
 from stiction.run.atomic import save_text
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings
@@ -295,7 +295,7 @@ def _save(page, paths):
     Its record is no input of the page, so that a run with nothing else to do keeps page and date.
     """
     record = Path(paths["html"]).parents[1] / "provenance.json"
-    save_text(replace(page, made=made.by_the_last_run(record)).html, paths["html"])
+    save_text(replace(page, made=provenance.last_run(record)).html, paths["html"])
     save_text("".join(f"{sentence}\n" for sentence in page.answer), paths["answer"])
 
 

@@ -7,7 +7,7 @@ import xarray as xr
 
 from stiction.report.format import UM, UN, airs
 from stiction.stages.devices.budget import budget_of
-from stiction.stages.devices.releases import EITHER
+from stiction.stages.devices.opening import EITHER
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
 
 #: Keys of a surface, what they are called and their unit.
