@@ -20,7 +20,7 @@ from stiction.errors import ScanError
 from stiction.formats.content import content_of, own_reader
 from stiction.formats.heights import STORED, UNITS, height_channel, unit_of
 from stiction.formats.text_lines import COORDINATES, misread
-from stiction.regular import require_regular
+from stiction.regular_files import require_regular
 from stiction.scans.scan import Scan
 
 #: Formats that any file of a certain length has: recognised by the ending of the file only.
