@@ -13,8 +13,8 @@ import yaml
 
 from stiction.command.main import main
 from stiction.config.arrays import TEMPLATE
-from stiction.config.files import paper
 from stiction.config.merging import merged
+from stiction.config.reading import paper
 from stiction.config.relations import schema
 
 pytestmark = pytest.mark.slow

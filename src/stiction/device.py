@@ -147,6 +147,7 @@ class Device:
         flags = surface_flags.together(
             {stage: {name: self.results[file] for name, file in files.items()} for stage, files in measured.items()}
         )
+        flags += settings.get("assumed", [])
         if "stopper" in settings:
             return device_warnings.of_stopper(in_si(device_warnings.OfStopper, settings["stopper"])) + flags
         of_beam = device_warnings.of_device(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))

@@ -45,9 +45,7 @@ def test_a_correlation_length_below_that_of_a_plateau_is_refused_with_the_least_
 def drawn(slope, corner):
     """Autocovariances of drawn fields at lags along both axes over their variance, (fields, points / 2)."""
     grid = StripGrid.periodic(POINTS * SPACING, SPACING)
-    surface = RoughSurface(
-        self_affine.spectrum(5e-9, slope, corner, CUTOFF), Translation(GAUSSIAN), 5e-9, grid
-    )
+    surface = RoughSurface(self_affine.spectrum(5e-9, slope, corner, CUTOFF), Translation(GAUSSIAN), 5e-9, grid)
     found = []
     for number in range(FIELDS):
         heights = surface.draw(stream(3, "self-affine", number)).astype(float)

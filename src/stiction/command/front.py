@@ -16,7 +16,7 @@ from typing import Any
 import yaml
 
 from stiction.config.cases import air
-from stiction.config.files import paper
+from stiction.config.reading import paper
 from stiction.report.format import with_error
 from stiction.run import made
 from stiction.run.markdown import plain

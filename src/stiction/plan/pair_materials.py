@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from stiction.config.cases import PairInAir
-from stiction.config.files import paper
+from stiction.config.reading import paper
 from stiction.config.stated_materials import material_of
 from stiction.devices.materials import COATING, ELASTIC, OF_COATINGS, PROPERTIES
 from stiction.models import SIDES

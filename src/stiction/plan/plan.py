@@ -13,6 +13,8 @@ from stiction.config.arrays import as_cantilevers
 from stiction.config.cases import IN_HUMID_AIR, Case, PairInAir, case_id
 from stiction.config.device_plan import DevicePlan
 from stiction.config.measured import is_measured, preliminary_estimates, quantities
+from stiction.config.reading import paper
+from stiction.config.surfaces.knowledge import sentences
 from stiction.devices.materials import ELASTIC
 from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SURFACE_MODELS
 from stiction.plan.air import Air
@@ -147,6 +149,14 @@ class Plan:
         """Quantities of a surface that have slopes, see `stiction.analysis.shifts`; those of scans include modes."""
         modes = MODE_QUANTITIES if surface in self.scans.surfaces else ()
         return tuple(dict.fromkeys((*quantities(self.config["surfaces"][surface]), *modes)))
+
+    def assumed(self, *pairs: str) -> dict[str, list[str]]:
+        """Sentences on what is not known of the surfaces of some pairs and is assumed, by pair; no empty ones."""
+        library, entries = paper()["surfaces"], self.config["surfaces"]
+        by_surface = {name: sentences(name, entries[name], library) for name in self.scans.others}
+        named = {pair: dict.fromkeys(self.sides(pair)) for pair in pairs}
+        said = {pair: [one for name in names for one in by_surface.get(name, ())] for pair, names in named.items()}
+        return {pair: of_pair for pair, of_pair in said.items() if of_pair}
 
     @cached_property
     def with_summits(self) -> list[str]:
