@@ -5,11 +5,11 @@ import pytest
 from configurations import PAPER, problems
 from numpy.testing import assert_allclose
 
-from stiction.config.device_plan import DevicePlan
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.surfaces import described, knowledge
 from stiction.config.units import in_si
+from stiction.plan.devices import DevicePlan
 from stiction.surface import self_affine
 from stiction.surface.spectrum import CutoffSelfAffine
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import yaml
 
 from stiction.config.messages import ConfigError, duplicates, shown
-from stiction.regular import require_regular
+from stiction.regular_files import require_regular
 
 #: Configuration of the paper: a copy of ``config.yaml`` in the root folder, which users may edit.
 PAPER = Path(__file__).with_name("paper.yaml")
