@@ -34,7 +34,7 @@ ORDER = [
         "stages.roughness",
         "stages.test_beams",
     ),
-    *("pilot", "study", "device", "report", "command"),
+    *("pilot", "report", "described_surface", "study", "device", "command"),
 ]
 
 
