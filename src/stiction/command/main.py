@@ -217,6 +217,8 @@ def _scans(arguments):
 
     if not any(map(scans.has_scans, reading.contents(arguments.files, arguments.more))):
         raise launch.RefusedError(f"{' '.join(arguments.files)} describes no surface by scans: add surfaces.NAME.scans")
+    if any(word.startswith("--configfile") for word in arguments.more):
+        return _run(arguments, "scans")  # files that Snakemake reads
     from stiction.command import scans_alone
 
     launch.require_folder(directory := Path(arguments.directory))
