@@ -143,8 +143,13 @@ def preliminary_estimates(
 
 
 def simulates(config: Mapping[str, Any]) -> bool:
-    """Whether a configuration simulates anything: rules of strips, grids and densities hold for nothing else."""
-    return bool(config["run"]["pairs"] or config.get("devices") or config.get("test_beams"))
+    """Whether a configuration, which need not be valid, simulates anything.
+
+    Rules of strips, grids and densities hold for nothing else.
+    """
+    run = config.get("run")
+    none = isinstance(run, dict) and run.get("pairs") == []
+    return not none or bool(config.get("devices") or config.get("test_beams"))
 
 
 def usable(
