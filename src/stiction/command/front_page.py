@@ -13,7 +13,7 @@ from typing import Any
 import yaml
 
 from stiction.config.cases import air
-from stiction.config.files import paper
+from stiction.config.reading import paper
 from stiction.plan.graph import stages
 from stiction.report.format import with_error
 from stiction.report.html import rendered

@@ -96,7 +96,9 @@ def of_beam(
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets, errors)
-    answer = [sentences.build_sentence(safe_lengths, budgets), *_rough_enough(roughness)]
+    shortest = sentences.of_shortest(safe_lengths, budgets).values()
+    decided = tables_budget.decided(shortest, section.get("assumed", ()))
+    answer = [sentences.build_sentence(safe_lengths, budgets), *decided, *_rough_enough(roughness)]
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
         answer.append(tables_test_beams.built(test_beams))
@@ -133,7 +135,8 @@ def of_stopper(
     table = tables_budget.stoppers({name: stopper}, {name: []}, errors).cells.drop(columns=["device"])
     sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: stopper}, {}))]
     sections += [*_sure(name, budgets, errors), *_how_rough(name, roughness)]
-    answer, listed = [sentences.verdict(stopper), *_rough_enough(roughness)], list(warnings)
+    decided = tables_budget.decided(budgets.values(), section.get("assumed", ()))
+    answer, listed = [sentences.verdict(stopper), *decided, *_rough_enough(roughness)], list(warnings)
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
         answer.append(tables_test_beams.built(test_beams))
@@ -274,7 +277,8 @@ def _settings(plan, at):
         for (part, name), material in zip(names.items(), materials, strict=True)
     }
     not_modelled = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
-    return section | {"surfaces": surfaces} | not_modelled
+    assumed = plan.devices.assumed(at.device)
+    return section | {"surfaces": surfaces} | not_modelled | ({"assumed": assumed} if assumed else {})
 
 
 def _page(data, at, settings):

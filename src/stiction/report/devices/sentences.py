@@ -56,7 +56,7 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
         As in `of_beam`.
     """
     least = min(_safe(dataset).item() for dataset in safe_lengths.values())
-    total = max((budget_of(budget).total for key, budget in _of_shortest(safe_lengths, budgets).items()), default=0.0)
+    total = max((budget_of(budget).total for key, budget in of_shortest(safe_lengths, budgets).items()), default=0.0)
     length = (1 - 2 * total) * least / UM
     if length <= 0:
         return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
@@ -87,7 +87,9 @@ def _chosen(dataset):
     return float(dataset.share[dataset.sizes["share"] // 2])
 
 
-def _of_shortest(safe_lengths, budgets):
+def of_shortest(
+    safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
+) -> dict[tuple, xr.Dataset]:
     """Budgets of what holds the shortest devices: of tips, if there are tips."""
     of_tips = EITHER in _any(safe_lengths)["shape"].values
     return {key: budget for key, budget in budgets.items() if ("tip" in key) == of_tips}
