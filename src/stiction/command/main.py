@@ -113,8 +113,10 @@ def _init(arguments):
     """Write a study, or a table of test beams."""
     if arguments.test_beams:
         return _init_test_beams(Path(arguments.directory) / "test_beams.csv")
+    from stiction.command import editor_schema  # imports the physics
+
     target = Path(arguments.directory) / "study.yaml"
-    schema = launch.PACKAGE / "config" / "schema.json"
+    schema = editor_schema.text()
     _write({target: Path(__file__).with_name("study.yaml"), target.with_name("stiction.schema.json"): schema})
     say(f"{target} describes a surface, a pair and a beam: change them into yours. Then")
     word = shlex.quote(str(target))
