@@ -23,7 +23,7 @@ ORDER = [
         "temporary",
         "kernels",
     ),
-    *("surface", "scans", "contact", "chaos", "beam", "analysis", "devices"),
+    *("surface", "formats", "scans", "contact", "chaos", "beam", "analysis", "devices"),
     *("run", "config", "plan"),
     *(
         "stages.surfaces",
