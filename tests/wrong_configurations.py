@@ -289,4 +289,5 @@ UNKNOWN = [
 ]
 
 # Names that are not safe in file names and wildcards
-UNNAMEABLE = ["B-1", "B_1", "B.1", "1B", "B 1", "../B", "{B}", "", "ß", "B" * 33, "B\n", 1, 1.5, None, False]
+OF_SURFACES = ["B-1", "B_1"]  # names that only surfaces may have
+UNNAMEABLE = [*OF_SURFACES, "B.1", "1B", "B 1", "../B", "{B}", "", "ß", "B" * 33, "B\n", 1, 1.5, None, False]

@@ -222,7 +222,21 @@ def _scans(arguments):
 
     if not any(map(scans.has_scans, reading.contents(arguments.files, arguments.more))):
         raise launch.RefusedError(f"{' '.join(arguments.files)} describes no surface by scans: add surfaces.NAME.scans")
-    return _run(arguments, "scans")
+    if any(word.startswith("--configfile") for word in arguments.more):
+        return _run(arguments, "scans")  # files that Snakemake reads
+    from stiction.command import scans_alone
+
+    launch.require_folder(directory := Path(arguments.directory))
+    found = scans_alone.alone(arguments.files, directory)
+    arguments.files, ended = [found.write(directory)], Status.DONE
+    if found.overlay["surfaces"]:
+        arguments.more = ["--keep-going", *arguments.more]
+        ended = _run(arguments, "scans")
+    for name, (entry, reasons) in found.refused.items():
+        say(f"{name} cannot be estimated: {'; '.join(reasons)}")
+        if not arguments.dry_run:
+            say(f"  sheet: {scans_alone.draw_refused(name, entry, reasons, directory / 'results')}")
+    return ended
 
 
 def _figures(arguments):

@@ -51,7 +51,7 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
     estimates, refused = scans.preliminary_estimates(config, wrong + of_surfaces, kept)
     problems = faults + incomplete + broken + refused
-    if estimates:
+    if estimates and scans.simulates(sections):
         files = {name: config["surfaces"][name]["scans"]["files"] for name in estimates}
         problems += _broken(scans.with_preliminary_estimates(sections, estimates), wrong, files, origins)
     if problems:
