@@ -23,7 +23,7 @@ ORDER = [
         "temporary",
         "kernels",
     ),
-    *("surface", "scans", "contact", "chaos", "beam", "analysis", "devices"),
+    *("surface", "scans", "contact", "chaos", "beam", "analysis", "devices", "life"),
     *("run", "config", "plan"),
     *(
         "stages.surfaces",
