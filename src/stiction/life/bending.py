@@ -6,8 +6,8 @@ With x in units of the length L, the deflection U in units of the gap h and the 
     \tau = \frac{N L^2}{EI}, \quad s = \frac{6 h^2}{t^2} .
 
 N is the tension of a bridge. Its ends do not move if clamps are rigid. It then stretches by
-:math:`\frac{1}{2} \int u'^2 dx`, which adds :math:`E w t / 2L \int u'^2 dx` to N. Clamps that yield (s = 0) are the safe
-side.
+:math:`\frac{1}{2} \int u'^2 dx`, which adds :math:`E w t / 2L \int u'^2 dx` to N. Clamps that yield
+(s = 0) are the safe side.
 
 Ritz's method: the curvature is a sum of Legendre polynomials, whose double integrals have no deflection and no slope at
 clamped ends. The bending stiffness is diagonal, and 16 polynomials suffice: folds of distributed loads are exact to ten
