@@ -38,6 +38,14 @@ DEVICES = {
     "C1": C1 | {"chart": CHART, "strip_um": 1.2, "uncertainty": UNCERTAIN},
     "R1": R1 | {"humidities": [0.67], "uncertainty": {"residual_stress_MPa": 5}},
     "S1": S1,
+    "S2": {
+        "kind": "stopper",
+        "pair": "b",
+        "contact_um": [4, 4],
+        "stiffness_N_per_m": 2,
+        "gap_um": 1.5,
+        "humidities": [0],
+    },
 }
 ALL = merged(PAPER, {"devices": DEVICES, "materials": {"Gold": GOLD}, "surfaces": {"B2": {"material": "Gold"}}})
 
@@ -309,7 +317,7 @@ def test_a_configuration_without_devices_has_no_cases():
 def test_cases_are_beams_at_their_humidities():
     devices = DevicePlan(load({"devices": DEVICES}))
     assert devices.cases == ["C1_rh044", "C1_rh067", "R1_rh067"]
-    assert devices.stoppers == ["S1"]
+    assert devices.stoppers == ["S1", "S2"]
     assert devices.charted == ["C1"]
     assert devices.pressed_pairs == ["b"]
     other = {"pairs": {"d": PAPER["pairs"]["b"]}, "devices": {"C1": C1 | {"pair": "d"}}}

@@ -13,7 +13,7 @@ from stiction.config.arrays import DATA, shared_uncertainty
 from stiction.config.cases import in_air
 from stiction.config.conditions import Relations
 from stiction.config.device_plan import DevicePlan
-from stiction.config.kinds import COMMON, KEYS, KINDS, ROUGHNESSES, kind_of
+from stiction.config.kinds import KEYS, KINDS, KNOWN, ROUGHNESSES, kind_of
 from stiction.config.messages import duplicates
 from stiction.config.relations import (
     Meeting,
@@ -81,13 +81,12 @@ def strips_of_bridges_are_whole_on_the_grid(config):
 
 @relation
 def devices_have_the_keys_of_their_kind(config):
-    """A device has all keys that its kind needs, and no key of another kind."""
+    """A device has all keys that its kind needs, and no key of another kind; those that no kind has may be misspelt."""
     for name, kind in config.entries("devices", "kind"):
-        needed, keys = set(KINDS[kind].keys), set(config.names(f"devices.{name}"))
-        missing, strange = needed - keys, keys - needed - set(KINDS[kind].optional) - COMMON
-        if missing or strange:
-            message = f"with {', '.join(sorted(missing))}" if missing else f"without {', '.join(sorted(strange))}"
-            yield f"devices.{name}.kind", f"must come {message}"
+        refusal = KINDS[kind].refusal(config.names(f"devices.{name}"))
+        if any(fault[:2] == ("devices", name) and len(fault) == 3 and fault[2] not in KNOWN for fault in config.faults):
+            continue
+        yield f"devices.{name}.kind", refusal
 
 
 @relation

@@ -40,7 +40,7 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     stated = config
     config = in_numbers(arrays.without_files(config))
     faults = schema_problems(config, schema())
-    wrong = [fault.path for fault in faults]
+    wrong = [path for fault in faults for path in (fault.path, *fault.others)]
     sections = _OPTIONAL | config if isinstance(config, dict) else config
     broken = _broken(sections, wrong)
     of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]

@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.config.cases import DRY, case_id
-from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of
+from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of, restoring_force
 from stiction.config.stated_materials import material_of
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
@@ -319,8 +319,9 @@ def _title(name, section):
 def _facts_of(section):
     """Dimensions and conditions of a device, by name."""
     facts = {"surfaces": f"pair {section['pair']}"} | section.get("surfaces", {})
-    for key in kind_of(section).keys:
-        (name, unit), value = KEYS[key], section[key]
+    stated = section if kind_of(section).is_beam else section | {"restoring_force_uN": restoring_force(section)}
+    for key in (key for key in KEYS if key in stated):
+        (name, unit), value = KEYS[key], stated[key]
         values = value if isinstance(value, list) else [value]
         facts[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
     name = "relative humidities" if len(section["humidities"]) > 1 else "relative humidity"
