@@ -90,6 +90,18 @@ def devices_have_the_keys_of_their_kind(config):
 
 
 @relation
+def electrodes_pull_on_a_spring_across_a_gap(config):
+    """The voltage of an electrode needs the stiffness of the stopper, which touches before its electrode does."""
+    for name, electrode in config.entries("devices", "electrode"):
+        device, key = config["devices"][name], f"devices.{name}.electrode"
+        if "stiffness_N_per_m" not in device:
+            yield key, "must come with stiffness_N_per_m and gap_um in place of restoring_force_uN"
+        elif electrode["gap_um"] < device["gap_um"]:
+            message = "must be at least gap_um of the stopper, which would not touch otherwise"
+            yield f"{key}.gap_um", message, f"devices.{name}.gap_um"
+
+
+@relation
 def asperities_of_devices_are_summits(config):
     """The tips of beams and the budgets of devices are computed with summits."""
     for name, _ in config.entries("devices", "pair"):
