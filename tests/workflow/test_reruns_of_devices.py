@@ -140,7 +140,10 @@ LAYOUTS = {
     "stages/devices/budget": {"budget", "tip_budget"},
     "stages/devices/chart": {"chart"},
 }
-LAYOUTS |= {"stages/devices/cracks": {"cracks", "safe_lengths"}, "stages/devices/safe_lengths": {"safe_lengths", "touchdowns"}}
+LAYOUTS |= {
+    "stages/devices/cracks": {"cracks", "safe_lengths"},
+    "stages/devices/safe_lengths": {"safe_lengths", "touchdowns"},
+}
 LAYOUTS |= {"stages/devices/life": {"life"}}
 
 

@@ -15,7 +15,7 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.config.cases import case_id, in_air
 from stiction.config.kinds import restoring_force
-from stiction.config.stated_materials import material_of
+from stiction.config.materials import material_of
 from stiction.config.units import from_si, in_si
 from stiction.constants import DENSITY, LIQUIDS
 from stiction.devices.bridges import half_of_bridge
@@ -23,7 +23,7 @@ from stiction.devices.risk import samples_for
 from stiction.devices.stoppers import safe_force
 from stiction.life import drying, freeing, touch
 from stiction.plan.stage import Stage, select
-from stiction.stages.devices.releases import DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import DesignedBeam, section_of_beam
 from stiction.stages.devices.safe_lengths import chosen_share
 
 #: Questions of a designer, in their order.
