@@ -18,6 +18,7 @@ from stiction.life import drying, freeing, touch
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report.devices import life as report
+from stiction.report.devices.pages import Page, Section, with_life
 from stiction.run import storage
 from stiction.stages.devices import life
 from stiction.stages.devices.life import Electrode, Errors, Liquid, OfBeam, OfStopper
@@ -229,3 +230,12 @@ def test_the_figure_has_a_bar_for_every_length_and_covers_nothing(found):
         assert len(panel.texts) >= len(shown)
         assert len(panel.lines) == 2 * len(shown) + (unit == "m")
     assert not covering(figure)
+
+
+def test_a_page_says_the_life_below_its_verdict_and_shows_all_answers(found):
+    page = Page("C1", {}, ["Build it so.", "Because."], [Section("First"), Section("Last")])
+    shown = with_life(page, "C1", found["C1"])
+    assert shown.answer == ["Build it so.", *report.sentences(found["C1"]), "Because."]
+    assert [section.title for section in shown.sections] == ["First", "From the first contact to the last", "Last"]
+    assert len(shown.sections[1].cells) == found["C1"].sizes["answer"]
+    assert "does not touch below" in shown.html

@@ -42,8 +42,9 @@ _UNITS = {
     "J m-2": (TO_MJ, "mJ/m²"),
     "1": (100.0, "%"),
 }
-_CAPTION = (
-    "Life of the devices, in the order of a designer's questions: what brings a device into contact (touch), whether "
+#: What the answers are, for the table and for pages.
+CAPTION = (
+    "The life of a device, in the order of a designer's questions: what brings a device into contact (touch), whether "
     "it then sticks (stick), what holds it (hold), what frees it (free). Every answer is between at least and at most, "
     "which are equal where the model leaves nothing open. No bound is known where there is –. The column ± has the "
     "standard uncertainty of the lower bound, due to the stated uncertainties of the device or to sampled surfaces. "
@@ -77,7 +78,7 @@ def table(datasets: Mapping[str, xr.Dataset]) -> Table:
         "form": (str, "form"),
         "source": (str, "source"),
     }
-    return Table.of(rows, _CAPTION, columns)
+    return Table.of(rows, CAPTION, columns)
 
 
 def significant(value: float) -> str:
