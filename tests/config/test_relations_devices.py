@@ -49,6 +49,9 @@ DEVICES = {
         "mass_ng": 50,
         "electrode": {"area_um2": 10000, "gap_um": 3},
         "touchdowns": 1000,
+        "voltage_V": 5,
+        "offset_V": 0.3,
+        "dielectric": {"thickness_nm": 100, "permittivity": 3.9},
     },
 }
 ALL = merged(PAPER, {"devices": DEVICES, "materials": {"Gold": GOLD}, "surfaces": {"B2": {"material": "Gold"}}})
@@ -207,6 +210,9 @@ def test_a_stopper_has_no_length():
         ({"mass_ng": 0}, "mass_ng", "above 0"),
         ({"touchdowns": 0}, "touchdowns", "at least 1"),
         ({"touchdowns": 2.5}, "touchdowns", "must be a whole number"),
+        ({"voltage_V": 5}, "voltage_V", "must come with dielectric: {thickness_nm, permittivity}"),
+        ({"dielectric": {"thickness_nm": 9, "permittivity": 4}}, "dielectric", "must come with voltage_V or offset_V"),
+        ({"offset_V": 1, "dielectric": {"thickness_nm": 9}}, "dielectric.permittivity", "is missing"),
         ({"thickness_um": 2}, "kind", "must come without thickness_um"),
     ],
 )

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 #: Keys that every device may have.
 COMMON = ("kind", "pair", "humidities", "uncertainty", "test_beams", "requirement", "roughness", "touchdowns")
+COMMON += ("voltage_V", "offset_V", "dielectric")
 #: Keys that depend on the kind, what they are called and their unit.
 KEYS = {
     "thickness_um": ("thickness", "µm"),
@@ -22,6 +23,8 @@ KEYS = {
     "stiffness_N_per_m": ("stiffness of the spring", "N/m"),
     "restoring_force_uN": ("restoring force", "µN"),
     "mass_ng": ("moving mass", "ng"),
+    "voltage_V": ("voltage", "V"),
+    "offset_V": ("offset of the voltage", "V"),
 }
 
 

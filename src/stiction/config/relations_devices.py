@@ -88,6 +88,18 @@ def devices_have_the_keys_of_their_kind(config):
 
 
 @relation
+def voltages_are_across_a_dielectric(config):
+    """A voltage or offset needs a dielectric, without which surfaces that touch would short."""
+    for key in ("voltage_V", "offset_V"):
+        for name, _ in config.entries("devices", key):
+            if "dielectric" not in config.names(f"devices.{name}"):
+                yield f"devices.{name}.{key}", "must come with dielectric: {thickness_nm, permittivity}"
+    for name, _ in config.entries("devices", "dielectric"):
+        if not {"voltage_V", "offset_V"} & set(config.names(f"devices.{name}")):
+            yield f"devices.{name}.dielectric", "must come with voltage_V or offset_V"
+
+
+@relation
 def electrodes_pull_on_a_spring_across_a_gap(config):
     """The voltage of an electrode needs the stiffness of the stopper, which touches before its electrode does."""
     for name, electrode in config.entries("devices", "electrode"):

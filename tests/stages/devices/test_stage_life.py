@@ -14,18 +14,27 @@ from stiction.config.files import load
 from stiction.config.units import in_si
 from stiction.devices.risk import samples_for
 from stiction.devices.stoppers import safe_force
-from stiction.life import drying, freeing, touch
+from stiction.life import drying, freeing, holding, touch
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report.devices import life as report
 from stiction.report.devices.pages import Page, Section, with_life
 from stiction.run import storage
 from stiction.stages.devices import life
-from stiction.stages.devices.life import Electrode, Errors, Liquid, OfBeam, OfStopper
+from stiction.stages.devices.life import Dielectric, Electrode, Errors, Liquid, OfBeam, OfStopper
 
 LIQUIDS = {"water": Liquid(0.072), "mine": Liquid(0.03, np.pi / 3)}
-OF = OfBeam(C1, 2330.0, LIQUIDS, Errors())
-STOPPER = OfStopper(18.99e-6, 10.0, 1.899e-6, 50e-12, Electrode(1e-8, 3e-6), touchdowns=4)
+OF = OfBeam(device=C1, density=2330.0, liquids=LIQUIDS, uncertainty=Errors())
+AREA = (3e-6, 3e-6)
+STOPPER = OfStopper(
+    restoring_force=18.99e-6,
+    contact=AREA,
+    stiffness=10.0,
+    gap=1.899e-6,
+    mass=50e-12,
+    electrode=Electrode(1e-8, 3e-6),
+    touchdowns=4,
+)
 SECTION = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
 MINE = {"mine": {"surface_tension_mN_per_m": 30, "contact_angle_deg": 60}}
 SPRING = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "stiffness_N_per_m": 10, "gap_um": 1.899}
@@ -88,7 +97,7 @@ def test_errors_are_those_of_the_powers_of_the_closed_forms(lengths):
 
 
 def test_residual_stress_of_a_bridge_has_an_error_and_rigid_clamps_an_upper_bound():
-    of = OfBeam(R1, 2330.0, {"water": LIQUIDS["water"]}, Errors(residual_stress=5e6))
+    of = replace(OF, device=R1, liquids={"water": LIQUIDS["water"]}, uncertainty=Errors(residual_stress=5e6))
     found = answers(of, {0.67: safe_without_tips()})
     for name in ("voltage", "shock"):
         assert found[name].low < found[name].high
@@ -153,8 +162,54 @@ def test_the_force_for_many_touchdowns_is_that_of_a_smaller_fraction_if_there_ar
 
 
 def test_what_is_not_stated_has_no_answer():
-    found = answers(OfStopper(18.99e-6))
+    found = answers(OfStopper(restoring_force=18.99e-6, contact=AREA))
     assert not {"shock", "voltage", "freeing", "stiffness", "stuck_after", "after"} & set(found)
+
+
+# Voltage
+
+
+def test_a_voltage_shortens_the_safe_length_of_a_beam_as_its_energy_says(lengths):
+    of = replace(OF, voltage=-5.0, offset=0.3, dielectric=Dielectric(100e-9, 4.0))
+    found, least = answers(of, lengths), life.length_of(lengths, OF)
+    assert of.potential == 5.3
+    added = holding.energy_of_voltage(5.3, 25e-9, C1.gap)
+    assert_allclose(found["voltage_energy"].high, added, rtol=1e-12)
+    assert_allclose(found["field"].high, 5.3 / 100e-9, rtol=1e-12)
+    at = found["at_voltage"]
+    shorter, longer = (holding.length_at_voltage(by * least, OF.beam(1.0), added, 3 / 8) for by in (1, 1.001))
+    assert_allclose((at.low, at.high), (shorter, least), rtol=1e-12)
+    # To first order, the error moves with the derivative of the length.
+    of_least = min((one.low, one.error) for name, one in found.items() if name.startswith("safe_length"))[1]
+    assert_allclose(at.error, of_least * (longer - shorter) / (1e-3 * least), rtol=1e-2)
+
+
+def test_without_voltage_nothing_is_said_of_it_and_a_vanishing_one_changes_nothing(lengths):
+    assert not {"at_voltage", "field", "voltage_energy"} & set(answers(OF, lengths))
+    little = answers(replace(OF, voltage=1e-6, dielectric=Dielectric(100e-9, 4.0)), lengths)["at_voltage"]
+    assert_allclose(little.low, little.high, rtol=1e-9)
+
+
+def test_a_bridge_states_the_energy_of_the_voltage_alone():
+    of = replace(OF, device=R1, liquids={}, voltage=5.0, dielectric=Dielectric(100e-9, 4.0))
+    found = answers(of, {0.67: safe_without_tips()})
+    assert "at_voltage" not in found
+    assert found["voltage_energy"].high > 0
+
+
+def test_a_voltage_holds_a_stopper_with_the_pressure_of_flats_on_its_area():
+    found = answers(replace(STOPPER, voltage=5.0, dielectric=Dielectric(100e-9, 4.0)))
+    assert_allclose(found["at_voltage"].high, holding.pressure_of_voltage(5.0, 25e-9) * 9e-12, rtol=1e-12)
+    assert found["restoring_force"] == answers(STOPPER)["restoring_force"]
+
+
+@pytest.mark.parametrize(("voltage", "breaks", "pulls"), [(5.0, False, False), (120.0, True, False), (4e4, True, True)])
+def test_sentences_warn_of_breakdown_and_of_a_voltage_that_pulls_in(lengths, voltage, breaks, pulls):
+    of = replace(OF, voltage=voltage, dielectric=Dielectric(100e-9, 4.0))
+    said = report.sentences(life.layout(life.of_beam(lengths, {}, of), of, life.length_of(lengths, of)))
+    assert any("break down" in sentence for sentence in said) == breaks
+    assert any("pulls it in" in sentence for sentence in said) == pulls
+    assert any(f"While {report.significant(voltage)} V are on" in sentence for sentence in said)
 
 
 # Configuration, files, report
@@ -181,8 +236,8 @@ def test_settings_come_from_the_device_its_material_and_the_liquids():
 def found(lengths):
     many = replace(OF, touchdowns=50)
     return {
-        "C1": life.layout(life.of_beam(lengths, lengths, many), 50, life.length_of(lengths, OF)),
-        "S1": life.layout(life.of_stopper(stopper_dataset(), STOPPER), 4),
+        "C1": life.layout(life.of_beam(lengths, lengths, many), many, life.length_of(lengths, OF)),
+        "S1": life.layout(life.of_stopper(stopper_dataset(), STOPPER), STOPPER),
     }
 
 
@@ -212,9 +267,9 @@ def test_sentences_say_below_which_voltage_and_shock_nothing_touches_and_what_dr
     assert "collapses when it is dried from water" in second
     assert "(water)" in third
     assert last.startswith("For 50 touchdowns its safe length is ")
-    short = life.layout(life.of_beam(lengths, {}, replace(OF, length=60e-6)), 1, 60e-6)
+    short = life.layout(life.of_beam(lengths, {}, replace(OF, length=60e-6)), OF, 60e-6)
     assert report.sentences(short)[1] == "At 60 µm it stands when it is dried from water and mine."
-    between = life.layout(life.of_beam(lengths, {}, replace(OF, length=230e-6)), 1, 230e-6)
+    between = life.layout(life.of_beam(lengths, {}, replace(OF, length=230e-6)), OF, 230e-6)
     assert (
         "may collapse when it is dried from water, and stands when it is dried from mine"
         in report.sentences(between)[1]

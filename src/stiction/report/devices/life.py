@@ -9,8 +9,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from stiction.constants import FREE_FALL
+from stiction.life.holding import BREAKDOWN
 from stiction.plan.names import by_name
-from stiction.report.format import MISSING, TO_MJ, TO_UM, TO_UN, error_alone
+from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN, error_alone
 from stiction.report.style import (
     OUTLINED,
     SINGLE,
@@ -23,7 +24,9 @@ from stiction.report.style import (
 from stiction.report.table import Table, table_stage
 from stiction.stages.devices.life import (
     AFTER,
+    AT_VOLTAGE,
     COLLAPSE,
+    FIELD,
     QUESTIONS,
     RELEASED,
     SHOCK,
@@ -36,6 +39,7 @@ from stiction.stages.devices.life import (
 _UNITS = {
     "m": (TO_UM, "µm"),
     "V": (1.0, "V"),
+    "V m-1": (1 / TO_NM, "V/nm"),
     "m s-2": (1 / FREE_FALL, "g"),
     "N": (TO_UN, "µN"),
     "N m-1": (1.0, "N/m"),
@@ -104,7 +108,9 @@ def sentences(dataset: xr.Dataset) -> list[str]:
     """The life of a device in words: what brings it into contact, what drying does, and many touchdowns."""
     answers, length = {answer.name: answer for answer in answers_of(dataset)}, float(dataset.length)
     at = f"At {TO_UM * length:.0f} µm it" if np.isfinite(length) else "It"
-    return [*_touching(answers, at), *_drying(answers, at, length), *_often(answers, int(dataset.touchdowns))]
+    potential = float(dataset.potential)
+    said = [*_touching(answers, at), *_pulled_in(answers, potential), *_drying(answers, at, length)]
+    return [*said, *_biased(answers, potential), *_often(answers, int(dataset.touchdowns))]
 
 
 def _touching(answers, at):
@@ -113,6 +119,27 @@ def _touching(answers, at):
     if SHOCK in answers:
         limits.append(f"a half-sine shock of {_low(answers[SHOCK])} g, or a slow one of {_high(answers[SHOCK])} g")
     return [f"{at} does not touch below {' or '.join(limits)}."] if limits else []
+
+
+def _pulled_in(answers, potential):
+    """Whether its own voltage pulls a device in."""
+    if VOLTAGE not in answers or potential < answers[VOLTAGE].low:
+        return []
+    return [f"Its own voltage of {significant(potential)} V pulls it in."]
+
+
+def _biased(answers, potential):
+    """What a voltage does to a device that touches, and whether its dielectric stands the field."""
+    if AT_VOLTAGE not in answers:
+        return []
+    one, field = answers[AT_VOLTAGE], answers[FIELD]
+    is_length, on = one.unit == "m", f"While {significant(potential)} V are on,"
+    said = [
+        f"{on} its safe length is {_low(one)} µm." if is_length else f"{on} up to {_high(one)} µN hold it in addition."
+    ]
+    if field.high > BREAKDOWN:
+        said.append(f"The field in its dielectric, {_high(field)} V/nm, is above 1 V/nm, where thin oxides break down.")
+    return said
 
 
 def _drying(answers, at, length):

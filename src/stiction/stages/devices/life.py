@@ -21,7 +21,7 @@ from stiction.constants import DENSITY, LIQUIDS
 from stiction.devices.bridges import half_of_bridge
 from stiction.devices.risk import samples_for
 from stiction.devices.stoppers import safe_force
-from stiction.life import drying, freeing, touch
+from stiction.life import drying, freeing, holding, touch
 from stiction.plan.stage import Stage, select
 from stiction.stages.devices.opening import DesignedBeam, section_of_beam
 from stiction.stages.devices.safe_lengths import chosen_share
@@ -30,6 +30,7 @@ from stiction.stages.devices.safe_lengths import chosen_share
 QUESTIONS = TOUCH, STICK, HOLD, FREE = "touch", "stick", "hold", "free"
 #: Names of answers that sentences are about.
 VOLTAGE, SHOCK, COLLAPSE, RELEASED, AFTER = "voltage", "shock", "collapse", "released", "after"
+AT_VOLTAGE, FIELD = "at_voltage", "field"
 
 
 class Answer(NamedTuple):
@@ -70,7 +71,35 @@ class Errors:
 
 
 @dataclass(frozen=True)
-class OfBeam:
+class Dielectric:
+    """What keeps a device and its substrate apart at a voltage."""
+
+    thickness: float  #: [m]
+    permittivity: float  #: relative [-]
+
+    @property
+    def distance(self) -> float:
+        """Gap of air of the same capacity [m]."""
+        return self.thickness / self.permittivity
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stated:
+    """What any device may state beside its dimensions."""
+
+    touchdowns: int = 1
+    voltage: float = 0.0  #: [V]
+    offset: float = 0.0  #: by charge and contact potential [V]
+    dielectric: Dielectric | None = None
+
+    @property
+    def potential(self) -> float:
+        """Largest difference of potential [V]; ASSUME: voltages of both signs occur."""
+        return abs(self.voltage) + abs(self.offset)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfBeam(Stated):
     """A beam, and what it meets beside its ground."""
 
     device: DesignedBeam
@@ -78,7 +107,6 @@ class OfBeam:
     liquids: dict[str, Liquid]
     uncertainty: Errors
     length: float = 0.0  #: as stated [m]; otherwise the least safe length counts
-    touchdowns: int = 1
 
     @property
     def clamps(self) -> int:
@@ -111,16 +139,16 @@ class Electrode:
     gap: float  #: from the moving part at rest [m]
 
 
-@dataclass(frozen=True)
-class OfStopper:
+@dataclass(frozen=True, kw_only=True)
+class OfStopper(Stated):
     """A stopper, and what it meets beside its ground; zero where nothing is stated."""
 
     restoring_force: float  #: [N]
+    contact: tuple[float, float]  #: sides of its area [m]
     stiffness: float = 0.0  #: of its spring [N m⁻¹]
     gap: float = 0.0  #: way to the contact [m]
     mass: float = 0.0  #: that moves [kg]
     electrode: Electrode | None = None
-    touchdowns: int = 1
 
 
 # Beams
@@ -144,7 +172,7 @@ def of_beam(lengths: Mapping[float, xr.Dataset], after: Mapping[float, xr.Datase
     answers += _touched(of, length) + _held(of, length) if 0 < length < np.inf else []
     answers += [answer for name, liquid in of.liquids.items() for answer in _dried(of, name, liquid.adhesion)]
     answers += _after_touchdowns(of, share, min(safe.values()), after) if after else []
-    return _in_order(answers)
+    return _in_order(answers + _at_voltage(of, min(safe.values())))
 
 
 def length_of(lengths: Mapping[float, xr.Dataset], of: OfBeam) -> float:
@@ -255,6 +283,37 @@ def _held(of, length):
     return answers
 
 
+def _at_voltage(of, safe):
+    """What a voltage adds, and the length that is then safe, from the safe length without it and its error [m]."""
+    if not of.dielectric:
+        return []
+    added = holding.energy_of_voltage(of.potential, of.dielectric.distance, of.device.gap)
+    form = f"Γ_V = ε₀ V² / 2 (1 / D - 1 / (D + h)), D = {from_si(of.dielectric.distance, 'nm'):.3g} nm"
+    answers = [
+        Answer(
+            "voltage_energy",
+            HOLD,
+            f"adhesion energy that {of.potential:g} V add",
+            *(np.nan, added, np.nan, "J m-2", form, "stiction.life.holding"),
+        ),
+        _field(of),
+    ]
+    if not of.device.opening.has_tip:
+        return answers
+    length, beam = safe[0], of.beam(1.0)
+    shorter = holding.length_at_voltage(length, beam, added, holding.ARC)
+    what = f"safe length while {of.potential:g} V are on"
+    error, form = safe[1] * (shorter / length) ** 5, "1 / L_V⁴ = 1 / L⁴ + 8 Γ_V / (3 E t³ h²) (at least)"
+    return [*answers, Answer(AT_VOLTAGE, HOLD, what, shorter, length, error, "m", form, "stiction.life.holding")]
+
+
+def _field(of):
+    """Field in the dielectric of a device whose surfaces touch."""
+    field = of.potential / of.dielectric.thickness
+    what, form = "field in the dielectric in contact", "V / t; thin oxides break down near 1 V/nm"
+    return Answer(FIELD, HOLD, what, np.nan, field, np.nan, "V m-1", form, "stiction.life.holding")
+
+
 def _after_touchdowns(of, share, once, after):
     """Safe length and P(stuck) after all touchdowns, from the safe length of one, and its standard error [m]."""
     independent = min(_safe(dataset, chosen_share(dataset)) for dataset in after.values())
@@ -298,7 +357,14 @@ def of_stopper(stopper: xr.Dataset, of: OfStopper) -> list[Answer]:
     ]
     what = f"mean pull-off force {where}, the worst air"
     answers.append(Answer("force", HOLD, what, mean, mean, error, "N", "largest attraction x area", "stage stoppers"))
-    return _in_order(answers + _moved(of) + _freed(stopper, of) + _often(stopper, of))
+    answers += _moved(of) + _freed(stopper, of) + _often(stopper, of)
+    if of.dielectric:
+        area = of.contact[0] * of.contact[1]
+        force = holding.pressure_of_voltage(of.potential, of.dielectric.distance) * area
+        what, form = f"force that {of.potential:g} V add", "F = ε₀ V² A / (2 D²), flats in contact"
+        answers.append(Answer(AT_VOLTAGE, HOLD, what, np.nan, force, np.nan, "N", form, "stiction.life.holding"))
+        answers.append(_field(of))
+    return _in_order(answers)
 
 
 def _moved(of):
@@ -387,19 +453,20 @@ def compute(
     """Answers about a device, from its safe lengths by humidity or from the forces of a stopper."""
     if stopper is not None:
         of = in_si(OfStopper, settings["stopper"])
-        return layout(of_stopper(stopper, of), of.touchdowns)
+        return layout(of_stopper(stopper, of), of)
     of = in_si(OfBeam, settings["beam"])
-    return layout(of_beam(lengths, after, of), of.touchdowns, length_of(lengths, of))
+    return layout(of_beam(lengths, after, of), of, length_of(lengths, of))
 
 
-def layout(answers: Sequence[Answer], touchdowns: int, length: float = np.nan) -> xr.Dataset:
+def layout(answers: Sequence[Answer], of: Stated, length: float = np.nan) -> xr.Dataset:
     """Dataset of the answers about a device; ``length`` is that at which a beam is asked for voltage and shock [m]."""
     columns = dict(zip(Answer._fields, zip(*answers, strict=True), strict=True))
     numbers = {"low": "at least", "high": "at most", "error": "standard uncertainty"}
     return xr.Dataset(
         {name: ("answer", list(columns[name])) for name in ("question", "what", "unit", "form", "source")}
         | {name: ("answer", list(columns[name]), {"long_name": text}) for name, text in numbers.items()}
-        | {"length": ((), length, {"units": "m"}), "touchdowns": ((), touchdowns, {"units": "1"})},
+        | {"length": ((), length, {"units": "m"}), "touchdowns": ((), of.touchdowns, {"units": "1"})}
+        | {"potential": ((), of.potential, {"units": "V"})},
         coords={"answer": list(columns["name"])},
     )
 
