@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from stiction.constants import FREE_FALL
 from stiction.life.holding import BREAKDOWN
 from stiction.plan.names import by_name
-from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN, error_alone
+from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN
 from stiction.report.style import (
     OUTLINED,
     SINGLE,
@@ -77,7 +77,7 @@ def table(datasets: Mapping[str, xr.Dataset]) -> Table:
         "what": (str, "what"),
         "at least": (significant, "at_least"),
         "at most": (significant, "at_most"),
-        "±": (error_alone, "standard_uncertainty"),
+        "±": (lambda error: significant(float(f"{error:.2g}")), "standard_uncertainty"),
         "unit": (str, "unit"),
         "form": (str, "form"),
         "source": (str, "source"),
@@ -116,9 +116,9 @@ def sentences(dataset: xr.Dataset) -> list[str]:
 def _touching(answers, at):
     """Voltage and shock below which a device does not touch; nothing if neither is known."""
     limits = [f"{_low(answers[VOLTAGE])} V"] if VOLTAGE in answers else []
-    if SHOCK in answers:
-        limits.append(f"a half-sine shock of {_low(answers[SHOCK])} g, or a slow one of {_high(answers[SHOCK])} g")
-    return [f"{at} does not touch below {' or '.join(limits)}."] if limits else []
+    limits += [f"a half-sine shock of {_low(answers[SHOCK])} g"] if SHOCK in answers else []
+    slow = f" A slow shock of {_high(answers[SHOCK])} g brings it down." if SHOCK in answers else ""
+    return [f"{at} does not touch below {' or '.join(limits)}.{slow}"] if limits else []
 
 
 def _pulled_in(answers, potential):

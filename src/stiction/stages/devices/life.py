@@ -194,10 +194,11 @@ def _touched(of, length):
     forms = {
         1: ("V² = 0.2801 E t³ h³ / (ε₀ L⁴)", "a = 2 E t² h / (3 ρ L⁴)"),
         2: (
-            "V² = λ E t³ h³ / (6 ε₀ L⁴), λ = 70.095 without tension; at most: clamps that do not yield",
-            "a = 32 E t² h / (ρ L⁴) without tension; at most: clamps that do not yield",
+            "V² = λ E t³ h³ / (6 ε₀ L⁴), λ = 70.095 without tension",
+            "a = 32 E t² h / (ρ L⁴) without tension",
         ),
     }[clamps]
+    rigid = "" if clamps == 1 else "; at most: rigid clamps"
     voltage, error = of.number(lambda beam: touch.pull_in_voltage(beam, clamps), length)
     shock, shock_error = of.number(lambda beam: touch.touching_acceleration(beam, clamps, of.density), length)
     factor, beam = touch.half_sine_factor(of.beam(length), clamps), of.beam(length)
@@ -207,7 +208,7 @@ def _touched(of, length):
             TOUCH,
             f"voltage that pulls the {end} in",
             *(voltage, touch.pull_in_voltage(beam, clamps, rigid=True), error),
-            *("V", forms[0], "stiction.life.touch"),
+            *("V", forms[0] + rigid, "stiction.life.touch"),
         ),
         Answer(
             SHOCK,
@@ -215,7 +216,7 @@ def _touched(of, length):
             f"peak of a shock that brings the {end} down",
             *(shock / factor, touch.touching_acceleration(beam, clamps, of.density, rigid=True), shock_error / factor),
             "m s-2",
-            f"{forms[1]}, ρ = {of.density:g} kg/m³; at least: this / {factor:.2f}, a half-sine of any duration",
+            f"{forms[1]}, ρ = {of.density:g} kg/m³; at least: / {factor:.2f}, any half-sine{rigid}",
             "stiction.life.touch",
         ),
     ]
@@ -372,7 +373,7 @@ def _moved(of):
     answers = []
     if of.mass:
         slow = of.restoring_force / of.mass
-        form = f"a = F / m; at least: this / {touch.HALF_SINE:.3g}, a half-sine of any duration"
+        form = f"a = F / m; at least: / {touch.HALF_SINE:.3g}, any half-sine"
         numbers = slow / touch.HALF_SINE, slow, np.nan
         what = "peak of a shock that brings it into contact"
         answers.append(Answer(SHOCK, TOUCH, what, *numbers, "m s-2", form, "stiction.life.touch"))
