@@ -292,3 +292,14 @@ def test_text_is_shown_as_it_is():
     assert len(shown.text["p"]) == 6, "with what is not in the model"
     assert shown.text["h2"] == [HOSTILE, "Limits of this prediction", "Terms"]
     assert shown.alt == [HOSTILE]
+
+
+def test_a_page_says_in_its_second_sentence_that_an_assumption_decides():
+    budgets, section = {(0.67,): BUDGETS["S1", 0.67]}, STOPPER | {"assumed": ["rms of B2"]}
+    assumed = pages.of_stopper("S1", section, STOPPERS["S1"], budgets, []).answer[1]
+    assert assumed.startswith("What decides is assumed, not measured: heights of B2. If that were known")
+    lengths, budgets = {0.67: safe()}, {(0.67, "tip"): BUDGETS["C1", 0.67, "tip"]}
+    none = {("C1", 0.67, shape): [] for shape in (S_SHAPE, EITHER)}
+    beam = pages.of_beam("C1", CANTILEVER | {"assumed": ["rms of B2"]}, lengths, {}, budgets, none)
+    assert beam.answer[1].startswith("What decides is assumed")
+    assert not pages.of_beam("C1", CANTILEVER, lengths, {}, budgets, none).answer[1].startswith("What decides")
