@@ -47,12 +47,13 @@ relation(partial(cases_have_unique_names, section="devices"))
 
 
 @relation
-def strips_and_patches_of_devices_are_whole_on_the_grid(config):
-    """Sides of the strips along a beam, and of the area of a stopper, are multiples of the distance between points."""
-    for key in ("strip_um", "width_um", "contact_um"):
-        for name, sides in config.entries("devices", key):
-            refusals = (off_grid(float(side), *(config[step] for step in _GRID)) for side in np.ravel(sides))
-            yield f"devices.{name}.{key}", next(filter(None, refusals), None), *_GRID
+def strips_and_patches_are_whole_on_the_grid(config):
+    """Sides of strips, and of the area of a stopper, are multiples of the distance between contact points."""
+    sides = ("strip_um", "width_um", "contact_um")
+    of_devices = [f"devices.{name}.{key}" for key in sides for name, _ in config.entries("devices", key)]
+    for key, stated in config.known("beam.width_um", _STRIP, *of_devices):
+        refusals = (off_grid(float(side), *(config[step] for step in _GRID)) for side in np.ravel(stated))
+        yield key, next(filter(None, refusals), None), *_GRID
 
 
 @relation
