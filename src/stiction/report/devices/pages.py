@@ -14,13 +14,14 @@ from matplotlib.figure import Figure
 from stiction.config.cases import DRY, case_id
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of, restoring_force
 from stiction.config.stated_materials import material_of
+from stiction.devices.risk import Basis
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import tables as tables_devices
-from stiction.report.format import MISSING, UM, UN, airs, humidity_text
+from stiction.report.format import MISSING, UM, UN, airs, humidity_text, one_in
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.roughness import figures as figures_roughness
 from stiction.report.roughness import tables as tables_roughness
@@ -197,7 +198,8 @@ _OF_STOPPERS = {
     "P(stuck)": f"Share of equal stoppers whose pull-off force exceeds the restoring force. {_TOUCHDOWNS}",
     "Safe force": (
         "Restoring force that is exceeded by the pull-off force of at most the stated share of stoppers, with a "
-        "confidence of 95 %. The largest of the forces at several humidities suffices at all of them with at least "
+        "confidence of 95 %; fitted or extrapolated by a line through the largest 5 % of the forces where it says so. "
+        "The largest of the forces at several humidities suffices at all of them with at least "
         "95 %; that every one of n forces suffices at its own, with at least 100 - 5 n %."
     ),
 }
@@ -341,7 +343,7 @@ def _asked(section):
         if key in over
     )
     return {
-        "requirement": f"{length}at most 1 in {1 / required['share']:g} sticks",
+        "requirement": f"{length}at most {one_in(required['share'])} sticks",
         f"roughness of {over['surface']} asked for": ", ".join(ranges),
     }
 
@@ -390,7 +392,7 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     if length <= 0:
         return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
     sentence = (
-        f"Build it no longer than {length:.0f} µm: then at most 1 in {1 / _chosen(_any(safe_lengths)):g} sticks "
+        f"Build it no longer than {length:.0f} µm: then at most {one_in(_chosen(_any(safe_lengths)))} sticks "
         f"{airs(safe_lengths)} (95 % confidence, given the drawn surfaces)."
     )
     if total == 0:
@@ -426,13 +428,14 @@ def verdict(stopper: xr.Dataset) -> str:
     """Whether the restoring force of a stopper suffices, for the smallest share that its patches can bound."""
     force, where = float(stopper.restoring_force), airs(stopper.humidity.values)
     stated, any_air = stopper.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(stopper)[1]
-    known = [float(share) for share in stopper.share if np.isfinite(stated.sel(share=share))]
+    sampled = stated.where(stopper.basis == Basis.SAMPLED)
+    known = [float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))]
     if not known:
         return _verdict_of_few(stopper)
     share = min(known)
     at_these, anywhere = (float(needed.sel(share=share)) for needed in (stated, any_air))
     head = f"The restoring force of {force / UN:g} µN"
-    tail = f"at most 1 in {1 / share:g} sticks (95 % confidence, given the drawn surfaces)."
+    tail = f"at most {one_in(share)} sticks (95 % confidence, given the drawn surfaces)."
     if force < at_these:
         return f"{head} does not suffice {where}: a larger one is needed if {tail}"
     if force < anywhere:
@@ -459,7 +462,7 @@ def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
     share = _chosen(dataset)
     lengths = dataset.safe_length.sel(share=share) / UM
     shortest, longest = float(lengths.min()), float(lengths.max())
-    air, but = _at(humidity), f"at most 1 in {1 / share:g}"
+    air, but = _at(humidity), f"at most {one_in(share)}"
     sentence = (
         f"{air}, devices of up to {shortest:.0f} µm come free after they were pressed down, except for {but} (95 % "
         "confidence, given the drawn surfaces)."
@@ -481,16 +484,24 @@ def stuck_sentence(humidity: float, stuck: float, low: float, high: float, force
     return f"{_at(humidity)}, {share} of the stoppers ({band}) hold more than the restoring force of {force / UN:g} µN."
 
 
+#: What a safe force rests on.
+_ON = {
+    Basis.SAMPLED: "95 % confidence",
+    Basis.FITTED: "95 % confidence, by a line through the largest 5 % of the forces",
+    Basis.EXTRAPOLATED: "extrapolated, by a line through the largest 5 % of the forces beyond what was verified",
+}
+
+
 def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
     """Restoring forces that would suffice at the humidities of a stopper, and in any air of its fine axis.
 
     For the shares that its patches can bound.
     """
-    stated = stopper.safe_force.sel(part="safe").max("humidity")
+    stated = stopper.safe_force.sel(part="safe").max("humidity").assign_coords(basis=stopper.basis)
     where = "At all these humidities" if stopper.sizes["humidity"] > 1 else _at(float(stopper.humidity[0]))
     return [
-        f"{where}, a restoring force of {float(force) / UN:.3g} µN leaves at most 1 in "
-        f"{1 / float(force.share):g} stuck (95 % confidence)"
+        f"{where}, a restoring force of {float(force) / UN:.3g} µN leaves at most "
+        f"{one_in(float(force.share))} stuck ({_ON[str(force.basis.values)]})"
         + (f"; at any humidity{_range(stopper)}, {float(more) / UN:.3g} µN are needed." if ends(stopper) else ".")
         for force, more in zip(stated, in_any_air(stopper)[1], strict=True)
         if np.isfinite(force)

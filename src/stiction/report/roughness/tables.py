@@ -9,7 +9,7 @@ from stiction.config.cases import air
 from stiction.config.kinds import ROUGHNESSES
 from stiction.config.units import from_si, without_unit
 from stiction.plan.names import by_name
-from stiction.report.format import UM, airs, with_error
+from stiction.report.format import UM, airs, one_in, with_error
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.releases import FORCE
@@ -193,7 +193,7 @@ def _range(dataset, low, high):
 
 def _share(dataset):
     """The allowed share as text."""
-    return f"1 in {1 / float(dataset.share):g}"
+    return one_in(float(dataset.share))
 
 
 def _refusals(curve):
