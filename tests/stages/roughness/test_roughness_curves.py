@@ -395,3 +395,23 @@ def test_a_stopper_of_30_micronewton_sticks_at_3_4_nm_and_not_at_5_nm():
     found = stiction.Device("S1", Results.of(stiction.load(SECTIONS, few))).roughness()
     ends = found.stuck.sel(shape="force", humidity=0.6).isel(roughness=[0, -1])
     np.testing.assert_allclose(ends.sel(end="estimate"), [0.84, 0], atol=0.005)
+
+
+@pytest.mark.parametrize(("share", "samples"), [(1e-6, 29_956), (1e-3, 2995), (1e-4, 1000), (1e-6, 2_995_731)])
+def test_a_share_beyond_samples_and_verification_is_called_extrapolated(share, samples):
+    found = xr.Dataset({"share": share, "samples": samples})
+    (said,) = tables_roughness.extrapolated(found) or [""]
+    assert said.startswith("What holds for 1 in 1000000 is extrapolated: from 29956") == (samples == 29_956)
+    assert bool(said) == (samples == 29_956)
+
+
+def test_rare_shares_of_stoppers_need_no_more_patches_than_the_rarest_that_was_verified():
+    def samples(share):
+        asked = {"requirement": {"share": share}, "roughness": {"surface": "B2", "rms_nm": [1, 8]}}
+        bump = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 1, "humidities": [0.5]}
+        few = {"contact": {"samples": 100}, "run": {"pairs": []}}
+        plan = Plan(stiction.load(few, {"devices": {"S1": bump | asked}}))
+        settings = Graph(plan).job("devices/contact/roughness/S1_0").settings
+        return settings["contact"]["contact"]["samples"]
+
+    assert [samples(share) for share in (0.05, 1e-3, 1e-4, 1e-5, 1e-6)] == [100, 2995, 29_956, 29_956, 29_956]
