@@ -56,6 +56,10 @@ class Known:
     safe: float = 0.0  #: length up to which no surfaces hold a device
 
 
+#: Devices of which all lengths are from samples.
+NOTHING = Known()
+
+
 # Sticking lengths
 
 
@@ -160,7 +164,7 @@ def sampled_bound(values: np.ndarray, share: float) -> tuple[float, float, float
     return float(_sampled_length(ordered, share)), float(estimate), float(error)
 
 
-def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator, known: Known = Known()) -> SafeLength:
+def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator, known: Known = NOTHING) -> SafeLength:
     """Safe length for one share p of stuck devices, at most 5 %, from their sticking lengths (n,) [m].
 
     It is sampled if there are enough devices (`samples_for`), and at most as long as they were simulated. Otherwise it

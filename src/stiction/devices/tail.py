@@ -31,7 +31,7 @@ class TailFit:
 
 
 def normal_scores(samples: int, fitted: int | None = None) -> np.ndarray:
-    """Normal scores of the ``fitted`` lowest order statistics, by default ``TAIL`` of ``samples``, by Blom's positions."""
+    """Normal scores of the ``fitted`` lowest of ``samples``, by default the share ``TAIL``, by Blom's positions."""
     ranks = np.arange(1, (int(TAIL * samples) if fitted is None else fitted) + 1)
     return ndtri((ranks - 0.375) / (samples + 0.25))
 

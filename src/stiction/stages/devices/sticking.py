@@ -15,11 +15,11 @@ from stiction.contact.environment import Water, flooded_law
 from stiction.contact.meniscus import flooded_energy
 from stiction.devices import arcs, bridges, risk
 from stiction.devices.chart import flooded_length
-from stiction.devices.risk import Basis, Known, SafeLength
+from stiction.devices.risk import NOTHING, Basis, Known, SafeLength
 from stiction.stages.contact import curves
 from stiction.stages.contact.error_notes import on_patch
-from stiction.stages.devices import releases
-from stiction.stages.devices.releases import DesignedBeam
+from stiction.stages.devices import opening
+from stiction.stages.devices.opening import DesignedBeam
 from stiction.streams import stream
 
 
@@ -54,8 +54,8 @@ class Ground:
 def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settings: BeamSettings) -> Ground:
     """Force laws at a relative humidity, from the contact of the strips and of the tips; ``None`` for a bridge."""
     with on_patch(settings.device.strip, settings.device.width):
-        model = releases.fitted(*curves.vectors(contact, humidity, settings.water), settings.chaos)
-    laws = draw_laws(model, releases.LAWS, releases.addresses(settings)("mesh"))
+        model = opening.fitted(*curves.vectors(contact, humidity, settings.water), settings.chaos)
+    laws = draw_laws(model, opening.LAWS, opening.addresses(settings)("mesh"))
     return Ground(model, laws, None if tips is None else curves.tip_forces(tips, humidity, settings.water))
 
 
@@ -65,10 +65,10 @@ def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> tuple
     With the length up to which they are known [m].
     """
     resolved = device.opening.resolved(device, met.laws)
-    address, draw = releases.addresses(settings), partial(draw_laws, met.model)
-    cracks = releases.arrests(device, resolved, draw, settings.beams, address)
+    address, draw = opening.addresses(settings), partial(draw_laws, met.model)
+    cracks = opening.arrests(device, resolved, draw, settings.beams, address)
     held = None if met.tips is None else arcs.longest_free(*met.tips, device.beam)
-    reach = releases.reach(device, resolved, draw, cracks, address)
+    reach = opening.reach(device, resolved, draw, cracks, address)
     return sticking_lengths(cracks, foundation_length(device.beam, met.laws), device, held), reach
 
 
@@ -133,6 +133,6 @@ def by_shape(
     }
 
 
-def safe_lengths(sticking: np.ndarray, settings: Settings, known: Known = Known()) -> list[SafeLength]:
+def safe_lengths(sticking: np.ndarray, settings: Settings, known: Known = NOTHING) -> list[SafeLength]:
     """Safe length for every share, from sticking lengths (n,) [m]."""
     return [risk.safe_length(sticking, share, stream(settings.seed, "safe length"), known) for share in settings.shares]

@@ -132,7 +132,7 @@ def arrests(
 def reach(
     device: DesignedBeam, ground: tuple[Beam, int], draw: Callable, arrested: np.ndarray, address: Callable
 ) -> float:
-    """Length up to which the devices were simulated whose lengths are ``arrested`` (n,), infinite if all are finite [m].
+    """Length up to which devices with these ``arrested`` lengths (n,) were simulated [m]; infinite if all are finite.
 
     Other parameters as of `arrests`.
     """
