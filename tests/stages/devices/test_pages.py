@@ -33,16 +33,17 @@ CANTILEVER = {
 STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.44, 0.67]}
 
 
-def safe(kind="cantilever", longest=600e-6):
+def safe(kind="cantilever", longest=600e-6, reach=np.inf):
     """Safe lengths of 400 devices that stick between two thirds of a length and this length."""
     device = DesignedBeam(kind, "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
     settings = safe_lengths.Settings(1, Water(300.0), 0.67, device, (1e-2, 1e-3, 1e-4))
     shapes = {device.opening.shapes[0]: np.linspace(2 / 3, 1, 400) * longest}
     if kind == "cantilever":
         shapes[EITHER] = 0.7 * shapes[S_SHAPE]
-    bounds = {shape: sticking.safe_lengths(values, settings) for shape, values in shapes.items()}
+    known = sticking.known(device, settings.water, 0.67, reach)
+    bounds = {shape: sticking.safe_lengths(values, settings, known[shape]) for shape, values in shapes.items()}
     errors = {shape: np.full(3, 1e-6) for shape in shapes}
-    return safe_lengths.layout(shapes, bounds, errors, 3e-9, settings)
+    return safe_lengths.layout(shapes, bounds, known, errors, settings).assign(rms=3e-9)
 
 
 @pytest.fixture(scope="module")

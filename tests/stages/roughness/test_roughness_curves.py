@@ -10,11 +10,13 @@ from legends import covering
 
 import stiction
 from stiction.contact.environment import Water
+from stiction.devices.risk import Known
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.report.roughness import figures as figures_roughness
 from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import png
+from stiction.stages.devices import sticking
 from stiction.stages.devices.opening import S_SHAPE
 from stiction.stages.roughness import contacts, curves
 from stiction.stages.roughness.contacts import POINTS, Varied
@@ -223,7 +225,8 @@ def test_a_beam_that_sticks_at_no_length_is_an_answer():
     device = SimpleNamespace(opening=SimpleNamespace(shapes=(S_SHAPE,)))
     common = {"seed": 1, "chaos": None, "water": None, "humidities": (0.6,), "device": device, "beams": 100}
     beam = curves.OfBeam(**common, share=SHARE, length=1e-4)
-    never = beam._response(np.full(100, np.inf), 5e-5, 5e-5, 0.0)
+    known, lengths = Known(2e-4, 5e-5, 5e-5), np.full(100, np.inf)
+    never = beam._response(lengths, *sticking.safe_lengths(lengths, beam, known), known, 0.0)
     points = [curves.layout([[never]], [""], rms, 100, beam) for rms in RANGE]
     found = curves.joined(points, "rms_nm", "B2")
     (sentence,) = tables_roughness.answers(found)

@@ -205,6 +205,8 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
 def advised(dataset: xr.Dataset) -> str:
     """Sentence on what to measure better."""
     uncertainty = budget_of(dataset)
+    if np.isnan(uncertainty.total):
+        return "So few of the simulated devices stick that they do not show what an input changes."
     if uncertainty.total == 0:
         return "No uncertainty of an input is stated."
     return advice(uncertainty, groups_of(dataset), response_text(dataset))
@@ -264,7 +266,7 @@ def _effect_as_text(part, effect, error):
     """Effect with its standard error, if it has one; that of a choice, or of the model, has a sign."""
     if part in MODEL:
         return column.marked(effect, error, part == MODEL[1])
-    if not error > 0:
+    if not error > 0 or np.isnan(effect):
         return number(effect, ".2g")
     return (signed if part == "choice" else with_error)(effect, error)
 

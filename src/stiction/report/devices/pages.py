@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from stiction.config.cases import DRY, case_id
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of, restoring_force
 from stiction.config.materials import material_of
-from stiction.devices.risk import Basis
+from stiction.devices.risk import Basis, samples_for
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
 from stiction.report.budget import figures as figures_budget
@@ -259,7 +259,9 @@ def of_beam(
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets, errors)
-    answer = [build_sentence(safe_lengths, budgets), *_rough_enough(roughness)]
+    answer = [build_sentence(safe_lengths, budgets)]
+    answer += [few_sentence(humidity, one) for humidity, one in safe_lengths.items() if _few_stick(one)]
+    answer += _rough_enough(roughness)
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
         answer.append(tables_test_beams.built(test_beams))
@@ -387,7 +389,8 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
         As in `of_beam`.
     """
     least = min(_safe(dataset).item() for dataset in safe_lengths.values())
-    total = max((budget_of(budget).total for key, budget in _of_shortest(safe_lengths, budgets).items()), default=0.0)
+    totals = [budget_of(budget).total for budget in _of_shortest(safe_lengths, budgets).values()]
+    total = max((total for total in totals if np.isfinite(total)), default=0.0)
     length = (1 - 2 * total) * least / UM
     if length <= 0:
         return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
@@ -395,8 +398,12 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
         f"Build it no longer than {length:.0f} µm: then at most {one_in(_chosen(_any(safe_lengths)))} sticks "
         f"{airs(safe_lengths)} (95 % confidence, given the drawn surfaces)."
     )
-    if total == 0:
+    if not np.isfinite(totals).all():
+        sentence += " What the measurements leave uncertain is not known, because too few of the simulated beams stick."
+    if total == 0 and len(totals) == sum(np.isfinite(totals)):
         return f"{sentence} No uncertainty of the measurements is subtracted, because none is stated."
+    if total == 0:
+        return sentence
     return (
         f"{sentence} The shortest safe length, {least / UM:.0f} µm, is reduced by {200 * total:.2g} %, twice the "
         "uncertainty due to the measurements."
@@ -470,6 +477,28 @@ def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
     if longest == shortest:
         return sentence
     return f"{sentence} If the tip cannot hold them, this is true of up to {longest:.0f} µm."
+
+
+def _few_stick(dataset):
+    """Whether the safe length of the chosen share is as long as the simulated devices, or that of flat surfaces."""
+    return dataset.basis.sel(share=_chosen(dataset)).values[-1] in (Basis.LONGEST, Basis.FLAT)
+
+
+def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
+    """How many devices stick at most at one humidity, in words, where so few do that no smaller share is known."""
+    held, number, share = dataset.isel(shape=-1), int(dataset.beams), _chosen(dataset)
+    shortest, most, reach = float(held.shortest), float(held.most_stuck), float(held.reach)
+    none = f"shorter than {shortest / UM:.0f} µm " if np.isfinite(shortest) else ""
+    sentence = (
+        f"{_at(humidity)}, hardly any device sticks: none of the {number} simulated ones {none}does, and at most "
+        f"{100 * most:.2g} % of those of {reach / UM:.0f} µm (95 % confidence, given the drawn surfaces)."
+    )
+    if str(held.basis.sel(share=share).values) == Basis.LONGEST:
+        return sentence
+    return (
+        f"{sentence} For 1 in {1 / share:g}, the length that sticks on flat surfaces counts; {samples_for(share)} "
+        "devices in design.beams show whether longer ones are safe."
+    )
 
 
 def stuck_sentence(humidity: float, stuck: float, low: float, high: float, force: float) -> str:

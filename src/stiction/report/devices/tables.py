@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from stiction.devices.risk import Basis
 from stiction.plan.names import by_case
 from stiction.report.format import UM, error_alone, humidity_text, number
 from stiction.report.model_error import column
@@ -26,6 +27,11 @@ _SAFE_LENGTHS = (
     "Every beam has its own tip, whose scatter is part of the first. Basis: sampled, by order statistics; fitted, by "
     "a line through the shortest 5 %; extrapolated, beyond what was verified."
 )
+#: What other bases of a safe length mean, where they occur.
+_FEW = {
+    Basis.LONGEST: "longest, the longest simulated devices, of which at most a share p sticks",
+    Basis.FLAT: "flat, the length that sticks on flat surfaces, as too few of the simulated devices stick for a line",
+}
 _BOUND = (
     "Bound: for a cantilever, the length that "
     "sticks in saturated air, where water fills all gaps; for a bridge, the length below which even flooded flats in "
@@ -78,10 +84,19 @@ def safe_lengths(
             rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
-    text, columns = f"{_SAFE_LENGTHS} {about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY)}", _LENGTHS
+    said = [_SAFE_LENGTHS, *_few(datasets), about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY)]
+    text, columns = " ".join(said), _LENGTHS
     if errors:
         text, columns = f"{text} {column.caption(errors)}", columns | column.COLUMN
     return Table(frame, _caption(text, warnings, not_modelled), as_text(frame, columns).assign(warnings=marks))
+
+
+def _few(datasets):
+    """What lengths rest on where few devices stick; nothing where enough of them do."""
+    bases = {str(basis) for dataset in datasets.values() for basis in dataset.basis.values.flat}
+    if not (found := [text for basis, text in _FEW.items() if basis in bases]):
+        return []
+    return [f"Where few stick: {'; '.join(found)}; an estimate beyond these is not known."]
 
 
 def about_bounds(datasets: Mapping[Any, xr.Dataset], humid: str, dry: str, where_dry: str) -> str:
@@ -106,7 +121,7 @@ def _safe_length(point):
     return {
         "share": float(point.share),
         "safe_length_um": float(point.safe_length) / UM,
-        "estimate_um": float(point.estimate) / UM,
+        "estimate_um": float(point.estimate.where(np.isfinite(point.estimate))) / UM,
         "estimate_se_beams_um": float(point.beams_error) / UM,
         "estimate_se_surfaces_um": float(point.surfaces_error) / UM,
         "basis": str(point.basis.values),

@@ -81,19 +81,16 @@ class OfBeam:
     def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> list[Response]:
         """Safe lengths at a humidity by shape."""
         met = sticking.ground(contact, tips, humidity, self)
-        lengths = sticking.released(self.device, met, self)
-        bounds = sticking.flooded_lengths(self.device, self.water, humidity)
-        numbers = sticking.bound(self.device, self.water, humidity), self._scatter(contact, humidity)
-        return [self._response(held, bound, *numbers) for held, bound in zip(lengths.values(), bounds, strict=True)]
+        lengths, reach = sticking.released(self.device, met, self)
+        known = sticking.known(self.device, self.water, humidity, reach)
+        scatter, safe = self._scatter(contact, humidity), sticking.by_shape(lengths, self, known)
+        return [self._response(held, *safe[shape], known[shape], scatter) for shape, held in lengths.items()]
 
-    def _response(self, lengths, bound, least, scatter):
-        """Response from sticking lengths (n,) [m], their bounds and their relative error by the number of samples."""
-        stuck = tuple(float(part[0]) for part in risk.stuck_share(np.array([self.length]), lengths))
-        if not np.isfinite(lengths).any():
-            return Response(np.inf, np.inf, 0.0, bound, stuck)
-        (safe,) = sticking.safe_lengths(lengths, self, least)
-        error = float(np.hypot(safe.error, scatter * safe.estimate))
-        return Response(safe.length, safe.estimate, error, bound, stuck)
+    def _response(self, lengths, safe, known, scatter):
+        """Response from sticking lengths (n,) [m], their safe length, what else is known, and the samples' error."""
+        shares = risk.stuck_share(np.array([self.length]), lengths, known.reach)
+        error = float(np.hypot(safe.error, scatter * safe.estimate)) if np.isfinite(safe.estimate) else 0.0
+        return Response(safe.length, safe.estimate, error, known.flat, tuple(float(part[0]) for part in shares))
 
     def _scatter(self, contact, humidity):
         """Relative standard error of the length on the mean of the samples [-]."""
