@@ -88,6 +88,25 @@ def devices_have_the_keys_of_their_kind(config):
 
 
 @relation
+def lengths_of_devices_are_those_of_slender_beams(config):
+    """Beams are longer than they are thick and deflected; lengths in mm are not."""
+    sizes = "thickness_um", "gap_um"
+    for name, length, *values in config.entries("devices", "length_um", *sizes):
+        if length <= max(values):
+            message = "must be in µm, above the thickness and the gap of the beam"
+            yield f"devices.{name}.length_um", message, *(f"devices.{name}.{size}" for size in sizes)
+
+
+@relation
+def lengths_of_devices_are_those_that_are_required(config):
+    """A device has one length."""
+    for name, length, required in config.entries("devices", "length_um", "requirement.length_um"):
+        if length != required:
+            message, given = "must be the length that is required", f"devices.{name}.requirement.length_um"
+            yield f"devices.{name}.length_um", message, given
+
+
+@relation
 def asperities_of_devices_are_summits(config):
     """The tips of beams and the budgets of devices are computed with summits."""
     for name, _ in config.entries("devices", "pair"):

@@ -20,6 +20,7 @@ from stiction.plan.stage import File, Shown, Stage
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import figures as figures_devices
+from stiction.report.devices import own_length
 from stiction.report.devices import tables as tables_devices
 from stiction.report.format import MISSING, UM, UN, airs, humidity_text, one_in
 from stiction.report.model_error import sentences as model_errors
@@ -259,7 +260,8 @@ def of_beam(
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets, errors)
-    answer = [build_sentence(safe_lengths, budgets)]
+    answer = [*own_length.sentences(safe_lengths, _of_shortest(safe_lengths, budgets))]
+    answer += [build_sentence(safe_lengths, budgets)]
     answer += [few_sentence(humidity, one) for humidity, one in safe_lengths.items() if _few_stick(one)]
     answer += _rough_enough(roughness)
     if test_beams is not None:
