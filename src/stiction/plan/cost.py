@@ -13,7 +13,7 @@ from stiction.config.units import NM_PER_UM
 #: CPU time [s] of a job apart from the following, of one point of a field of a sample in contact, and of one beam, on
 #: one core of an AMD EPYC: 7 ms for 2.5 µm x 31 µm at 10 nm, and 0.24 s for 100 beams (docs/tables/bench.md).
 PER_JOB, PER_POINT, PER_BEAM = 0.7, 7e-3 / (250 * 3100), 2.4e-3
-#: The same of a strip in full elastic contact at one humidity, of those of the paper (docs/tables/full_contact_times.md).
+#: The same of a strip of the paper in full elastic contact at one humidity (docs/tables/full_contact_times.md).
 PER_STRIP = 2.0
 #: Units of time [s].
 _TIMES = ((86_400, "days"), (3600, "h"), (60, "min"), (1, "s"))
@@ -38,7 +38,8 @@ def of_job(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets: 
     """
     parts, sections = int(wildcards["number"]) if "chunk" in wildcards else 1, list(_sections(settings))
     contacts = sum(map(_of_contact, sections)) * datasets / parts
-    strips = sum(section["strips"] * len(section["humidities"]) for section in sections if _FULL <= section.keys())
+    full = (section for section in sections if section.keys() >= _FULL)
+    strips = sum(section["strips"] * len(section["humidities"]) for section in full)
     return PER_JOB + contacts + PER_STRIP * strips + PER_BEAM * repeats * sum(map(_beams, sections))
 
 
