@@ -6,7 +6,7 @@
    examples/NAME.yaml --directory runs/NAME`` with the names roughness and test_beams in folders of ``runs`` beside it.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
 3. The pages of ``docs`` and ``config/README.md`` are generated from ``docs/templates``, with numbers and tables
-   inserted, and the schema for editors from that of the configuration.
+   inserted.
 
 Steps 2 and 3 depend on ``docs`` alone: ``tests/test_docs.py`` repeats them and compares.
 """
@@ -101,8 +101,6 @@ ATTRACTION, OF_ATTRACTION = "attraction", "results/tables/variants.csv"
 TAILS = "tails"
 #: Largest picture [bytes].
 LARGEST = 350_000
-#: Schema of configuration files for editors.
-EDITORS = ROOT / "src" / "stiction" / "config" / "schema.json"
 NOTE = "<!-- Written by docs/update.py from docs/templates/{name}: edit that file, then run make numbers. -->"
 
 
@@ -364,7 +362,7 @@ def pages():
     for template in sorted((DOCS / "templates").glob("*.md")):
         body = filled(template.read_text(encoding="utf-8"), numbers)
         texts[page_of(template)] = NOTE.format(name=template.name) + "\n\n" + body
-    return texts | {EDITORS: keys.for_editors()}
+    return texts
 
 
 def page_of(template):

@@ -114,7 +114,7 @@ WRONG_VALUES = [
     # measured surfaces; tests/config/test_measured_surfaces.py has more, with files
     ("scans: {model_scans: 7}", "scans.model_scans", "7", "at least 8"),
     ("scans: {tiles: 1}", "scans.tiles", "1", "at least 2 and at most 8"),
-    ("scans: {undefined_share: 1}", "scans.undefined_share", "1", "at most 0.5: largest share of the points"),
+    ("scans: {undefined_share: 1}", "scans.undefined_share", "1", "at most 0.5: share of undefined points"),
     ("surfaces: {B1: {scans: }}", "surfaces.B1.scans", "None", GONE),
 ]  # fmt: skip
 
@@ -313,4 +313,5 @@ UNKNOWN = [
 ]
 
 # Names that are not safe in file names and wildcards
-UNNAMEABLE = ["B-1", "B_1", "B.1", "1B", "B 1", "../B", "{B}", "", "ß", "B" * 33, "B\n", 1, 1.5, None, False]
+OF_SURFACES = ["B-1", "B_1"]  # names that only surfaces may have
+UNNAMEABLE = [*OF_SURFACES, "B.1", "1B", "B 1", "../B", "{B}", "", "ß", "B" * 33, "B\n", 1, 1.5, None, False]

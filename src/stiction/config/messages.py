@@ -70,16 +70,17 @@ def _strict():
     return validators.extend(Draft202012Validator, type_checker=types)
 
 
+def _also(path):
+    """Other signs in names of a section."""
+    return ", _ and -, not dry_ at the beginning" if path == ("surfaces",) else ""
+
+
 def _explained(error, schema):
     """Problems that correspond to one error of jsonschema."""
     path, value = tuple(error.absolute_path), error.instance
     if "propertyNames" in error.absolute_schema_path:
-        return [
-            Problem(
-                (*path, value),
-                f"is not a valid name, must be letters and digits, starting with a letter{_name_hint(value)}",
-            )
-        ]
+        signs = f"letters and digits{_also(path)}, starting with a letter"
+        return [Problem((*path, value), f"is not a valid name, must be {signs}{_name_hint(value)}")]
     if error.validator == "required":
         missing, *more = [key for key in error.validator_value if key not in value]
         as_well = f"; {' and '.join(more)} {'is' if len(more) == 1 else 'are'} missing as well" if more else ""
