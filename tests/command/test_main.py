@@ -294,10 +294,9 @@ def test_a_check_draws_the_first_samples_and_remembers_what_they_showed(tmp_path
     assert capsys.readouterr().err == refusal
 
 
-@pytest.mark.parametrize("study", ["run: {pairs: [b]}\n", "run: {pairs: [b]}\nbeam: {width_um: 0.06}\n"])
-def test_a_check_makes_no_folder(tmp_path, capsys, study):
+def test_a_check_makes_no_folder(tmp_path, capsys):
     path = tmp_path / "mine.yaml"
-    path.write_text(study)
+    path.write_text("run: {pairs: [b]}\nbeam: {width_um: 0.06}\n")
     asked = ["check", str(path), "--directory", str(tmp_path / "later" / "mine")]
     status = main(asked)
     assert list(tmp_path.iterdir()) == [path]

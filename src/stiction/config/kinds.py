@@ -11,7 +11,8 @@ from itertools import chain
 from typing import NamedTuple
 
 #: Keys that every device may have.
-COMMON = ("kind", "pair", "humidities", "uncertainty", "test_beams", "requirement", "roughness")
+COMMON = ("kind", "pair", "humidities", "uncertainty", "test_beams", "requirement", "roughness", "touchdowns")
+COMMON += ("voltage_V", "offset_V", "dielectric")
 #: Keys that depend on the kind, what they are called and their unit.
 KEYS = {
     "thickness_um": ("thickness", "µm"),
@@ -22,6 +23,9 @@ KEYS = {
     "contact_um": ("sides of the area in contact", "µm"),
     "stiffness_N_per_m": ("stiffness of the spring", "N/m"),
     "restoring_force_uN": ("restoring force", "µN"),
+    "mass_ng": ("moving mass", "ng"),
+    "voltage_V": ("voltage", "V"),
+    "offset_V": ("offset of the voltage", "V"),
 }
 
 
@@ -116,6 +120,7 @@ KINDS = {
         words="stopper",
         keys=("contact_um",),
         ways=(("restoring_force_uN",), ("stiffness_N_per_m", "gap_um")),
+        optional=("mass_ng", "electrode"),
         is_beam=False,
     ),
 }

@@ -98,6 +98,30 @@ def lengths_of_devices_are_those_that_are_required(config):
 
 
 @relation
+def voltages_are_across_a_dielectric(config):
+    """A voltage or offset needs a dielectric, without which surfaces that touch would short."""
+    for key in ("voltage_V", "offset_V"):
+        for name, _ in config.entries("devices", key):
+            if "dielectric" not in config.names(f"devices.{name}"):
+                yield f"devices.{name}.{key}", "must come with dielectric: {thickness_nm, permittivity}"
+    for name, _ in config.entries("devices", "dielectric"):
+        if not {"voltage_V", "offset_V"} & set(config.names(f"devices.{name}")):
+            yield f"devices.{name}.dielectric", "must come with voltage_V or offset_V"
+
+
+@relation
+def electrodes_pull_on_a_spring_across_a_gap(config):
+    """The voltage of an electrode needs the stiffness of the stopper, which touches before its electrode does."""
+    for name, electrode in config.entries("devices", "electrode"):
+        device, key = config["devices"][name], f"devices.{name}.electrode"
+        if "stiffness_N_per_m" not in device:
+            yield key, "must come with stiffness_N_per_m and gap_um in place of restoring_force_uN"
+        elif electrode["gap_um"] < device["gap_um"]:
+            message = "must be at least gap_um of the stopper, which would not touch otherwise"
+            yield f"{key}.gap_um", message, f"devices.{name}.gap_um"
+
+
+@relation
 def asperities_of_devices_are_summits(config):
     """The tips of beams and the budgets of devices are computed with summits."""
     for name, _ in config.entries("devices", "pair"):

@@ -29,6 +29,25 @@ def stuck_patches(pull_off: np.ndarray, restoring_forces: np.ndarray) -> tuple[n
     return stuck_share(-np.asarray(restoring_forces), -pull_off)
 
 
+def safe_force(pull_off: np.ndarray, share: float) -> tuple[float, float, float]:
+    """Smallest restoring force whose one-sided 95 % upper bound of P(stuck) is at most a share p.
+
+    It is an order statistic of the sampled pull-off forces (n,) [N], without an assumption about their distribution.
+
+    Returns
+    -------
+    force, estimate, error : float
+        The safe force, the force with P(stuck) = p, and the standard error of the estimate [N].
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than `stiction.devices.risk.samples_for` forces.
+    """
+    force, estimate, error = sampled_bound(-np.asarray(pull_off), share)
+    return -force, -estimate, error
+
+
 @dataclass(frozen=True)
 class SafeForce:
     """Smallest restoring force whose one-sided 95 % upper bound of P(stuck) is at most a share p."""
@@ -42,7 +61,7 @@ class SafeForce:
 def safe_forces(pull_off: np.ndarray, share: float, rng: np.random.Generator) -> list[SafeForce]:
     """Safe force for a share p from each row of sampled pull-off forces (rows, n) [N].
 
-    If there are enough patches (`stiction.devices.risk.samples_for`), it is an order statistic. Otherwise a line is
+    If there are enough patches (`stiction.devices.risk.samples_for`), it is that of `safe_force`. Otherwise a line is
     fitted through the logarithms of the largest 5 % of the forces over the normal score, as through the shortest
     lengths of beams. ASSUME: the end of the forces is lognormal. That is the safe side: of 110 000 patches of 1.5 µm
     side each, of the paper's pair b and of normal surfaces of 5 nm rms, in dry air and at RH 0.67, a share of 1e-3
@@ -55,8 +74,7 @@ def safe_forces(pull_off: np.ndarray, share: float, rng: np.random.Generator) ->
     """
     samples = pull_off.shape[-1]
     if samples >= samples_for(share):
-        sampled = (sampled_bound(-row, share) for row in pull_off)
-        return [SafeForce(-bound, -estimate, error, Basis.SAMPLED) for bound, estimate, error in sampled]
+        return [SafeForce(*safe_force(row, share), Basis.SAMPLED) for row in pull_off]
     held = pull_off > 0
     inverse = np.divide(1.0, pull_off, out=np.full(pull_off.shape, np.inf), where=held)
     fits = [fit_tail(row) for row in inverse]

@@ -354,3 +354,14 @@ def test_the_table_has_the_share_at_the_length_of_those_devices_that_have_one():
     assert list(table.cells["P(stuck) [%]"])[-1] == "–"
     assert "length that they have" in table.caption
     assert "length [µm]" not in tables_devices.safe_lengths({("C2", 0.67): safe()}, silent).cells
+
+
+def test_a_page_says_in_its_second_sentence_that_an_assumption_decides():
+    budgets, section = {(0.67,): BUDGETS["S1", 0.67]}, STOPPER | {"assumed": ["rms of B2"]}
+    assumed = pages.of_stopper("S1", section, STOPPERS["S1"], budgets, []).answer[1]
+    assert assumed.startswith("What decides is assumed, not measured: heights of B2. If that were known")
+    lengths, budgets = {0.67: safe()}, {(0.67, "tip"): BUDGETS["C1", 0.67, "tip"]}
+    none = {("C1", 0.67, shape): [] for shape in (S_SHAPE, EITHER)}
+    beam = pages.of_beam("C1", CANTILEVER | {"assumed": ["rms of B2"]}, lengths, {}, budgets, none)
+    assert beam.answer[1].startswith("What decides is assumed")
+    assert not pages.of_beam("C1", CANTILEVER, lengths, {}, budgets, none).answer[1].startswith("What decides")

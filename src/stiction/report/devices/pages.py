@@ -18,7 +18,7 @@ from stiction.report import html
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import figures as figures_devices
-from stiction.report.devices import own_length, sentences
+from stiction.report.devices import life, own_length, sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.report.format import MISSING, humidity_text, one_in
 from stiction.report.model_error import sentences as model_errors
@@ -255,7 +255,7 @@ def _inputs(plan, at):
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
     budgets = budgets_of(plan, at.device) if at.device in devices.budgeted else {}
     own = {"budgets": {key[1:]: name for key, name in budgets.items()}, "warnings": device_warnings.files_of(at.device)}
-    own |= model_errors.of_devices(plan, at.device)
+    own |= {"life": f"devices/life/{at.device}"} | model_errors.of_devices(plan, at.device)
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
     own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
     own |= {"style": File(STYLE), "templates": [File(_GLOSSARY), *html.files(TEMPLATE)]}
@@ -292,7 +292,15 @@ def _page(data, at, settings):
     else:
         lengths, charts = data["safe_lengths"], data["charts"]
         page = of_beam(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
-    return replace(page, not_modelled=settings["not_modelled"])
+    return replace(with_life(page, at.device, data["life"]), not_modelled=settings["not_modelled"])
+
+
+def with_life(page: Page, name: str, answers: xr.Dataset) -> Page:
+    """Page with the life of its device: below the verdict in words, and after the first section as table and figure."""
+    (verdict, *reasons), (first, *others) = page.answer, page.sections
+    cells = life.table({name: answers}).cells.drop(columns="device")
+    section = Section("From the first contact to the last", (life.CAPTION,), cells, life.figure({name: answers}))
+    return replace(page, answer=[verdict, *life.sentences(answers), *reasons], sections=[first, section, *others])
 
 
 def _save(page, paths):
