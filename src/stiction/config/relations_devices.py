@@ -80,6 +80,25 @@ def devices_have_the_keys_of_their_kind(config):
 
 
 @relation
+def lengths_of_devices_are_those_of_slender_beams(config):
+    """Beams are longer than they are thick and deflected; lengths in mm are not."""
+    sizes = "thickness_um", "gap_um"
+    for name, length, *values in config.entries("devices", "length_um", *sizes):
+        if length <= max(values):
+            message = "must be in µm, above the thickness and the gap of the beam"
+            yield f"devices.{name}.length_um", message, *(f"devices.{name}.{size}" for size in sizes)
+
+
+@relation
+def lengths_of_devices_are_those_that_are_required(config):
+    """A device has one length."""
+    for name, length, required in config.entries("devices", "length_um", "requirement.length_um"):
+        if length != required:
+            message, given = "must be the length that is required", f"devices.{name}.requirement.length_um"
+            yield f"devices.{name}.length_um", message, given
+
+
+@relation
 def voltages_are_across_a_dielectric(config):
     """A voltage or offset needs a dielectric, without which surfaces that touch would short."""
     for key in ("voltage_V", "offset_V"):

@@ -19,7 +19,7 @@ from stiction.config.materials import material_of
 from stiction.config.units import from_si, in_si
 from stiction.constants import DENSITY, LIQUIDS
 from stiction.devices.bridges import half_of_bridge
-from stiction.devices.risk import samples_for
+from stiction.devices.risk import Basis, samples_for
 from stiction.devices.stoppers import safe_force
 from stiction.life import drying, freeing, holding, touch
 from stiction.plan.stage import Stage, select
@@ -387,7 +387,7 @@ def _moved(of):
 
 def _freed(stopper, of):
     """Restoring force, stiffness and shock that free all but a small fraction of the stoppers."""
-    bounded = [float(share) for share in stopper.share if np.isfinite(stopper.safe_force.sel(share=share)).all()]
+    bounded = [float(share) for share in stopper.share[stopper.basis == Basis.SAMPLED]]
     if not bounded:
         return []
     at = stopper.safe_force.sel(share=min(bounded))
