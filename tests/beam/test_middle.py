@@ -206,7 +206,7 @@ def on_two_levels(part, below):
 
 def test_laws_far_below_their_neighbours_hold_no_bridge():
     part, longest = zone(), 400 * UM
-    low = on_two_levels(part, 40e-9)
+    low = on_two_levels(part, 100e-9)
     alone = low.copy()
     alone[::2, 0] *= 1e-9
     found = [shortest_held(part, laws, longest) for laws in (low, alone)]
