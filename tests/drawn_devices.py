@@ -24,7 +24,7 @@ from stiction.streams import stream
 from stiction.surface.feasible import largest_kurtosis
 
 #: Record of a run, which pages show.
-RUN = {"started": "2026-01-31T23:05:59+00:00", "versions": {}, "git": None}
+RUN = {"started": "2026-01-31T23:05:59+00:00", "config": {}, "versions": {}, "git": None}
 #: Few samples, so that a draw takes seconds; beams are as many as the tail of their lengths needs.
 SMALL = {
     "run": {"pairs": [], "studies": []},

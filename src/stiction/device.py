@@ -148,7 +148,8 @@ class Device:
             {stage: {name: self.results[file] for name, file in files.items()} for stage, files in measured.items()}
         )
         if "stopper" in settings:
-            return device_warnings.of_stopper(in_si(device_warnings.OfStopper, settings["stopper"])) + flags
+            of = in_si(device_warnings.OfStopper, settings["stopper"])
+            return device_warnings.of_stopper(of, share_flat=float(safe_lengths.share_flat)) + flags
         of_beam = device_warnings.of_device(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
         return pair_warnings.numbered(of_beam)[0] + flags
 

@@ -258,9 +258,8 @@ def of_beam(
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets, errors)
-    answer = [build_sentence(safe_lengths, budgets)]
-    answer += [few_sentence(humidity, one) for humidity, one in safe_lengths.items() if _few_stick(one)]
-    answer += _rough_enough(roughness)
+    few = [few_sentence(humidity, one) for humidity, one in safe_lengths.items() if _few_stick(one)]
+    answer = [*few, build_sentence(safe_lengths, budgets), *_rough_enough(roughness)]
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
         answer.append(tables_test_beams.built(test_beams))

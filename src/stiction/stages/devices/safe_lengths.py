@@ -45,7 +45,7 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
         shape: [[one.estimate for one in safe_lengths(group[shape], settings)] for group in groups] for shape in safe
     }
     errors = {shape: risk.error_of_surfaces(lengths) for shape, lengths in estimates.items()}
-    return layout(sticking, safe, without_samples, errors, settings).assign(rms=cracks.rms)
+    return layout(sticking, safe, without_samples, errors, settings).assign(cracks[["rms", "share_flat"]])
 
 
 def layout(
