@@ -62,7 +62,7 @@ def drawn(number: int) -> Drawn:
     rng = stream(46, "drawn devices", number)
     rms, corner = 10 ** rng.uniform(-1, 2), 2 * 100 ** rng.uniform()
     skewness, part = rng.uniform(-2, 2), rng.uniform()
-    least = skewness**2 + 1.1
+    least = max(1.5, skewness**2 + 1.1)
     kurtosis = least + part * (min(15, largest_kurtosis(skewness)) - least)
     return Drawn(
         *(float(np.round(value, 3)) for value in (rms, skewness, kurtosis, corner)),
