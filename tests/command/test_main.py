@@ -284,7 +284,20 @@ def test_a_check_draws_the_first_samples_and_remembers_what_they_showed(tmp_path
     assert capsys.readouterr().err == refusal
 
 
-@pytest.mark.parametrize("command", ["run", "devices", "scans", "figures", "explain"])
+@pytest.mark.parametrize("study", ["run: {pairs: [b]}\n", "run: {pairs: [b]}\nbeam: {width_um: 0.06}\n"])
+def test_a_check_makes_no_folder(tmp_path, capsys, study):
+    path = tmp_path / "mine.yaml"
+    path.write_text(study)
+    asked = ["check", str(path), "--directory", str(tmp_path / "later" / "mine")]
+    status = main(asked)
+    assert list(tmp_path.iterdir()) == [path]
+    (tmp_path / "later" / "mine").mkdir(parents=True)
+    printed = capsys.readouterr()
+    assert main(asked) == status, "the answer does not depend on the folder"
+    assert capsys.readouterr() == printed
+
+
+@pytest.mark.parametrize("command", COMMANDS)
 @pytest.mark.parametrize("place", ["folder", "folder/below", "link", "."])
 def test_a_folder_that_is_none_is_refused_in_one_sentence(asked, capsys, command, place):
     Path("folder").touch()

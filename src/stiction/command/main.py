@@ -8,10 +8,10 @@ import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from stiction.command import explain, launch, streams
+from stiction.command import explain, launch, output_streams
 from stiction.command.last_lines import PRINTED, Status, fault, last_lines, status
+from stiction.command.output_streams import say
 from stiction.command.run_state import RUN
-from stiction.command.streams import say
 from stiction.config import reading
 from stiction.config.messages import ConfigError
 from stiction.models import SIDES
@@ -26,7 +26,7 @@ below the current folder or --directory. Everything after -- is passed to Snakem
 
 def main(words: Sequence[str] | None = None) -> int:
     """Run a command, and return its exit status."""
-    streams.open_closed()
+    output_streams.open_closed()
     words, log = list(sys.argv[1:] if words is None else words), PRINTED
     try:
         arguments = _parsed(words)
@@ -161,10 +161,13 @@ def _check(arguments):
     from stiction.run.disk_cache import DiskCache
     from stiction.run.fingerprint import fingerprint
 
-    config, shown = load(*arguments.files), DiskCache(Path(arguments.directory, ".snakemake", "pilot.json"))
+    directory = Path(arguments.directory)
+    launch.require_folder(directory)
+    config, shown = load(*arguments.files), DiskCache(directory / ".snakemake" / "pilot.json")
     code = fingerprint(pilot.__file__, shown)
     problems = pilot.problems(config, preliminary_estimates(config)[0], code, shown)
-    shown.save()
+    if directory.is_dir():
+        shown.save()
     if problems:
         raise ConfigError(*map(str, problems))
     pairs, devices = config["run"]["pairs"], config.get("devices", {})

@@ -9,11 +9,9 @@ from typing import Any
 from stiction.config import test_beams
 from stiction.config.cases import in_numbers
 from stiction.config.merging import expanded, merged
-from stiction.config.reading import read
+from stiction.config.reading import paper, read
 from stiction.config.scans import complete, resolve_scan_paths
-
-#: Configuration of the paper: a copy of ``config.yaml`` in the root folder, which users may edit.
-PAPER = Path(__file__).with_name("paper.yaml")
+from stiction.config.surfaces import described
 
 
 def load(*overlays: str | Path | Mapping) -> dict:
@@ -75,22 +73,17 @@ def located(path: str | Path) -> dict:
     return test_beams.with_files(resolve_scan_paths(content, content, folder), content, folder)
 
 
-@functools.cache
-def paper() -> dict:
-    """Configuration of the paper, read once; not to be changed."""
-    return read(PAPER)
-
-
 def normalised(config: dict) -> dict:
     """Complete and valid configuration in normal form: equivalent settings are equal, whatever their order in the file.
 
     Keys are sorted, so that the parameters of a rule do not depend on their order. The humidities of each pair and
-    device are sorted as well, so that tables and curves begin with the lowest. Measured surfaces get all their keys.
-    Dry air has the humidity 0. Data of test beams are without the files that they come from.
+    device are sorted as well, so that tables and curves begin with the lowest. Surfaces by scans, or described as in
+    papers, get all their keys. Dry air has the humidity 0. Data of test beams are without the files of their beams.
     """
     config = in_numbers(test_beams.without_files(config))
     named = {section: config[section] for section in ("pairs", "devices") if section in config}
-    surfaces = {name: complete(entry) for name, entry in config["surfaces"].items()}
+    library = paper()["surfaces"]
+    surfaces = {name: complete(described.complete(entry, library)) for name, entry in config["surfaces"].items()}
     in_order = {section: _sorted(entries) for section, entries in named.items()}
     return _in_order(config | in_order | {"surfaces": surfaces})
 

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from stiction.config.cases import PairInAir
-from stiction.config.files import paper
 from stiction.config.materials import material_of
+from stiction.config.reading import paper
 from stiction.devices.materials import COATING, ELASTIC, OF_COATINGS, PROPERTIES
 from stiction.models import SIDES
 from stiction.plan.stage import chosen

@@ -10,7 +10,9 @@ from functools import cached_property
 from typing import Any
 
 from stiction.config.cases import IN_HUMID_AIR, Case, PairInAir, case_id
+from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
+from stiction.config.surfaces.knowledge import sentences
 from stiction.config.test_beams import as_cantilevers
 from stiction.devices.materials import ELASTIC
 from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SURFACE_MODELS
@@ -147,6 +149,14 @@ class Plan:
         """Quantities of a surface that have slopes, see `stiction.analysis.shifts`; those of scans include modes."""
         modes = MODE_QUANTITIES if surface in self.scans.surfaces else ()
         return tuple(dict.fromkeys((*quantities(self.config["surfaces"][surface]), *modes)))
+
+    def assumed(self, *pairs: str) -> dict[str, list[str]]:
+        """Sentences on what is not known of the surfaces of some pairs and is assumed, by pair; no empty ones."""
+        library, entries = paper()["surfaces"], self.config["surfaces"]
+        by_surface = {name: sentences(name, entries[name], library) for name in self.scans.others}
+        named = {pair: dict.fromkeys(self.sides(pair)) for pair in pairs}
+        said = {pair: [one for name in names for one in by_surface.get(name, ())] for pair, names in named.items()}
+        return {pair: of_pair for pair, of_pair in said.items() if of_pair}
 
     @cached_property
     def with_summits(self) -> list[str]:

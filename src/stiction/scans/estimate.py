@@ -131,7 +131,7 @@ def estimate(
         model, nearest = _model(inspection, values, heights, farthest)
     largest, count = inspection.largest, len(inspection.largest.names)
     covariances = [
-        seen(inspection, model, maps).covariance / len(maps.names) + part.bias_covariance + maps.noise_covariance
+        seen(inspection, model, maps).covariance / maps.number + part.bias_covariance + maps.noise_covariance
         for maps, part in zip(inspection.counted, drawn, strict=False)
     ]
     closed_form = inspection.propagated(covariances)
@@ -215,7 +215,7 @@ def _model(inspection, values, heights, largest=LARGEST_DISTANCE_OF_SCANS):
 def _covariance(inspection, model):
     """Covariance of the moments of all scans by the finite scans, (3, 3)."""
     return inspection.propagated(
-        [seen(inspection, model, maps).covariance / len(maps.names) for maps in inspection.counted]
+        [seen(inspection, model, maps).covariance / maps.number for maps in inspection.counted]
     )
 
 

@@ -1,13 +1,13 @@
 """Tables of stoppers and of the uncertainty of devices: P(stuck) of patches, and what to measure better."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from stiction.config.cases import air
-from stiction.devices.budget import advice
+from stiction.devices.budget import advice, ranked
 from stiction.estimates import mean_with_error
 from stiction.plan.names import by_name
 from stiction.report.format import UN, humidity_text, number, signed, with_error
@@ -198,6 +198,22 @@ def advised(dataset: xr.Dataset) -> str:
     if uncertainty.total == 0:
         return "No uncertainty of an input is stated."
     return advice(uncertainty, groups_of(dataset), response_text(dataset))
+
+
+def decided(datasets: Iterable[xr.Dataset], assumed: Sequence[str]) -> list[str]:
+    """Sentence about the most uncertain of some budgets, if inputs that are assumed are what to measure first."""
+    budgets = [(budget_of(dataset), dataset) for dataset in datasets]
+    budgets = [budget for budget in budgets if np.isfinite(budget[0].total)]
+    uncertainty, dataset = max(budgets, key=lambda budget: budget[0].total, default=(None, None))
+    if not assumed or uncertainty is None:
+        return []
+    name, _, remaining = ranked(uncertainty, groups_of(dataset))[0]
+    if not set(groups_of(dataset)[name]).intersection(assumed):
+        return []
+    return [
+        f"What decides is assumed, not measured: {name}. If that were known, the standard uncertainty of the "
+        f"{response_text(dataset)} would be {100 * remaining:.1f} instead of {100 * uncertainty.total:.1f} %."
+    ]
 
 
 def response_text(dataset: xr.Dataset) -> str:

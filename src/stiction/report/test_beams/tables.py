@@ -86,9 +86,9 @@ def explained(update: xr.Dataset) -> str:
 def built(update: xr.Dataset) -> str:
     """What to build before and after the measurement, for the middle one of the shares.
 
-    As `stiction.report.devices.pages.build_sentence`: the least safe length, less twice the largest uncertainty of what
-    holds the devices, here with the error of the model as far as it applies; of a stopper the largest safe force, with
-    twice the uncertainty added. Where nothing explains the test beams, they give no length, but a warning.
+    As `stiction.report.devices.sentences.build_sentence`: the least safe length, less twice the largest uncertainty of
+    what holds the devices, here with the error of the model as far as it applies; of a stopper the largest safe force,
+    with twice the uncertainty added. Where nothing explains the test beams, they give no length, but a warning.
     """
     responses = list(dict.fromkeys(map(str, update.response.values)))
     if not is_reliable(update):

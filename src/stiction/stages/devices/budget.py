@@ -319,6 +319,8 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
     else:
         own |= chosen(section, ["contact_um"])
     own |= {"seed": plan.config["seed"], "water": plan.air_of_devices.water(pair), "surfaces": plan.sides(pair)}
+    known = {surface: one.section for surface, one in devices.known(name).items() if one.quantities}
+    own |= {"known": known} if known else {}
     quantities = list(map(list, devices.quantities(name)))
     return _with_choices(
         plan, pair, {"budget": own, "quantities": quantities}, plan.variants.choices_of_device(at.case)

@@ -186,14 +186,17 @@ def _settings(plan, at):
     """A device, its pair and the stated properties of its materials."""
     section = plan.config["devices"][at.device]
     own = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
+    said = plan.assumed(section["pair"]).get(section["pair"])
+    assumed = {"assumed": said} if said else {}
     if plan.devices.kind(at.device).is_beam:
-        return {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}
-    return {"stopper": select(OfStopper, section | own | {"water": plan.air_of_devices.water(section["pair"])})}
+        return assumed | {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}
+    own |= section | {"water": plan.air_of_devices.water(section["pair"])}
+    return assumed | {"stopper": select(OfStopper, own)}
 
 
 def _of_one_device(data, settings):
     """Warnings about a device: about its lengths, its curves and its patch, each with what follows its name."""
-    flags = surface_flags.together(data)
+    flags = surface_flags.together(data) + settings.get("assumed", [])
     changes = left_out_changes(data["left_out_gaps"]) if "left_out_gaps" in data else {}
     if "stopper" in settings:
         of = in_si(OfStopper, settings["stopper"])

@@ -22,6 +22,7 @@ from stiction.devices.roughness import crossings, margins, sufficient
 from stiction.devices.stoppers import safe_force, stuck_patches
 from stiction.errors import NotConverged
 from stiction.plan.stage import Stage, select
+from stiction.rounding import is_equal
 from stiction.stages.contact import curves
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.devices import sticking, stoppers
@@ -202,7 +203,8 @@ def joined(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Dataset:
         Name of the surface.
     """
     *others, given = points
-    apart = [point for point in others if not np.isclose(point.roughness, given.roughness, rtol=1e-6, atol=0)]
+    largest = max(abs(float(point.roughness)) for point in points)
+    apart = [point for point in others if not is_equal(point.roughness, given.roughness, largest)]
     shared = ["required", "share", "samples"]
     over = [point.drop_vars(shared).set_coords("roughness") for point in (*apart, given)]
     curve = xr.concat(over, "roughness").sortby("roughness")
@@ -236,10 +238,10 @@ def mapped(points: Sequence[xr.Dataset], surface: str, key: str, other: str = ""
     ]
     if not more:
         return first
-    given = float(points[-1].other_given)
+    given, others = float(points[-1].other_given), [float(point.other) for point in points[POINTS::POINTS]]
     curves = {given: first}
-    for value, curve in zip((float(point.other) for point in points[POINTS::POINTS]), more, strict=True):
-        if not np.isclose(value, given, rtol=1e-6, atol=1e-12):
+    for value, curve in zip(others, more, strict=True):
+        if not is_equal(value, given, max(map(abs, others))):
             curves[value] = curve
     values = sorted(curves)
     alone = [curves[value].drop_dims(["crossing", "range"]) for value in values]
