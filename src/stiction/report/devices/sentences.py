@@ -93,7 +93,9 @@ def _chosen(dataset):
     return float(dataset.share[dataset.sizes["share"] // 2])
 
 
-def of_shortest(safe_lengths, budgets):
+def of_shortest(
+    safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
+) -> dict[tuple, xr.Dataset]:
     """Budgets of what holds the shortest devices: of tips, if there are tips."""
     of_tips = EITHER in _any(safe_lengths)["shape"].values
     return {key: budget for key, budget in budgets.items() if ("tip" in key) == of_tips}
