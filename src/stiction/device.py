@@ -18,6 +18,8 @@ from stiction.plan.graph import Results
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings, stuck
 from stiction.stages.devices.contact_names import contact_of, tips_of
+from stiction.stages.devices.device_warnings import left_out_changes, of_left_out_gaps
+from stiction.stages.devices.opening import FORCE
 from stiction.stages.surfaces import surface_flags
 
 if TYPE_CHECKING:
@@ -153,6 +155,13 @@ class Device:
         self._must_be(lambda kind: not kind.is_beam)
         return self.results[f"devices/stoppers/{self.name}"]
 
+    def life(self) -> xr.Dataset:
+        """What brings it into contact, whether it sticks, what holds it and what frees it.
+
+        Dataset of `stiction.stages.devices.life`, one answer for every name along its dimension.
+        """
+        return self.results[f"devices/life/{self.name}"]
+
     def budget(self, humidity: float | str) -> xr.Dataset:
         """Uncertainty of the mean length or force; dataset of `stiction.stages.devices.budget`.
 
@@ -194,19 +203,24 @@ class Device:
     def warnings(self, safe_lengths: xr.Dataset) -> list[str]:
         """Where a result of `safe_lengths` or `forces` is beyond the limits of the model, one sentence each.
 
-        Plasticity is not checked, which is one of the sentences.
+        Plasticity is not checked, which is one of the sentences. Where attraction across gaps is left out, the first
+        call computes what it would change.
         """
         settings = self.results.graph.job(f"devices/warnings/{self.name}.json").settings
         measured = surface_flags.inputs(self._plan, self._section["pair"])
         flags = surface_flags.together(
             {stage: {name: self.results[file] for name, file in files.items()} for stage, files in measured.items()}
         )
+        left_out = device_warnings.left_out_gaps(self._plan, self.name).values()
+        changes = {key: of for name in left_out for key, of in left_out_changes(self.results[name]).items()}
         flags += settings.get("assumed", [])
         if "stopper" in settings:
             of = in_si(device_warnings.OfStopper, settings["stopper"])
-            return device_warnings.of_stopper(of, share_flat=float(safe_lengths.share_flat)) + flags
+            own = device_warnings.of_stopper(of, share_flat=float(safe_lengths.share_flat))
+            return own + of_left_out_gaps(changes, FORCE) + flags
         of_beam = device_warnings.of_device(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
-        return pair_warnings.numbered(of_beam)[0] + flags
+        with_gaps = {shape: said + of_left_out_gaps(changes, shape) for shape, said in of_beam.items()}
+        return pair_warnings.numbered(with_gaps)[0] + flags
 
     def _result(self, stage, humidity, end=""):
         """Dataset of a stage at a humidity."""

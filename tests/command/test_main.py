@@ -62,7 +62,6 @@ def options(asked):
         ("run mine.yaml -- --forceall tables", ["--forceall", "tables"], ["mine.yaml"]),
         ("devices both.yaml --dry-run", ["--dry-run", "devices"], ["both.yaml"]),
         ("devices", ["devices"], [str(ROOT / "examples" / "devices.yaml")]),
-        ("scans both.yaml", ["scans"], ["both.yaml"]),
         ("figures", ["figures"], []),
         ("figures mine.yaml", ["figures"], ["mine.yaml"]),
         ("explain mine.yaml", ["--dry-run"], ["mine.yaml"]),
@@ -72,6 +71,15 @@ def options(asked):
 def test_what_every_command_asks_of_snakemake(asked, words, passed, files):
     assert main(words.split()) == 0
     assert options(asked) == (passed, files)
+
+
+def test_scans_are_asked_for_without_what_uses_them(asked, tmp_path):
+    (tmp_path / "scans.yaml").write_text(json.dumps(merged(etched(*scans_of(tmp_path)), {"devices": {"C1": {}}})))
+    assert main(["scans", "scans.yaml"]) == 0
+    assert options(asked) == (["scans", "--keep-going"], [str(Path(".snakemake", "scans.yaml"))])
+    written = yaml.safe_load((tmp_path / ".snakemake" / "scans.yaml").read_text())
+    assert written.keys() == {"surfaces", "scans", "seed", "run"}
+    assert list(written["surfaces"]) == ["Etched"]
 
 
 def test_the_folder_of_a_run_and_the_report_in_it(asked, tmp_path, capsys):
@@ -284,10 +292,9 @@ def test_a_check_draws_the_first_samples_and_remembers_what_they_showed(tmp_path
     assert capsys.readouterr().err == refusal
 
 
-@pytest.mark.parametrize("study", ["run: {pairs: [b]}\n", "run: {pairs: [b]}\nbeam: {width_um: 0.06}\n"])
-def test_a_check_makes_no_folder(tmp_path, capsys, study):
+def test_a_check_makes_no_folder(tmp_path, capsys):
     path = tmp_path / "mine.yaml"
-    path.write_text(study)
+    path.write_text("run: {pairs: [b]}\nbeam: {width_um: 0.06}\n")
     asked = ["check", str(path), "--directory", str(tmp_path / "later" / "mine")]
     status = main(asked)
     assert list(tmp_path.iterdir()) == [path]
@@ -327,9 +334,10 @@ def test_a_damaged_record_of_runs_is_named_with_what_to_do(asked, capsys, conten
 def test_a_file_without_what_a_command_computes_is_not_up_to_date(asked, capsys, command, missing, dry):
     assert main([command, "mine.yaml", *dry]) == 2
     assert missing in capsys.readouterr().err
-    for words in (["mine.yaml", "both.yaml"], ["mine.yaml", "--", "--configfile", "both.yaml"]):
-        assert main([command, *words]) == 0
-    assert len(asked) == 2
+    found = [["mine.yaml", "both.yaml"], ["mine.yaml", "--", "--configfile", "both.yaml"]]
+    ended = [main([command, *words]) for words in found]
+    assert ended == [2 * (command == "scans"), 0], "scans without files are refused where they are read"
+    assert len(asked) == ended.count(0)
 
 
 @pytest.mark.parametrize("words", [["--help"], ["run", "--help"]])

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 from configurations import PAPER, problems
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from stiction.config.files import load
@@ -182,3 +184,35 @@ def test_keys_of_such_a_surface_can_be_compared():
     config = load(of(LIKE), {"compare": {"surfaces.Mine.rms_nm": [2, 4]}})
     assert [config["surfaces"][f"MineRms{rms}"]["rms_nm"] for rms in (2, 4)] == [2, 4]
     assert list(config["devices"]) == ["C1Rms2", "C1Rms4"]
+
+
+#: Keys of a surface with values of which some are allowed and some are not.
+VALUES = {
+    "rms_nm": [5, -1, "5"],
+    "like": ["B2", "B9", 5, None],
+    "hurst": [0, 0.8, 1, 1.2, True],
+    "correlation_length_nm": [60, 1e-3, 10, 1e5, "60"],
+    "corner_rad_per_um": [20, 124.9, 200, 0],
+    "cutoff_rad_per_um": [125, 1e5, None],
+    "skewness": [-0.5, 12],
+    "kurtosis": [3.5, 1, 90],
+    "unknown": [["rms"], [], "rms", ["slope"]],
+    "uncertainty": [{"rms_nm": 1}, {"correlation_length_nm": 5}, {"hurst": 0.1, "kurtosis": 1}, 5, {}],
+    "psd": ["published", "identified", "fitted"],
+    "material": ["Oxide", 3],
+}
+entries = st.lists(st.sampled_from(list(VALUES)), unique=True, max_size=8).flatmap(
+    lambda keys: st.fixed_dictionaries({key: st.sampled_from(VALUES[key]) for key in keys})
+)
+
+
+@settings(max_examples=60, deadline=None)
+@given(entries)
+def test_every_section_of_a_surface_is_completed_or_refused_in_sentences_about_it(entry):
+    lines = problems(merged(PAPER, of(entry)))
+    assert all(
+        line.split()[0].split("[")[0].split(".")[0] in ("surfaces", "sampling", "studies", "pairs", "devices")
+        for line in lines
+    )
+    if not lines:
+        assert normal(entry)["psd"] in ("published", "identified")

@@ -10,6 +10,7 @@ from stiction.streams import stream
 from stiction.surface import self_affine
 from stiction.surface.field import RoughSurface, StripGrid
 from stiction.surface.maxent import GAUSSIAN
+from stiction.surface.spectrum import autocovariance
 from stiction.surface.translation import Translation
 
 POINTS, SPACING, FIELDS = 512, 5e-9, 8
@@ -33,6 +34,21 @@ def test_the_autocovariance_at_the_correlation_length_is_one_over_e(hurst, lengt
     corner = self_affine.corner_of(length, slope, cutoff)
     assert_allclose(self_affine.correlation_at(length, slope, corner, cutoff), np.exp(-1), rtol=1e-6)
     assert self_affine.correlation_at(length, slope, 1.2 * corner, cutoff) < np.exp(-1) - 0.01
+
+
+@settings(max_examples=10)
+@given(hurst, lengths, st.floats(0.02, 0.9), cutoffs)
+def test_the_autocovariance_is_that_of_the_spectrum(hurst, lag, corner, cutoff):
+    shape = self_affine.slope_of(hurst), corner * cutoff, cutoff
+    covariance = autocovariance(self_affine.spectrum(1e-9, *shape), np.array([0, lag]), panels=20_000)
+    assert_allclose(self_affine.correlation_at(lag, *shape), covariance[1] / covariance[0], atol=1e-4)
+
+
+@pytest.mark.parametrize("hurst", [0, 0.5, 1])
+def test_the_longest_correlation_at_the_finest_cutoff_of_a_configuration_takes_no_time(hurst):
+    slope = self_affine.slope_of(hurst)
+    corner = self_affine.corner_of(1e-4, slope, 1e11)
+    assert_allclose(self_affine.correlation_at(1e-4, slope, corner, 1e11), np.exp(-1), rtol=1e-6)
 
 
 def test_a_correlation_length_below_that_of_a_plateau_is_refused_with_the_least_one():

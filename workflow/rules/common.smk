@@ -48,7 +48,7 @@ def rules_of_the_configuration():
     folder = PACKAGE / "config"
     modules = [
         code(folder / f"{name}.py")
-        for name in ("validation", "keys", "relations", "relations_devices", "messages")
+        for name in ("validation", "keys", "meetings", "relations", "relations_devices", "messages")
     ]
     return [*modules, (folder / "schema.yaml").read_text(encoding="utf-8")]
 

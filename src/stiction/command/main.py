@@ -113,8 +113,10 @@ def _init(arguments):
     """Write a study, or a table of test beams."""
     if arguments.test_beams:
         return _init_test_beams(Path(arguments.directory) / "test_beams.csv")
+    from stiction.command import editor_schema  # imports the physics
+
     target = Path(arguments.directory) / "study.yaml"
-    schema = launch.PACKAGE / "config" / "schema.json"
+    schema = editor_schema.text()
     _write({target: Path(__file__).with_name("study.yaml"), target.with_name("stiction.schema.json"): schema})
     say(f"{target} describes a surface, a pair and a beam: change them into yours. Then")
     word = shlex.quote(str(target))
@@ -220,7 +222,21 @@ def _scans(arguments):
 
     if not any(map(scans.has_scans, reading.contents(arguments.files, arguments.more))):
         raise launch.RefusedError(f"{' '.join(arguments.files)} describes no surface by scans: add surfaces.NAME.scans")
-    return _run(arguments, "scans")
+    if any(word.startswith("--configfile") for word in arguments.more):
+        return _run(arguments, "scans")  # files that Snakemake reads
+    from stiction.command import scans_alone
+
+    launch.require_folder(directory := Path(arguments.directory))
+    found = scans_alone.alone(arguments.files, directory)
+    arguments.files, ended = [found.write(directory)], Status.DONE
+    if found.overlay["surfaces"]:
+        arguments.more = ["--keep-going", *arguments.more]
+        ended = _run(arguments, "scans")
+    for name, (entry, reasons) in found.refused.items():
+        say(f"{name} cannot be estimated: {'; '.join(reasons)}")
+        if not arguments.dry_run:
+            say(f"  sheet: {scans_alone.draw_refused(name, entry, reasons, directory / 'results')}")
+    return ended
 
 
 def _figures(arguments):

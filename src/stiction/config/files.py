@@ -36,10 +36,15 @@ def load(*overlays: str | Path | Mapping) -> dict:
     # Imports the physics, which reading alone does not need.
     from stiction.config.validation import validate
 
-    changes = (_in_memory(one) if isinstance(one, Mapping) else located(one) for one in overlays)
-    config = expanded(functools.reduce(merged, changes, copy.deepcopy(paper())))
+    config = joined(*overlays)
     validate(config)
     return normalised(config)
+
+
+def joined(*overlays: str | Path | Mapping) -> dict:
+    """Configuration of the paper, changed by overlays as in `load`, as it is: neither checked nor in normal form."""
+    changes = (_in_memory(one) if isinstance(one, Mapping) else located(one) for one in overlays)
+    return expanded(functools.reduce(merged, changes, copy.deepcopy(paper())))
 
 
 def _in_memory(overlay):

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from stiction.config import relations, relations_devices, scans, test_beams
+from stiction.config import meetings, relations, relations_devices, scans, test_beams
 from stiction.config.cases import in_numbers, in_words
 from stiction.config.keys import Keys, Relations
 from stiction.config.messages import ConfigError, schema_problems
@@ -11,8 +11,10 @@ from stiction.config.reading import paper
 from stiction.config.relations import schema
 from stiction.config.surfaces import described
 
+#: Relations between the keys of devices, and of arrays of test beams in their place.
+_OF_DEVICES = Relations([*meetings.relation, *relations_devices.relation])
 #: All relations between keys.
-RELATIONS = Relations([*relations.relation, *relations_devices.relation])
+RELATIONS = Relations([*relations.relation, *_OF_DEVICES])
 #: Sections that a configuration need not have.
 _OPTIONAL = {"materials": {}, "devices": {}, "test_beams": {}}
 
@@ -42,14 +44,14 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     stated = config
     config = in_numbers(test_beams.without_files(config))
     faults = schema_problems(config, schema())
-    wrong = [fault.path for fault in faults]
+    wrong = [path for fault in faults for path in (fault.path, *fault.others)]
     sections, incomplete, origins = _completed(config, wrong)
     wrong += [problem.path for problem in incomplete]
     broken = _broken(sections, wrong, origins=origins)
     of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
     estimates, refused = scans.preliminary_estimates(config, wrong + of_surfaces, kept)
     problems = faults + incomplete + broken + refused
-    if estimates:
+    if estimates and scans.simulates(sections):
         files = {name: config["surfaces"][name]["scans"]["files"] for name in estimates}
         problems += _broken(scans.with_preliminary_estimates(sections, estimates), wrong, files, origins)
     if problems:
@@ -72,10 +74,10 @@ def _broken(config, faults, files=None, origins=None):
     if any(path[:1] in ((), ("devices",), ("test_beams",)) for path in faults):
         return broken  # sections that are wrong on their own
     single = [
-        _KeysOfArrays(config | {"devices": beams}, faults, files, origins, config["devices"])
+        _KeysOfArrays(config | {"devices": beams, "run": {"pairs": []}}, faults, files, origins, config["devices"])
         for beams in test_beams.at_single_humidities(config)
     ]
-    return broken + [problem for one in relations_devices.relation for problem in _of_arrays(one, single)]
+    return broken + [problem for one in _OF_DEVICES for problem in _of_arrays(one, single)]
 
 
 def _of_arrays(relation, single):

@@ -40,12 +40,12 @@ def decoded(content: bytes) -> str | None:
 def plain(text: str) -> str:
     r"""Text in which white space separates the numbers of a table, and a point their decimals.
 
-    A table has at least two numbers in most of its lines. Other texts are returned unchanged.
+    A table has at least three numbers in most of its lines. Other texts are returned unchanged.
 
     Examples
     --------
-    >>> plain("Width: 2,5 µm;\n1,5;2\n;3,5\n"), plain('"1.5","2"\n"3","4"\n'), plain("1.5 2\nnan 4\n")
-    ('Width: 2.5 µm\n1.5 2\nnan 3.5\n', '1.5 2\n3 4\n', '1.5 2\nnan 4\n')
+    >>> plain("Width: 2,5 µm;\n1,5;2;3\n;3,5;4\n"), plain('"1.5","2","3"\n'), plain("1.5 2\nnan 4\n")
+    ('Width: 2.5 µm\n1.5 2 3\nnan 3.5 4\n', '1.5 2 3\n', '1.5 2\nnan 4\n')
     """
     lines = text.split("\n")
     filled = [line for line in lines if line.strip() and not line.startswith("#")]

@@ -95,6 +95,12 @@ class Plan:
         used = {name for pair in self.pairs for name in self.sides(pair)}
         return [name for name in self.config["surfaces"] if name in used]
 
+    def simulated(self, surface: str) -> bool:
+        """Whether a surface is drawn for a pair that runs, a device or test beams."""
+        users = (*self.config.get("devices", {}).values(), *self.config.get("test_beams", {}).values())
+        pairs = [*self.pairs, *(user["pair"] for user in users if "pair" in user)]
+        return any(surface in self.sides(pair) for pair in pairs)
+
     # The configuration as the jobs of a pair see it
 
     def seen_by(self, pair: str, properties: Sequence[str] = ELASTIC, **contact: Any) -> dict[str, Any]:

@@ -30,11 +30,10 @@ from stiction.models import (
 
 #: Folders whose modules may declare stages.
 FOLDERS = ("stages", "report")
-_NAME = "[A-Za-z][A-Za-z0-9]*"
 #: Wildcards in the names of files, and the regular expression that each matches.
 WILDCARDS = {
-    "surface": _NAME,
-    "device": _NAME,
+    "surface": "[A-Za-z][A-Za-z0-9_-]*",
+    "device": "[A-Za-z][A-Za-z0-9]*",
     "pair": PAIR_IN_AIR,
     "model": "|".join(BEAM_MODELS),
     "case": CASE,

@@ -319,3 +319,14 @@ def test_where_no_device_sticks_in_enough_simulated_ones_the_longest_is_safe():
     assert sentences.build_sentence({0.67: never.sel(share=[1e-2])}, {}).startswith(
         "Build it no longer than 500 µm: then"
     )
+
+
+def test_a_page_says_in_its_second_sentence_that_an_assumption_decides():
+    budgets, section = {(0.67,): BUDGETS["S1", 0.67]}, STOPPER | {"assumed": ["rms of B2"]}
+    assumed = pages.of_stopper("S1", section, STOPPERS["S1"], budgets, []).answer[1]
+    assert assumed.startswith("What decides is assumed, not measured: heights of B2. If that were known")
+    lengths, budgets = {0.67: safe()}, {(0.67, "tip"): BUDGETS["C1", 0.67, "tip"]}
+    none = {("C1", 0.67, shape): [] for shape in (S_SHAPE, EITHER)}
+    beam = pages.of_beam("C1", CANTILEVER | {"assumed": ["rms of B2"]}, lengths, {}, budgets, none)
+    assert beam.answer[1].startswith("What decides is assumed")
+    assert not pages.of_beam("C1", CANTILEVER, lengths, {}, budgets, none).answer[1].startswith("What decides")

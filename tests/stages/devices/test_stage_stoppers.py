@@ -7,8 +7,11 @@ import pytest
 import small
 from numpy.testing import assert_allclose, assert_array_equal
 
+from stiction.config.files import load
 from stiction.contact.environment import Water
 from stiction.devices.risk import samples_for
+from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
 from stiction.run import storage
 from stiction.stages.contact import curves
 from stiction.stages.devices import stoppers
@@ -95,3 +98,20 @@ def test_a_stopper_comes_back_from_its_file(found, tmp_path):
     again = storage.load(tmp_path / "S1.nc", "stoppers")
     assert stoppers.shares_stuck(again) == stoppers.shares_stuck(found)
     assert_array_equal(again.mean_along, found.mean_along)
+
+
+def test_a_spring_restores_a_stopper_like_a_force_of_the_same_size():
+    force = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 3.0, "humidities": [0.5]}
+    spring = {key: value for key, value in force.items() if key != "restoring_force_uN"}
+    asked = {"requirement": {"share": 0.001}, "roughness": {"surface": "B2", "rms_nm": [1, 8]}}
+    of_spring, of_force, weaker = (
+        Graph(Plan(load({"devices": {"S1": one | asked}})))
+        for one in (
+            spring | {"stiffness_N_per_m": 2, "gap_um": 1.5},
+            force,
+            spring | {"stiffness_N_per_m": 1, "gap_um": 1.5},
+        )
+    )
+    for job in ("devices/stoppers/S1", "devices/roughness/points/S1_0"):
+        assert of_spring.job(job).settings == of_force.job(job).settings
+        assert of_spring.job(job).settings != weaker.job(job).settings

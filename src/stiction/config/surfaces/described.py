@@ -226,7 +226,7 @@ def origins(config: Mapping[str, Any]) -> dict[tuple, tuple]:
         if isinstance(entry, dict) and is_described(entry):
             for key, sources in _SOURCES.items():
                 source = next((source for source in (*sources, "like") if source in entry), "rms_nm")
-                found["surfaces", name, *key] = ("surfaces", name, source), entry[source]
+                found["surfaces", name, *key] = ("surfaces", name, source), entry.get(source)
     return found
 
 

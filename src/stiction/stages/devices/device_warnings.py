@@ -25,7 +25,7 @@ from stiction.stages.beams.pair_warnings import (
     plastic_contact,
 )
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.opening import ARC, EITHER, DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import ARC, EITHER, FORCE, DesignedBeam, section_of_beam
 from stiction.stages.surfaces import surface_flags
 
 
@@ -161,6 +161,13 @@ def left_out_changes(dataset: xr.Dataset) -> dict[tuple[float, str], tuple[float
     return dict(zip(keys, zip(dataset.change.values.tolist(), dataset.error.values.tolist(), strict=True), strict=True))
 
 
+def of_left_out_gaps(changes: Mapping[tuple[float, str], tuple[float, float]], shape: str) -> list[str]:
+    """Warning about what attraction across gaps would change of what holds in a shape, from `left_out_changes`."""
+    response = ARC if shape == EITHER else shape
+    of_shape = {humidity: change for (humidity, of), change in changes.items() if of == response}
+    return limits.given(limits.without_gaps(of_shape, shorter=shape != FORCE))
+
+
 def left_out_gaps(plan: Any, device: str) -> dict[str, str]:
     """Dataset of a device whose results are without attraction across gaps, as input of a stage; none for others."""
     pair = plan.config["devices"][device]["pair"]
@@ -200,14 +207,14 @@ def _of_one_device(data, settings):
     changes = left_out_changes(data["left_out_gaps"]) if "left_out_gaps" in data else {}
     if "stopper" in settings:
         of = in_si(OfStopper, settings["stopper"])
-        gaps = limits.given(limits.without_gaps({humidity: change for (humidity, _), change in changes.items()}))
+        gaps = of_left_out_gaps(changes, FORCE)
         (stopper,) = data["stoppers"].values()
         plastic = plastic_contact(data["plasticity"], of.pair)
         return [], [], [[[], of_stopper(of, plastic, float(stopper.share_flat)) + gaps + flags]]
     of = in_si(OfDevice, settings["beam"])
     plastic = plastic_contact(data["plasticity"], of.device.pair)
     lengths = [
-        [[humidity, shape], sentences + _without_gaps(changes, humidity, shape) + flags]
+        [[humidity, shape], sentences + of_left_out_gaps(_at(changes, humidity), shape) + flags]
         for (_, humidity), dataset in data["lengths"].items()
         for shape, sentences in of_device(dataset, of, plastic, humidity).items()
     ]
@@ -218,10 +225,9 @@ def _of_one_device(data, settings):
     return lengths, curves, []
 
 
-def _without_gaps(changes, humidity, shape):
-    """Warning about what attraction across gaps would change of a beam at a humidity, if it is left out."""
-    change = changes.get((humidity, ARC if shape == EITHER else shape))
-    return limits.given(limits.without_gaps({humidity: change} if change else {}, shorter=True))
+def _at(changes, humidity):
+    """Changes at one humidity."""
+    return {key: change for key, change in changes.items() if key[0] == humidity}
 
 
 def not_modelled(plan: Any, *devices: str) -> str:

@@ -1,7 +1,7 @@
 """Stage safe_lengths: P(stuck) over the length of a device at a humidity, and its safe lengths."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -9,6 +9,7 @@ import xarray as xr
 from stiction.contact.environment import Water
 from stiction.devices import arcs, risk
 from stiction.devices.risk import Known, SafeLength
+from stiction.life.freeing import probability_for
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import curves
 from stiction.stages.devices import cracks as stage_cracks
@@ -107,14 +108,34 @@ def _axis(sticking, reach):
     return np.linspace(0.9 * low, min(high or reach, reach), _POINTS)
 
 
+def chosen_share(dataset: xr.Dataset) -> float:
+    """The fraction of stuck devices for which sentences state lengths: the middle one [-]."""
+    return float(dataset.share[dataset.sizes["share"] // 2])
+
+
+def _for_touchdowns(plan, at):
+    """Settings of the safe length of one touchdown that leaves the middle fraction stuck after all of them."""
+    settings, shares = settings_of_beam(plan, at.case), plan.config["design"]["shares"]
+    touchdowns = plan.config["devices"][at.case.device]["touchdowns"]
+    return select(Settings, settings, shares=[probability_for(shares[len(shares) // 2], touchdowns)])
+
+
+_SAFE_LENGTHS = Stage.writing(
+    "safe_lengths",
+    "devices/safe_lengths/{case}",
+    inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | tips_of(plan, at.case),
+    settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
+    kind=Settings,
+    compute=lambda data, settings: compute(data["cracks"], data.get("tips"), settings),
+    message="Safe lengths of {case}.",
+)
 STAGES = (
-    Stage.writing(
-        "safe_lengths",
-        "devices/safe_lengths/{case}",
-        inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | tips_of(plan, at.case),
-        settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
-        kind=Settings,
-        compute=lambda data, settings: compute(data["cracks"], data.get("tips"), settings),
-        message="Safe lengths of {case}.",
+    _SAFE_LENGTHS,
+    replace(
+        _SAFE_LENGTHS,
+        name="touchdowns",
+        files={"dataset": "devices/touchdowns/{case}"},
+        settings=_for_touchdowns,
+        message="Safe lengths of {case} for many touchdowns.",
     ),
 )

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.config.cases import case_id
+from stiction.config.kinds import restoring_force
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import is_wetted
 from stiction.devices.risk import samples_for
@@ -159,7 +160,8 @@ def _settings(plan, at):
     """Water, patch, restoring force and humidities of a stopper, and its fine axis of humidities."""
     section, air = plan.config["devices"][at.device], plan.air_of_devices
     pair = air.contact(section["pair"], max(section["humidities"]))
-    return select(Settings, plan.config["design"] | section | {"water": air.water(pair)})
+    force = {"restoring_force_uN": restoring_force(section)}
+    return select(Settings, plan.config["design"] | section | force | {"water": air.water(pair)})
 
 
 def _inputs(plan, at):

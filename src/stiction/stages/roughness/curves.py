@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.chaos.model import Truncation
-from stiction.config.kinds import ROUGHNESSES
+from stiction.config.kinds import ROUGHNESSES, restoring_force
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.contact.environment import Water
@@ -295,7 +295,7 @@ def _settings(plan, at):
     wettest = air.contact(section["pair"], max(section["humidities"]))
     own = plan.config["design"] | section | section["requirement"] | {"water": air.water(wettest)}
     if not plan.devices.kind(at.device).is_beam:
-        return select(OfStopper, own)
+        return select(OfStopper, own | {"restoring_force_uN": restoring_force(section)})
     common = {key: plan.config[key] for key in ("seed", "chaos")}
     return select(OfBeam, own | common | {"device": section_of_beam(plan, at.device)})
 
