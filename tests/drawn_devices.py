@@ -24,7 +24,7 @@ from stiction.streams import stream
 from stiction.surface.feasible import largest_kurtosis
 
 #: Record of a run, which pages show.
-RUN = {"started": "2026-01-31T23:05:59+00:00", "versions": {}, "git": None}
+RUN = {"started": "2026-01-31T23:05:59+00:00", "config": {}, "versions": {}, "git": None}
 #: Few samples, so that a draw takes seconds; beams are as many as the tail of their lengths needs.
 SMALL = {
     "run": {"pairs": [], "studies": []},
@@ -62,7 +62,7 @@ def drawn(number: int) -> Drawn:
     rng = stream(46, "drawn devices", number)
     rms, corner = 10 ** rng.uniform(-1, 2), 2 * 100 ** rng.uniform()
     skewness, part = rng.uniform(-2, 2), rng.uniform()
-    least = skewness**2 + 1.1
+    least = max(1.5, skewness**2 + 1.1)
     kurtosis = least + part * (min(15, largest_kurtosis(skewness)) - least)
     return Drawn(
         *(float(np.round(value, 3)) for value in (rms, skewness, kurtosis, corner)),

@@ -215,7 +215,8 @@ class Device:
         changes = {key: of for name in left_out for key, of in left_out_changes(self.results[name]).items()}
         flags += settings.get("assumed", [])
         if "stopper" in settings:
-            own = device_warnings.of_stopper(in_si(device_warnings.OfStopper, settings["stopper"]))
+            of = in_si(device_warnings.OfStopper, settings["stopper"])
+            own = device_warnings.of_stopper(of, share_flat=float(safe_lengths.share_flat))
             return own + of_left_out_gaps(changes, FORCE) + flags
         of_beam = device_warnings.of_device(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
         with_gaps = {shape: said + of_left_out_gaps(changes, shape) for shape, said in of_beam.items()}

@@ -3,7 +3,6 @@
 Every draw must end in an answer, or be refused before the first job.
 """
 
-import logging
 import sys
 import time
 import warnings
@@ -18,12 +17,12 @@ def main(first, last):
     """Run the draws from a number up to another one."""
     sys.path = [TESTS, *sys.path[1:]]
     draws = import_module("drawn_devices")
-    logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stdout)
     warnings.simplefilter("ignore")
     for number in range(int(first), int(last)):
         start, of = time.process_time(), draws.drawn(number)
         found = draws.outcome(of)
-        logging.info("%d %s, %.0f s\n    %s", number, of, time.process_time() - start, found)
+        sys.stdout.write(f"{number} {of}, {time.process_time() - start:.0f} s\n    {found}\n")
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":

@@ -130,6 +130,16 @@ def without_gaps(changes: Mapping[float, tuple[float, float]], shorter: bool = F
     )
 
 
+def flat_patches(share: float) -> str | None:
+    """Share of the sampled patches whose summits do not resist the adhesion, and which count as flat surfaces."""
+    if share == 0:
+        return None
+    return (
+        f"{100 * share:.2g} % of the patches of surface have too few summits to resist the adhesion. They count as "
+        "flat surfaces in contact, which hold more than any rough ones: the prediction is on the safe side."
+    )
+
+
 def thin_film(film: float) -> str | None:
     """Film of height h_C that is hardly a liquid; of height zero, there is none."""
     if not 0 < film < MOLECULES * WATER_MOLECULE:

@@ -45,7 +45,7 @@ def safe(kind="cantilever", longest=600e-6, reach=np.inf):
     known = sticking.known(device, settings.water, 0.67, reach)
     bounds = {shape: sticking.safe_lengths(values, settings, known[shape]) for shape, values in shapes.items()}
     errors = {shape: np.full(3, 1e-6) for shape in shapes}
-    return safe_lengths.layout(shapes, bounds, known, errors, settings).assign(rms=3e-9)
+    return safe_lengths.layout(shapes, bounds, known, errors, settings).assign(rms=3e-9, share_flat=0.0)
 
 
 @pytest.fixture(scope="module")
@@ -354,6 +354,32 @@ def test_the_table_has_the_share_at_the_length_of_those_devices_that_have_one():
     assert list(table.cells["P(stuck) [%]"])[-1] == "–"
     assert "length that they have" in table.caption
     assert "length [µm]" not in tables_devices.safe_lengths({("C2", 0.67): safe()}, silent).cells
+
+
+def test_where_few_devices_stick_the_page_begins_with_how_many_do_at_most():
+    silent = {("C1", 0.67, shape): [] for shape in (S_SHAPE, EITHER)}
+    few = safe(longest=3000e-6, reach=1410e-6)  # 6 of 400 devices stick, by their tips
+    page = pages.of_beam("C1", CANTILEVER, {0.67: few}, {}, {}, silent)
+    assert page.answer[0] == (
+        "At a relative humidity of 0.67, hardly any device sticks: none of the 400 simulated ones shorter than 1400 µm "
+        "does, and at most 2.9 % of those of 1410 µm (95 % confidence, given the drawn surfaces). For 1 in 1000, the "
+        "length that sticks on flat surfaces counts; 2995 devices in design.beams show whether longer ones are safe."
+    )
+    least = 1e6 * few.flooded_length.sel(shape=EITHER).item()
+    assert page.answer[1].startswith(f"Build it no longer than {least:.0f} µm: then at most 1 in 1000 sticks")
+    assert "<td>flat</td>" in page.html
+    assert pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).answer[0].startswith("Build it no longer")
+
+
+def test_where_no_device_sticks_in_enough_simulated_ones_the_longest_is_safe():
+    never = safe(longest=3000e-6, reach=500e-6)
+    assert sentences.few_sentence(0.67, never.sel(share=[1e-2])) == (
+        "At a relative humidity of 0.67, hardly any device sticks: none of the 400 simulated ones does, and at most "
+        "0.75 % of those of 500 µm (95 % confidence, given the drawn surfaces)."
+    )
+    assert sentences.build_sentence({0.67: never.sel(share=[1e-2])}, {}).startswith(
+        "Build it no longer than 500 µm: then"
+    )
 
 
 def test_a_page_says_in_its_second_sentence_that_an_assumption_decides():

@@ -215,6 +215,7 @@ def advised(dataset: xr.Dataset) -> str:
 def decided(datasets: Iterable[xr.Dataset], assumed: Sequence[str]) -> list[str]:
     """Sentence about the most uncertain of some budgets, if inputs that are assumed are what to measure first."""
     budgets = [(budget_of(dataset), dataset) for dataset in datasets]
+    budgets = [budget for budget in budgets if np.isfinite(budget[0].total)]
     uncertainty, dataset = max(budgets, key=lambda budget: budget[0].total, default=(None, None))
     if not assumed or uncertainty is None:
         return []

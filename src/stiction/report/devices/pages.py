@@ -98,8 +98,8 @@ def of_beam(
     sections += _sure(name, budgets, errors)
     of_shortest = sentences.of_shortest(safe_lengths, budgets)
     decided = tables_budget.decided(of_shortest.values(), section.get("assumed", ()))
-    answer = [*own_length.sentences(safe_lengths, of_shortest), sentences.build_sentence(safe_lengths, budgets)]
-    answer += [*sentences.few_sentences(safe_lengths), *decided, *_rough_enough(roughness)]
+    answer = [*own_length.sentences(safe_lengths, of_shortest), *sentences.few_sentences(safe_lengths)]
+    answer += [sentences.build_sentence(safe_lengths, budgets), *decided, *_rough_enough(roughness)]
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
         answer.append(tables_test_beams.built(test_beams))

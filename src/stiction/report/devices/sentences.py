@@ -68,8 +68,8 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     )
     if not np.isfinite(totals).all():
         sentence += " What the measurements leave uncertain is not known, because too few of the simulated beams stick."
-    if total == 0 and len(totals) == sum(np.isfinite(totals)):
-        return f"{sentence} No uncertainty of the measurements is subtracted, because none is stated."
+    elif total == 0:
+        sentence += " No uncertainty of the measurements is subtracted, because none is stated."
     if total == 0:
         return sentence
     return (

@@ -70,7 +70,10 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
     released = [arrests(device, ground, partial(draw_laws, of), settings.beams, address) for of in models]
     tried = reach(device, ground, partial(draw_laws, model), released[0], address)
     dataset = layout(device.opening, released[0], released[1:], ground[0], laws, surface_rms(contact))
-    return dataset.assign(reach=((), tried, {"units": "m", "long_name": "longest simulated length"}))
+    return dataset.assign(
+        reach=((), tried, {"units": "m", "long_name": "longest simulated length, if not all devices stick"}),
+        share_flat=((), curves.share_flat(contact, settings.humidity, settings.water), {"units": "1"}),
+    )
 
 
 def layout(

@@ -58,7 +58,9 @@ def of_device(
     sentence at a humidity, but not in dry air.
     """
     shortest = safe_lengths.safe_length.min("share")
-    without = limits.given(limits.no_water(float(safe_lengths.film), humidity))
+    without = limits.given(
+        limits.no_water(float(safe_lengths.film), humidity), limits.flat_patches(float(safe_lengths.share_flat))
+    )
     return {
         shape: without + _of_length(float(shortest.sel(shape=shape)), safe_lengths, of, plastic)
         for shape in map(str, safe_lengths["shape"].values)
@@ -119,9 +121,11 @@ class OfDevices(NamedTuple):
     patches: dict[str, list[str]]  #: of stoppers, by name
 
 
-def of_stopper(of: OfStopper, plastic: Plastic = NOT_STUDIED) -> list[str]:
-    """Warnings about a stopper; parameters as of `of_device`."""
-    return limits.given(*_of_water(of), *contact_warnings(plastic, of.materials, limits.STRONGER))
+def of_stopper(of: OfStopper, plastic: Plastic = NOT_STUDIED, share_flat: float = 0.0) -> list[str]:
+    """Warnings about a stopper, of whose patches a share is flat [-]; other parameters as of `of_device`."""
+    return limits.given(
+        *_of_water(of), limits.flat_patches(share_flat), *contact_warnings(plastic, of.materials, limits.STRONGER)
+    )
 
 
 def read(files: Mapping[str, str]) -> OfDevices:
@@ -178,6 +182,7 @@ def _inputs(plan, at):
     charts = devices.chart_cases(at.device) if at.device in devices.charted else []
     limited = {
         "lengths": by_case("devices/safe_lengths", cases),
+        "stoppers": by_name("devices/stoppers", [at.device] if at.device in devices.stoppers else []),
         "charts": by_case("devices/chart", charts),
         "plasticity": by_name("studies/plasticity", devices.pressed(at.device)),
     }
@@ -203,7 +208,9 @@ def _of_one_device(data, settings):
     if "stopper" in settings:
         of = in_si(OfStopper, settings["stopper"])
         gaps = of_left_out_gaps(changes, FORCE)
-        return [], [], [[[], of_stopper(of, plastic_contact(data["plasticity"], of.pair)) + gaps + flags]]
+        (stopper,) = data["stoppers"].values()
+        plastic = plastic_contact(data["plasticity"], of.pair)
+        return [], [], [[[], of_stopper(of, plastic, float(stopper.share_flat)) + gaps + flags]]
     of = in_si(OfDevice, settings["beam"])
     plastic = plastic_contact(data["plasticity"], of.device.pair)
     lengths = [

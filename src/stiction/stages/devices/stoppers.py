@@ -16,7 +16,7 @@ from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.contact.corrections import corrected
-from stiction.stages.contact.curves import pull_offs
+from stiction.stages.contact.curves import pull_offs, share_flat
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices.contact_names import contact_of, corrections_of
 from stiction.streams import stream
@@ -58,7 +58,8 @@ def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = No
     at = {h: forces(one, h, settings) for h, one in progress(contacts.items(), "humidities", total=len(contacts))}
     chosen = np.array([at[h] for h in settings.humidities])
     along = np.array([at[float(h)] for h in axis])
-    return layout(settings, chosen, axis, along)
+    flat = max(share_flat(one, h, settings.water.at(h)) for h, one in contacts.items())
+    return layout(settings, chosen, axis, along).assign(share_flat=((), flat, {"units": "1"}))
 
 
 def axis_of(settings: Settings) -> np.ndarray:
