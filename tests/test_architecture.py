@@ -23,7 +23,7 @@ ORDER = [
         "temporary",
         "kernels",
     ),
-    *("surface", "formats", "scans", "contact", "chaos", "beam", "analysis", "devices"),
+    *("surface", "formats", "scans", "contact", "chaos", "beam", "analysis", "devices", "life"),
     *("run", "config", "plan"),
     *(
         "stages.surfaces",

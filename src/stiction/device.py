@@ -155,6 +155,13 @@ class Device:
         self._must_be(lambda kind: not kind.is_beam)
         return self.results[f"devices/stoppers/{self.name}"]
 
+    def life(self) -> xr.Dataset:
+        """What brings it into contact, whether it sticks, what holds it and what frees it.
+
+        Dataset of `stiction.stages.devices.life`, one answer for every name along its dimension.
+        """
+        return self.results[f"devices/life/{self.name}"]
+
     def budget(self, humidity: float | str) -> xr.Dataset:
         """Uncertainty of the mean length or force; dataset of `stiction.stages.devices.budget`.
 

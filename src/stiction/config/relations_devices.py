@@ -11,7 +11,7 @@ import numpy as np
 from stiction.config import memory
 from stiction.config.cases import in_air
 from stiction.config.keys import Relations
-from stiction.config.kinds import COMMON, KEYS, KINDS, ROUGHNESSES, kind_of
+from stiction.config.kinds import KEYS, KINDS, KNOWN, ROUGHNESSES, kind_of
 from stiction.config.materials import hamaker_constant
 from stiction.config.meetings import TEMPERATURE, above_zero, of_device, sides_of, surfaces_of
 from stiction.config.messages import duplicates
@@ -47,12 +47,13 @@ relation(partial(cases_have_unique_names, section="devices"))
 
 
 @relation
-def strips_and_patches_of_devices_are_whole_on_the_grid(config):
-    """Sides of the strips along a beam, and of the area of a stopper, are multiples of the distance between points."""
-    for key in ("strip_um", "width_um", "contact_um"):
-        for name, sides in config.entries("devices", key):
-            refusals = (off_grid(float(side), *(config[step] for step in _GRID)) for side in np.ravel(sides))
-            yield f"devices.{name}.{key}", next(filter(None, refusals), None), *_GRID
+def strips_and_patches_are_whole_on_the_grid(config):
+    """Sides of strips, and of the area of a stopper, are multiples of the distance between contact points."""
+    sides = ("strip_um", "width_um", "contact_um")
+    of_devices = [f"devices.{name}.{key}" for key in sides for name, _ in config.entries("devices", key)]
+    for key, stated in config.known("beam.width_um", _STRIP, *of_devices):
+        refusals = (off_grid(float(side), *(config[step] for step in _GRID)) for side in np.ravel(stated))
+        yield key, next(filter(None, refusals), None), *_GRID
 
 
 @relation
@@ -70,13 +71,55 @@ def strips_of_bridges_are_whole_on_the_grid(config):
 
 @relation
 def devices_have_the_keys_of_their_kind(config):
-    """A device has all keys that its kind needs, and no key of another kind."""
+    """A device has all keys that its kind needs, and no key of another kind; those that no kind has may be misspelt."""
     for name, kind in config.entries("devices", "kind"):
-        needed, keys = set(KINDS[kind].keys), set(config.names(f"devices.{name}"))
-        missing, strange = needed - keys, keys - needed - set(KINDS[kind].optional) - COMMON
-        if missing or strange:
-            message = f"with {', '.join(sorted(missing))}" if missing else f"without {', '.join(sorted(strange))}"
-            yield f"devices.{name}.kind", f"must come {message}"
+        refusal = KINDS[kind].refusal(config.names(f"devices.{name}"))
+        if any(fault[:2] == ("devices", name) and len(fault) == 3 and fault[2] not in KNOWN for fault in config.faults):
+            continue
+        yield f"devices.{name}.kind", refusal
+
+
+@relation
+def lengths_of_devices_are_those_of_slender_beams(config):
+    """Beams are longer than they are thick and deflected; lengths in mm are not."""
+    sizes = "thickness_um", "gap_um"
+    for name, length, *values in config.entries("devices", "length_um", *sizes):
+        if length <= max(values):
+            message = "must be in µm, above the thickness and the gap of the beam"
+            yield f"devices.{name}.length_um", message, *(f"devices.{name}.{size}" for size in sizes)
+
+
+@relation
+def lengths_of_devices_are_those_that_are_required(config):
+    """A device has one length."""
+    for name, length, required in config.entries("devices", "length_um", "requirement.length_um"):
+        if length != required:
+            message, given = "must be the length that is required", f"devices.{name}.requirement.length_um"
+            yield f"devices.{name}.length_um", message, given
+
+
+@relation
+def voltages_are_across_a_dielectric(config):
+    """A voltage or offset needs a dielectric, without which surfaces that touch would short."""
+    for key in ("voltage_V", "offset_V"):
+        for name, _ in config.entries("devices", key):
+            if "dielectric" not in config.names(f"devices.{name}"):
+                yield f"devices.{name}.{key}", "must come with dielectric: {thickness_nm, permittivity}"
+    for name, _ in config.entries("devices", "dielectric"):
+        if not {"voltage_V", "offset_V"} & set(config.names(f"devices.{name}")):
+            yield f"devices.{name}.dielectric", "must come with voltage_V or offset_V"
+
+
+@relation
+def electrodes_pull_on_a_spring_across_a_gap(config):
+    """The voltage of an electrode needs the stiffness of the stopper, which touches before its electrode does."""
+    for name, electrode in config.entries("devices", "electrode"):
+        device, key = config["devices"][name], f"devices.{name}.electrode"
+        if "stiffness_N_per_m" not in device:
+            yield key, "must come with stiffness_N_per_m and gap_um in place of restoring_force_uN"
+        elif electrode["gap_um"] < device["gap_um"]:
+            message = "must be at least gap_um of the stopper, which would not touch otherwise"
+            yield f"{key}.gap_um", message, f"devices.{name}.gap_um"
 
 
 @relation

@@ -44,7 +44,7 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     stated = config
     config = in_numbers(test_beams.without_files(config))
     faults = schema_problems(config, schema())
-    wrong = [fault.path for fault in faults]
+    wrong = [path for fault in faults for path in (fault.path, *fault.others)]
     sections, incomplete, origins = _completed(config, wrong)
     wrong += [problem.path for problem in incomplete]
     broken = _broken(sections, wrong, origins=origins)

@@ -38,9 +38,9 @@ def not_modelled(left_out: Sequence[str] = (), humid: bool = True) -> str:
     """What is relevant to stiction and not in the model: at no settings, and what those in force leave out."""
     time = ["the time that water needs to condense and to evaporate"] * humid
     never = [
-        "drying after release",
+        "residues of drying",
         *time,
-        "electric charge and voltage",
+        "drift of electric charge",
         "wear",
         "conformal films, which correlate both surfaces",
     ]

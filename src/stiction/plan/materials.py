@@ -53,7 +53,7 @@ class PairMaterials:
         surfaces = self.config["surfaces"]
         used = dict.fromkeys(surfaces[surface].get("material", "the solid") for surface in self.sides(pair))
         return [
-            [name, [words[key] for key, value in named[name].items() if key != COATING or value]]
+            [name, [words[key] for key, value in named[name].items() if key in words and (key != COATING or value)]]
             for name in used
             if name in named
         ]

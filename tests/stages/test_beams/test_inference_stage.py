@@ -228,8 +228,9 @@ def scores(stated, repeats=100):
 
 @pytest.fixture
 def mean_lengths_alone(monkeypatch):
-    """Nothing is computed of safe lengths."""
+    """Nothing is computed of safe lengths and of further beams."""
     monkeypatch.setattr(inference, "with_lengths", lambda found, _: found)
+    monkeypatch.setattr(inference, "of_further", lambda *_: xr.Dataset())
 
 
 @pytest.mark.usefixtures("mean_lengths_alone")

@@ -10,7 +10,7 @@ import xarray as xr
 import yaml
 
 from stiction.config.cases import DRY, case_id
-from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of
+from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of, restoring_force
 from stiction.config.materials import material_of
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
@@ -18,9 +18,9 @@ from stiction.report import html
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import figures as figures_devices
-from stiction.report.devices import sentences
+from stiction.report.devices import life, own_length, sentences
 from stiction.report.devices import tables as tables_devices
-from stiction.report.format import MISSING, humidity_text
+from stiction.report.format import MISSING, humidity_text, one_in
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.roughness import figures as figures_roughness
@@ -96,9 +96,10 @@ def of_beam(
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets, errors)
-    shortest = sentences.of_shortest(safe_lengths, budgets).values()
-    decided = tables_budget.decided(shortest, section.get("assumed", ()))
-    answer = [sentences.build_sentence(safe_lengths, budgets), *decided, *_rough_enough(roughness)]
+    of_shortest = sentences.of_shortest(safe_lengths, budgets)
+    decided = tables_budget.decided(of_shortest.values(), section.get("assumed", ()))
+    answer = [*own_length.sentences(safe_lengths, of_shortest), sentences.build_sentence(safe_lengths, budgets)]
+    answer += [*sentences.few_sentences(safe_lengths), *decided, *_rough_enough(roughness)]
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
         answer.append(tables_test_beams.built(test_beams))
@@ -166,8 +167,9 @@ def _title(name, section):
 def _facts_of(section):
     """Dimensions and conditions of a device, by name."""
     facts = {"surfaces": f"pair {section['pair']}"} | section.get("surfaces", {})
-    for key in kind_of(section).keys:
-        (name, unit), value = KEYS[key], section[key]
+    stated = section if kind_of(section).is_beam else section | {"restoring_force_uN": restoring_force(section)}
+    for key in (key for key in KEYS if key in stated):
+        (name, unit), value = KEYS[key], stated[key]
         values = value if isinstance(value, list) else [value]
         facts[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
     name = "relative humidities" if len(section["humidities"]) > 1 else "relative humidity"
@@ -187,7 +189,7 @@ def _asked(section):
         if key in over
     )
     return {
-        "requirement": f"{length}at most 1 in {1 / required['share']:g} sticks",
+        "requirement": f"{length}at most {one_in(required['share'])} sticks",
         f"roughness of {over['surface']} asked for": ", ".join(ranges),
     }
 
@@ -253,7 +255,7 @@ def _inputs(plan, at):
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
     budgets = budgets_of(plan, at.device) if at.device in devices.budgeted else {}
     own = {"budgets": {key[1:]: name for key, name in budgets.items()}, "warnings": device_warnings.files_of(at.device)}
-    own |= model_errors.of_devices(plan, at.device)
+    own |= {"life": f"devices/life/{at.device}"} | model_errors.of_devices(plan, at.device)
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
     own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
     own |= {"style": File(STYLE), "templates": [File(_GLOSSARY), *html.files(TEMPLATE)]}
@@ -290,7 +292,15 @@ def _page(data, at, settings):
     else:
         lengths, charts = data["safe_lengths"], data["charts"]
         page = of_beam(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
-    return replace(page, not_modelled=settings["not_modelled"])
+    return replace(with_life(page, at.device, data["life"]), not_modelled=settings["not_modelled"])
+
+
+def with_life(page: Page, name: str, answers: xr.Dataset) -> Page:
+    """Page with the life of its device: below the verdict in words, and after the first section as table and figure."""
+    (verdict, *reasons), (first, *others) = page.answer, page.sections
+    cells = life.table({name: answers}).cells.drop(columns="device")
+    section = Section("From the first contact to the last", (life.CAPTION,), cells, life.figure({name: answers}))
+    return replace(page, answer=[verdict, *life.sentences(answers), *reasons], sections=[first, section, *others])
 
 
 def _save(page, paths):
