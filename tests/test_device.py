@@ -183,4 +183,4 @@ def test_a_device_draws_the_figure_of_its_kind_and_is_described_in_one_line_and_
         "surfaces B2 on Sub1, pair b, relative humidity 0.88"
     )
     assert "sides of the area in contact 3 x 3 µm" in repr(stopper)
-    assert "<td>gap below the beam</td><td>10 µm</td>" in device._repr_html_()
+    assert "<td>gap</td><td>10 µm</td>" in device._repr_html_()
