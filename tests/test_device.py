@@ -179,8 +179,8 @@ def test_a_device_draws_the_figure_of_its_kind_and_is_described_in_one_line_and_
     for one, words in ((device, "length of the device [µm]"), (stopper, "restoring force [µN]")):
         assert words in {panel.get_xlabel() for panel in one.plot().axes}
     assert repr(device) == (
-        "Device C1, beam clamped at one end: thickness 2.6 µm, gap below the beam 10 µm, width 20 µm, "
+        "Device C1, beam clamped at one end: thickness 2.6 µm, gap 10 µm, width 20 µm, "
         "surfaces B2 on Sub1, pair b, relative humidity 0.88"
     )
     assert "sides of the area in contact 3 x 3 µm" in repr(stopper)
-    assert "<td>gap below the beam</td><td>10 µm</td>" in device._repr_html_()
+    assert "<td>gap</td><td>10 µm</td>" in device._repr_html_()

@@ -36,7 +36,7 @@ GOLD |= {"hamaker_constant_zJ": {"water": 250, "dry": 400}, "density_kg_per_m3":
 UNCERTAIN = {"thickness_um": 0.05, "gap_um": 0.2, "young_modulus_GPa": 4, "humidity": 0.01, "scan_um": 10}
 UNCERTAIN |= {"temperature_K": 1, "contact_angle_deg": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20}
 DEVICES = {
-    "C1": C1 | {"chart": CHART, "strip_um": 1.2, "uncertainty": UNCERTAIN},
+    "C1": C1 | {"chart": CHART, "strip_um": 1.2, "length_um": 300, "uncertainty": UNCERTAIN},
     "R1": R1 | {"humidities": [0.67], "uncertainty": {"residual_stress_MPa": 5}},
     "S1": S1,
     "S2": {
@@ -142,6 +142,12 @@ WRONG = [
         "at least 1e-06 and at most 0.05: share of stuck devices that is allowed",
     ),
     ({"requirement": {"share": 0.001}, "roughness": ROUGH}, "devices.C1.requirement", "must come with length_um"),
+    ({"length_um": 0.3}, "devices.C1.length_um", "must be in µm, above the thickness and the gap of the beam (given"),
+    (
+        {"length_um": 310, "requirement": LONG, "roughness": ROUGH},
+        "devices.C1.length_um",
+        "the length that is required",
+    ),
     ({"roughness": ROUGH}, "devices.C1.roughness", "must come with requirement"),
     (
         {"requirement": LONG, "roughness": {"surface": "B2"}},

@@ -73,6 +73,8 @@ MATRIX = [
     ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget tip_budget", (), "R1|S1|contact|chart"),
     ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget", (),
      "C1|R1|slopes/contact|stoppers"),
+    ("a quantity of a surface becomes uncertain", "surfaces: {B2: {uncertainty: {skewness: 0.1}}}",
+     "device_slope_contact device_choice_summits budget tip_budget", (), "heights|spectrum/|cracks|safe_lengths|chart|devices/stoppers"),
     ("another property of the solids becomes uncertain", "devices: {S1: {uncertainty: {poisson_ratio: 0.02}}}",
      "solid_contact budget", (), "C1|R1|modulus|hamaker|slopes|choices|heights|spectrum|contact/b|stoppers"),
     ("another property of the solids of a cantilever becomes uncertain",

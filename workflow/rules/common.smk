@@ -158,6 +158,11 @@ def of_job(rule, key):
 MEMORY = memory.of_job(config)
 
 
+def seconds_of(rule):
+    """Function of wildcards that gives the estimated CPU time of a job [s]."""
+    return lambda wildcards: round(planner.job(rule["name"], wildcards)["seconds"])
+
+
 def memory_of(rule):
     """Function of the attempt that gives the memory to reserve for a job [MB]."""
     megabytes = max(MEMORY, round(rule["memory"]))

@@ -177,6 +177,7 @@ def _check(arguments):
     named = {f"pair{'s' * (len(pairs) > 1)}": pairs, "devices": devices, "scans of": scanned}
     parts = [f"{what} {', '.join(names)}" for what, names in named.items() if names]
     say(f"{' '.join(arguments.files)} can run: {' and '.join(parts) or 'nothing'}.")
+    say(f"It takes {_cost(config)}, as far as no result is there yet.")
     of_pairs = {name: {pair[side] for side in SIDES} for name, pair in config["pairs"].items()}
     if long := [name for name, device in devices.items() if of_pairs[device["pair"]] & {*scanned}]:
         say(
@@ -184,6 +185,18 @@ def _check(arguments):
             "takes most of the time. Without it: stiction run FILE -- results/tables/safe_lengths.md (or stoppers.md)"
         )
     return Status.DONE
+
+
+def _cost(config):
+    """CPU time and memory of the whole run of a configuration, in words."""
+    from stiction.config.scans import preliminary_estimates
+    from stiction.plan import cost, memory
+    from stiction.plan.graph import Graph
+    from stiction.plan.plan import Plan
+
+    preliminary, _ = preliminary_estimates(config)
+    jobs = Graph(Plan(config, preliminary)).needed("tables", "figures", "devices", "all")
+    return cost.in_words(sum(job.seconds for job in jobs), memory.of_job(config))
 
 
 def _run(arguments, *targets):

@@ -301,14 +301,6 @@ def _estimated_correlation_length(rms, radius, density, spacing):
     return from_si(correlation_length(estimated_spectrum(target)), "um")
 
 
-@relation
-def strips_are_whole_on_the_grid(config):
-    """Both sides of a strip are multiples of the distance between contact points."""
-    grid = "sampling.spacing_nm", "contact.every"
-    for key, side in config.known("beam.width_um", "sampling.strip_length_um"):
-        yield key, off_grid(side, *(config[step] for step in grid)), *grid
-
-
 def off_grid(side: float, spacing: float, every: int) -> str | None:
     """Refusal of a side [µm] that is no multiple of the distance between contact points."""
     step = spacing * every
@@ -318,7 +310,7 @@ def off_grid(side: float, spacing: float, every: int) -> str | None:
 
 @relation
 def strips_are_whole_under_a_variant(config):
-    """As above, for the step in grid points times the grid spacing, either of which a variant may change."""
+    """Strips are whole for the step in grid points times the grid spacing, either of which a variant may change."""
     sides = "sampling.strip_length_um", "beam.width_um"
     variants = {"sampling.spacing_nm": "studies.variants.every", "contact.every": "studies.variants.spacing_nm"}
     for other, step in config.known(*variants):

@@ -47,12 +47,13 @@ relation(partial(cases_have_unique_names, section="devices"))
 
 
 @relation
-def strips_and_patches_of_devices_are_whole_on_the_grid(config):
-    """Sides of the strips along a beam, and of the area of a stopper, are multiples of the distance between points."""
-    for key in ("strip_um", "width_um", "contact_um"):
-        for name, sides in config.entries("devices", key):
-            refusals = (off_grid(float(side), *(config[step] for step in _GRID)) for side in np.ravel(sides))
-            yield f"devices.{name}.{key}", next(filter(None, refusals), None), *_GRID
+def strips_and_patches_are_whole_on_the_grid(config):
+    """Sides of strips, and of the area of a stopper, are multiples of the distance between contact points."""
+    sides = ("strip_um", "width_um", "contact_um")
+    of_devices = [f"devices.{name}.{key}" for key in sides for name, _ in config.entries("devices", key)]
+    for key, stated in config.known("beam.width_um", _STRIP, *of_devices):
+        refusals = (off_grid(float(side), *(config[step] for step in _GRID)) for side in np.ravel(stated))
+        yield key, next(filter(None, refusals), None), *_GRID
 
 
 @relation
@@ -76,6 +77,25 @@ def devices_have_the_keys_of_their_kind(config):
         if any(fault[:2] == ("devices", name) and len(fault) == 3 and fault[2] not in KNOWN for fault in config.faults):
             continue
         yield f"devices.{name}.kind", refusal
+
+
+@relation
+def lengths_of_devices_are_those_of_slender_beams(config):
+    """Beams are longer than they are thick and deflected; lengths in mm are not."""
+    sizes = "thickness_um", "gap_um"
+    for name, length, *values in config.entries("devices", "length_um", *sizes):
+        if length <= max(values):
+            message = "must be in µm, above the thickness and the gap of the beam"
+            yield f"devices.{name}.length_um", message, *(f"devices.{name}.{size}" for size in sizes)
+
+
+@relation
+def lengths_of_devices_are_those_that_are_required(config):
+    """A device has one length."""
+    for name, length, required in config.entries("devices", "length_um", "requirement.length_um"):
+        if length != required:
+            message, given = "must be the length that is required", f"devices.{name}.requirement.length_um"
+            yield f"devices.{name}.length_um", message, given
 
 
 @relation

@@ -15,9 +15,11 @@ from test_device_outputs import charted
 from test_tables_budget import BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_dataset
 
 from stiction.contact.environment import Water
-from stiction.report.devices import pages, sentences
+from stiction.report.devices import own_length, pages, sentences
+from stiction.report.devices import tables as tables_devices
 from stiction.report.page import Page, Section
 from stiction.stages.devices import device_warnings, safe_lengths, sticking
+from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import EITHER, S_SHAPE, DesignedBeam
 from stiction.stages.roughness import curves
 from stiction.stages.roughness.curves import OfStopper, Response
@@ -75,7 +77,10 @@ def test_the_page_of_a_stopper_says_how_many_stick_and_in_which_air(stopper):
     )
     assert f"a restoring force of {stated:.3g} µN leaves at most 1 in 100 stuck (95 % confidence)" in stopper
     assert f"; at any humidity from 0.4 to 0.9, {any_air:.3g} µN are needed." in stopper
-    assert "1 in 1000" not in stopper
+    assert (
+        "leaves at most 1 in 1000 stuck (95 % confidence, by a line through the largest 5 % of the forces)" in stopper
+    )
+    assert "leaves at most 1 in 1000000 stuck (extrapolated, by a line" in stopper
     assert "<td>3 x 3 µm</td>" in stopper
     assert "<td>relative humidities</td><td>0.44, 0.67</td>" in stopper
 
@@ -88,7 +93,9 @@ def test_a_worst_humidity_at_the_end_is_stated_as_one():
 
 
 def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_second_sentence():
-    asked = OfStopper(water=Water(300.0), humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6)
+    asked = OfStopper(
+        seed=1, water=Water(300.0), humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
+    )
     forces = {rms: 1e-6 * (4e-9 / rms) ** 3 for rms in (2e-9, 8e-9, 3.4e-9)}
     responses = {
         rms: Response(1.1 * force, force, 0.03 * force, np.nan, (0.1, 0.05, 0.15)) for rms, force in forces.items()
@@ -293,6 +300,60 @@ def test_text_is_shown_as_it_is():
     assert len(shown.text["p"]) == 6, "with what is not in the model"
     assert shown.text["h2"] == [HOSTILE, "Limits of this prediction", "Terms"]
     assert shown.alt == [HOSTILE]
+
+
+def of_length(length, **more):
+    """Safe lengths as of `safe`, of devices of a length [m]."""
+    lengths = np.linspace(2 / 3, 1, 400) * 600e-6
+    sticking = {S_SHAPE: lengths, EITHER: 0.7 * lengths}
+    return safe(**more).assign(safe_lengths.at_length(sticking, [sticking, sticking], np.inf, length))
+
+
+def test_the_first_sentence_states_the_share_at_the_length_of_the_device():
+    # Sticking lengths in either shape are 280 to 420 µm.
+    cases = {0.44: of_length(300e-6), 0.67: of_length(350e-6)}
+    silent = {("C1", humidity, shape): [] for humidity in cases for shape in (S_SHAPE, EITHER)}
+    page = pages.of_beam("C1", CANTILEVER | {"length_um": 300}, cases, {}, {}, silent)
+    stuck, low, high = (100 * float(one) for one in cases[0.67].stuck_at_length.sel(shape=EITHER))
+    assert stuck == 50
+    safe_for = 1e6 * float(cases[0.67].safe_length.sel(shape=EITHER, share=1e-3))
+    assert page.answer[0] == (
+        f"Of devices of 350 µm, 50 % ({low:.3g} to {high:.3g} % with 95 % confidence) stick at a relative humidity of "
+        f"0.67; {safe_for:.0f} µm are safe for 1 in 1000."
+    )
+    assert page.answer[1].startswith("Of devices of 300 µm, 14.2 % (")
+    assert page.answer[2].startswith("Build it no longer than")
+    assert page.facts["length"] == "300 µm"
+
+
+def test_uncertain_measurements_widen_the_share_at_a_length():
+    budgets = {(0.67, "tip"): budget_dataset(1.0, TIPS)}
+    total = budget_of(budgets[0.67, "tip"]).total
+    (said,) = own_length.sentences({0.67: of_length(350e-6)}, budgets)
+    curve = safe().isel(shape=-1)
+    ends = np.interp([350e-6 / (1 + total), 350e-6 / (1 - total)], curve.length, curve.stuck)
+    assert said.endswith(f"of the length, it is {100 * ends[0]:.3g} to {100 * ends[1]:.3g} %.")
+    assert ends[0] < 0.5 < ends[1]
+
+
+def test_a_length_beyond_the_simulated_ones_has_a_bound_on_the_safe_side():
+    found = of_length(410e-6).assign(reach=400e-6)
+    found.stuck_at_length[:, 2] = 1.0
+    (said,) = own_length.sentences({0.67: found}, {})
+    assert "to 100 % (devices were simulated up to 400 µm; longer ones may all stick) stick" in said
+
+
+def test_the_table_has_the_share_at_the_length_of_those_devices_that_have_one():
+    cases = {("C1", 0.67): of_length(350e-6), ("C2", 0.67): safe()}
+    silent = {(name, 0.67, shape): [] for name in ("C1", "C2") for shape in (S_SHAPE, EITHER)}
+    table = tables_devices.safe_lengths(cases, silent)
+    one, other = (part for _, part in table.frame.groupby("device"))
+    assert set(one.length_um) == {350}
+    assert list(one.share_stuck) == [0.0] * 3 + [0.5] * 3
+    assert other.length_um.isna().all()
+    assert list(table.cells["P(stuck) [%]"])[-1] == "–"
+    assert "length that they have" in table.caption
+    assert "length [µm]" not in tables_devices.safe_lengths({("C2", 0.67): safe()}, silent).cells
 
 
 def test_where_few_devices_stick_the_page_begins_with_how_many_do_at_most():

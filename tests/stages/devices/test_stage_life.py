@@ -118,6 +118,14 @@ def test_many_touchdowns_are_between_other_summits_each_time_and_the_same_ones(l
     assert "after" not in answers(OF, lengths)
 
 
+def test_a_safe_length_without_an_error_has_none_and_says_its_basis(lengths):
+    bare = {h: one.assign(beams_error=np.nan * one.beams_error) for h, one in lengths.items()}
+    bare = {h: one.assign(surfaces_error=np.nan * one.surfaces_error) for h, one in bare.items()}
+    answer = answers(OF, bare)["safe_length_0.67"]
+    assert np.isnan(answer.error)
+    assert answer.form.endswith(str(lengths[0.67].basis.isel(shape=1).sel(share=1e-3).values))
+
+
 def test_answers_come_in_the_order_of_the_questions(lengths):
     for found in (answers(OF, lengths), answers(STOPPER)):
         asked = [life.QUESTIONS.index(one.question) for one in found.values()]
@@ -217,11 +225,12 @@ def test_sentences_warn_of_breakdown_and_of_a_voltage_that_pulls_in(lengths, vol
 
 def test_settings_come_from_the_device_its_material_and_the_liquids():
     gold = {"materials": {"Gold": {"density_kg_per_m3": 19300}}, "surfaces": {"B2": {"material": "Gold"}}}
-    one = SECTION | {"touchdowns": 9, "uncertainty": {"gap_um": 1}}
+    one = SECTION | {"length_um": 300, "touchdowns": 9, "uncertainty": {"gap_um": 1}}
     devices = {"devices": {"C1": one, "S1": SPRING, "C2": SECTION | {"pair": "a"}}}
     plan = Plan(load(gold | devices | {"liquids": MINE}))
     of = in_si(OfBeam, job_settings(plan, "devices/life/C1")["beam"])
     assert (of.density, of.touchdowns, of.uncertainty) == (19300, 9, Errors(gap=1e-6))
+    assert_allclose(of.length, 300e-6)
     assert_allclose([one.adhesion for one in of.liquids.values()], [0.072, 0.0217, 0.015], rtol=1e-12)
     stopper = in_si(OfStopper, job_settings(plan, "devices/life/S1")["stopper"])
     assert_allclose([stopper.restoring_force, stopper.mass, stopper.electrode.area], [18.99e-6, 50e-12, 1e-8])

@@ -18,7 +18,7 @@ from stiction.stages.devices import stoppers
 
 WATER = Water(300.0)
 AREA = 1.5e-6 * 6e-6
-SETTINGS = stoppers.Settings(WATER, (1.5e-6, 6e-6), 18e-6, (0.67, 0.88), (0.85, 0.9))
+SETTINGS = stoppers.Settings(1, WATER, (1.5e-6, 6e-6), 18e-6, (0.67, 0.88), (0.85, 0.9))
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +65,22 @@ def test_safe_forces_are_stated_for_shares_that_the_patches_can_bound():
     assert samples_for(1e-2) <= 400 < samples_for(1e-3)
     assert 3.9 < float(safe.sel(share=1e-2)) <= 4.0
     assert_allclose(at.safe_force.sel(humidity=0.88), 2 * at.safe_force.sel(humidity=0.67), rtol=1e-12)
-    assert np.isnan(safe.sel(share=[1e-3, 1e-4])).all()
+    assert list(at.basis.values) == ["sampled", "fitted", "extrapolated", "extrapolated"]
+    assert np.all(np.diff(safe.values) > 0), "rarer stoppers hold more"
+
+
+def test_too_few_patches_state_no_safe_force():
+    at = synthetic(100)
+    assert np.isnan(at.safe_force).all()
+    assert set(at.basis.values) == {""}
+
+
+def test_safe_forces_do_not_depend_on_the_other_humidities():
+    both, forces = synthetic(400), np.arange(1, 401) / 100
+    alone = stoppers.layout(
+        replace(SETTINGS, humidities=(0.67,)), forces[None], np.array([0.6, 0.7]), np.tile(forces, (2, 1))
+    )
+    assert_array_equal(alone.safe_force.values[:, 0], both.safe_force.values[:, 0])
 
 
 def test_the_worst_humidity_is_that_of_the_largest_mean_force_unless_it_is_an_end():
@@ -83,8 +98,7 @@ def test_safe_forces_along_the_axis_are_those_at_its_humidities():
     at = stoppers.layout(weak, np.stack([forces, 2 * forces]), axis, np.stack([forces, 3 * forces, 2 * forces]))
     assert_array_equal(at.safe_force_along[[0, 2]], at.safe_force.sel(part="safe"))
     stuck, safe = stoppers.in_any_air(at)
-    assert_allclose(safe[0], 3 * at.safe_force_along[0, 0], rtol=1e-12)
-    assert np.isnan(safe[1:]).all()
+    assert_allclose(safe, 3 * at.safe_force_along[0], rtol=1e-12)
     assert stuck == tuple(map(float, at.stuck_along[:, 1]))
 
 

@@ -18,9 +18,9 @@ from stiction.report import html
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import figures as figures_devices
-from stiction.report.devices import life, sentences
+from stiction.report.devices import life, own_length, sentences
 from stiction.report.devices import tables as tables_devices
-from stiction.report.format import MISSING, humidity_text
+from stiction.report.format import MISSING, humidity_text, one_in
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.roughness import figures as figures_roughness
@@ -96,10 +96,10 @@ def of_beam(
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets, errors)
-    shortest = sentences.of_shortest(safe_lengths, budgets).values()
-    decided = tables_budget.decided(shortest, section.get("assumed", ()))
-    few = [sentences.few_sentence(humidity, one) for humidity, one in safe_lengths.items() if sentences.few_stick(one)]
-    answer = [*few, sentences.build_sentence(safe_lengths, budgets), *decided, *_rough_enough(roughness)]
+    of_shortest = sentences.of_shortest(safe_lengths, budgets)
+    decided = tables_budget.decided(of_shortest.values(), section.get("assumed", ()))
+    answer = [*own_length.sentences(safe_lengths, of_shortest), *sentences.few_sentences(safe_lengths)]
+    answer += [sentences.build_sentence(safe_lengths, budgets), *decided, *_rough_enough(roughness)]
     if test_beams is not None:
         sections.append(_of_test_beams(name, test_beams))
         answer.append(tables_test_beams.built(test_beams))
@@ -189,7 +189,7 @@ def _asked(section):
         if key in over
     )
     return {
-        "requirement": f"{length}at most 1 in {1 / required['share']:g} sticks",
+        "requirement": f"{length}at most {one_in(required['share'])} sticks",
         f"roughness of {over['surface']} asked for": ", ".join(ranges),
     }
 

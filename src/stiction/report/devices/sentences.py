@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.devices.risk import Basis, samples_for
-from stiction.report.format import UM, UN, airs
+from stiction.report.format import UM, UN, airs, one_in
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import EITHER
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
@@ -63,7 +63,7 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     if length <= 0:
         return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
     sentence = (
-        f"Build it no longer than {length:.0f} µm: then at most 1 in {1 / _chosen(_any(safe_lengths)):g} sticks "
+        f"Build it no longer than {length:.0f} µm: then at most {one_in(_chosen(_any(safe_lengths)))} sticks "
         f"{airs(safe_lengths)} (95 % confidence, given the drawn surfaces)."
     )
     if not np.isfinite(totals).all():
@@ -105,13 +105,14 @@ def verdict(stopper: xr.Dataset) -> str:
     """Whether the restoring force of a stopper suffices, for the smallest share that its patches can bound."""
     force, where = float(stopper.restoring_force), airs(stopper.humidity.values)
     stated, any_air = stopper.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(stopper)[1]
-    known = [float(share) for share in stopper.share if np.isfinite(stated.sel(share=share))]
+    sampled = stated.where(stopper.basis == Basis.SAMPLED)
+    known = [float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))]
     if not known:
         return _verdict_of_few(stopper)
     share = min(known)
     at_these, anywhere = (float(needed.sel(share=share)) for needed in (stated, any_air))
     head = f"The restoring force of {force / UN:g} µN"
-    tail = f"at most 1 in {1 / share:g} sticks (95 % confidence, given the drawn surfaces)."
+    tail = f"at most {one_in(share)} sticks (95 % confidence, given the drawn surfaces)."
     if force < at_these:
         return f"{head} does not suffice {where}: a larger one is needed if {tail}"
     if force < anywhere:
@@ -138,7 +139,7 @@ def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
     share = _chosen(dataset)
     lengths = dataset.safe_length.sel(share=share) / UM
     shortest, longest = float(lengths.min()), float(lengths.max())
-    air, but = _at(humidity), f"at most 1 in {1 / share:g}"
+    air, but = _at(humidity), f"at most {one_in(share)}"
     sentence = (
         f"{air}, devices of up to {shortest:.0f} µm come free after they were pressed down, except for {but} (95 % "
         "confidence, given the drawn surfaces)."
@@ -148,7 +149,12 @@ def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
     return f"{sentence} If the tip cannot hold them, this is true of up to {longest:.0f} µm."
 
 
-def few_stick(dataset: xr.Dataset) -> bool:
+def few_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:
+    """How many devices stick at most at each humidity at which hardly any does."""
+    return [few_sentence(humidity, one) for humidity, one in safe_lengths.items() if _few_stick(one)]
+
+
+def _few_stick(dataset):
     """Whether the safe length of the chosen share is as long as the simulated devices, or that of flat surfaces."""
     return dataset.basis.sel(share=_chosen(dataset)).values[-1] in (Basis.LONGEST, Basis.FLAT)
 
@@ -165,7 +171,7 @@ def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
     if str(held.basis.sel(share=share).values) == Basis.LONGEST:
         return sentence
     return (
-        f"{sentence} For 1 in {1 / share:g}, the length that sticks on flat surfaces counts; {samples_for(share)} "
+        f"{sentence} For {one_in(share)}, the length that sticks on flat surfaces counts; {samples_for(share)} "
         "devices in design.beams show whether longer ones are safe."
     )
 
@@ -182,16 +188,24 @@ def stuck_sentence(humidity: float, stuck: float, low: float, high: float, force
     return f"{_at(humidity)}, {share} of the stoppers ({band}) hold more than the restoring force of {force / UN:g} µN."
 
 
+#: What a safe force rests on.
+_ON = {
+    Basis.SAMPLED: "95 % confidence",
+    Basis.FITTED: "95 % confidence, by a line through the largest 5 % of the forces",
+    Basis.EXTRAPOLATED: "extrapolated, by a line through the largest 5 % of the forces beyond what was verified",
+}
+
+
 def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
     """Restoring forces that would suffice at the humidities of a stopper, and in any air of its fine axis.
 
     For the shares that its patches can bound.
     """
-    stated = stopper.safe_force.sel(part="safe").max("humidity")
+    stated = stopper.safe_force.sel(part="safe").max("humidity").assign_coords(basis=stopper.basis)
     where = "At all these humidities" if stopper.sizes["humidity"] > 1 else _at(float(stopper.humidity[0]))
     return [
-        f"{where}, a restoring force of {float(force) / UN:.3g} µN leaves at most 1 in "
-        f"{1 / float(force.share):g} stuck (95 % confidence)"
+        f"{where}, a restoring force of {float(force) / UN:.3g} µN leaves at most "
+        f"{one_in(float(force.share))} stuck ({_ON[str(force.basis.values)]})"
         + (f"; at any humidity{_range(stopper)}, {float(more) / UN:.3g} µN are needed." if ends(stopper) else ".")
         for force, more in zip(stated, in_any_air(stopper)[1], strict=True)
         if np.isfinite(force)

@@ -9,6 +9,7 @@ import xarray as xr
 
 from stiction.devices.risk import Basis
 from stiction.plan.names import by_case
+from stiction.report.devices import own_length
 from stiction.report.format import UM, error_alone, humidity_text, number
 from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
@@ -79,13 +80,20 @@ def safe_lengths(
     for (device, humidity), dataset in datasets.items():
         for shape in map(str, dataset["shape"].values):
             head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[shape].by}
+            head |= own_length.numbers(dataset.sel(shape=shape))
             last = model_errors.of_device(errors, device, humidity, shape)
             last |= {"warnings": " ".join(warnings[device, humidity, shape])}
             rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
-    said = [_SAFE_LENGTHS, *_few(datasets), about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY)]
-    text, columns = " ".join(said), _LENGTHS
+    own = own_length.COLUMNS if "length_um" in frame else {}
+    said = [
+        *([own_length.CAPTION] if own else []),
+        _SAFE_LENGTHS,
+        *_few(datasets),
+        about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY),
+    ]
+    text, columns = " ".join(said), _HELD | own | _LENGTHS
     if errors:
         text, columns = f"{text} {column.caption(errors)}", columns | column.COLUMN
     return Table(frame, _caption(text, warnings, not_modelled), as_text(frame, columns).assign(warnings=marks))
@@ -134,8 +142,8 @@ def _bound(point):
     return float(point.flooded_length) / UM
 
 
-_LENGTHS = DEVICE | {
-    "held by": (str, "held_by"),
+_HELD = DEVICE | {"held by": (str, "held_by")}
+_LENGTHS = {
     "p": ("g", "share"),
     "safe length [µm]": (".1f", "safe_length_um"),
     "estimate [µm]": (".1f", "estimate_um"),

@@ -118,6 +118,7 @@ STAGES = (
         compute=lambda data, settings: compute(data["contact"], corrected(settings, data)),
         message="Release long beams of {case}.",
         cluster=True,
+        repeats=1 + GROUPS,
         minutes=120,
     ),
 )

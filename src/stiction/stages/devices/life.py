@@ -19,7 +19,7 @@ from stiction.config.materials import material_of
 from stiction.config.units import from_si, in_si
 from stiction.constants import DENSITY, LIQUIDS
 from stiction.devices.bridges import half_of_bridge
-from stiction.devices.risk import samples_for
+from stiction.devices.risk import Basis, samples_for
 from stiction.devices.stoppers import safe_force
 from stiction.life import drying, freeing, holding, touch
 from stiction.plan.stage import Stage, select
@@ -165,9 +165,9 @@ def of_beam(lengths: Mapping[float, xr.Dataset], after: Mapping[float, xr.Datase
             STICK,
             f"safe length {in_air(humidity)}: at most {_one_in(share)} sticks after one touchdown",
             *(value, value, error),
-            *("m", "bound of random beams, 95 %", "stage safe_lengths"),
+            *("m", f"bound of random beams, 95 %, {basis}", "stage safe_lengths"),
         )
-        for humidity, (value, error) in safe.items()
+        for humidity, (value, error, basis) in safe.items()
     ]
     answers += _touched(of, length) + _held(of, length) if 0 < length < np.inf else []
     answers += [answer for name, liquid in of.liquids.items() for answer in _dried(of, name, liquid.adhesion)]
@@ -181,11 +181,12 @@ def length_of(lengths: Mapping[float, xr.Dataset], of: OfBeam) -> float:
 
 
 def _safe(dataset, share):
-    """Least safe length of all end states [m], and the standard error of its estimate."""
+    """Least safe length of all end states [m], the standard error of its estimate, and its basis."""
     one = dataset.sel(share=share)
     one = one.isel(shape=int(one.safe_length.argmin("shape")))
     errors = [float(one[name]) for name in ("beams_error", "surfaces_error")]
-    return float(one.safe_length), float(np.sqrt(np.nansum(np.square(errors))))
+    error = float(np.sqrt(np.nansum(np.square(errors)))) or np.nan
+    return float(one.safe_length), error, str(one.basis.values)
 
 
 def _touched(of, length):
@@ -299,7 +300,7 @@ def _at_voltage(of, safe):
         ),
         _field(of),
     ]
-    if not of.device.opening.has_tip:
+    if not (of.device.opening.has_tip and 0 < safe[0] < np.inf):
         return answers
     length, beam = safe[0], of.beam(1.0)
     shorter = holding.length_at_voltage(length, beam, added, holding.ARC)
@@ -387,7 +388,7 @@ def _moved(of):
 
 def _freed(stopper, of):
     """Restoring force, stiffness and shock that free all but a small fraction of the stoppers."""
-    bounded = [float(share) for share in stopper.share if np.isfinite(stopper.safe_force.sel(share=share)).all()]
+    bounded = [float(share) for share in stopper.share[stopper.basis == Basis.SAMPLED]]
     if not bounded:
         return []
     at = stopper.safe_force.sel(share=min(bounded))

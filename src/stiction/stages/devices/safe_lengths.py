@@ -10,7 +10,7 @@ from stiction.contact.environment import Water
 from stiction.devices import arcs, risk
 from stiction.devices.risk import Known, SafeLength
 from stiction.life.freeing import probability_for
-from stiction.plan.stage import Stage, select
+from stiction.plan.stage import Stage, chosen, select
 from stiction.stages.contact import curves
 from stiction.stages.devices import cracks as stage_cracks
 from stiction.stages.devices.contact_names import tips_of
@@ -30,6 +30,7 @@ class Settings:
     humidity: float  #: [-]
     device: DesignedBeam
     shares: tuple[float, ...]  #: p [-]
+    length: float | None = None  #: of the device, at which P(stuck) is stated [m]
 
 
 def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
@@ -46,7 +47,29 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
         shape: [[one.estimate for one in safe_lengths(group[shape], settings)] for group in groups] for shape in safe
     }
     errors = {shape: risk.error_of_surfaces(lengths) for shape, lengths in estimates.items()}
-    return layout(sticking, safe, without_samples, errors, settings).assign(cracks[["rms", "share_flat"]])
+    dataset = layout(sticking, safe, without_samples, errors, settings).assign(cracks[["rms", "share_flat"]])
+    if settings.length is None:
+        return dataset
+    return dataset.assign(at_length(sticking, groups, float(cracks.reach), settings.length))
+
+
+def at_length(
+    sticking: Mapping[str, np.ndarray], groups: Sequence[Mapping[str, np.ndarray]], reach: float, length: float
+) -> dict[str, tuple]:
+    """Variables of P(stuck) at one length, by shape, with its band and the error by the number of sampled surfaces.
+
+    Sticking lengths (n,) [m] from all surfaces and from each of some groups of them alone; their reach and the length
+    [m]. Beyond the reach, the upper end of the band counts devices that did not stick there as stuck.
+    """
+    shares = {shape: risk.stuck_share(np.array([length]), values, reach) for shape, values in sticking.items()}
+    of_group = [[np.mean(group[shape] < length) for shape in sticking] for group in groups]
+    none = {"units": "1"}
+    return {
+        "length_of_device": ((), length, {"units": "m"}),
+        "stuck_at_length": (("shape", "end"), np.array(list(shares.values()))[..., 0], none),
+        "stuck_surfaces_error": ("shape", risk.error_of_surfaces(of_group), none),
+        "end": ["estimate", "low", "high"],
+    }
 
 
 def layout(
@@ -124,7 +147,9 @@ _SAFE_LENGTHS = Stage.writing(
     "safe_lengths",
     "devices/safe_lengths/{case}",
     inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | tips_of(plan, at.case),
-    settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
+    settings=lambda plan, at: select(
+        Settings, settings_of_beam(plan, at.case) | chosen(plan.config["devices"][at.case.device], ["length_um"])
+    ),
     kind=Settings,
     compute=lambda data, settings: compute(data["cracks"], data.get("tips"), settings),
     message="Safe lengths of {case}.",

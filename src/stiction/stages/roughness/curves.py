@@ -19,7 +19,7 @@ from stiction.contact import forcelaw
 from stiction.contact.environment import Water
 from stiction.devices import risk
 from stiction.devices.roughness import crossings, margins, sufficient
-from stiction.devices.stoppers import safe_force, stuck_patches
+from stiction.devices.stoppers import safe_forces, stuck_patches
 from stiction.errors import NotConverged
 from stiction.plan.stage import Stage, select
 from stiction.rounding import is_equal
@@ -29,6 +29,7 @@ from stiction.stages.devices import sticking, stoppers
 from stiction.stages.devices.contact_names import corrections_of
 from stiction.stages.devices.opening import FORCE, DesignedBeam, section_of_beam
 from stiction.stages.roughness.contacts import POINTS, contacts_of, points_of, roughness_of, varied
+from stiction.streams import stream
 
 #: Value of a second quantity of a point of a map, and that of the surface as it is given.
 OTHERS = ("other", "other_given")
@@ -108,6 +109,7 @@ class OfBeam:
 class OfStopper:
     """As `OfBeam`, of a stopper that a force restores."""
 
+    seed: int
     water: Water
     humidities: tuple[float, ...]  #: [-]
     contact: tuple[float, float]  #: sides of the patch [m]
@@ -125,7 +127,8 @@ class OfStopper:
         """Safe force at a humidity."""
         forces = stoppers.forces(contact, humidity, self)
         stuck = tuple(float(part[0]) for part in stuck_patches(forces, np.array([self.restoring_force])))
-        return [Response(*safe_force(forces, self.share), np.nan, stuck)]
+        (safe,) = safe_forces(forces[None], self.share, stream(self.seed, "safe force"))
+        return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)]
 
 
 def of_job(settings: dict[str, Any]) -> OfBeam | OfStopper:
@@ -295,7 +298,7 @@ def _settings(plan, at):
     wettest = air.contact(section["pair"], max(section["humidities"]))
     own = plan.config["design"] | section | section["requirement"] | {"water": air.water(wettest)}
     if not plan.devices.kind(at.device).is_beam:
-        return select(OfStopper, own | {"restoring_force_uN": restoring_force(section)})
+        return select(OfStopper, own | {"seed": plan.config["seed"]} | {"restoring_force_uN": restoring_force(section)})
     common = {key: plan.config[key] for key in ("seed", "chaos")}
     return select(OfBeam, own | common | {"device": section_of_beam(plan, at.device)})
 
