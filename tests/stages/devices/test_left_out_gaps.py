@@ -22,7 +22,7 @@ STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [1.5, 6], "restoring_fo
 SIZES = {"devices": {"C1": BEAM, "S1": STOPPER}, "design": {"beams": 200, "budget_beams": 20, "chart_points": 2}}
 SIZES |= {"design": SIZES["design"] | {"worst_humidities": [0.44, 0.9]}}
 #: Inputs of warnings that say nothing.
-NOTHING = {"plasticity": {}, "estimates": {}, "spectra": {}}
+NOTHING = {"plasticity": {}, "estimates": {}, "spectra": {}, "stoppers": {"S1": xr.Dataset({"share_flat": 0.0})}}
 TOUCHING = Results.of(merged(small.PLAN.config, SIZES))
 
 
@@ -63,7 +63,7 @@ def test_every_result_has_its_change_as_a_warning():
 @pytest.mark.parametrize("device", ["S1", "C1"])
 def test_a_device_in_python_has_the_same_warning(device):
     lengths = xr.DataArray([[2e-4], [1e-4]], coords={"shape": [S_SHAPE, EITHER], "share": [0.01]})
-    safe = xr.Dataset({"safe_length": lengths, "film": 2e-9, "rms": 4e-9})
+    safe = xr.Dataset({"safe_length": lengths, "film": 2e-9, "rms": 4e-9, "share_flat": 0.0})
     said = [one for one in Device(device, TOUCHING).warnings(safe) if "across gaps is left out" in one]
     changes = device_warnings.left_out_changes(TOUCHING[f"devices/left_out_gaps/{device}"])
     assert len(said) == len({response for _, response in changes})
