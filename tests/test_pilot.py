@@ -73,6 +73,8 @@ def test_poorly_wetted_surfaces_can_run():
     assert refused(B, wax, "pairs: {b: {humidities: [0.85, 0.9]}}\nfigures: {humidity: 0.9}") == []
 
 
+#: Without a bound by flat surfaces in contact, every sample must resist the adhesion.
+TOUCHING = "attraction: {reach: touching}"
 WEAK, FEW = "surfaces rough enough and a solid stiff enough", "so many summits that every sample resists the adhesion"
 CHART = "chart: {thicknesses_um: [0.2, 3], gaps_um: [10, 20], humidities: [0.5, 0.9]}"
 REFUSALS = [
@@ -89,8 +91,12 @@ REFUSALS = [
         "run.pairs[0] is 'b'",
         "increase the roughness or young_modulus_GPa",
     ),
-    ("beam: {width_um: 0.06}", "beam.width_um is 0.06", f"{FEW}: at RH 0.44 and others, water"),
-    ("beam: {width_um: 0.06}", "beam.width_um is 0.06", "on 1.5 x 0.06 µm of pair b; as far as these samples show, "),
+    (f"beam: {{width_um: 0.06}}\n{TOUCHING}", "beam.width_um is 0.06", f"{FEW}: at RH 0.44 and others, water"),
+    (
+        f"beam: {{width_um: 0.06}}\n{TOUCHING}",
+        "beam.width_um is 0.06",
+        "on 1.5 x 0.06 µm of pair b; as far as these samples show, ",
+    ),
     ("beam: {thickness_um: 1}", "sampling.strip_length_um is 1.5", "µm to resolve the cracks of pair b: at RH "),
     ("surfaces: {B2: {kurtosis: 1.5777}}", "sampling.strip_length_um is 1.5", "must be at most 0.6"),
     (
@@ -105,8 +111,16 @@ REFUSALS = [
         "devices.D.thickness_um is 0.1",
         "strips of 0.5 µm resolve its cracks, at least 0.3",
     ),
-    (f"devices: {{D: {{{BEAM}, width_um: 0.06}}}}", "devices.D.width_um is 0.06", f"{FEW}: at RH 0.67, water"),
-    (f"devices: {{D: {{{STOPPER}, contact_um: [0.1, 0.1]}}}}", "devices.D.contact_um is [0.1, 0.1]", "0.1 x 0.1 µm of"),
+    (
+        f"devices: {{D: {{{BEAM}, width_um: 0.06}}}}\n{TOUCHING}",
+        "devices.D.width_um is 0.06",
+        f"{FEW}: at RH 0.67, water",
+    ),
+    (
+        f"devices: {{D: {{{STOPPER}, contact_um: [0.1, 0.1]}}}}\n{TOUCHING}",
+        "devices.D.contact_um is [0.1, 0.1]",
+        "0.1 x 0.1 µm of",
+    ),
     (
         f"devices: {{D: {{{BEAM}, test_beams: [first]}}}}\ntest_beams: {{first: {{pair: b, thickness_um: 0.2, gap_um: "
         "20, width_um: 30, length_um: 900, crack_lengths: [{humidity: 0.67, mean_um: 100, std_um: 5, beams: 9}]}}",
@@ -226,7 +240,7 @@ def test_the_samples_are_the_first_ones_of_the_run(model):
     config = configured(B, changes)
     plan = Plan(config)
     surfaces = functools.partial(pilot._surface, plan)
-    samples = pilot.Samples(plan, surfaces, [], lambda _, compute: compute(), Patch("b", 1500, 3000), model)
+    samples = pilot.Samples(plan, surfaces, [], lambda _, compute: compute(), Patch("b", 1500, 3000), model, False)
     study = PairStudy.of(config, "b", model)
     solid, bearing, *_ = samples._contact
     np.testing.assert_array_equal(solid, study.contact.solid_pressure)
@@ -326,3 +340,19 @@ def test_single_samples_that_do_not_resist_are_left_to_jobs_that_count_them_as_f
     assert shown([strong, strong, soft], law=False) == {"laws": []}
     assert "weak" in shown([strong, soft, soft])
     assert "weak" in shown([strong, strong, soft], flat=None)
+
+
+def test_solids_of_devices_attract_each_other_as_in_their_jobs():
+    dry = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0, 0.44]}
+    config, asked = normalised(merged(PAPER, {"run": {"pairs": []}, "devices": {"S1": dry}})), []
+
+    def remember(question, compute):
+        asked.append(question)
+        return compute()
+
+    assert pilot.problems(config, {}, "code", remember) == []
+    plan = Plan(config)
+    for humidity in (0, 0.44):
+        water = plan.air_of_devices.water(plan.air_of_devices.contact("b", humidity))
+        assert "gaps" in water
+        assert any(water in question and humidity in question for question in asked)

@@ -69,6 +69,7 @@ class Use:
     longest_strip: Callable[[np.ndarray], float] | None = None  #: on force laws (n, 4) [m]; none for a stopper
     strip: tuple = ()  #: key that a refusal of its strips is about
     thickness: float | None = None  #: of its beam, if this key is its thickness [µm]
+    of_devices: bool = True  #: or of a pair that runs, whose solids may attract each other less, see `Air`
 
 
 def problems(
@@ -92,9 +93,10 @@ def problems(
         return beyond_memory
     of_patch = cache(partial(Samples, plan, cache(partial(_surface, plan)), ["pilot", code], remember))
 
-    def samples(patch, model, humidity):
-        """First samples of a patch, whose solids attract each other through the air of a humidity."""
-        return of_patch(patch._replace(pair=plan.air.contact(patch.pair, humidity)), model)
+    def samples(use, model, humidity):
+        """First samples of the patch of a use, whose solids attract each other through the air of a humidity."""
+        air = plan.air_of_devices if use.of_devices else plan.air
+        return of_patch(use.patch._replace(pair=air.contact(use.patch.pair, humidity)), model, air.of_devices)
 
     guessed, by_key = _guessed(config), {}
     for use in chain(_pairs(plan), _devices(plan, "devices"), _devices(plan.of_test_beams, "test_beams")):
@@ -146,6 +148,7 @@ def _pairs(plan):
             size=("beam", "width_um"),
             longest_strip=lambda laws, beam=beam: longest(beam, laws)[0],
             strip=("sampling", "strip_length_um"),
+            of_devices=False,
         )
         stated, shown = config["pairs"][pair]["humidities"], [config["figures"]["humidity"]]
         yield use(stated, air=("pairs", pair, "humidities"), resolved=_refined(plan, pair, stated))
@@ -203,7 +206,7 @@ def _refusals(use: Use, samples: Callable, preliminary: bool) -> Iterator[tuple[
     law = use.longest_strip is not None
     try:
         shown = {
-            (model, humidity): samples(use.patch, model, humidity).at(humidity, law, preliminary)
+            (model, humidity): samples(use, model, humidity).at(humidity, law, preliminary)
             for model in use.models
             for humidity in use.humidities
         }
@@ -292,11 +295,13 @@ class Samples:
     remember: Callable
     patch: Patch
     model: str
+    of_devices: bool
 
     def at(self, humidity: float, law: bool, preliminary: bool) -> dict[str, Any]:
         """What they show at a humidity, see `shown_by`."""
         entries = [self._entry(name) for name in self.plan.sides(self.patch.pair)]
-        water = self.plan.air.water(self.patch.pair)
+        air = self.plan.air_of_devices if self.of_devices else self.plan.air
+        water = air.water(self.patch.pair)
         settings = [self.patch, self.model, entries, self.plan.config["character"], self._settings]
         return self.remember(
             [*self.code, *settings, water, humidity, law, preliminary],
