@@ -261,6 +261,18 @@ def test_moments_without_a_density_are_refused_unless_the_heights_are_measured(t
     assert problems(configured(path, heights="measured")) == ()
 
 
+def test_a_power_law_that_no_pixel_resolves_does_not_go_on(tmp_path):
+    (fine,) = published("B1", SIDE, 1)
+    coarse = write(tmp_path / "coarse.gwy", fine.heights[:249:3, :249:3], (4.98e-6, 4.98e-6))
+    (line,) = problems(configured(coarse, beyond="continued"))
+    assert line == (
+        "surfaces.Etched.beyond is 'continued', but the pixels of coarse.gwy do not resolve the power law that would "
+        "go on, must be cut"
+    )
+    assert problems(configured(coarse)) == ()
+    assert problems(configured(write(tmp_path / "fine.gwy", fine.heights, fine.size), beyond="continued")) == ()
+
+
 @pytest.mark.filterwarnings("ignore:surface Etched")
 @pytest.mark.parametrize("share", [0.5, pytest.param(0.9, marks=pytest.mark.slow)])
 def test_scans_of_two_heights_are_refused_before_a_run_and_never_in_it(tmp_path, share):

@@ -137,6 +137,7 @@ def preliminary_estimates(
             try:
                 estimates[name] = _evaluated(complete(entry), config["scans"], kept)
                 problems += _without_density(name, entry, estimates[name])
+                problems += _without_power_law(name, entry, estimates[name])
             except ScanError as refusal:
                 problems.append(_problem(name, complete(entry), refusal))
     return estimates, problems
@@ -227,6 +228,7 @@ def _preliminary(files, reading, evaluating):
         "corner_rad_per_um": from_si(inspection.fit.corner, "rad_per_um"),
         "slope": inspection.fit.slope,
         "end_rad_per_um": from_si(float(inspection.reach.end), "rad_per_um"),
+        "resolved": inspection.is_resolved,
     }
 
 
@@ -262,6 +264,14 @@ def _without_density(name, entry, preliminary):
     else:
         return []
     return [Problem(("surfaces", name, "heights"), f"is 'moments', but {reason}, must be measured")]
+
+
+def _without_power_law(name, entry, preliminary):
+    """Problem of a surface whose power law is to go on, where its scans do not show one."""
+    if complete(entry)["beyond"] == "cut" or preliminary["resolved"]:
+        return []
+    reason = f"the pixels of {', '.join(_labels(entry))} do not resolve the power law that would go on"
+    return [Problem(("surfaces", name, "beyond"), f"is 'continued', but {reason}, must be cut")]
 
 
 def _problem(name, entry, refusal):

@@ -59,6 +59,7 @@ class Maps:
     rings: Rings  #: without the floor of the noise
     reach: Reach
     floor: Floor  #: of white noise
+    kept: Floor  #: floor that stays in heights and spectrum, because no heights are left without it
 
     @classmethod
     def of(cls, alike: Mapping[int, Scan], settings: Settings) -> "Maps":
@@ -70,12 +71,12 @@ class Maps:
         noisy = spectra.periodogram(complete, frame.size)
         tip = np.inf if settings.tip_radius is None else tip_reach(complete, frame.pixel[0], settings.tip_radius)
         within = reach(frame.size, frame.pixel, settings.shortest, tip)
-        floor = white_floor(spectra.rings(noisy), within)
+        floor, kept = white_floor(spectra.rings(noisy), within), Floor()
         if not can_be_noise(moments(np.mean([powers(z) for z in levelled], axis=0)), floor.variance(frame.pixel)[0]):
-            floor = Floor()
+            floor, kept = kept, floor
         within, clean = above(spectra.rings(noisy), within, floor), spectra.without_floor(noisy, floor.density)
         names = tuple(scan.name for scan in scans)
-        return cls(names, tuple(alike), frame, levelled, complete, clean, spectra.rings(clean), within, floor)
+        return cls(names, tuple(alike), frame, levelled, complete, clean, spectra.rings(clean), within, floor, kept)
 
     @property
     def size(self) -> str:
@@ -195,6 +196,11 @@ class Inspection:
     def spectrum_in(self, maps: Maps) -> CutoffSelfAffine | TabulatedSpectrum:
         """Spectrum that the scans do not contradict, without the waves that are shorter than two pixels of some."""
         return spectrum("fitted", self.fit, self.rings, self.reach, min(self.reach.end, maps.reach.nyquist))
+
+    @property
+    def is_resolved(self) -> bool:
+        """Whether the scans resolve the power law."""
+        return self.fit.is_resolved(self.reach)
 
     @property
     def filled_share(self) -> float:
