@@ -12,10 +12,10 @@ import pytest
 import yaml
 
 from stiction.command.main import main
-from stiction.config.arrays import TEMPLATE
 from stiction.config.files import paper
 from stiction.config.merging import merged
 from stiction.config.relations import schema
+from stiction.config.test_beams import TEMPLATE
 
 pytestmark = pytest.mark.slow
 

@@ -20,8 +20,7 @@ from written_scans import etched, scans_of
 
 from stiction import pilot
 from stiction.chaos.model import draw_laws
-from stiction.config import measured
-from stiction.config.device_plan import Patch
+from stiction.config import scans
 from stiction.config.files import normalised
 from stiction.config.merging import merged
 from stiction.config.units import in_si
@@ -29,11 +28,12 @@ from stiction.contact import forcelaw
 from stiction.contact.environment import ForceCurves
 from stiction.contact.forcelaw import coefficients
 from stiction.device import Device
+from stiction.plan.devices import Patch
 from stiction.plan.plan import Plan
 from stiction.run.disk_cache import DiskCache
 from stiction.stages.contact import curves
 from stiction.stages.devices import cracks
-from stiction.stages.devices.releases import fitted
+from stiction.stages.devices.opening import fitted
 from stiction.stages.laws import forces
 from stiction.study import PairStudy
 
@@ -134,7 +134,7 @@ def test_what_the_jobs_would_refuse_is_refused_by_name(overlay, key, words):
 
 
 @pytest.fixture(scope="module")
-def scans(tmp_path_factory):
+def written(tmp_path_factory):
     """Folder with two scans of B2."""
     path = tmp_path_factory.mktemp("scans")
     scans_of(path, count=2)
@@ -149,11 +149,11 @@ def scans(tmp_path_factory):
         ("beam: {thickness_um: 0.5}", "sampling.strip_length_um is 1.5, must be at most"),
     ],
 )
-def test_measured_surfaces_are_drawn_from_their_preliminary_numbers(scans, overlay, begins, heights):
-    files = sorted(scans.glob("B2-*.gwy"))
+def test_measured_surfaces_are_drawn_from_their_preliminary_numbers(written, overlay, begins, heights):
+    files = sorted(written.glob("B2-*.gwy"))
     unmet = {"surfaces": {"Unmet": {"scans": {"files": [str(files[1])]}}}}
     valid = functools.reduce(merged, (etched(files[0], heights=heights), unmet, yaml.safe_load(B)), PAPER)
-    found = measured.preliminary_estimates(valid)[0]
+    found = scans.preliminary_estimates(valid)[0]
     assert pilot.problems(normalised(valid), found, "code", REMEMBER) == []
     config = normalised(merged(valid, yaml.safe_load(overlay)))
     (line,) = map(str, pilot.problems(config, found, "code", REMEMBER))
@@ -308,3 +308,9 @@ def test_surfaces_whose_spectrum_is_preliminary_are_refused_if_no_sample_resists
     strong, soft = curve(4.0, 1.0), curve(0.0, 1.0)
     assert len(shown(np.array([strong, soft, strong]), preliminary=True)["laws"]) == 2
     assert "weak" in shown(np.array([soft, soft]), preliminary=True)
+
+
+def test_wedges_of_stiff_beams_above_a_small_gap_that_do_not_fit_into_memory_are_refused():
+    stiff = {"kind": "cantilever", "pair": "b", "thickness_um": 100, "gap_um": 1, "width_um": 800, "humidities": [0.67]}
+    (line,) = map(str, pilot.problems(normalised(merged(PAPER, {"devices": {"C1": stiff}})), {}, "code", REMEMBER))
+    assert line.startswith("devices.C1.gap_um is 1, must leave fields within 8 GB of memory")

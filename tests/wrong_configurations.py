@@ -111,7 +111,7 @@ WRONG_VALUES = [
     ("surfaces:", "surfaces", "None", GONE),
     ("surfaces: {B1: }", "surfaces.B1", "None", GONE),
     ("surfaces: {B1: {published_psd: }}", "surfaces.B1.published_psd", "None", GONE),
-    # measured surfaces; tests/config/test_measured.py has more, with files
+    # measured surfaces; tests/config/test_measured_surfaces.py has more, with files
     ("scans: {model_scans: 7}", "scans.model_scans", "7", "at least 8"),
     ("scans: {tiles: 1}", "scans.tiles", "1", "at least 2 and at most 8"),
     ("scans: {undefined_share: 1}", "scans.undefined_share", "1", "at most 0.5: largest share of the points"),

@@ -8,11 +8,11 @@ import sys
 from pathlib import Path
 
 import stiction
-from stiction.config.arrays import COLUMNS
 from stiction.config.reading import read
+from stiction.config.test_beams import COLUMNS
 from stiction.report.format import UM
 from stiction.stages.devices import cracks as stage_cracks
-from stiction.stages.devices.releases import EITHER
+from stiction.stages.devices.opening import EITHER
 
 #: What is true instead of what ``mine.yaml`` states, within its uncertainties; the surfaces are drawn anew.
 TRUTH = {"seed": 7, "solid": {"young_modulus_GPa": 158}, "surfaces": {"B2": {"rms_nm": 3.35}}}

@@ -17,7 +17,7 @@ class LogHandler(LogHandlerBase):
 
     def __post_init__(self) -> None:
         # Not at the top: Snakemake imports all plugins before a Snakefile says which code is its own.
-        from stiction.command.follow import RUN
+        from stiction.command.run_state import RUN
 
         self._run = RUN
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import xarray as xr
 
 from stiction.config.cases import case_id
-from stiction.config.device_plan import DevicePlan
 from stiction.config.kinds import KINDS, Kind
 from stiction.config.units import in_si
+from stiction.plan.devices import DevicePlan
 from stiction.plan.graph import Results
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings

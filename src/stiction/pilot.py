@@ -22,22 +22,23 @@ from typing import Any
 import numpy as np
 
 from stiction.beam.resolution import longest
-from stiction.config.arrays import DATA
 from stiction.config.cases import case_id, in_air
-from stiction.config.device_plan import Patch, patch
-from stiction.config.measured import is_measured, with_preliminary_estimates
 from stiction.config.messages import Problem, dotted, shown
+from stiction.config.relations import field_too_large
+from stiction.config.scans import is_measured, with_preliminary_estimates
+from stiction.config.test_beams import DATA
 from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
 from stiction.contact import forcelaw
 from stiction.contact.environment import ForceCurves, Water, force_curves
 from stiction.contact.pair import contacts_of_samples
 from stiction.models import SURFACE_MODELS
+from stiction.plan.devices import Patch, patch
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At, select
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.contact.changes.patches import GROUND
 from stiction.stages.contact.pairs import Settings, streams_of_sides, surface_pair
-from stiction.stages.devices.releases import DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import DesignedBeam, section_of_beam
 from stiction.stages.surfaces import heights, spectrum
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.identify import SummitTarget, estimated_spectrum
@@ -80,13 +81,15 @@ def problems(
     config : dict
         Complete and valid configuration in normal form.
     preliminary : dict
-        Preliminary numbers of its measured surfaces, see `stiction.config.measured.preliminary_estimates`.
+        Preliminary numbers of its measured surfaces, see `stiction.config.scans.preliminary_estimates`.
     code : object
         Fingerprint of this module.
     remember : callable
         Keeps what the samples showed, see `stiction.run.disk_cache.DiskCache`.
     """
     plan = Plan(with_preliminary_estimates(config, preliminary), preliminary)
+    if beyond_memory := list(_tips_beyond_memory(plan)):
+        return beyond_memory
     of_patch = cache(partial(Samples, plan, cache(partial(_surface, plan)), ["pilot", code], remember))
 
     def samples(patch, model, humidity):
@@ -114,6 +117,17 @@ def _guessed(config):
         elif entry["psd"] != "published":
             guesses[name] = f"surfaces.{name}.psd = {shown(entry['psd'])}"
     return guesses
+
+
+def _tips_beyond_memory(plan):
+    """Cantilevers whose tips need fields beyond the memory of a job: problems of their gaps."""
+    margin, spacing = (plan.config["sampling"][key] for key in ("margin_um", "spacing_nm"))
+    for name in plan.devices.with_tips:
+        length, width = (side / NM_PER_UM for side in plan.devices.tips(name)[1:])
+        if refusal := field_too_large(length + margin, width + margin, spacing):
+            reason = f"{refusal}; the wedge at the tip of a beam is the longer, the smaller the gap"
+            gap = plan.devices.sections[name]["gap_um"]
+            yield Problem(("devices", name, "gap_um"), f"is {shown(gap)}, {reason}")
 
 
 # What sticks

@@ -5,7 +5,7 @@ import re
 import sys
 from pathlib import Path
 
-from stiction.config import memory
+from stiction.plan import memory
 from stiction.plan.graph import stages
 from stiction.plan.plan import Plan
 from stiction.plan.stage import WILDCARDS, expression
@@ -17,10 +17,10 @@ TOOK = re.compile(r"^took ([\d.]+) s, (\d+) MB$", re.MULTILINE)
 def rules(results):
     """For every stage: name, pattern of its logs, and the memory [MB] and minutes that its last run requested."""
     config = json.loads((results / "provenance.json").read_text(encoding="utf-8"))[-1]["config"]
-    plan = Plan(config)
+    plan, usual = Plan(config), memory.of_job(config)
     for name, (stage, _) in sorted(stages().items()):
         least = stage.memory(plan) if stage.memory else 0.0
-        yield name, expression(stage.log, WILDCARDS), memory.of_job(config, least), stage.minutes
+        yield name, expression(stage.log, WILDCARDS), max(usual, round(least)), stage.minutes
 
 
 def costs(results):

@@ -3,7 +3,7 @@
 import logging
 
 import pytest
-from test_follow import heard, plan, record, start
+from test_run_state import heard, plan, record, start
 
 from stiction.command.explain import explained
 

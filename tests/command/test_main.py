@@ -12,16 +12,16 @@ from pathlib import Path
 
 import pytest
 import yaml
-from test_front import finished
+from test_front_page import finished
 from written_scans import QUICK, etched, scans_of
 
 import stiction
 from stiction.command import launch
-from stiction.command.ending import FAULT
-from stiction.command.front import FRONT
+from stiction.command.front_page import FRONT
+from stiction.command.last_lines import FAULT
 from stiction.command.main import main
-from stiction.config.arrays import beams
 from stiction.config.merging import merged
+from stiction.config.test_beams import beams
 
 ROOT = Path(__file__).parents[2]
 BASE = ["--configfile", str(ROOT / "config.yaml")]

@@ -6,10 +6,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from test_front import finished
+from test_front_page import finished
 
 from stiction.command import launch
-from stiction.command.ending import FAULT
+from stiction.command.last_lines import FAULT
 from stiction.command.main import main
 
 #: Commands that print something, and their exit status in a folder with a file of devices on scans and results.

@@ -5,7 +5,7 @@ import pytest
 from stiction.config.kinds import COMMON, KEYS, KINDS
 from stiction.config.relations import schema
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.releases import BEAMS
+from stiction.stages.devices.opening import BEAMS
 
 SECTION = schema()["properties"]["devices"]["additionalProperties"]["properties"]
 

@@ -9,11 +9,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from stiction.config import measured, relations, relations_devices
-from stiction.config.conditions import Keys, Relations
+from stiction.config import relations, relations_devices, scans
+from stiction.config.keys import Keys, Relations
 from stiction.config.units import in_si, to_si
 from stiction.contact.correction import Correction
-from stiction.numbers import is_at_most
+from stiction.rounding import is_at_most
 from stiction.stages.surfaces.measured_spectrum import Settings, cutoff_and_clipping
 from stiction.surface.field import RoughSurface, StripGrid
 from stiction.surface.spectrum import CutoffSelfAffine
@@ -52,7 +52,7 @@ def refused(spacing, psd):
 @pytest.mark.parametrize("beyond", ["cut", "continued"])
 def test_a_measured_spectrum_up_to_the_nyquist_wave_number_fits_on_every_grid(beyond):
     for spacing in SPACINGS:
-        psd = measured._described({"beyond": beyond, "heights": "moments"}, SCANNED, spacing)["published_psd"]
+        psd = scans._described({"beyond": beyond, "heights": "moments"}, SCANNED, spacing)["published_psd"]
         assert not any(refused(spacing, psd)), spacing
         assert all(refused(spacing, psd | {"cutoff_rad_per_um": psd["cutoff_rad_per_um"] * 1.0001})), spacing
 

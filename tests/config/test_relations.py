@@ -11,7 +11,7 @@ from wrong_configurations import STOPPER, WRONG_RELATIONS
 
 from stiction.chaos.model import MAX_ORDER
 from stiction.config import relations, validation
-from stiction.config.conditions import Keys, Unknown
+from stiction.config.keys import Keys, Unknown
 from stiction.config.merging import merged
 
 FUZZ = settings(max_examples=250, suppress_health_check=[HealthCheck.too_slow])

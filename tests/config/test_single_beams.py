@@ -6,9 +6,9 @@ from statistics import fmean, stdev
 import pytest
 import yaml
 from configurations import problems
-from test_arrays import ARRAY, SECTIONS
+from test_test_beams import ARRAY, SECTIONS
 
-from stiction.config import arrays, files
+from stiction.config import files, test_beams
 from stiction.config.messages import ConfigError
 
 HEAD = "humidity,length_um,crack_length_um,stuck"
@@ -49,7 +49,7 @@ def test_a_file_gives_means_and_counts(study):
 
 
 def test_a_file_and_the_same_data_in_the_configuration_are_one(study):
-    data = arrays.summary(arrays.beams("\n".join([HEAD, *MEASURED, *COUNTED])))
+    data = test_beams.summary(test_beams.beams("\n".join([HEAD, *MEASURED, *COUNTED])))
     config = copy.deepcopy(SECTIONS)
     del config["test_beams"]["first"]["length_um"], config["test_beams"]["first"]["crack_lengths"]
     config["test_beams"]["first"] |= data
@@ -65,12 +65,12 @@ def test_neither_the_order_of_rows_and_columns_nor_a_mark_of_the_order_of_bytes_
 
 
 def test_beams_may_be_counted_in_dry_air():
-    humid, dry = (arrays.summary(arrays.beams(f"{HEAD}\n{air},500,,yes\n"))["stuck"] for air in ("0.44", "dry"))
+    humid, dry = (test_beams.summary(test_beams.beams(f"{HEAD}\n{air},500,,yes\n"))["stuck"] for air in ("0.44", "dry"))
     assert dry == [humid[0] | {"humidity": 0.0}]
 
 
 def test_the_template_is_a_file(study):
-    found = loaded(study(arrays.TEMPLATE))
+    found = loaded(study(test_beams.TEMPLATE))
     assert [entry["beams"] for entry in found["crack_lengths"]] == [2]
     assert [(entry["stuck"], entry["of"]) for entry in found["stuck"]] == [(1, 2)]
 
@@ -119,7 +119,9 @@ def test_what_is_wrong_with_a_file_is_one_sentence_with_key_file_and_row(study, 
 
 def test_crack_lengths_that_scatter_by_a_factor_of_ten_are_in_one_unit():
     rows = ["0.67,1500,70,", "0.67,1500,700,", "0.44,1500,1.2,", "0.44,1500,12,"]
-    assert [datum["beams"] for datum in arrays.summary(arrays.beams("\n".join([HEAD, *rows])))["crack_lengths"]] == [
+    assert [
+        datum["beams"] for datum in test_beams.summary(test_beams.beams("\n".join([HEAD, *rows])))["crack_lengths"]
+    ] == [
         2,
         2,
     ]
@@ -181,8 +183,8 @@ def test_files_are_those_of_the_configuration_that_names_them(tmp_path):
     (tmp_path / "beams.csv").write_text("\n".join([HEAD, *COUNTED]))
     array = {"test_beams": {"first": {"file": "beams.csv"}}}
     other = {"test_beams": {"first": {"file": "others.csv"}}}
-    assert arrays.with_files(array, array, tmp_path)["test_beams"]["first"]["stuck"][0]["of"] == 1
-    assert arrays.with_files(other, array, tmp_path) == other
+    assert test_beams.with_files(array, array, tmp_path)["test_beams"]["first"]["stuck"][0]["of"] == 1
+    assert test_beams.with_files(other, array, tmp_path) == other
     for broken in ({}, {"test_beams": 5}, {"test_beams": {"X": 1}}, {"test_beams": {"X": {"file": 7}}}):
-        assert arrays.with_files(broken, broken, tmp_path) == broken
+        assert test_beams.with_files(broken, broken, tmp_path) == broken
     assert any(line.startswith("test_beams.X.file is 7") for line in problems({"test_beams": {"X": {"file": 7}}}))

@@ -3,10 +3,10 @@
 import pytest
 from plans import job_settings
 
-from stiction.config.device_plan import DevicePlan
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.units import in_si
+from stiction.plan.devices import DevicePlan
 from stiction.plan.plan import Plan
 from stiction.stages.beams.cantilevers import Cantilevers, sections
 from stiction.stages.contact import contact

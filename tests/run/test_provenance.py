@@ -89,3 +89,35 @@ def test_a_library_that_is_not_installed_is_recorded_as_none(tmp_path, monkeypat
     (run,) = json.loads((tmp_path / "provenance.json").read_text())
     assert run["versions"]["a-library-that-nobody-has"] is None
     assert run["versions"]["numpy"] == numpy.__version__
+
+
+# In words
+
+RUN = {"started": "2026-01-31T23:05:59+00:00", "versions": {"stiction": "0.2.0", "numpy": "2.0"}, "git": None}
+
+
+def commit(*changed):
+    return {"commit": "abc", "changed": list(changed), "untracked": ["notes.txt"]}
+
+
+@pytest.mark.parametrize(
+    ("git", "sentences"),
+    [
+        (None, ["stiction 0.2.0, installed"]),
+        (commit(), ["stiction 0.2.0, commit abc"]),
+        (commit("a.py", "b.py"), ["stiction 0.2.0, commit abc", "Files that are changed in its folder: a.py, b.py"]),
+    ],
+)
+def test_the_code_of_a_run_is_named_with_its_changed_files_alone(git, sentences):
+    assert list(provenance.code_of(RUN | {"git": git})) == sentences
+    assert next(provenance.code_of(RUN | {"git": git, "versions": {}})) == sentences[0].replace(" 0.2.0", "")
+
+
+def test_a_result_is_made_by_the_last_run_of_the_record(tmp_path):
+    record = tmp_path / "provenance.json"
+    runs = [RUN | {"started": "2025-01-01T00:00:00+00:00", "git": commit()}, RUN]
+    record.write_text(json.dumps([run | {"config": {}} for run in runs]))
+    first, *code, last = provenance.last_run(record)
+    assert first == "Made by the run of 2026-01-31 23:05 UTC."
+    assert code == ["stiction 0.2.0, installed."]
+    assert "results/provenance.json" in last

@@ -12,7 +12,7 @@ import xarray as xr
 from scipy.special import ndtr
 
 from stiction.config.files import load
-from stiction.stages.devices.releases import EITHER
+from stiction.stages.devices.opening import EITHER
 
 FOLDER = Path(__file__).parents[2] / "examples" / "drawn_beams"
 draw, compare = (SimpleNamespace(**runpy.run_path(str(FOLDER / f"{name}.py"))) for name in ("draw", "compare"))

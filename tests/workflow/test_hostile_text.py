@@ -10,7 +10,7 @@ from drawn_scans import published
 from hostile import HOSTILE, HOSTILE_FILE, MADE, Reading
 from written_scans import QUICK, SIDE, SurfaceTopography
 
-from stiction.command.front import FRONT, front_page
+from stiction.command.front_page import FRONT, front_page
 from stiction.stages.beams.pair_warnings import as_markdown
 
 pytestmark = pytest.mark.slow

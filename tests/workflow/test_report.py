@@ -7,7 +7,7 @@ import pytest
 from browser import Browser, missing
 from conftest import ROOT, snakemake
 
-from stiction.command.front import FRONT, front_page
+from stiction.command.front_page import FRONT, front_page
 
 pytestmark = [pytest.mark.slow, pytest.mark.browser, pytest.mark.skipif(bool(missing()), reason=missing())]
 

@@ -18,8 +18,8 @@ from conftest import ROOT
 from planner import Planner
 
 from stiction.config.files import normalised, paper
-from stiction.config.measured import resolve_scan_paths
 from stiction.config.merging import merged
+from stiction.config.scans import resolve_scan_paths
 from stiction.plan.graph import Graph, stages, structured
 from stiction.plan.plan import Plan
 from stiction.plan.stage import File
@@ -395,7 +395,7 @@ SPOTS = [
         "contact_chunk variant_summits plasticity device_contact",
     ),
     ("study", "", " ".join(RULES)),
-    ("stages/devices/releases", "cracks chart", "heights spectrum contact_chunk tip_contact beams"),
+    ("stages/devices/opening", "cracks chart", "heights spectrum contact_chunk tip_contact beams"),
     ("stages/devices/sticking", "safe_lengths chart", "heights spectrum contact_chunk tip_contact beams cracks"),
     # The page of warnings has those about test beams, whose inputs may come from scans.
     (

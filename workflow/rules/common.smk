@@ -6,13 +6,14 @@ from functools import cache
 
 from snakemake.logging import logger
 
-from stiction.config import arrays, files, measured, memory, merging, messages
+from stiction.config import files, merging, messages, scans, test_beams
+from stiction.plan import memory
 from stiction.plan.planner import Planner
 from stiction.plan.stage import WILDCARDS
 from stiction.run import provenance, run_lock, snakemake_patches, stale_results
 from stiction.run.atomic import DataError
-from stiction.run.fingerprint import PACKAGE, fingerprint
 from stiction.run.disk_cache import DiskCache
+from stiction.run.fingerprint import PACKAGE, fingerprint
 
 
 wildcard_constraints:
@@ -47,7 +48,7 @@ def rules_of_the_configuration():
     folder = PACKAGE / "config"
     modules = [
         code(folder / f"{name}.py")
-        for name in ("validation", "conditions", "relations", "relations_devices", "messages")
+        for name in ("validation", "keys", "relations", "relations_devices", "messages")
     ]
     return [*modules, (folder / "schema.yaml").read_text(encoding="utf-8")]
 
@@ -56,10 +57,10 @@ try:
     # Read again, because Snakemake silently uses the last of duplicate keys.
     contents = {file: files.read(file) for file in snakemake_patches.files_of_configuration(workflow)}
     for file in contents:  # files of scans and of test beams are relative to the first match
-        config.update(measured.resolve_scan_paths(config, contents[file], file.parent))
-        config.update(arrays.with_files(config, contents[file], file.parent))
+        config.update(scans.resolve_scan_paths(config, contents[file], file.parent))
+        config.update(test_beams.with_files(config, contents[file], file.parent))
     config.update(merging.expanded(config))
-    scanned = measured.has_scans(config)
+    scanned = scans.has_scans(config)
     preliminary = validated() if scanned else remember(["valid", config, rules_of_the_configuration()], validated)
 except messages.ConfigError as error:
     raise WorkflowError(f"The configuration is invalid:\n{error}")
@@ -153,7 +154,11 @@ def of_job(rule, key):
     return lambda wildcards: planner.job(rule["name"], wildcards)[key]
 
 
+#: Memory of a job that draws the largest field [MB].
+MEMORY = memory.of_job(config)
+
+
 def memory_of(rule):
     """Function of the attempt that gives the memory to reserve for a job [MB]."""
-    megabytes = memory.of_job(config, rule["memory"])
+    megabytes = max(MEMORY, round(rule["memory"]))
     return lambda wildcards, attempt: memory.of_attempt(megabytes, attempt)

@@ -11,7 +11,7 @@ from stiction.beam.energy import apparent_adhesion_energy
 from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
 from stiction.beam.release import EndState, released_beam
 from stiction.contact.forcelaw import adhesion_energy, energy, pressure
-from stiction.numbers import is_multiple
+from stiction.rounding import is_multiple
 
 #: Number of distances at which the mean of force laws is evaluated.
 _NODES = 20_000

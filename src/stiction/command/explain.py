@@ -5,7 +5,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 
-from stiction.command.follow import Job, Run
+from stiction.command.run_state import Job, Run
 
 #: A reason of Snakemake, by its first words, and what it says.
 _REASONS = {

@@ -11,9 +11,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TextIO
 
-from stiction.command.display import Display
-from stiction.command.ending import PRINTED
-from stiction.command.follow import RUN
+from stiction.command.last_lines import PRINTED
+from stiction.command.progress_line import Display
+from stiction.command.run_state import RUN
 from stiction.temporary import is_writable, own_folder
 
 PACKAGE = Path(__file__).parents[1]
@@ -58,7 +58,7 @@ def words(configs: Sequence[str], directory: str, arguments: Sequence[str]) -> l
 
 
 def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: bool) -> tuple[int, bool]:
-    """Run Snakemake in a folder, with arguments from `words`; it reports to `stiction.command.follow.RUN`.
+    """Run Snakemake in a folder, with arguments from `words`; it reports to `stiction.command.run_state.RUN`.
 
     A quiet one keeps in a file everything that Snakemake and its jobs print as errors; ``progress`` shows one line
     instead.

@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from stiction.command import explain, launch, streams
-from stiction.command.ending import PRINTED, Status, fault, last_lines, status
-from stiction.command.follow import RUN
+from stiction.command.last_lines import PRINTED, Status, fault, last_lines, status
+from stiction.command.run_state import RUN
 from stiction.command.streams import say
 from stiction.config import reading
 from stiction.config.messages import ConfigError
@@ -125,7 +125,7 @@ def _init(arguments):
 
 def _init_test_beams(target):
     """Write a table of test beams."""
-    from stiction.config.arrays import TEMPLATE
+    from stiction.config.test_beams import TEMPLATE
 
     _write({target: TEMPLATE})
     say(f"{target} has a row for every test beam: put yours there, and name the file in test_beams.NAME.file.")
@@ -157,7 +157,7 @@ def _check(arguments):
     """Check files."""
     from stiction import pilot  # imports the physics
     from stiction.config.files import load
-    from stiction.config.measured import preliminary_estimates
+    from stiction.config.scans import preliminary_estimates
     from stiction.run.disk_cache import DiskCache
     from stiction.run.fingerprint import fingerprint
 
@@ -213,9 +213,9 @@ def _devices(arguments):
 
 def _scans(arguments):
     """Evaluate scans without the pairs of their surfaces."""
-    from stiction.config import measured  # takes longer than all other imports
+    from stiction.config import scans  # takes longer than all other imports
 
-    if not any(map(measured.has_scans, reading.contents(arguments.files, arguments.more))):
+    if not any(map(scans.has_scans, reading.contents(arguments.files, arguments.more))):
         raise launch.RefusedError(f"{' '.join(arguments.files)} describes no surface by scans: add surfaces.NAME.scans")
     return _run(arguments, "scans")
 
@@ -227,11 +227,11 @@ def _figures(arguments):
 
 def _report(arguments):
     """Write the report of finished results."""
-    from stiction.command import front  # imports the libraries for numbers
+    from stiction.command import front_page  # imports the libraries for numbers
 
     results = Path(arguments.directory) / "results"
     try:
-        finished = front.is_finished(results)
+        finished = front_page.is_finished(results)
     except ValueError as damaged:
         raise launch.RefusedError(str(damaged)) from None
     if not finished:
@@ -239,9 +239,9 @@ def _report(arguments):
             f"there are no results for a report in {results}: run stiction paper or stiction run FILE first "
             "(stiction devices is not enough)"
         )
-    page = Path(arguments.directory) / front.FRONT
+    page = Path(arguments.directory) / front_page.FRONT
     page.parent.mkdir(exist_ok=True)
-    page.write_text(front.front_page(results), encoding="utf-8")
+    page.write_text(front_page.front_page(results), encoding="utf-8")
     files = launch.WORKFLOW / "workflow" / "report"
     options = ("--report-stylesheet", str(files / "style.css"), "--report-metadata", str(files / "guide.yaml"))
     ended = _run(arguments, "--report", "results/report.html", *options)

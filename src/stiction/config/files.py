@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from stiction.config import arrays
+from stiction.config import test_beams
 from stiction.config.cases import in_numbers
-from stiction.config.measured import complete, resolve_scan_paths
 from stiction.config.merging import expanded, merged
 from stiction.config.reading import read
+from stiction.config.scans import complete, resolve_scan_paths
 
 #: Configuration of the paper: a copy of ``config.yaml`` in the root folder, which users may edit.
 PAPER = Path(__file__).with_name("paper.yaml")
@@ -47,7 +47,7 @@ def load(*overlays: str | Path | Mapping) -> dict:
 def _in_memory(overlay):
     """Mapping as YAML would give it, with the data of test beams in files."""
     content = plain(overlay)
-    return arrays.with_files(content, content, Path())
+    return test_beams.with_files(content, content, Path())
 
 
 def plain(value: Any) -> Any:
@@ -72,7 +72,7 @@ def located(path: str | Path) -> dict:
     """
     content = read(path)
     folder = Path(path).parent
-    return arrays.with_files(resolve_scan_paths(content, content, folder), content, folder)
+    return test_beams.with_files(resolve_scan_paths(content, content, folder), content, folder)
 
 
 @functools.cache
@@ -88,7 +88,7 @@ def normalised(config: dict) -> dict:
     device are sorted as well, so that tables and curves begin with the lowest. Measured surfaces get all their keys.
     Dry air has the humidity 0. Data of test beams are without the files that they come from.
     """
-    config = in_numbers(arrays.without_files(config))
+    config = in_numbers(test_beams.without_files(config))
     named = {section: config[section] for section in ("pairs", "devices") if section in config}
     surfaces = {name: complete(entry) for name, entry in config["surfaces"].items()}
     in_order = {section: _sorted(entries) for section, entries in named.items()}

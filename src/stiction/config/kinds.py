@@ -1,7 +1,7 @@
 """Kinds of devices: which keys each has, where it sticks, and what may hold it.
 
 All other code asks the object of a kind, never its name: a new kind is an entry of `KINDS` and of the schema. How the
-beams of a kind open is in `stiction.stages.devices.releases.BEAMS`.
+beams of a kind open is in `stiction.stages.devices.opening.BEAMS`.
 """
 
 import math

@@ -1,8 +1,7 @@
-"""Memory to request for jobs: enough for the largest field that they draw, and twice as much after each failure."""
+"""Memory of fields and tips that a job draws, and its limits."""
 
 from collections.abc import Sequence
 
-from stiction.config.device_plan import DevicePlan
 from stiction.config.kinds import kind_of
 from stiction.config.units import NM_PER_UM, from_si
 from stiction.models import FIELD
@@ -40,26 +39,6 @@ def spacings_of(device: dict, spacing_nm: float, others_nm: Sequence[float]) -> 
     return (spacing_nm, *others_nm) if "uncertainty" in device else (spacing_nm,)
 
 
-def of_job(config: dict, least: float = 0.0) -> int:
-    """Memory to reserve for a job of a configuration [MB].
-
-    The job of a stage may need more than the field that it draws, ``least``; so may those that hold many samples, or
-    large scans.
-    """
-    return round(max(USUAL, least, _of_largest_field(config)))
-
-
-def of_attempt(megabytes: int, attempt: int) -> int:
-    """Memory to reserve for an attempt of a job [MB]: twice as much after each failure.
-
-    Examples
-    --------
-    >>> [of_attempt(800, attempt) for attempt in (1, 2, 3)]
-    [800, 1600, 3200]
-    """
-    return megabytes * 2 ** (attempt - 1)
-
-
 def of_tips(slopes: int) -> float:
     """Memory of a job that holds the contacts of tips, with this number of slopes of all of them together [MB].
 
@@ -69,19 +48,3 @@ def of_tips(slopes: int) -> float:
     1232
     """
     return USUAL + from_si(_PER_SLOPE * slopes, "MB")
-
-
-def _of_largest_field(config):
-    """Memory of a job that draws the largest of all fields [MB]."""
-    sampling, patch = config["sampling"], config["identification"]["patch_um"]
-    spacing, others, margin = sampling["spacing_nm"], config["studies"]["variants"]["spacing_nm"], sampling["margin_um"]
-    drawn = [((FIELD_UM, FIELD_UM), spacing), ((patch, patch), spacing)]
-    strip = sampling["strip_length_um"] + margin, config["beam"]["width_um"] + margin
-    drawn += [(strip, at) for at in (spacing, *others)]
-    devices = DevicePlan(config)
-    tips = [devices.tips(name) for name in devices.with_tips]
-    drawn += [((tip.length / NM_PER_UM + margin, tip.width / NM_PER_UM + margin), spacing) for tip in tips]
-    for device in devices.sections.values():
-        length, width = patch_of(device, sampling)
-        drawn += [((length + margin, width + margin), at) for at in spacings_of(device, spacing, others)]
-    return max(of_field(*side, at) for side, at in drawn)

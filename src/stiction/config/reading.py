@@ -12,7 +12,7 @@ from pathlib import Path
 import yaml
 
 from stiction.config.messages import ConfigError, duplicates, shown
-from stiction.regular import require_regular
+from stiction.regular_files import require_regular
 
 #: Numbers that YAML 1.1 reads in base 60 and in base 8.
 _BASE_60 = re.compile(r"[-+]?\d[\d_]*(:[0-5]?\d)+(\.[\d_]*)?")

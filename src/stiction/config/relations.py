@@ -17,16 +17,16 @@ import yaml
 
 from stiction.config import memory
 from stiction.config.cases import DRY, IN_HUMID_AIR, NAMEABLE, TOO_LITTLE, decimals
-from stiction.config.conditions import Keys, Relations
+from stiction.config.keys import Keys, Relations
+from stiction.config.materials import hamaker_constants
 from stiction.config.messages import did_you_mean, duplicates, shown
-from stiction.config.stated_materials import hamaker_constants
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, in_si, to_si
 from stiction.contact.meniscus import dry_air, is_wetted, meniscus_height
 from stiction.devices import limits
 from stiction.devices.materials import COATING, COATING_ATTRACTION
 from stiction.errors import NotConverged
 from stiction.models import SIDES
-from stiction.numbers import is_at_most, is_multiple
+from stiction.rounding import is_at_most, is_multiple
 from stiction.surface.feasible import nearest_feasible
 from stiction.surface.identify import SummitTarget, estimated_spectrum
 from stiction.surface.spectrum import CutoffSelfAffine, correlation_length

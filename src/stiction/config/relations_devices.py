@@ -9,11 +9,10 @@ from functools import partial
 import numpy as np
 
 from stiction.config import memory
-from stiction.config.arrays import DATA, shared_uncertainty
 from stiction.config.cases import in_air
-from stiction.config.conditions import Relations
-from stiction.config.device_plan import DevicePlan
+from stiction.config.keys import Relations
 from stiction.config.kinds import COMMON, KEYS, KINDS, ROUGHNESSES, kind_of
+from stiction.config.materials import hamaker_constant
 from stiction.config.messages import duplicates
 from stiction.config.relations import (
     Meeting,
@@ -36,10 +35,9 @@ from stiction.config.relations import (
     without_attraction,
     without_density,
 )
-from stiction.config.stated_materials import hamaker_constant
-from stiction.config.units import NM_PER_UM
+from stiction.config.test_beams import DATA, shared_uncertainty
 from stiction.devices.materials import COATING_ATTRACTION, OF_CONTACT
-from stiction.numbers import is_at_most
+from stiction.rounding import is_at_most
 from stiction.surface.feasible import largest_kurtosis
 
 #: Least standard deviation of crack lengths, in parts of their mean. ASSUME: beams differ by more than 1 nm in 10 µm.
@@ -97,25 +95,6 @@ def asperities_of_devices_are_summits(config):
         if config["contact.asperity"] != "summit":
             message = "must be summit, or the devices left out: their contact has summits"
             yield "contact.asperity", message, f"devices.{name}.pair"
-
-
-@relation
-def tips_fit_into_memory(config):
-    """The fields of the strips that hold the tips of a cantilever fit into the memory of a job."""
-    sections = ("devices", "pairs", "surfaces", "materials", "solid", "water", "sampling", "contact")
-    devices = DevicePlan({section: config[section] for section in sections})
-    margin, spacing, strip = (config["sampling"][key] for key in ("margin_um", "spacing_nm", "strip_length_um"))
-    for name, _ in config.entries("devices", "gap_um"):
-        if not devices.kind(name).has_tip:
-            continue
-        try:
-            length, width = (side / NM_PER_UM for side in devices.tips(name)[1:])
-        except (KeyError, ValueError, ArithmeticError):
-            continue  # other relations report what is missing or out of range
-        refusal = field_too_large(length + margin, width + margin, spacing)
-        if refusal and length > strip:  # otherwise as for the strips along the beam, of which another relation reports
-            message = f"{refusal}; the wedge at the tip of a beam is the longer, the smaller the gap"
-            yield f"devices.{name}.gap_um", message, *_scanned(config, name)
 
 
 @relation

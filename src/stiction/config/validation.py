@@ -3,9 +3,9 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from stiction.config import arrays, measured, relations, relations_devices
+from stiction.config import relations, relations_devices, scans, test_beams
 from stiction.config.cases import in_numbers, in_words
-from stiction.config.conditions import Keys, Relations
+from stiction.config.keys import Keys, Relations
 from stiction.config.messages import ConfigError, schema_problems
 from stiction.config.relations import schema
 
@@ -30,7 +30,7 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     Returns
     -------
     dict
-        Preliminary numbers of the measured surfaces by name, see `stiction.config.measured.preliminary_estimates`.
+        Preliminary numbers of the measured surfaces by name, see `stiction.config.scans.preliminary_estimates`.
 
     Raises
     ------
@@ -38,19 +38,19 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
         If the configuration is invalid; one line per problem: full key, value, allowed values.
     """
     stated = config
-    config = in_numbers(arrays.without_files(config))
+    config = in_numbers(test_beams.without_files(config))
     faults = schema_problems(config, schema())
     wrong = [fault.path for fault in faults]
     sections = _OPTIONAL | config if isinstance(config, dict) else config
     broken = _broken(sections, wrong)
     of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
-    estimates, refused = measured.preliminary_estimates(config, wrong + of_surfaces, kept)
+    estimates, refused = scans.preliminary_estimates(config, wrong + of_surfaces, kept)
     problems = faults + broken + refused
     if estimates:
         files = {name: config["surfaces"][name]["scans"]["files"] for name in estimates}
-        problems += _broken(measured.with_preliminary_estimates(sections, estimates), wrong, files)
+        problems += _broken(scans.with_preliminary_estimates(sections, estimates), wrong, files)
     if problems:
-        raise ConfigError(*dict.fromkeys(arrays.in_files(str(problem), stated) for problem in problems))
+        raise ConfigError(*dict.fromkeys(test_beams.in_files(str(problem), stated) for problem in problems))
     return estimates
 
 
@@ -61,7 +61,7 @@ def _broken(config, faults, files=None):
         return broken  # sections that are wrong on their own
     single = [
         _KeysOfArrays(config | {"devices": beams}, faults, files or {}, config["devices"])
-        for beams in arrays.at_single_humidities(config)
+        for beams in test_beams.at_single_humidities(config)
     ]
     return broken + [problem for one in relations_devices.relation for problem in _of_arrays(one, single)]
 
@@ -89,8 +89,8 @@ class _KeysOfArrays(Keys):
         array = self.config["test_beams"][name]
         if below[0] == "humidities":
             humidity = self.config["devices"][name]["humidities"][0]
-            path = "test_beams", name, *arrays.first_datum(array, humidity), "humidity"
+            path = "test_beams", name, *test_beams.first_datum(array, humidity), "humidity"
             return path, in_words(humidity, path)
         if below[0] == "uncertainty" and below[-1] not in array.get("uncertainty", {}):
-            return ("devices", next(iter(arrays.users({"devices": self.devices}, name))), *below), value
+            return ("devices", next(iter(test_beams.users({"devices": self.devices}, name))), *below), value
         return ("test_beams", name, *below), value

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stiction.numbers import is_at_most
+from stiction.rounding import is_at_most
 
 
 def interpolated(ratios: np.ndarray, humidities: np.ndarray, at: float | np.ndarray) -> float | np.ndarray:

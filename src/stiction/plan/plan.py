@@ -9,14 +9,14 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-from stiction.config.arrays import as_cantilevers
 from stiction.config.cases import IN_HUMID_AIR, Case, PairInAir, case_id
-from stiction.config.device_plan import DevicePlan
-from stiction.config.measured import is_measured, preliminary_estimates, quantities
+from stiction.config.scans import is_measured, preliminary_estimates, quantities
+from stiction.config.test_beams import as_cantilevers
 from stiction.devices.materials import ELASTIC
 from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SURFACE_MODELS
-from stiction.plan.air import Air
-from stiction.plan.pair_materials import PairMaterials
+from stiction.plan.devices import DevicePlan
+from stiction.plan.environment import Air
+from stiction.plan.materials import PairMaterials
 from stiction.plan.paper import SUMMITS, PaperCase
 from stiction.plan.scans import Scans
 from stiction.plan.stage import chosen
@@ -76,7 +76,7 @@ class Plan:
         return self.config["run"]["pairs"]
 
     def sides(self, pair: str) -> list[str]:
-        """As `stiction.plan.pair_materials.PairMaterials.sides`."""
+        """As `stiction.plan.materials.PairMaterials.sides`."""
         return self.materials.sides(pair)
 
     def contact(self, case: Case) -> PairInAir:

@@ -28,7 +28,7 @@ class NotPlanned(ValueError):
 class Planner:
     """Rules and jobs of one configuration: complete, valid and in normal form.
 
-    Preliminary numbers of measured surfaces are those of `stiction.config.measured`. Fingerprints and jobs are kept
+    Preliminary numbers of measured surfaces are those of `stiction.config.scans`. Fingerprints and jobs are kept
     between plans, each by a `stiction.run.disk_cache.DiskCache`.
     """
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from stiction.config.measured import digest, evaluation, is_measured, source
-from stiction.plan.pair_materials import PairMaterials
+from stiction.config.scans import digest, evaluation, is_measured, source
+from stiction.plan.materials import PairMaterials
 
 
 @dataclass(frozen=True)

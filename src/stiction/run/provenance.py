@@ -5,8 +5,10 @@ import json
 import os
 import platform
 import subprocess
+from collections.abc import Iterator, Mapping
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from stiction.run.atomic import save_text
 
@@ -117,3 +119,35 @@ def cpu_name() -> str:
         return platform.processor()
     names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
     return next(names, platform.processor())
+
+
+# In words
+
+
+def started(run: Mapping[str, Any]) -> str:
+    """Date and time at which a run started.
+
+    Examples
+    --------
+    >>> started({"started": "2026-01-31T23:05:59+00:00"})
+    '2026-01-31 23:05 UTC'
+    """
+    return f"{datetime.datetime.fromisoformat(run['started']):%Y-%m-%d %H:%M %Z}"
+
+
+def code_of(run: Mapping[str, Any]) -> Iterator[str]:
+    """Version and commit of the code of a run, and its changed files, in words."""
+    package, git = " ".join(filter(None, ["stiction", run["versions"].get("stiction")])), run["git"]
+    if git is None:
+        yield f"{package}, installed"
+        return
+    yield f"{package}, commit {git['commit']}"
+    if git["changed"]:
+        yield f"Files that are changed in its folder: {', '.join(git['changed'])}"
+
+
+def last_run(record: Path) -> list[str]:
+    """Say when and with which code the last run of a record makes a result."""
+    run = recorded(record)[-1]
+    more = "Machine, libraries and configuration of this run are in results/provenance.json."
+    return [f"Made by the run of {started(run)}.", *(f"{sentence}." for sentence in code_of(run)), more]

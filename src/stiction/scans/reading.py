@@ -17,7 +17,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from stiction.errors import ScanError
-from stiction.regular import require_regular
+from stiction.regular_files import require_regular
 from stiction.scans.scan import Scan
 from stiction.scans.text_lines import COORDINATES, misread
 

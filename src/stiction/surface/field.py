@@ -7,7 +7,7 @@ import numpy as np
 from scipy import fft
 
 from stiction.kernels import kernel
-from stiction.numbers import is_at_most
+from stiction.rounding import is_at_most
 from stiction.surface.normals import standard_normal
 from stiction.surface.spectrum import Spectrum, radial_spectrum, require_resolved
 from stiction.surface.translation import LARGEST_SCORE, TranslationMap

@@ -16,7 +16,7 @@ import numpy as np
 from scipy import fft
 from scipy.special import j0
 
-from stiction.numbers import is_at_most
+from stiction.rounding import is_at_most
 
 #: ASSUME: largest density of a surface [m⁴], which only numbers in nm⁴ exceed. The fourth root is a millimetre.
 _LARGEST_DENSITY = 1e-12

@@ -18,7 +18,7 @@ from stiction.stages.contact import contact, corrections, curves, full_contact
 from stiction.stages.contact import model_error as stage_model_error
 from stiction.stages.devices import model_error as device_model_error
 from stiction.stages.devices import stoppers
-from stiction.stages.devices.releases import EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam
+from stiction.stages.devices.opening import EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam
 from stiction.stages.laws import fit, forces
 
 HUMIDITIES = (0.44, 0.67, 0.92)

@@ -13,7 +13,7 @@ from written_scans import etched, scans_of
 
 from stiction.analysis.shifts import ORDERS
 from stiction.config.files import load
-from stiction.config.measured import quantities as measured_quantities
+from stiction.config.scans import quantities as measured_quantities
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.plan.plan import Plan
 from stiction.scans.histogram import EDGES, histogram

@@ -13,7 +13,7 @@ from stiction.contact import forcelaw
 from stiction.contact.environment import Water
 from stiction.stages.contact import curves
 from stiction.stages.devices import cracks, safe_lengths
-from stiction.stages.devices.releases import DesignedBeam
+from stiction.stages.devices.opening import DesignedBeam
 from stiction.streams import stream
 
 UM = 1e-6

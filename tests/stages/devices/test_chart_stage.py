@@ -18,7 +18,7 @@ from stiction.contact.meniscus import meniscus_height
 from stiction.devices import arcs
 from stiction.devices.chart import ALLOWED
 from stiction.stages.contact import curves
-from stiction.stages.devices import chart, releases, sticking
+from stiction.stages.devices import chart, opening, sticking
 
 THICKNESSES, GAPS = (2e-6, 2.6e-6, 3e-6, 4e-6), (10e-6, 20e-6, 30e-6, 40e-6)
 #: Numbers of thicknesses and of gaps.
@@ -124,23 +124,23 @@ def computed(device, thicknesses, gaps, tips=None, shares=(1e-2,)):
 
 def alone(device, number, tips=None):
     """Sticking lengths of a device by shape, as in the stages cracks and safe_lengths."""
-    model = releases.fitted(VECTORS, 1.2 * VECTORS[:, 1].max(), Truncation(3, 0.001))
-    address = releases.addresses(settings())
-    laws = draw_laws(model, releases.LAWS, address("mesh"))
+    model = opening.fitted(VECTORS, 1.2 * VECTORS[:, 1].max(), Truncation(3, 0.001))
+    address = opening.addresses(settings())
+    laws = draw_laws(model, opening.LAWS, address("mesh"))
     ground = device.opening.resolved(device, laws)
     held = None if tips is None else arcs.arc_length(tips, device.beam)
-    lengths = releases.arrests(device, ground, partial(draw_laws, model), number, address)
+    lengths = opening.arrests(device, ground, partial(draw_laws, model), number, address)
     return sticking.sticking_lengths(lengths, foundation_length(ground[0], laws), device, held)
 
 
 @pytest.mark.slow
 def test_a_chart_has_the_safe_lengths_of_its_device_and_longer_ones_for_thicker_beams():
     found, wanted = computed(R1, (1.6 * UM, 2 * UM), (2 * UM,))
-    (expected,) = sticking.safe_lengths(alone(R1, 200)[releases.MIDDLE], wanted)
+    (expected,) = sticking.safe_lengths(alone(R1, 200)[opening.MIDDLE], wanted)
     thin, thick = found.safe_length.values[:, 0, 0, 0]
     assert thick == expected.length
     assert thin < thick
-    assert list(found["shape"]) == [releases.MIDDLE]
+    assert list(found["shape"]) == [opening.MIDDLE]
     assert found.by_elements.values.tolist() == [[1], [1]]
     assert float(found.power_law_error) == 0
 
@@ -157,9 +157,9 @@ def test_limits_of_saturated_air_are_those_of_flooded_flats_by_shape():
     tips = np.full(200, 2e-3)
     found, _ = computed(replace(C1, gap=10 * UM), (2 * UM,), (10 * UM, 20 * UM), tips)
     beam = replace(C1.beam, thickness=2 * UM)
-    flat = apparent_adhesion_energy(float(found.flooded_length.sel(gap=20 * UM, shape=releases.S_SHAPE)[0]), beam)
+    flat = apparent_adhesion_energy(float(found.flooded_length.sel(gap=20 * UM, shape=opening.S_SHAPE)[0]), beam)
     assert_allclose(flat, 2 * WATER_SURFACE_ENERGY, rtol=1e-12)
-    tip, whole = (found.flooded_length.sel(shape=shape) for shape in (releases.EITHER, releases.S_SHAPE))
+    tip, whole = (found.flooded_length.sel(shape=shape) for shape in (opening.EITHER, opening.S_SHAPE))
     assert_allclose(tip / whole, np.sqrt(0.5), rtol=1e-12)  # the peel number
     bridge, _ = computed(R1, (2 * UM,), (2 * UM,))
     assert_allclose(bridge.flooded_length[0, 0], sticking.flooded_lengths(R1, WATER, 0.67), rtol=1e-12)

@@ -13,7 +13,7 @@ from stiction.beam.release import EndState
 from stiction.chaos.model import draw_laws, fit
 from stiction.contact import forcelaw
 from stiction.devices import bridges
-from stiction.stages.devices import cracks, releases
+from stiction.stages.devices import cracks, opening
 from stiction.streams import stream
 
 
@@ -25,8 +25,8 @@ def found():
 def test_cracks_are_those_of_long_beams_on_laws_of_the_chaos_model(found):
     model = fit(VECTORS, 1.2 * VECTORS[:, 1].max(), 3, 0.001)
     address = partial(stream, 2021, "devices", "b")
-    laws = draw_laws(model, releases.LAWS, address("mesh"))
-    beam, points = releases.long_beam(C1, laws)
+    laws = draw_laws(model, opening.LAWS, address("mesh"))
+    beam, points = opening.long_beam(C1, laws)
     released = columns(list(simulate(Experiment(beam, points, partial(draw_laws, model)), range(12), address)))
     assert np.all(released["state"] == EndState.S_SHAPE)
     assert_array_equal(found.crack_length, released["crack_length"])
@@ -42,7 +42,7 @@ def test_each_group_of_the_samples_is_fitted_alone_and_the_random_numbers_are_th
         models.append(fit(VECTORS, limit, order, tolerance))
         return models[-1]
 
-    monkeypatch.setattr(releases, "fit", recorded)
+    monkeypatch.setattr(opening, "fit", recorded)
     dataset = computed(settings(beams=3), VECTORS, groups=4)
     whole, *parts = fitted
     assert_array_equal(whole, VECTORS)
@@ -62,7 +62,7 @@ def test_bridges_are_those_that_their_middle_holds_on_laws_of_the_chaos_model():
     found = computed(settings(R1, beams=6), VECTORS)
     model = fit(VECTORS, 1.2 * VECTORS[:, 1].max(), 3, 0.001)
     address = partial(stream, 2021, "devices", "b")
-    zone, strips = bridges.middle_zone(R1.beam, R1.strip, draw_laws(model, releases.LAWS, address("mesh")))
+    zone, strips = bridges.middle_zone(R1.beam, R1.strip, draw_laws(model, opening.LAWS, address("mesh")))
     held = [bridges.held_length(zone, draw_laws(model, strips, address(k))) for k in range(6)]
     assert_array_equal(found.held_length, held)
     assert_array_equal(cracks.lengths(found)[0], held)

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from stiction.contact.environment import Water
 from stiction.stages.devices import uncertain_inputs as inputs
-from stiction.stages.devices.releases import DesignedBeam
+from stiction.stages.devices.opening import DesignedBeam
 from stiction.stages.devices.uncertain_inputs import Known, Settings, State, Uncertainty
 
 WATER = Water(300.0)

@@ -13,7 +13,7 @@ from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.stages.contact import curves
 from stiction.stages.devices import device_warnings
-from stiction.stages.devices.releases import ARC, EITHER, FORCE, S_SHAPE
+from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE
 
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 6, "humidities": [0.44, 0.8]}
 STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [1.5, 6], "restoring_force_uN": 20, "humidities": [0.44, 0.8]}

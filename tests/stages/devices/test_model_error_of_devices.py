@@ -14,7 +14,7 @@ from stiction.report.devices import pages
 from stiction.report.devices import tables as tables_devices
 from stiction.report.model_error import sentences as model_errors
 from stiction.stages.devices import model_error
-from stiction.stages.devices.releases import EITHER, FORCE, S_SHAPE
+from stiction.stages.devices.opening import EITHER, FORCE, S_SHAPE
 
 COLUMN = "model error [%]"
 

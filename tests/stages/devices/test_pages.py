@@ -18,7 +18,7 @@ from stiction.contact.environment import Water
 from stiction.report.devices import pages
 from stiction.report.devices.pages import Page, Section
 from stiction.stages.devices import device_warnings, safe_lengths, sticking
-from stiction.stages.devices.releases import EITHER, S_SHAPE, DesignedBeam
+from stiction.stages.devices.opening import EITHER, S_SHAPE, DesignedBeam
 from stiction.stages.roughness import curves
 from stiction.stages.roughness.curves import OfStopper, Response
 

@@ -9,7 +9,7 @@ from stiction.beam.energy import apparent_adhesion_energy
 from stiction.contact.environment import Water
 from stiction.devices import arcs, risk
 from stiction.stages.devices import cracks, safe_lengths
-from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE
+from stiction.stages.devices.opening import EITHER, MIDDLE, S_SHAPE
 from stiction.streams import stream
 
 

@@ -20,7 +20,7 @@ from stiction.run import storage
 from stiction.stages.contact import curves
 from stiction.stages.devices import budget
 from stiction.stages.devices.budget import BeamBudget, PatchBudget, Responses, TipBudget
-from stiction.stages.devices.releases import ARC, FORCE, MIDDLE, S_SHAPE, DesignedBeam
+from stiction.stages.devices.opening import ARC, FORCE, MIDDLE, S_SHAPE, DesignedBeam
 from stiction.stages.devices.uncertain_inputs import Input, State, Uncertainty
 from stiction.streams import stream
 

@@ -10,7 +10,7 @@ from stiction.devices import risk
 from stiction.devices.arcs import arc_length
 from stiction.devices.bridges import least_length
 from stiction.stages.devices import sticking
-from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE
+from stiction.stages.devices.opening import EITHER, MIDDLE, S_SHAPE
 from stiction.streams import stream
 
 

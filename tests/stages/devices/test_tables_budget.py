@@ -15,7 +15,7 @@ from stiction.report.style import DOUBLE, legend_below, panels, save, styled
 from stiction.stages.devices import budget as study_budget
 from stiction.stages.devices import stoppers as study_stoppers
 from stiction.stages.devices.budget import Responses
-from stiction.stages.devices.releases import DesignedBeam
+from stiction.stages.devices.opening import DesignedBeam
 from stiction.stages.devices.uncertain_inputs import Input, State, Uncertainty
 
 STATE = State(None, 0.5, Water(300.0))

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from plans import job_settings, surface_datasets
 
-from stiction.config.device_plan import DevicePlan
 from stiction.config.files import load
 from stiction.config.units import in_si
 from stiction.contact import tilted
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import flooded_energy
 from stiction.devices import arcs, risk
+from stiction.plan.devices import DevicePlan
 from stiction.plan.plan import Plan
 from stiction.stages.contact import contact, curves
-from stiction.stages.devices.releases import DesignedBeam
+from stiction.stages.devices.opening import DesignedBeam
 from stiction.streams import stream
 
 WATER = Water(300.0)

@@ -19,7 +19,7 @@ from stiction.plan.plan import Plan
 from stiction.plan.stage import At
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings
-from stiction.stages.devices.releases import EITHER, MIDDLE, S_SHAPE
+from stiction.stages.devices.opening import EITHER, MIDDLE, S_SHAPE
 
 PLAN = Plan(load())
 

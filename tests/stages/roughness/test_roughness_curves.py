@@ -15,7 +15,7 @@ from stiction.plan.plan import Plan
 from stiction.report.roughness import figures as figures_roughness
 from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import png
-from stiction.stages.devices.releases import S_SHAPE
+from stiction.stages.devices.opening import S_SHAPE
 from stiction.stages.roughness import contacts, curves
 from stiction.stages.roughness.contacts import POINTS, Varied
 from stiction.surface.feasible import largest_kurtosis

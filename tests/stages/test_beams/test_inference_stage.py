@@ -24,7 +24,7 @@ from stiction.run import storage
 from stiction.run.markdown import plain
 from stiction.stages.contact import curves
 from stiction.stages.devices import device_warnings
-from stiction.stages.devices.releases import ARC, EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam
+from stiction.stages.devices.opening import ARC, EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam
 from stiction.stages.test_beams import inference
 from stiction.stages.test_beams.inference import CrackLengths, Settings, Stuck
 from stiction.stages.test_beams.rerun import with_reruns

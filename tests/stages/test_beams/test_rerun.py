@@ -13,7 +13,7 @@ from stiction.plan.graph import Results
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.stages.devices import budget as stage_budget
 from stiction.stages.devices.budget import Responses
-from stiction.stages.devices.releases import S_SHAPE, DesignedBeam
+from stiction.stages.devices.opening import S_SHAPE, DesignedBeam
 from stiction.stages.devices.uncertain_inputs import OF_AIR, OF_BEAMS, State, Uncertainty, changed, of_numbers
 from stiction.stages.test_beams import rerun
 from stiction.stages.test_beams.inference import Result

@@ -17,7 +17,7 @@ from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, response_of
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.releases import FORCE
+from stiction.stages.devices.opening import FORCE
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
 
 #: Rows of a budget below those of its measurements.

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from stiction.config.cases import DRY, case_id
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of
-from stiction.config.stated_materials import material_of
+from stiction.config.materials import material_of
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
 from stiction.report.budget import figures as figures_budget
@@ -27,13 +27,13 @@ from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import STYLE, png
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
-from stiction.run import made
+from stiction.run import provenance
 from stiction.run.atomic import save_text
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budget_of, budgets_of
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.releases import EITHER
+from stiction.stages.devices.opening import EITHER
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
 
 _PAGE = """<!DOCTYPE html>
@@ -625,7 +625,7 @@ def _save(page, paths):
     Its record is no input of the page, so that a run with nothing else to do keeps page and date.
     """
     record = Path(paths["html"]).parents[1] / "provenance.json"
-    save_text(replace(page, made=made.by_the_last_run(record)).html, paths["html"])
+    save_text(replace(page, made=provenance.last_run(record)).html, paths["html"])
 
 
 STAGES = (

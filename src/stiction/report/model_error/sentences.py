@@ -10,7 +10,7 @@ from stiction.plan.names import by_name
 from stiction.report.format import airs, signed
 from stiction.report.model_error.column import change
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.releases import EITHER, FORCE
+from stiction.stages.devices.opening import EITHER, FORCE
 
 
 def of_device(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: float, shape: str) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from stiction.report.style import (
     styled,
 )
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.releases import FORCE
+from stiction.stages.devices.opening import FORCE
 from stiction.stages.roughness.curves import KURTOSIS, curves_of
 
 #: Lightest colour of a curve.

@@ -12,7 +12,7 @@ from stiction.plan.names import by_name
 from stiction.report.format import UM, airs, with_error
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.releases import FORCE
+from stiction.stages.devices.opening import FORCE
 from stiction.stages.roughness.curves import KURTOSIS, curves_of
 
 #: Standard errors beyond which two forces count as different.

@@ -10,7 +10,7 @@ from stiction.plan.names import by_name
 from stiction.report.format import TO_UM, airs, number, with_error
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.releases import ARC, FORCE, MIDDLE, S_SHAPE
+from stiction.stages.devices.opening import ARC, FORCE, MIDDLE, S_SHAPE
 from stiction.stages.test_beams.inference import OWN, shape_of
 
 #: p value below which data count as not explained; number of standard deviations beyond which an input counts as wrong;

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
-from stiction.config import arrays, memory
+from stiction.config import memory, test_beams
 from stiction.config.cases import Case, case_id
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
@@ -30,7 +30,7 @@ from stiction.stages.contact.contact import first
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.error_notes import explain_errors
 from stiction.stages.devices.contact_names import contacts_of_budget, contacts_of_tip_budget
-from stiction.stages.devices.releases import ARC, FORCE, DesignedBeam, addresses, arrests, section_of_beam
+from stiction.stages.devices.opening import ARC, FORCE, DesignedBeam, addresses, arrests, section_of_beam
 from stiction.stages.devices.uncertain_inputs import Input, Known, Settings, State, countable, covariances, uncertain
 
 
@@ -385,9 +385,9 @@ def budgets_of_arrays(plan: Any, device: str) -> dict[tuple, str]:
     budgets = {}
     for name in plan.config["devices"][device].get("test_beams", []):
         array = plan.config["test_beams"][name]
-        for humidity in arrays.humidities(array):
+        for humidity in test_beams.humidities(array):
             budgets[name, humidity] = f"{OF_ARRAYS}/{case_id(name, humidity)}"
-        for humidity in arrays.humidities(array, "stuck"):
+        for humidity in test_beams.humidities(array, "stuck"):
             budgets[name, humidity, "tip"] = f"{OF_ARRAYS}/{case_id(name, humidity)}_tip"
     return budgets
 
@@ -428,7 +428,7 @@ STAGES = (
         OF_ARRAYS + "/{case}_tip",
         inputs=_inputs_of_test_beams(contacts_of_tip_budget),
         settings=lambda plan, at: _with_choices(plan, "", settings_of_tips(plan.of_test_beams, at, HALF), []),
-        memory=lambda plan: _memory_of_tips(plan, plan.of_test_beams, arrays.counted(plan.config)),
+        memory=lambda plan: _memory_of_tips(plan, plan.of_test_beams, test_beams.counted(plan.config)),
         label="budget",
         message="Budget of the tips of test beams {case}.",
     ),

@@ -21,7 +21,7 @@ from stiction.stages.contact.contact import surface_rms
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.devices import sticking
 from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
-from stiction.stages.devices.releases import DesignedBeam, settings_of_beam
+from stiction.stages.devices.opening import DesignedBeam, settings_of_beam
 
 
 @dataclass(frozen=True)

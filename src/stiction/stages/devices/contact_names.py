@@ -3,8 +3,8 @@
 from typing import Any
 
 from stiction.config.cases import Case
-from stiction.config.device_plan import Patch
 from stiction.models import SHIFTS
+from stiction.plan.devices import Patch
 from stiction.stages.contact.changes.patches import GROUND, STRIPS, TIPS
 from stiction.stages.contact.changes.quantities import QUANTITY
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
@@ -21,7 +21,7 @@ def contact_of(plan: Any, case: Case) -> str:
 
 
 def patch_of(plan: Any, case: Case) -> Patch:
-    """Patch on which a device sticks, with the name of its pair in the air of a case, see `stiction.plan.air.Air`."""
+    """Patch on which a device sticks, named with its pair in the air of a case, see `stiction.plan.environment`."""
     return plan.devices.ground(case.device)._replace(pair=plan.contact_of_device(case))
 
 

@@ -23,7 +23,7 @@ from stiction.stages.contact.contact import surface_rms
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices.contact_names import contact_of, corrections_of
-from stiction.stages.devices.releases import (
+from stiction.stages.devices.opening import (
     BEAMS,
     LAWS,
     DesignedBeam,
@@ -75,7 +75,7 @@ def layout(
 ) -> xr.Dataset:
     """Dataset of the lengths at which the cracks of a device stop at a humidity.
 
-    Lengths with all samples of contact (n,), as from `stiction.stages.devices.releases.arrests`, and with each group of
+    Lengths with all samples of contact (n,), as from `stiction.stages.devices.opening.arrests`, and with each group of
     them alone [m]; the part of the device that finite elements resolve; a sample (k, 4) of the force laws [SI]; rms of
     the sum of both surfaces [m].
     """

@@ -25,7 +25,7 @@ from stiction.stages.beams.pair_warnings import (
     plastic_contact,
 )
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.releases import ARC, EITHER, DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import ARC, EITHER, DesignedBeam, section_of_beam
 from stiction.stages.surfaces import surface_flags
 
 

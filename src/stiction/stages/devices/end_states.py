@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from stiction.stages.devices.releases import ARC, EITHER, FORCE, MIDDLE, S_SHAPE
+from stiction.stages.devices.opening import ARC, EITHER, FORCE, MIDDLE, S_SHAPE
 
 
 @dataclass(frozen=True, kw_only=True)

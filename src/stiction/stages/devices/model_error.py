@@ -9,7 +9,7 @@ import xarray as xr
 from stiction.analysis.model_error import factors
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import full_contact
-from stiction.stages.devices.releases import EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam, section_of_beam
 
 
 @dataclass(frozen=True)

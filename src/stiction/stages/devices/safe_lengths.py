@@ -13,7 +13,7 @@ from stiction.plan.stage import Stage, select
 from stiction.stages.contact import curves
 from stiction.stages.devices import cracks as stage_cracks
 from stiction.stages.devices.contact_names import tips_of
-from stiction.stages.devices.releases import DesignedBeam, settings_of_beam
+from stiction.stages.devices.opening import DesignedBeam, settings_of_beam
 from stiction.stages.devices.sticking import bound, flooded_lengths, safe_lengths, sticking_lengths
 
 #: Points along the axis of the lengths.

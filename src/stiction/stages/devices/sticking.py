@@ -17,8 +17,8 @@ from stiction.devices.chart import flooded_length
 from stiction.devices.risk import SafeLength
 from stiction.stages.contact import curves
 from stiction.stages.contact.error_notes import on_patch
-from stiction.stages.devices import releases
-from stiction.stages.devices.releases import DesignedBeam
+from stiction.stages.devices import opening
+from stiction.stages.devices.opening import DesignedBeam
 from stiction.streams import stream
 
 
@@ -53,16 +53,16 @@ class Ground:
 def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settings: BeamSettings) -> Ground:
     """Force laws at a relative humidity, from the contact of the strips and of the tips; ``None`` for a bridge."""
     with on_patch(settings.device.strip, settings.device.width):
-        model = releases.fitted(*curves.vectors(contact, humidity, settings.water), settings.chaos)
-    laws = draw_laws(model, releases.LAWS, releases.addresses(settings)("mesh"))
+        model = opening.fitted(*curves.vectors(contact, humidity, settings.water), settings.chaos)
+    laws = draw_laws(model, opening.LAWS, opening.addresses(settings)("mesh"))
     return Ground(model, laws, None if tips is None else curves.tip_forces(tips, humidity, settings.water))
 
 
 def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> dict[str, np.ndarray]:
     """Sticking lengths by shape of a device, or of one of another thickness and gap, on its ground, (n,) each [m]."""
     resolved = device.opening.resolved(device, met.laws)
-    address, draw = releases.addresses(settings), partial(draw_laws, met.model)
-    cracks = releases.arrests(device, resolved, draw, settings.beams, address)
+    address, draw = opening.addresses(settings), partial(draw_laws, met.model)
+    cracks = opening.arrests(device, resolved, draw, settings.beams, address)
     held = None if met.tips is None else arcs.longest_free(*met.tips, device.beam)
     return sticking_lengths(cracks, foundation_length(device.beam, met.laws), device, held)
 

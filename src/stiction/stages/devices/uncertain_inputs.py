@@ -21,7 +21,7 @@ from stiction.devices.materials import OF_CONTACT, Step
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.scans import moments
 from stiction.stages.contact.changes.quantities import difference
-from stiction.stages.devices.releases import DesignedBeam
+from stiction.stages.devices.opening import DesignedBeam
 from stiction.stages.laws.scan_uncertainty import errors_of
 from stiction.stages.surfaces import heights, spectrum
 from stiction.surface.empirical import MeasuredDensity

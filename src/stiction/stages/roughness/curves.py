@@ -26,7 +26,7 @@ from stiction.stages.contact import curves
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.devices import sticking, stoppers
 from stiction.stages.devices.contact_names import corrections_of
-from stiction.stages.devices.releases import FORCE, DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import FORCE, DesignedBeam, section_of_beam
 from stiction.stages.roughness.contacts import POINTS, contacts_of, points_of, roughness_of, varied
 
 #: Value of a second quantity of a point of a map, and that of the surface as it is given.

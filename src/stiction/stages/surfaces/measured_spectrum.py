@@ -8,8 +8,8 @@ import xarray as xr
 
 from stiction.config.units import from_si
 from stiction.errors import NotConverged
-from stiction.numbers import is_at_most
 from stiction.plan.stage import Stage, select
+from stiction.rounding import is_at_most
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import parameters
 from stiction.stages.surfaces import spectrum as stage_spectrum

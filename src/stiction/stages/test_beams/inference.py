@@ -15,8 +15,8 @@ from scipy.special import ndtr, ndtri
 
 from stiction.beam.energy import CRACK_LENGTH_POWER, arrest_length
 from stiction.beam.foundation import foundation_length
-from stiction.config.arrays import humidities
 from stiction.config.cases import air, case_id
+from stiction.config.test_beams import humidities
 from stiction.contact.environment import Water
 from stiction.devices import arcs, inference, risk
 from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths
@@ -24,7 +24,7 @@ from stiction.plan.stage import Stage
 from stiction.stages.contact import curves
 from stiction.stages.devices.budget import budgets_of, budgets_of_arrays, response_of, shared_laws
 from stiction.stages.devices.contact_names import contact_of, tips_of
-from stiction.stages.devices.releases import ARC, EITHER, FORCE, LONG, S_SHAPE, DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import ARC, EITHER, FORCE, LONG, S_SHAPE, DesignedBeam, section_of_beam
 from stiction.stages.devices.uncertain_inputs import OF_BEAMS
 from stiction.streams import stream
 

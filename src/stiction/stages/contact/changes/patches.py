@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from stiction.config.device_plan import OF_TIPS, Patch
 from stiction.config.merging import merged
 from stiction.config.units import NM_PER_UM
+from stiction.plan.devices import OF_TIPS, Patch
 from stiction.plan.stage import Names, select
 from stiction.stages.contact import contact
 from stiction.stages.contact.pairs import Settings

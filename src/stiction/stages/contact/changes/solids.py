@@ -6,7 +6,7 @@ A body that is not of the material of the beam keeps its properties.
 from collections.abc import Callable
 from typing import Any
 
-from stiction.config.stated_materials import hamaker_constants
+from stiction.config.materials import hamaker_constants
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import SHIFTS, SIDES
 from stiction.stages.contact.changes.patches import Change

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from stiction.regular import require_regular
+from stiction.regular_files import require_regular
 
 
 def test_a_regular_file_is_accepted_and_a_missing_one_is_reported_as_such(tmp_path):

@@ -3,9 +3,9 @@
 import contextlib
 
 import pytest
-from test_follow import end, failure, heard, plan, record, start
+from test_run_state import end, failure, heard, plan, record, start
 
-from stiction.command.ending import FAULT, Status, last_lines, sentence, status, where_to_look
+from stiction.command.last_lines import FAULT, Status, last_lines, sentence, status, where_to_look
 from stiction.run.atomic import DataError
 from stiction.run.logs import logged
 

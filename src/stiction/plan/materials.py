@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from stiction.config.cases import PairInAir
 from stiction.config.files import paper
-from stiction.config.stated_materials import material_of
+from stiction.config.materials import material_of
 from stiction.devices.materials import COATING, ELASTIC, OF_COATINGS, PROPERTIES
 from stiction.models import SIDES
 from stiction.plan.stage import chosen

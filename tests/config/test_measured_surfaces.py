@@ -16,13 +16,14 @@ from plans import job_settings
 from published import SURFACES
 from written_scans import BAD, SIDE, bad_files, etched, scans_of, write
 
-from stiction.config import files, measured, memory
+from stiction.config import files, scans
 from stiction.config.cases import Case
-from stiction.config.device_plan import DevicePlan
 from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.config.validation import validate
 from stiction.errors import ScanError
+from stiction.plan import memory
+from stiction.plan.devices import DevicePlan
 from stiction.plan.plan import Plan
 from stiction.scans import estimate
 from stiction.scans.levelling import LEVELS, LINES, Levelling
@@ -80,21 +81,19 @@ def test_keys_that_are_not_given_have_their_defaults(folder):
         "level": "plane",
         "lines": "none",
     }
-    assert in_si(Source, measured.source(entry)) == Source()
-    assert in_si(estimate.Settings, measured.evaluation(entry, PAPER["scans"])) == estimate.Settings()
+    assert in_si(Source, scans.source(entry)) == Source()
+    assert in_si(estimate.Settings, scans.evaluation(entry, PAPER["scans"])) == estimate.Settings()
     given = configured(*both(folder), level="quadratic", lines="bow", fast_axis="y", heights="measured")
     again = files.normalised(given)["surfaces"]["Etched"]
     assert (again["scans"]["level"], again["heights"]) == ("quadratic", "measured")
-    assert in_si(estimate.Settings, measured.evaluation(again, PAPER["scans"])).levelling == Levelling(
-        "quadratic", "bow"
-    )
+    assert in_si(estimate.Settings, scans.evaluation(again, PAPER["scans"])).levelling == Levelling("quadratic", "bow")
 
 
 def test_values_have_units():
-    entry = measured.complete({"scans": {"files": ["a"], "size_um": [5, 10], "tip_radius_nm": 8, "shortest_nm": 60,
+    entry = scans.complete({"scans": {"files": ["a"], "size_um": [5, 10], "tip_radius_nm": 8, "shortest_nm": 60,
                                          "channel": "Height", "height_unit": "nm"}})  # fmt: skip
-    assert in_si(Source, measured.source(entry)) == Source("Height", "x", pytest.approx((5e-6, 10e-6)), "nm")
-    settings = in_si(estimate.Settings, measured.evaluation(entry, PAPER["scans"]))
+    assert in_si(Source, scans.source(entry)) == Source("Height", "x", pytest.approx((5e-6, 10e-6)), "nm")
+    settings = in_si(estimate.Settings, scans.evaluation(entry, PAPER["scans"]))
     assert (settings.tip_radius, settings.shortest) == pytest.approx((8e-9, 60e-9))
     assert (settings.tiles, settings.undefined_share) == (4, 0.01)
 
@@ -103,10 +102,10 @@ def test_files_are_relative_to_the_folder_of_the_configuration_file_that_names_t
     overlay = folder / "mine.yaml"
     overlay.write_text(json.dumps(etched("B2-0.gwy", "B2-1.gwy")))
     assert files.load(overlay)["surfaces"]["Etched"]["scans"]["files"] == [str(path) for path in both(folder)]
-    other = measured.resolve_scan_paths(etched("x.gwy"), etched("y.gwy"), tmp_path)
+    other = scans.resolve_scan_paths(etched("x.gwy"), etched("y.gwy"), tmp_path)
     assert other == etched("x.gwy")
     for broken in ({}, {"surfaces": 5}, {"surfaces": {"X": 1}}, {"surfaces": {"X": {"scans": {"files": 7}}}}):
-        assert measured.resolve_scan_paths(broken, broken, tmp_path) == broken
+        assert scans.resolve_scan_paths(broken, broken, tmp_path) == broken
 
 
 # Preliminary numbers and laws
@@ -114,19 +113,19 @@ def test_files_are_relative_to_the_folder_of_the_configuration_file_that_names_t
 
 def test_preliminary_numbers_are_those_of_the_scans(folder):
     found = validate(configured(*both(folder)))["Etched"]
-    scans = published("B2", SIDE, 2)
-    pooled = estimate.inspect(scans, estimate.Settings())
+    published_scans = published("B2", SIDE, 2)
+    pooled = estimate.inspect(published_scans, estimate.Settings())
     assert np.log(1e-9 * found["rms_nm"]) == pytest.approx(pooled.moments[0], rel=1e-9)
     assert found["measured"] == pytest.approx(list(pooled.moments[1:]), rel=1e-9)
     assert found["feasible"] == pytest.approx(found["measured"])
     form = measured_density(pooled.quantiles, pooled.areas)
     np.testing.assert_allclose(found["form"], [form.scores, form.heights], rtol=1e-9)
     assert abs(found["measured"][0] - truth("B2")[1]) < 0.3
-    entry = measured.with_preliminary_estimates(configured(*both(folder)), {"Etched": found})["surfaces"]["Etched"]
+    entry = scans.with_preliminary_estimates(configured(*both(folder)), {"Etched": found})["surfaces"]["Etched"]
     psd = entry["published_psd"]
     assert psd["cutoff_rad_per_um"] == pytest.approx(125, rel=0.02)  # where the spectrum of B2 ends
     assert (entry["skewness"], entry["kurtosis"]) == tuple(found["feasible"])
-    entry = measured.with_preliminary_estimates(configured(*both(folder), heights="measured"), {"Etched": found})[
+    entry = scans.with_preliminary_estimates(configured(*both(folder), heights="measured"), {"Etched": found})[
         "surfaces"
     ]["Etched"]
     assert {"skewness", "kurtosis"}.isdisjoint(entry)
@@ -134,7 +133,7 @@ def test_preliminary_numbers_are_those_of_the_scans(folder):
     end = pooled.reach.end
     assert psd["floor_nm4"] == pytest.approx(1e36 * float(pooled.fit.spectrum(end)(end)), rel=1e-6)
     continued = configured(*both(folder), beyond="continued")
-    grid = measured.with_preliminary_estimates(continued, {"Etched": found})["surfaces"]["Etched"]["published_psd"][
+    grid = scans.with_preliminary_estimates(continued, {"Etched": found})["surfaces"]["Etched"]["published_psd"][
         "cutoff_rad_per_um"
     ]
     assert grid == pytest.approx(np.pi / 0.01)
@@ -148,11 +147,11 @@ def test_measured_surfaces_keep_their_material_and_make_devices_uncertain():
     pairs = {"a": {"beam": "Etched"}, "b": {"beam": "B2", "substrate": "Etched"}}
     config = merged(configured("any.gwy"), {"devices": devices, "pairs": pairs})
     config["surfaces"]["Etched"]["material"] = "Gold"
-    seen = measured.with_preliminary_estimates(config, {"Etched": found})
+    seen = scans.with_preliminary_estimates(config, {"Etched": found})
     assert seen["surfaces"]["Etched"]["material"] == "Gold"
     stated = {name: device.get("uncertainty") for name, device in seen["devices"].items()}
     assert stated == {"a": {}, "b": {}, "c": None, "lost": None, "uncertain": {"humidity": 0.01}}
-    assert "devices" not in measured.with_preliminary_estimates(configured("any.gwy"), {"Etched": found})
+    assert "devices" not in scans.with_preliminary_estimates(configured("any.gwy"), {"Etched": found})
 
 
 def test_a_configuration_with_good_scans_is_valid_and_its_surfaces_are_shifted_like_others(folder):
@@ -496,8 +495,8 @@ def test_tips_on_scanned_surfaces_are_those_on_surfaces_of_their_preliminary_rms
     sizes = {"thickness_um": 2.6, "gap_um": 20, "width_um": 2, "humidities": [0.67]}
     beams = {"devices": {"C1": {"kind": "cantilever", "pair": "b"} | sizes}}
     config = files.load(configured(*both(folder)), beams)
-    found, _ = measured.preliminary_estimates(config)
-    numbers = measured.with_preliminary_estimates(config, found)
+    found, _ = scans.preliminary_estimates(config)
+    numbers = scans.with_preliminary_estimates(config, found)
     assert DevicePlan(config).tips("C1") == DevicePlan(numbers).tips("C1")
     assert memory.of_job(config) == memory.of_job(numbers)
     rough = merged(numbers, {"surfaces": {"Etched": {"rms_nm": 100}}})
@@ -522,33 +521,33 @@ def test_a_configuration_without_scans_imports_nothing_of_them(tmp_path):
 
 def test_numbers_that_cannot_be_kept_are_used_all_the_same(folder, tmp_path, monkeypatch):
     (tmp_path / "kept").touch()  # no folder
-    monkeypatch.setattr(measured, "_KNOWN", {})
+    monkeypatch.setattr(scans, "_KNOWN", {})
     assert validate(configured(both(folder)[0]), kept=tmp_path / "kept")
 
 
 def test_another_version_of_the_library_reads_the_files_again(folder, monkeypatch):
     config = configured(both(folder)[0])
     validate(config)
-    known = set(measured._KNOWN)
-    monkeypatch.setattr(measured, "version_of", lambda library: f"another {library}")
-    measured._code.cache_clear()
+    known = set(scans._KNOWN)
+    monkeypatch.setattr(scans, "version_of", lambda library: f"another {library}")
+    scans._code.cache_clear()
     validate(config)
-    measured._code.cache_clear()
-    assert len(set(measured._KNOWN) - known) == 1
+    scans._code.cache_clear()
+    assert len(set(scans._KNOWN) - known) == 1
 
 
-@pytest.mark.parametrize("changed", ["config/measured.py", "scans/estimate.py", "scans/reading.py"])
+@pytest.mark.parametrize("changed", ["config/scans.py", "scans/estimate.py", "scans/reading.py"])
 def test_another_evaluation_reads_the_files_again(folder, monkeypatch, changed):
     def fingerprint(module):
         return "another" if str(module).endswith(changed) else "the same"
 
     config, sizes = configured(both(folder)[0]), []
     for code in (lambda _: "the same", fingerprint):
-        monkeypatch.setattr(measured, "fingerprint", code)
-        measured._code.cache_clear()
+        monkeypatch.setattr(scans, "fingerprint", code)
+        scans._code.cache_clear()
         validate(config)
-        sizes.append(len(measured._KNOWN))
-    measured._code.cache_clear()
+        sizes.append(len(scans._KNOWN))
+    scans._code.cache_clear()
     assert sizes[1] == sizes[0] + 1
 
 

@@ -20,7 +20,7 @@ from stiction.config.messages import Problem
 from stiction.config.units import NM_PER_UM, from_si, in_si
 from stiction.errors import ScanError
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
-from stiction.regular import require_regular
+from stiction.regular_files import require_regular
 from stiction.run.atomic import DataError, save_text
 from stiction.run.fingerprint import fingerprint
 from stiction.run.provenance import version_of

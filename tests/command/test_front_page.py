@@ -9,7 +9,7 @@ import pytest
 import yaml
 from hostile import HOSTILE, MADE, Reading
 
-from stiction.command.front import answers, front_page, is_finished, provenance
+from stiction.command.front_page import answers, front_page, is_finished, provenance
 from stiction.config.files import paper
 from stiction.report.devices.pages import Page
 from stiction.run.provenance import record

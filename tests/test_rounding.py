@@ -1,6 +1,6 @@
 import pytest
 
-from stiction.numbers import is_multiple
+from stiction.rounding import is_multiple
 
 
 @pytest.mark.parametrize(("whole", "part"), [(0.3, 0.1), (1500e-6, 7.5e-6), (1.0, 1.0)])

@@ -9,11 +9,11 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.beam.cantilever import Beam
-from stiction.config import arrays
+from stiction.config import test_beams
 from stiction.config.cases import PairInAir, case_id
 from stiction.config.kinds import ROUGHNESSES, Kind, kind_of
-from stiction.config.measured import is_measured, preliminary_estimates, quantities
-from stiction.config.stated_materials import material_of
+from stiction.config.materials import material_of
+from stiction.config.scans import is_measured, preliminary_estimates, quantities
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
@@ -141,7 +141,7 @@ class DevicePlan:
             If no tip has these strips.
         """
         tips = tips._replace(pair=PairInAir(tips.pair).pair)
-        counted = DevicePlan(self.config | {"devices": arrays.counted(self.config)})
+        counted = DevicePlan(self.config | {"devices": test_beams.counted(self.config)})
         users = [(plan, name) for plan in (self, counted) for name in plan.with_tips if plan.tips(name) == tips]
         if not users:
             raise KeyError(f"no device has tips on strips {tips.name}")

@@ -3,9 +3,9 @@
 import io
 
 import pytest
-from test_follow import end, heard, plan, start
+from test_run_state import end, heard, plan, start
 
-from stiction.command.display import Display, costs, duration, line
+from stiction.command.progress_line import Display, costs, duration, line
 
 
 class Terminal(io.StringIO):
@@ -30,7 +30,7 @@ def test_the_line_before_the_first_job_says_what_takes_so_long():
 
 def test_a_terminal_shows_one_line_that_fits_and_is_drawn_again_while_nothing_is_reported(run, monkeypatch):
     monkeypatch.setenv("COLUMNS", "12")
-    monkeypatch.setattr("stiction.command.display._REDRAWN", 0.01)
+    monkeypatch.setattr("stiction.command.progress_line._REDRAWN", 0.01)
     display = Display(run, terminal := Terminal())
     while terminal.getvalue().count("3 of 4 jobs") < 3:
         pass

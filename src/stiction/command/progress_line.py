@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterator
 from typing import TextIO
 
-from stiction.command.follow import Run
+from stiction.command.run_state import Run
 from stiction.command.streams import put
 
 #: Time between two lines of a file, and between two drawings on a terminal [s].

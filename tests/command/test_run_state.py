@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stiction.command.follow import Run
+from stiction.command.run_state import Run
 from stiction.stages.contact.changes.patches import STRIPS
 from stiction.stages.contact.changes.table import AS_IT_IS, TABLE
 from stiction.stages.devices import budget

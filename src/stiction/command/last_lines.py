@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from enum import IntEnum
 from pathlib import Path
 
-from stiction.command.display import duration
-from stiction.command.follow import Job, Run, is_fault
+from stiction.command.progress_line import duration
+from stiction.command.run_state import Job, Run, is_fault
 
 
 class Status(IntEnum):

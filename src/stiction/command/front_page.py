@@ -18,9 +18,8 @@ import yaml
 from stiction.config.cases import air
 from stiction.config.files import paper
 from stiction.report.format import with_error
-from stiction.run import made
 from stiction.run.markdown import plain
-from stiction.run.provenance import recorded
+from stiction.run.provenance import code_of, recorded, started
 
 #: Where the command leaves the page for Snakemake, relative to the folder of the run.
 FRONT = Path(".snakemake", "front.rst")
@@ -133,8 +132,8 @@ def _warnings(results, config):
 def provenance(run: Mapping[str, Any], number: int) -> Iterator[str]:
     """Date, code, machine and scans of a run from its record, the last of a number of runs."""
     before = f", the last of {number} runs" if number > 1 else ""
-    yield f"Started {made.started(run)}{before}; all are in results/provenance.json."
-    yield from made.code(run)
+    yield f"Started {started(run)}{before}; all are in results/provenance.json."
+    yield from code_of(run)
     if run["git"] and run["git"]["untracked"]:
         yield f"Files that are untracked in its folder: {', '.join(run['git']['untracked'])}"
     yield f"{run['machine']['system']}, {run['machine']['cpu']}, {run['machine']['cores']} cores"

@@ -7,12 +7,12 @@ import pytest
 from configurations import PAPER, problems
 from plans import job_settings
 
-from stiction.config.device_plan import DevicePlan, patch
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
+from stiction.plan.devices import DevicePlan, patch
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.stages.contact import contact

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from stiction.config.cases import TOO_LITTLE, PairInAir
-from stiction.config.stated_materials import hamaker_constant, hamaker_constants
+from stiction.config.materials import hamaker_constant, hamaker_constants
 from stiction.config.units import to_si
 from stiction.contact.meniscus import is_wetted, require_humidity
 from stiction.contact.vanderwaals import combined
 from stiction.devices import limits
 from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS
 from stiction.models import SIDES
-from stiction.plan.pair_materials import PairMaterials
+from stiction.plan.materials import PairMaterials
 from stiction.plan.paper import is_pair
 from stiction.plan.stage import chosen
 
