@@ -9,6 +9,7 @@ from unittest.mock import patch
 import yaml
 
 from stiction.config.files import read
+from stiction.config.grid import completed
 from stiction.config.merging import merged
 from stiction.config.messages import ConfigError
 from stiction.config.relations import schema
@@ -16,7 +17,7 @@ from stiction.config.validation import validate
 from stiction.surface import maxent
 
 ROOT = Path(__file__).parents[1]
-PAPER = read(ROOT / "config.yaml")
+PAPER = completed(read(ROOT / "config.yaml"), {})
 SCHEMA = schema()
 SOLVED_ONCE = cache(maxent.solve)  # the tests validate thousands of configurations with the same densities
 

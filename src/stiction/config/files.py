@@ -1,6 +1,5 @@
 """Configuration files: reading, overlays on the configuration of the paper, and the normal form."""
 
-import copy
 import functools
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,6 +7,7 @@ from typing import Any
 
 from stiction.config import test_beams
 from stiction.config.cases import in_numbers
+from stiction.config.memory import GRID
 from stiction.config.merging import expanded, merged
 from stiction.config.reading import read
 from stiction.config.scans import complete, resolve_scan_paths
@@ -36,12 +36,12 @@ def load(*overlays: str | Path | Mapping) -> dict:
     {'pairs': ['b']}
     """
     # Imports the physics, which reading alone does not need.
+    from stiction.config.grid import completed
     from stiction.config.validation import validate
 
     changes = (_in_memory(one) if isinstance(one, Mapping) else located(one) for one in overlays)
-    config = expanded(functools.reduce(merged, changes, copy.deepcopy(paper())))
-    validate(config)
-    return normalised(config)
+    config = expanded(functools.reduce(merged, changes, read(PAPER)))
+    return normalised(completed(config, validate(config)))
 
 
 def _in_memory(overlay):
@@ -77,8 +77,9 @@ def located(path: str | Path) -> dict:
 
 @functools.cache
 def paper() -> dict:
-    """Configuration of the paper, read once; not to be changed."""
-    return read(PAPER)
+    """Complete configuration of the paper, read once; not to be changed."""
+    config = read(PAPER)
+    return config | {"sampling": GRID | config["sampling"]}
 
 
 def normalised(config: dict) -> dict:

@@ -19,7 +19,6 @@ from stiction.config.relations import (
     above_zero,
     cases_have_unique_names,
     correlated,
-    correlated_as_estimated,
     field_too_large,
     filled,
     meeting_of,
@@ -192,29 +191,6 @@ def uncertain_water_of_devices_is_a_liquid(config):
                 message = f"must leave water that is a liquid: the humidity, {driest:g}, {refusal}"
                 given = f"devices.{name}.humidities", *_air(config, name)
                 yield f"devices.{name}.uncertainty.{key}", message, *given
-
-
-@relation
-def strips_of_devices_exceed_the_correlation(config):
-    """Strips are independent samples; those of tips, which are never next to each other, may be shorter.
-
-    So may those of bridges: force laws of neighbouring strips of 0.25 and 0.5 µm correlate by less than 0.05 on pair b.
-    """
-    spacing = config["character.spacing_nm"]
-    for name, strip, kind, pair in config.entries("devices", "strip_um", "kind", "pair"):
-        names = surfaces_of(pair, config)
-        refusals = (_correlated(strip, side, spacing) for side in sides_of(*names, config["surfaces"]))
-        if not KINDS[kind].has_short_strips and (refusal := next(filter(None, refusals), None)):
-            given = *(f"devices.{name}.{key}" for key in ("kind", "pair")), "character.spacing_nm"
-            yield f"devices.{name}.strip_um", refusal, *given, *config.scanned(*names)
-
-
-def _correlated(strip, side, spacing):
-    """Refusal of strips within the correlation length of a surface."""
-    if side["psd"] == "published":
-        return correlated(strip, side["published_psd"])
-    summits = side["rms_nm"], side.get("mean_summit_radius_um"), side.get("summit_density_per_um2")
-    return correlated_as_estimated(strip, *summits, spacing)
 
 
 @relation

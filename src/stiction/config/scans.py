@@ -16,8 +16,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from stiction.config.memory import GRID
 from stiction.config.messages import Problem
-from stiction.config.units import NM_PER_UM, from_si, in_si
+from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
 from stiction.errors import ScanError
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.regular_files import require_regular
@@ -229,7 +230,19 @@ def _preliminary(files, reading, evaluating):
         "slope": inspection.fit.slope,
         "end_rad_per_um": from_si(float(inspection.reach.end), "rad_per_um"),
         "resolved": inspection.is_resolved,
+        "correlation_um": {psd: _correlation(inspection, psd) for psd in ("fitted", "tabulated")},
     }
+
+
+def _correlation(inspection, psd):
+    """Distance beyond which heights with the spectrum of a source are not correlated [µm]."""
+    from stiction.scans.whittle import spectrum
+    from stiction.surface.spectrum import uncorrelated_beyond
+
+    within, coarsest = inspection.reach, math.pi / to_si(GRID["spacing_nm"], "nm")
+    ends = {within.end, min(within.end, coarsest)}
+    drawn = (spectrum(psd, inspection.fit, inspection.rings, within, end) for end in ends)
+    return from_si(max(map(uncorrelated_beyond, drawn)), "um")
 
 
 def _scan(path, label, settings):

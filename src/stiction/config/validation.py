@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from stiction.config import relations, relations_devices, scans, test_beams
+from stiction.config import grid, relations, relations_devices, scans, test_beams
 from stiction.config.cases import in_numbers, in_words
 from stiction.config.keys import Keys, Relations
 from stiction.config.messages import ConfigError, schema_problems
@@ -41,14 +41,15 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     config = in_numbers(test_beams.without_files(config))
     faults = schema_problems(config, schema())
     wrong = [fault.path for fault in faults]
-    sections = _OPTIONAL | config if isinstance(config, dict) else config
+    sections = grid.completed(_OPTIONAL | config, {}) if isinstance(config, dict) else config
     broken = _broken(sections, wrong)
     of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
     estimates, refused = scans.preliminary_estimates(config, wrong + of_surfaces, kept)
     problems = faults + broken + refused
     if estimates:
         files = {name: config["surfaces"][name]["scans"]["files"] for name in estimates}
-        problems += _broken(scans.with_preliminary_estimates(sections, estimates), wrong, files)
+        on_grid = grid.completed(_OPTIONAL | config, estimates)
+        problems += _broken(scans.with_preliminary_estimates(on_grid, estimates), wrong, files)
     if problems:
         raise ConfigError(*dict.fromkeys(test_beams.in_files(str(problem), stated) for problem in problems))
     return estimates
