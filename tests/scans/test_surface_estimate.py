@@ -1,6 +1,7 @@
 import dataclasses
 import functools
 import re
+from itertools import product
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from published import IDENTITY, SPACING, SURFACES
 from scipy import stats
 
 from stiction.errors import ScanError
+from stiction.estimates import mean_with_error
 from stiction.scans import estimate as evaluation
 from stiction.scans.estimate import Settings, _model, _residual, estimate, inspect, nearest_density, widened
 from stiction.scans.flags import ENOUGH_WAVELENGTHS
@@ -223,14 +225,28 @@ def test_too_many_undefined_points_are_refused():
     assert inspect([scan], Settings(undefined_share=0.02)).names == ("a.spm",)
 
 
-def test_a_scan_without_plateau_is_refused():
+def test_a_scan_without_plateau_gives_a_smoother_surface_and_says_so():
     z = np.cumsum(np.cumsum(stream(1, "walk").standard_normal((200, 200)), axis=0), axis=1)  # a power law throughout
     walks = [Scan(1e-10 * part, (SIDE, SIDE), f"{name}.spm") for name, part in (("a", z), ("b", z.T))]
-    assert "files: a.spm, b.spm shows no plateau of the spectrum: " in refused(walks)
-    number, side = re.search(r": (\S+) wavelengths .* on a side of about (\S+) µm", refused(walks)).groups()
+    found = estimate(walks, SEED, Settings(Levelling("mean")), model_scans=4)
+    number, side = re.match(
+        r"the scans show no plateau of the spectrum: (\S+) wavelengths .* on a side of (\S+) µm", found.flags[0]
+    ).groups()
     assert float(side) == pytest.approx(4 / float(number) * 1e6 * SIDE, rel=0.05)
+    assert not about(of_b2().flags, "no plateau"), "control"
     tiny = Scan(B2[0].heights[:34, :34], (0.7e-6, 0.7e-6), "tiny.spm")
     assert "files: tiny.spm cannot give a spectrum: 8 rings are needed" in refused([tiny])
+
+
+def test_scans_without_plateau_give_smoother_surfaces_than_they_are_parts_of():
+    maps = [SURFACES["B2"].on(grid(SIDE)).draw(stream(1, "parts", k)).astype(float) for k in range(4)]
+    corners = list(product(range(0, 436, 100), repeat=2))
+    parts = [whole[i : i + 64, j : j + 64] for whole in maps for i, j in corners]
+    found = [inspect([Scan(z, (0.64e-6, 0.64e-6))], Settings()) for z in parts]
+    found = [one for one in found if one.wavelengths < 4]
+    assert len(found) >= 6
+    variance = mean_with_error(np.exp(2 * np.array([one.moments[0] for one in found])) / SURFACES["B2"].rms ** 2)
+    assert variance[0] + 3 * variance[1] < 1
 
 
 def changed(**values):
@@ -282,7 +298,7 @@ FLAGS = {
     "the spectrum is 2 times as large at 79° to the fast axis as in the weakest direction":
         lambda: changed(sectors=np.array([1.0, 1, 1, 2, 1, 1, 1, 1])),
     "skewness 0.1 with kurtosis 9 has no maximum-entropy density, nor have others within their errors; "
-    "only heights: measured can be used":
+    "the measured density is used instead":
         lambda: changed(moments=np.array([-20.0, 0.1, 9.0]), feasible=None),
     "skewness 0.1 with kurtosis 3.1 has no maximum-entropy density; skewness 0.15 with kurtosis 3.06, which is 1.5 "
     "standard errors away, is used":

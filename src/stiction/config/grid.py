@@ -1,9 +1,9 @@
 """Grid of the drawn surfaces where a configuration does not state it: as fine and as wide as the surfaces need.
 
 The distance between heights is the largest whole part of 10 nm whose Nyquist wave number is not below the end of any
-spectrum, or the smallest one whose fields fit into the memory of a job. The margin is 1 µm, or the smallest multiple of
-0.5 µm above the correlation length of every surface. Only surfaces of pairs that run, of devices and of test beams
-count. Those of the paper have the paper's grid.
+spectrum, or the smallest one whose fields take half of the memory of a job, which leaves room for longer tips. The
+margin is 1 µm, or the smallest multiple of 0.5 µm above the correlation length of every surface. Only surfaces of pairs
+that run, of devices and of test beams count. Those of the paper have the paper's grid.
 """
 
 import functools
@@ -23,13 +23,16 @@ _SPACING, _MARGIN, _STEP = memory.GRID["spacing_nm"], memory.GRID["margin_um"], 
 
 
 def completed(config: dict[str, Any], estimates: Mapping[str, dict]) -> dict[str, Any]:
-    """Configuration, which need not be valid, with all keys of section ``sampling``.
+    """Configuration, which need not be valid, with all keys of section ``sampling``, and heights that have a density.
 
     Variants on grids that are not finer than one that follows the surfaces are left out. The estimates are the
     preliminary numbers of measured surfaces.
     """
     sampling = config.get("sampling") if isinstance(config, dict) else None
-    if not isinstance(sampling, dict) or {"spacing_nm", "margin_um"} <= set(sampling):
+    if not isinstance(sampling, dict):
+        return config
+    config = scans.with_heights(config, estimates)
+    if {"spacing_nm", "margin_um"} <= set(sampling):
         return config
     waves = list(filter(None, (_waves(config, name, estimates) for name in dict.fromkeys(used(config)))))
     chosen = {"margin_um": max((_margin(length) for _, length in waves), default=_MARGIN)} | sampling
@@ -88,7 +91,7 @@ def _parts(config, end):
     nyquist = math.pi / _SPACING * NM_PER_UM
     parts = next(n for n in range(max(1, math.floor(end / nyquist)), 10**6) if is_at_most(end, n * nyquist))
     largest = max(length * width for length, width in _fields(config))
-    while parts > 1 and memory.of_field(largest, 1, _SPACING / parts) > memory.LARGEST:
+    while parts > 1 and memory.of_field(largest, 1, _SPACING / parts) > memory.LARGEST / 2:
         parts -= 1
     return parts
 

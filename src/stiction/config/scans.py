@@ -137,7 +137,6 @@ def preliminary_estimates(
         if name not in wrong and is_measured(entry):
             try:
                 estimates[name] = _evaluated(complete(entry), config["scans"], kept)
-                problems += _without_density(name, entry, estimates[name])
                 problems += _without_power_law(name, entry, estimates[name])
             except ScanError as refusal:
                 problems.append(_problem(name, complete(entry), refusal))
@@ -264,19 +263,23 @@ def _in_range(rms, file, reading):
     raise ScanError(file, key, f"{reason}: they are in another unit than is stated")
 
 
-def _without_density(name, entry, preliminary):
-    """Problem of a surface whose moments have no maximum-entropy density, if it is to have it."""
-    if complete(entry)["heights"] != "moments":
-        return []
+def with_heights(config: dict[str, Any], estimates: Mapping[str, dict]) -> dict[str, Any]:
+    """Configuration in which measured surfaces have their measured density where none has their moments.
+
+    ASSUME: it follows the scans, as does a measured spectrum that is not of the form of Eq. (7). A flag says so.
+    """
+    changed = {
+        name: config["surfaces"][name] | {"heights": "measured"}
+        for name, preliminary in estimates.items()
+        if complete(config["surfaces"][name])["heights"] == "moments" and _without_density(preliminary)
+    }
+    return config | {"surfaces": config["surfaces"] | changed} if changed else config
+
+
+def _without_density(preliminary):
+    """Whether no maximum-entropy density has the moments of scans, or they are those of two heights."""
     skewness, kurtosis = preliminary["measured"]
-    shown, files = f"the skewness {skewness:.3g} and kurtosis {kurtosis:.3g}", ", ".join(_labels(entry))
-    if not preliminary["feasible"]:
-        reason = f"no maximum-entropy density has moments near {shown} of {files}"
-    elif kurtosis < _OF_TWO_HEIGHTS * (1 + skewness**2):
-        reason = f"{shown} of {files} are those of two heights, which no maximum-entropy density describes"
-    else:
-        return []
-    return [Problem(("surfaces", name, "heights"), f"is 'moments', but {reason}, must be measured")]
+    return not preliminary["feasible"] or kurtosis < _OF_TWO_HEIGHTS * (1 + skewness**2)
 
 
 def _without_power_law(name, entry, preliminary):

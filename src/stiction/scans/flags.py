@@ -9,6 +9,7 @@ import numpy as np
 from scipy.special import chdtrc
 
 from stiction.scans import periodogram as spectra
+from stiction.scans.inspection import FEWEST_WAVELENGTHS
 from stiction.scans.levelling import LEVELS
 
 #: Wavelengths of the corner along a scan from which errors are reliable.
@@ -38,9 +39,22 @@ def infeasible(estimate: Any) -> str:
     return f"skewness {skewness:.3g} with kurtosis {kurtosis:.3g} has no maximum-entropy density"
 
 
+def _no_plateau(estimate):
+    inspection = estimate.inspection
+    number, side = inspection.wavelengths, 1e6 * min(inspection.largest.frame.size)
+    if number >= FEWEST_WAVELENGTHS:
+        return ""
+    return (
+        f"the scans show no plateau of the spectrum: {number:.2g} wavelengths of its corner fit into {side:.3g} µm, "
+        f"{FEWEST_WAVELENGTHS} are needed, as on a side of {FEWEST_WAVELENGTHS * side / number:.2g} µm or more. Longer "
+        "waves are left out, so that surfaces are too smooth and stick more, the safe side; skewness and kurtosis are "
+        "hardly known"
+    )
+
+
 def _few_wavelengths(estimate):
     number = estimate.inspection.wavelengths
-    if number < ENOUGH_WAVELENGTHS:
+    if FEWEST_WAVELENGTHS <= number < ENOUGH_WAVELENGTHS:
         return f"only {number:.2g} wavelengths of the corner fit into the scan; errors are reliable from 10 on"
     return ""
 
@@ -178,7 +192,7 @@ def _anisotropic(estimate):
 
 def _moments_have_no_density(estimate):
     if estimate.feasible is None:
-        return f"{infeasible(estimate)}, nor have others within their errors; only heights: measured can be used"
+        return f"{infeasible(estimate)}, nor have others within their errors; the measured density is used instead"
     if estimate.feasible.distance > 0:
         near = f"skewness {estimate.feasible.skewness:.3g} with kurtosis {estimate.feasible.kurtosis:.3g}"
         return (
@@ -237,6 +251,7 @@ def _no_summits(estimate):
 
 
 _FLAGS = (
+    _no_plateau,
     _few_wavelengths,
     _bowed,
     _holes,

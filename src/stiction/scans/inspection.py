@@ -26,7 +26,8 @@ from stiction.scans.scan import Frame, Scan
 from stiction.scans.whittle import NON_GAUSSIAN, Reach, WhittleFit, fit_to_the_end, reach, spectrum, tip_reach
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 
-#: Fewest wavelengths of the corner along a scan: for a plateau at all.
+#: Fewest wavelengths of the corner along a scan: for a plateau at all. ASSUME: the spectrum of smaller scans is flat up
+#: to the first waves that they show. Longer waves would only make the surface rougher.
 FEWEST_WAVELENGTHS = 4
 #: ASSUME: fewest waves along a side from which the smaller scans count for the spectrum. A ring is one wave wide, so
 #: that its mean of a power law of slope -n is too large by about n (n + 1) / 24 over the square of this number: 1 %.
@@ -161,8 +162,9 @@ class Inspection:
 
     @property
     def counted(self) -> tuple[Maps, ...]:
-        """Sizes that count for moments and quantiles, the largest first: those that show the plateau."""
-        return tuple(maps for maps in self.sizes if maps.wavelengths(self.fit) >= FEWEST_WAVELENGTHS)
+        """Sizes that count for moments and quantiles, the largest first: those that show the plateau, if any do."""
+        shown = tuple(maps for maps in self.sizes if maps.wavelengths(self.fit) >= FEWEST_WAVELENGTHS)
+        return shown or (self.largest,)
 
     @cached_property
     def weights(self) -> np.ndarray:
@@ -247,7 +249,7 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
     Raises
     ------
     ScanError
-        If too many points are undefined, or if the scans are too small to show the plateau of the spectrum.
+        If too many points are undefined, or if the scans are too small to give a spectrum.
     """
     names = ", ".join(scan.name for scan in scans)
     for scan in scans:
@@ -260,16 +262,7 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
         fitted, rings, within = _fitted(sizes)
     except ValueError as reason:
         raise ScanError(names, "files", f"cannot give a spectrum: {reason}") from None
-    inspection = Inspection(sizes, settings, rings, within, fitted)
-    if inspection.wavelengths < FEWEST_WAVELENGTHS:
-        side = min(inspection.largest.frame.size) * FEWEST_WAVELENGTHS / inspection.wavelengths
-        raise ScanError(
-            names,
-            "files",
-            f"shows no plateau of the spectrum: {inspection.wavelengths:.2g} wavelengths of its corner fit into the "
-            f"scan, {FEWEST_WAVELENGTHS} are needed, as on a side of about {1e6 * side:.2g} µm or more",
-        )
-    return inspection
+    return Inspection(sizes, settings, rings, within, fitted)
 
 
 def by_size(scans: Sequence[Scan]) -> list[dict[int, Scan]]:
