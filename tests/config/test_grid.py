@@ -34,7 +34,7 @@ def test_surfaces_of_the_paper_have_its_grid():
     assert completed(BASE, {})["studies"] == BASE["studies"]
 
 
-@pytest.mark.parametrize("cutoff", [100.0, 314.159, 314.2, 500.0, 1608.5, 3000.0])
+@pytest.mark.parametrize("cutoff", [100.0, 314.159, 314.2, 500.0, 1608.5, 2000.0])
 def test_the_grid_carries_every_spectrum_with_no_more_points_than_needed(cutoff):
     spacing = sampling({"run": {"pairs": ["b"]}}, b2(12.0, cutoff))["spacing_nm"]
     parts = 10 / spacing
