@@ -1,4 +1,4 @@
-"""All keys of the configuration, from its schema: the table of the docs, and the schema for editors."""
+"""All keys of the configuration, from its schema: the table of the docs."""
 
 import json
 from collections.abc import Iterator
@@ -16,8 +16,6 @@ EXAMPLES = [
     PAPER,
     *(read(ROOT / "examples" / f"{name}.yaml") for name in ("devices", "scans/mine", "test_beams", "roughness")),
 ]
-#: Keywords of JSON Schema that hold for a complete configuration and not for a file that changes single keys.
-_OF_COMPLETE = ("required", "if", "else", "then", "allOf", "minProperties")
 
 
 class Key(NamedTuple):
@@ -118,23 +116,3 @@ def _row(key, above):
 def _yaml(value):
     """A value in one line of YAML."""
     return f"`{json.dumps(value, ensure_ascii=False)}`" if not isinstance(value, str) else f"`{value}`"
-
-
-def for_editors() -> str:
-    """Schema of files that change single keys, as JSON for editors that complete and check YAML."""
-    return json.dumps(_reduced(schema()) | {"$schema": "http://json-schema.org/draft-07/schema#"}, indent=1) + "\n"
-
-
-def _reduced(entry):
-    """Part of the schema without what only a complete configuration must fulfil."""
-    if not isinstance(entry, dict):
-        return entry
-    kept = {name: value for name, value in entry.items() if name not in _OF_COMPLETE}
-    if "word" in kept:
-        return {"description": kept.pop("description"), "anyOf": [{"const": kept.pop("word")}, kept]}
-    for name in ("additionalProperties", "items"):
-        if name in kept:
-            kept[name] = _reduced(kept[name])
-    if "properties" in kept:
-        kept["properties"] = {name: _reduced(value) for name, value in kept["properties"].items()}
-    return kept

@@ -17,6 +17,7 @@ from stiction.devices.chart import flooded_energy
 from stiction.devices.limits import FILMS
 from stiction.plan.plan import Plan
 from stiction.report.checks import MESH_OFF_OF_PAPER, RESOLVED
+from stiction.report.devices.life import significant
 from stiction.report.format import MISSING, TO_MJ, TO_UM, number, with_error
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.surface import feasible
@@ -37,6 +38,7 @@ def numbers(tables):
         | slopes(tables["sensitivity"])
         | chaos(tables["resampling"])
     )
+    texts |= life(tables["life"])
     texts |= safe_lengths(tables["safe_lengths"]) | stoppers(tables["stoppers"]) | budget(tables["budget"])
     texts |= drawn_lengths(tables["safe_lengths"], tables["budget"])
     texts |= model_errors(tables["model_error"]) | attraction(tables["attraction"])
@@ -61,6 +63,16 @@ def measured_beams(frame):
 def said(frame):
     """``onB_build``: sentences of the pages of devices with test beams, by device and name."""
     return {f"{row.device}_{row.name}": str(row.text) for row in frame.itertuples(index=False)}
+
+
+def life(frame):
+    """``life_C1_voltage``: both bounds of an answer about a device in its unit; ``life_C1_length``: its length [µm]."""
+    texts = {}
+    for row in frame.itertuples(index=False):
+        bounds = dict.fromkeys(significant(bound) for bound in (row.at_least, row.at_most))
+        texts[f"life_{row.device}_{row.answer}"] = " to ".join(bounds)
+        texts[f"life_{row.device}_length"] = significant(row.length_um)
+    return texts
 
 
 def skewed(frame):

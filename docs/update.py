@@ -6,7 +6,7 @@
    examples/NAME.yaml --directory runs/NAME`` with the names roughness and test_beams in folders of ``runs`` beside it.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
 3. The pages of ``docs`` and ``config/README.md`` are generated from ``docs/templates``, with numbers and tables
-   inserted, and the schema for editors from that of the configuration.
+   inserted.
 
 Steps 2 and 3 depend on ``docs`` alone: ``tests/test_docs.py`` repeats them and compares.
 """
@@ -73,8 +73,8 @@ DRAWN_BEAMS = "drawn_beams"
 #: Numbers and table of ``make measured-beams``.
 MEASURED_BEAMS = "measured_beams"
 #: Tables and pictures of ``make devices``; pictures by their width [pixels].
-DEVICE_TABLES = ("safe_lengths", "stoppers", "budget")
-DEVICE_PICTURES = {"risk": 1000, "chart": 1200, "stoppers": 700, "budget_C1": 1000}
+DEVICE_TABLES = ("safe_lengths", "stoppers", "budget", "life")
+DEVICE_PICTURES = {"risk": 1000, "chart": 1200, "stoppers": 700, "budget_C1": 1000, "life": 1200}
 #: Table, and pictures by their width [pixels], of ``make devices CONFIG=examples/roughness.yaml``.
 ROUGHNESS = "roughness"
 ROUGHNESS_PICTURES = {"roughness_Bump": 700, "roughness_Lever": 1000, "roughness_map_Skewed": 700}
@@ -101,8 +101,6 @@ ATTRACTION, OF_ATTRACTION = "attraction", "results/tables/variants.csv"
 TAILS = "tails"
 #: Largest picture [bytes].
 LARGEST = 350_000
-#: Schema of configuration files for editors.
-EDITORS = ROOT / "src" / "stiction" / "config" / "schema.json"
 NOTE = "<!-- Written by docs/update.py from docs/templates/{name}: edit that file, then run make numbers. -->"
 
 
@@ -364,7 +362,7 @@ def pages():
     for template in sorted((DOCS / "templates").glob("*.md")):
         body = filled(template.read_text(encoding="utf-8"), numbers)
         texts[page_of(template)] = NOTE.format(name=template.name) + "\n\n" + body
-    return texts | {EDITORS: keys.for_editors()}
+    return texts
 
 
 def page_of(template):

@@ -9,10 +9,10 @@ from unittest.mock import patch
 import yaml
 
 from stiction.config.files import read
-from stiction.config.grid import completed
 from stiction.config.merging import merged
 from stiction.config.messages import ConfigError
 from stiction.config.relations import schema
+from stiction.config.surfaces.grid import completed
 from stiction.config.validation import validate
 from stiction.surface import maxent
 

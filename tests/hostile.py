@@ -8,7 +8,7 @@ MADE = "generate_lorem_ipsum"
 HOSTILE = f"{{% endraw %}}{TEMPLATE}{{{{7*7}}}}{{% raw %}}</p></script><script>alert(1)</script>$x$|&lt;[a](b)'\"\\"
 #: The same in the name of a file, of which Snakemake reads no braces and no slash can be a part.
 HOSTILE_FILE = "a|b<I onload=alert(1)>$x$&lt;[a](b)'.gwy"
-#: Elements and attributes of HTML that run code, apart from ours that open a result.
+#: Elements and attributes of HTML that run code.
 _SCRIPTS = {"script", "iframe", "object", "embed", "base", "meta"}
 
 

@@ -23,6 +23,7 @@ PYTHON = """#!/usr/bin/env bash
 while read -r status words; do
   if [[ "$0 $*;" == *"$words"* ]]; then
     [ "$status" = hang ] && exec sleep 20
+    [ "$status" = skip ] && echo "2 passed, 1 skipped in 0.10s" && exit
     exit "$status"
   fi
 done < ends
@@ -36,6 +37,9 @@ PARTS = {
     "fast tests on Python 3.14.0": "newest/bin/python -m pytest",
     "slow tests": "-m slow",
 }
+
+#: Programs without which a part is not run.
+NEEDED = {"tests with SLURM": "slurmctld", "tests in a browser": "chromedriver"}
 
 
 def executable(path, text):
@@ -57,6 +61,8 @@ def project(tmp_path):
         (tmp_path / environment / "ready").touch()
     executable(tmp_path / "bin" / "id", "#!/bin/sh\necho 1000\n")  # installs nothing
     executable(tmp_path / "bin" / "python3.14", PYTHON)
+    for program in NEEDED.values():
+        executable(tmp_path / "bin" / program, "#!/bin/sh\n")
     return tmp_path
 
 
@@ -93,6 +99,24 @@ def test_a_part_that_fails_fails_the_whole_after_all_others(project, part):
     assert status == 1
     assert printed.splitlines()[-1] == f"FAILED: {part}"
     assert len(asked) == len(PARTS) + (part == "slow tests"), "which have a second try"
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_a_part_whose_program_is_here_must_not_skip_a_test(project, part):
+    status, printed, _ = run(project, [".ci/run"], f"skip {PARTS[part]}")
+    assert status == (part in NEEDED)
+    assert (printed.splitlines()[-1] == f"FAILED: {part} (some were skipped)") == (part in NEEDED)
+
+
+@pytest.mark.parametrize("part", NEEDED)
+@pytest.mark.parametrize("ends", [[], ["1 -m slow"]])
+def test_a_part_that_cannot_run_here_is_named_last_with_the_reason(project, part, ends):
+    script = project / ".ci" / "run"
+    script.write_text(re.sub(rf"\b{NEEDED[part]} ", "absent ", script.read_text()))
+    status, printed, asked = run(project, [".ci/run"], *ends)
+    assert status == bool(ends)
+    assert printed.splitlines()[-1] == f"NOT RUN: {part}: absent is not here and cannot be installed"
+    assert not any(PARTS[part] in " ".join(call) for call in asked)
 
 
 def test_a_part_that_is_missing_fails_the_whole(project):

@@ -5,10 +5,14 @@ from numpy.testing import assert_allclose
 from scipy import constants as codata
 
 from stiction.constants import (
+    DENSITY,
+    FREE_FALL,
     GAS_CONSTANT,
     HAMAKER_CONSTANT,
     HARDNESS,
+    LIQUIDS,
     MOLECULAR_DISTANCE,
+    VACUUM_PERMITTIVITY,
     WATER_MOLAR_VOLUME,
     WATER_SURFACE_ENERGY,
 )
@@ -44,3 +48,12 @@ def test_molecules_of_silicon_touch_at_about_the_length_of_a_bond():
 def test_silicon_is_as_hard_as_it_is_indented():
     # Indentation of silicon transforms it at 11 to 13 GPa.
     assert 10e9 < HARDNESS < 14e9
+
+
+def test_liquids_and_silicon_have_the_constants_of_other_sources():
+    # IAPWS for water as above. Isopropanol at 298 K, 20.93 mN/m (CRC Handbook): a warmer liquid pulls less.
+    assert 0.0209 < LIQUIDS["isopropanol"] < 0.0225
+    assert LIQUIDS["water"] == WATER_SURFACE_ENERGY
+    # Eight atoms of 28.0855 u in a cell of 0.54310 nm.
+    assert_allclose(DENSITY, 8 * 28.0855e-3 / codata.Avogadro / 0.54310e-9**3, rtol=1e-3)
+    assert_allclose([VACUUM_PERMITTIVITY, FREE_FALL], [codata.epsilon_0, codata.g], rtol=1e-9)

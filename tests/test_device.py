@@ -155,3 +155,32 @@ def test_a_device_that_does_not_exist_is_refused_with_those_that_do():
 def test_what_a_device_does_not_have_is_refused_by_name(name, ask, message):
     with pytest.raises(ValueError, match=message):
         ask(stiction.Device(name, Results.of(CONFIG)))
+
+
+def test_stuck_devices_have_one_layout_and_the_numbers_of_their_stages(device):
+    beam = device.stuck(0.88)
+    lengths = device.safe_lengths(0.88).sel(shape="S-shape or arc")
+    np.testing.assert_array_equal(beam.stuck, lengths.stuck)
+    np.testing.assert_array_equal([beam.low, beam.high], lengths.stuck_band)
+    stopper = stiction.Device.of(CONFIG, "S1")
+    patches, forces = stopper.stuck(0.5), stopper.forces()
+    force = float(forces.restoring_force)
+    at = patches.sel(force=force, method="bfill")  # P(stuck) falls from one sampled force to the next
+    np.testing.assert_allclose(at.stuck, forces.stuck.sel(humidity=0.5, bound="estimate"), atol=1.01 / 40)
+    assert np.all(np.diff(patches.stuck) <= 0)
+    assert list(beam.data_vars) == list(patches.data_vars) == ["stuck", "low", "high"]
+    assert (beam.length.units, patches.force.units) == ("m", "N")
+    for found in (beam, patches):
+        assert np.all((found.low <= found.stuck) & (found.stuck <= found.high))
+
+
+def test_a_device_draws_the_figure_of_its_kind_and_is_described_in_one_line_and_in_a_table(device):
+    stopper = stiction.Device(name="S1", results=Results.of(CONFIG))
+    for one, words in ((device, "length of the device [µm]"), (stopper, "restoring force [µN]")):
+        assert words in {panel.get_xlabel() for panel in one.plot().axes}
+    assert repr(device) == (
+        "Device C1, beam clamped at one end: thickness 2.6 µm, gap 10 µm, width 20 µm, "
+        "surfaces B2 on Sub1, pair b, relative humidity 0.88"
+    )
+    assert "sides of the area in contact 3 x 3 µm" in repr(stopper)
+    assert "<td>gap</td><td>10 µm</td>" in device._repr_html_()

@@ -2,7 +2,6 @@
 
 import importlib
 import importlib.util
-import json
 import re
 import subprocess
 import sys
@@ -58,7 +57,6 @@ def written():
 WRITTEN = [
     DOCS / "results.json",
     *(update.page_of(path) for path in sorted((DOCS / "templates").glob("*.md"))),
-    update.EDITORS,
 ]
 
 
@@ -227,20 +225,6 @@ def test_the_page_of_keys_gives_meaning_allowed_values_and_an_allowed_example_fo
     for key in listed:
         assert key.meaning in page
         assert jsonschema.Draft202012Validator(key.entry).is_valid(key.example), key.path
-
-
-def test_editors_accept_every_file_that_changes_keys_and_notice_wrong_ones():
-    editor = jsonschema.Draft7Validator(json.loads(update.EDITORS.read_text(encoding="utf-8")))
-    study = ROOT / "src" / "stiction" / "command" / "study.yaml"
-    for path in (study, *(ROOT / "examples").rglob("*.yaml"), ROOT / "workflow" / "smoke.yaml", ROOT / "config.yaml"):
-        content = path.read_text(encoding="utf-8")
-        editor.validate(yaml.safe_load(content))
-        named = re.match(r"# yaml-language-server: \$schema=(\S+)", content)
-        assert named or path.parent == ROOT / "workflow" or path.name == "config.yaml", f"{path} names no schema"
-        if named and path != study:
-            assert (path.parent / named[1]).resolve() == update.EDITORS
-    for wrong in ("beam: {thicknes_um: 3}", "pairs: {b: {humidities: 0.5}}", "surfaces: {B1: {rms_nm: -1}}"):
-        assert not editor.is_valid(yaml.safe_load(wrong)), wrong
 
 
 # Pictures and links

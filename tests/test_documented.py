@@ -12,8 +12,8 @@ import pytest
 import yaml
 
 from stiction.command.main import main
-from stiction.config.files import paper
 from stiction.config.merging import merged
+from stiction.config.reading import paper
 from stiction.config.relations import schema
 from stiction.config.test_beams import TEMPLATE
 

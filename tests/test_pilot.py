@@ -171,8 +171,8 @@ def test_a_patch_that_does_not_resist_is_refused_with_the_forces_of_its_weakest_
     number, of = map(int, re.search(r"sample (\d+) of (\d+)", line).groups())
     pull = float(re.search(r"with up to ([\d.]+) MPa", line)[1])
     study = PairStudy.of(config, "b", "G" if "Gaussian" in line else "NG")
-    with pytest.raises(ValueError, match="the force does not rise to zero or to f_limit|minimum of the force is at an"):
-        study.forces(0.44)
+    pulls = study.forces(0.44).pull_off.values
+    assert np.mean(pulls == pulls.max()) > 1 / 3  # so many count as flat surfaces, all with the same force
     assert 0 <= number < of
     assert 0 < pull < 500
 
@@ -314,3 +314,15 @@ def test_wedges_of_stiff_beams_above_a_small_gap_that_do_not_fit_into_memory_are
     stiff = {"kind": "cantilever", "pair": "b", "thickness_um": 100, "gap_um": 1, "width_um": 800, "humidities": [0.67]}
     (line,) = map(str, pilot.problems(normalised(merged(PAPER, {"devices": {"C1": stiff}})), {}, "code", REMEMBER))
     assert line.startswith("devices.C1.gap_um is 1, must leave fields within 8 GB of memory")
+
+
+def test_single_samples_that_do_not_resist_are_left_to_jobs_that_count_them_as_flat_surfaces():
+    strong, soft = curve(4.0, 1.0), curve(-0.1, 1.0)
+
+    def shown(curves, law=True, flat=(1e-7, 50.0)):
+        return pilot.shown_by(ForceCurves(DISTANCE, np.array(curves).__getitem__, len(curves), None, flat), law)
+
+    assert len(shown([strong, strong, soft])["laws"]) == 3
+    assert shown([strong, strong, soft], law=False) == {"laws": []}
+    assert "weak" in shown([strong, soft, soft])
+    assert "weak" in shown([strong, strong, soft], flat=None)

@@ -1,6 +1,7 @@
 """Public names ``stiction.name``: complete, fast to import, and visible to editors."""
 
 import importlib
+import pydoc
 import subprocess
 import sys
 import tomllib
@@ -12,6 +13,7 @@ from numpy.testing import assert_allclose
 from vectors import sampled_vectors
 
 import stiction
+from stiction.progress import progress
 from stiction.stages.laws import forces
 
 ROOT = Path(__file__).parents[1]
@@ -41,6 +43,21 @@ def test_force_laws_of_a_dataset_are_evaluated_and_drawn_by_public_names():
     assert_allclose(stiction.law_pressure(laws, vectors[:, 2]), -vectors[:, 1])
     drawn = stiction.draw_laws(stiction.fit_chaos(vectors, limit, 3, 0.001), 2000, stiction.stream(1, "notebook"))
     assert_allclose(stiction.law_energy(drawn).mean(), vectors[:, 0].mean(), rtol=0.05)
+
+
+def test_help_shows_every_public_name():
+    text = pydoc.plain(pydoc.render_doc(stiction))
+    assert not [name for name in stiction.__all__ if name not in text]
+
+
+def test_progress_can_be_turned_off_and_on_again(capfd):
+    try:
+        for shown in (False, True):
+            stiction.show_progress(shown)
+            assert list(progress(range(3), "steps")) == [0, 1, 2]
+            assert ("steps" in capfd.readouterr().err) == shown
+    finally:
+        stiction.show_progress()
 
 
 def test_importing_the_package_imports_none_of_its_modules():

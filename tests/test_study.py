@@ -11,11 +11,12 @@ from stiction.config.cases import case_id
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.units import in_si
+from stiction.contact import forcelaw
 from stiction.plan.plan import Plan
 from stiction.stages.beams import releases, variant_beams
 from stiction.stages.contact import pairs
 from stiction.stages.contact.changes import variants
-from stiction.stages.laws import chaos
+from stiction.stages.laws import chaos, forces
 from stiction.stages.surfaces import heights, identification, spectrum
 from stiction.stages.surfaces.parameters import spectrum_of
 from stiction.study import PairStudy
@@ -151,3 +152,21 @@ def test_an_undefined_pair_is_reported_by_name():
 def test_an_unknown_model_of_the_heights_is_reported_with_those_that_exist(model):
     with pytest.raises(ValueError, match=f"no model {model} of the heights; the models are G, NG"):
         PairStudy.of(CONFIG, "b", model)
+
+
+def test_force_curves_and_laws_have_labels_and_the_numbers_of_the_public_functions(study):
+    curves, laws = study.curves(HUMIDITY), study.laws(HUMIDITY)
+    assert (curves.dims, curves.units, curves.distance.units) == (("curve", "distance"), "Pa", "m")
+    assert curves.sizes["curve"] == 40
+    vectors, limit = forces.vectors(study.forces(HUMIDITY))
+    lawful = forcelaw.admissible(vectors, limit)
+    assert_array_equal(laws.sample, np.flatnonzero(lawful))
+    assert_array_equal(np.column_stack(list(laws.values())), forcelaw.coefficients(vectors[lawful], limit))
+    assert [laws[name].units for name in laws] == ["Pa", "m", "m-1", "m-1"]
+
+
+def test_a_study_draws_a_force_curve_and_is_described_in_one_line(study):
+    (panel,) = study.plot(HUMIDITY).axes
+    assert panel.get_ylabel() == r"force per area $\bar f$ [MPa]"
+    assert repr(study) == "PairStudy b: B2 on Sub1"
+    assert repr(PairStudy("b", "G", study.results)) == "PairStudy b: B2 on Sub1, Gaussian heights"

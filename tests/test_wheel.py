@@ -67,7 +67,11 @@ def site(tmp_path_factory):
 
 
 def test_the_wheel_holds_all_files_that_the_package_reads(site):
-    names = ("config/schema.yaml", "config/paper.yaml", "command/study.yaml", "report/stiction.mplstyle", "py.typed")
+    names = ["config/schema.yaml", "config/paper.yaml", "command/study.yaml", "report/stiction.mplstyle", "py.typed"]
+    package = ROOT / "src" / "stiction"
+    report = [path for kind in ("templates/*", "**/*.yaml") for path in (package / "report").glob(kind)]
+    assert len(report) > 5
+    names += [str(path.relative_to(package)) for path in report]
     for name in names:
         assert (site / "stiction" / name).read_bytes() == (ROOT / "src" / "stiction" / name).read_bytes()
     modules = {path.relative_to(ROOT / "src") for path in (ROOT / "src" / "stiction").rglob("*.py")}

@@ -5,8 +5,10 @@ from stiction.config.files import load as load
 from stiction.config.cases import case_id as case_id
 from stiction.study import PairStudy as PairStudy
 from stiction.device import Device as Device
+from stiction.progress import show_progress as show_progress
 
 # surfaces
+from stiction.described_surface import Surface as Surface
 from stiction.surface.maxent import solve as maximum_entropy
 from stiction.surface.maxent import HeightDensity as HeightDensity
 from stiction.surface.spectrum import CutoffSelfAffine as CutoffSelfAffine
@@ -19,6 +21,7 @@ from stiction.surface.field import RoughSurface as RoughSurface
 # measured surfaces
 from stiction.scans.reading import read as read_scan
 from stiction.scans.scan import Scan as Scan
+from stiction.stages.surfaces.maps import height_map as height_map
 from stiction.scans.estimate import estimate as estimate_surface
 from stiction.scans.estimate import SurfaceEstimate as SurfaceEstimate
 

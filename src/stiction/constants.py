@@ -17,3 +17,13 @@ MOLECULAR_DISTANCE = 2.09e-10
 
 #: Hardness σ_H of (poly)silicon [Pa]; paper, App. A.
 HARDNESS = 12.8e9
+
+#: Density of (poly)silicon [kg m⁻³]; crystal at 300 K, CRC Handbook of Chemistry and Physics.
+DENSITY = 2330.0
+#: Surface energies of liquids in which beams are released, against their vapour [N m⁻¹]. Water as above, isopropanol at
+#: 293 K (Vázquez, Alvarez and Navaza, J. Chem. Eng. Data 40, 611, 1995).
+LIQUIDS = {"water": WATER_SURFACE_ENERGY, "isopropanol": 0.0217}
+#: Permittivity of vacuum ε₀ [F m⁻¹]; CODATA 2018.
+VACUUM_PERMITTIVITY = 8.8541878128e-12
+#: Standard acceleration of free fall g [m s⁻²], exact.
+FREE_FALL = 9.80665

@@ -5,21 +5,28 @@ Stages, settings and addresses of random numbers are the same as in the workflow
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from html import escape
+from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from stiction.config.cases import case_id
-from stiction.config.kinds import KINDS, Kind
+from stiction.config.cases import DRY, case_id, in_numbers
+from stiction.config.kinds import KEYS, KINDS, Kind, kind_of
 from stiction.config.units import in_si
 from stiction.plan.devices import DevicePlan
 from stiction.plan.graph import Results
 from stiction.stages.beams import pair_warnings
-from stiction.stages.devices import device_warnings
+from stiction.stages.devices import device_warnings, stuck
 from stiction.stages.devices.contact_names import contact_of, tips_of
+from stiction.stages.devices.device_warnings import left_out_changes, of_left_out_gaps
+from stiction.stages.devices.opening import FORCE
 from stiction.stages.surfaces import surface_flags
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Device:
     """One device of a configuration, and its safe lengths or pull-off forces at any relative humidity, or ``"dry"``.
 
@@ -88,6 +95,55 @@ class Device:
         self._must_be(lambda kind: kind.is_beam)
         return self._result("safe_lengths", humidity)
 
+    def stuck(self, humidity: float | str) -> xr.Dataset:
+        """P(stuck) with its 95 % band: of a beam over its length, of a stopper over its restoring force.
+
+        Beams and stoppers have one layout, that of `stiction.stages.devices.stuck`.
+        """
+        if self.kind.is_beam:
+            return stuck.of_beam(self.safe_lengths(humidity))
+        return stuck.of_stopper(self.forces(), in_numbers(humidity))
+
+    def plot(self) -> "Figure":
+        """Figure of P(stuck) at all humidities: with the safe lengths of a beam, or the forces of a stopper."""
+        from stiction.report.budget.figures import stoppers
+        from stiction.report.devices.figures import risk
+
+        if not self.kind.is_beam:
+            return stoppers({self.name: self.forces()}, {})
+        return risk(
+            {(self.name, humidity): self.safe_lengths(humidity) for humidity in self._section["humidities"]}, {}
+        )
+
+    @property
+    def kind(self) -> Kind:
+        """What distinguishes its kind of devices from others."""
+        return kind_of(self._section)
+
+    @property
+    def facts(self) -> dict[str, str]:
+        """Dimensions, surfaces and air in words, by name."""
+        section = self._section
+        values = {key: section[key] for key in KEYS if key in section}
+        numbers = {key: value if isinstance(value, list) else [value] for key, value in values.items()}
+        sizes = {
+            KEYS[key][0]: f"{' x '.join(f'{one:g}' for one in some)} {KEYS[key][1]}" for key, some in numbers.items()
+        }
+        pair = " on ".join(self._plan.sides(section["pair"]))
+        humidities = ", ".join(f"{humidity:g}" if humidity else DRY for humidity in section["humidities"])
+        return sizes | {"surfaces": f"{pair}, pair {section['pair']}", "relative humidity": humidities}
+
+    def __repr__(self):
+        facts = ", ".join(f"{name} {value}" for name, value in self.facts.items())
+        return f"Device {self.name}, {self.kind.words}: {facts}"
+
+    def _repr_html_(self):
+        """Table of its facts, for notebooks."""
+        rows = "".join(
+            f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in self.facts.items()
+        )
+        return f"<table><caption>Device {escape(self.name)}, {escape(self.kind.words)}</caption>{rows}</table>"
+
     def chart(self, humidity: float | str) -> xr.Dataset:
         """Safe lengths of the thicknesses and gaps of its chart; dataset of `stiction.stages.devices.chart`."""
         self._must_be(lambda kind: kind.is_beam)
@@ -98,6 +154,13 @@ class Device:
         """Pull-off forces of a stopper, P(stuck) and the worst humidity: dataset of stage stoppers."""
         self._must_be(lambda kind: not kind.is_beam)
         return self.results[f"devices/stoppers/{self.name}"]
+
+    def life(self) -> xr.Dataset:
+        """What brings it into contact, whether it sticks, what holds it and what frees it.
+
+        Dataset of `stiction.stages.devices.life`, one answer for every name along its dimension.
+        """
+        return self.results[f"devices/life/{self.name}"]
 
     def budget(self, humidity: float | str) -> xr.Dataset:
         """Uncertainty of the mean length or force; dataset of `stiction.stages.devices.budget`.
@@ -140,17 +203,24 @@ class Device:
     def warnings(self, safe_lengths: xr.Dataset) -> list[str]:
         """Where a result of `safe_lengths` or `forces` is beyond the limits of the model, one sentence each.
 
-        Plasticity is not checked, which is one of the sentences.
+        Plasticity is not checked, which is one of the sentences. Where attraction across gaps is left out, the first
+        call computes what it would change.
         """
         settings = self.results.graph.job(f"devices/warnings/{self.name}.json").settings
         measured = surface_flags.inputs(self._plan, self._section["pair"])
         flags = surface_flags.together(
             {stage: {name: self.results[file] for name, file in files.items()} for stage, files in measured.items()}
         )
+        left_out = device_warnings.left_out_gaps(self._plan, self.name).values()
+        changes = {key: of for name in left_out for key, of in left_out_changes(self.results[name]).items()}
+        flags += settings.get("assumed", [])
         if "stopper" in settings:
-            return device_warnings.of_stopper(in_si(device_warnings.OfStopper, settings["stopper"])) + flags
+            of = in_si(device_warnings.OfStopper, settings["stopper"])
+            own = device_warnings.of_stopper(of, share_flat=float(safe_lengths.share_flat))
+            return own + of_left_out_gaps(changes, FORCE) + flags
         of_beam = device_warnings.of_device(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
-        return pair_warnings.numbered(of_beam)[0] + flags
+        with_gaps = {shape: said + of_left_out_gaps(changes, shape) for shape, said in of_beam.items()}
+        return pair_warnings.numbered(with_gaps)[0] + flags
 
     def _result(self, stage, humidity, end=""):
         """Dataset of a stage at a humidity."""

@@ -1,9 +1,9 @@
 """Pilot: the first samples of a run, drawn before any job, decide what no relation between keys can.
 
 They show whether the summits of every patch resist the adhesion (Sec. III-B1), and whether strips resolve the cracks
-(Sec. III-C). Samples and criteria are those of the jobs. A patch is refused if one of its samples does not resist; a
-strip, if it is longer than allowed by more than three standard errors of the samples. What passes may still fail in a
-job, with the error of the same criterion.
+(Sec. III-C). Samples and criteria are those of the jobs. A patch is refused if one of its samples does not resist or,
+where jobs count single ones as flat surfaces, if half of them do not; a strip, if it is longer than allowed by more
+than three standard errors of the samples. What passes may still fail in a job, with the error of the same criterion.
 
 The spectrum of measured surfaces and of those whose spectrum is to be identified is preliminary, and so are force laws
 that will be corrected to full elastic contact: these are refused only if none of their samples resists, or if strips
@@ -335,7 +335,7 @@ def shown_by(curves: ForceCurves, law: bool, preliminary: bool = False) -> dict[
     law : bool
         Whether they must have force laws, and rise to the largest attraction of all samples, or only hold a patch.
     preliminary : bool
-        Whether samples that do not resist are left out as long as others do.
+        Whether samples that do not resist are allowed as long as others do.
 
     Returns
     -------
@@ -349,19 +349,22 @@ def shown_by(curves: ForceCurves, law: bool, preliminary: bool = False) -> dict[
         If the criteria of the jobs refuse the curves for another reason, or fewer than two have a force law.
     """
     forces = np.array([curves.curve(k).copy() for k in range(curves.samples)])
-    repulsion, needed = forcelaw.repulsions(forces), -forces.min() if law else 0.0
+    repulsion, needed = forcelaw.repulsions(forces), -forces.min() if law and curves.flat is None else 0.0
     resist = repulsion > needed
-    if not (resist.any() if preliminary else resist.all()):
+    # Jobs count single samples as flat surfaces where these have a bound. If most are flat, the sum over summits fails.
+    most = np.mean(resist) > 1 / 2 if curves.flat else resist.all()
+    if not (resist.any() if preliminary else most):
         weakest = int(np.argmin(repulsion))
         weak = {"sample": weakest, "repulsion": max(float(repulsion[weakest]), 0.0), "pull": -float(forces.min())}
         return {"weak": weak | {"samples": len(forces), "together": forcelaw.together(forces, needed)}}
+    resist |= curves.flat is not None
     kept = forces[resist]
     if not law:
-        forcelaw.pull_offs(curves.distance, kept.__getitem__, len(kept))
+        forcelaw.pull_offs(curves.distance, kept.__getitem__, len(kept), curves.flat)
         return {"laws": []}
     beyond = None if curves.beyond is None else curves.beyond[resist]
     laws, lawful = forcelaw.coefficients_where_lawful(
-        *forcelaw.parametrise(curves.distance, kept.__getitem__, len(kept), beyond)
+        *forcelaw.parametrise(curves.distance, kept.__getitem__, len(kept), beyond, curves.flat)
     )
     if lawful.sum() < 2:
         raise ValueError(f"{lawful.sum()} of {len(kept)} samples have a force law of Eq. (12)")

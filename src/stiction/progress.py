@@ -7,8 +7,16 @@ from typing import TypeVar
 from tqdm import tqdm
 
 T = TypeVar("T")
+#: What users choose in this process.
+_CHOSEN = {"shown": True}
+
+
+def show_progress(shown: bool = True) -> None:
+    """Show progress bars of long computations in this process, as by default, or show none."""
+    _CHOSEN["shown"] = shown
 
 
 def progress(steps: Iterable[T], what: str, total: int | None = None) -> Iterator[T]:
     """Iterate over ``steps`` with a progress bar on standard error, which jobs redirect to their log."""
-    return tqdm(steps, desc=what, total=total, mininterval=2.0, ascii=True, file=sys.stderr)
+    off = not _CHOSEN["shown"]
+    return tqdm(steps, desc=what, total=total, mininterval=2.0, ascii=True, file=sys.stderr, disable=off)

@@ -26,3 +26,14 @@ def is_at_most(value: float, limit: float) -> bool:
     (True, True, False)
     """
     return bool(value - limit <= _ROUNDING * abs(limit))
+
+
+def is_equal(value: float, other: float, scale: float) -> bool:
+    """Whether two of several numbers are equal, up to rounding of the largest one, ``scale`` in absolute value.
+
+    Examples
+    --------
+    >>> is_equal(0.1 + 0.2, 0.3, 0.3), is_equal(1e-17, 0.0, 0.3), is_equal(0.1, 0.2, 0.3)
+    (True, True, False)
+    """
+    return bool(abs(value - other) <= _ROUNDING * scale)

@@ -4,6 +4,7 @@ Stages, settings and addresses of random numbers are the same as in the workflow
 """
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -18,10 +19,14 @@ from stiction.plan.graph import Results
 from stiction.stages.beams import beams
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.contact import corrections, curves, pairs
+from stiction.stages.laws import samples
 from stiction.stages.surfaces.rough_surfaces import both
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class PairStudy:
     """One pair of surfaces and its results at any relative humidity, or ``"dry"``, stage by stage.
 
@@ -93,6 +98,24 @@ class PairStudy:
         """Vectors v of Eq. (11) and f_limit at a relative humidity (Sec. III-B1); dataset of stage forces."""
         return self.results[f"forces/{case_id(self.name, humidity)}_{self.model}"]
 
+    def curves(self, humidity: float | str) -> xr.DataArray:
+        """Force per area [Pa] of the first samples over the distance of the mean planes [m], negative if it attracts.
+
+        ``curves(0.67).plot.line(x="distance")`` of xarray draws them.
+        """
+        return self.forces(humidity).force.assign_attrs(long_name="force per area")
+
+    def laws(self, humidity: float | str) -> xr.Dataset:
+        """Force laws of Eq. (12) of all samples that have one, by number; dataset of `stiction.stages.laws.samples`."""
+        return samples.laws(self.forces(humidity))
+
+    def plot(self, humidity: float | str) -> "Figure":
+        """Figure of a typical force curve, its force law, Eq. (12), and its parameters, Eq. (11)."""
+        from stiction.report.laws.figures import fitted_curve
+
+        case = f"{case_id(self.name, humidity)}_{self.model}"
+        return fitted_curve(self.results[f"forces/{case}"], self.results[f"fit/{case}"])
+
     def chaos(self, humidity: float | str) -> xr.Dataset:
         """Chaos model of the force laws at a relative humidity (App. B); dataset of stage chaos.
 
@@ -120,6 +143,10 @@ class PairStudy:
     def beam(self) -> Beam:
         """Nominal cantilever of the pair."""
         return cantilever(in_si(Cantilevers, sections(self._plan, self.name)), self.name)
+
+    def __repr__(self):
+        model = "" if self.model == "NG" else ", Gaussian heights"
+        return f"PairStudy {self.name}: {' on '.join(self._plan.sides(self.name))}{model}"
 
     @property
     def _plan(self):

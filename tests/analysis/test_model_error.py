@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from standard_errors import ALLOWED
 
-from stiction.analysis.model_error import factors, length_factors, mean_ratios
+from stiction.analysis.model_error import factors, interpolation_error, length_factors, mean_ratios
 
 HUMIDITIES = np.array([0.4, 0.6, 0.9])
 RATIOS = np.array([0.6, 0.9, 1.0])
@@ -61,6 +61,28 @@ def test_the_error_between_humidities_contains_that_of_the_interpolation(power, 
     between = ~np.isclose(at[:, None], HUMIDITIES, atol=0.02).any(axis=1)
     assert np.all(off <= 2 * errors + 1e-9)
     assert power == 1 or np.all(errors[between] < 3 * off[between])  # control: it is no bound that says nothing
+
+
+def random_curves(humidities, at, correlation, number=400):
+    """Gaussian random curves with a correlation length, zero in saturated air: at both humidities, a row each."""
+    axis = np.concatenate([humidities, at, [1.0]])
+    covariance = np.exp(-((axis[:, None] - axis) ** 2) / (2 * correlation**2)) + 1e-9 * np.eye(len(axis))
+    values = np.random.default_rng(0).multivariate_normal(np.zeros(len(axis)), covariance, number, method="cholesky")
+    return np.split((values - values[:, -1:])[:, :-1], [len(humidities)], axis=1)
+
+
+@pytest.mark.parametrize("humidities", [(0.45, 0.7, 0.9), (0.44, 0.67, 0.92), (0.6, 0.72, 0.9)])  # of pairs a, b, c
+def test_twice_the_stated_error_holds_that_of_interpolated_curves_that_bend_once_between_humidities(humidities):
+    at = np.linspace(humidities[0], humidities[-1], 20)[1:-1]
+    inside = {}
+    for correlation in (0.3, 0.05):
+        known, true = random_curves(humidities, at, correlation)
+        off = np.abs([np.interp(at, humidities, curve) for curve in known] - true)
+        stated = np.array([interpolation_error(curve, np.array(humidities), at) for curve in known])
+        inside[correlation] = np.mean(off <= 2 * stated)
+        assert correlation < 0.1 or np.mean(off <= stated) < 0.9  # it is no bound that says nothing
+    assert inside[0.3] >= 0.95
+    assert inside[0.05] < 0.8  # control: nothing shows bends that no computed humidity sees
 
 
 def test_with_two_humidities_or_one_the_saturated_air_shows_the_curvature():

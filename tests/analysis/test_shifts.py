@@ -150,3 +150,13 @@ def test_another_value_of_a_quantity_leaves_the_form_of_the_surface(quantity, va
 def test_a_skewness_without_the_kurtosis_has_the_largest_feasible_one():
     assert with_value(B2, "skewness", -1.2).kurtosis == B2.kurtosis
     assert with_value(B2, "skewness", 0.0).kurtosis == pytest.approx(3, abs=1e-4)
+
+
+@pytest.mark.parametrize("quantity", ["skewness", "kurtosis"])
+@pytest.mark.parametrize(("skewness", "above"), [(0.288, 0.115), (-1.5, 0.06), (0.0, 0.5)])
+def test_both_sides_of_heights_with_nearly_two_levels_have_a_density(quantity, skewness, above):
+    surface = Description(1e-9, skewness, skewness**2 + 1 + above, None)
+    (less, more), difference = bracketed(surface, quantity)
+    assert is_feasible(less.skewness, less.kurtosis)
+    assert is_feasible(more.skewness, more.kurtosis)
+    assert_allclose(getattr(more, quantity) - getattr(less, quantity), difference, rtol=1e-9)

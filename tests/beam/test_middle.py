@@ -192,3 +192,32 @@ def test_strips_are_numbered_from_the_middle_so_that_the_ground_does_not_change_
 def test_a_zone_that_is_longer_than_the_bridge_is_refused():
     with pytest.raises(ValueError, match="shorter than its middle zone"):
         shortest_held(zone(), uniform(*DRY, 60), 20 * UM)
+
+
+# Rough ground: places d_max that differ by tens of lengths 1/a
+
+
+def on_two_levels(part, below):
+    """Uniform laws, every second of which lies lower [m]."""
+    laws = uniform(*DRY, part.elements)
+    laws[::2, 1] -= below
+    return laws
+
+
+def test_laws_far_below_their_neighbours_hold_no_bridge():
+    part, longest = zone(), 400 * UM
+    low = on_two_levels(part, 100e-9)
+    alone = low.copy()
+    alone[::2, 0] *= 1e-9
+    found = [shortest_held(part, laws, longest) for laws in (low, alone)]
+    assert_allclose(found[0], found[1], rtol=3e-3)
+    assert shortest_held(part, on_two_levels(part, 0.0), longest) < 0.95 * found[0]  # control
+
+
+def test_mean_planes_may_be_anywhere():
+    part, longest = zone(), 400 * UM
+    laws, sunk = on_two_levels(part, 2e-9), on_two_levels(part, 2e-9)
+    sunk[:, 1] -= 20e-9
+    assert np.all(sunk[:, 1] < 0)
+    lower = replace(part, gap=part.gap - 20e-9)
+    assert_allclose(shortest_held(lower, sunk, longest), shortest_held(part, laws, longest), rtol=1e-6)

@@ -62,7 +62,6 @@ def options(asked):
         ("run mine.yaml -- --forceall tables", ["--forceall", "tables"], ["mine.yaml"]),
         ("devices both.yaml --dry-run", ["--dry-run", "devices"], ["both.yaml"]),
         ("devices", ["devices"], [str(ROOT / "examples" / "devices.yaml")]),
-        ("scans both.yaml", ["scans"], ["both.yaml"]),
         ("figures", ["figures"], []),
         ("figures mine.yaml", ["figures"], ["mine.yaml"]),
         ("explain mine.yaml", ["--dry-run"], ["mine.yaml"]),
@@ -72,6 +71,15 @@ def options(asked):
 def test_what_every_command_asks_of_snakemake(asked, words, passed, files):
     assert main(words.split()) == 0
     assert options(asked) == (passed, files)
+
+
+def test_scans_are_asked_for_without_what_uses_them(asked, tmp_path):
+    (tmp_path / "scans.yaml").write_text(json.dumps(merged(etched(*scans_of(tmp_path)), {"devices": {"C1": {}}})))
+    assert main(["scans", "scans.yaml"]) == 0
+    assert options(asked) == (["scans", "--keep-going"], [str(Path(".snakemake", "scans.yaml"))])
+    written = yaml.safe_load((tmp_path / ".snakemake" / "scans.yaml").read_text())
+    assert written.keys() == {"surfaces", "scans", "seed", "run"}
+    assert list(written["surfaces"]) == ["Etched"]
 
 
 def test_the_folder_of_a_run_and_the_report_in_it(asked, tmp_path, capsys):
@@ -253,7 +261,9 @@ def test_a_check_names_what_would_be_computed_or_every_problem(tmp_path, capsys,
     path.write_text("run: {pairs: [a, b]}\n")
     monkeypatch.chdir(tmp_path)
     assert main(["check", str(path)]) == 0
-    assert capsys.readouterr().out == f"{path} can run: pairs a, b.\n"
+    can, costs = capsys.readouterr().out.splitlines()
+    assert can == f"{path} can run: pairs a, b."
+    assert re.fullmatch(r"It takes about \d+ min of CPU time and \d+ MB for each job, .*", costs)
     path.write_text("seeds: 1\nchaos: {ordr: 2}\n")
     assert main(["check", str(path)]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 2
@@ -267,7 +277,7 @@ def test_a_check_says_what_takes_most_of_the_time_of_a_device_on_measured_surfac
     path = tmp_path / "mine.yaml"
     path.write_text(yaml.safe_dump(config))
     assert main(["check", str(path), "--directory", str(tmp_path)]) == 0
-    can, costs = capsys.readouterr().out.splitlines()
+    can, _, costs = capsys.readouterr().out.splitlines()
     assert can.endswith("devices Measured, Other and scans of Etched.")
     assert costs.startswith("The budget of Measured draws the measured surfaces again")
 
@@ -284,7 +294,19 @@ def test_a_check_draws_the_first_samples_and_remembers_what_they_showed(tmp_path
     assert capsys.readouterr().err == refusal
 
 
-@pytest.mark.parametrize("command", ["run", "devices", "scans", "figures", "explain"])
+def test_a_check_makes_no_folder(tmp_path, capsys):
+    path = tmp_path / "mine.yaml"
+    path.write_text("run: {pairs: [b]}\nbeam: {width_um: 0.06}\n")
+    asked = ["check", str(path), "--directory", str(tmp_path / "later" / "mine")]
+    status = main(asked)
+    assert list(tmp_path.iterdir()) == [path]
+    (tmp_path / "later" / "mine").mkdir(parents=True)
+    printed = capsys.readouterr()
+    assert main(asked) == status, "the answer does not depend on the folder"
+    assert capsys.readouterr() == printed
+
+
+@pytest.mark.parametrize("command", COMMANDS)
 @pytest.mark.parametrize("place", ["folder", "folder/below", "link", "."])
 def test_a_folder_that_is_none_is_refused_in_one_sentence(asked, capsys, command, place):
     Path("folder").touch()
@@ -314,9 +336,10 @@ def test_a_damaged_record_of_runs_is_named_with_what_to_do(asked, capsys, conten
 def test_a_file_without_what_a_command_computes_is_not_up_to_date(asked, capsys, command, missing, dry):
     assert main([command, "mine.yaml", *dry]) == 2
     assert missing in capsys.readouterr().err
-    for words in (["mine.yaml", "both.yaml"], ["mine.yaml", "--", "--configfile", "both.yaml"]):
-        assert main([command, *words]) == 0
-    assert len(asked) == 2
+    found = [["mine.yaml", "both.yaml"], ["mine.yaml", "--", "--configfile", "both.yaml"]]
+    ended = [main([command, *words]) for words in found]
+    assert ended == [2 * (command == "scans"), 0], "scans without files are refused where they are read"
+    assert len(asked) == ended.count(0)
 
 
 @pytest.mark.parametrize("words", [["--help"], ["run", "--help"]])

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from snakemake.utils import update_config
 
-from stiction.config import files
+from stiction.config import files, reading
 from stiction.config.files import load, normalised
 from stiction.config.merging import merged
 from stiction.config.messages import ConfigError
@@ -24,8 +24,8 @@ def test_files_are_merged_as_snakemake_does(base, overlay):
 
 
 def test_the_configuration_of_the_package_is_a_copy_of_that_of_the_checkout():
-    assert not files.PAPER.is_symlink()
-    assert files.PAPER.read_bytes() == (ROOT / "config.yaml").read_bytes(), "copy config.yaml to src/stiction/config"
+    assert not reading.PAPER.is_symlink()
+    assert reading.PAPER.read_bytes() == (ROOT / "config.yaml").read_bytes(), "copy config.yaml to src/stiction/config"
     assert load() == PAPER
 
 

@@ -7,9 +7,9 @@ from configurations import ROOT, problems
 
 from stiction.config import memory
 from stiction.config.files import load, paper
-from stiction.config.grid import completed, published_correlation
 from stiction.config.merging import merged
 from stiction.config.reading import read
+from stiction.config.surfaces.grid import completed, published_correlation
 
 #: Grid of the paper.
 PAPER = {"spacing_nm": 10, "margin_um": 1, "strip_length_um": 1.5}
@@ -91,7 +91,12 @@ def test_variants_have_finer_grids_than_that_of_the_surfaces():
 def test_a_measured_surface_counts_up_to_the_end_of_its_spectrum():
     mine = {"surfaces": {"Mine": {"scans": {"files": ["a.gwy"]}}}, "run": {"pairs": []}}
     mine |= {"pairs": {"m": {"beam": "Mine", "substrate": "Sub1"}}, "devices": {"C1": {"pair": "m"}}}
-    numbers = {"end_rad_per_um": 1608.0, "correlation_um": {"fitted": 3.2, "tabulated": 7.1}}
+    numbers = {
+        "measured": [0.0, 3.0],
+        "feasible": [0.0, 3.0],
+        "end_rad_per_um": 1608.0,
+        "correlation_um": {"fitted": 3.2, "tabulated": 7.1},
+    }
     found = sampling(mine, estimates={"Mine": numbers}.items())
     assert found["spacing_nm"] == pytest.approx(10 / 6)
     assert found["margin_um"] == 3.5

@@ -1,8 +1,10 @@
 """Kinds of devices: the table, the schema and the mechanics of beams know the same kinds."""
 
+from itertools import chain, combinations
+
 import pytest
 
-from stiction.config.kinds import COMMON, KEYS, KINDS
+from stiction.config.kinds import COMMON, KEYS, KINDS, KNOWN, restoring_force
 from stiction.config.relations import schema
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import BEAMS
@@ -12,16 +14,40 @@ SECTION = schema()["properties"]["devices"]["additionalProperties"]["properties"
 
 def test_the_schema_knows_all_kinds_and_the_keys_of_each_and_no_others():
     assert SECTION["kind"]["enum"] == list(KINDS)
-    keys = [*COMMON, *KEYS, *(key for kind in KINDS.values() for key in kind.optional)]
-    assert set(keys) == set(SECTION)
+    assert set(SECTION) == KNOWN
+    assert {*COMMON, *KEYS} <= KNOWN
 
 
 @pytest.mark.parametrize("name", KINDS)
 def test_a_kind_that_cracks_open_has_mechanics_with_a_tip_if_it_has_one(name):
     kind = KINDS[name]
-    assert set(kind.keys) <= set(KEYS)
+    assert {*kind.keys, *chain.from_iterable(kind.ways)} <= set(KEYS)
     assert kind.is_beam == (name in BEAMS)
     if kind.is_beam:
         assert kind.has_tip == BEAMS[name].has_tip
         assert {f"{size}_{unit}" for size in BEAMS[name].sizes for unit in ("um", "MPa")} >= set(kind.keys)
         assert all(END_STATES[shape].by and END_STATES[shape].legend for shape in BEAMS[name].shapes)
+
+
+def test_a_device_states_its_force_in_exactly_one_way():
+    kind, ways = KINDS["stopper"], [{"restoring_force_uN"}, {"stiffness_N_per_m", "gap_um"}]
+    stated = sorted(set().union(*ways))
+    for number in range(len(stated) + 1):
+        for keys in combinations(stated, number):
+            refusal = kind.refusal(["kind", "pair", "humidities", "contact_um", *keys])
+            assert (refusal is None) == (set(keys) in ways), keys
+            assert refusal is None or "either restoring_force_uN, or stiffness_N_per_m and gap_um" in refusal
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_a_key_of_another_kind_is_refused_with_the_keys_of_this_one(name):
+    kind = KINDS[name]
+    for strange in sorted(KNOWN - {*kind.known}):
+        refusal = kind.refusal([*kind.keys, strange])
+        assert refusal == f"must come without {strange}: its keys are {', '.join(kind.known)}"
+
+
+def test_the_force_of_a_spring_is_its_stiffness_times_its_deflection():
+    for stiffness, gap in ((2, 1.5), (0.1, 3), (40, 0.2)):
+        newton = restoring_force({"stiffness_N_per_m": stiffness, "gap_um": gap}) * 1e-6
+        assert newton == pytest.approx(stiffness * gap * 1e-6, rel=1e-15)

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from stiction.config import relations, relations_devices, scans
+from stiction.config import meetings, relations, scans
 from stiction.config.keys import Keys, Relations
 from stiction.config.units import in_si, to_si
 from stiction.contact.correction import Correction
@@ -100,7 +100,7 @@ def test_uncertain_humidities_within_those_of_full_contact_are_corrected():
         stated = {"humidities": [float(low + deviation)], "uncertainty": {"humidity": float(deviation)}}
         sections = {"contact": {"model": "full"}, "pairs": {"b": {"humidities": [float(low), float(high)]}}}
         device = {"kind": "cantilever", "pair": "b"} | stated
-        relation = relations_devices.corrections_are_not_extrapolated
+        relation = meetings.corrections_are_not_extrapolated
         assert not refusals(relation, **sections, devices={"C1": device})
         assert refusals(relation, **sections, devices={"C1": device | {"humidities": [float(low)]}})
         ratios = Correction(np.array([float(low), float(high)]), np.array([0.5, 1.0]), np.array([0.5, 1.0]))

@@ -18,8 +18,8 @@ from written_scans import BAD, SIDE, bad_files, etched, scans_of, write
 
 from stiction.config import files, scans
 from stiction.config.cases import Case
-from stiction.config.grid import completed
 from stiction.config.merging import merged
+from stiction.config.surfaces.grid import completed
 from stiction.config.units import in_si
 from stiction.config.validation import validate
 from stiction.errors import ScanError

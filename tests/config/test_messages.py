@@ -11,9 +11,11 @@ import yaml
 from configurations import LEAVES, NUMBERS, PAPER, SCHEMA, changed, entries, problems, replaced, without
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from wrong_configurations import UNKNOWN, UNNAMEABLE, WRONG, WRONG_VALUES
+from wrong_configurations import OF_SURFACES, UNKNOWN, UNNAMEABLE, WRONG, WRONG_VALUES
 
 from stiction.config import messages
+from stiction.config.cases import in_numbers
+from stiction.config.kinds import KINDS
 from stiction.config.merging import merged
 
 
@@ -33,8 +35,13 @@ def test_an_unknown_key_is_rejected_in_one_line_with_the_known_ones(overlay, key
     assert message in line
 
 
-@pytest.mark.parametrize("name", UNNAMEABLE)
-@pytest.mark.parametrize("section", ["surfaces", "pairs"])
+@pytest.mark.parametrize(
+    ("section", "name"),
+    [
+        *(("pairs", name) for name in UNNAMEABLE),
+        *(("surfaces", name) for name in UNNAMEABLE if name not in OF_SURFACES),
+    ],
+)
 def test_a_name_that_is_not_safe_in_file_names_is_rejected(section, name):
     entry = next(iter(PAPER[section].values()))
     (line,) = problems(merged(PAPER, {section: {name: entry}}))
@@ -51,7 +58,7 @@ def test_there_are_at_least_sixty_wrong_configurations():
 def test_a_missing_key_is_named_with_what_it_must_be(leaf):
     (line,) = problems(without(leaf.path))
     assert line.startswith(f"{leaf} is missing, must be ")
-    assert line.endswith(leaf.entry["description"])
+    assert line.endswith(messages.described(leaf.entry))
 
 
 @pytest.mark.parametrize("section", PAPER)
@@ -65,7 +72,55 @@ def test_no_number_is_replaced_by_something_else(leaf):
     for junk in (None, True, False, "1.0", "", [1], {}, math.nan, math.inf, -math.inf, 10**400):
         (line,) = problems(replaced(leaf.path, junk))
         assert line.startswith(f"{leaf} is "), junk
-        assert leaf.entry["description"] in line, junk
+        assert messages.described(leaf.entry) in line, junk
+
+
+@pytest.mark.parametrize("section", [entry for entry in entries(SCHEMA) if len(entry.get("required", ())) > 1], ids=str)
+def test_all_keys_that_a_section_lacks_are_one_fault_in_one_sentence(section):
+    first, *others = section["required"]
+    (line,) = dict.fromkeys(map(str, messages.schema_problems({}, section)))
+    assert line.startswith(f"{first} is missing, must be ")
+    assert line.endswith("missing as well")
+    assert all(f" {key} " in line for key in others)
+
+
+def test_a_surface_with_an_rms_alone_is_refused_once():
+    (line,) = problems(changed("surfaces: {Mine: {rms_nm: 5}}"))
+    assert line.startswith("surfaces.Mine")
+    assert all(key in line for key in ("skewness", "kurtosis", "psd"))
+
+
+@pytest.mark.parametrize("percent", ["60", "60%", "60 %", "'60'"])
+def test_a_humidity_in_percent_is_shown_as_a_fraction(percent):
+    for key in ("pairs: {a: {humidities: [%s]}}", "figures: {humidity: %s}", "design: {worst_humidities: [0.4, %s]}"):
+        (line,) = problems(changed(key % percent))
+        assert line.endswith("; write 0.6") == (percent != "'60'"), line
+    (saturated,) = problems(changed("figures: {humidity: 1}"))
+    assert "write" not in saturated
+
+
+@pytest.mark.parametrize("word", ["nitrogen", "vacuum", "N2", "Dry"])
+def test_air_without_water_is_called_dry(word):
+    (line,) = problems(changed(f"pairs: {{a: {{humidities: [0.5, {word}]}}}}"))
+    assert line.endswith("; write dry for nitrogen, vacuum and other air without water")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_device_with_an_unknown_key_gets_the_keys_of_its_kind_in_one_sentence(kind):
+    # Without the key that was meant, whose absence is the same fault.
+    (line,) = problems(changed(f"devices: {{D: {{kind: {kind}, pair: b, humidities: [0.5], gap: 3}}}}"))
+    assert line.startswith("devices.D.gap is unknown (value 3), must be one of kind, pair, humidities")
+    known = line.partition("one of ")[2].partition(";")[0].split(", ")
+    assert known == list(KINDS[kind].known)
+    assert line.endswith("; did you mean gap_um? Keys carry their unit.")
+
+
+def test_no_message_ends_with_what_only_stands_for_a_unit():
+    for entry in entries(SCHEMA):
+        said = (
+            str(messages.Problem(("key",), f"must be {messages._allowed(entry)}")) if entry["type"] != "object" else ""
+        )
+        assert not re.search(r"\[(choice|name|path)\]", said)
 
 
 @pytest.mark.parametrize("leaf", NUMBERS, ids=str)
@@ -101,6 +156,12 @@ UNITS = {
     "_MPa": "[MPa]",
     "_uN": "[µN]",
     "_zJ": "[zJ]",
+    "_um2": "[µm²]",
+    "_N_per_m": "[N/m]",
+    "_mN_per_m": "[mN/m]",
+    "_kg_per_m3": "[kg/m³]",
+    "_ng": "[ng]",
+    "_V": "[V]",
     "_deg": "[°]",
     "_K": "[K]",
 }
@@ -177,9 +238,9 @@ def test_what_a_message_advises_to_write_is_accepted(entry):
         for path in ("thickness_um", "rms_nm", "young_modulus_GPa", "name"):
             hint = messages._hint((path,), value, entry)
             if advice := ADVICE.match(hint):
-                words = re.split(r" without |, the value| if ", advice[1])[0]
+                words = re.split(r" without |, the value| if | for ", advice[1])[0]
                 for text in words.split(" or "):
-                    assert strict(yaml.safe_load(text)) == [], (value, hint)
+                    assert strict(in_numbers(yaml.safe_load(text))) == [], (value, hint)
 
 
 def test_advice_is_given_where_there_is_a_value_to_advise():

@@ -32,13 +32,27 @@ R1 = {"kind": "bridge", "pair": "b", "thickness_um": 2, "gap_um": 2, "width_um":
 S1 = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.44, 0.9]}
 CHART = {"thicknesses_um": [2.0, 2.6], "gaps_um": [10, 20], "humidities": [0.4, 0.9]}
 GOLD = {"young_modulus_GPa": 79, "poisson_ratio": 0.42, "hardness_GPa": 1.2, "contact_angle_deg": 60}
-GOLD |= {"hamaker_constant_zJ": {"water": 250, "dry": 400}}
+GOLD |= {"hamaker_constant_zJ": {"water": 250, "dry": 400}, "density_kg_per_m3": 19300}
 UNCERTAIN = {"thickness_um": 0.05, "gap_um": 0.2, "young_modulus_GPa": 4, "humidity": 0.01, "scan_um": 10}
 UNCERTAIN |= {"temperature_K": 1, "contact_angle_deg": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20}
 DEVICES = {
-    "C1": C1 | {"chart": CHART, "strip_um": 1.2, "uncertainty": UNCERTAIN},
+    "C1": C1 | {"chart": CHART, "strip_um": 1.2, "length_um": 300, "uncertainty": UNCERTAIN},
     "R1": R1 | {"humidities": [0.67], "uncertainty": {"residual_stress_MPa": 5}},
     "S1": S1,
+    "S2": {
+        "kind": "stopper",
+        "pair": "b",
+        "contact_um": [4, 4],
+        "stiffness_N_per_m": 2,
+        "gap_um": 1.5,
+        "humidities": [0],
+        "mass_ng": 50,
+        "electrode": {"area_um2": 10000, "gap_um": 3},
+        "touchdowns": 1000,
+        "voltage_V": 5,
+        "offset_V": 0.3,
+        "dielectric": {"thickness_nm": 100, "permittivity": 3.9},
+    },
 }
 ALL = merged(PAPER, {"devices": DEVICES, "materials": {"Gold": GOLD}, "surfaces": {"B2": {"material": "Gold"}}})
 
@@ -127,6 +141,12 @@ WRONG = [
         "at least 1e-06 and at most 0.05: share of stuck devices that is allowed",
     ),
     ({"requirement": {"share": 0.001}, "roughness": ROUGH}, "devices.C1.requirement", "must come with length_um"),
+    ({"length_um": 0.3}, "devices.C1.length_um", "must be in µm, above the thickness and the gap of the beam (given"),
+    (
+        {"length_um": 310, "requirement": LONG, "roughness": ROUGH},
+        "devices.C1.length_um",
+        "the length that is required",
+    ),
     ({"roughness": ROUGH}, "devices.C1.roughness", "must come with requirement"),
     (
         {"requirement": LONG, "roughness": {"surface": "B2"}},
@@ -185,6 +205,46 @@ def test_a_stopper_has_no_length():
     (line,) = problems(merged(PAPER, {"devices": {"S1": S1 | with_roughness()}}))
     assert line.startswith("devices.S1.requirement is ")
     assert "must come without length_um, for a stopper has a force" in line
+
+
+@pytest.mark.parametrize(
+    ("keys", "key", "message"),
+    [
+        ({"electrode": {"area_um2": 1e4, "gap_um": 3}}, "electrode", "must come with stiffness_N_per_m and gap_um"),
+        ({"electrode": {"area_um2": 1e4}}, "electrode.gap_um", "is missing, must be a number at least 0.001"),
+        ({"mass_ng": 0}, "mass_ng", "above 0"),
+        ({"touchdowns": 0}, "touchdowns", "at least 1"),
+        ({"touchdowns": 2.5}, "touchdowns", "must be a whole number"),
+        ({"voltage_V": 5}, "voltage_V", "must come with dielectric: {thickness_nm, permittivity}"),
+        ({"dielectric": {"thickness_nm": 9, "permittivity": 4}}, "dielectric", "must come with voltage_V or offset_V"),
+        ({"offset_V": 1, "dielectric": {"thickness_nm": 9}}, "dielectric.permittivity", "is missing"),
+        ({"thickness_um": 2}, "kind", "must come without thickness_um"),
+    ],
+)
+def test_what_moves_a_stopper_is_refused_by_name(keys, key, message):
+    (line,) = problems(merged(PAPER, {"devices": {"S1": S1 | keys}}))
+    assert line.startswith(f"devices.S1.{key} is ")
+    assert message in line
+
+
+def test_an_electrode_is_at_least_as_far_as_the_contact():
+    stopper = DEVICES["S2"] | {"electrode": {"area_um2": 10000, "gap_um": 1}}
+    (line,) = problems(merged(PAPER, {"devices": {"S2": stopper}}))
+    assert line.startswith("devices.S2.electrode.gap_um is 1, must be at least gap_um of the stopper")
+
+
+@pytest.mark.parametrize(
+    ("liquid", "key", "message"),
+    [
+        ({"contact_angle_deg": 30}, "surface_tension_mN_per_m", "is missing"),
+        ({"surface_tension_mN_per_m": 0}, "surface_tension_mN_per_m", "above 0"),
+        ({"surface_tension_mN_per_m": 22, "contact_angle_deg": 190}, "contact_angle_deg", "at least 0 and at most 180"),
+    ],
+)
+def test_a_wrong_liquid_is_refused_by_name(liquid, key, message):
+    (line,) = problems(merged(with_device(), {"liquids": {"Mine": liquid}}))
+    assert line.startswith(f"liquids.Mine.{key} is ")
+    assert message in line
 
 
 def test_islands_are_refused_with_devices_alone():
@@ -302,7 +362,7 @@ def test_a_configuration_without_devices_has_no_cases():
 def test_cases_are_beams_at_their_humidities():
     devices = DevicePlan(load({"devices": DEVICES}))
     assert devices.cases == ["C1_rh044", "C1_rh067", "R1_rh067"]
-    assert devices.stoppers == ["S1"]
+    assert devices.stoppers == ["S1", "S2"]
     assert devices.charted == ["C1"]
     assert devices.pressed_pairs == ["b"]
     other = {"pairs": {"d": PAPER["pairs"]["b"]}, "devices": {"C1": C1 | {"pair": "d"}}}

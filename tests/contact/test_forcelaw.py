@@ -17,6 +17,8 @@ from stiction.contact.forcelaw import (
     limit_distance,
     parametrise,
     pressure,
+    pull_offs,
+    share_flat,
 )
 from stiction.streams import stream
 
@@ -297,3 +299,49 @@ def test_every_vector_is_compared_with_the_curve_of_its_sample():
     laws = pressure(coefficients(VECTORS, F_LIMIT)[:, None], grid(STEP))
     np.testing.assert_array_equal(errors_of(laws, (2, 0))[0], 0)
     assert errors_of(laws[[1, 1, 1]], (2,))[0] > 0.1
+
+
+# Samples whose summits do not resist the adhesion
+
+
+FLAT = 20e-3, 30e6  # bounds of e and f_max of any surfaces
+
+
+def test_samples_that_do_not_resist_have_the_energy_and_pull_off_of_flat_surfaces():
+    distance = grid(STEP)
+    strong = pressure(SMOOTH, distance)
+    pressed = np.minimum(strong, -1e5)
+    curves = [strong, pressed, strong]
+    alone, limit = parametrise(distance, [strong, strong].__getitem__, 2)
+    vectors, f_limit = parametrise(distance, curves.__getitem__, 3, None, FLAT)
+    np.testing.assert_array_equal(vectors[[0, 2]], alone)
+    assert f_limit == limit  # flat surfaces do not move the threshold of the others
+    np.testing.assert_array_equal(vectors[1, :2], FLAT)
+    law = coefficients(vectors, f_limit)[1]
+    assert law[0] == FLAT[1]
+    np.testing.assert_allclose(energy(law), FLAT[0], rtol=1e-12)
+    np.testing.assert_allclose(pressure(law, vectors[1, 3]), f_limit, rtol=1e-9)
+    np.testing.assert_array_equal(adhesion_energies(distance, curves.__getitem__, 3, None, FLAT), vectors[:, 0])
+    np.testing.assert_array_equal(pull_offs(distance, curves.__getitem__, 3, FLAT), vectors[:, 1])
+    assert share_flat(curves.__getitem__, 3) == 1 / 3
+    with pytest.raises(ValueError, match="sample 1"):
+        parametrise(distance, curves.__getitem__, 3)
+
+
+def test_a_curve_that_ends_below_f_limit_has_the_law_of_a_longer_one():
+    distance = grid(STEP)
+    law = coefficients(np.array([[7e-3, 2e6, 8e-9, 6.5e-9]]), 3e6)[0]
+    whole, deeper = pressure(law, distance), 1.5 * pressure(law, distance)
+    cut = np.minimum(whole, 1e6)
+    (_, short), limit = parametrise(distance, [deeper, cut].__getitem__, 2, None, FLAT)
+    (_, long), _ = parametrise(distance, [deeper, whole].__getitem__, 2)
+    np.testing.assert_allclose(short, long, rtol=2e-3)  # of the parabola through the nodes
+    assert limit > 1e6
+
+
+def test_where_no_sample_resists_all_are_flat():
+    distance = grid(STEP)
+    vectors, limit = parametrise(distance, lambda _: -np.exp(-distance / NM), 2, None, FLAT)
+    np.testing.assert_array_equal(vectors[:, :2], [FLAT] * 2)
+    assert limit == FLAT[1]
+    assert np.all(admissible(vectors, limit))

@@ -10,7 +10,7 @@ from scipy.stats import binom
 from stiction.beam.foundation import foundation_length
 from stiction.beam.release import EndState, released_beam
 from stiction.devices import arcs, risk
-from stiction.devices.risk import Basis
+from stiction.devices.risk import Basis, Known
 from stiction.devices.tail import fit_tail, scaled_errors
 from stiction.streams import stream
 
@@ -262,3 +262,62 @@ def test_the_least_of_several_safe_lengths_is_safe_in_all_airs_with_its_confiden
     each = np.mean((safe > true).any(axis=0))
     assert each > 0.05 + 10 * scatter  # control
     assert each < 0.15 + 3 * scatter
+
+
+# Few devices stick
+
+
+def drawn_until(reach, samples, rng):
+    """Lognormal sticking lengths, infinite beyond a reach [m]."""
+    lengths = lognormal(rng, samples)
+    return np.where(lengths < reach, lengths, np.inf)
+
+
+@pytest.mark.parametrize(
+    ("samples", "stuck"),
+    [(200, 1), (200, 4), (200, 9), *(pytest.param(1000, k, marks=pytest.mark.slow) for k in (6, 12, 30))],
+)
+@pytest.mark.parametrize("share", [0.02, 1e-3])
+def test_safe_lengths_hold_in_95_of_100_studies_however_few_devices_stick(samples, stuck, share):
+    rng, repeats, reach = np.random.default_rng(stuck), 400, true_length(stuck / samples)
+    flat = true_length(1e-9)
+    found = [risk.safe_length(drawn_until(reach, samples, rng), share, rng, Known(reach, flat)) for _ in range(repeats)]
+    lengths = np.array([one.length for one in found])
+    safe = np.mean(lengths <= true_length(share))
+    assert safe > 0.95 - 4 * np.sqrt(0.95 * 0.05 / repeats)
+    assert np.all(lengths <= reach)
+    beyond = np.array([one.basis is Basis.LONGEST for one in found])
+    assert np.all(np.isinf([one.estimate for one in found])[beyond])
+    # Control: a line through so few lengths, without its errors, is too long in half of the studies.
+    naive = [one.estimate for one in found if one.basis in (Basis.FITTED, Basis.EXTRAPOLATED)]
+    assert len(naive) < 50 or np.mean(np.array(naive) <= true_length(share)) < 0.8
+
+
+def test_where_none_sticks_the_longest_simulated_length_is_safe_as_far_as_so_many_devices_say():
+    never, known = np.full(1000, np.inf), Known(reach=3e-3, flat=1e-4)
+    found = [risk.safe_length(never, share, stream(0), known) for share in (0.01, 1e-3)]
+    assert [(one.length, one.basis) for one in found] == [(3e-3, Basis.LONGEST), (1e-4, Basis.FLAT)]
+    assert_allclose(risk.most_stuck(never, 3e-3), 1 - 0.05 ** (1 / 1000), rtol=1e-12)
+
+
+def test_the_bound_of_stuck_devices_covers_the_true_share_in_95_of_100_studies():
+    rng, repeats, reach = np.random.default_rng(8), 2000, true_length(0.02)
+    most = np.array([risk.most_stuck(drawn_until(reach, 200, rng), reach) for _ in range(repeats)])
+    assert np.mean(most >= 0.02) > 0.95 - 4 * np.sqrt(0.95 * 0.05 / repeats)
+    assert np.mean(most / 2 >= 0.02) < 0.95 - 4 * np.sqrt(0.95 * 0.05 / repeats)  # control
+
+
+def test_tips_that_hold_longer_beams_than_were_simulated_do_not_prolong_a_safe_length():
+    # Cracks of 1 mm are beyond the simulated 0.8 mm, and tips hold 2 mm at least: only flat surfaces bound the cracks.
+    tips = 2e-3 * np.exp(np.abs(np.random.default_rng(1).standard_normal(400)))
+    found = risk.safe_length(tips, 1e-3, stream(0), Known(reach=0.8e-3, flat=1e-4))
+    assert (found.length, found.basis) == (1e-4, Basis.FLAT)
+    strong = risk.safe_length(tips / 100, 1e-3, stream(0), Known(reach=0.8e-3, flat=1e-4))
+    assert strong == risk.safe_length(tips / 100, 1e-3, stream(0))
+
+
+def test_devices_that_did_not_stick_may_do_so_beyond_the_simulated_length():
+    share, low, high = risk.stuck_share(np.array([0.5, 2.0]), np.array([0.3, np.inf, np.inf]), reach=1.0)
+    assert_array_equal(share, [1 / 3, 1 / 3])
+    assert low[0] == low[1]
+    assert high[0] < high[1] == 1

@@ -1,10 +1,19 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.special import ndtri
+from standard_errors import ALLOWED, errors_off
 
 from stiction.contact import forcelaw
 from stiction.contact.meniscus import laplace_pressure, meniscus_height
 from stiction.devices import stoppers
+from stiction.devices.risk import Basis
+
+
+def safe_force(forces, share):
+    """Safe force of one row: force, estimate, error and basis."""
+    (found,) = stoppers.safe_forces(forces[None], share, np.random.default_rng(0))
+    return found.force, found.estimate, found.error, found.basis
 
 
 def test_the_pull_off_force_is_the_largest_attraction_over_the_patch():
@@ -77,7 +86,7 @@ def test_the_error_of_the_worst_humidity_is_the_scatter_of_repeated_studies():
 
 def test_the_safe_force_bounds_the_true_force_of_a_share_in_95_of_100_studies():
     true, rng = -np.log(0.02), np.random.default_rng(4)  # of exponential forces, exceeded by 2 %
-    found = np.array([stoppers.safe_force(rng.exponential(size=300), 0.02) for _ in range(500)])
+    found = np.array([safe_force(rng.exponential(size=300), 0.02)[:3] for _ in range(500)])
     covered, error = np.mean(found[:, 0] >= true), np.sqrt(0.95 * 0.05 / 500)
     assert covered > 0.95 - 4 * error
     assert np.mean(found[:, 1] >= true) < 0.95 - 4 * error  # control: the estimate bounds nothing
@@ -86,5 +95,33 @@ def test_the_safe_force_bounds_the_true_force_of_a_share_in_95_of_100_studies():
 
 
 def test_too_few_patches_bound_no_share():
-    with pytest.raises(ValueError, match="share of 0.001 needs 2995 samples, got 300"):
-        stoppers.safe_force(np.ones(300), 1e-3)
+    with pytest.raises(ValueError, match="needs 180 lengths, got 179"):
+        safe_force(np.ones(179), 1e-3)
+
+
+@pytest.mark.parametrize("share", [1e-3, 1e-4, 1e-6])
+def test_fitted_forces_of_lognormal_patches_bound_the_true_one_in_95_of_100_studies(share):
+    rng, spread = np.random.default_rng(5), 0.5
+    rows = 2e-6 * np.exp(spread * rng.standard_normal((400, 800)))
+    true = 2e-6 * np.exp(-spread * ndtri(share))
+    found = stoppers.safe_forces(rows, share, rng)
+    forces, estimates, errors = np.transpose([(one.force, one.estimate, one.error) for one in found])
+    allowed = 4 * np.sqrt(0.95 * 0.05 / 400 + 0.95 * 0.05 / 2000)  # of the studies, and of the simulated errors
+    assert abs(np.mean(forces >= true) - 0.95) < allowed
+    assert np.mean(estimates >= true) < 0.95 - allowed  # control: the estimate bounds nothing
+    assert errors_off(np.log(estimates), np.log(true)) < ALLOWED
+    assert_allclose((errors / estimates).mean(), np.log(estimates).std(), rtol=4 / np.sqrt(800))
+    assert {one.basis for one in found} == {Basis.FITTED if 800 * share >= 0.1 else Basis.EXTRAPOLATED}
+
+
+def test_a_share_that_enough_patches_bound_is_not_fitted():
+    forces = np.random.default_rng(6).exponential(size=(1, 3000))
+    (found,) = stoppers.safe_forces(forces, 1e-3, np.random.default_rng(0))
+    assert found.basis is Basis.SAMPLED
+    assert found.force in forces
+
+
+def test_a_scaled_force_has_scaled_bounds():
+    forces = np.random.default_rng(7).gamma(3, size=500)
+    one, two = (safe_force(scale * forces, 1e-4) for scale in (1, 1e-6))
+    assert_allclose(1e-6 * np.array(one[:3]), two[:3], rtol=1e-9)

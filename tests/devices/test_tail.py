@@ -83,9 +83,17 @@ def test_a_heavier_end_is_not_a_line_and_the_fit_follows_its_lowest_part():
     assert tail.fit_tail(one) == tail.fit_tail(other)
 
 
-@pytest.mark.parametrize(("lengths", "message"), [(np.ones(179), "180 lengths, got 179"), (None, "simulate longer")])
-def test_too_few_known_lengths_are_refused(lengths, message):
-    if lengths is None:
-        lengths = np.where(np.arange(1000) < 49, 1.0, np.inf)
+@pytest.mark.parametrize(("known", "message"), [(179, "180 lengths, got 179"), (8, "needs 9 of them, got 8")])
+def test_too_few_known_lengths_are_refused(known, message):
+    lengths = np.where(np.arange(179 if known == 179 else 1000) < known, 1.0, np.inf)
     with pytest.raises(ValueError, match=message):
         tail.fit_tail(lengths)
+
+
+def test_a_fit_of_fewer_lengths_is_the_same_line_with_larger_errors():
+    scores = tail.normal_scores(1000)
+    line = np.exp(-7 + 0.03 * scores)
+    few = tail.fit_tail(np.concatenate([line[:12], np.full(988, np.inf)]))
+    assert_allclose([few.intercept, few.slope, few.fitted], [-7, 0.03, 12], rtol=1e-12)
+    errors = [tail.scaled_errors(1000, 1e-3, np.random.default_rng(7), fitted=fitted)[0].std() for fitted in (12, 50)]
+    assert errors[0] > 1.2 * errors[1]

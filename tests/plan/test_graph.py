@@ -15,6 +15,7 @@ from stiction.plan.graph import Graph, stages
 from stiction.plan.plan import Plan
 from stiction.plan.planner import NotPlanned, Planner
 from stiction.plan.stage import File, Stage
+from stiction.report import html
 from stiction.report.style import STUDIES
 from stiction.run.disk_cache import DiskCache
 from stiction.run.fingerprint import PACKAGE, SILENT, fingerprint
@@ -179,6 +180,15 @@ def test_every_figure_has_its_caption_and_those_of_studies_of_the_paper_are_also
             assert (ROOT / "workflow" / "report" / f"{stage.shown.caption}.rst").is_file(), name
             of_paper = stage.shown.category == STUDIES and stage.targets != (stage.study,)
             assert {*stage.targets} >= {"figures", "study_figures"} if of_paper else stage.targets, name
+
+
+def test_whatever_writes_html_has_its_template_among_its_inputs():
+    page = {*html.files("page.html")}
+    written = [job for job in JOBS.values() if "html" in job.stage.files]
+    assert len({job.stage.name for job in written}) > 10
+    for job in written:
+        read = {*listed(job.inputs["templates"])}
+        assert read >= (page if job.stage.name == "device_page" else {*html.files("table.html")}), job.stage.name
 
 
 @pytest.mark.parametrize(("figure", "table"), [("chart", "chart"), ("risk", "safe_lengths")])

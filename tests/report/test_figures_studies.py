@@ -25,6 +25,9 @@ from stiction.stages.laws import sample_sizes as study_sample_sizes
 from stiction.stages.laws import sensitivity as study_sensitivity
 from stiction.stages.surfaces import correlation as study_correlation
 
+SKEWED = {"surfaces.B2.skewness": [-0.5, -0.76], "surfaces.B2.kurtosis": [3.4, 3.9]}
+ENDS = ["Kurtosis3p4Skewnessm0p5", "Kurtosis3p9Skewnessm0p76"]
+STATISTICS = ("mean", "standard deviation")
 HUMIDITIES = (0.5, 0.8)
 RNG = np.random.default_rng(0)
 PUBLISHED = pd.DataFrame(
@@ -59,7 +62,7 @@ def variant(length_um, energy=1.0, free=0):
 
 
 def test_the_axis_of_fig_13_ends_at_saturated_air():
-    humid = {"rms": sensitivity(0.5).assign_coords(humidity=[0.8, 0.99])}
+    humid = {("b", "rms"): sensitivity(0.5).assign_coords(humidity=[0.8, 0.99])}
     for panel in figures_studies.sensitivities(humid, {}).axes:
         assert 0.99 < panel.get_xlim()[1] <= 1
 
@@ -107,7 +110,7 @@ def correlation():
 
 
 DRAWN = {
-    "13": lambda: figures_studies.sensitivities({"rms": sensitivity(-6.0)}, {("rms", 0.5): -6.5}),
+    "13": lambda: figures_studies.sensitivities({("b", "rms"): sensitivity(-6.0)}, {("b", "rms", 0.5): -6.5}),
     "16": lambda: figures_studies.summit_stresses({"a": plasticity(0.0), "c": plasticity(0.5)}),
     "16 of one pair": lambda: figures_studies.summit_stresses({"c": plasticity(0.5)}),
     "17": lambda: figures_studies.sample_convergence(sizes(), {("a", 0.5): [0.1, 0.01, 1e-3, 0.0]}, 1e-3),
@@ -140,7 +143,7 @@ def heights(panel):
 
 
 def test_figure_13_shows_slopes_and_published_values():
-    panel = figures_studies.sensitivities({"rms": sensitivity(-6.0)}, {("rms", 0.5): -6.5}).axes[0]
+    panel = figures_studies.sensitivities({("b", "rms"): sensitivity(-6.0)}, {("b", "rms", 0.5): -6.5}).axes[0]
     assert [list(np.atleast_1d(y)) for y in heights(panel)] == [[-6.0, -6.0], [-6.5]]
 
 
@@ -159,7 +162,7 @@ def test_only_the_pair_of_published_sensitivities_is_compared_with_them(pair):
 
 
 def test_error_bars_of_figure_13_are_standard_errors():
-    assert_allclose(bars(figures_studies.sensitivities({"rms": sensitivity(-6.0)}, {}).axes[0]), 0.1)
+    assert_allclose(bars(figures_studies.sensitivities({("b", "rms"): sensitivity(-6.0)}, {}).axes[0]), 0.1)
 
 
 def test_figure_16_shows_the_onset_of_the_hardest_pair():
@@ -328,7 +331,9 @@ def test_a_summary_without_published_values_leaves_them_out():
 
 def test_published_sensitivities_are_in_the_row_of_their_moment_and_humidity():
     published = pd.DataFrame({"pair": ["b"], "relative_humidity": [0.5], "moment": ["rms"], "slope": [-6.5]})
-    table = tables_studies.sensitivity({"rms": sensitivity(-6.0), "kurtosis": sensitivity(-5.0)}, "b", published)
+    table = tables_studies.sensitivity(
+        {("b", "rms"): sensitivity(-6.0), ("b", "kurtosis"): sensitivity(-5.0)}, published
+    )
     known = table.frame[table.frame.published.notna()]
     assert len(table.frame) == 8
     assert known[["relative_humidity", "statistic", "moment", "published"]].to_numpy().tolist() == [
@@ -339,10 +344,36 @@ def test_published_sensitivities_are_in_the_row_of_their_moment_and_humidity():
 
 def test_the_table_of_fig_13_is_of_the_pair_of_its_plan_and_has_the_slopes_of_its_studies():
     data = {
-        "studies": {"rms": sensitivity(-6.0)},
+        "studies": {("b", "rms"): sensitivity(-6.0)},
         "published": Path(published.__file__).with_name("resources") / "sensitivity.csv",
     }
     stage = tables_studies.STAGES[0]
-    table = stage.result(data, At(), {"pair": "b", "of_paper": ["b"]})
+    table = stage.result(data, At(), {"of_paper": ["b"]})
     assert set(table.frame.pair) == {"b"}
     assert set(table.frame.slope) == {-6.0}
+
+
+def test_copies_of_a_pair_are_side_by_side_in_figure_13_and_its_table():
+    compare = {"compare": SKEWED, "run": {"pairs": ["b", "c"]}}
+    graph, copies = Graph(Plan(load(compare))), [*(f"b{end}" for end in ENDS)]
+    figure, table = (graph.job(name) for name in ("figures/figure_13.png", "tables/sensitivity.csv"))
+    moments = ("rms", "skewness", "kurtosis")
+    assert list(figure.inputs["studies"]) == [(pair, moment) for pair in copies for moment in moments]
+    slopes = {at: sensitivity(-6.0 if at[0] == copies[0] else -4.0) for at in figure.inputs["studies"]}
+    data = {"studies": slopes, "published": figure.inputs["published"]}
+    axes = figure.compute(data).axes
+    shown = [f"{what} of $\\bar e$, pair {pair}" for pair in copies for what in STATISTICS]
+    titles = [f"({mark}) {text}" for mark, text in zip("abcd", shown, strict=True)]
+    assert [panel.get_title(loc="left") for panel in axes] == titles
+    assert {tuple(panel.containers[0].lines[0].get_ydata()) for panel in axes[:2]} == {(-6.0, -6.0)}
+    assert {tuple(panel.containers[0].lines[0].get_ydata()) for panel in axes[2:]} == {(-4.0, -4.0)}
+    cells = table.compute(data).cells
+    assert list(dict.fromkeys(cells.pair)) == copies
+    assert set(graph.job("tables/table_2.csv").inputs["identifications"]) >= {f"B2{end}" for end in ENDS}
+
+
+def test_the_figure_of_one_pair_shows_it_alone_whatever_else_is_compared():
+    compare = {"compare": {"surfaces.B1.rms_nm": [1.5, 2]}, "run": {"pairs": ["a", "b"]}, "figures": {"pair": "b"}}
+    assert {pair for pair, _ in Plan(load(compare)).sensitivities} == {"b"}
+    dry = {"pairs": {"b": {"humidities": [0, 0.5]}}, "run": {"pairs": ["b"]}}
+    assert {pair for pair, _ in Plan(load(dry)).sensitivities} == {"b"}

@@ -197,13 +197,6 @@ def test_a_scheduler_is_woken_once_per_timer(timers, changed, number):
     assert len(timers) == number + 1, "a timer must follow the one that has ended"
 
 
-def test_an_unknown_scheduler_remains_as_it_is():
-    unknown = SimpleNamespace(_open_jobs=threading.Semaphore(0))
-    snakemake_patches.limit_timers(SimpleNamespace(scheduler=unknown))
-    snakemake_patches.limit_timers(SimpleNamespace())
-    assert not hasattr(unknown, "_schedule_reevalutation")
-
-
 VALUES = (1, -0.5, True, None, "text", [1, "two"], {"b": 2, "a": {1}}, (1,), object(), ROOT)
 
 
@@ -219,12 +212,6 @@ def test_parameters_compare_the_same_without_the_import_of_pandas(monkeypatch):
     monkeypatch.delitem(sys.modules, "pandas")
     assert [record._serialize_param_pandas(value) for value in VALUES] == expected
     assert "pandas" not in sys.modules
-
-
-def test_unknown_records_of_parameters_remain_as_they_are(monkeypatch):
-    monkeypatch.delattr(persistence, "PersistenceBase")
-    snakemake_patches.compare_without_pandas()
-    assert not hasattr(persistence, "PersistenceBase")
 
 
 class Unhashable:
@@ -263,19 +250,6 @@ def test_a_signature_is_read_once(signatures):
     assert signatures == [of_attempt, unhashable, unhashable, unhashable]
 
 
-def test_an_unknown_way_to_read_signatures_remains_as_it_is(monkeypatch):
-    def another(func, wildcards):
-        """A way that is not known."""
-
-    monkeypatch.setattr(rules, "get_function_params", another)
-    known = common.get_function_params
-    snakemake_patches.remember_signatures()
-    assert (common.get_function_params, rules.get_function_params) == (known, another)
-    monkeypatch.setattr(common, "get_function_params", another)
-    snakemake_patches.remember_signatures()
-    assert common.get_function_params is rules.get_function_params is another
-
-
 class Rule:
     """Rule with a script."""
 
@@ -303,39 +277,26 @@ def test_a_script_is_looked_for_once_unless_its_name_depends_on_the_job(monkeypa
         assert looked_for == [*jobs[:number], *jobs[-2:]]
 
 
-def test_a_missing_script_is_looked_for_by_every_job(monkeypatch):
-    def process_job(self, job):
-        raise FileNotFoundError(self, job)
-
-    monkeypatch.setattr(dag.ScriptProcessor, "process_job", process_job)
-    snakemake_patches.look_for_scripts_once()
-    processor, job = dag.ScriptProcessor(None), SimpleNamespace(rule=Rule("a.py"))
-    for _ in range(2):
-        with pytest.raises(FileNotFoundError):
-            processor.process_job(job)
+#: Private parts of Snakemake that a plan changes, each with its change.
+CHANGED = [
+    (persistence.PersistenceBase, "_serialize_param_pandas", snakemake_patches.compare_without_pandas),
+    (dag.ScriptProcessor, "process_job", snakemake_patches.look_for_scripts_once),
+    (common, "get_function_params", snakemake_patches.remember_signatures),
+    (rules, "get_function_params", snakemake_patches.remember_signatures),
+]
 
 
-def test_an_unknown_search_for_scripts_remains_as_it_is(monkeypatch):
-    def another(self, jobs):
-        """A search that is not known."""
-
-    monkeypatch.setattr(dag.ScriptProcessor, "process_job", another)
-    snakemake_patches.look_for_scripts_once()
-    assert dag.ScriptProcessor.process_job is another
-    monkeypatch.delattr(dag, "ScriptProcessor")
-    snakemake_patches.look_for_scripts_once()
-    assert not hasattr(dag, "ScriptProcessor")
-
-
-def test_this_version_of_snakemake_plans_with_the_changes(monkeypatch):
-    before = common.get_function_params, dag.ScriptProcessor.process_job
-    for module in (common, rules):
-        monkeypatch.setattr(module, "get_function_params", before[0])
-    monkeypatch.setattr(dag.ScriptProcessor, "process_job", before[1])
-    snakemake_patches.remember_signatures()
-    snakemake_patches.look_for_scripts_once()
-    assert common.get_function_params is rules.get_function_params is not before[0]
-    assert dag.ScriptProcessor.process_job is not before[1]
+@pytest.mark.parametrize(("owner", "name", "change"), CHANGED)
+def test_a_private_part_of_this_version_is_changed_and_an_unknown_one_remains(monkeypatch, owner, name, change):
+    for other, part, _ in CHANGED:  # restored after the test
+        monkeypatch.setattr(other, part, getattr(other, part))
+    known = getattr(owner, name)
+    change()
+    assert getattr(owner, name) is not known
+    if owner is not persistence.PersistenceBase:  # whose values are compared, whatever it takes
+        monkeypatch.setattr(owner, name, another)
+        change()
+        assert getattr(owner, name) is another
 
 
 @pytest.mark.parametrize("module", ["common", "dag", "persistence", "rules", "script"])
@@ -371,23 +332,18 @@ def another(self, fname, debug):
     """A way to start scripts that is not known."""
 
 
-def test_jobs_start_as_before_if_the_server_does_not_start(untouched):
+def test_jobs_start_as_before_if_the_server_does_not_start_or_forks_are_not_safe(untouched, monkeypatch):
+    assert not snakemake_patches.fork_jobs()
+    monkeypatch.setattr(forkserver, "COMMAND", [sys.executable, "-P", "-c", BARE])
+    monkeypatch.setattr(snakemake_patches.sys, "platform", "darwin")
     assert not snakemake_patches.fork_jobs()
     assert PythonScript.execute_script is untouched
 
 
 def test_jobs_start_as_before_if_snakemake_starts_them_in_an_unknown_way(monkeypatch):
-    monkeypatch.setattr(forkserver, "COMMAND", [sys.executable, "-P", "-c", BARE])
     monkeypatch.setattr(PythonScript, "execute_script", another)
     assert not snakemake_patches.fork_jobs()
     assert PythonScript.execute_script is another
-
-
-def test_jobs_start_as_before_where_forks_are_not_safe(untouched, monkeypatch):
-    monkeypatch.setattr(forkserver, "COMMAND", [sys.executable, "-P", "-c", BARE])
-    monkeypatch.setattr(snakemake_patches.sys, "platform", "darwin")
-    assert not snakemake_patches.fork_jobs()
-    assert PythonScript.execute_script is untouched
 
 
 class Stopped:
@@ -418,21 +374,16 @@ SPECIAL = [{name: "set"} for name in PLAIN]
 SPECIAL += [{"threads": 2}, {"resources": {"tmpdir": "/elsewhere"}}, {"resources": {"shell_exec": "zsh"}}]
 
 
-@pytest.mark.parametrize(("special", "plain"), [({}, True), *((each, False) for each in SPECIAL)], ids=str)
-def test_only_scripts_with_the_surroundings_of_the_server_are_forked(special, plain):
+def test_only_scripts_with_the_surroundings_of_the_server_are_forked():
     folder = snakemake_patches.tempfile.gettempdir()
     server = SimpleNamespace(environment=snakemake_patches.environment(1, folder))
-    script = SimpleNamespace(**PLAIN | {"threads": 1, "resources": {"tmpdir": folder}} | special)
-    assert snakemake_patches._plain(script, server) == plain
-
-
-@pytest.mark.parametrize("name", [*PLAIN, "threads", "resources"])
-def test_a_script_about_which_snakemake_no_longer_tells_all_is_not_forked(name):
-    server = SimpleNamespace(environment=snakemake_patches.environment(1, snakemake_patches.tempfile.gettempdir()))
-    script = SimpleNamespace(**PLAIN, threads=1, resources={})
-    assert snakemake_patches._plain(script, server)
-    delattr(script, name)
-    assert not snakemake_patches._plain(script, server)
+    plain = PLAIN | {"threads": 1, "resources": {"tmpdir": folder}}
+    assert snakemake_patches._plain(SimpleNamespace(**plain), server)
+    for special in SPECIAL:
+        assert not snakemake_patches._plain(SimpleNamespace(**plain | special), server), special
+    for name in plain:  # about which Snakemake may no longer tell
+        without = {other: value for other, value in plain.items() if other != name}
+        assert not snakemake_patches._plain(SimpleNamespace(**without), server), name
 
 
 def test_a_server_starts_without_a_module_that_a_library_no_longer_has(monkeypatch):
@@ -472,15 +423,18 @@ def test_the_main_process_is_known_by_snakemake_or_by_its_arguments(monkeypatch,
     assert snakemake_patches.is_main(Workflow(is_main_process=not main)) != main
 
 
-def test_jobs_are_not_forked_where_snakemake_does_not_say_where_they_run():
-    assert not snakemake_patches.runs_here(Workflow())
-    assert snakemake_patches.runs_here(Workflow(local_exec=True))
-
-
 def test_files_of_the_configuration_come_before_those_that_they_overwrite():
     files = ["first.yaml", "second.yaml"]
     found = snakemake_patches.files_of_configuration(
         Workflow(overwrite_configfiles=files, configfiles=[*files, "config.yaml"])
     )
     assert [path.name for path in found] == ["second.yaml", "first.yaml", "config.yaml"]
+
+
+def test_a_workflow_that_says_nothing_runs_without_changes():
+    assert not snakemake_patches.runs_here(Workflow())
     assert snakemake_patches.files_of_configuration(Workflow()) == []
+    unknown = Workflow(_open_jobs=threading.Semaphore(0))
+    snakemake_patches.limit_timers(Workflow(scheduler=unknown))
+    snakemake_patches.limit_timers(Workflow())
+    assert not hasattr(unknown, "_schedule_reevalutation")

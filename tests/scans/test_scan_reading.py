@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from stiction.errors import ScanError
+from stiction.formats.heights import height_channel
 from stiction.scans import reading
 from stiction.scans.reading import Source, read
 from stiction.streams import stream
@@ -167,7 +168,7 @@ CHOICES = {
 
 @pytest.mark.parametrize(("named", "wanted", "expected"), CHOICES.values(), ids=CHOICES)
 def test_the_channel_of_the_heights_is_chosen_by_name(named, wanted, expected):
-    chosen, notes = reading._height_channel(channels(*named), wanted, "scan.spm")
+    chosen, notes = height_channel(channels(*named), wanted, "scan.spm")
     assert chosen.channel_id == expected
     assert bool(notes) == (wanted is None and len([name for name, _ in named if "Height" in name]) > 1)
     assert all(note.startswith(f"scan.spm: channel {expected} was read; the file also has ") for note in notes)
@@ -191,7 +192,7 @@ REFUSED_CHANNELS = {
 @pytest.mark.parametrize(("named", "wanted", "reason"), REFUSED_CHANNELS.values(), ids=REFUSED_CHANNELS)
 def test_without_one_channel_of_heights_the_file_is_refused_with_the_list(named, wanted, reason):
     with pytest.raises(ScanError, match=reason) as caught:
-        reading._height_channel(channels(*named), wanted, "scan.spm")
+        height_channel(channels(*named), wanted, "scan.spm")
     assert (caught.value.key, caught.value.file) == ("channel", "scan.spm")
 
 
@@ -229,8 +230,6 @@ def bad_files(folder):
     return {
         "empty.spm": b"",
         "nonsense.txt": b"nothing in here is a height\n" * 9,
-        "table.csv": b"1.0,2.0,3.0,4.0\n" * 40,
-        "commas.txt": b"1,5 2,5 3,5\n" * 40,
         "picture.png": b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 4,
         "square.spm": bytes(2 * 64 * 64),
         "profile.xyz": profile.encode(),
@@ -244,8 +243,6 @@ BAD = {
     "missing.spm": (Source(), "files", "cannot be opened: No such file or directory"),
     "empty.spm": (GIVEN, "files", "is empty"),
     "nonsense.txt": (GIVEN, "files", "cannot be read as any known format, or is damaged"),
-    "table.csv": (GIVEN, "files", "cannot be read as any known format, or is damaged"),
-    "commas.txt": (GIVEN, "files", "cannot be read as any known format, or is damaged"),
     "picture.png": (GIVEN, "files", "cannot be read as any known format, or is damaged"),
     "square.spm": (GIVEN, "files", "cannot be read as any known format, or is damaged"),
     "half.gwy": (Source(), "files", "cannot be read as any known format, or is damaged [(]The file has .* truncated"),
@@ -410,22 +407,22 @@ def test_lines_that_a_scan_did_not_reach_are_undefined_and_told(tmp_path, axis):
     assert read(written(tmp_path, "gwy", topography())).notes == ()
 
 
-LIBRARY = reading._library("a.spm")
+LIBRARY, GWYDDION = reading._library("a.spm"), "; open it in Gwyddion and save it as .gwy"
 
 
 @pytest.mark.parametrize(
     ("reason", "quoted"),
     [("truncated.\nat byte 7", " (truncated)"), ("x" * 121, ""), ("", ""), ("x" * 120, f" ({'x' * 120})")],
 )
-def test_an_error_of_the_library_is_quoted_by_its_first_line_if_that_is_short(tmp_path, reason, quoted):
-    error = reading._unreadable(LIBRARY, tmp_path / "a.spm", LIBRARY.error(reason))
-    assert str(error) == f"files: a.spm cannot be read as any known format, or is damaged{quoted}"
+def test_an_error_of_the_library_is_quoted_by_its_first_line_if_that_is_short(reason, quoted):
+    error = reading._unreadable(LIBRARY, "a.spm", LIBRARY.error(reason))
+    assert str(error) == f"files: a.spm cannot be read as any known format, or is damaged{quoted}{GWYDDION}"
 
 
 @pytest.mark.parametrize("error", [IndexError("list index out of range"), KeyError("wave"), MemoryError(), None])
-def test_errors_from_inside_the_library_are_not_quoted(tmp_path, error):
-    refused = reading._unreadable(LIBRARY, tmp_path / "a.spm", error)
-    assert str(refused) == "files: a.spm cannot be read as any known format, or is damaged"
+def test_errors_from_inside_the_library_are_not_quoted(error):
+    refused = reading._unreadable(LIBRARY, "a.spm", error)
+    assert str(refused) == f"files: a.spm cannot be read as any known format, or is damaged{GWYDDION}"
 
 
 def test_what_libraries_print_log_and_warn_of_is_not_shown(capfd, caplog):
@@ -490,7 +487,10 @@ def test_damage_that_shows_only_later_is_told_in_the_same_sentence(tmp_path, mon
         (SurfaceTopography.Exceptions.CorruptFile("File is too short."), r" [(]File is too short[)]"),
     ):
         monkeypatch.setattr(reading, "_opened", lambda *_, error=error: Damaged(where, error))
-        with pytest.raises(ScanError, match=f"^files: a.tiff cannot be read as any .* or is damaged{quoted}$"):
+        with pytest.raises(
+            ScanError,
+            match=f"^files: a.tiff cannot be read as any .* or is damaged{quoted}{GWYDDION}$",
+        ):
             read(path)
 
 

@@ -82,7 +82,7 @@ def test_scans_are_evaluated_without_a_pair(planner, tmp_path):
     overlay = tmp_path / "mine.yaml"
     overlay.write_text(yaml.safe_dump({"surfaces": {"Etched": {"scans": {"files": [good.name]}}}}))
     rules = {rule for rule, _ in planner.outputs("scans", "--directory", tmp_path, config=[overlay]).values()}
-    assert rules == {"scan", "estimate", "heights_of_scans", "spectrum_of_scans", "surface_sheet", "table_scans"}
+    assert rules == {"scan", "estimate", "surface_sheet", "table_scans"}
 
 
 @pytest.fixture(scope="module")

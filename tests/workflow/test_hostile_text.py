@@ -42,7 +42,7 @@ def test_a_report_runs_no_code_of_a_study_and_shows_its_text(folder):
     assert not [script for script in scripts if script.lstrip().startswith("alert")]
     (front,) = re.findall(r"^ *var workflow_desc = (.*);$", page, re.MULTILINE)
     shown = Reading(json.loads(front))
-    assert {*shown.code} == {code for code in shown.code if code.startswith("new ButtonViewManager(app)")}
+    assert shown.code == []
     assert f"Scans of Mine: {HOSTILE_FILE}" in shown.text["li"]
     assert f"pair b: {HOSTILE}" in shown.text["li"]
     assert HOSTILE in shown.text["p"]

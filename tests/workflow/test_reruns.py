@@ -488,10 +488,25 @@ def test_a_changed_module_reruns_the_rules_that_use_it(tree, path, must, must_no
 def test_a_figure_style_redraws_all_figures_and_nothing_else(tree):
     tree.append("src/stiction/report/stiction.mplstyle", "\nlines.linewidth: 2\n")
     drawn = {f"results/figures/{path.name}" for path in (tree.folder / "results" / "figures").iterdir()}
-    pages = {f"results/devices/{path.name}" for path in (tree.folder / "results" / "devices").glob("*.html")}
-    assert set(tree.rerun()) == drawn | pages
+    assert set(tree.rerun()) == drawn | pages(tree)
     assert len(drawn) > 20
-    assert pages
+
+
+def pages(tree):
+    """Pages of devices and their answers."""
+    folder = tree.folder / "results" / "devices"
+    found = {f"results/devices/{path.name}" for end in ("html", "txt") for path in folder.glob(f"*.{end}")}
+    assert len(found) >= 2
+    return found
+
+
+@pytest.mark.parametrize("template", ["templates/style.css", "templates/table.html", "devices/terms.yaml"])
+def test_a_template_writes_its_tables_and_pages_again_and_nothing_else(tree, template):
+    tree.append(f"src/stiction/report/{template}", "\n")
+    tables = {f"results/tables/{path.name}" for path in (tree.folder / "results" / "tables").iterdir()}
+    has_tables, has_pages = "templates/" in template, template != "templates/table.html"
+    assert set(tree.rerun()) == (tables if has_tables else set()) | (pages(tree) if has_pages else set())
+    assert len(tables) > 20
 
 
 @pytest.mark.slow

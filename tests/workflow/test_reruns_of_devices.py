@@ -43,11 +43,13 @@ READ_BY = {
     "device_warnings": "table_safe_lengths figure_risk table_chart figure_chart table_stoppers figure_stoppers"
     " device_limits device_page",
     "cracks": "safe_lengths",
-    "safe_lengths": "table_safe_lengths figure_risk device_warnings device_page",
+    "safe_lengths": "table_safe_lengths figure_risk device_warnings device_page life",
+    "touchdowns": "life",
+    "life": "table_life figure_life device_page",
     "chart": "table_chart figure_chart device_warnings device_page",
     "tip_slope_contact": "tip_budget",
     "tip_choice_contact": "tip_budget",
-    "stoppers": "table_stoppers figure_stoppers device_page",
+    "stoppers": "table_stoppers figure_stoppers device_page life",
     "budget": "table_budget figure_budget device_page",
     "tip_budget": "table_budget figure_budget device_page",
 }
@@ -64,11 +66,15 @@ BODY = "surfaces: {B2: {material: Other}}\nmaterials: {Other: "
 #: their files do not depend on it; pattern of files that must not rerun.
 MATRIX = [
     ("restoring force", "devices: {S1: {restoring_force_uN: 30}}", "stoppers", (), "C1|R1|budget"),
-    ("uncertainty of a dimension", "devices: {C1: {uncertainty: {gap_um: 0.5}}}", "budget tip_budget", (),
+    ("uncertainty of a dimension", "devices: {C1: {uncertainty: {gap_um: 0.5}}}", "budget tip_budget life", (),
      "R1|S1|contact|chart"),
+    ("tension of a liquid", "liquids: {Mine: {surface_tension_mN_per_m: 30}}", "life", (), "S1|contact|cracks|safe"),
+    ("number of touchdowns", "devices: {C1: {touchdowns: 10}}", "touchdowns", (), "R1|S1|contact|cracks|safe"),
     ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget tip_budget", (), "R1|S1|contact|chart"),
     ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget", (),
      "C1|R1|slopes/contact|stoppers"),
+    ("a quantity of a surface becomes uncertain", "surfaces: {B2: {uncertainty: {skewness: 0.1}}}",
+     "device_slope_contact device_choice_summits budget tip_budget", (), "heights|spectrum/|cracks|safe_lengths|chart|devices/stoppers"),
     ("another property of the solids becomes uncertain", "devices: {S1: {uncertainty: {poisson_ratio: 0.02}}}",
      "solid_contact budget", (), "C1|R1|modulus|hamaker|slopes|choices|heights|spectrum|contact/b|stoppers"),
     ("another property of the solids of a cantilever becomes uncertain",
@@ -126,6 +132,7 @@ FURTHER = {
     "gap of a beam",
 }
 FURTHER |= {"humidities of a chart", "width of a beam", "strips of a beam", "stress in a bridge", "hardness of a body"}
+FURTHER |= {"tension of a liquid", "number of touchdowns"}
 FURTHER |= {"Hamaker constant of a body", "uncertainty of a property of the solids"}
 FURTHER |= {"another property of the solids of a cantilever becomes uncertain"}
 ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)) for name, *row in MATRIX]
@@ -135,7 +142,11 @@ LAYOUTS = {
     "stages/devices/budget": {"budget", "tip_budget"},
     "stages/devices/chart": {"chart"},
 }
-LAYOUTS |= {"stages/devices/cracks": {"cracks", "safe_lengths"}, "stages/devices/safe_lengths": {"safe_lengths"}}
+LAYOUTS |= {
+    "stages/devices/cracks": {"cracks", "safe_lengths"},
+    "stages/devices/safe_lengths": {"safe_lengths", "touchdowns"},
+}
+LAYOUTS |= {"stages/devices/life": {"life"}}
 
 
 def behind(rules):

@@ -38,12 +38,13 @@ def code(file):
 
 def validated():
     """Preliminary numbers of the measured surfaces of a valid configuration, and the sections that follow from them."""
-    from stiction.config.grid import completed
+    from stiction.config.surfaces.grid import completed
     from stiction.config.validation import validate
 
     preliminary = validate(config, kept=".snakemake/scans")
-    complete = completed(config, preliminary)
-    return [preliminary, {key: complete[key] for key in complete if complete[key] != config[key]}]
+    normal = files.normalised(config)
+    complete = completed(normal, preliminary)
+    return [preliminary, {key: complete[key] for key in complete if complete[key] != normal[key]}]
 
 
 def rules_of_the_configuration():
@@ -51,7 +52,7 @@ def rules_of_the_configuration():
     folder = PACKAGE / "config"
     modules = [
         code(folder / f"{name}.py")
-        for name in ("validation", "grid", "keys", "relations", "relations_devices", "messages")
+        for name in ("validation", "surfaces/grid", "keys", "meetings", "relations", "relations_devices", "messages")
     ]
     return [*modules, (folder / "schema.yaml").read_text(encoding="utf-8")]
 
@@ -70,6 +71,7 @@ try:
 except messages.ConfigError as error:
     raise WorkflowError(f"The configuration is invalid:\n{error}")
 
+config.update(files.normalised(config))
 config.update(following)
 config.update(files.normalised(config))
 remember_jobs = DiskCache(".snakemake/jobs.json")
@@ -162,6 +164,11 @@ def of_job(rule, key):
 
 #: Memory of a job that draws the largest field [MB].
 MEMORY = memory.of_job(config)
+
+
+def seconds_of(rule):
+    """Function of wildcards that gives the estimated CPU time of a job [s]."""
+    return lambda wildcards: round(planner.job(rule["name"], wildcards)["seconds"])
 
 
 def memory_of(rule):

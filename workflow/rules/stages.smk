@@ -18,6 +18,7 @@ for declared in planner.rules:
         resources:
             runtime=declared["minutes"],
             mem_mb=memory_of(declared),
+            cpu_s=seconds_of(declared),
         params:
             module=declared["module"],
             inputs=of_job(declared, "inputs"),

@@ -20,7 +20,7 @@ from scipy.special import eval_hermitenorm
 
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.surface.empirical import MeasuredDensity
-from stiction.surface.feasible import largest_kurtosis
+from stiction.surface.feasible import largest_kurtosis, least_kurtosis
 from stiction.surface.spectrum import CutoffSelfAffine, Spectrum
 
 #: Orders k of the modes. ASSUME: higher ones change only heights beyond those that touch or that a scan determines.
@@ -49,9 +49,10 @@ class Description:
 def bracketed(surface: Description, quantity: str) -> tuple[tuple[Description, Description], float]:
     """Two surfaces that differ in one quantity, around the given one, and the difference of that quantity.
 
-    ASSUME: where no surface has the increased quantity, both values are lower, so that the slope is that of a near
-    surface. This concerns skewness and kurtosis of nearly Gaussian heights, whose kurtosis is the largest that is
-    feasible, a corner at the cut-off and a flat spectrum.
+    ASSUME: where no surface has the increased quantity, both values are lower, and where none has the decreased one,
+    both are higher, so that the slope is that of a near surface. This concerns skewness and kurtosis of nearly Gaussian
+    heights, whose kurtosis is the largest that is feasible, and of heights with two levels, whose kurtosis is the
+    least, a corner at the cut-off and a flat spectrum.
 
     Parameters
     ----------
@@ -82,12 +83,13 @@ def value_of(surface: Description, quantity: str) -> float:
 def with_value(surface: Description, quantity: str, value: float) -> Description:
     """A surface with another rms [m], skewness, or corner of its spectrum [rad m⁻¹], and its form otherwise.
 
-    ASSUME: a skewness at which no surface has the kurtosis comes with the largest one that is feasible.
+    ASSUME: a skewness at which no surface has the kurtosis comes with the nearest one that is feasible.
     """
     if quantity == "corner":
         return replace(surface, spectrum=_bent(surface.spectrum, value, 0.0))
     if quantity == "skewness":
-        return replace(surface, skewness=value, kurtosis=min(surface.kurtosis, largest_kurtosis(abs(value))))
+        kurtosis = max(min(surface.kurtosis, largest_kurtosis(abs(value))), least_kurtosis(value))
+        return replace(surface, skewness=value, kurtosis=kurtosis)
     return replace(surface, rms=value)
 
 
@@ -95,12 +97,13 @@ def moved(surface: Description, errors: Mapping[str, float]) -> Description:
     """A surface whose quantities err by amounts, in the units of `bracketed`.
 
     ASSUME: modes are added one after the other, which differs from their sum at second order. A kurtosis and a corner
-    that no surface has come with their largest value.
+    that no surface has come with their nearest one.
     """
     changed = replace(surface, rms=float(np.exp(np.log(surface.rms) + errors["rms"]))) if "rms" in errors else surface
     if "skewness" in errors or "kurtosis" in errors:
         skewness, kurtosis = (getattr(surface, name) + errors.get(name, 0.0) for name in ("skewness", "kurtosis"))
-        changed = replace(changed, skewness=skewness, kurtosis=min(kurtosis, largest_kurtosis(abs(skewness))))
+        kurtosis = max(min(kurtosis, largest_kurtosis(abs(skewness))), least_kurtosis(skewness))
+        changed = replace(changed, skewness=skewness, kurtosis=kurtosis)
     for name in MODE_QUANTITIES[1:]:
         if name in errors:
             changed = _mode(changed, errors[name], ORDERS[MODE_QUANTITIES.index(name) - 1])[1]
@@ -111,9 +114,9 @@ def moved(surface: Description, errors: Mapping[str, float]) -> Description:
     return changed
 
 
-def _around(value, step, largest=np.inf):
-    """Two values a step below and above the given one, or below the largest one."""
-    centre = min(value, largest - step)
+def _around(value, step, largest=np.inf, least=-np.inf):
+    """Two values a step below and above the given one, or below the largest or above the least one."""
+    centre = max(min(value, largest - step), least + step)
     return centre - step, centre + step
 
 
@@ -122,13 +125,15 @@ def _rms(surface, step):
 
 
 def _skewness(surface, step):
-    kurtosis = min(surface.kurtosis, largest_kurtosis(max(abs(surface.skewness) - step, 0.0)))
+    size = abs(surface.skewness)
+    kurtosis = max(min(surface.kurtosis, largest_kurtosis(max(size - step, 0.0))), least_kurtosis(size + step))
     return [replace(surface, skewness=at, kurtosis=kurtosis) for at in _around(surface.skewness, step)]
 
 
 def _kurtosis(surface, step):
-    largest = largest_kurtosis(abs(surface.skewness))
-    return [replace(surface, kurtosis=at) for at in _around(surface.kurtosis, step, largest)]
+    size = abs(surface.skewness)
+    values = _around(surface.kurtosis, step, largest_kurtosis(size), least_kurtosis(size))
+    return [replace(surface, kurtosis=at) for at in values]
 
 
 def _mode(surface, step, order):

@@ -351,14 +351,16 @@ def _points(beam, laws):
     Raises
     ------
     ValueError
-        If a coefficient is negative or not finite, or the number of laws is no multiple of the number of elements.
+        If a coefficient other than d_max is negative, one is not finite, or the number of laws is no multiple of that
+        of elements.
     """
     points, rest = divmod(len(laws), beam.elements)
     if rest:
         raise ValueError(f"{len(laws)} laws do not spread evenly over {beam.elements} elements")
-    broken = ~np.all(np.isfinite(laws) & (laws >= 0), axis=1)
+    # Summits of soft or skewed surfaces can attract most where the mean planes are below each other, d_max < 0.
+    broken = ~(np.isfinite(laws).all(axis=1) & (laws[:, [0, 2, 3]] >= 0).all(axis=1))
     if broken.any():
-        raise ValueError(f"law {broken.argmax()} has a negative or no value: {laws[broken.argmax()]}")
+        raise ValueError(f"law {broken.argmax()} has no value, or a negative one: {laws[broken.argmax()]}")
     return hermite((np.arange(points) + 0.5) / max(points, 1))
 
 
@@ -415,7 +417,8 @@ def equilibrate(
     Raises
     ------
     ValueError
-        If a coefficient is negative or not finite, or the number of laws is no multiple of the number of elements.
+        If a coefficient other than d_max is negative, one is not finite, or the number of laws is no multiple of that
+        of elements.
     NotConverged
         If no equilibrium is found.
     """

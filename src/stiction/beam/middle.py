@@ -18,6 +18,7 @@ from stiction.beam.equilibrium import (
     newton_step,
     next_viscosity,
 )
+from stiction.beam.release import touching
 from stiction.beam.tension import add_tension, end_stiffness
 from stiction.errors import NotConverged
 from stiction.kernels import kernel
@@ -140,9 +141,8 @@ def shortest_held(zone: Beam, laws: np.ndarray, longest: float) -> float:
     laws = np.ascontiguousarray(laws, float)
     mesh = mesh_of(zone, laws, 0.0, 0.0)
     tolerance = allowed_imbalance(zone, laws[:, 0].mean() * mesh.area)
-    rest = np.mean(laws[:, 1] - np.log(2) / laws[:, 2])  # f(rest) = 0 for the mean law
     start = np.zeros(2 * zone.elements + 2)
-    start[::2] = zone.gap - rest
+    start[::2] = zone.gap - touching(laws)
     arm, end = _shorten(start, laws, mesh, (longest - zone.length) / 2 / zone.element_length, tolerance)
     if end == _OPEN:
         raise NotConverged("equilibrium of the middle of a bridge [N]", np.nan, tolerance, MAX_ITERATIONS)

@@ -59,7 +59,7 @@ def s_shape(beam: Beam, depth: float, crack: float) -> np.ndarray:
     return depth * np.stack([s**2 * (3 - 2 * s), 6 * s * (1 - s) / crack], axis=-1)
 
 
-def _touching(laws):
+def touching(laws: np.ndarray) -> float:
     """Distance at which a flat beam starts [m]: f = 0 for the mean law, or farther where that presses some law too far.
 
     Laws of rough surfaces differ in d_max by many lengths 1/a, over each of which the repulsion grows by e².
@@ -71,7 +71,7 @@ def _touching(laws):
 def _release_from(beam, laws, crack):
     """Equilibrium of a beam that first adheres to the ground beyond a crack of this length [m]."""
     held = int(np.searchsorted(beam.nodes, crack, side="right")) - 1
-    start = s_shape(beam, beam.gap - _touching(laws), beam.nodes[held])
+    start = s_shape(beam, beam.gap - touching(laws), beam.nodes[held])
     return equilibrate(beam, laws, start, held=held)
 
 

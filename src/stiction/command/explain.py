@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from stiction.command.run_state import Job, Run
+from stiction.plan import cost
 
 #: A reason of Snakemake, by its first words, and what it says.
 _REASONS = {
@@ -28,11 +29,17 @@ def explained(run: Run) -> Iterator[str]:
         yield "Nothing would be computed: all results are up to date."
         return
     causes = Counter((job.rule, "; ".join(reasons(job))) for job in jobs)
-    yield f"{len(jobs)} jobs would run."
+    yield f"{len(jobs)} jobs would run{_cost(jobs)}."
     yield from run.warnings
     for cause in sorted({cause for _, cause in causes}, key=lambda cause: (not cause, cause)):
         rules = Counter({rule: number for (rule, why), number in causes.items() if why == cause})
         yield f"{cause or 'follow from the jobs above'}: {counted(rules)}"
+
+
+def _cost(jobs):
+    """CPU time and memory of jobs, for the end of a sentence; nothing if they are not known."""
+    seconds = sum(job.seconds for job in jobs)
+    return f", {cost.in_words(seconds, max(job.megabytes for job in jobs))}" if seconds else ""
 
 
 def counted(rules: Counter) -> str:

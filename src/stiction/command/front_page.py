@@ -5,10 +5,7 @@ page only as characters: HTML shows it as it is, and Jinja finds no brace in it.
 """
 
 import csv
-import json
-import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from html import escape, unescape
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -16,8 +13,10 @@ from typing import Any
 import yaml
 
 from stiction.config.cases import air
-from stiction.config.files import paper
+from stiction.config.reading import paper
+from stiction.plan.graph import stages
 from stiction.report.format import with_error
+from stiction.report.html import rendered
 from stiction.run.markdown import plain
 from stiction.run.provenance import code_of, recorded, started
 
@@ -25,35 +24,26 @@ from stiction.run.provenance import code_of, recorded, started
 FRONT = Path(".snakemake", "front.rst")
 #: Braces as HTML reads them, but not Jinja.
 _BRACES = str.maketrans({"{": "&#123;", "}": "&#125;"})
-#: Results of the report to open first, below ``results/``, and what each is; those of devices only if there are any.
-_OF_DEVICES = {
-    "tables/safe_lengths.html": "Safe lengths",
-    "tables/stoppers.html": "Forces of stoppers",
-    "figures/risk.png": "Share of stuck devices over their length",
-}
-_OF_PAIRS = {
-    "tables/table_3.html": "Table III: crack lengths and adhesion energies",
-    "figures/overview.png": "Overview: from surfaces to crack lengths",
-    "tables/scans.html": "Scans and their statistics",
-    "tables/table_1.html": "Table I: statistics of the surfaces",
-}
-#: Opens a result as its button in the menu does.
-_OPEN = "new ButtonViewManager(app).handleSelectedResult({path}).props.onClick(); return false"
+#: Stages whose results to open first: those of devices, if there are any, and of pairs.
+_OF_DEVICES = ("device_page", "table_safe_lengths", "table_stoppers", "figure_risk")
+_OF_PAIRS = ("table_3", "figure_overview", "table_scans", "table_1")
 
 
 def front_page(results: Path) -> str:
     """Front page of the results of a finished run, as Snakemake takes it: HTML within reStructuredText."""
     runs = recorded(results / "provenance.json")
     last, config = runs[-1], runs[-1]["config"]
-    sections = {
-        f"Results of {' and '.join(_subjects(config))}": _list(answers(results, config)),
-        "Open first": _list(_links(results, config), escaped=False),
-        **({"Checks": _paragraph(_text(results / "verdict.txt"))} if config["run"]["pairs"] else {}),
-        "Warnings": _list(_warnings(results, config)) or _paragraph("No result is beyond the limits of the model."),
-        "Provenance": _list(provenance(last, len(runs))),
-        "Configuration": _configuration(config),
-    }
-    page = "\n".join(f"<h2>{escape(title)}</h2>\n{body}" for title, body in sections.items())
+    changes = differing(config, paper())
+    page = rendered(
+        "front.html",
+        subjects=" and ".join(_subjects(config)),
+        answers=answers(results, config),
+        opened=_opened(results, config),
+        checks=_text(results / "verdict.txt").strip() if config["run"]["pairs"] else None,
+        warnings=list(_warnings(results, config)),
+        provenance=provenance(last, len(runs)),
+        changes=yaml.safe_dump(changes, allow_unicode=True, sort_keys=False) if changes else "",
+    )
     indented = "\n".join(f"   {line}" for line in page.splitlines())
     return f".. raw:: html\n\n{indented.translate(_BRACES)}\n"
 
@@ -80,8 +70,7 @@ def _subjects(config):
 def answers(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
     """What the results say about every device and every pair, a sentence each."""
     for name in config.get("devices", {}):
-        page = _text(results / "devices" / f"{name}.html")
-        yield f"Device {name}: {unescape(re.search('<strong>(.*?)</strong>', page).group(1))}"
+        yield f"Device {name}: {_text(results / 'devices' / f'{name}.txt').splitlines()[0]}"
     if not config["run"]["pairs"]:
         return
     rows = csv.DictReader(_text(results / "tables" / "table_3.csv").splitlines())
@@ -112,14 +101,15 @@ def _ends(row):
     return f"{where}: {100 * stuck:.3g} % stick behind a crack of {crack} µm"
 
 
-def _links(results, config):
-    """Links to the results to open first."""
-    devices = {f"devices/{name}.html": f"Device {name}: what to build" for name in config.get("devices", {})}
-    shown = (devices | _OF_DEVICES if devices else {}) | (_OF_PAIRS if config["run"]["pairs"] else {})
-    for path, title in shown.items():
-        if (results / path).exists():
-            opens = _OPEN.format(path=json.dumps(f"results/{path}"))
-            yield f'<a href="#" onclick="{escape(opens)}">{escape(title)}</a>'
+def _opened(results, config):
+    """Results to open first, by category and title in the menu of the report."""
+    devices = config.get("devices", {})
+    for name in (*(_OF_DEVICES if devices else ()), *(_OF_PAIRS if config["run"]["pairs"] else ())):
+        stage, _ = stages()[name]
+        file, title = stage.files[stage.shown.file], stage.shown.title
+        for device in devices if "{device}" in file else [""]:
+            if (results / file.format(device=device)).exists():
+                yield f"{stage.shown.category} › {title.format(device=device)}"
 
 
 def _warnings(results, config):
@@ -144,15 +134,6 @@ def provenance(run: Mapping[str, Any], number: int) -> Iterator[str]:
             yield f"Scans of {name}: {', '.join(Path(file).name for file in surface['scans']['files'])}"
 
 
-def _configuration(config):
-    """Keys of a configuration that differ from those of the paper."""
-    changes = differing(config, paper())
-    if not changes:
-        return _paragraph("That of the paper.")
-    text = yaml.safe_dump(changes, allow_unicode=True, sort_keys=False)
-    return f"{_paragraph('Keys that differ from those of the paper:')}\n<pre>{escape(text)}</pre>"
-
-
 def differing(config: Mapping[str, Any], base: Mapping[str, Any]) -> dict[str, Any]:
     """Keys of nested sections whose values differ from those of others.
 
@@ -167,13 +148,3 @@ def differing(config: Mapping[str, Any], base: Mapping[str, Any]) -> dict[str, A
         for key, value, other in pairs
         if value != other
     }
-
-
-def _paragraph(text):
-    return f"<p>{escape(text.strip())}</p>"
-
-
-def _list(sentences: Iterable[str], escaped: bool = True) -> str:
-    """Sentences, or HTML, below each other; empty without any."""
-    items = "\n".join(f"<li>{escape(sentence) if escaped else sentence}</li>" for sentence in sentences)
-    return f"<ul>\n{items}\n</ul>" if items else ""

@@ -8,10 +8,10 @@ import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from stiction.command import explain, launch, streams
+from stiction.command import explain, launch, output_streams
 from stiction.command.last_lines import PRINTED, Status, fault, last_lines, status
+from stiction.command.output_streams import say
 from stiction.command.run_state import RUN
-from stiction.command.streams import say
 from stiction.config import reading
 from stiction.config.messages import ConfigError
 from stiction.models import SIDES
@@ -26,7 +26,7 @@ below the current folder or --directory. Everything after -- is passed to Snakem
 
 def main(words: Sequence[str] | None = None) -> int:
     """Run a command, and return its exit status."""
-    streams.open_closed()
+    output_streams.open_closed()
     words, log = list(sys.argv[1:] if words is None else words), PRINTED
     try:
         arguments = _parsed(words)
@@ -113,8 +113,10 @@ def _init(arguments):
     """Write a study, or a table of test beams."""
     if arguments.test_beams:
         return _init_test_beams(Path(arguments.directory) / "test_beams.csv")
+    from stiction.command import editor_schema  # imports the physics
+
     target = Path(arguments.directory) / "study.yaml"
-    schema = launch.PACKAGE / "config" / "schema.json"
+    schema = editor_schema.text()
     _write({target: Path(__file__).with_name("study.yaml"), target.with_name("stiction.schema.json"): schema})
     say(f"{target} describes a surface, a pair and a beam: change them into yours. Then")
     word = shlex.quote(str(target))
@@ -161,10 +163,13 @@ def _check(arguments):
     from stiction.run.disk_cache import DiskCache
     from stiction.run.fingerprint import fingerprint
 
-    config, shown = load(*arguments.files), DiskCache(Path(arguments.directory, ".snakemake", "pilot.json"))
+    directory = Path(arguments.directory)
+    launch.require_folder(directory)
+    config, shown = load(*arguments.files), DiskCache(directory / ".snakemake" / "pilot.json")
     code = fingerprint(pilot.__file__, shown)
     problems = pilot.problems(config, preliminary_estimates(config)[0], code, shown)
-    shown.save()
+    if directory.is_dir():
+        shown.save()
     if problems:
         raise ConfigError(*map(str, problems))
     pairs, devices = config["run"]["pairs"], config.get("devices", {})
@@ -172,6 +177,7 @@ def _check(arguments):
     named = {f"pair{'s' * (len(pairs) > 1)}": pairs, "devices": devices, "scans of": scanned}
     parts = [f"{what} {', '.join(names)}" for what, names in named.items() if names]
     say(f"{' '.join(arguments.files)} can run: {' and '.join(parts) or 'nothing'}.")
+    say(f"It takes {_cost(config)}, as far as no result is there yet.")
     of_pairs = {name: {pair[side] for side in SIDES} for name, pair in config["pairs"].items()}
     if long := [name for name, device in devices.items() if of_pairs[device["pair"]] & {*scanned}]:
         say(
@@ -179,6 +185,18 @@ def _check(arguments):
             "takes most of the time. Without it: stiction run FILE -- results/tables/safe_lengths.md (or stoppers.md)"
         )
     return Status.DONE
+
+
+def _cost(config):
+    """CPU time and memory of the whole run of a configuration, in words."""
+    from stiction.config.scans import preliminary_estimates
+    from stiction.plan import cost, memory
+    from stiction.plan.graph import Graph
+    from stiction.plan.plan import Plan
+
+    preliminary, _ = preliminary_estimates(config)
+    jobs = Graph(Plan(config, preliminary)).needed("tables", "figures", "devices", "all")
+    return cost.in_words(sum(job.seconds for job in jobs), memory.of_job(config))
 
 
 def _run(arguments, *targets):
@@ -217,7 +235,21 @@ def _scans(arguments):
 
     if not any(map(scans.has_scans, reading.contents(arguments.files, arguments.more))):
         raise launch.RefusedError(f"{' '.join(arguments.files)} describes no surface by scans: add surfaces.NAME.scans")
-    return _run(arguments, "scans")
+    if any(word.startswith("--configfile") for word in arguments.more):
+        return _run(arguments, "scans")  # files that Snakemake reads
+    from stiction.command import scans_alone
+
+    launch.require_folder(directory := Path(arguments.directory))
+    found = scans_alone.alone(arguments.files, directory)
+    arguments.files, ended = [found.write(directory)], Status.DONE
+    if found.overlay["surfaces"]:
+        arguments.more = ["--keep-going", *arguments.more]
+        ended = _run(arguments, "scans")
+    for name, (entry, reasons) in found.refused.items():
+        say(f"{name} cannot be estimated: {'; '.join(reasons)}")
+        if not arguments.dry_run:
+            say(f"  sheet: {scans_alone.draw_refused(name, entry, reasons, directory / 'results')}")
+    return ended
 
 
 def _figures(arguments):

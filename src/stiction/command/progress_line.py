@@ -6,8 +6,8 @@ import time
 from collections.abc import Iterator
 from typing import TextIO
 
+from stiction.command.output_streams import put
 from stiction.command.run_state import Run
-from stiction.command.streams import put
 
 #: Time between two lines of a file, and between two drawings on a terminal [s].
 _APART, _REDRAWN = 30.0, 1.0

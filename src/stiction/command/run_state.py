@@ -46,6 +46,8 @@ class Job:
     reason: str  #: why Snakemake runs the job
     logs: tuple[str, ...]
     started: float  #: seconds since the epoch
+    seconds: float = 0.0  #: estimate of its CPU time [s]
+    megabytes: float = 0.0  #: memory that it requests [MB]
 
 
 @dataclass
@@ -136,7 +138,9 @@ class Run:
         """A job starts, perhaps for the second time."""
         logs = tuple(map(str, record.log))
         message = " ".join(str(record.rule_msg or record.rule_name).split())
-        self.jobs[record.jobid] = Job(record.rule_name, message, str(record.reason), logs, record.created)
+        asked = getattr(record, "resources", None) or {}
+        costs = (float(asked.get(name, 0)) for name in ("cpu_s", "mem_mb"))
+        self.jobs[record.jobid] = Job(record.rule_name, message, str(record.reason), logs, record.created, *costs)
         self.failures.pop(record.jobid, None)
 
     def _hear_end(self, record):

@@ -7,13 +7,10 @@ from typing import Any
 
 from stiction.config import test_beams
 from stiction.config.cases import in_numbers
-from stiction.config.memory import GRID
 from stiction.config.merging import expanded, merged
-from stiction.config.reading import read
+from stiction.config.reading import PAPER, paper, read
 from stiction.config.scans import complete, resolve_scan_paths
-
-#: Configuration of the paper: a copy of ``config.yaml`` in the root folder, which users may edit.
-PAPER = Path(__file__).with_name("paper.yaml")
+from stiction.config.surfaces import described
 
 
 def load(*overlays: str | Path | Mapping) -> dict:
@@ -36,12 +33,18 @@ def load(*overlays: str | Path | Mapping) -> dict:
     {'pairs': ['b']}
     """
     # Imports the physics, which reading alone does not need.
-    from stiction.config.grid import completed
+    from stiction.config.surfaces.grid import completed
     from stiction.config.validation import validate
 
+    config = joined(*overlays)
+    estimates = validate(config)
+    return normalised(completed(normalised(config), estimates))
+
+
+def joined(*overlays: str | Path | Mapping) -> dict:
+    """Configuration of the paper, changed by overlays as in `load`, as it is: neither checked nor in normal form."""
     changes = (_in_memory(one) if isinstance(one, Mapping) else located(one) for one in overlays)
-    config = expanded(functools.reduce(merged, changes, read(PAPER)))
-    return normalised(completed(config, validate(config)))
+    return expanded(functools.reduce(merged, changes, read(PAPER)))
 
 
 def _in_memory(overlay):
@@ -75,23 +78,17 @@ def located(path: str | Path) -> dict:
     return test_beams.with_files(resolve_scan_paths(content, content, folder), content, folder)
 
 
-@functools.cache
-def paper() -> dict:
-    """Complete configuration of the paper, read once; not to be changed."""
-    config = read(PAPER)
-    return config | {"sampling": GRID | config["sampling"]}
-
-
 def normalised(config: dict) -> dict:
     """Complete and valid configuration in normal form: equivalent settings are equal, whatever their order in the file.
 
     Keys are sorted, so that the parameters of a rule do not depend on their order. The humidities of each pair and
-    device are sorted as well, so that tables and curves begin with the lowest. Measured surfaces get all their keys.
-    Dry air has the humidity 0. Data of test beams are without the files that they come from.
+    device are sorted as well, so that tables and curves begin with the lowest. Surfaces by scans, or described as in
+    papers, get all their keys. Dry air has the humidity 0. Data of test beams are without the files of their beams.
     """
     config = in_numbers(test_beams.without_files(config))
     named = {section: config[section] for section in ("pairs", "devices") if section in config}
-    surfaces = {name: complete(entry) for name, entry in config["surfaces"].items()}
+    library = paper()["surfaces"]
+    surfaces = {name: complete(described.complete(entry, library)) for name, entry in config["surfaces"].items()}
     in_order = {section: _sorted(entries) for section, entries in named.items()}
     return _in_order(config | in_order | {"surfaces": surfaces})
 

@@ -48,6 +48,7 @@ class Keys:
     config: dict
     faults: list[tuple]  #: paths that are wrong on their own
     files: dict[str, list] = field(default_factory=dict)  #: of the scans of measured surfaces, by name
+    origins: dict[tuple, tuple] = field(default_factory=dict)  #: paths and values that users stated, by what follows
 
     def __getitem__(self, key: str) -> Any:
         """Value of a key; raises `Unknown` if it is not given, or wrong on its own, as a whole or in part."""
@@ -94,15 +95,17 @@ class Keys:
     def problem(self, key: str, message: str, *given: str) -> Problem:
         """Problem with a key, and the other keys on whose values that depends."""
         path, value = self._stated(key)
-        scanned = path[0] == "surfaces" and path != _path(key)
-        number = f", which gives {_path(key)[-1]} = {self[key]:.4g}" if scanned else ""
+        follows = path[0] == "surfaces" and path != _path(key) and value != self[key]
+        number = f", which gives {_path(key)[-1]} = {self[key]:.4g}" if follows else ""
         others = dict.fromkeys(f"{dotted(other)} = {shown(given)}" for other, given in map(self._stated, given))
         more = f" (given {', '.join(others)})" if others else ""
         return Problem(path, f"is {shown(value)}{number}, {message}{more}")
 
     def _stated(self, key):
-        """Path and value as stated by the user: the numbers of a measured surface come from its files."""
+        """Path and value as the user states them: numbers of a surface may follow from other keys or from files."""
         path = _path(key)
+        if path in self.origins:
+            return self.origins[path]
         if path[0] == "surfaces" and path[1] in self.files:
             return (*path[:2], "scans", "files"), [Path(file).name for file in self.files[path[1]]]
         return path, in_words(self._value(path), path)

@@ -5,20 +5,27 @@ beams of a kind open is in `stiction.stages.devices.opening.BEAMS`.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from itertools import chain
 from typing import NamedTuple
 
 #: Keys that every device may have.
-COMMON = {"kind", "pair", "humidities", "uncertainty", "test_beams", "requirement", "roughness"}
+COMMON = ("kind", "pair", "humidities", "uncertainty", "test_beams", "requirement", "roughness", "touchdowns")
+COMMON += ("voltage_V", "offset_V", "dielectric")
 #: Keys that depend on the kind, what they are called and their unit.
 KEYS = {
     "thickness_um": ("thickness", "µm"),
-    "gap_um": ("gap below the beam", "µm"),
+    "gap_um": ("gap", "µm"),
     "width_um": ("width", "µm"),
+    "length_um": ("length", "µm"),
     "residual_stress_MPa": ("tensile stress", "MPa"),
     "contact_um": ("sides of the area in contact", "µm"),
+    "stiffness_N_per_m": ("stiffness of the spring", "N/m"),
     "restoring_force_uN": ("restoring force", "µN"),
+    "mass_ng": ("moving mass", "ng"),
+    "voltage_V": ("voltage", "V"),
+    "offset_V": ("offset of the voltage", "V"),
 }
 
 
@@ -44,10 +51,32 @@ class Kind:
 
     words: str  #: what it is
     keys: tuple[str, ...]  #: that it must have, of `KEYS`
+    ways: tuple[tuple[str, ...], ...] = ((),)  #: further ones, of which it has one tuple
     optional: tuple[str, ...] = ()  #: keys that it may have
     is_beam: bool = True  #: whether it cracks open along strips; otherwise it is pulled off at once with its whole area
     has_tip: bool = False  #: whether a free end may hold it
     longest_strip: float = math.inf  #: of its strips where not stated [µm]; short ones resolve the middle of a beam
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        """All keys that it may have."""
+        return (*COMMON, *self.keys, *chain.from_iterable(self.ways), *self.optional)
+
+    def refusal(self, keys: Collection[str]) -> str | None:
+        """What is wrong with the keys of a device as the end of a sentence: one is missing or of another kind.
+
+        Examples
+        --------
+        >>> KINDS["stopper"].refusal(["kind", "pair", "humidities", "contact_um", "stiffness_N_per_m"])
+        'must come with either restoring_force_uN, or stiffness_N_per_m and gap_um'
+        """
+        if missing := [key for key in self.keys if key not in keys]:
+            return f"must come with {', '.join(missing)}"
+        if strange := [key for key in keys if key not in self.known]:
+            return f"must come without {', '.join(sorted(strange))}: its keys are {', '.join(self.known)}"
+        if {key for way in self.ways for key in way if key in keys} not in map(set, self.ways):
+            return f"must come with either {', or '.join(map(' and '.join, self.ways))}"
+        return None
 
     @property
     def has_short_strips(self) -> bool:
@@ -74,23 +103,44 @@ KINDS = {
     "cantilever": Kind(
         words="beam clamped at one end",
         keys=("thickness_um", "gap_um", "width_um"),
-        optional=("strip_um", "chart"),
+        optional=("length_um", "strip_um", "chart"),
         has_tip=True,
     ),
     "bridge": Kind(
         words="beam clamped at both ends",
         keys=("thickness_um", "gap_um", "width_um", "residual_stress_MPa"),
-        optional=("strip_um", "chart"),
+        optional=("length_um", "strip_um", "chart"),
         # ASSUME: strips of 0.5 µm resolve the middle of a bridge, which is held on 2 to 6 µm. Shorter ones hold more:
         # on pair b (t = h = 2 µm, 50 MPa, p = 0.001), 0.25, 0.5 and 1.5 µm give 233, 236 and 242 µm at RH 0.44, 176,
         # 175 and 181 µm at 0.67, 112.2, 112.2 and 113.2 µm at 0.92, with standard errors of about 1 %. Windows of one
         # surface give the same as independent strips: 208.7 ± 1.2 and 208.2 ± 0.7 µm on average at RH 0.67.
         longest_strip=0.5,
     ),
-    "stopper": Kind(words="stopper", keys=("contact_um", "restoring_force_uN"), is_beam=False),
+    "stopper": Kind(
+        words="stopper",
+        keys=("contact_um",),
+        ways=(("restoring_force_uN",), ("stiffness_N_per_m", "gap_um")),
+        optional=("mass_ng", "electrode"),
+        is_beam=False,
+    ),
 }
+#: Keys of the devices of all kinds.
+KNOWN = frozenset(chain.from_iterable(kind.known for kind in KINDS.values()))
 
 
 def kind_of(device: Mapping) -> Kind:
     """Kind of a device, from its section of the configuration."""
     return KINDS[device["kind"]]
+
+
+def restoring_force(stopper: Mapping) -> float:
+    """Force that pulls a stopper off [µN]: as its section states, or that of its spring, deflected by the gap.
+
+    Examples
+    --------
+    >>> restoring_force({"restoring_force_uN": 20}), restoring_force({"stiffness_N_per_m": 2, "gap_um": 1.5})
+    (20, 3.0)
+    """
+    if "restoring_force_uN" in stopper:
+        return stopper["restoring_force_uN"]
+    return stopper["stiffness_N_per_m"] * stopper["gap_um"]

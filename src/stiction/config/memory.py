@@ -6,7 +6,7 @@ from stiction.config.kinds import kind_of
 from stiction.config.units import NM_PER_UM, from_si
 from stiction.models import FIELD
 
-#: Grid of the paper, that of all surfaces that need no other: see `stiction.config.grid`.
+#: Grid of the paper, that of all surfaces that need no other: see `stiction.config.surfaces.grid`.
 GRID = {"spacing_nm": 10, "margin_um": 1}
 #: Side of the periodic fields on which spectra are estimated [µm].
 FIELD_UM = from_si(FIELD, "um")

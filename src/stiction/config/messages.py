@@ -7,13 +7,14 @@ import difflib
 import math
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 
 import yaml
 
 from stiction.config.cases import in_words
+from stiction.config.kinds import KINDS
 from stiction.config.units import from_si, to_si
 
 
@@ -35,6 +36,7 @@ class Problem:
 
     path: tuple  #: keys and list indices from the root
     message: str  #: continues the sentence that begins with the path
+    others: tuple[tuple, ...] = ()  #: further paths with the same problem
 
     def __str__(self):
         return f"{dotted(self.path)} {self.message}"
@@ -68,25 +70,34 @@ def _strict():
     return validators.extend(Draft202012Validator, type_checker=types)
 
 
+def _also(path):
+    """Other signs in names of a section."""
+    return ", _ and -, not dry_ at the beginning" if path == ("surfaces",) else ""
+
+
 def _explained(error, schema):
     """Problems that correspond to one error of jsonschema."""
     path, value = tuple(error.absolute_path), error.instance
     if "propertyNames" in error.absolute_schema_path:
-        return [
-            Problem(
-                (*path, value),
-                f"is not a valid name, must be letters and digits, starting with a letter{_name_hint(value)}",
-            )
-        ]
+        signs = f"letters and digits{_also(path)}, starting with a letter"
+        return [Problem((*path, value), f"is not a valid name, must be {signs}{_name_hint(value)}")]
     if error.validator == "required":
-        missing = [(*path, key) for key in error.validator_value if key not in value]
-        return [Problem(key, f"is missing, must be {_allowed(_entry(schema, key))}") for key in missing]
+        missing, *more = [key for key in error.validator_value if key not in value]
+        as_well = f"; {' and '.join(more)} {'is' if len(more) == 1 else 'are'} missing as well" if more else ""
+        message = f"is missing, must be {_allowed(_entry(schema, (*path, missing)))}{as_well}"
+        return [Problem((*path, missing), message, tuple((*path, key) for key in more))]
     if error.validator == "additionalProperties":
-        known = list(error.schema["properties"])
-        strange = [(*path, key) for key in value if key not in known]
+        strange = [(*path, key) for key in value if key not in error.schema["properties"]]
+        known = _keys_of_kind(path, value) or list(error.schema["properties"])
         return [Problem(place, _FORMER.get(place) or _unknown(place[-1], value[place[-1]], known)) for place in strange]
     stated = shown(in_words(value, path))
     return [Problem(path, f"is {stated}, must be {_allowed(error.schema)}{_hint(path, value, error.schema)}")]
+
+
+def _keys_of_kind(path, section):
+    """Keys of a device of a known kind; none for other sections."""
+    kind = section.get("kind") if path[:1] == ("devices",) and len(path) == 2 else None
+    return KINDS[kind].known if isinstance(kind, str) and kind in KINDS else ()
 
 
 def _entry(schema, path):
@@ -113,7 +124,12 @@ def _allowed(entry):
         words.append(f"with {entry['maxItems']} entries")
     elif "minItems" in entry or "minProperties" in entry:
         words.append("with at least one entry")
-    return f"{' '.join(filter(None, words))}: {entry['description']}"
+    return f"{' '.join(filter(None, words))}: {described(entry)}"
+
+
+def described(entry: Mapping) -> str:
+    """Description of a part of the schema, with its unit; what stands for a unit of text is left out."""
+    return re.sub(r" \[(choice|name|path)\]$", "", entry["description"])
 
 
 #: Keys of older versions, and what they are called now.
@@ -153,7 +169,7 @@ def _hint(path, value, entry):
         return did_you_mean(value.lower(), entry["enum"]) if "enum" in entry else _number_hint(path, value, entry)
     if isinstance(value, float) and entry["type"] == "integer" and value.is_integer():
         return _advice(entry, f"{value:.15g}", "write it without a decimal point: {}")
-    return _unit_hint(path, value, entry)
+    return _percent_hint(value, entry) or _unit_hint(path, value, entry)
 
 
 def _accepts(entry, value):
@@ -198,7 +214,15 @@ def _unit_hint(path, value, entry):
 
 #: A number with separators of thousands; one as YAML reads it or with a decimal comma, its exponent and its unit.
 _GROUPED = re.compile(r"([-+]?\d{1,3}(?:([,' ])\d{3})(?:\2\d{3})*)")
+_PERCENT = re.compile(r"(\d+(?:[.,]\d+)?)\s*%")
 _WRITTEN = re.compile(r"([-+]?\d+(?:[.,]\d*)?)(?:[eE]([-+]?\d{1,2}))?\s*([^\W\d][^%]*)?")
+
+
+def _percent_hint(value, entry):
+    """How to write a share that is given in percent."""
+    if not _is_number(None, value) or value <= 1 or "as a fraction of 1" not in entry["description"]:
+        return ""
+    return _advice(entry, f"{value / 100:.12g}")
 
 
 def _number_hint(path, text, entry):
@@ -207,8 +231,10 @@ def _number_hint(path, text, entry):
         return ""
     if _GROUPED.fullmatch(text):
         return _grouped_hint(text, entry)
+    if percent := _PERCENT.fullmatch(text):
+        return _percent_hint(float(percent[1].replace(",", ".")), entry)
     if not (parts := _WRITTEN.fullmatch(text)):
-        return ""
+        return f"; write {entry['word']} for {entry['where']}" if "word" in entry else ""
     mantissa, exponent, unit = parts[1].replace(",", "."), parts[2], (parts[3] or "").replace("µ", "u")
     if unit and unit != _unit_of(path):
         return _converted_hint(float(f"{mantissa}e{exponent or 0}"), unit, path, entry)

@@ -6,14 +6,18 @@ file. This module imports little, so that the check takes a fraction of a second
 
 import re
 from collections.abc import Iterable, Iterator
+from functools import cache
 from itertools import chain
 from pathlib import Path
 
 import yaml
 
+from stiction.config.memory import GRID
 from stiction.config.messages import ConfigError, duplicates, shown
 from stiction.regular_files import require_regular
 
+#: Configuration of the paper: a copy of ``config.yaml`` in the root folder, which users may edit.
+PAPER = Path(__file__).with_name("paper.yaml")
 #: Numbers that YAML 1.1 reads in base 60 and in base 8.
 _BASE_60 = re.compile(r"[-+]?\d[\d_]*(:[0-5]?\d)+(\.[\d_]*)?")
 _BASE_8 = re.compile(r"[-+]?0[0-7_]+")
@@ -47,6 +51,13 @@ def read(path: str | Path) -> dict:
         held = "is empty" if content is None else f"holds {shown(content)}"
         raise ConfigError(f"{path} {held}, must be sections such as 'contact: {{samples: 5000}}'")
     return content
+
+
+@cache
+def paper() -> dict:
+    """Complete configuration of the paper, read once; not to be changed."""
+    config = read(PAPER)
+    return config | {"sampling": GRID | config["sampling"]}
 
 
 def _one_line(reason):

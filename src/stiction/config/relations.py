@@ -10,20 +10,18 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import yaml
 
 from stiction.config import memory
-from stiction.config.cases import DRY, IN_HUMID_AIR, NAMEABLE, TOO_LITTLE, decimals
-from stiction.config.grid import published_correlation, used
+from stiction.config.cases import DRY, IN_HUMID_AIR, NAMEABLE, decimals
 from stiction.config.keys import Keys, Relations
 from stiction.config.materials import hamaker_constants
+from stiction.config.meetings import above_zero, of_pairs
 from stiction.config.messages import did_you_mean, duplicates, shown
+from stiction.config.surfaces.grid import published_correlation, used
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, to_si
-from stiction.contact.meniscus import dry_air, is_wetted, meniscus_height
-from stiction.devices import limits
 from stiction.devices.materials import COATING, COATING_ATTRACTION
 from stiction.errors import NotConverged
 from stiction.models import SIDES
@@ -343,15 +341,6 @@ def _estimated_correlation_length(rms, radius, density, spacing):
     return from_si(correlation_length(estimated_spectrum(target)), "um")
 
 
-@relation
-def strips_are_whole_on_the_grid(config):
-    """Both sides of a strip are multiples of the distance between contact points."""
-    grid = "sampling.spacing_nm", "contact.every"
-    sides = ("beam.width_um", "sampling.strip_length_um") if pairs_run(config) else ("sampling.strip_length_um",)
-    for key, side in config.known(*sides):
-        yield key, off_grid(side, *(config[step] for step in grid)), *grid
-
-
 def off_grid(side: float, spacing: float, every: int) -> str | None:
     """Refusal of a side [µm] that is no multiple of the distance between contact points."""
     step = spacing * every
@@ -362,7 +351,7 @@ def off_grid(side: float, spacing: float, every: int) -> str | None:
 @relation
 @only_if(variants_run)
 def strips_are_whole_under_a_variant(config):
-    """As above, for the step in grid points times the grid spacing, either of which a variant may change."""
+    """Strips are whole for the step in grid points times the grid spacing, either of which a variant may change."""
     sides = "sampling.strip_length_um", *(["beam.width_um"] * pairs_run(config))
     variants = {"sampling.spacing_nm": "studies.variants.every", "contact.every": "studies.variants.spacing_nm"}
     for other, step in config.known(*variants):
@@ -457,49 +446,6 @@ def a_mesh_is_whole(config):
         yield key, "must include a divisor of the beam that is a multiple of one of the strips", *given
 
 
-class Meeting(NamedTuple):
-    """Two surfaces that meet, on which the water between them depends."""
-
-    sides: list[dict]  #: sections of both surfaces; empty if one is not defined or has no numbers (yet)
-    materials: dict
-    temperature: float  #: [K]
-
-
-def _running(config, *keys):
-    """Pairs that run: the name, what meets, values of some keys, and the keys that say what meets."""
-    running, surfaces, materials = config["run.pairs"], config["surfaces"], config["materials"]
-    for pair, beam, substrate, *values in config.entries("pairs", *SIDES, *keys):
-        if pair in running:
-            given = "run.pairs", "water.temperature_K", *(f"pairs.{pair}.{side}" for side in SIDES)
-            meeting = Meeting(sides_of(beam, substrate, surfaces), materials, config["water.temperature_K"])
-            yield pair, meeting, *values, (*given, *config.scanned(beam, substrate))
-
-
-@relation
-def beams_are_apart_from_the_film(config):
-    """Along most of a crack, the beam of a pair that runs is far from the water film and the peaks of the substrate."""
-    for air in ("figures.humidity", "pairs.{}.humidities"):
-        for pair, meeting, gap, given in _running(config, "gap_um"):
-            for key, humidities in config.known(air.format(pair)):
-                yield f"pairs.{pair}.gap_um", not_apart(gap, humidities, meeting), key, *given
-
-
-def not_apart(gap: float, humidities: float | list, meeting: Meeting) -> str | None:
-    """Refusal of a gap [µm] that is not far above the film at the highest humidity."""
-    if not meeting.sides:
-        return None
-    angles, humid = wetting(meeting.sides, meeting.materials), above_zero(humidities)
-    height = float(np.max(meniscus_height(humid, meeting.temperature, angles))) if angles and humid else 0.0
-    rms = math.hypot(*(to_si(side["rms_nm"], "nm") for side in meeting.sides))
-    least = from_si(limits.least_gap(height, rms), "um")
-    if gap >= least:
-        return None
-    return (
-        f"must be at least {least:.4g} µm, {limits.FILMS} times the sum of the height of the water film, "
-        f"{from_si(height, 'nm'):.5g} nm, and the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
-    )
-
-
 @relation
 def coatings_attract_less_than_their_solids(config):
     """The Hamaker constant of a coating is at most that of its material, and it has a thickness."""
@@ -511,81 +457,6 @@ def coatings_attract_less_than_their_solids(config):
         for medium, constant in hamaker_constants(material).items():
             if own[medium] > constant:
                 yield f"{path}.{medium}", f"must be at most that of the material itself, {constant:g} zJ"
-
-
-@relation
-def coatings_leave_a_gap(config):
-    """Both coatings together are thinner than the gap."""
-    for pair, gap, *names in config.entries("pairs", "gap_um", *SIDES):
-        given = *(f"pairs.{pair}.{side}" for side in SIDES), *config.scanned(*names)
-        yield f"pairs.{pair}.gap_um", filled(gap, names, config), *given
-
-
-def filled(gap: float, names: list[str | None], config: Keys) -> str | None:
-    """Refusal of a gap [µm] that the coatings of two surfaces, which need not be defined, fill."""
-    materials = of_material([config["surfaces"].get(name, {}) for name in names], config["materials"])
-    coatings = sum(material.get(COATING, 0) for material in materials)
-    if gap * NM_PER_UM > coatings:
-        return None
-    return f"must be above the thickness of the coatings of both surfaces, {coatings:g} nm"
-
-
-@relation
-def water_is_a_liquid(config):
-    """The air is not too dry for a film of liquid water between the surfaces of a pair that runs."""
-    for pair, meeting, humidities, given in _running(config, "humidities"):
-        yield f"pairs.{pair}.humidities", too_dry(humidities, meeting), *given
-
-
-@relation
-def water_of_the_figures_is_a_liquid(config):
-    """As above, for the humidity at which all pairs that run are shown."""
-    humidity, running = config["figures.humidity"], config["run.pairs"]
-    refusals = (too_dry(humidity, meeting_of(pair, config)) for pair in running)
-    yield "figures.humidity", next(filter(None, refusals), None), "run.pairs", "water.temperature_K"
-
-
-def surfaces_of(pair: str, config: Keys) -> list[str | None]:
-    """Names of the surfaces of a pair, which need not be defined."""
-    return [config["pairs"].get(pair, {}).get(side) for side in SIDES]
-
-
-def meeting_of(pair: str, config: Keys) -> Meeting:
-    """What meets in a pair, which need not be defined."""
-    sides = sides_of(*surfaces_of(pair, config), config["surfaces"])
-    return Meeting(sides, config["materials"], config["water.temperature_K"])
-
-
-def too_dry(humidities: float | list, meeting: Meeting, more: float = 0) -> str | None:
-    """Refusal of the lowest humidity if the film between two surfaces is no liquid, contact angles as in `wetting`."""
-    angles, humid = wetting(meeting.sides, meeting.materials, more), above_zero(humidities)
-    return dry_air(min(humid), meeting.temperature, angles) if angles and humid else None
-
-
-def above_zero(humidities: float | list) -> list[float]:
-    """Humidities, of one or several, without that of dry air."""
-    return [float(humidity) for humidity in np.ravel(humidities) if humidity > 0]
-
-
-def sides_of(beam: str, substrate: str, surfaces: dict) -> list[dict]:
-    """Sections of the surfaces of a pair; empty if one is not defined or has no numbers (yet)."""
-    sides = [surfaces.get(name, {}) for name in (beam, substrate)]
-    return sides if all("rms_nm" in surface and "scans" not in surface for surface in sides) else []
-
-
-def of_material(sides: list[dict], materials: dict) -> list[dict]:
-    """Stated properties of the material of each surface; none of the solid of both bodies, or of an undefined one."""
-    return [materials.get(surface.get("material"), {}) for surface in sides]
-
-
-def wetting(sides: list[dict], materials: dict, more: float = 0) -> tuple[float, ...]:
-    """Contact angles of two surfaces [rad]; empty without surfaces or without water, which other relations report.
-
-    ``more`` degrees are added to both angles.
-    """
-    stated = (material.get("contact_angle_deg", 0) for material in of_material(sides, materials))
-    angles = [to_si(angle + more, "deg") for angle in stated]
-    return tuple(angles) if is_wetted(angles) else ()
 
 
 @relation
@@ -602,8 +473,9 @@ def studies_in_humid_air_have_some(config):
     That of the sensitivity is about the pair of the figures.
     """
     humid = {
-        pair: above_zero(humidities) and (not meeting.sides or wetting(meeting.sides, meeting.materials))
-        for pair, meeting, humidities, _ in _running(config, "humidities")
+        meeting.pair: above_zero(humidities) and meeting.is_wetted
+        for meeting in of_pairs(config)
+        for _, humidities in config.known(f"pairs.{meeting.pair}.humidities")
     }
     running = [pair for pair in config["run.pairs"] if pair in humid]
     shown = [pair for pair in running if pair == config["figures.pair"]] or running[:1]
@@ -631,51 +503,6 @@ def full_contact_has_no_attraction_across_gaps(config):
         for key, reach in config.known("attraction.reach", "studies.variants.reach"):
             if "all" in reach:
                 yield "contact.model", "must be summits where attraction reaches across all gaps", key
-
-
-@relation
-def corrections_reach_the_figures(config):
-    """Pairs that run are corrected to full elastic contact within their humidities, that of the figures among them."""
-    if config["contact"].get("model") != "full":
-        return
-    humidity = config["figures.humidity"]
-    for pair in config["run.pairs"]:
-        known = config[f"pairs.{pair}.humidities"]
-        if not min(known) <= humidity <= max(known):
-            message = f"must be within the humidities of pair {pair}, beyond which contact.model full corrects nothing"
-            yield "figures.humidity", message, f"pairs.{pair}.humidities"
-
-
-@relation
-def attraction_reaches_across_dry_gaps(config):
-    """Where no water condenses, surfaces attract each other mostly where they do not touch."""
-    for pair, meeting, humidities, given in _running(config, "humidities"):
-        for key, shown_humidity in config.known("figures.humidity"):
-            for refused, refusal in without_attraction(config, pair, meeting, [*humidities, shown_humidity]):
-                yield refused, refusal, key, f"pairs.{pair}.humidities", *given
-
-
-#: Values with which attraction ends where surfaces touch, and those that have it across gaps.
-_TOO_SHORT = {
-    "attraction.reach": ("touching", "all"),
-    "contact.model": ("full", "summits"),
-    "van_der_waals": ("none", "water or dry"),
-}
-
-
-def without_attraction(
-    config: Keys, pair: str, meeting: Meeting, humidities: list[float]
-) -> Iterator[tuple[str, str | None]]:
-    """Refusals of attraction that ends where surfaces touch, if no water condenses between those of a pair."""
-    wetted = not meeting.sides or wetting(meeting.sides, meeting.materials)
-    if wetted and min(humidities) > 0:
-        return
-    stated = " and ".join(f"{material.get('contact_angle_deg', 0):g}" for material in of_material(*meeting[:2]))
-    why = "in dry air" if wetted else f"where no water condenses at contact angles of {stated} degrees"
-    for key, value in config.known(*_TOO_SHORT):
-        refused, allowed = _TOO_SHORT[key]
-        if value == refused:
-            yield key, f"must be {allowed} for pair {pair}, {why}: {TOO_LITTLE}"
 
 
 @relation

@@ -11,27 +11,19 @@ import numpy as np
 from stiction.config import memory
 from stiction.config.cases import in_air
 from stiction.config.keys import Relations
-from stiction.config.kinds import COMMON, KEYS, KINDS, ROUGHNESSES, kind_of
+from stiction.config.kinds import KEYS, KINDS, KNOWN, ROUGHNESSES, kind_of
 from stiction.config.materials import hamaker_constant
+from stiction.config.meetings import TEMPERATURE, above_zero, of_device, sides_of, surfaces_of
 from stiction.config.messages import duplicates
 from stiction.config.relations import (
-    Meeting,
-    above_zero,
     cases_have_unique_names,
     correlated,
     field_too_large,
-    filled,
-    meeting_of,
-    not_apart,
     off_grid,
+    pairs_run,
     references_are_defined,
     repeated,
     schema,
-    sides_of,
-    surfaces_of,
-    too_dry,
-    wetting,
-    without_attraction,
     without_density,
 )
 from stiction.config.test_beams import DATA, shared_uncertainty
@@ -47,7 +39,7 @@ relation = Relations()
 
 #: Keys of the grid of contact points.
 _GRID = "sampling.spacing_nm", "contact.every"
-_TEMPERATURE, _STRIP = "water.temperature_K", "sampling.strip_length_um"
+_STRIP = "sampling.strip_length_um"
 
 
 relation(partial(references_are_defined, section="devices", key="pair", to="pairs"))
@@ -55,12 +47,13 @@ relation(partial(cases_have_unique_names, section="devices"))
 
 
 @relation
-def strips_and_patches_of_devices_are_whole_on_the_grid(config):
-    """Sides of the strips along a beam, and of the area of a stopper, are multiples of the distance between points."""
-    for key in ("strip_um", "width_um", "contact_um"):
-        for name, sides in config.entries("devices", key):
-            refusals = (off_grid(float(side), *(config[step] for step in _GRID)) for side in np.ravel(sides))
-            yield f"devices.{name}.{key}", next(filter(None, refusals), None), *_GRID
+def strips_and_patches_are_whole_on_the_grid(config):
+    """Sides of strips, and of the area of a stopper, are multiples of the distance between contact points."""
+    sides = ("strip_um", "width_um", "contact_um")
+    of_devices = [f"devices.{name}.{key}" for key in sides for name, _ in config.entries("devices", key)]
+    for key, stated in config.known(*["beam.width_um"] * pairs_run(config), _STRIP, *of_devices):
+        refusals = (off_grid(float(side), *(config[step] for step in _GRID)) for side in np.ravel(stated))
+        yield key, next(filter(None, refusals), None), *_GRID
 
 
 @relation
@@ -78,13 +71,55 @@ def strips_of_bridges_are_whole_on_the_grid(config):
 
 @relation
 def devices_have_the_keys_of_their_kind(config):
-    """A device has all keys that its kind needs, and no key of another kind."""
+    """A device has all keys that its kind needs, and no key of another kind; those that no kind has may be misspelt."""
     for name, kind in config.entries("devices", "kind"):
-        needed, keys = set(KINDS[kind].keys), set(config.names(f"devices.{name}"))
-        missing, strange = needed - keys, keys - needed - set(KINDS[kind].optional) - COMMON
-        if missing or strange:
-            message = f"with {', '.join(sorted(missing))}" if missing else f"without {', '.join(sorted(strange))}"
-            yield f"devices.{name}.kind", f"must come {message}"
+        refusal = KINDS[kind].refusal(config.names(f"devices.{name}"))
+        if any(fault[:2] == ("devices", name) and len(fault) == 3 and fault[2] not in KNOWN for fault in config.faults):
+            continue
+        yield f"devices.{name}.kind", refusal
+
+
+@relation
+def lengths_of_devices_are_those_of_slender_beams(config):
+    """Beams are longer than they are thick and deflected; lengths in mm are not."""
+    sizes = "thickness_um", "gap_um"
+    for name, length, *values in config.entries("devices", "length_um", *sizes):
+        if length <= max(values):
+            message = "must be in µm, above the thickness and the gap of the beam"
+            yield f"devices.{name}.length_um", message, *(f"devices.{name}.{size}" for size in sizes)
+
+
+@relation
+def lengths_of_devices_are_those_that_are_required(config):
+    """A device has one length."""
+    for name, length, required in config.entries("devices", "length_um", "requirement.length_um"):
+        if length != required:
+            message, given = "must be the length that is required", f"devices.{name}.requirement.length_um"
+            yield f"devices.{name}.length_um", message, given
+
+
+@relation
+def voltages_are_across_a_dielectric(config):
+    """A voltage or offset needs a dielectric, without which surfaces that touch would short."""
+    for key in ("voltage_V", "offset_V"):
+        for name, _ in config.entries("devices", key):
+            if "dielectric" not in config.names(f"devices.{name}"):
+                yield f"devices.{name}.{key}", "must come with dielectric: {thickness_nm, permittivity}"
+    for name, _ in config.entries("devices", "dielectric"):
+        if not {"voltage_V", "offset_V"} & set(config.names(f"devices.{name}")):
+            yield f"devices.{name}.dielectric", "must come with voltage_V or offset_V"
+
+
+@relation
+def electrodes_pull_on_a_spring_across_a_gap(config):
+    """The voltage of an electrode needs the stiffness of the stopper, which touches before its electrode does."""
+    for name, electrode in config.entries("devices", "electrode"):
+        device, key = config["devices"][name], f"devices.{name}.electrode"
+        if "stiffness_N_per_m" not in device:
+            yield key, "must come with stiffness_N_per_m and gap_um in place of restoring_force_uN"
+        elif electrode["gap_um"] < device["gap_um"]:
+            message = "must be at least gap_um of the stopper, which would not touch otherwise"
+            yield f"{key}.gap_um", message, f"devices.{name}.gap_um"
 
 
 @relation
@@ -107,89 +142,18 @@ def axes_increase(config):
 
 
 @relation
-def corrections_are_not_extrapolated(config):
-    """Devices are corrected to full elastic contact within the humidities of their pair."""
-    if config["contact"].get("model") != "full":
-        return
-    for name, device in config["devices"].items():
-        known = config[f"pairs.{device['pair']}.humidities"]
-        deviation = device.get("uncertainty", {}).get("humidity", 0)
-        used = {f"devices.{name}.humidities": [h + d for h in device["humidities"] for d in (-deviation, deviation)]}
-        used |= {f"devices.{name}.chart.humidities": chart["humidities"] for chart in [device.get("chart")] if chart}
-        used |= {} if kind_of(device).is_beam else {"design.worst_humidities": config["design.worst_humidities"]}
-        for key, humidities in used.items():
-            if not (is_at_most(min(known), min(humidities)) and is_at_most(max(humidities), max(known))):
-                message = (
-                    f"must be, with its uncertainty, within the humidities of pair {device['pair']}, to which the "
-                    "correction of contact.model full is restricted"
-                )
-                yield key, message, f"pairs.{device['pair']}.humidities"
-
-
-@relation
-def devices_are_apart_from_the_film(config):
-    """The gap of a device, and the smallest gap of its chart, are far above the film of water and the peaks."""
-    for gap, at in (("gap_um", "humidities"), ("gap_um", "chart.humidities"), ("chart.gaps_um", "chart.humidities")):
-        for name, gaps, humidities in config.entries("devices", gap, at):
-            if (gap, at) == ("gap_um", "chart.humidities") and "gaps_um" in config["devices"][name]["chart"]:
-                continue  # a chart with gaps of its own
-            refusal = not_apart(np.min(gaps), humidities, _meeting(config, name))
-            yield f"devices.{name}.{gap}", refusal, f"devices.{name}.{at}", *_air(config, name)
-
-
-@relation
-def coatings_leave_gaps_of_devices(config):
-    """Both coatings together are thinner than the gap of a device, as for pairs."""
-    for name, gap in config.entries("devices", "gap_um"):
-        names = surfaces_of(config["devices"][name]["pair"], config)
-        yield f"devices.{name}.gap_um", filled(gap, names, config), *config.scanned(*names)
-
-
-@relation
-def water_of_devices_is_a_liquid(config):
-    """The air is not too dry for a film of liquid water, at the humidities of a device and along its chart."""
-    for key in ("chart.humidities", "humidities"):
-        for name, humidities in config.entries("devices", key):
-            yield f"devices.{name}.{key}", too_dry(humidities, _meeting(config, name)), *_air(config, name)
-
-
-@relation
-def water_of_stoppers_is_a_liquid(config):
-    """As above, along the axis on which the worst humidity of a stopper is sought."""
-    humidities = config["design.worst_humidities"]
-    for name, device in config["devices"].items():
-        if _seeks_worst_air(device) and (refusal := too_dry(humidities, _meeting(config, name))):
-            yield "design.worst_humidities", refusal, *_air(config, name)
-
-
-def _seeks_worst_air(device):
-    """Whether a device is a stopper that is not in dry air alone."""
-    return not kind_of(device).is_beam and any(device["humidities"])
-
-
-@relation
-def attraction_reaches_across_dry_gaps_of_devices(config):
-    """As for pairs, at the humidities of a device."""
-    for name, humidities in config.entries("devices", "humidities"):
-        for key, refusal in without_attraction(
-            config, config["devices"][name]["pair"], _meeting(config, name), humidities
-        ):
-            yield key, refusal, f"devices.{name}.humidities", *_scanned(config, name)
-
-
-@relation
 def uncertain_water_of_devices_is_a_liquid(config):
-    """As above, one standard uncertainty below the humidities, or above temperature or contact angles, too."""
+    """The film stays liquid when humidity, temperature or contact angle err by one standard uncertainty."""
     keys = "humidity", "temperature_K", "contact_angle_deg"
     for key in keys:
         for name, deviation, humidities in config.entries("devices", f"uncertainty.{key}", "humidities"):
-            meeting, (drier, warmer, more) = _meeting(config, name), (deviation * (key == wrong) for wrong in keys)
+            meeting, (drier, warmer, more) = of_device(name, config), (deviation * (key == wrong) for wrong in keys)
             driest = min(above_zero(humidities), default=0) - drier
-            if driest <= 0 or _freezes_or_boils(warmer, meeting.temperature) or too_dry(humidities, meeting):
+            if driest <= 0 or _freezes_or_boils(warmer, config[TEMPERATURE]) or meeting.too_dry(humidities):
                 continue  # other relations report it
-            if refusal := too_dry(driest, meeting._replace(temperature=meeting.temperature + warmer), more):
+            if refusal := meeting.too_dry(driest, more, warmer):
                 message = f"must leave water that is a liquid: the humidity, {driest:g}, {refusal}"
-                given = f"devices.{name}.humidities", *_air(config, name)
+                given = f"devices.{name}.humidities", *meeting.given(TEMPERATURE)
                 yield f"devices.{name}.uncertainty.{key}", message, *given
 
 
@@ -279,8 +243,8 @@ def uncertain_humidities_stay_within_their_limits(config):
 def water_stays_liquid(config):
     """Water is liquid one standard uncertainty around its temperature, too."""
     for name, deviation in config.entries("devices", "uncertainty.temperature_K"):
-        if refusal := _freezes_or_boils(deviation, config[_TEMPERATURE]):
-            yield f"devices.{name}.uncertainty.temperature_K", refusal, _TEMPERATURE
+        if refusal := _freezes_or_boils(deviation, config[TEMPERATURE]):
+            yield f"devices.{name}.uncertainty.temperature_K", refusal, TEMPERATURE
 
 
 def _freezes_or_boils(deviation, temperature):
@@ -294,13 +258,13 @@ def _freezes_or_boils(deviation, temperature):
 @relation
 def uncertain_contact_angles_leave_water(config):
     """Whether water condenses is the same one standard uncertainty around the contact angles."""
-    materials, key = config["materials"], "uncertainty.contact_angle_deg"
+    key = "uncertainty.contact_angle_deg"
     for name, deviation in config.entries("devices", key):
-        sides = _sides(config, name)
-        if wetting(sides, materials) and not wetting(sides, materials, deviation):
+        meeting = of_device(name, config)
+        if meeting.wetting() and not meeting.wetting(deviation):
             message = "must leave contact angles at which water condenses: their cosines must add up to more than zero"
             yield f"devices.{name}.{key}", message, *_scanned(config, name)
-        if sides and not wetting(sides, materials) and wetting(sides, materials, -deviation):
+        if not meeting.is_wetted and meeting.wetting(-deviation):
             message = "must leave contact angles at which no water condenses: their cosines add up to zero or less"
             yield f"devices.{name}.{key}", message, *_scanned(config, name)
 
@@ -325,19 +289,9 @@ def _sides(config, name):
     return sides_of(*surfaces_of(config["devices"][name]["pair"], config), config["surfaces"])
 
 
-def _meeting(config, name) -> Meeting:
-    """What meets at a device."""
-    return meeting_of(config["devices"][name]["pair"], config)
-
-
 def _scanned(config, name):
     """Keys of the measured surfaces of a device."""
     return config.scanned(*surfaces_of(config["devices"][name]["pair"], config))
-
-
-def _air(config, name):
-    """Keys that the water at a device depends on, apart from its humidities."""
-    return _TEMPERATURE, *_scanned(config, name)
 
 
 # How rough it must be
@@ -391,9 +345,7 @@ def varied_skewnesses_have_a_density(config):
 @relation
 def varied_corners_are_those_of_spectra(config):
     """A corner lies below the cut-off, and patches are samples of the field where it is lowest, at the same slope."""
-    for name, ends, surface, kind in config.entries(
-        "devices", "roughness.corner_rad_per_um", "roughness.surface", "kind"
-    ):
+    for name, ends, surface in config.entries("devices", "roughness.corner_rad_per_um", "roughness.surface"):
         key, section = f"devices.{name}.roughness.corner_rad_per_um", config["surfaces"].get(surface, {})
         if section.get("psd") != "published":
             continue
@@ -404,11 +356,9 @@ def varied_corners_are_those_of_spectra(config):
             continue
         slope = math.log(psd["floor_nm4"] / plateau) / math.log(cutoff / psd["corner_rad_per_um"])
         longest = psd | {"corner_rad_per_um": low, "floor_nm4": plateau * (cutoff / low) ** slope}
-        for length in ["margin_um"] + ["strip_length_um"] * (KINDS[kind].is_beam and not KINDS[kind].has_short_strips):
-            if refusal := correlated(config["sampling"][length], longest):
-                message = f"must be larger at {low:g} rad/µm, where sampling.{length} {refusal}"
-                yield key, message, f"sampling.{length}", *config.scanned(surface)
-                break
+        if refusal := correlated(config["sampling.margin_um"], longest):
+            message = f"must be larger at {low:g} rad/µm, where sampling.margin_um {refusal}"
+            yield key, message, "sampling.margin_um", *config.scanned(surface)
 
 
 # Test beams, for which the relations of devices hold as well: see stiction.config.validation

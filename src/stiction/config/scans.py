@@ -143,6 +143,55 @@ def preliminary_estimates(
     return estimates, problems
 
 
+def simulates(config: Mapping[str, Any]) -> bool:
+    """Whether a configuration, which need not be valid, simulates anything.
+
+    Rules of strips, grids and densities hold for nothing else.
+    """
+    run = config.get("run")
+    none = isinstance(run, dict) and run.get("pairs") == []
+    return not none or bool(config.get("devices") or config.get("test_beams"))
+
+
+def usable(
+    entry: dict[str, Any], section: Mapping[str, Any], kept: str | Path | None = None
+) -> tuple[dict[str, Any] | None, list[str]]:
+    """Section of a surface with the files that can be evaluated, and why others cannot; ``None`` without any.
+
+    Parameters
+    ----------
+    entry, section : dict
+        Section of the surface, and section ``scans`` of the configuration, both as the schema demands.
+    kept : path, optional
+        As in `preliminary_estimates`.
+    """
+    files, reasons = list(entry["scans"]["files"]), []
+    while files:
+        left_out = {"left_out": reasons} if reasons else {}
+        part = entry | {"scans": entry["scans"] | {"files": files} | left_out}
+        try:
+            _evaluated(complete(part), section, kept)
+        except ScanError as refusal:
+            key = "" if refusal.key == "files" else f" (key {refusal.key})"
+            reasons.append(f"{refusal.file} is not used: it {refusal.reason}{key}")
+            labels = _labels(part)
+            if refusal.file not in labels:
+                break
+            del files[labels.index(refusal.file)]
+        else:
+            return part, reasons
+    return None, reasons
+
+
+def readable(entry: dict[str, Any]) -> Any:
+    """First scan of a surface that can be read, see `stiction.scans.scan.Scan`; ``None`` if none can."""
+    entry = complete(entry)
+    for path, label in zip(entry["scans"]["files"], _labels(entry), strict=True):
+        with contextlib.suppress(ScanError):
+            return _scan(path, label, source(entry))
+    return None
+
+
 def _unusable(faults):
     """Whether a section that the evaluation needs is wrong, apart from single surfaces."""
     sections = {fault[:1] for fault in faults if len(fault) < 2 or fault[0] != "surfaces"}

@@ -3,14 +3,18 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from stiction.config import grid, relations, relations_devices, scans, test_beams
+from stiction.config import meetings, relations, relations_devices, scans, test_beams
 from stiction.config.cases import in_numbers, in_words
 from stiction.config.keys import Keys, Relations
 from stiction.config.messages import ConfigError, schema_problems
+from stiction.config.reading import paper
 from stiction.config.relations import schema
+from stiction.config.surfaces import described, grid
 
+#: Relations between the keys of devices, and of arrays of test beams in their place.
+_OF_DEVICES = Relations([*meetings.relation, *relations_devices.relation])
 #: All relations between keys.
-RELATIONS = Relations([*relations.relation, *relations_devices.relation])
+RELATIONS = Relations([*relations.relation, *_OF_DEVICES])
 #: Sections that a configuration need not have.
 _OPTIONAL = {"materials": {}, "devices": {}, "test_beams": {}}
 
@@ -40,31 +44,42 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     stated = config
     config = in_numbers(test_beams.without_files(config))
     faults = schema_problems(config, schema())
-    wrong = [fault.path for fault in faults]
-    sections = grid.completed(_OPTIONAL | config, {}) if isinstance(config, dict) else config
-    broken = _broken(sections, wrong)
+    wrong = [path for fault in faults for path in (fault.path, *fault.others)]
+    surfaces, incomplete, origins = _completed(config, wrong)
+    sections = grid.completed(surfaces, {})
+    wrong += [problem.path for problem in incomplete]
+    broken = _broken(sections, wrong, origins=origins)
     of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
     estimates, refused = scans.preliminary_estimates(config, wrong + of_surfaces, kept)
-    problems = faults + broken + refused
-    if estimates:
+    problems = faults + incomplete + broken + refused
+    if estimates and scans.simulates(sections):
         files = {name: config["surfaces"][name]["scans"]["files"] for name in estimates}
-        on_grid = grid.completed(_OPTIONAL | config, estimates)
-        problems += _broken(scans.with_preliminary_estimates(on_grid, estimates), wrong, files)
+        on_grid = grid.completed(surfaces, estimates)
+        problems += _broken(scans.with_preliminary_estimates(on_grid, estimates), wrong, files, origins)
     if problems:
         raise ConfigError(*dict.fromkeys(test_beams.in_files(str(problem), stated) for problem in problems))
     return estimates
 
 
-def _broken(config, faults, files=None):
+def _completed(config, faults):
+    """Configuration with all sections and complete surfaces, their problems, and the keys that these follow from."""
+    if any(len(fault) < 2 and fault[:1] in ((), ("surfaces",)) for fault in faults):
+        return _OPTIONAL | config if isinstance(config, dict) else config, [], {}
+    sections, problems = described.completed(_OPTIONAL | config, paper()["surfaces"], faults)
+    return sections, problems, described.origins(config)
+
+
+def _broken(config, faults, files=None, origins=None):
     """Violated relations; those of devices hold for the arrays of test beams."""
-    broken = list(RELATIONS.problems(Keys(config, faults, files or {})))
+    files, origins = files or {}, origins or {}
+    broken = list(RELATIONS.problems(Keys(config, faults, files, origins)))
     if any(path[:1] in ((), ("devices",), ("test_beams",)) for path in faults):
         return broken  # sections that are wrong on their own
     single = [
-        _KeysOfArrays(config | {"devices": beams}, faults, files or {}, config["devices"])
+        _KeysOfArrays(config | {"devices": beams, "run": {"pairs": []}}, faults, files, origins, config["devices"])
         for beams in test_beams.at_single_humidities(config)
     ]
-    return broken + [problem for one in relations_devices.relation for problem in _of_arrays(one, single)]
+    return broken + [problem for one in _OF_DEVICES for problem in _of_arrays(one, single)]
 
 
 def _of_arrays(relation, single):

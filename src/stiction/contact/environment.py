@@ -85,6 +85,8 @@ class ForceCurves(NamedTuple):
     curve: Callable[[int], np.ndarray]  #: force of sample k (n_d,) [Pa]
     samples: int
     beyond: np.ndarray | None = None  #: energy beyond the last distance, where attraction reaches farther (m,) [J m⁻²]
+    #: Upper bounds of e [J m⁻²] and f_max [Pa] of any surfaces, known where attraction reaches across gaps.
+    flat: tuple[float, float] | None = None
 
 
 def force_curves(
@@ -105,7 +107,8 @@ def force_curves(
         return ForceCurves(distance, curve, len(solid))
     work = partial(water.gaps.work, height=layer[0])
     pressure, beyond = gaps.gap_pressures(bearing, starts[1], distance, step, work)
-    return ForceCurves(distance, lambda k: curve(k) + pressure[k], len(solid), beyond)
+    bound = flooded_law(humidity, water, 0.0)
+    return ForceCurves(distance, lambda k: curve(k) + pressure[k], len(solid), beyond, bound)
 
 
 def flooded_law(humidity: float, water: Water, hamaker_constant: float) -> tuple[float, float]:

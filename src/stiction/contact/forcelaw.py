@@ -295,8 +295,22 @@ def _remedy(curve, samples):
         raise
 
 
+def resists(force: np.ndarray) -> bool:
+    """Whether the summits of a sample stop the surfaces: its curve (n_d,) rises to zero as they approach [Pa]."""
+    return bool(repulsions(force[None])[0] >= 0)
+
+
+def share_flat(curve: Callable[[int], np.ndarray], samples: int) -> float:
+    """Share of sampled curves that do not resist the adhesion, and count as flat surfaces in contact [-]."""
+    return float(np.mean([not resists(curve(k)) for k in range(samples)]))
+
+
 def parametrise(
-    distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int, beyond: np.ndarray | None = None
+    distance: np.ndarray,
+    curve: Callable[[int], np.ndarray],
+    samples: int,
+    beyond: np.ndarray | None = None,
+    flat: tuple[float, float] | None = None,
 ) -> tuple[np.ndarray, float]:
     """Parameters of all sampled curves, Eq. (11), interpolated between the grid points.
 
@@ -313,51 +327,92 @@ def parametrise(
         Number of samples m.
     beyond : (m,) float64, optional
         Energy of the attraction of each sample beyond the grid [J m⁻²]; without it, the curves have decayed there.
+    flat : tuple of 2 floats, optional
+        Upper bounds of e [J m⁻²] and f_max [Pa] of any surfaces. ASSUME: samples that do not resist the adhesion have
+        these, the safe side, and where a curve rises less than to f_limit, its law does as steeply as at zero.
 
     Returns
     -------
     vectors : (m, 4) float64
         Rows v = [e, f_max, d_max, d_limit].
     f_limit : float
-        Largest f_max of all samples [Pa].
+        Largest f_max of all samples that resist the adhesion [Pa].
 
     Raises
     ------
     ValueError
-        If a curve has no attraction, is truncated by its grid or does not reach f_limit; the message contains the
-        number of the sample.
+        If a curve has no attraction, is truncated by its grid or, without ``flat``, does not reach f_limit; the message
+        contains the number of the sample.
     """
     beyond = np.zeros(samples) if beyond is None else beyond
     with _remedy(curve, samples):
-        wells = _each_sample(
-            lambda f, k: (*extremum(distance, f), adhesion_energy(distance, f, beyond[k])), curve, samples
-        )
+        wells = _each_sample(lambda f, k: _well(distance, f, beyond[k], flat), curve, samples)
         d_max, f_max, e = wells.T
-        f_limit = float(f_max.max())
-        d_limit = _each_sample(lambda f, _: limit_distance(distance, f, f_limit), curve, samples)
+        held = np.isfinite(d_max)
+        f_limit = float(f_max[held if held.any() else ~held].max())
+        d_limit = _each_sample(lambda f, _: _limit(distance, f, f_limit, flat), curve, samples)
+    if not held.all():
+        d_max[~held] = distance[0]
+        d_limit[~held] = distance[0] - _rise(f_limit / flat[1]) * flat[0] / (2 * flat[1])
     return np.column_stack([e, f_max, d_max, d_limit]), f_limit
 
 
+def _well(distance, force, beyond, flat):
+    """Place and size of the largest attraction and its energy; those of flat surfaces have no place."""
+    if flat is not None and not resists(force):
+        return np.nan, flat[1], flat[0]
+    return *extremum(distance, force), adhesion_energy(distance, force, beyond)
+
+
+def _limit(distance, force, limit, flat):
+    """d_limit of a curve; NaN of one that counts as flat."""
+    if flat is None or repulsions(force[None])[0] >= limit:
+        return limit_distance(distance, force, limit)
+    if not resists(force):
+        return np.nan
+    d_max, f_max = extremum(distance, force)
+    return d_max - (d_max - limit_distance(distance, force, 0.0)) * _rise(limit / f_max) / np.log(2)
+
+
 def adhesion_energies(
-    distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int, beyond: np.ndarray | None = None
+    distance: np.ndarray,
+    curve: Callable[[int], np.ndarray],
+    samples: int,
+    beyond: np.ndarray | None = None,
+    flat: tuple[float, float] | None = None,
 ) -> np.ndarray:
     """Energies e of all sampled curves (m,) [J m⁻²]; parameters of `parametrise`, errors of `adhesion_energy`."""
     beyond = np.zeros(samples) if beyond is None else beyond
-    return _each_sample(lambda f, k: adhesion_energy(distance, f, beyond[k]), curve, samples)
+
+    def energy_of(force, k):
+        return adhesion_energy(distance, force, beyond[k]) if flat is None or resists(force) else flat[0]
+
+    return _each_sample(energy_of, curve, samples)
 
 
-def pull_offs(distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int) -> np.ndarray:
+def pull_offs(
+    distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int, flat: tuple[float, float] | None = None
+) -> np.ndarray:
     """Largest attraction f_max of all sampled curves (m,) [Pa]; parameters of `parametrise`, errors of `extremum`."""
-    return _each_sample(lambda f, _: extremum(distance, f)[1], curve, samples)
+
+    def pull_off(force, _):
+        return extremum(distance, force)[1] if flat is None or resists(force) else flat[1]
+
+    return _each_sample(pull_off, curve, samples)
 
 
 # Eq. (12): the analytical force law
 
 
+def _rise(ratio):
+    """Distance, in lengths 1/a_left, in which a law rises from its minimum to a multiple of f_max."""
+    return np.log(1 + np.sqrt(1 + ratio))
+
+
 def _left_steepness(vectors, f_limit):
     """Coefficient a_left, from f(d_limit) = f_limit (n,) [m⁻¹]."""
     _, f_max, d_max, d_limit = vectors.T
-    return np.log(1 + np.sqrt(1 + f_limit / f_max)) / (d_max - d_limit)
+    return _rise(f_limit / f_max) / (d_max - d_limit)
 
 
 def _right_range(vectors, a_left):

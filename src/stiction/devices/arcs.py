@@ -48,7 +48,8 @@ def longest_free(slopes: np.ndarray, forces: np.ndarray, beam: Beam) -> np.ndarr
     free of a tip that holds a shorter one, the shorter one counts.
 
     ASSUME: below the smallest slope, P grows as 1/θ, as on smooth surfaces. On rough ones it grows less, because a long
-    wedge touches higher summits: this is the safe side.
+    wedge touches higher summits: this is the safe side. Beyond the largest one P stays what it is there, the safe side
+    as well: so steep a wedge touches with its edge.
 
     Parameters
     ----------
@@ -57,27 +58,17 @@ def longest_free(slopes: np.ndarray, forces: np.ndarray, beam: Beam) -> np.ndarr
     forces : (m, s) array
         P/w of every tip [N m⁻¹]; zero where it does not attract.
     beam : Beam
-
-    Raises
-    ------
-    ValueError
-        If a tip holds the beam even at the largest slope.
     """
     with np.errstate(divide="ignore"):
         # Logarithm of P/w over the force that frees the tip: positive at the slopes at which it holds the beam.
         excess = np.log(forces / bending_force(slopes, beam))
-    if np.any(excess[:, -1] >= 0):
-        raise ValueError(
-            f"{np.sum(excess[:, -1] >= 0)} of {len(forces)} tips hold beams of the largest slope that was computed, "
-            f"{slopes[-1]:.3g}: beams that are too steep for the linear theory"
-        )
-    logarithms = np.log(slopes)
-    held = excess >= 0
+    held, logarithms, last = excess >= 0, np.log(slopes), len(slopes) - 1
     above = np.where(held.any(axis=1), len(slopes) - np.argmax(held[:, ::-1], axis=1), 0)
-    below, row = np.maximum(above - 1, 0), np.arange(len(forces))
-    step = logarithms[above] - logarithms[below]
+    below, row, ahead = np.maximum(above - 1, 0), np.arange(len(forces)), np.minimum(above, last)
+    step = logarithms[ahead] - logarithms[below]
     with np.errstate(invalid="ignore", divide="ignore"):
-        inverse = np.where(above > 0, step / (excess[row, below] - excess[row, above]), 1 / 4)
+        inverse = np.where(above > 0, step / (excess[row, below] - excess[row, ahead]), 1 / 4)
+        inverse[above > last] = 1 / 3
         return 1.5 * beam.gap / np.exp(logarithms[below] + inverse * excess[row, below])
 
 

@@ -88,8 +88,17 @@ def held_length(zone: Beam, laws: np.ndarray) -> float:
     """
     strips = len(laws)
     along = np.repeat(laws[outwards(strips)], zone.elements // strips, axis=0)
-    longest = 2 * float(arrest_length(forcelaw.energy(laws).mean(), zone))
-    return shortest_held(zone, along, longest)
+    return shortest_held(zone, along, _longest(zone, laws))
+
+
+def _longest(zone, laws):
+    """Length at which both cracks of a bridge stop on its mean law, from which its search starts [m]."""
+    return 2 * float(arrest_length(forcelaw.energy(laws).mean(), zone))
+
+
+def longest_tried(zone: Beam, strips: int, draw_laws: Callable, rng: np.random.Generator) -> float:
+    """Length from which the search of `held_lengths` for one bridge starts [m]; ``rng`` is its stream."""
+    return _longest(zone, draw_laws(strips, rng))
 
 
 def held_lengths(

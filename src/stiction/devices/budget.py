@@ -89,22 +89,25 @@ def log_slope(
 
     ``length`` is that of a sample of devices, such as ``np.mean`` of crack lengths, (n,) -> [m]. Device k has the same
     random numbers in ``less`` and ``more``, the lengths (n,) at both values of the input x [m], which differ by a step.
-    Each of at most n groups is left out once.
+    Each of at most n groups is left out once. Slope and error are NaN where ``length`` is infinite, because too few
+    devices stick.
     """
 
     def slope(used):
-        return np.log(length(more[used]) / length(less[used])) / step
+        ends = length(less[used]), length(more[used])
+        return np.log(ends[1] / ends[0]) / step if np.isfinite(ends).all() else np.nan
 
     group = np.arange(len(less)) % groups
-    left_out = np.array([slope(group != k) for k in range(groups)])
+    whole, left_out = float(slope(np.ones(len(less), bool))), np.array([slope(group != k) for k in range(groups)])
+    if not np.isfinite([whole, *left_out]).all():
+        return np.nan, np.nan
     error = float(np.sqrt((groups - 1) / groups * np.sum((left_out - left_out.mean()) ** 2)))
-    whole = float(slope(np.ones(len(less), bool)))
     return whole, error if error > _ROUNDING * abs(whole) else 0.0
 
 
 def choice_effect(base: float, changed: float) -> float:
-    """Relative change of a length by another choice of the model, ln(changed / base) [-]."""
-    return float(np.log(changed / base))
+    """Relative change of a length by another choice of the model, ln(changed / base) [-]; NaN without a finite one."""
+    return float(np.log(changed / base)) if np.isfinite([base, changed]).all() else np.nan
 
 
 def ranked(budget: Budget, groups: Mapping[str, Sequence[str]]) -> list[tuple[str, float, float]]:

@@ -12,6 +12,7 @@ import numpy as np
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
 from stiction.contact.meniscus import flooded_energy
+from stiction.rounding import is_at_most
 
 #: Largest relative error of a power law that is used.
 ALLOWED = 0.01
@@ -36,7 +37,7 @@ class PowerLaw:
             If a thickness or a gap is outside of the fitted range.
         """
         for name, values, (low, high) in (("thickness", thickness, self.thicknesses), ("gap", gap, self.gaps)):
-            if not np.all((np.asarray(values) >= low * (1 - 1e-12)) & (np.asarray(values) <= high * (1 + 1e-12))):
+            if not (is_at_most(low, np.min(values)) and is_at_most(np.max(values), high)):
                 raise ValueError(f"a {name} of {values} m is outside of the computed {low:.3g} to {high:.3g} m")
         return self.prefactor * thickness**self.thickness_power * gap**self.gap_power
 
@@ -52,7 +53,7 @@ def fit_power_law(thickness: np.ndarray, gap: np.ndarray, length: np.ndarray) ->
         If there are fewer beams than unknowns.
     """
     dimensions = np.log([thickness, gap]).T
-    varied = np.ptp(dimensions, axis=0) > 1e-9
+    varied = np.array([not is_at_most(np.max(values), np.min(values)) for values in (thickness, gap)])
     terms = np.column_stack([np.ones(len(dimensions)), dimensions[:, varied]])
     solution, _, rank, _ = np.linalg.lstsq(terms, np.log(length), rcond=None)
     if rank < terms.shape[1]:

@@ -38,9 +38,9 @@ def not_modelled(left_out: Sequence[str] = (), humid: bool = True) -> str:
     """What is relevant to stiction and not in the model: at no settings, and what those in force leave out."""
     time = ["the time that water needs to condense and to evaporate"] * humid
     never = [
-        "drying after release",
+        "residues of drying",
         *time,
-        "electric charge and voltage",
+        "drift of electric charge",
         "wear",
         "conformal films, which correlate both surfaces",
     ]
@@ -127,6 +127,16 @@ def without_gaps(changes: Mapping[float, tuple[float, float]], shorter: bool = F
     return (
         f"Attraction of solids across gaps is left out. On these surfaces it would change {what} that holds by "
         f"{', '.join(by)}{side}. contact.model summits and attraction.reach all include it."
+    )
+
+
+def flat_patches(share: float) -> str | None:
+    """Share of the sampled patches whose summits do not resist the adhesion, and which count as flat surfaces."""
+    if share == 0:
+        return None
+    return (
+        f"{100 * share:.2g} % of the patches of surface have too few summits to resist the adhesion. They count as "
+        "flat surfaces in contact, which hold more than any rough ones: the prediction is on the safe side."
     )
 
 

@@ -4,13 +4,13 @@ Every simulated device has a *sticking length*, the shortest one that sticks on 
 if and only if its sticking length is smaller than L. One simulation of long beams thus gives P(stuck) at every length.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
 from scipy.special import betainc, betaincinv
 
-from stiction.devices.tail import TAIL, fit_tail, scaled_errors
+from stiction.devices.tail import FEWEST, TAIL, fit_tail, scaled_errors
 
 #: Length behind the end of a crack that a beam needs to stick, in foundation lengths.
 HOLD = 2.0
@@ -30,6 +30,8 @@ class Basis(StrEnum):
     SAMPLED = "sampled"  #: order statistics, no assumption about the distribution
     FITTED = "fitted"  #: line through the lowest lengths, within a decade of the samples and within what was verified
     EXTRAPOLATED = "extrapolated"  #: the same line beyond
+    LONGEST = "longest"  #: the longest simulated devices, of which so few stick; longer ones may be safe, too
+    FLAT = "flat"  #: flat surfaces in contact, because too few devices stick for a line
 
 
 @dataclass(frozen=True)
@@ -38,9 +40,24 @@ class SafeLength:
 
     share: float  #: p [-]
     length: float  #: the safe length: one-sided 95 % lower bound of ``estimate`` [m]
-    estimate: float  #: length with P(stuck) = p [m]
-    error: float  #: standard error of the estimate due to the number of beams [m]
+    estimate: float  #: length with P(stuck) = p [m]; infinite where it is beyond all known lengths
+    error: float  #: standard error of the estimate due to the number of beams [m]; NaN where that is infinite
     basis: Basis
+
+
+@dataclass(frozen=True)
+class Known:
+    """Lengths of devices that follow from no samples, and where the samples end [m]."""
+
+    reach: float = (
+        np.inf
+    )  #: longest simulated length: sticking lengths beyond it are unknown, those stated upper bounds
+    flat: float = 0.0  #: length that sticks on flat surfaces in contact; smaller ones are safe on rough ones
+    safe: float = 0.0  #: length up to which no surfaces hold a device
+
+
+#: Devices of which all lengths are from samples.
+NOTHING = Known()
 
 
 # Sticking lengths
@@ -76,15 +93,24 @@ def upper_bound(stuck: int | np.ndarray, samples: int, confidence: float = CONFI
     return np.where(stuck < samples, inner, 1.0)[()]
 
 
-def stuck_share(lengths: np.ndarray, sticking: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def stuck_share(
+    lengths: np.ndarray, sticking: np.ndarray, reach: float = np.inf
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """P(stuck) at some lengths (m,) [m], with the lower and the upper end of a pointwise 95 % band, (m,) each [-].
 
-    From sticking lengths of n devices (n,) [m].
+    From sticking lengths of n devices (n,) [m]. Beyond the ``reach`` [m] of the simulation, devices that did not stick
+    there may do so: the upper end counts them as stuck.
     """
     n = len(sticking)
     stuck = np.searchsorted(np.sort(sticking), lengths, side="left")
     two_sided = (1 + CONFIDENCE) / 2
-    return stuck / n, 1 - upper_bound(n - stuck, n, two_sided), upper_bound(stuck, n, two_sided)
+    most = np.where(np.asarray(lengths) > reach, n, stuck)
+    return stuck / n, 1 - upper_bound(n - stuck, n, two_sided), upper_bound(most, n, two_sided)
+
+
+def most_stuck(sticking: np.ndarray, reach: float) -> float:
+    """One-sided 95 % upper bound of P(stuck) of the longest simulated devices, from sticking lengths (n,) [m]."""
+    return float(upper_bound(int(np.sum(sticking < reach)), len(sticking)))
 
 
 def samples_for(share: float) -> int:
@@ -114,6 +140,8 @@ def _quantile(ordered, share):
     weights = np.diff(steps)
     used = weights > 1e-12
     values, weights = ordered[used], weights[used]
+    if not np.isfinite(values).all():
+        return np.inf, np.nan
     mean = weights @ values
     return mean, np.sqrt(weights @ (values - mean) ** 2)
 
@@ -136,28 +164,52 @@ def sampled_bound(values: np.ndarray, share: float) -> tuple[float, float, float
     return float(_sampled_length(ordered, share)), float(estimate), float(error)
 
 
-def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator) -> SafeLength:
+def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator, known: Known = NOTHING) -> SafeLength:
     """Safe length for one share p of stuck devices, at most 5 %, from their sticking lengths (n,) [m].
 
-    It is sampled if there are enough devices (`samples_for`), and otherwise comes from the fit of the lowest 5 %, whose
-    errors are simulated.
+    It is sampled if there are enough devices (`samples_for`), and at most as long as they were simulated. Otherwise it
+    comes from the fit of the lowest 5 %, or of those that stick if they are fewer, whose errors are simulated. Where
+    too few of them stick for a fit, it is the length that sticks on flat surfaces.
 
     Raises
     ------
     ValueError
-        If the share is out of range, there are too few devices for a fit, or too many of their lengths are unknown.
+        If the share is out of range, or there are too few devices for a fit.
     """
     if not 0 < share <= TAIL:
         raise ValueError(f"a safe length needs a share in (0, {TAIL}], got {share}")
-    fitted = fit_tail(sticking)
-    n = len(sticking)
-    if n >= samples_for(share):
-        return SafeLength(share, *sampled_bound(sticking, share), Basis.SAMPLED)
+    found = _sampled(sticking, share, known) if len(sticking) >= samples_for(share) else None
+    found = found or _fitted(sticking, share, rng, known)
+    return replace(found, length=max(found.length, known.safe))
+
+
+def _sampled(sticking, share, known):
+    """Safe length by order statistics."""
+    bound, estimate, error = sampled_bound(sticking, share)
+    if bound <= known.reach:
+        return SafeLength(share, bound, estimate, error, Basis.SAMPLED)
+    return SafeLength(share, known.reach, np.inf, np.nan, Basis.LONGEST)
+
+
+def _fitted(sticking, share, rng, known):
+    """Safe length by a fit of the shortest lengths that are known.
+
+    Those of tips may all be known, and longer than any simulated crack: up to the length that sticks on flat surfaces,
+    no crack stops.
+    """
+    within = np.where(sticking <= known.reach, sticking, np.inf)
+    few = np.isfinite(within).sum() < FEWEST
+    lengths = sticking if few else within
+    if np.isfinite(lengths).sum() < FEWEST:
+        return SafeLength(share, known.flat, np.inf, np.nan, Basis.FLAT)
+    fitted = fit_tail(lengths)
     estimate = fitted.length(share)
-    errors, pivots = scaled_errors(n, share, rng)
-    bound = estimate * np.exp(-np.quantile(pivots, CONFIDENCE) * fitted.slope)
-    basis = Basis.FITTED if share >= VERIFIED and n * share >= DECADE else Basis.EXTRAPOLATED
-    return SafeLength(share, float(bound), estimate, float(estimate * fitted.slope * errors.std()), basis)
+    errors, pivots = scaled_errors(len(lengths), share, rng, fitted=fitted.fitted)
+    bound = float(estimate * np.exp(-np.quantile(pivots, CONFIDENCE) * fitted.slope))
+    if few and bound > known.flat:
+        return SafeLength(share, known.flat, np.inf, np.nan, Basis.FLAT)
+    basis = Basis.FITTED if share >= VERIFIED and len(lengths) * share >= DECADE else Basis.EXTRAPOLATED
+    return SafeLength(share, bound, estimate, float(estimate * fitted.slope * errors.std()), basis)
 
 
 def error_of_surfaces(of_group: np.ndarray) -> float | np.ndarray:
@@ -167,7 +219,7 @@ def error_of_surfaces(of_group: np.ndarray) -> float | np.ndarray:
     number of devices, divided by the square root of the number of groups. A jackknife would enlarge this part: leaving
     out a few samples changes the ground slightly, and a crack may then stop at quite another place. The error is NaN
     where the groups do not differ: tips, one for each beam, are the same in all groups, and their scatter is among the
-    errors due to the number of devices.
+    errors due to the number of devices. It is NaN as well where a group has no finite length.
 
     Raises
     ------
@@ -178,5 +230,6 @@ def error_of_surfaces(of_group: np.ndarray) -> float | np.ndarray:
     groups = len(values)
     if groups < 2:
         raise ValueError(f"a scatter needs two groups of samples, got {groups}")
+    values = np.where(np.isfinite(values), values, np.nan)
     differ = np.ptp(values, axis=0) > 0
     return np.where(differ, values.std(axis=0, ddof=1) / np.sqrt(groups), np.nan)[()]

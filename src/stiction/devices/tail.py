@@ -23,15 +23,16 @@ class TailFit:
     intercept: float  #: ln l at z = 0 [-], l in m
     slope: float  #: [-]
     samples: int  #: number n of all samples
+    fitted: int  #: number of the lowest ones that are fitted
 
     def length(self, share: float) -> float:
         """Length below which a share of all lengths lies [m]."""
         return float(np.exp(self.intercept + self.slope * ndtri(share)))
 
 
-def normal_scores(samples: int) -> np.ndarray:
-    """Normal scores of the fitted lowest order statistics, ``TAIL`` of ``samples`` (k,), by Blom's positions."""
-    ranks = np.arange(1, int(TAIL * samples) + 1)
+def normal_scores(samples: int, fitted: int | None = None) -> np.ndarray:
+    """Normal scores of the ``fitted`` lowest of ``samples``, by default the share ``TAIL``, by Blom's positions."""
+    ranks = np.arange(1, (int(TAIL * samples) if fitted is None else fitted) + 1)
     return ndtri((ranks - 0.375) / (samples + 0.25))
 
 
@@ -43,30 +44,33 @@ def _lines(logarithms, scores):
 
 
 def fit_tail(lengths: np.ndarray) -> TailFit:
-    """Fit the lowest 5 % of n lengths (n,) [m]; lengths above them may be infinite.
+    """Fit the lowest 5 % of n lengths (n,) [m], or those of them that are known, which are finite.
 
     Raises
     ------
     ValueError
-        If fewer than ``FEWEST`` lengths are fitted, or one of them is infinite.
+        If fewer than ``FEWEST`` lengths are fitted.
     """
-    scores = normal_scores(len(lengths))
-    if len(scores) < FEWEST:
-        raise ValueError(f"a fit of the lowest {TAIL:.0%} needs {round(FEWEST / TAIL)} lengths, got {len(lengths)}")
-    lowest = np.sort(lengths)[: len(scores)]
-    if not np.isfinite(lowest).all():
-        raise ValueError(f"fewer than {TAIL:.0%} of the lengths are known: simulate longer beams")
-    intercept, slope = _lines(np.log(lowest), scores)
-    return TailFit(float(intercept), float(slope), len(lengths))
+    samples, known = len(lengths), int(np.isfinite(lengths).sum())
+    if int(TAIL * samples) < FEWEST:
+        raise ValueError(f"a fit of the lowest {TAIL:.0%} needs {round(FEWEST / TAIL)} lengths, got {samples}")
+    if known < FEWEST:
+        raise ValueError(f"a fit of the shortest lengths needs {FEWEST} of them, got {known}")
+    fitted = min(int(TAIL * samples), known)
+    intercept, slope = _lines(np.log(np.sort(lengths)[:fitted]), normal_scores(samples, fitted))
+    return TailFit(float(intercept), float(slope), samples, fitted)
 
 
-def scaled_errors(samples: int, share: float, rng: np.random.Generator, repeats: int = 2000) -> np.ndarray:
+def scaled_errors(
+    samples: int, share: float, rng: np.random.Generator, repeats: int = 2000, fitted: int | None = None
+) -> np.ndarray:
     """Errors of fitted logarithms of a length, in units of the true slope and of the fitted one; (2, repeats).
 
     For a distribution that is lognormal at its end, the fit is equivariant, so that the errors do not depend on the
-    distribution. They are simulated from the lowest order statistics of ``samples`` normal numbers.
+    distribution. They are simulated from the lowest order statistics of ``samples`` normal numbers, of which as many
+    are ``fitted`` as by `normal_scores`.
     """
-    scores = normal_scores(samples)
+    scores = normal_scores(samples, fitted)
     k = len(scores)
     sums = np.cumsum(rng.exponential(size=(repeats, k)), axis=1)
     rest = rng.gamma(samples + 1 - k, size=(repeats, 1))

@@ -13,16 +13,20 @@ from stiction.config import test_beams
 from stiction.config.cases import PairInAir, case_id
 from stiction.config.kinds import ROUGHNESSES, Kind, kind_of
 from stiction.config.materials import material_of
+from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
+from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
 from stiction.devices.materials import OF_CONTACT
-from stiction.models import MOMENT_QUANTITIES, SIDES
+from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 
 #: Steps of the distance for the contact of tips, in those of section contact. ASSUME: they suffice for the largest
 #: attraction, the vertex of a parabola: with four, lengths of pair b are 0.02 to 0.19 % longer than with one.
 OF_TIPS = 2
+#: Quantities of a surface by numbers, in the order of budgets.
+ALL_QUANTITIES = MOMENT_QUANTITIES + SPECTRUM_QUANTITIES
 
 
 class Patch(NamedTuple):
@@ -226,13 +230,37 @@ class DevicePlan:
         return names
 
     def quantities(self, device: str) -> list[tuple[str, str]]:
-        """Surfaces of a device and their uncertain quantities: of all scans, or of the heights alone if one is stated.
+        """Surfaces of a device and their uncertain quantities: of scans, or those that are stated to be uncertain.
 
-        ASSUME: without scans, the spectrum counts as exact; the error of one scan's spectrum changes a length by 0.2 %.
+        The heights of surfaces without scans are, too, if the size of one scan is stated.
+
+        ASSUME: without scans, a spectrum counts as exact unless its uncertainty is stated; the error of one scan's
+        spectrum changes a length by 0.2 %.
         """
-        pair = self.config["pairs"][self.sections[device]["pair"]]
-        stated = MOMENT_QUANTITIES if self.sections[device].get("uncertainty", {}).get("scan_um") else ()
-        surfaces = dict.fromkeys(pair[side] for side in SIDES)
-        entries = {name: self.config["surfaces"][name] for name in surfaces}
-        by_surface = {name: quantities(entry) if is_measured(entry) else stated for name, entry in entries.items()}
+        of_heights = set(MOMENT_QUANTITIES if self.sections[device].get("uncertainty", {}).get("scan_um") else ())
+        entries, known = self._surfaces(device), self.known(device)
+        by_surface = {
+            name: quantities(entry)
+            if is_measured(entry)
+            else [one for one in ALL_QUANTITIES if one in of_heights.union(known[name].quantities)]
+            for name, entry in entries.items()
+        }
         return [(name, quantity) for name, of_surface in by_surface.items() for quantity in of_surface]
+
+    def known(self, device: str) -> dict[str, Knowledge]:
+        """What is stated about the errors of each surface of a device that has no scans."""
+        library = paper()["surfaces"]
+        return {
+            name: knowledge(entry, library) for name, entry in self._surfaces(device).items() if not is_measured(entry)
+        }
+
+    def assumed(self, device: str) -> list[str]:
+        """Inputs of the budget of a device that are assumed, not measured, such as ``skewness of B2``."""
+        return [
+            f"{quantity} of {name}" for name, entry in self._surfaces(device).items() for quantity in assumed(entry)
+        ]
+
+    def _surfaces(self, device):
+        """Sections of the surfaces of a device by name, each once."""
+        pair = self.config["pairs"][self.sections[device]["pair"]]
+        return {pair[side]: self.config["surfaces"][pair[side]] for side in SIDES}

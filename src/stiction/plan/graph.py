@@ -9,6 +9,7 @@ from typing import Any
 
 import xarray as xr
 
+from stiction.plan import cost
 from stiction.plan.plan import Plan
 from stiction.plan.stage import FOLDERS, WILDCARDS, At, File, Names, Stage, declared, expression
 
@@ -63,6 +64,14 @@ class Job:
         """Names of the files that the job writes."""
         return [pattern.format(**vars(self.at)) for pattern in self.stage.patterns(self.plan).values()]
 
+    @property
+    def seconds(self) -> float:
+        """Estimate of its CPU time [s]; a job that joins chunks draws nothing."""
+        if "chunks" in self.inputs:
+            return cost.PER_JOB
+        datasets = len(self.names) if self.stage.each else 1
+        return cost.of_job(self.settings, vars(self.at), datasets, self.stage.repeats)
+
     def compute(self, data: Mapping[str, Any]) -> Any:
         """Result for the data of the inputs."""
         return self.stage.result(data, self.at, self.stage.converted(self.settings))
@@ -99,6 +108,19 @@ class Graph:
             if match := matches.fullmatch(file):
                 return Job(stage, At(**match.groupdict()), self.plan)
         raise KeyError(f"no stage writes {file}")
+
+    def needed(self, *targets: str) -> list[Job]:
+        """All jobs that some targets of the workflow need, without results of an earlier run."""
+        found, waiting = {}, []
+        for stage, _ in stages().values():
+            if set(targets) & set(stage.targets) and stage.patterns(self.plan):
+                waiting += [Job(stage, At(**at), self.plan) for at in stage.wanted(self.plan)]
+        while waiting:
+            job = waiting.pop()
+            if (key := (job.stage.name, *sorted(vars(job.at).items()))) not in found:
+                found[key] = job
+                waiting += [self.job(name) for names in job.inputs.values() for name in _datasets(names)]
+        return list(found.values())
 
 
 def constraints(stage: Stage, plan: Plan) -> dict[str, str]:
@@ -155,3 +177,10 @@ def structured(names: Names, read: Any) -> Any:
     if isinstance(names, Mapping):
         return {key: read(name) for key, name in names.items()}
     return [read(name) for name in names]
+
+
+def _datasets(names):
+    """Names of all datasets in a structure of names."""
+    flat = []
+    structured(names, flat.append)
+    return [name for name in flat if not isinstance(name, File)]

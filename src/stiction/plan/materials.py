@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from stiction.config.cases import PairInAir
-from stiction.config.files import paper
 from stiction.config.materials import material_of
+from stiction.config.reading import paper
 from stiction.devices.materials import COATING, ELASTIC, OF_COATINGS, PROPERTIES
 from stiction.models import SIDES
 from stiction.plan.stage import chosen
@@ -53,7 +53,7 @@ class PairMaterials:
         surfaces = self.config["surfaces"]
         used = dict.fromkeys(surfaces[surface].get("material", "the solid") for surface in self.sides(pair))
         return [
-            [name, [words[key] for key, value in named[name].items() if key != COATING or value]]
+            [name, [words[key] for key, value in named[name].items() if key in words and (key != COATING or value)]]
             for name in used
             if name in named
         ]

@@ -5,7 +5,7 @@ from functools import cached_property
 from typing import Any
 
 from stiction.config.cases import Case
-from stiction.config.files import paper
+from stiction.config.reading import paper
 from stiction.models import SIDES
 
 #: Keys of the measured statistics of a surface: moments of the heights and summit statistics.

@@ -10,7 +10,10 @@ from functools import cached_property
 from typing import Any
 
 from stiction.config.cases import IN_HUMID_AIR, Case, PairInAir, case_id
+from stiction.config.merging import values
+from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
+from stiction.config.surfaces.knowledge import sentences
 from stiction.config.test_beams import as_cantilevers
 from stiction.devices.materials import ELASTIC
 from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SURFACE_MODELS
@@ -93,6 +96,12 @@ class Plan:
         used = {name for pair in self.pairs for name in self.sides(pair)}
         return [name for name in self.config["surfaces"] if name in used]
 
+    def simulated(self, surface: str) -> bool:
+        """Whether a surface is drawn for a pair that runs, a device or test beams."""
+        users = (*self.config.get("devices", {}).values(), *self.config.get("test_beams", {}).values())
+        pairs = [*self.pairs, *(user["pair"] for user in users if "pair" in user)]
+        return any(surface in self.sides(pair) for pair in pairs)
+
     # The configuration as the jobs of a pair see it
 
     def seen_by(self, pair: str, properties: Sequence[str] = ELASTIC, **contact: Any) -> dict[str, Any]:
@@ -148,6 +157,14 @@ class Plan:
         modes = MODE_QUANTITIES if surface in self.scans.surfaces else ()
         return tuple(dict.fromkeys((*quantities(self.config["surfaces"][surface]), *modes)))
 
+    def assumed(self, *pairs: str) -> dict[str, list[str]]:
+        """Sentences on what is not known of the surfaces of some pairs and is assumed, by pair; no empty ones."""
+        library, entries = paper()["surfaces"], self.config["surfaces"]
+        by_surface = {name: sentences(name, entries[name], library) for name in self.scans.others}
+        named = {pair: dict.fromkeys(self.sides(pair)) for pair in pairs}
+        said = {pair: [one for name in names for one in by_surface.get(name, ())] for pair, names in named.items()}
+        return {pair: of_pair for pair, of_pair in said.items() if of_pair}
+
     @cached_property
     def with_summits(self) -> list[str]:
         """Surfaces with measured summits, whose spectrum can therefore be identified."""
@@ -179,6 +196,14 @@ class Plan:
         """Pair of the figures: that of the configuration if it runs, otherwise the first that runs."""
         wanted = self.config["figures"]["pair"]
         return wanted if wanted in self.pairs else self.pairs[0]
+
+    @property
+    def figure_pairs(self) -> list[str]:
+        """Pairs of the figures that show several: that of the figures, with the other copies of section ``compare``."""
+        end = next((end for end in values(self.config) if self.figure_pair.endswith(end)), "")
+        original = self.figure_pair.removesuffix(end)
+        copies = {original + other for other in values(self.config)} if end else {self.figure_pair}
+        return [pair for pair in self.pairs if pair in copies]
 
     @property
     def figure_case(self) -> Case:
@@ -220,7 +245,7 @@ class Plan:
         """
         of_paper = [name for name in self.config["studies"] if name != "full_contact"]
         wanted = self.config["run"].get("studies", of_paper)
-        needed = {"sensitivity": [self.figure_pair]} if self.pairs else {}
+        needed = {"sensitivity": self.figure_pairs} if self.pairs else {}
         needed |= dict.fromkeys(IN_HUMID_AIR, self.pairs)
         return [name for name in wanted if name not in needed or any(map(self.air.humid, needed[name]))]
 
@@ -235,17 +260,27 @@ class Plan:
         known = self.config["studies"]["plasticity"]["distance_nm"]
         return [pair for pair in self.pairs if pair in known and "plasticity" in self.studies]
 
+    @property
+    def sensitivities(self) -> dict[tuple[str, str], str]:
+        """Datasets of the sensitivities of the pairs of the figures in humid air, by pair and moment."""
+        pairs = filter(self.air.humid, self.figure_pairs)
+        return {(pair, name): f"studies/sensitivity/{pair}_{name}" for pair in pairs for name in self.shifted_moments}
+
     @cached_property
     def shifted_moments(self) -> list[str]:
-        """Moments of the surface of the figures for which a sensitivity is computed: those that can be shifted."""
+        """Moments for which sensitivities are computed: those that can be shifted in all pairs of the figures."""
         return ["rms", *filter(self._can_be_shifted, ("skewness", "kurtosis"))] if self.pairs else []
 
     def _can_be_shifted(self, moment):
         """Whether surfaces with the moment slightly decreased and slightly increased exist."""
+        surfaces = dict.fromkeys(self.config["pairs"][pair]["beam"] for pair in self.figure_pairs)
+        return all(self._has_shifted(self._feasible_shape(surface), moment) for surface in surfaces)
+
+    def _has_shifted(self, shape, moment):
+        """Whether the moment of a surface of this skewness and kurtosis, if they are known, can be shifted."""
         from stiction.analysis.sensitivity import shifted
         from stiction.surface.feasible import is_feasible
 
-        shape = self._feasible_shape(self.figure_surface)
         if shape is None:
             return False
         at = shifted(shape[moment], self.config["studies"]["sensitivity"]["step"])

@@ -121,6 +121,7 @@ class Planner:
             "files": {name: files for name, (files, _, _) in inputs.items()},
             "inputs": {name: [label, keys] for name, (_, label, keys) in inputs.items()},
             "settings": job.settings,
+            "seconds": job.seconds,
         }
 
     def inputs(self, rule: Mapping[str, Any], wildcards: Mapping[str, str]) -> dict[str, list[str]]:

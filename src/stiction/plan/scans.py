@@ -50,4 +50,5 @@ class Scans:
             "evaluation": evaluation(self.config["surfaces"][surface], self.config["scans"]),
             "model_scans": self.config["scans"]["model_scans"],
             "files": [Path(path).name for path in self.files(surface).values()],
+            "left_out": self.config["surfaces"][surface]["scans"].get("left_out", []),
         }

@@ -30,11 +30,10 @@ from stiction.models import (
 
 #: Folders whose modules may declare stages.
 FOLDERS = ("stages", "report")
-_NAME = "[A-Za-z][A-Za-z0-9]*"
 #: Wildcards in the names of files, and the regular expression that each matches.
 WILDCARDS = {
-    "surface": _NAME,
-    "device": _NAME,
+    "surface": "[A-Za-z][A-Za-z0-9_-]*",
+    "device": "[A-Za-z][A-Za-z0-9]*",
     "pair": PAIR_IN_AIR,
     "model": "|".join(BEAM_MODELS),
     "case": CASE,
@@ -158,6 +157,7 @@ class Stage:
     temporary: bool = False  #: whether the files are deleted once they have been read
     cluster: bool = False  #: whether a job is worth a job of its own on a cluster
     minutes: int = 10  #: longest run time of such a job
+    repeats: int = 1  #: how often a job releases the beams of its settings
     memory: Callable[[Any], float] | None = None  #: of a job that needs more than its fields, by the plan [MB]
     priority: int = 0  #: jobs of a higher priority start first
 

@@ -2,27 +2,17 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
 from typing import Any
 
 import pandas as pd
 
 from stiction.plan.stage import Shown, Stage, named, titled
+from stiction.report import html
 from stiction.report.format import humidity_text, number
 from stiction.run import markdown
 from stiction.run.atomic import save_text
 
-_PAGE = """<!DOCTYPE html>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<style>
-body {{ font: 13px sans-serif }} p {{ white-space: pre-line }}
-td, th {{ padding: 1px 6px; text-align: right }} td {{ white-space: nowrap }}
-</style>
-<p>{caption}</p>
-{cells}
-"""
-
+_TEMPLATE = "table.html"
 #: Columns for reading by title: a format or a function, and the keys of the numbers that it shows as text.
 Columns = Mapping[str, tuple[str | Callable[..., str], *tuple[str, ...]]]
 #: The first columns of most tables.
@@ -59,7 +49,7 @@ class Table:
     @property
     def html(self) -> str:
         """Page of caption and cells."""
-        return _PAGE.format(caption=escape(self.caption, quote=False), cells=self.cells.to_html(index=False, border=0))
+        return html.rendered(_TEMPLATE, caption=self.caption, cells=self.cells)
 
 
 def as_text(frame: pd.DataFrame, columns: Columns) -> pd.DataFrame:
@@ -101,9 +91,17 @@ def save(table: Table, paths: Mapping[str, str]) -> None:
         save_text(getattr(table, key), path)
 
 
-def table_stage(file: str, shows: str, name: str = "", **declared: Any) -> Stage:
+def table_stage(file: str, shows: str, inputs: Callable, name: str = "", **declared: Any) -> Stage:
     """Stage that makes a `Table` and writes it into files of a name; ``shows`` ends its title in the report."""
     files = {key: f"tables/{file}.{end}" for key, end in (("csv", "csv"), ("markdown", "md"), ("html", "html"))}
     shown = Shown(file="html", title=titled(file, shows), category="Tables")
     name, message = name or named("table", file), f"{titled(file, shows)}."
-    return Stage(name=name, files=files, save=save, shown=shown, message=message, **declared)
+    return Stage(
+        name=name,
+        files=files,
+        inputs=lambda plan, at: {**inputs(plan, at), "templates": html.files(_TEMPLATE)},
+        save=save,
+        shown=shown,
+        message=message,
+        **declared,
+    )

@@ -19,7 +19,7 @@ SILENT |= {"stiction.plan.stage", "stiction.plan.names"}
 SILENT |= {
     f"stiction.stages.{name}" for name in ("contact.changes.patches", "contact.changes.table", "devices.contact_names")
 }
-SILENT |= {f"stiction.config.{name}" for name in ("keys", "relations", "relations_devices", "validation")}
+SILENT |= {f"stiction.config.{name}" for name in ("keys", "meetings", "relations", "relations_devices", "validation")}
 #: Fields of a syntax tree that do not affect what the code does.
 _WITHOUT_MEANING = {"kind", "type_comment", "type_ignores"}
 #: Kinds of nodes that may begin with a docstring.

@@ -151,7 +151,7 @@ def estimate(
 def _covariances(inspection, model, drawn):
     """Covariance of the moments of every size, (3, 3) each."""
     return [
-        seen(inspection, model, maps).covariance / len(maps.names) + part.bias_covariance + maps.noise_covariance
+        seen(inspection, model, maps).covariance / maps.number + part.bias_covariance + maps.noise_covariance
         for maps, part in zip(inspection.counted, drawn, strict=False)
     ]
 
@@ -229,7 +229,7 @@ def _model(inspection, values, heights, largest=LARGEST_DISTANCE_OF_SCANS):
 def _covariance(inspection, model):
     """Covariance of the moments of all scans by the finite scans, (3, 3)."""
     return inspection.propagated(
-        [seen(inspection, model, maps).covariance / len(maps.names) for maps in inspection.counted]
+        [seen(inspection, model, maps).covariance / maps.number for maps in inspection.counted]
     )
 
 

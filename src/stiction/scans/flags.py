@@ -78,8 +78,15 @@ def _bowed(estimate):
 
 
 def _holes(estimate):
-    share = estimate.inspection.filled_share
-    return f"{100 * share:.2g} % of the points were undefined and are filled from their neighbours" if share else ""
+    inspection = estimate.inspection
+    parts = [maps.part_in_words for maps in inspection.sizes if maps.part.shape != maps.frame.shape]
+    share = f"{100 * inspection.filled_share:.2g} % of the points"
+    if parts:
+        return (
+            f"{share} are undefined: moments are those of the others, and the spectrum is that of the largest part "
+            f"without wide holes, {' and '.join(parts)}; if holes are steep or deep places, rms and skewness err"
+        )
+    return f"{share} were undefined and are filled from their neighbours" if inspection.filled_share else ""
 
 
 def _scans_differ(estimate):

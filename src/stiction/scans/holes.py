@@ -1,12 +1,45 @@
-"""Undefined points of a map of heights, filled from their neighbours.
+"""Undefined points of a map of heights: narrow holes are filled from their neighbours, wide ones are left out.
 
 Scattered points at the level would act as white noise: they would raise the whole spectrum by the variance of the
-heights times their share, which hides where it ends.
+heights times their share, which hides where it ends. In a wide hole, filled heights would have no roughness.
 """
 
 import numpy as np
-from scipy import sparse
+from scipy import ndimage, sparse
 from scipy.sparse.linalg import spsolve
+
+#: Points along each side of the smallest wide hole. ASSUME: the shortest wavelength used of a spectrum is so long, see
+#: `stiction.scans.whittle.reach`, so that it holds no wave that a narrower hole hides.
+_WIDE = 4
+
+
+def whole_part(heights: np.ndarray) -> tuple[slice, slice]:
+    """Largest rectangle of a map without wide holes, that with the longest shorter side: this decides the plateau.
+
+    Examples
+    --------
+    >>> z = np.zeros((40, 50))
+    >>> z[30:35, 10:15] = np.nan
+    >>> whole_part(z)
+    (slice(0, 40, None), slice(15, 50, None))
+    """
+    wide = ndimage.binary_opening(~np.isfinite(heights), np.ones((_WIDE, _WIDE)))
+    best, found = (0, 0), (slice(0, 0), slice(0, 0))
+    columns = np.arange(heights.shape[1])
+    length, left, right = np.zeros_like(columns), np.zeros_like(columns), np.full_like(columns, len(columns))
+    for row, free in enumerate(~wide):
+        # Of every point: free points above it, and the columns between which all of them are free.
+        length = np.where(free, length + 1, 0)
+        start = np.maximum.accumulate(np.where(free, 0, columns + 1))
+        end = np.minimum.accumulate(np.where(free, len(columns), columns)[::-1])[::-1]
+        left, right = np.where(free, np.maximum(left, start), 0), np.where(free, np.minimum(right, end), len(columns))
+        width = np.where(free, right - left, 0)
+        shorter, area = np.minimum(length, width), length * width
+        k = int(np.lexsort((area, shorter))[-1])
+        if (shorter[k], area[k]) > best:
+            best = shorter[k], area[k]
+            found = slice(row + 1 - int(length[k]), row + 1), slice(int(left[k]), int(right[k]))
+    return found
 
 
 def filled(heights: np.ndarray, pixel: tuple[float, float]) -> np.ndarray:

@@ -4,9 +4,10 @@ Scans may differ in size and number of points. Each size is evaluated by itself;
 averaged by scanned area, and Eq. (7) is fitted to the spectra of all sizes, each within its reach.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from operator import itemgetter
 from typing import Any
@@ -15,14 +16,14 @@ import numpy as np
 
 from stiction.errors import ScanError
 from stiction.scans import periodogram as spectra
-from stiction.scans.holes import filled
+from stiction.scans.holes import filled, whole_part
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.moments import moments, powers
 from stiction.scans.noise import Floor, above, can_be_noise, slopes_with_noise, white_floor, without_noise
 from stiction.scans.periodogram import Periodogram, Rings, in_order
 from stiction.scans.quantiles import correlation_areas, quantiles
 from stiction.scans.remainder import Remainder, remainders
-from stiction.scans.scan import Frame, Scan
+from stiction.scans.scan import FEWEST_POINTS, Frame, Scan
 from stiction.scans.whittle import NON_GAUSSIAN, Reach, WhittleFit, fit_to_the_end, reach, spectrum, tip_reach
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 
@@ -44,7 +45,7 @@ class Settings:
     tip_radius: float | None = None  #: of the microscope [m]
     shortest: float | None = None  #: wavelength used of the spectrum; four pixels by default [m]
     tiles: int = 4  #: tiles along each side of a scan, whose scatter tests that the scan is homogeneous
-    undefined_share: float = 0.01  #: largest share of points without height [-]
+    undefined_share: float = 0.01  #: share of points without height from which only a part gives the spectrum [-]
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +56,8 @@ class Maps:
     numbers: tuple[int, ...]  #: of these scans among all
     frame: Frame
     levelled: tuple[np.ndarray, ...]  #: heights, NaN where undefined, (n1, n2) each [m]
-    complete: tuple[np.ndarray, ...]  #: the same with undefined points filled from their neighbours [m]
+    complete: tuple[np.ndarray, ...]  #: the same, or their largest whole part, with undefined points filled [m]
+    part: Frame  #: of these
     periodogram: Periodogram
     rings: Rings  #: without the floor of the noise
     reach: Reach
@@ -68,26 +70,38 @@ class Maps:
         scans = list(alike.values())
         frame = scans[0].frame
         levelled = tuple(level(scan.heights, settings.levelling) for scan in scans)
-        complete = tuple(filled(z, frame.pixel) for z in levelled)
-        noisy = spectra.periodogram(complete, frame.size)
+        complete = tuple(map(partial(_whole, settings), scans, levelled))
+        part = _part(complete[0], frame)
+        noisy = spectra.periodogram(complete, part.size)
         tip = np.inf if settings.tip_radius is None else tip_reach(complete, frame.pixel[0], settings.tip_radius)
-        within = reach(frame.size, frame.pixel, settings.shortest, tip)
+        within = reach(part.size, frame.pixel, settings.shortest, tip)
         floor, kept = white_floor(spectra.rings(noisy), within), Floor()
         if not can_be_noise(moments(np.mean([powers(z) for z in levelled], axis=0)), floor.variance(frame.pixel)[0]):
             floor, kept = kept, floor
         within, clean = above(spectra.rings(noisy), within, floor), spectra.without_floor(noisy, floor.density)
         names = tuple(scan.name for scan in scans)
-        return cls(names, tuple(alike), frame, levelled, complete, clean, spectra.rings(clean), within, floor, kept)
+        spectrum_of = spectra.rings(clean)
+        return cls(names, tuple(alike), frame, levelled, complete, part, clean, spectrum_of, within, floor, kept)
 
     @property
     def size(self) -> str:
         """Size in words."""
-        return " x ".join(f"{1e6 * side:.4g}" for side in self.frame.size) + " µm"
+        return _in_words(self.frame)
+
+    @property
+    def part_in_words(self) -> str:
+        """Size of the part that gives the spectrum."""
+        return _in_words(self.part)
 
     @property
     def area(self) -> float:
-        """Area of all scans [m²]."""
-        return self.frame.area * len(self.names)
+        """Area of all scans that has heights [m²]."""
+        return self.frame.area * self.number
+
+    @cached_property
+    def number(self) -> float:
+        """Number of the scans, less the share of their undefined points."""
+        return len(self.names) * float(np.mean(np.isfinite(self.levelled)))
 
     @cached_property
     def powers(self) -> np.ndarray:
@@ -123,7 +137,7 @@ class Maps:
 
     def wavelengths(self, fit: WhittleFit) -> float:
         """Wavelengths of the corner along the shorter side [-]."""
-        return fit.corner * min(self.frame.size) / (2 * np.pi)
+        return fit.corner * min(self.part.size) / (2 * np.pi)
 
 
 @dataclass(frozen=True)
@@ -252,12 +266,8 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
         If too many points are undefined, or if the scans are too small to give a spectrum.
     """
     names = ", ".join(scan.name for scan in scans)
-    for scan in scans:
-        if scan.undefined_share > settings.undefined_share:
-            share = f"{100 * scan.undefined_share:.3g} % of its points undefined"
-            share += f" ({scan.stopped})" if scan.stopped else ""
-            raise ScanError(scan.name, "files", f"has {share}, at most {100 * settings.undefined_share:.3g} % may be")
-    sizes = tuple(Maps.of(alike, settings) for alike in by_size(scans))
+    groups = [Maps.of(alike, settings) for alike in by_size(scans, settings.undefined_share)]
+    sizes = tuple(sorted(groups, key=lambda maps: _extent(maps.part), reverse=True))
     try:
         fitted, rings, within = _fitted(sizes)
     except ValueError as reason:
@@ -265,28 +275,61 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
     return Inspection(sizes, settings, rings, within, fitted)
 
 
-def by_size(scans: Sequence[Scan]) -> list[dict[int, Scan]]:
+def _whole(settings, scan, levelled):
+    """Levelled heights without holes; of a scan with many undefined points only its largest whole part, levelled anew.
+
+    Raises
+    ------
+    ScanError
+        If no part is large enough.
+    """
+    if scan.undefined_share <= settings.undefined_share:
+        return filled(levelled, scan.frame.pixel)
+    part = level(scan.heights[whole_part(scan.heights)], settings.levelling) if scan.defined.any() else levelled[:0]
+    if min(part.shape) < FEWEST_POINTS:
+        share = f"{100 * scan.undefined_share:.3g} % of its points undefined"
+        share += f" ({scan.stopped})" if scan.stopped else ""
+        reason = f"has {share}, and no part without holes that has {FEWEST_POINTS} points along each side"
+        raise ScanError(scan.name, "files", reason)
+    return filled(part, scan.frame.pixel)
+
+
+def _in_words(frame):
+    """Size of a map."""
+    return " x ".join(f"{1e6 * side:.4g}" for side in frame.size) + " µm"
+
+
+def _part(heights, frame):
+    """Frame of a part of a map."""
+    if heights.shape == frame.shape:
+        return frame
+    return Frame(heights.shape, tuple(n * pixel for n, pixel in zip(heights.shape, frame.pixel, strict=True)))
+
+
+def by_size(scans: Sequence[Scan], undefined_share: float = 1.0) -> list[dict[int, Scan]]:
     """Scans that are alike in size and number of points together, by their numbers.
 
-    The largest size is first, and of equal sizes that with more points.
+    The largest size is first, and of equal sizes that with more points. Scans with a larger share of undefined points
+    stand alone, because the parts that give their spectra differ.
     """
     groups = []
     for number, scan in enumerate(scans):
-        group = next((group for group in groups if _alike(scan, next(iter(group.values())))), None)
+        group = next((group for group in groups if _alike(scan, next(iter(group.values())), undefined_share)), None)
         if group is None:
             groups.append(group := {})
         group[number] = scan
-    return sorted(groups, key=lambda group: _extent(next(iter(group.values()))), reverse=True)
+    return sorted(groups, key=lambda group: _extent(next(iter(group.values())).frame), reverse=True)
 
 
-def _extent(scan):
+def _extent(frame):
     """Shorter side of a scan and number of its points, by which sizes are in order."""
-    return min(scan.size), scan.heights.size
+    return min(frame.size), math.prod(frame.shape)
 
 
-def _alike(one, other):
-    """Whether two scans have the same number of points and, nearly, the same size."""
-    return one.frame.shape == other.frame.shape and np.allclose(one.size, other.size, rtol=_SAME_SIZE, atol=0)
+def _alike(one, other, undefined_share):
+    """Whether two scans have the same number of points and, nearly, the same size, and neither has many holes."""
+    same = one.frame.shape == other.frame.shape and np.allclose(one.size, other.size, rtol=_SAME_SIZE, atol=0)
+    return same and max(one.undefined_share, other.undefined_share) <= undefined_share
 
 
 def _fitted(sizes):
@@ -306,7 +349,7 @@ def _fitted(sizes):
 
 def _first_wave(maps, sizes):
     """Wave number from which scans count for a spectrum of several sizes [rad m⁻¹]."""
-    return maps.reach.low if maps is sizes[0] else 2 * np.pi * _FEWEST_WAVES / min(maps.frame.size)
+    return maps.reach.low if maps is sizes[0] else 2 * np.pi * _FEWEST_WAVES / min(maps.part.size)
 
 
 def _last_wave(maps, finest):

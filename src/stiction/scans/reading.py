@@ -1,4 +1,4 @@
-"""Files of microscopes, read by SurfaceTopography: units, axes, undefined points and the channel of the heights.
+"""Files of microscopes, read by SurfaceTopography and `stiction.formats`: units, axes, undefined points, and channel.
 
 The library is imported only here, and only when a file is read. It regards every channel with a length, and some
 without, as heights; the channel is therefore selected by name and unit. What the library prints, logs or raises never
@@ -17,23 +17,16 @@ from types import SimpleNamespace
 import numpy as np
 
 from stiction.errors import ScanError
+from stiction.formats.content import content_of, own_reader
+from stiction.formats.heights import STORED, UNITS, height_channel, unit_of
+from stiction.formats.text_lines import COORDINATES, misread
 from stiction.regular_files import require_regular
 from stiction.scans.scan import Scan
-from stiction.scans.text_lines import COORDINATES, misread
 
-#: Units of length [m], and those of them that files have: an A in a file may be an ampere.
-UNITS = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6, "nm": 1e-9, "Å": 1e-10, "A": 1e-10, "pm": 1e-12}
-STORED = set(UNITS) - {"A"}
-#: Names of height channels consist of these words: at least one of the first set, others only of the second and third.
-#: Heights by different means are different quantities. Those of both directions of a line are one quantity.
-_HEIGHT, _MEANS = {"height", "topography", "z"}, {"axis", "sensor", "measured", "raw", "data"}
-_DIRECTION = {"scan", "trace", "retrace", "forward", "backward", "channel"}
-#: Names of the library for the channel of a file that names none.
-_NAMELESS = re.compile(r"(default|channel \d+)$", re.IGNORECASE)
 #: Formats that any file of a certain length has: recognised by the ending of the file only.
 _WITHOUT_MAGIC = {"hgt", "nms"}
 #: Formats of text: maps of lines, and points with their coordinates.
-_LINES, _POINTS = "asc", "xyz"
+_TEXTS = _LINES, _POINTS = "asc", "xyz"
 #: Metadata of instruments on whether the stored heights are levelled, and their values if they are not.
 _LEVELLED = re.compile(r"offline planefit|(?:planefit|flattenorder) (\d+)", re.IGNORECASE)
 _NOT_LEVELLED = {"none", "-1", "0", ""}
@@ -83,28 +76,28 @@ def read(path: str | Path, source: Source | None = None) -> ScanFile:
         except ScanError as reason:  # ends here with all that it refers to, so that files are closed in silence
             refused = ScanError(reason.file, reason.key, reason.reason)
         except Exception as reason:  # whatever a reader raises on a damaged file
-            refused = _unreadable(library, path, reason)
+            refused = _unreadable(library, path.name, reason)
     raise refused
 
 
 def _read(library, path, source):
     """`ScanFile` of a file that is not empty."""
-    name = path.name
-    with _opened(library, path) as reader:
+    name, file = path.name, content_of(path.name, str(path), path.read_bytes())
+    with _opened(library, file) as reader:
         if not reader.channels:
             raise ScanError(
                 name,
                 "files",
                 "holds no map with units of length: set them in the program that wrote it, or the file is damaged",
             )
-        channel, notes = _height_channel(reader.channels, source.channel, name)
+        channel, notes = height_channel(reader.channels, source.channel, name)
         if channel.dim != 2:
             raise ScanError(name, "files", "is a profile; a map of heights is needed")
         if reader.format() in (_LINES, _POINTS):
-            _require_all_lines(library, path, reader.format(), channel)
+            _require_all_lines(library, file, reader.format(), channel)
         unit, size = _unit(channel, source, name), _size(channel, source, name)
         heights = UNITS[_delivered(channel, unit)] * _heights(channel, name)
-        notes += _instrument_levelling(channel, name)
+        notes += _instrument_levelling(channel, name) + _note(channel, name)
         identifier = channel.channel_id
     if source.fast_axis == "y":
         heights, size = heights.T, size[::-1]
@@ -158,49 +151,56 @@ def _library(name):
         raise ScanError(
             name, "files", "needs the library SurfaceTopography to be read: pip install 'SurfaceTopography>=1.27'"
         ) from None
+    endings = {}
+    for kind in IO.readers:
+        for ending in {kind.format(), *(kind.file_extensions() or ())}:
+            endings.setdefault(ending, []).append(kind)
     return SimpleNamespace(
         open=IO.open_topography,
         unknown=IO.CannotDetectFileFormat,
         error=IO.ReadFileError,
-        endings={ending: kind for kind in IO.readers for ending in (kind.format(), *(kind.file_extensions() or ()))},
+        endings=endings,
         formats=IO.lookup_reader_by_format,
     )
 
 
-def _opened(library, path):
-    """Reader of a file; refuses what no format fits."""
+def _opened(library, file):
+    """Reader of a file, that of its ending if this accepts it; refuses what no format fits."""
+    if own := own_reader(file):
+        return own
+    kinds = [kind.format() for kind in library.endings.get(file.ending, ()) if kind.format() not in _TEXTS]
+    for kind in kinds:
+        with contextlib.suppress(Exception):  # whatever a reader raises on a file of another format
+            return library.open(file.source(), format=kind)
     try:
-        reader = library.open(str(path))
+        reader = library.open(file.source())
     except library.unknown:
-        raise _unreadable(library, path, _error_of_its_format(library, path)) from None
-    if reader.format() in _WITHOUT_MAGIC and reader.format() != _ending(path):
+        raise _unreadable(library, file.label, _error_of_its_format(library, file)) from None
+    if reader.format() in _WITHOUT_MAGIC and reader.format() not in kinds:
         reader.close()
-        raise _unreadable(library, path, _error_of_its_format(library, path))
+        raise _unreadable(library, file.label, _error_of_its_format(library, file))
     return reader
 
 
-def _ending(path):
-    return path.suffix.lower().removeprefix(".")
-
-
-def _error_of_its_format(library, path):
+def _error_of_its_format(library, file):
     """Why the reader for the ending of a file does not accept it; ``None`` if no format has this ending."""
-    kind = library.endings.get(_ending(path))
-    return None if kind is None else _error_of(kind, path)
+    errors = (_error_of(kind, file) for kind in reversed(library.endings.get(file.ending, ())))
+    return next(errors, None)
 
 
-def _error_of(kind, path):
+def _error_of(kind, file):
     """Why the reader of a format does not accept a file; ``None`` if it does."""
     try:
-        kind(str(path)).close()
+        kind(file.source()).close()
     except Exception as error:  # whatever a reader raises on a damaged file
         return error
     return None
 
 
-def _unreadable(library, path, error):
-    """One sentence, with the reason of the library."""
-    return ScanError(path.name, "files", f"cannot be read as any known format, or is damaged{_quoted(library, error)}")
+def _unreadable(library, name, error):
+    """One sentence, with the reason of the library and a way out."""
+    reason = f"cannot be read as any known format, or is damaged{_quoted(library, error)}"
+    return ScanError(name, "files", f"{reason}; open it in Gwyddion and save it as .gwy")
 
 
 def _quoted(library, error):
@@ -210,70 +210,25 @@ def _quoted(library, error):
     return f" ({line})" if 0 < len(line) <= _LONGEST_REASON else ""
 
 
-def _require_all_lines(library, path, kind, channel):
+def _require_all_lines(library, file, kind, channel):
     """Refuse a text of which the library leaves out lines, and points that it takes for a map of three columns."""
-    found = misread(_text(path), commas=kind == _POINTS)
+    found = misread(file.text, commas=kind == _POINTS)
     if found is not None:
         line, value = found
         shown = value if len(value) <= _LONGEST_REASON else value[:_LONGEST_REASON] + " …"
         raise ScanError(
-            path.name, "files", f"has {shown!r} in line {line}, must be a number, or nan where no height is defined"
+            file.label,
+            "files",
+            f"has {shown!r} in line {line}, must be a number, or nan where no height is defined",
         )
     if kind == _LINES and channel.nb_grid_pts[0] <= COORDINATES:
-        reason = _quoted(library, _error_of(library.formats[_POINTS], path))
-        raise ScanError(path.name, "files", f"lists points that are on no regular grid{reason}; a map is needed")
-
-
-def _text(path):
-    """Text of a file in one of the encodings that the library tries."""
-    content = path.read_bytes()
-    try:
-        return content.decode("utf-16" if content.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8")
-    except UnicodeDecodeError:
-        return content.decode("latin-1")
-
-
-def _words(name):
-    """Words of the name of a channel, in lower case; ``HeightTrace`` has two."""
-    return {word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", name)}
-
-
-def _is_height(channel):
-    """Whether name and unit of a channel are those of heights."""
-    words = _words(channel.name)
-    named = bool(words & _HEIGHT) and words <= _HEIGHT | _MEANS | _DIRECTION
-    return named and (_unit_of(channel) is None or _unit_of(channel) in STORED)
-
-
-def _unit_of(channel):
-    """Unit of the heights of a channel; ``None`` if the file has none, otherwise not always a length."""
-    return channel.unit if channel.data_unit is None else channel.data_unit
-
-
-def _height_channel(channels, wanted, name):
-    """Channel of the heights and notes on its choice."""
-    listed = ", ".join(channel.channel_id for channel in channels)
-    if wanted is not None:
-        chosen = [channel for channel in channels if wanted in (channel.channel_id, channel.name)]
-        if not chosen:
-            raise ScanError(name, "channel", f"has no channel {wanted}, only: {listed}")
-    elif len(channels) == 1 and _NAMELESS.match(channels[0].name):
-        chosen = channels
-    else:
-        chosen = [channel for channel in channels if _is_height(channel)]
-        if not chosen:
-            raise ScanError(name, "channel", f"has no channel that is named as a height, only: {listed}")
-        if len({frozenset(_words(channel.name) - _DIRECTION) for channel in chosen}) > 1:
-            several = ", ".join(channel.channel_id for channel in chosen)
-            raise ScanError(name, "channel", f"has several channels of heights; name one of: {several}")
-    others = ", ".join(channel.channel_id for channel in chosen[1:])
-    notes = (f"{name}: channel {chosen[0].channel_id} was read; the file also has {others}",) if others else ()
-    return chosen[0], notes
+        reason = _quoted(library, _error_of(library.formats[_POINTS], file))
+        raise ScanError(file.label, "files", f"lists points that are on no regular grid{reason}; a map is needed")
 
 
 def _unit(channel, source, name):
     """Unit of the heights, from the file or, if it has none, from the configuration."""
-    stored = _unit_of(channel)
+    stored = unit_of(channel)
     if stored is None and source.height_unit is None:
         raise ScanError(name, "height_unit", f"has no unit; give one of {', '.join(UNITS)}")
     if stored is not None and stored not in STORED:
@@ -322,6 +277,11 @@ def _heights(channel, name):
     if not topography.is_uniform:
         raise ScanError(name, "files", "has unequal distances between its points; a regular map is needed")
     return np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
+
+
+def _note(channel, name):
+    """Note of the reader on the heights."""
+    return (f"{name}: {channel.info['note']}",) if "note" in channel.info else ()
 
 
 def _instrument_levelling(channel, name):

@@ -22,8 +22,8 @@ SAMPLE = 2000
 #: ASSUME: to refuse a Gaussian surface is worse than to accept one that is beyond the border.
 LARGEST_DISTANCE, LARGEST_DISTANCE_OF_SCANS = (float(np.sqrt(-2 * np.log(p))) for p in (0.05, 0.001))
 
-#: Kurtosis above skewness² + 1 that is feasible at any skewness of a surface.
-_FEASIBLE = 0.5
+#: Kurtosis above skewness² + 1 that is feasible at any skewness of a surface, and the least one that is sought.
+_FEASIBLE, _LEAST = 0.5, 0.05
 #: Resolution of the largest kurtosis [-], and of the skewness in standard errors, far below any error of measurement.
 _RESOLUTION, _STEP = 1e-5, 1e-2
 
@@ -51,6 +51,17 @@ def is_feasible(skewness: float, kurtosis: float) -> bool:
     except (ValueError, NotConverged):
         return False
     return True
+
+
+def least_kurtosis(skewness: float) -> float:
+    """Kurtosis at a skewness that is a little above the bound of any heights, and feasible [-].
+
+    Examples
+    --------
+    >>> least_kurtosis(-1.0), is_feasible(-1.0, least_kurtosis(-1.0))
+    (2.05, True)
+    """
+    return skewness**2 + 1 + _LEAST
 
 
 @functools.lru_cache(maxsize=4096)

@@ -55,7 +55,9 @@ def lognormal_cracks(device=C1, number=400, groups=4, spread=0.025, seed=1):
     found = 700 * UM * np.exp(spread * rng.standard_normal((groups + 1, number)))
     laws = forcelaw.coefficients(VECTORS[:50], 1.2 * VECTORS[:, 1].max())
     beam = Beam(1500 * UM, 30 * UM, 2.6 * UM, 164e9, 20 * UM, 200)
-    return cracks.layout(device.opening, found[0], list(found[1:]), beam, laws, RMS)
+    return cracks.layout(device.opening, found[0], list(found[1:]), beam, laws, RMS).assign(
+        reach=np.inf, share_flat=0.0
+    )
 
 
 def wanted(device=C1, shares=(1e-2, 1e-3)):

@@ -26,7 +26,7 @@ from stiction.plan.plan import Plan
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import figures as figures_devices
-from stiction.report.devices import pages
+from stiction.report.devices import pages, sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.report.format import airs
 from stiction.stages.contact import contact, curves
@@ -172,7 +172,7 @@ def grounds():
     return in_air("b"), in_air("b_dry")
 
 
-SETTINGS = stoppers.Settings(ACROSS, SIDES, 1e-6, (0.0, 0.67), (0.6, 0.9))
+SETTINGS = stoppers.Settings(1, ACROSS, SIDES, 1e-6, (0.0, 0.67), (0.6, 0.9))
 
 
 def test_a_stopper_holds_least_in_dry_air_and_its_worst_air_is_the_worst_of_all(grounds):
@@ -194,7 +194,7 @@ def test_dry_air_is_the_worst_of_a_stopper_that_holds_most_in_it(grounds):
     assert (float(found.worst_humidity), float(found.worst_humidity_error)) == (0.0, 0.0)
     assert not stoppers.is_at_an_end(found)
     assert tables_budget.worst_humidity(0.0, 0.0, False) == "dry"
-    assert pages.worst_sentence(found).startswith(
+    assert sentences.worst_sentence(found).startswith(
         "The stopper holds most in dry air; humid air from 0.6 to 0.9 is less"
     )
 

@@ -132,3 +132,23 @@ def test_one_scan_gives_the_covariance_of_its_closed_form():
     assert_allclose(errors, [0.0161, 0.0433, 0.1416], rtol=0.02)
     assert_allclose(found.covariance[1, 2] / (errors[1] * errors[2]), -0.868, atol=0.01)
     assert_allclose(inputs.of_one_scan(*small.surfaces()[0], 20e-6).covariance, found.covariance / 4, rtol=0.1)
+
+
+def test_errors_of_several_causes_add_up_where_they_are_of_the_same_quantity():
+    first = Known(("rms", "corner"), [[4.0, 1.0], [1.0, 9.0]])  # lists, as settings have them
+    second = Known(("rms", "skewness"), [[1.0, 0.5], [0.5, 2.0]])
+    found = inputs.together([first, second])
+    assert found.quantities == ("rms", "skewness", "corner")
+    assert_allclose(found.covariance, [[5, 0.5, 1], [0.5, 2, 0], [1, 0, 9]])
+
+
+def test_what_is_stated_about_a_surface_adds_to_the_error_of_a_scan():
+    surfaces, side = {"B2": small.surfaces()[0]}, 10e-6
+    of_scan = inputs.of_one_scan(*surfaces["B2"], side).covariance
+    stated = replace(SETTINGS, known={"B2": Known(("kurtosis", "slope"), [[0.04, 0], [0, 0.25]])})
+    alone = inputs.covariances(surfaces, {}, stated)["B2"]
+    assert alone.quantities == ("kurtosis", "slope")
+    both = inputs.covariances(surfaces, {}, replace(stated, uncertainty=Uncertainty(scan=side)))["B2"]
+    assert both.quantities == ("rms", "skewness", "kurtosis", "slope")
+    assert_allclose(both.covariance[:3, :3] - of_scan, np.diag([0, 0, 0.04]), atol=1e-12)
+    assert_allclose(both.covariance[3], [0, 0, 0, 0.25])

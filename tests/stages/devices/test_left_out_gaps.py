@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 import small
+import xarray as xr
 
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
+from stiction.device import Device
 from stiction.devices import limits
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
@@ -50,10 +52,23 @@ def test_every_result_has_its_change_as_a_warning():
     assert any("across gaps is left out" in one and "RH 0.44" in one and "unsafe" in one for one in said)
     changes = device_warnings.left_out_changes(TOUCHING["devices/left_out_gaps/C1"])
     for shape in (S_SHAPE, EITHER):
-        (sentence,) = device_warnings._without_gaps(changes, 0.44, shape)
+        (sentence,) = device_warnings.of_left_out_gaps(
+            {key: of for key, of in changes.items() if key[0] == 0.44}, shape
+        )
         number = 100 * changes[0.44, ARC if shape == EITHER else shape][0]
         assert f"change the length that holds by {number:+.2g} ±" in sentence
-    assert device_warnings._without_gaps({}, 0.44, S_SHAPE) == []
+    assert device_warnings.of_left_out_gaps({}, S_SHAPE) == []
+
+
+@pytest.mark.parametrize("device", ["S1", "C1"])
+def test_a_device_in_python_has_the_same_warning(device):
+    lengths = xr.DataArray([[2e-4], [1e-4]], coords={"shape": [S_SHAPE, EITHER], "share": [0.01]})
+    safe = xr.Dataset({"safe_length": lengths, "film": 2e-9, "rms": 4e-9})
+    said = [one for one in Device(device, TOUCHING).warnings(safe) if "across gaps is left out" in one]
+    changes = device_warnings.left_out_changes(TOUCHING[f"devices/left_out_gaps/{device}"])
+    assert len(said) == len({response for _, response in changes})
+    for (humidity, _), (change, _) in changes.items():
+        assert any(f"{100 * change:+.2g} ±" in one and f"at RH {humidity:g}" in one for one in said)
 
 
 @pytest.mark.parametrize(

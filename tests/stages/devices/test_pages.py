@@ -15,9 +15,11 @@ from test_device_outputs import charted
 from test_tables_budget import BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_dataset
 
 from stiction.contact.environment import Water
-from stiction.report.devices import pages
-from stiction.report.devices.pages import Page, Section
+from stiction.report.devices import own_length, pages, sentences
+from stiction.report.devices import tables as tables_devices
+from stiction.report.page import Page, Section
 from stiction.stages.devices import device_warnings, safe_lengths, sticking
+from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import EITHER, S_SHAPE, DesignedBeam
 from stiction.stages.roughness import curves
 from stiction.stages.roughness.curves import OfStopper, Response
@@ -33,16 +35,17 @@ CANTILEVER = {
 STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.44, 0.67]}
 
 
-def safe(kind="cantilever", longest=600e-6):
+def safe(kind="cantilever", longest=600e-6, reach=np.inf):
     """Safe lengths of 400 devices that stick between two thirds of a length and this length."""
     device = DesignedBeam(kind, "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
     settings = safe_lengths.Settings(1, Water(300.0), 0.67, device, (1e-2, 1e-3, 1e-4))
     shapes = {device.opening.shapes[0]: np.linspace(2 / 3, 1, 400) * longest}
     if kind == "cantilever":
         shapes[EITHER] = 0.7 * shapes[S_SHAPE]
-    bounds = {shape: sticking.safe_lengths(values, settings) for shape, values in shapes.items()}
+    known = sticking.known(device, settings.water, 0.67, reach)
+    bounds = {shape: sticking.safe_lengths(values, settings, known[shape]) for shape, values in shapes.items()}
     errors = {shape: np.full(3, 1e-6) for shape in shapes}
-    return safe_lengths.layout(shapes, bounds, errors, 3e-9, settings)
+    return safe_lengths.layout(shapes, bounds, known, errors, settings).assign(rms=3e-9, share_flat=0.0)
 
 
 @pytest.fixture(scope="module")
@@ -74,20 +77,25 @@ def test_the_page_of_a_stopper_says_how_many_stick_and_in_which_air(stopper):
     )
     assert f"a restoring force of {stated:.3g} µN leaves at most 1 in 100 stuck (95 % confidence)" in stopper
     assert f"; at any humidity from 0.4 to 0.9, {any_air:.3g} µN are needed." in stopper
-    assert "1 in 1000" not in stopper
+    assert (
+        "leaves at most 1 in 1000 stuck (95 % confidence, by a line through the largest 5 % of the forces)" in stopper
+    )
+    assert "leaves at most 1 in 1000000 stuck (extrapolated, by a line" in stopper
     assert "<td>3 x 3 µm</td>" in stopper
     assert "<td>relative humidities</td><td>0.44, 0.67</td>" in stopper
 
 
 def test_a_worst_humidity_at_the_end_is_stated_as_one():
-    assert pages.worst_sentence(stopper_dataset(peak=1.0)) == (
+    assert sentences.worst_sentence(stopper_dataset(peak=1.0)) == (
         "Between relative humidities of 0.4 and 0.9, the stopper holds most at 0.9. "
         "In no air of this range do more than 0 % (0 to 0.918 %) stick."
     )
 
 
 def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_second_sentence():
-    asked = OfStopper(water=Water(300.0), humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6)
+    asked = OfStopper(
+        seed=1, water=Water(300.0), humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
+    )
     forces = {rms: 1e-6 * (4e-9 / rms) ** 3 for rms in (2e-9, 8e-9, 3.4e-9)}
     responses = {
         rms: Response(1.1 * force, force, 0.03 * force, np.nan, (0.1, 0.05, 0.15)) for rms, force in forces.items()
@@ -111,7 +119,7 @@ def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_sec
 
 def test_a_bound_of_all_stoppers_is_no_statement():
     all_stuck = stopper_dataset().assign(stuck_along=xr.ones_like(STOPPERS["S1"].stuck_along))
-    assert pages.worst_sentence(all_stuck).endswith("from 0.4 to 0.9, are less critical.")
+    assert sentences.worst_sentence(all_stuck).endswith("from 0.4 to 0.9, are less critical.")
 
 
 def test_advice_warnings_and_what_is_not_modelled_are_shown(stopper):
@@ -122,12 +130,12 @@ def test_advice_warnings_and_what_is_not_modelled_are_shown(stopper):
 
 def test_the_page_of_a_beam_says_which_lengths_come_free():
     found = safe()
-    sentence = pages.safe_sentence(0.67, found)
+    sentence = sentences.safe_sentence(0.67, found)
     lengths = [1e6 * float(found.safe_length.sel(shape=shape, share=1e-3)) for shape in found["shape"].values]
     assert f"up to {lengths[1]:.0f} µm come free" in sentence
     assert "at most 1 in 1000 (95 % confidence, given the drawn surfaces)" in sentence
     assert sentence.endswith(f"this is true of up to {lengths[0]:.0f} µm.")
-    assert "tip" not in pages.safe_sentence(0.67, safe("bridge"))
+    assert "tip" not in sentences.safe_sentence(0.67, safe("bridge"))
 
 
 def length_to_build(page):
@@ -138,13 +146,13 @@ def length_to_build(page):
 def test_the_length_to_build_is_the_least_less_twice_the_uncertainty():
     found = {0.44: safe(longest=500e-6), 0.67: safe(longest=600e-6)}
     least = 1e6 * min(float(dataset.safe_length.sel(share=1e-3).min()) for dataset in found.values())
-    assert length_to_build(pages.build_sentence(found, {})) == round(least)
-    assert "because none is stated" in pages.build_sentence(found, {})
+    assert length_to_build(sentences.build_sentence(found, {})) == round(least)
+    assert "because none is stated" in sentences.build_sentence(found, {})
     budgets = {(0.44,): budget_dataset(3.0), (0.44, "tip"): budget_dataset(0.5, TIPS)}
     budgets[0.67, "tip"] = budget_dataset(2.0, TIPS)
     inputs = budget_dataset(2.0, TIPS)
     total = np.sqrt(inputs.slope.values @ inputs.covariance.values @ inputs.slope.values)
-    sentence = pages.build_sentence(found, budgets)
+    sentence = sentences.build_sentence(found, budgets)
     assert length_to_build(sentence) == round(least * (1 - 2 * total))
     assert "at most 1 in 1000 sticks at relative humidities of 0.44, 0.67 (95 % confidence" in sentence
     assert f"is reduced by {200 * total:.2g} %" in sentence
@@ -152,20 +160,22 @@ def test_the_length_to_build_is_the_least_less_twice_the_uncertainty():
 
 def test_sentences_on_safe_forces_begin_with_the_humidities_of_the_stopper():
     found = STOPPERS["S1"]
-    assert pages.safe_force_sentences(found)[0].startswith("At all these humidities, a restoring force of")
-    single = pages.safe_force_sentences(found.sel(humidity=[0.67]))
+    assert sentences.safe_force_sentences(found)[0].startswith("At all these humidities, a restoring force of")
+    single = sentences.safe_force_sentences(found.sel(humidity=[0.67]))
     assert single[0].startswith("At a relative humidity of 0.67, a restoring force of")
 
 
 def test_budgets_of_bridges_are_not_those_of_tips():
     found = {0.67: safe("bridge")}
     budgets = {(0.67,): budget_dataset(1.0), (0.67, "tip"): budget_dataset(5.0, TIPS)}
-    assert pages.build_sentence(found, budgets) == pages.build_sentence(found, {(0.67,): budget_dataset(1.0)})
-    assert length_to_build(pages.build_sentence(found, budgets)) < length_to_build(pages.build_sentence(found, {}))
+    assert sentences.build_sentence(found, budgets) == sentences.build_sentence(found, {(0.67,): budget_dataset(1.0)})
+    assert length_to_build(sentences.build_sentence(found, budgets)) < length_to_build(
+        sentences.build_sentence(found, {})
+    )
 
 
 def test_no_length_is_stated_if_it_is_too_uncertain():
-    assert pages.build_sentence({0.67: safe("bridge")}, {(0.67,): budget_dataset(20.0)}).startswith("No length")
+    assert sentences.build_sentence({0.67: safe("bridge")}, {(0.67,): budget_dataset(20.0)}).startswith("No length")
 
 
 def test_the_verdict_compares_the_restoring_force_with_what_is_needed():
@@ -173,18 +183,18 @@ def test_the_verdict_compares_the_restoring_force_with_what_is_needed():
     weaker = found.safe_force.sel(part="safe", share=1e-2).max()
     steeper = found.assign(safe_force_along=found.safe_force_along * 100)
     strong = {"restoring_force": weaker * 1.001}
-    assert pages.verdict(found).startswith("The restoring force of 18.99 µN does not suffice")
-    assert "suffices at all relative humidities from 0.4 to 0.9" in pages.verdict(found.assign(strong))
-    assert "suffices at relative humidities of 0.44, 0.67, but" in pages.verdict(steeper.assign(strong))
-    assert "at most 1 in 100 sticks" in pages.verdict(found)
+    assert sentences.verdict(found).startswith("The restoring force of 18.99 µN does not suffice")
+    assert "suffices at all relative humidities from 0.4 to 0.9" in sentences.verdict(found.assign(strong))
+    assert "suffices at relative humidities of 0.44, 0.67, but" in sentences.verdict(steeper.assign(strong))
+    assert "at most 1 in 100 sticks" in sentences.verdict(found)
     few = found.assign(safe_force=found.safe_force * np.nan, stuck=0 * found.stuck)
-    assert pages.verdict(few).startswith("There are too few patches")
+    assert sentences.verdict(few).startswith("There are too few patches")
 
 
 def test_a_force_that_most_patches_exceed_does_not_suffice_however_few_they_are():
     few = STOPPERS["S1"].assign(safe_force=STOPPERS["S1"].safe_force * np.nan)
     stuck = few.stuck.copy(data=[[0, 0.9], [0, 0.85], [0.01, 0.95]])
-    assert pages.verdict(few.assign(stuck=stuck)) == (
+    assert sentences.verdict(few.assign(stuck=stuck)) == (
         "The restoring force of 18.99 µN does not suffice at a relative humidity of 0.67: at least 85 % of the "
         "stoppers stick (95 % confidence, given the drawn surfaces)."
     )
@@ -208,10 +218,10 @@ def test_a_page_explains_the_terms_that_it_uses_and_no_others():
 
 
 def test_surfaces_are_described_by_their_numbers_or_their_scans():
-    assert pages.described({"rms_nm": 2, "psd": "identified", "summit_density_per_um2": 40}, {}) == (
+    assert sentences.described({"rms_nm": 2, "psd": "identified", "summit_density_per_um2": 40}, {}) == (
         "rms 2 nm, density of summits 40 per µm²"
     )
-    assert pages.described({"scans": {"files": ["a.gwy", "b.gwy"]}}, {}) == "described by 2 scans"
+    assert sentences.described({"scans": {"files": ["a.gwy", "b.gwy"]}}, {}) == "described by 2 scans"
 
 
 def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():
@@ -261,10 +271,11 @@ def test_a_long_table_is_folded():
 def test_a_saved_page_ends_with_date_version_and_commit_of_the_last_run_and_differs_in_nothing_else(tmp_path):
     save, page, lines = pages.STAGES[0].save, Page("S1", {}, ["Build it."]), []
     for day, commit in (("01", "abc"), ("02", "def")):
-        runs = [{"started": f"2026-03-{day}T08:30:59+00:00", "versions": {"stiction": "1.2"}} for day in ("31", day)]
+        run = {"versions": {"stiction": "1.2"}, "config": {}}
+        runs = [run | {"started": f"2026-03-{day}T08:30:59+00:00"} for day in ("31", day)]
         runs[0]["git"], runs[1]["git"] = None, {"commit": commit, "changed": ["law.py"], "untracked": ["mine.gwy"]}
         (tmp_path / "provenance.json").write_text(json.dumps(runs))
-        save(page, {"html": str(tmp_path / "devices" / "S1.html")})
+        save(page, {"html": str(tmp_path / "devices" / "S1.html"), "answer": str(tmp_path / "devices" / "S1.txt")})
         lines.append((tmp_path / "devices" / "S1.html").read_text(encoding="utf-8").splitlines())
         for part in (
             f"run of 2026-03-{day} 08:30 UTC.",
@@ -274,6 +285,7 @@ def test_a_saved_page_ends_with_date_version_and_commit_of_the_last_run_and_diff
             assert part in "".join(lines[-1])
         assert "mine.gwy" not in "".join(lines[-1]), "is no code"
     assert sum(one != other for one, other in zip(*lines, strict=True)) == 2
+    assert (tmp_path / "devices" / "S1.txt").read_text(encoding="utf-8") == "Build it.\n"
 
 
 def test_text_is_shown_as_it_is():
@@ -288,3 +300,94 @@ def test_text_is_shown_as_it_is():
     assert len(shown.text["p"]) == 6, "with what is not in the model"
     assert shown.text["h2"] == [HOSTILE, "Limits of this prediction", "Terms"]
     assert shown.alt == [HOSTILE]
+
+
+def of_length(length, **more):
+    """Safe lengths as of `safe`, of devices of a length [m]."""
+    lengths = np.linspace(2 / 3, 1, 400) * 600e-6
+    sticking = {S_SHAPE: lengths, EITHER: 0.7 * lengths}
+    return safe(**more).assign(safe_lengths.at_length(sticking, [sticking, sticking], np.inf, length))
+
+
+def test_the_first_sentence_states_the_share_at_the_length_of_the_device():
+    # Sticking lengths in either shape are 280 to 420 µm.
+    cases = {0.44: of_length(300e-6), 0.67: of_length(350e-6)}
+    silent = {("C1", humidity, shape): [] for humidity in cases for shape in (S_SHAPE, EITHER)}
+    page = pages.of_beam("C1", CANTILEVER | {"length_um": 300}, cases, {}, {}, silent)
+    stuck, low, high = (100 * float(one) for one in cases[0.67].stuck_at_length.sel(shape=EITHER))
+    assert stuck == 50
+    safe_for = 1e6 * float(cases[0.67].safe_length.sel(shape=EITHER, share=1e-3))
+    assert page.answer[0] == (
+        f"Of devices of 350 µm, 50 % ({low:.3g} to {high:.3g} % with 95 % confidence) stick at a relative humidity of "
+        f"0.67; {safe_for:.0f} µm are safe for 1 in 1000."
+    )
+    assert page.answer[1].startswith("Of devices of 300 µm, 14.2 % (")
+    assert page.answer[2].startswith("Build it no longer than")
+    assert page.facts["length"] == "300 µm"
+
+
+def test_uncertain_measurements_widen_the_share_at_a_length():
+    budgets = {(0.67, "tip"): budget_dataset(1.0, TIPS)}
+    total = budget_of(budgets[0.67, "tip"]).total
+    (said,) = own_length.sentences({0.67: of_length(350e-6)}, budgets)
+    curve = safe().isel(shape=-1)
+    ends = np.interp([350e-6 / (1 + total), 350e-6 / (1 - total)], curve.length, curve.stuck)
+    assert said.endswith(f"of the length, it is {100 * ends[0]:.3g} to {100 * ends[1]:.3g} %.")
+    assert ends[0] < 0.5 < ends[1]
+
+
+def test_a_length_beyond_the_simulated_ones_has_a_bound_on_the_safe_side():
+    found = of_length(410e-6).assign(reach=400e-6)
+    found.stuck_at_length[:, 2] = 1.0
+    (said,) = own_length.sentences({0.67: found}, {})
+    assert "to 100 % (devices were simulated up to 400 µm; longer ones may all stick) stick" in said
+
+
+def test_the_table_has_the_share_at_the_length_of_those_devices_that_have_one():
+    cases = {("C1", 0.67): of_length(350e-6), ("C2", 0.67): safe()}
+    silent = {(name, 0.67, shape): [] for name in ("C1", "C2") for shape in (S_SHAPE, EITHER)}
+    table = tables_devices.safe_lengths(cases, silent)
+    one, other = (part for _, part in table.frame.groupby("device"))
+    assert set(one.length_um) == {350}
+    assert list(one.share_stuck) == [0.0] * 3 + [0.5] * 3
+    assert other.length_um.isna().all()
+    assert list(table.cells["P(stuck) [%]"])[-1] == "–"
+    assert "length that they have" in table.caption
+    assert "length [µm]" not in tables_devices.safe_lengths({("C2", 0.67): safe()}, silent).cells
+
+
+def test_where_few_devices_stick_the_page_begins_with_how_many_do_at_most():
+    silent = {("C1", 0.67, shape): [] for shape in (S_SHAPE, EITHER)}
+    few = safe(longest=3000e-6, reach=1410e-6)  # 6 of 400 devices stick, by their tips
+    page = pages.of_beam("C1", CANTILEVER, {0.67: few}, {}, {}, silent)
+    assert page.answer[0] == (
+        "At a relative humidity of 0.67, hardly any device sticks: none of the 400 simulated ones shorter than 1400 µm "
+        "does, and at most 2.9 % of those of 1410 µm (95 % confidence, given the drawn surfaces). For 1 in 1000, the "
+        "length that sticks on flat surfaces counts; 2995 devices in design.beams show whether longer ones are safe."
+    )
+    least = 1e6 * few.flooded_length.sel(shape=EITHER).item()
+    assert page.answer[1].startswith(f"Build it no longer than {least:.0f} µm: then at most 1 in 1000 sticks")
+    assert "<td>flat</td>" in page.html
+    assert pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).answer[0].startswith("Build it no longer")
+
+
+def test_where_no_device_sticks_in_enough_simulated_ones_the_longest_is_safe():
+    never = safe(longest=3000e-6, reach=500e-6)
+    assert sentences.few_sentence(0.67, never.sel(share=[1e-2])) == (
+        "At a relative humidity of 0.67, hardly any device sticks: none of the 400 simulated ones does, and at most "
+        "0.75 % of those of 500 µm (95 % confidence, given the drawn surfaces)."
+    )
+    assert sentences.build_sentence({0.67: never.sel(share=[1e-2])}, {}).startswith(
+        "Build it no longer than 500 µm: then"
+    )
+
+
+def test_a_page_says_in_its_second_sentence_that_an_assumption_decides():
+    budgets, section = {(0.67,): BUDGETS["S1", 0.67]}, STOPPER | {"assumed": ["rms of B2"]}
+    assumed = pages.of_stopper("S1", section, STOPPERS["S1"], budgets, []).answer[1]
+    assert assumed.startswith("What decides is assumed, not measured: heights of B2. If that were known")
+    lengths, budgets = {0.67: safe()}, {(0.67, "tip"): BUDGETS["C1", 0.67, "tip"]}
+    none = {("C1", 0.67, shape): [] for shape in (S_SHAPE, EITHER)}
+    beam = pages.of_beam("C1", CANTILEVER | {"assumed": ["rms of B2"]}, lengths, {}, budgets, none)
+    assert beam.answer[1].startswith("What decides is assumed")
+    assert not pages.of_beam("C1", CANTILEVER, lengths, {}, budgets, none).answer[1].startswith("What decides")

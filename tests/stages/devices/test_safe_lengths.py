@@ -97,3 +97,47 @@ def test_contact_angles_reduce_the_film():
     tilted = replace(wanted(R1), water=Water(300.0, (np.radians(60), 0.0)))
     found = safe_lengths.compute(lognormal_cracks(R1), None, tilted)
     assert_allclose(float(found.film / safe_without_tips().film), 0.75, rtol=1e-12)
+
+
+def of_length(device, length, dataset=None):
+    """Dataset of devices of a length [m], without one for ``None``."""
+    dataset = lognormal_cracks(device) if dataset is None else dataset
+    return safe_lengths.compute(dataset, None, replace(wanted(device), length=length))
+
+
+@pytest.mark.parametrize("device", [C1, R1], ids=["cantilever", "bridge"])
+def test_the_share_at_the_length_of_a_device_is_that_of_the_curve(device):
+    for number in (40, 150, 260):
+        curve = of_length(device, None)
+        length = float(curve.length[number])
+        found = of_length(device, length)
+        assert_array_equal(found.stuck_at_length.sel(end="estimate"), curve.stuck[:, number])
+        assert_array_equal(found.stuck_at_length.sel(end=["low", "high"]), curve.stuck_band[:, :, number])
+        assert float(found.length_of_device) == length
+        assert_array_equal(found.safe_length, curve.safe_length)
+    assert "stuck_at_length" not in curve
+
+
+def test_short_devices_come_free_and_long_ones_stick_whatever_the_axis():
+    short, long = (of_length(R1, length).stuck_at_length[0] for length in (1e-6, 1.0))
+    assert_allclose(short, [0, 0, 1 - 0.025 ** (1 / 400)], rtol=1e-12)
+    assert_allclose(long, [1, 0.025 ** (1 / 400), 1], rtol=1e-12)
+
+
+def test_devices_longer_than_those_simulated_may_all_stick():
+    cracks_of_r1, reach = lognormal_cracks(R1), 690e-6
+    beyond = np.where(cracks_of_r1.held_length > reach, np.inf, cracks_of_r1.held_length)
+    cut = cracks_of_r1.assign(held_length=("device", beyond) if beyond.ndim == 1 else cracks_of_r1.held_length)
+    stuck, low, high = of_length(R1, 800e-6, cut.assign(reach=reach)).stuck_at_length.values[0]
+    assert 0.2 < stuck < 0.5
+    assert low < stuck
+    assert high == 1
+    inside = of_length(R1, 680e-6, cut.assign(reach=reach)).stuck_at_length.values[0]
+    assert inside[2] < 0.5
+
+
+def test_the_error_of_a_share_is_the_scatter_between_groups():
+    _, of_group, _ = cracks.lengths(lognormal_cracks(R1))
+    shares = [np.mean(one < 700e-6) for one in of_group]
+    found = of_length(R1, 700e-6)
+    assert_allclose(found.stuck_surfaces_error, np.std(shares, ddof=1) / np.sqrt(len(shares)), rtol=1e-9)

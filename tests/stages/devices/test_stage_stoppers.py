@@ -7,15 +7,18 @@ import pytest
 import small
 from numpy.testing import assert_allclose, assert_array_equal
 
+from stiction.config.files import load
 from stiction.contact.environment import Water
 from stiction.devices.risk import samples_for
+from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
 from stiction.run import storage
 from stiction.stages.contact import curves
 from stiction.stages.devices import stoppers
 
 WATER = Water(300.0)
 AREA = 1.5e-6 * 6e-6
-SETTINGS = stoppers.Settings(WATER, (1.5e-6, 6e-6), 18e-6, (0.67, 0.88), (0.85, 0.9))
+SETTINGS = stoppers.Settings(1, WATER, (1.5e-6, 6e-6), 18e-6, (0.67, 0.88), (0.85, 0.9))
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +65,22 @@ def test_safe_forces_are_stated_for_shares_that_the_patches_can_bound():
     assert samples_for(1e-2) <= 400 < samples_for(1e-3)
     assert 3.9 < float(safe.sel(share=1e-2)) <= 4.0
     assert_allclose(at.safe_force.sel(humidity=0.88), 2 * at.safe_force.sel(humidity=0.67), rtol=1e-12)
-    assert np.isnan(safe.sel(share=[1e-3, 1e-4])).all()
+    assert list(at.basis.values) == ["sampled", "fitted", "extrapolated", "extrapolated"]
+    assert np.all(np.diff(safe.values) > 0), "rarer stoppers hold more"
+
+
+def test_too_few_patches_state_no_safe_force():
+    at = synthetic(100)
+    assert np.isnan(at.safe_force).all()
+    assert set(at.basis.values) == {""}
+
+
+def test_safe_forces_do_not_depend_on_the_other_humidities():
+    both, forces = synthetic(400), np.arange(1, 401) / 100
+    alone = stoppers.layout(
+        replace(SETTINGS, humidities=(0.67,)), forces[None], np.array([0.6, 0.7]), np.tile(forces, (2, 1))
+    )
+    assert_array_equal(alone.safe_force.values[:, 0], both.safe_force.values[:, 0])
 
 
 def test_the_worst_humidity_is_that_of_the_largest_mean_force_unless_it_is_an_end():
@@ -80,8 +98,7 @@ def test_safe_forces_along_the_axis_are_those_at_its_humidities():
     at = stoppers.layout(weak, np.stack([forces, 2 * forces]), axis, np.stack([forces, 3 * forces, 2 * forces]))
     assert_array_equal(at.safe_force_along[[0, 2]], at.safe_force.sel(part="safe"))
     stuck, safe = stoppers.in_any_air(at)
-    assert_allclose(safe[0], 3 * at.safe_force_along[0, 0], rtol=1e-12)
-    assert np.isnan(safe[1:]).all()
+    assert_allclose(safe, 3 * at.safe_force_along[0], rtol=1e-12)
     assert stuck == tuple(map(float, at.stuck_along[:, 1]))
 
 
@@ -95,3 +112,20 @@ def test_a_stopper_comes_back_from_its_file(found, tmp_path):
     again = storage.load(tmp_path / "S1.nc", "stoppers")
     assert stoppers.shares_stuck(again) == stoppers.shares_stuck(found)
     assert_array_equal(again.mean_along, found.mean_along)
+
+
+def test_a_spring_restores_a_stopper_like_a_force_of_the_same_size():
+    force = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 3.0, "humidities": [0.5]}
+    spring = {key: value for key, value in force.items() if key != "restoring_force_uN"}
+    asked = {"requirement": {"share": 0.001}, "roughness": {"surface": "B2", "rms_nm": [1, 8]}}
+    of_spring, of_force, weaker = (
+        Graph(Plan(load({"devices": {"S1": one | asked}})))
+        for one in (
+            spring | {"stiffness_N_per_m": 2, "gap_um": 1.5},
+            force,
+            spring | {"stiffness_N_per_m": 1, "gap_um": 1.5},
+        )
+    )
+    for job in ("devices/stoppers/S1", "devices/roughness/points/S1_0"):
+        assert of_spring.job(job).settings == of_force.job(job).settings
+        assert of_spring.job(job).settings != weaker.job(job).settings

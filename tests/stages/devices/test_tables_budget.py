@@ -41,7 +41,7 @@ def budget_dataset(factor=1.0, settings=BEAM):
 
 def stopper_dataset(peak=0.7):
     """400 patches that hold 0.05, 0.1, ..., 20 µN."""
-    settings = study_stoppers.Settings(Water(300.0), (3e-6, 3e-6), 18.99e-6, (0.44, 0.67), (0.4, 0.9))
+    settings = study_stoppers.Settings(1, Water(300.0), (3e-6, 3e-6), 18.99e-6, (0.44, 0.67), (0.4, 0.9))
     forces, axis = 5e-8 * np.arange(1, 401), np.linspace(0.4, 0.9, 11)
     peaks = peak + 0.04 * np.where(np.arange(400) % 2, 1, -1)
     along = (1 - (axis[:, None] - peaks) ** 2) * 5e-6
@@ -137,7 +137,9 @@ def test_numbers_of_stoppers_are_those_of_the_dataset():
     assert row.share_stuck_low < row.share_stuck < row.share_stuck_high
     assert frame.loc["S1", 0.67].share_stuck == 0
     assert 19.5 < row["safe_force_uN_0.01"] <= 20
-    assert np.isnan(row["safe_force_uN_0.001"])
+    for share, basis in zip(("0.01", "0.001", "0.0001", "1e-06"), STOPPERS["S1"].basis.values, strict=True):
+        safe = STOPPERS["S1"].safe_force.sel(humidity=0.44, share=float(share), part="safe")
+        assert (row[f"safe_force_uN_{share}"], row[f"safe_force_basis_{share}"]) == (1e6 * float(safe), basis)
 
 
 def test_the_last_row_of_a_stopper_bounds_all_humidities_of_the_axis():
@@ -149,13 +151,22 @@ def test_the_last_row_of_a_stopper_bounds_all_humidities_of_the_axis():
     assert_allclose(row.share_stuck, 0.1, rtol=1e-12)
     assert_allclose(row.pull_off_uN, 1e6 * dataset.mean_along.max(), rtol=1e-12)
     assert_allclose(row["safe_force_uN_0.01"], 1e6 * dataset.safe_force_along.sel(share=1e-2).max(), rtol=1e-12)
-    assert np.isnan(row["safe_force_uN_0.001"])
+    assert_allclose(row["safe_force_uN_1e-06"], 1e6 * dataset.safe_force_along.sel(share=1e-6).max(), rtol=1e-12)
 
 
 def test_a_worst_humidity_at_the_end_of_the_axis_may_lie_beyond_it():
     cells = tables_budget.stoppers(STOPPERS, WARNINGS).cells
     assert list(cells["worst RH"]) == ["0.700 ± 0.015"] * 3 + ["0.9 or beyond"] * 3
-    assert set(cells["safe force, 0.001 [µN]"]) == {"–"}
+
+
+def test_a_safe_force_that_is_fitted_or_extrapolated_says_so():
+    table = tables_budget.stoppers(STOPPERS, WARNINGS)
+    texts = {share: list(table.cells[f"safe force, {share} [µN]"]) for share in ("0.01", "0.001", "0.0001", "1e-06")}
+    assert all("(" not in text for text in texts["0.01"])
+    assert all(text.endswith(" (fitted)") for text in texts["0.001"])
+    assert all(text.endswith(" (extrapolated)") for share in ("0.0001", "1e-06") for text in texts[share])
+    few = STOPPERS["S1"].assign(safe_force=STOPPERS["S1"].safe_force * np.nan, basis=("share", [""] * 4))
+    assert tables_budget.stoppers({"S1": few}, WARNINGS).cells["safe force, 1e-06 [µN]"][0] == "–"
 
 
 def drawn(panel):
@@ -259,3 +270,12 @@ def test_equal_data_give_equal_files(draw, tmp_path):
     for name in ("one", "two"):
         save(draw(), tmp_path / f"{name}.png")
     assert (tmp_path / "one.png").read_bytes() == (tmp_path / "two.png").read_bytes()
+
+
+def test_an_assumed_input_is_named_where_it_decides_and_nowhere_else():
+    datasets = BEAMS.values()  # heights of B2 decide; the total at 0.44 is twice that at 0.67
+    (said,) = tables_budget.decided(datasets, ["skewness of B2"])
+    assert said.startswith("What decides is assumed, not measured: heights of B2. If that were known, the standard ")
+    assert said.endswith("beams stick (S-shape) would be 1.6 instead of 5.2 %.")
+    assert tables_budget.decided(datasets, ["thickness"]) == tables_budget.decided(datasets, []) == []
+    assert tables_budget.decided([], ["skewness of B2"]) == []

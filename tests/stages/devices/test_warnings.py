@@ -246,14 +246,15 @@ def warned(tmp_path):
     """Warnings about devices as the workflow writes and reads them, from their settings and datasets."""
     stage = next(stage for stage in device_warnings.STAGES if stage.name == "device_warnings")
 
-    def read(sections, lengths=(), charts=(), surfaces=NOT_MEASURED):
+    def read(sections, lengths=(), charts=(), surfaces=NOT_MEASURED, share_flat=0.0):
         files = {}
         for name, section in sections.items():
             own = [
                 {key: found for key, found in dict(datasets).items() if key[0] == name}
                 for datasets in (lengths, charts)
             ]
-            data = {"lengths": own[0], "charts": own[1], "plasticity": PLASTIC} | surfaces
+            stoppers = {name: xr.Dataset({"share_flat": share_flat})}
+            data = {"lengths": own[0], "charts": own[1], "stoppers": stoppers, "plasticity": PLASTIC} | surfaces
             files[name] = tmp_path / f"{name}.json"
             stage.save(stage.result(data, At(), section), {"json": files[name]})
         return device_warnings.read(files)
@@ -456,3 +457,14 @@ def test_what_pairs_leave_out_is_named_with_those_of_the_paper():
     mine = {"beam": "B1", "substrate": "Sub1", "gap_um": 20, "humidities": [0.5]}
     said = Graph(Plan(load({"pairs": {"mine": mine}, "run": {"pairs": ["a", "mine"]}}))).job("warnings.md")
     assert "attraction of solids across gaps (pairs a)," in said.settings["not_modelled"]
+
+
+# Patches that count as flat surfaces
+
+
+def test_patches_that_count_as_flat_surfaces_are_said_of_beams_and_stoppers(warned):
+    found, of = device()
+    (sentence,) = only(found.assign(share_flat=0.02), of)
+    assert sentence.startswith("2 % of the patches of surface have too few summits to resist the adhesion.")
+    assert warned({"S1": stopper()}, share_flat=0.02).patches["S1"] == [sentence]
+    assert warned({"S1": stopper()}).patches["S1"] == []

@@ -10,11 +10,13 @@ from legends import covering
 
 import stiction
 from stiction.contact.environment import Water
+from stiction.devices.risk import Known
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.report.roughness import figures as figures_roughness
 from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import png
+from stiction.stages.devices import sticking
 from stiction.stages.devices.opening import S_SHAPE
 from stiction.stages.roughness import contacts, curves
 from stiction.stages.roughness.contacts import POINTS, Varied
@@ -179,7 +181,9 @@ def test_a_range_that_ends_at_the_given_roughness_has_it_once():
 
 def point(rms, refused="", force=None):
     """Point of a curve of a stopper with the force 1e-6 (4 nm / rms)³, or with another one [N]."""
-    settings = curves.OfStopper(water=None, humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6)
+    settings = curves.OfStopper(
+        seed=1, water=None, humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
+    )
     force = 1e-6 * (4e-9 / rms) ** 3 if force is None else force
     response = curves.Response(1.1 * force, force, 0.03 * force, np.nan, (0.1, 0.05, 0.15))
     return curves.layout([[response]], [refused], rms, 400, settings)
@@ -221,7 +225,8 @@ def test_a_beam_that_sticks_at_no_length_is_an_answer():
     device = SimpleNamespace(opening=SimpleNamespace(shapes=(S_SHAPE,)))
     common = {"seed": 1, "chaos": None, "water": None, "humidities": (0.6,), "device": device, "beams": 100}
     beam = curves.OfBeam(**common, share=SHARE, length=1e-4)
-    never = beam._response(np.full(100, np.inf), 5e-5, 5e-5, 0.0)
+    known, lengths = Known(2e-4, 5e-5, 5e-5), np.full(100, np.inf)
+    never = beam._response(lengths, *sticking.safe_lengths(lengths, beam, known), known, 0.0)
     points = [curves.layout([[never]], [""], rms, 100, beam) for rms in RANGE]
     found = curves.joined(points, "rms_nm", "B2")
     (sentence,) = tables_roughness.answers(found)
@@ -294,7 +299,8 @@ def test_every_other_curve_of_a_map_is_that_of_a_surface_with_this_second_quanti
     surface = FEW | {"surfaces": {"B2": {"skewness": skewness}}, "devices": {"S1": {"humidities": [0.6]}}}
     forces = stiction.Device("S1", Results.of(stiction.load(SECTIONS, surface))).forces().pull_off[0].values
     one = found.sel(other=skewness, roughness=float(found.given), humidity=0.6, shape="force")
-    np.testing.assert_allclose(one.estimate, curves.safe_force(forces, SHARE)[1], rtol=1e-5)
+    (expected,) = curves.safe_forces(forces[None], SHARE, np.random.default_rng(0))  # sampled, not fitted
+    np.testing.assert_allclose(one.estimate, expected.estimate, rtol=1e-5)
 
 
 @pytest.mark.slow
@@ -392,3 +398,23 @@ def test_a_stopper_of_30_micronewton_sticks_at_3_4_nm_and_not_at_5_nm():
     found = stiction.Device("S1", Results.of(stiction.load(SECTIONS, few))).roughness()
     ends = found.stuck.sel(shape="force", humidity=0.6).isel(roughness=[0, -1])
     np.testing.assert_allclose(ends.sel(end="estimate"), [0.84, 0], atol=0.005)
+
+
+@pytest.mark.parametrize(("share", "samples"), [(1e-6, 29_956), (1e-3, 2995), (1e-4, 1000), (1e-6, 2_995_731)])
+def test_a_share_beyond_samples_and_verification_is_called_extrapolated(share, samples):
+    found = xr.Dataset({"share": share, "samples": samples})
+    (said,) = tables_roughness.extrapolated(found) or [""]
+    assert said.startswith("What holds for 1 in 1000000 is extrapolated: from 29956") == (samples == 29_956)
+    assert bool(said) == (samples == 29_956)
+
+
+def test_rare_shares_of_stoppers_need_no_more_patches_than_the_rarest_that_was_verified():
+    def samples(share):
+        asked = {"requirement": {"share": share}, "roughness": {"surface": "B2", "rms_nm": [1, 8]}}
+        bump = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 1, "humidities": [0.5]}
+        few = {"contact": {"samples": 100}, "run": {"pairs": []}}
+        plan = Plan(stiction.load(few, {"devices": {"S1": bump | asked}}))
+        settings = Graph(plan).job("devices/contact/roughness/S1_0").settings
+        return settings["contact"]["contact"]["samples"]
+
+    assert [samples(share) for share in (0.05, 1e-3, 1e-4, 1e-5, 1e-6)] == [100, 2995, 29_956, 29_956, 29_956]

@@ -248,7 +248,7 @@ def _table_3(data, settings):
     by_scans = {(pair, humidity): error for pair, errors in scanned for humidity, error in errors.items()}
     water = {pair: in_si(Water, section) for pair, section in settings["water"].items()}
     warnings = pair_warnings.of_films(data["beams"], water)
-    flags = pair_warnings.of_surfaces(data, settings["surfaces"])
+    flags = pair_warnings.of_surfaces(data, settings["surfaces"], settings["assumed"])
     warnings += [f"Pair {pair}: {sentence}" for pair, said in flags.items() for sentence in said]
     known = published.compared(data, settings)
     return table_3(data["beams"], data["forces"], known, by_scans, warnings, data.get("errors"))
@@ -271,6 +271,7 @@ STAGES = (
         settings=lambda plan, at: {
             "of_paper": plan.paper.pairs,
             "surfaces": {pair: plan.scans.sides(pair) for pair in plan.pairs},
+            "assumed": plan.assumed(*plan.pairs),
             "water": {pair: plan.air.water(pair) for pair in plan.pairs},
         },
         compute=_table_3,

@@ -1,13 +1,14 @@
 """Tables of stoppers and of the uncertainty of devices: P(stuck) of patches, and what to measure better."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from stiction.config.cases import air
-from stiction.devices.budget import advice
+from stiction.devices.budget import advice, ranked
+from stiction.devices.risk import Basis
 from stiction.estimates import mean_with_error
 from stiction.plan.names import by_name
 from stiction.report.format import UN, humidity_text, number, signed, with_error
@@ -70,7 +71,8 @@ def stoppers(
         "standard deviation over the patches; "
         "P(stuck): share of the patches that hold more than the restoring force, with its 95 % band; safe force: "
         "restoring force that is exceeded by the pull-off force of at most this share of all patches, with 95 % "
-        "confidence; – where there are too few patches."
+        "confidence; fitted: by a line through the largest 5 % of the forces, where too few patches bound the share; "
+        "extrapolated: by this line beyond what was verified; – where there are too few patches."
     )
     humid = [dataset for dataset in datasets.values() if ends(dataset)]
     if humid:
@@ -107,7 +109,9 @@ def _stopper(dataset, pull, stuck, safe):
     row = dict(zip(("pull_off_uN", "pull_off_se_uN", "pull_off_std_uN"), pull, strict=True))
     row |= {"restoring_force_uN": float(dataset.restoring_force) / UN}
     row |= dict(zip(("share_stuck", "share_stuck_low", "share_stuck_high"), stuck, strict=True))
-    row |= {f"safe_force_uN_{float(force.share):g}": float(force) / UN for force in safe}
+    for force, basis in zip(safe, dataset.basis.values, strict=True):
+        share = f"{float(force.share):g}"
+        row |= {f"safe_force_uN_{share}": float(force) / UN, f"safe_force_basis_{share}": str(basis)}
     row |= {"lowest_humidity": float(dataset.axis[0]), "highest_humidity": float(dataset.axis[-1])}
     row |= {"worst_humidity": float(dataset.worst_humidity)}
     return row | {"worst_humidity_se": float(dataset.worst_humidity_error), "worst_is_an_end": is_at_an_end(dataset)}
@@ -115,15 +119,23 @@ def _stopper(dataset, pull, stuck, safe):
 
 def _columns_of_stoppers(rows):
     """Columns for reading; those of the safe forces depend on the shares."""
-    names = dict.fromkeys(name for row in rows for name in row if name.startswith("safe_force"))
+    shares = dict.fromkeys(name.rpartition("_")[2] for row in rows for name in row if name.startswith("safe_force_uN"))
     return DEVICE | {
         "RH": (_humidities, "relative_humidity", "lowest_humidity", "highest_humidity"),
         "pull-off force [µN]": (with_error, "pull_off_uN", "pull_off_se_uN"),
         "std [µN]": (".3g", "pull_off_std_uN"),
         "restoring force [µN]": ("g", "restoring_force_uN"),
         "P(stuck) [%]": (percentage, "share_stuck", "share_stuck_low", "share_stuck_high"),
-        **{f"safe force, {name.rpartition('_')[2]} [µN]": (".3g", name) for name in names},
+        **{
+            f"safe force, {share} [µN]": (_with_basis, f"safe_force_uN_{share}", f"safe_force_basis_{share}")
+            for share in shares
+        },
     }
+
+
+def _with_basis(force, basis):
+    """A safe force, and what it rests on if that is not sampled patches."""
+    return number(force, ".3g") + (f" ({basis})" if basis in (Basis.FITTED, Basis.EXTRAPOLATED) else "")
 
 
 def _humidities(humidity, lowest, highest):
@@ -193,9 +205,27 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
 def advised(dataset: xr.Dataset) -> str:
     """Sentence on what to measure better."""
     uncertainty = budget_of(dataset)
+    if np.isnan(uncertainty.total):
+        return "So few of the simulated devices stick that they do not show what an input changes."
     if uncertainty.total == 0:
         return "No uncertainty of an input is stated."
     return advice(uncertainty, groups_of(dataset), response_text(dataset))
+
+
+def decided(datasets: Iterable[xr.Dataset], assumed: Sequence[str]) -> list[str]:
+    """Sentence about the most uncertain of some budgets, if inputs that are assumed are what to measure first."""
+    budgets = [(budget_of(dataset), dataset) for dataset in datasets]
+    budgets = [budget for budget in budgets if np.isfinite(budget[0].total)]
+    uncertainty, dataset = max(budgets, key=lambda budget: budget[0].total, default=(None, None))
+    if not assumed or uncertainty is None:
+        return []
+    name, _, remaining = ranked(uncertainty, groups_of(dataset))[0]
+    if not set(groups_of(dataset)[name]).intersection(assumed):
+        return []
+    return [
+        f"What decides is assumed, not measured: {name}. If that were known, the standard uncertainty of the "
+        f"{response_text(dataset)} would be {100 * remaining:.1f} instead of {100 * uncertainty.total:.1f} %."
+    ]
 
 
 def response_text(dataset: xr.Dataset) -> str:
@@ -252,7 +282,7 @@ def _effect_as_text(part, effect, error):
     """Effect with its standard error, if it has one; that of a choice, or of the model, has a sign."""
     if part in MODEL:
         return column.marked(effect, error, part == MODEL[1])
-    if not error > 0:
+    if not error > 0 or np.isnan(effect):
         return number(effect, ".2g")
     return (signed if part == "choice" else with_error)(effect, error)
 

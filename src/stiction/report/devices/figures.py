@@ -32,7 +32,7 @@ from stiction.stages.devices.chart import charts
 from stiction.stages.devices.end_states import END_STATES
 
 #: Marker of each basis of a safe length.
-_BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x"}
+_BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x", "longest": ">", "flat": "|"}
 #: Height of a line of panels, and of an entry of the legends below them [in].
 _PANEL, _ENTRY = 3.3, 0.12
 #: Lightest colour of a curve.

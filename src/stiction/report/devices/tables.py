@@ -7,7 +7,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from stiction.devices.risk import Basis
 from stiction.plan.names import by_case
+from stiction.report.devices import own_length
 from stiction.report.format import UM, error_alone, humidity_text, number
 from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
@@ -26,6 +28,11 @@ _SAFE_LENGTHS = (
     "Every beam has its own tip, whose scatter is part of the first. Basis: sampled, by order statistics; fitted, by "
     "a line through the shortest 5 %; extrapolated, beyond what was verified."
 )
+#: What other bases of a safe length mean, where they occur.
+_FEW = {
+    Basis.LONGEST: "longest, the longest simulated devices, of which at most a share p sticks",
+    Basis.FLAT: "flat, the length that sticks on flat surfaces, as too few of the simulated devices stick for a line",
+}
 _BOUND = (
     "Bound: for a cantilever, the length that "
     "sticks in saturated air, where water fills all gaps; for a bridge, the length below which even flooded flats in "
@@ -73,15 +80,31 @@ def safe_lengths(
     for (device, humidity), dataset in datasets.items():
         for shape in map(str, dataset["shape"].values):
             head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[shape].by}
+            head |= own_length.numbers(dataset.sel(shape=shape))
             last = model_errors.of_device(errors, device, humidity, shape)
             last |= {"warnings": " ".join(warnings[device, humidity, shape])}
             rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
-    text, columns = f"{_SAFE_LENGTHS} {about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY)}", _LENGTHS
+    own = own_length.COLUMNS if "length_um" in frame else {}
+    said = [
+        *([own_length.CAPTION] if own else []),
+        _SAFE_LENGTHS,
+        *_few(datasets),
+        about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY),
+    ]
+    text, columns = " ".join(said), _HELD | own | _LENGTHS
     if errors:
         text, columns = f"{text} {column.caption(errors)}", columns | column.COLUMN
     return Table(frame, _caption(text, warnings, not_modelled), as_text(frame, columns).assign(warnings=marks))
+
+
+def _few(datasets):
+    """What lengths rest on where few devices stick; nothing where enough of them do."""
+    bases = {str(basis) for dataset in datasets.values() for basis in dataset.basis.values.flat}
+    if not (found := [text for basis, text in _FEW.items() if basis in bases]):
+        return []
+    return [f"Where few stick: {'; '.join(found)}; an estimate beyond these is not known."]
 
 
 def about_bounds(datasets: Mapping[Any, xr.Dataset], humid: str, dry: str, where_dry: str) -> str:
@@ -106,7 +129,7 @@ def _safe_length(point):
     return {
         "share": float(point.share),
         "safe_length_um": float(point.safe_length) / UM,
-        "estimate_um": float(point.estimate) / UM,
+        "estimate_um": float(point.estimate.where(np.isfinite(point.estimate))) / UM,
         "estimate_se_beams_um": float(point.beams_error) / UM,
         "estimate_se_surfaces_um": float(point.surfaces_error) / UM,
         "basis": str(point.basis.values),
@@ -119,8 +142,8 @@ def _bound(point):
     return float(point.flooded_length) / UM
 
 
-_LENGTHS = DEVICE | {
-    "held by": (str, "held_by"),
+_HELD = DEVICE | {"held by": (str, "held_by")}
+_LENGTHS = {
     "p": ("g", "share"),
     "safe length [µm]": (".1f", "safe_length_um"),
     "estimate [µm]": (".1f", "estimate_um"),

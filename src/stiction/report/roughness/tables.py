@@ -8,8 +8,9 @@ import xarray as xr
 from stiction.config.cases import air
 from stiction.config.kinds import ROUGHNESSES
 from stiction.config.units import from_si, without_unit
+from stiction.devices.risk import VERIFIED, samples_for
 from stiction.plan.names import by_name
-from stiction.report.format import UM, airs, with_error
+from stiction.report.format import UM, airs, one_in, with_error
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import FORCE
@@ -73,7 +74,8 @@ def answers(dataset: xr.Dataset) -> list[str]:
 
     Those of a map are about each of its curves.
     """
-    return [_at_other(curve) + sentence for curve in curves_of(dataset) for sentence in _answers(curve)]
+    said = [_at_other(curve) + sentence for curve in curves_of(dataset) for sentence in _answers(curve)]
+    return said + extrapolated(dataset)
 
 
 def _answers(curve):
@@ -84,7 +86,18 @@ def _answers(curve):
 def briefly(dataset: xr.Dataset) -> list[str]:
     """Where which roughness suffices, one sentence for each humidity and end state; of a map, at what is given."""
     curves = [curve for curve in curves_of(dataset) if not _is_changed(curve)]
-    return [f"{_enough(curve, *subject)}." for curve in curves for subject in _subjects(curve)]
+    return [f"{_enough(curve, *subject)}." for curve in curves for subject in _subjects(curve)] + extrapolated(dataset)
+
+
+def extrapolated(dataset: xr.Dataset) -> list[str]:
+    """That the allowed share is extrapolated, if it is beyond what the devices bound and what was verified."""
+    share, samples = float(dataset.share), int(dataset.samples)
+    if share >= VERIFIED or samples >= samples_for(share):
+        return []
+    return [
+        f"What holds for {one_in(share)} is extrapolated: from {samples} simulated devices, by a line through the 5 % "
+        f"that stick most easily, which was verified down to {one_in(VERIFIED)}."
+    ]
 
 
 def _subjects(curve):
@@ -193,7 +206,7 @@ def _range(dataset, low, high):
 
 def _share(dataset):
     """The allowed share as text."""
-    return f"1 in {1 / float(dataset.share):g}"
+    return one_in(float(dataset.share))
 
 
 def _refusals(curve):

@@ -12,6 +12,8 @@ from matplotlib.figure import Figure
 
 from stiction.report.format import PER_UM2, TO_NM, TO_UM, UM, with_error
 from stiction.report.style import DOUBLE, MODELS, OUTLINED, figure_stage, letter, panels, styled
+from stiction.scans.levelling import Levelling, level
+from stiction.scans.scan import Scan
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import surface_flags
 
@@ -26,9 +28,12 @@ _LINE, _LINE_HEIGHT, _PANELS = 150, 0.125, 5.92
 
 
 @styled
-def surface_sheet(name: str, estimate: xr.Dataset, spectrum: xr.Dataset) -> Figure:
-    """Sheet of one measured surface: the measured quantities, their errors, and the model drawn from them."""
-    lines = _lines(surface_flags.flags(estimate, spectrum))
+def surface_sheet(name: str, estimate: xr.Dataset, spectrum: xr.Dataset | None) -> Figure:
+    """Sheet of one measured surface: the measured quantities, their errors, and the model drawn from them.
+
+    The spectrum, of which the flags are shown, is that of a surface that is simulated.
+    """
+    lines = _lines(surface_flags.flags(*(data for data in (estimate, spectrum) if data is not None)))
     figure, axes = panels(2, 2, (DOUBLE, _PANELS + _LINE_HEIGHT * len(lines)))
     _map(figure, axes[0, 0], estimate)
     _density(axes[0, 1], estimate)
@@ -36,6 +41,21 @@ def surface_sheet(name: str, estimate: xr.Dataset, spectrum: xr.Dataset) -> Figu
     _summits(axes[1, 1], estimate)
     letter(axes, ["levelled heights", "density of the heights", "spectrum", "summits at the pixels of the scans"])
     figure.suptitle(_title(name, estimate), x=0.01, ha="left", fontsize=8)
+    figure.supxlabel("\n".join(lines), x=0.01, ha="left", fontsize=7, parse_math=False)
+    return figure
+
+
+@styled
+def refused_sheet(name: str, scan: Scan | None, reasons: Sequence[str]) -> Figure:
+    """Sheet of a surface that cannot be estimated: why, and the levelled map of a scan of it if there is one."""
+    lines = _lines(reasons)
+    figure, axes = panels(1, 1, (DOUBLE, (_PANELS if scan else 1) + _LINE_HEIGHT * len(lines)))
+    if scan is None:
+        axes[0, 0].set_axis_off()
+    else:
+        _heights(figure, axes[0, 0], level(scan.heights, Levelling()), scan.size)
+        axes[0, 0].set_title(f"{scan.name}, less its plane", loc="left")
+    figure.suptitle(f"{name}: no estimate", x=0.01, ha="left", fontsize=8)
     figure.supxlabel("\n".join(lines), x=0.01, ha="left", fontsize=7, parse_math=False)
     return figure
 
@@ -77,11 +97,15 @@ def _minus(text):
 
 
 def _map(figure: Figure, panel: Axes, estimate):
-    """Levelled heights of the first of the largest scans: blue below and red above the mean, undefined points grey."""
-    z = TO_NM * estimate.elevation.values
+    """Levelled heights of the first of the largest scans."""
+    _heights(figure, panel, estimate.elevation.values, stage_estimate.frames(estimate)[0][1].size)
+
+
+def _heights(figure: Figure, panel: Axes, heights, size):
+    """Map of heights [m]: blue below and red above the mean, undefined points grey; sides [m]."""
+    z = TO_NM * heights
     limit = _SATURATED * np.nanstd(z)
-    length, width = stage_estimate.frames(estimate)[0][1].size
-    extent = [0, TO_UM * length, 0, TO_UM * width]
+    extent = [0, TO_UM * size[0], 0, TO_UM * size[1]]
     colours = colormaps["RdBu_r"].with_extremes(bad="0.6")
     shades = {"cmap": colours, "vmin": -limit, "vmax": limit}
     image = panel.imshow(np.ma.masked_invalid(z.T), origin="lower", extent=extent, interpolation="nearest", **shades)
@@ -169,8 +193,10 @@ STAGES = (
         "scans of {surface}",
         "Surfaces (Sec. II)",
         name="surface_sheet",
-        inputs=lambda plan, at: {stage: f"{stage}/{at.surface}" for stage in ("estimate", "spectrum")},
-        compute=lambda data, at: surface_sheet(at.surface, data["estimate"], data["spectrum"]),
+        inputs=lambda plan, at: {
+            stage: f"{stage}/{at.surface}" for stage in ("estimate", *["spectrum"] * plan.simulated(at.surface))
+        },
+        compute=lambda data, at: surface_sheet(at.surface, data["estimate"], data.get("spectrum")),
         jobs=lambda plan: [{"surface": name} for name in plan.scans.surfaces],
         targets=("figures", "measured", "scans"),
     ),

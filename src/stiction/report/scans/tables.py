@@ -26,9 +26,13 @@ def scans(
 ) -> Table:
     """Scans of the measured surfaces, one row per file.
 
-    All datasets are by surface; the maps of a surface are in the order of its files in the configuration.
+    All datasets are by surface; spectra are those of surfaces that are simulated. The maps of a surface
+    are in the order of its files in the configuration.
     """
-    limits = {name: surface_flags.flags(estimate, spectra[name]) for name, estimate in estimates.items()}
+    limits = {
+        name: surface_flags.flags(estimate, *([spectra[name]] if name in spectra else []))
+        for name, estimate in estimates.items()
+    }
     rows = [
         row | {"flags": "; ".join(limits[name])}
         for name, estimate in estimates.items()
@@ -133,7 +137,7 @@ STAGES = (
         "scans of the measured surfaces",
         inputs=lambda plan, at: {
             "estimates": by_name("estimate", plan.scans.surfaces),
-            "spectra": by_name("spectrum", plan.scans.surfaces),
+            "spectra": by_name("spectrum", filter(plan.simulated, plan.scans.surfaces)),
             "scans": {(name, k): f"scan/{name}_{k}" for name in plan.scans.surfaces for k in plan.scans.files(name)},
         },
         compute=lambda data: scans(

@@ -59,15 +59,31 @@ _DEVIATIONS = "change of $l_s$ against base", "deviation of $l_s$ from published
 # Figure 13
 
 
-@styled
-def sensitivities(datasets: Mapping[str, xr.Dataset], published: Mapping[tuple[str, float], float]) -> Figure:
-    """Figure 13: sensitivity of the adhesion energy to the moments of a surface, by moment.
+#: What the sensitivities are of.
+_STATISTICS = ("mean", "standard deviation")
 
-    The published slopes of the mean are by moment and humidity, if there are some for this pair.
+
+@styled
+def sensitivities(
+    datasets: Mapping[tuple[str, str], xr.Dataset], published: Mapping[tuple[str, str, float], float]
+) -> Figure:
+    """Figure 13: sensitivity of the adhesion energy to the moments of a surface, by pair and moment.
+
+    A line of panels for each pair. Published slopes of the mean are by pair, moment and humidity, if there are some.
     """
-    figure, (axes,) = panels(1, 2, (DOUBLE, 2.6), sharex=True)
-    statistics = ("mean", "standard deviation")
-    for panel, statistic in zip(axes, statistics, strict=True):
+    pairs = list(dict.fromkeys(pair for pair, _ in datasets))
+    figure, lines = panels(len(pairs), 2, (DOUBLE, 2.6 * len(pairs)), sharex=True, sharey="col")
+    for axes, pair in zip(lines, pairs, strict=True):
+        of_pair = {moment: dataset for (name, moment), dataset in datasets.items() if name == pair}
+        _slopes_of_pair(axes, of_pair, {tuple(at): slope for (name, *at), slope in published.items() if name == pair})
+    names = [f", pair {pair}" for pair in pairs] if len(pairs) > 1 else [""]
+    letter(lines, [rf"{statistic} of $\bar e${name}" for name in names for statistic in _STATISTICS])
+    return figure
+
+
+def _slopes_of_pair(axes, datasets, published):
+    """Sensitivities of mean and standard deviation of one pair, by moment."""
+    for panel, statistic in zip(axes, _STATISTICS, strict=True):
         for k, (moment, dataset) in enumerate(datasets.items()):
             chosen = dataset.sel(statistic=statistic)
             style = {"marker": marker(k), "linestyle": dashes(k), "label": moment}
@@ -80,9 +96,7 @@ def sensitivities(datasets: Mapping[str, xr.Dataset], published: Mapping[tuple[s
     humidity_axis(axes[0])
     for (moment, humidity), slope in published.items():
         _beside(axes[0], f"paper, {moment}", (humidity, slope))
-    letter(axes, [rf"{statistic} of $\bar e$" for statistic in statistics])
     axes[1].legend(loc="lower right")
-    return figure
 
 
 def _beside(panel, text, place):
@@ -419,9 +433,9 @@ def _curve(panel, humidity, change, error, style):
 def _sensitivities(data, settings):
     """Sensitivities to the moments, and the published ones."""
     stated = published.compared(data, settings)
-    stated = stated[(stated.pair == settings["pair"]) & stated.moment.isin(settings["moments"])]
-    slopes = dict(zip(zip(stated.moment, stated.relative_humidity, strict=True), stated.slope, strict=True))
-    return sensitivities(data["studies"], slopes)
+    stated = stated[stated.pair.isin(settings["pairs"]) & stated.moment.isin(settings["moments"])]
+    places = zip(stated.pair, stated.moment, stated.relative_humidity, strict=True)
+    return sensitivities(data["studies"], dict(zip(places, stated.slope, strict=True)))
 
 
 def _variants(data, settings):
@@ -449,11 +463,11 @@ STAGES = (
         "sensitivity to the moments of a surface",
         study="sensitivity",
         inputs=lambda plan, at: {
-            "studies": {name: f"studies/sensitivity/{plan.figure_pair}_{name}" for name in plan.shifted_moments},
+            "studies": plan.sensitivities,
             "published": published.file("sensitivity"),
         },
         settings=lambda plan, at: {
-            "pair": plan.figure_pair,
+            "pairs": plan.figure_pairs,
             "moments": plan.shifted_moments,
             "of_paper": plan.paper.pairs,
         },

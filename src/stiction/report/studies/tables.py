@@ -43,9 +43,9 @@ def variant_label(name: str) -> str:
 # Sensitivity, Fig. 13
 
 
-def sensitivity(datasets: Mapping[str, xr.Dataset], pair: str, published: pd.DataFrame) -> Table:
-    """Fig. 13 of a pair in numbers, beside the published slopes of the mean; datasets by shifted moment."""
-    frame = pd.DataFrame([row for moment in datasets for row in _slopes(datasets[moment], pair, moment, published)])
+def sensitivity(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataFrame) -> Table:
+    """Fig. 13 in numbers, beside the published slopes of the mean; datasets by pair and shifted moment."""
+    frame = pd.DataFrame([row for at, dataset in datasets.items() for row in _slopes(dataset, *at, published)])
     caption = (
         "Fig. 13: normalised sensitivity (|x|/y) dy/dx of mean and standard deviation y of the meso-scale adhesion "
         "energy to a moment x of the beam's surface, ± standard error (published value)."
@@ -55,7 +55,8 @@ def sensitivity(datasets: Mapping[str, xr.Dataset], pair: str, published: pd.Dat
     texts = frame.assign(
         cell=list(map(str.__add__, values, known)), relative_humidity=frame.relative_humidity.map("{:g}".format)
     )
-    wide = texts.pivot_table("cell", ["statistic", "relative_humidity"], "moment", "first", sort=False)
+    over = ["pair"] * (frame.pair.nunique() > 1) + ["statistic", "relative_humidity"]
+    wide = texts.pivot_table("cell", over, "moment", "first", sort=False)
     return Table(frame, caption, wide.reset_index().rename_axis(columns=None))
 
 
@@ -181,13 +182,11 @@ STAGES = (
         "sensitivity",
         "sensitivity to the moments of a surface",
         inputs=lambda plan, at: {
-            "studies": {name: f"studies/sensitivity/{plan.figure_pair}_{name}" for name in plan.shifted_moments},
+            "studies": plan.sensitivities,
             "published": published.file("sensitivity"),
         },
-        settings=lambda plan, at: {"pair": plan.figure_pair, "of_paper": plan.paper.pairs},
-        compute=lambda data, settings: sensitivity(
-            data["studies"], settings["pair"], published.compared(data, settings)
-        ),
+        settings=lambda plan, at: {"of_paper": plan.paper.pairs},
+        compute=lambda data, settings: sensitivity(data["studies"], published.compared(data, settings)),
         study="sensitivity",
         targets=("figures", "study_figures"),
     ),

@@ -63,6 +63,27 @@ def _density(panel, heights):
     panel.plot(rms * z, heights.density.values / rms, **MODELS["NG"] | {"label": "maximum entropy"})
 
 
+@styled
+def surface(drawn: xr.DataArray, heights: xr.Dataset, spectrum: xr.DataArray) -> Figure:
+    """One surface: a drawn strip, the densities of its heights and its spectrum.
+
+    The strip is a map of heights [m] over x and y [m]; the spectrum [m⁴] is over the wave number [rad/m].
+    """
+    figure, ((above, density, falling),) = panels(1, 3, (DOUBLE, 2.6))
+    square = drawn[:, : drawn.sizes["x"]]
+    sides = [TO_UM * float(square[axis][-1] + square[axis][1]) for axis in ("x", "y")]
+    image = above.imshow(TO_NM * square.values.T, origin="lower", extent=[0, sides[0], 0, sides[1]])
+    figure.colorbar(image, ax=above, label="height $z$ [nm]", shrink=0.9)
+    above.set(xlabel="$x_1$ [µm]", ylabel="$x_2$ [µm]")
+    _density(density, heights)
+    density.set(xlabel="height $z$ [nm]", ylabel="density $p_Z$ [nm$^{-1}$]")
+    figure.legend(*handles(density), loc="outside upper center", ncols=2)
+    known = spectrum[spectrum.values > 0]
+    falling.loglog(known.wavenumber / TO_UM, TO_NM**4 * known, **MODELS["NG"])
+    falling.set(xlabel="wave number [rad/µm]", ylabel="spectrum $s_Z$ [nm$^4$]")
+    return figure
+
+
 def _width(columns):
     """Width of a figure with this number of columns [in]."""
     return DOUBLE / 4 * columns + 0.2

@@ -86,9 +86,9 @@ def explained(update: xr.Dataset) -> str:
 def built(update: xr.Dataset) -> str:
     """What to build before and after the measurement, for the middle one of the shares.
 
-    As `stiction.report.devices.pages.build_sentence`: the least safe length, less twice the largest uncertainty of what
-    holds the devices, here with the error of the model as far as it applies; of a stopper the largest safe force, with
-    twice the uncertainty added. Where nothing explains the test beams, they give no length, but a warning.
+    As `stiction.report.devices.sentences.build_sentence`: the least safe length, less twice the largest uncertainty of
+    what holds the devices, here with the error of the model as far as it applies; of a stopper the largest safe force,
+    with twice the uncertainty added. Where nothing explains the test beams, they give no length, but a warning.
     """
     responses = list(dict.fromkeys(map(str, update.response.values)))
     if not is_reliable(update):
@@ -97,27 +97,41 @@ def built(update: xr.Dataset) -> str:
     if FORCE in responses:
         return (
             f"With the test beams, give it a restoring force of at least {after:.3g} µN, without them {before:.3g} µN; "
-            "twice the uncertainty of the force is added. Cracks do not say how much the model errs at stoppers."
+            f"{_margin(update, 'force', 97.7)} is added. Cracks do not say how much the model errs at stoppers."
         )
     alone = "".join(
         f"; if its tip cannot touch, {one:.0f} µm with them and {other:.0f} µm without" for other, one in others
     )
+    held = "" if _show_errors_of_tips(update) else " for devices that cracks along the beam hold"
+    margin = _margin(update, "lengths", 2.3)
     return (
-        f"With the test beams, build it no longer than {after:.0f} µm, without them {before:.0f} µm{alone}. Twice the "
-        "uncertainty of the lengths is subtracted, with that of the model for devices that cracks along the beam hold."
-        f"{_beyond_cracks(update)}"
+        f"With the test beams, build it no longer than {after:.0f} µm, without them {before:.0f} µm{alone}. "
+        f"{margin[0].upper()}{margin[1:]} is subtracted, with that of the model{held}.{_beyond_cracks(update)}"
     )
+
+
+def _margin(update, of, percent):
+    """What is between the mean and what is stated; after counts, the uncertainty is not normal."""
+    margin = f"twice the uncertainty of the {of}"
+    if not update.sizes["count"]:
+        return margin
+    return f"{margin} without the test beams, and with their counts the distance to the quantile at {percent} %,"
+
+
+def _show_errors_of_tips(update):
+    """Whether crack lengths were measured, whose errors of the model tips have as well."""
+    return ARC in update.response.values and bool(update.measured.notnull().any())
 
 
 def _beyond_cracks(update):
     """What the cracks say about errors of the model where no crack holds the device; empty without crack lengths."""
     if MIDDLE in update.response.values:
         return " Cracks do not say how much the model errs at bridges."
-    if ARC not in update.response.values or not update.sizes["datum"]:
+    if not _show_errors_of_tips(update):
         return ""
     more = float(update.adhesion_of_tips.max())
     if more < NOTICED:
-        return " Cracks show no more adhesion than the inputs explain: that of tips is computed with the inputs alone."
+        return " Cracks show no more adhesion than the inputs explain, and tips are taken to adhere as these say."
     shown = f" Cracks show up to {more:.3g} times the adhesion that the inputs explain"
     return f"{shown}: tips are taken to adhere as much more."
 
@@ -206,7 +220,8 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     caption = (
         "Test beams: measured crack lengths with the standard errors of their means, counts of stuck beams, and "
         "lengths of test beams and devices before and after the measurement, with standard deviations due to the "
-        "inputs and, of crack lengths, due to the model. Inputs in their standard uncertainties."
+        "inputs and, of crack lengths and of tips beside measured ones, due to the model. Inputs in their standard "
+        "uncertainties."
     )
     return Table.of(rows, with_list(caption, sentences), _COLUMNS)
 

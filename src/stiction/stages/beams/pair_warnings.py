@@ -137,10 +137,20 @@ def as_markdown(warnings: Warnings, not_modelled: str) -> str:
     return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", literal(not_modelled), ""])
 
 
-def of_surfaces(data: Mapping[str, Mapping[str, xr.Dataset]], surfaces: Mapping[str, Sequence[str]]) -> Warnings:
-    """Flags of the measured surfaces of every pair; datasets of ``surface_flags.inputs``, surfaces by pair."""
+def of_surfaces(
+    data: Mapping[str, Mapping[str, xr.Dataset]],
+    surfaces: Mapping[str, Sequence[str]],
+    assumed: Mapping[str, Sequence[str]] = {},
+) -> Warnings:
+    """Flags of the measured surfaces of every pair, and sentences on what is assumed of the others.
+
+    Datasets of ``surface_flags.inputs``, measured surfaces and sentences by pair.
+    """
     flags = surface_flags.sentences(data)
-    return {pair: [sentence for name in names for sentence in flags[name]] for pair, names in surfaces.items()}
+    return {
+        pair: [*(sentence for name in names for sentence in flags[name]), *assumed.get(pair, ())]
+        for pair, names in surfaces.items()
+    }
 
 
 def _of_pairs(data, settings):
@@ -148,7 +158,7 @@ def _of_pairs(data, settings):
     nominal = in_si(OfPairs, settings["pairs"])
     remedy = limits.DISTANCE if settings["plasticity_runs"] else limits.NAMED
     warnings = of_pairs(data["beams"], data["plasticity"], settings["materials"], nominal, remedy)
-    for pair, flags in of_surfaces(data, settings["surfaces"]).items():
+    for pair, flags in of_surfaces(data, settings["surfaces"], settings["assumed"]).items():
         warnings[f"pair {pair}"] += flags
     return as_markdown(warnings, settings["not_modelled"])
 
@@ -174,6 +184,7 @@ STAGES = (
             "plasticity_runs": "plasticity" in plan.studies,
             "not_modelled": plan.air.not_modelled((case.pair, case.humidity) for case in plan.cases),
             "surfaces": {pair: plan.scans.sides(pair) for pair in plan.pairs},
+            "assumed": plan.assumed(*plan.pairs),
         },
         compute=_of_pairs,
         save=lambda page, paths: save_text(page, paths["markdown"]),

@@ -60,8 +60,15 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
 
 def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Largest attraction f_max of all samples at a relative humidity (m,) [Pa]."""
-    forces = forcelaw.pull_offs(*force_curves(contact, humidity, water)[:3])
+    sampled = force_curves(contact, humidity, water)
+    forces = forcelaw.pull_offs(*sampled[:3], sampled.flat)
     return forces * water.correction.at(humidity)[1] if water.correction else forces
+
+
+def share_flat(contact: xr.Dataset, humidity: float, water: Water) -> float:
+    """Share of the samples at a relative humidity that count as flat surfaces, because no summits stop them [-]."""
+    sampled = force_curves(contact, humidity, water)
+    return forcelaw.share_flat(sampled.curve, sampled.samples) if sampled.flat else 0.0
 
 
 def vectors(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, float]:

@@ -22,7 +22,7 @@ from stiction.contact import forcelaw
 from stiction.devices import arcs
 from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.stoppers import pull_off_force
-from stiction.devices.tail import TAIL, fit_tail
+from stiction.devices.tail import FEWEST, TAIL, fit_tail
 from stiction.plan.stage import At, Stage, chosen
 from stiction.progress import progress
 from stiction.stages.contact import curves
@@ -168,8 +168,11 @@ def of_tips(states: Sequence[State], share: float) -> Responses:
 
 
 def _held(lengths, share):
-    """Length that a share of all hold: a small one from the fit of the short end."""
-    return float(np.quantile(lengths, share)) if share > TAIL else fit_tail(lengths).length(share)
+    """Length that a share of all hold, infinite if too few do: that of a small share from the fit of the short end."""
+    known = np.isfinite(lengths)
+    if share > TAIL:
+        return float(np.quantile(lengths, share)) if known.all() or known.mean() > share + 1 / len(lengths) else np.inf
+    return fit_tail(lengths).length(share) if known.sum() >= FEWEST else np.inf
 
 
 def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, address: Callable) -> Responses:
@@ -187,7 +190,7 @@ def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, addr
         return arrests(state.device, (part, strips), partial(_picked, laws), number, address)
 
     values = np.array([lengths(state, of_state) for state, of_state in zip(states, laws, strict=True)])
-    # Some lengths may not be known.
+    # Some lengths may not be known. If most are not, the median is infinite, and no slope is known.
     centre = np.mean if np.isfinite(values).all() else np.median
     device = states[0].device
     length = partial(device.opening.length_on_mean, beam=device.beam)
@@ -251,7 +254,7 @@ def layout(
     names = [entry.name for entry in inputs]
     groups = [entry.group for entry in inputs]
     (values,) = devices.values
-    known = values[np.isfinite(values)]
+    known, centre = values[np.isfinite(values)], devices.centre(values)
     changes = np.array(list(effects.values())).reshape(len(effects), 2)
     unit = "N" if settings.response == FORCE else "m"
     response = {"units": unit, "response": settings.response, "share": settings.share}
@@ -261,8 +264,8 @@ def layout(
             "slope_error": ("input", slopes[:, 1]),
             "covariance": (("input", "other"), covariance),
             "group": ("input", groups),
-            "centre": ((), devices.centre(values), response),
-            "scatter": ((), known.std(ddof=1) / known.mean(), {"units": "1"}),
+            "centre": ((), centre if np.isfinite(centre) else np.nan, response),
+            "scatter": ((), known.std(ddof=1) / known.mean() if len(known) > 1 else np.nan, {"units": "1"}),
             "effect": ("choice", changes[:, 0], {"units": "1"}),
             "effect_error": ("choice", changes[:, 1], {"units": "1"}),
         },
@@ -316,6 +319,8 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
     else:
         own |= chosen(section, ["contact_um"])
     own |= {"seed": plan.config["seed"], "water": plan.air_of_devices.water(pair), "surfaces": plan.sides(pair)}
+    known = {surface: one.section for surface, one in devices.known(name).items() if one.quantities}
+    own |= {"known": known} if known else {}
     quantities = list(map(list, devices.quantities(name)))
     return _with_choices(
         plan, pair, {"budget": own, "quantities": quantities}, plan.variants.choices_of_device(at.case)

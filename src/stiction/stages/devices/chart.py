@@ -55,10 +55,10 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
     def by_elements(thickness, gap):
         """Safe lengths of beams of one size (shapes, shares) [m]."""
         device = _of_size(settings, thickness, gap)
-        lengths = sticking.released(device, met, settings)
-        least = sticking.bound(device, settings.water, settings.humidity)
-        safe = (sticking.safe_lengths(values, settings, least) for values in lengths.values())
-        return np.array([[one.length for one in of_shape] for of_shape in safe])
+        lengths, reach = sticking.released(device, met, settings)
+        known = sticking.known(device, settings.water, settings.humidity, reach)
+        safe = sticking.by_shape(lengths, settings, known)
+        return np.array([[one.length for one in of_shape] for of_shape in safe.values()])
 
     chart = filled(settings.thicknesses, settings.gaps, by_elements)
     return layout(chart, surface_rms(contact), settings)

@@ -31,6 +31,7 @@ from stiction.stages.devices.opening import (
     addresses,
     arrests,
     fitted,
+    reach,
     settings_of_beam,
 )
 
@@ -67,7 +68,12 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
     groups = max(2, min(GROUPS, len(vectors) // PER_GROUP))
     models = [model, *(fitted(vectors[k::groups], limit, settings.chaos) for k in range(groups))]
     released = [arrests(device, ground, partial(draw_laws, of), settings.beams, address) for of in models]
-    return layout(device.opening, released[0], released[1:], ground[0], laws, surface_rms(contact))
+    tried = reach(device, ground, partial(draw_laws, model), released[0], address)
+    dataset = layout(device.opening, released[0], released[1:], ground[0], laws, surface_rms(contact))
+    return dataset.assign(
+        reach=((), tried, {"units": "m", "long_name": "longest simulated length, if not all devices stick"}),
+        share_flat=((), curves.share_flat(contact, settings.humidity, settings.water), {"units": "1"}),
+    )
 
 
 def layout(
@@ -112,6 +118,7 @@ STAGES = (
         compute=lambda data, settings: compute(data["contact"], corrected(settings, data)),
         message="Release long beams of {case}.",
         cluster=True,
+        repeats=1 + GROUPS,
         minutes=120,
     ),
 )

@@ -25,7 +25,7 @@ from stiction.stages.beams.pair_warnings import (
     plastic_contact,
 )
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.opening import ARC, EITHER, DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import ARC, EITHER, FORCE, DesignedBeam, section_of_beam
 from stiction.stages.surfaces import surface_flags
 
 
@@ -58,7 +58,9 @@ def of_device(
     sentence at a humidity, but not in dry air.
     """
     shortest = safe_lengths.safe_length.min("share")
-    without = limits.given(limits.no_water(float(safe_lengths.film), humidity))
+    without = limits.given(
+        limits.no_water(float(safe_lengths.film), humidity), limits.flat_patches(float(safe_lengths.share_flat))
+    )
     return {
         shape: without + _of_length(float(shortest.sel(shape=shape)), safe_lengths, of, plastic)
         for shape in map(str, safe_lengths["shape"].values)
@@ -119,9 +121,11 @@ class OfDevices(NamedTuple):
     patches: dict[str, list[str]]  #: of stoppers, by name
 
 
-def of_stopper(of: OfStopper, plastic: Plastic = NOT_STUDIED) -> list[str]:
-    """Warnings about a stopper; parameters as of `of_device`."""
-    return limits.given(*_of_water(of), *contact_warnings(plastic, of.materials, limits.STRONGER))
+def of_stopper(of: OfStopper, plastic: Plastic = NOT_STUDIED, share_flat: float = 0.0) -> list[str]:
+    """Warnings about a stopper, of whose patches a share is flat [-]; other parameters as of `of_device`."""
+    return limits.given(
+        *_of_water(of), limits.flat_patches(share_flat), *contact_warnings(plastic, of.materials, limits.STRONGER)
+    )
 
 
 def read(files: Mapping[str, str]) -> OfDevices:
@@ -157,6 +161,13 @@ def left_out_changes(dataset: xr.Dataset) -> dict[tuple[float, str], tuple[float
     return dict(zip(keys, zip(dataset.change.values.tolist(), dataset.error.values.tolist(), strict=True), strict=True))
 
 
+def of_left_out_gaps(changes: Mapping[tuple[float, str], tuple[float, float]], shape: str) -> list[str]:
+    """Warning about what attraction across gaps would change of what holds in a shape, from `left_out_changes`."""
+    response = ARC if shape == EITHER else shape
+    of_shape = {humidity: change for (humidity, of), change in changes.items() if of == response}
+    return limits.given(limits.without_gaps(of_shape, shorter=shape != FORCE))
+
+
 def left_out_gaps(plan: Any, device: str) -> dict[str, str]:
     """Dataset of a device whose results are without attraction across gaps, as input of a stage; none for others."""
     pair = plan.config["devices"][device]["pair"]
@@ -171,6 +182,7 @@ def _inputs(plan, at):
     charts = devices.chart_cases(at.device) if at.device in devices.charted else []
     limited = {
         "lengths": by_case("devices/safe_lengths", cases),
+        "stoppers": by_name("devices/stoppers", [at.device] if at.device in devices.stoppers else []),
         "charts": by_case("devices/chart", charts),
         "plasticity": by_name("studies/plasticity", devices.pressed(at.device)),
     }
@@ -181,23 +193,28 @@ def _settings(plan, at):
     """A device, its pair and the stated properties of its materials."""
     section = plan.config["devices"][at.device]
     own = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
+    said = plan.assumed(section["pair"]).get(section["pair"])
+    assumed = {"assumed": said} if said else {}
     if plan.devices.kind(at.device).is_beam:
-        return {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}
-    return {"stopper": select(OfStopper, section | own | {"water": plan.air_of_devices.water(section["pair"])})}
+        return assumed | {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}
+    own |= section | {"water": plan.air_of_devices.water(section["pair"])}
+    return assumed | {"stopper": select(OfStopper, own)}
 
 
 def _of_one_device(data, settings):
     """Warnings about a device: about its lengths, its curves and its patch, each with what follows its name."""
-    flags = surface_flags.together(data)
+    flags = surface_flags.together(data) + settings.get("assumed", [])
     changes = left_out_changes(data["left_out_gaps"]) if "left_out_gaps" in data else {}
     if "stopper" in settings:
         of = in_si(OfStopper, settings["stopper"])
-        gaps = limits.given(limits.without_gaps({humidity: change for (humidity, _), change in changes.items()}))
-        return [], [], [[[], of_stopper(of, plastic_contact(data["plasticity"], of.pair)) + gaps + flags]]
+        gaps = of_left_out_gaps(changes, FORCE)
+        (stopper,) = data["stoppers"].values()
+        plastic = plastic_contact(data["plasticity"], of.pair)
+        return [], [], [[[], of_stopper(of, plastic, float(stopper.share_flat)) + gaps + flags]]
     of = in_si(OfDevice, settings["beam"])
     plastic = plastic_contact(data["plasticity"], of.device.pair)
     lengths = [
-        [[humidity, shape], sentences + _without_gaps(changes, humidity, shape) + flags]
+        [[humidity, shape], sentences + of_left_out_gaps(_at(changes, humidity), shape) + flags]
         for (_, humidity), dataset in data["lengths"].items()
         for shape, sentences in of_device(dataset, of, plastic, humidity).items()
     ]
@@ -208,10 +225,9 @@ def _of_one_device(data, settings):
     return lengths, curves, []
 
 
-def _without_gaps(changes, humidity, shape):
-    """Warning about what attraction across gaps would change of a beam at a humidity, if it is left out."""
-    change = changes.get((humidity, ARC if shape == EITHER else shape))
-    return limits.given(limits.without_gaps({humidity: change} if change else {}, shorter=True))
+def _at(changes, humidity):
+    """Changes at one humidity."""
+    return {key: change for key, change in changes.items() if key[0] == humidity}
 
 
 def not_modelled(plan: Any, *devices: str) -> str:

@@ -23,7 +23,14 @@ from stiction.chaos.model import ChaosModel, Truncation, fit
 from stiction.config.cases import Case
 from stiction.config.units import from_si
 from stiction.contact import forcelaw
-from stiction.devices.bridges import half_of_bridge, held_lengths, least_length, longest_strip, middle_zone
+from stiction.devices.bridges import (
+    half_of_bridge,
+    held_lengths,
+    least_length,
+    longest_strip,
+    longest_tried,
+    middle_zone,
+)
 from stiction.plan.stage import chosen, select
 from stiction.streams import stream
 
@@ -122,6 +129,17 @@ def arrests(
     return device.opening.arrests(*ground, draw, number, address)
 
 
+def reach(
+    device: DesignedBeam, ground: tuple[Beam, int], draw: Callable, arrested: np.ndarray, address: Callable
+) -> float:
+    """Length up to which devices with these ``arrested`` lengths (n,) were simulated [m]; infinite if all are finite.
+
+    Other parameters as of `arrests`.
+    """
+    unknown = np.flatnonzero(np.isinf(arrested))
+    return min((device.opening.tried(*ground, draw, address(int(k))) for k in unknown), default=np.inf)
+
+
 def _crack_lengths(beam, strips, draw, number, address):
     """Crack lengths of long cantilevers, parameters as of `held_lengths`."""
     released = released_beams(Experiment(beam, strips, draw), number, address)
@@ -145,6 +163,7 @@ class Opening:
     resolved: Callable[[DesignedBeam, np.ndarray], tuple[Beam, int]]  #: as `long_beam`
     longest_strip: Callable[[DesignedBeam, np.ndarray], float]  #: that it resolves on force laws (n, 4) [m]
     arrests: Callable[..., np.ndarray]  #: as ``held_lengths``
+    tried: Callable[..., float]  #: longest simulated length, parameters as of ``longest_tried``
     #: What the samples of force laws (..., m, 4) contribute to the length (..., m, ...), and the length on their mean.
     contribution: Callable[[np.ndarray], np.ndarray]
     length_on_mean: Callable[[np.ndarray, Beam], float]
@@ -167,6 +186,7 @@ BEAMS = {
         resolved=long_beam,
         longest_strip=lambda device, laws: longest(_unresolved(device, laws)[0], laws)[0],
         arrests=_crack_lengths,
+        tried=lambda beam, *_: beam.length,
         contribution=forcelaw.energy,
         length_on_mean=lambda sample, beam: arrest_length(sample.mean(), beam),
     ),
@@ -179,6 +199,7 @@ BEAMS = {
         resolved=lambda device, laws: middle_zone(device.beam, device.strip, laws),
         longest_strip=lambda device, laws: longest_strip(device.beam, laws),
         arrests=held_lengths,
+        tried=longest_tried,
         contribution=_energies_and_pull_offs,
         length_on_mean=lambda sample, beam: least_length(*sample.mean(axis=0), beam),
     ),

@@ -1,20 +1,21 @@
 """Stage safe_lengths: P(stuck) over the length of a device at a humidity, and its safe lengths."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
 from stiction.contact.environment import Water
 from stiction.devices import arcs, risk
-from stiction.devices.risk import SafeLength
-from stiction.plan.stage import Stage, select
+from stiction.devices.risk import Known, SafeLength
+from stiction.life.freeing import probability_for
+from stiction.plan.stage import Stage, chosen, select
 from stiction.stages.contact import curves
 from stiction.stages.devices import cracks as stage_cracks
 from stiction.stages.devices.contact_names import tips_of
 from stiction.stages.devices.opening import DesignedBeam, settings_of_beam
-from stiction.stages.devices.sticking import bound, flooded_lengths, safe_lengths, sticking_lengths
+from stiction.stages.devices.sticking import by_shape, known, safe_lengths, sticking_lengths
 
 #: Points along the axis of the lengths.
 _POINTS = 300
@@ -29,6 +30,7 @@ class Settings:
     humidity: float  #: [-]
     device: DesignedBeam
     shares: tuple[float, ...]  #: p [-]
+    length: float | None = None  #: of the device, at which P(stuck) is stated [m]
 
 
 def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
@@ -39,30 +41,53 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
         held = arcs.longest_free(*curves.tip_forces(tips, settings.humidity, settings.water), device.beam)
     sticking = sticking_lengths(lengths, foundation, device, held)
     groups = [sticking_lengths(one, foundation, device, held) for one in of_group]
-    least = bound(device, settings.water, settings.humidity)
-    safe = {shape: safe_lengths(values, settings, least) for shape, values in sticking.items()}
+    without_samples = known(device, settings.water, settings.humidity, float(cracks.reach))
+    safe = by_shape(sticking, settings, without_samples)
     estimates = {
         shape: [[one.estimate for one in safe_lengths(group[shape], settings)] for group in groups] for shape in safe
     }
     errors = {shape: risk.error_of_surfaces(lengths) for shape, lengths in estimates.items()}
-    return layout(sticking, safe, errors, float(cracks.rms), settings)
+    dataset = layout(sticking, safe, without_samples, errors, settings).assign(cracks[["rms", "share_flat"]])
+    if settings.length is None:
+        return dataset
+    return dataset.assign(at_length(sticking, groups, float(cracks.reach), settings.length))
+
+
+def at_length(
+    sticking: Mapping[str, np.ndarray], groups: Sequence[Mapping[str, np.ndarray]], reach: float, length: float
+) -> dict[str, tuple]:
+    """Variables of P(stuck) at one length, by shape, with its band and the error by the number of sampled surfaces.
+
+    Sticking lengths (n,) [m] from all surfaces and from each of some groups of them alone; their reach and the length
+    [m]. Beyond the reach, the upper end of the band counts devices that did not stick there as stuck.
+    """
+    shares = {shape: risk.stuck_share(np.array([length]), values, reach) for shape, values in sticking.items()}
+    of_group = [[np.mean(group[shape] < length) for shape in sticking] for group in groups]
+    none = {"units": "1"}
+    return {
+        "length_of_device": ((), length, {"units": "m"}),
+        "stuck_at_length": (("shape", "end"), np.array(list(shares.values()))[..., 0], none),
+        "stuck_surfaces_error": ("shape", risk.error_of_surfaces(of_group), none),
+        "end": ["estimate", "low", "high"],
+    }
 
 
 def layout(
     sticking: Mapping[str, np.ndarray],
     safe: Mapping[str, Sequence[SafeLength]],
+    without_samples: Mapping[str, Known],
     surfaces: Mapping[str, np.ndarray],
-    rms: float,
     settings: Settings,
 ) -> xr.Dataset:
     """Dataset of P(stuck) and of the safe lengths, by shape.
 
-    Sticking lengths (n,) [m], safe lengths for every share, standard errors due to the finite number of sampled
-    surfaces (shares,) [m], rms of the sum of both surfaces [m].
+    Sticking lengths (n,) [m], safe lengths for every share, what is known without samples, and standard errors due to
+    the finite number of sampled surfaces (shares,) [m].
     """
-    known = np.concatenate([values[np.isfinite(values)] for values in sticking.values()])
-    axis = np.linspace(0.9 * known.min(), 1.02 * known.max(), _POINTS)
+    reach = min(one.reach for one in without_samples.values())
+    axis = _axis(sticking, reach)
     stuck = np.array([risk.stuck_share(axis, values) for values in sticking.values()])
+    shortest = [np.min(values, where=values <= reach, initial=np.inf) for values in sticking.values()]
     shaped, metres = ("shape", "share"), {"units": "m"}
     columns = {
         "safe_length": ([[one.length for one in rows] for rows in safe.values()], "one-sided 95 % bound of estimate"),
@@ -70,17 +95,25 @@ def layout(
         "beams_error": ([[one.error for one in rows] for rows in safe.values()], "standard error, number of beams"),
         "surfaces_error": (list(surfaces.values()), "standard error, number of sampled surfaces"),
     }
-    scalars = {"film": settings.water.film(settings.humidity)[0], "rms": rms}
-    flooded = flooded_lengths(settings.device, settings.water, settings.humidity)
+    film, flat = settings.water.film(settings.humidity)[0], [one.flat for one in without_samples.values()]
+    most, number = [risk.most_stuck(values, reach) for values in sticking.values()], len(next(iter(sticking.values())))
     return xr.Dataset(
         {
             "stuck": (("shape", "length"), stuck[:, 0], {"units": "1"}),
             "stuck_band": (("shape", "bound", "length"), stuck[:, 1:], {"units": "1"}),
-            "flooded_length": ("shape", flooded, metres | {"long_name": "bound by flooded flats"}),
+            "flooded_length": ("shape", flat, metres | {"long_name": "bound by flooded flats"}),
+            "shortest": (
+                "shape",
+                shortest,
+                metres | {"long_name": "shortest length that sticks; infinite if none does"},
+            ),
+            "most_stuck": ("shape", most, {"units": "1", "long_name": "95 % bound of P(stuck) at the reach"}),
+            "reach": ((), reach, metres | {"long_name": "longest simulated length, if not all of them stick"}),
+            "beams": ((), number, {"long_name": "number of simulated devices"}),
+            "film": ((), film, metres),
             "basis": (shaped, [[str(one.basis) for one in rows] for rows in safe.values()]),
         }
-        | {name: (shaped, values, metres | {"long_name": text}) for name, (values, text) in columns.items()}
-        | {name: ((), value, metres) for name, value in scalars.items()},
+        | {name: (shaped, values, metres | {"long_name": text}) for name, (values, text) in columns.items()},
         coords={
             "shape": list(sticking),
             "share": list(settings.shares),
@@ -90,14 +123,44 @@ def layout(
     )
 
 
+def _axis(sticking, reach):
+    """Lengths of the curves of P(stuck), from below the shortest that sticks to where all do or the simulation ends."""
+    lengths = np.concatenate(list(sticking.values()))
+    ends = lengths[np.isfinite(lengths) & (lengths <= reach)]
+    low, high = ends.min(initial=reach), 1.02 * ends.max(initial=0.0)
+    return np.linspace(0.9 * low, min(high or reach, reach), _POINTS)
+
+
+def chosen_share(dataset: xr.Dataset) -> float:
+    """The fraction of stuck devices for which sentences state lengths: the middle one [-]."""
+    return float(dataset.share[dataset.sizes["share"] // 2])
+
+
+def _for_touchdowns(plan, at):
+    """Settings of the safe length of one touchdown that leaves the middle fraction stuck after all of them."""
+    settings, shares = settings_of_beam(plan, at.case), plan.config["design"]["shares"]
+    touchdowns = plan.config["devices"][at.case.device]["touchdowns"]
+    return select(Settings, settings, shares=[probability_for(shares[len(shares) // 2], touchdowns)])
+
+
+_SAFE_LENGTHS = Stage.writing(
+    "safe_lengths",
+    "devices/safe_lengths/{case}",
+    inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | tips_of(plan, at.case),
+    settings=lambda plan, at: select(
+        Settings, settings_of_beam(plan, at.case) | chosen(plan.config["devices"][at.case.device], ["length_um"])
+    ),
+    kind=Settings,
+    compute=lambda data, settings: compute(data["cracks"], data.get("tips"), settings),
+    message="Safe lengths of {case}.",
+)
 STAGES = (
-    Stage.writing(
-        "safe_lengths",
-        "devices/safe_lengths/{case}",
-        inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | tips_of(plan, at.case),
-        settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
-        kind=Settings,
-        compute=lambda data, settings: compute(data["cracks"], data.get("tips"), settings),
-        message="Safe lengths of {case}.",
+    _SAFE_LENGTHS,
+    replace(
+        _SAFE_LENGTHS,
+        name="touchdowns",
+        files={"dataset": "devices/touchdowns/{case}"},
+        settings=_for_touchdowns,
+        message="Safe lengths of {case} for many touchdowns.",
     ),
 )

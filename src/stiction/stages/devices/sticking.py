@@ -1,6 +1,7 @@
 """Sticking lengths of a device at a humidity and its safe lengths, for safe lengths, charts and curves of roughness."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
 
@@ -14,7 +15,7 @@ from stiction.contact.environment import Water, flooded_law
 from stiction.contact.meniscus import flooded_energy
 from stiction.devices import arcs, bridges, risk
 from stiction.devices.chart import flooded_length
-from stiction.devices.risk import SafeLength
+from stiction.devices.risk import NOTHING, Basis, Known, SafeLength
 from stiction.stages.contact import curves
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices import opening
@@ -58,13 +59,17 @@ def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settin
     return Ground(model, laws, None if tips is None else curves.tip_forces(tips, humidity, settings.water))
 
 
-def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> dict[str, np.ndarray]:
-    """Sticking lengths by shape of a device, or of one of another thickness and gap, on its ground, (n,) each [m]."""
+def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> tuple[dict[str, np.ndarray], float]:
+    """Sticking lengths by shape of a device, or of one of another thickness and gap, on its ground, (n,) each [m].
+
+    With the length up to which they are known [m].
+    """
     resolved = device.opening.resolved(device, met.laws)
     address, draw = opening.addresses(settings), partial(draw_laws, met.model)
     cracks = opening.arrests(device, resolved, draw, settings.beams, address)
     held = None if met.tips is None else arcs.longest_free(*met.tips, device.beam)
-    return sticking_lengths(cracks, foundation_length(device.beam, met.laws), device, held)
+    reach = opening.reach(device, resolved, draw, cracks, address)
+    return sticking_lengths(cracks, foundation_length(device.beam, met.laws), device, held), reach
 
 
 def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list[float]:
@@ -99,12 +104,35 @@ def sticking_lengths(
     return dict(zip(device.opening.shapes, (alone, risk.with_arcs(alone, held)), strict=True))
 
 
-def bound(device: DesignedBeam, water: Water, humidity: float) -> float:
-    """Length up to which no surfaces hold a device [m]; 0 with a tip, see `flooded_lengths`."""
-    return 0.0 if device.opening.has_tip else flooded_lengths(device, water, humidity)[0]
+def known(device: DesignedBeam, water: Water, humidity: float, reach: float) -> dict[str, Known]:
+    """What is known of the lengths of a device without samples, by shape; they were simulated up to a reach [m].
+
+    No surfaces hold a bridge up to the length of `flooded_lengths`, but a single tip may hold a shorter beam.
+    """
+    lengths = flooded_lengths(device, water, humidity)
+    safe = 0.0 if device.opening.has_tip else lengths[0]
+    return {shape: Known(reach, flat, safe) for shape, flat in zip(device.opening.shapes, lengths, strict=True)}
 
 
-def safe_lengths(sticking: np.ndarray, settings: Settings, least: float = 0.0) -> list[SafeLength]:
-    """Safe length for every share, from sticking lengths (n,) [m]; at least the `bound` of the device."""
-    lengths = [risk.safe_length(sticking, share, stream(settings.seed, "safe length")) for share in settings.shares]
-    return [replace(bound, length=max(bound.length, least)) for bound in lengths]
+def by_shape(
+    sticking: Mapping[str, np.ndarray], settings: Settings, known: Mapping[str, Known]
+) -> dict[str, list[SafeLength]]:
+    """Safe length for every share, by shape, from sticking lengths (n,) each [m].
+
+    The last shape holds whatever another one holds. What is safe against it is safe against each, which says more than
+    flat surfaces do.
+    """
+    found = {shape: safe_lengths(values, settings, known[shape]) for shape, values in sticking.items()}
+    *_, of_all = found.values()
+    return {
+        shape: [
+            max(one, last, key=lambda safe: safe.length) if one.basis is Basis.FLAT else one
+            for one, last in zip(lengths, of_all, strict=True)
+        ]
+        for shape, lengths in found.items()
+    }
+
+
+def safe_lengths(sticking: np.ndarray, settings: Settings, known: Known = NOTHING) -> list[SafeLength]:
+    """Safe length for every share, from sticking lengths (n,) [m]."""
+    return [risk.safe_length(sticking, share, stream(settings.seed, "safe length"), known) for share in settings.shares]

@@ -1,26 +1,28 @@
 """Stage stoppers: pull-off force of a patch of a pair against its restoring force, over the humidity."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 
 from stiction.config.cases import case_id
+from stiction.config.kinds import restoring_force
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import is_wetted
-from stiction.devices.risk import samples_for
-from stiction.devices.stoppers import pull_off_force, safe_force, stuck_patches, worst_humidity
+from stiction.devices.stoppers import pull_off_force, safe_forces, stuck_patches, worst_humidity
 from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.contact.corrections import corrected
-from stiction.stages.contact.curves import pull_offs
+from stiction.stages.contact.curves import pull_offs, share_flat
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices.contact_names import contact_of, corrections_of
+from stiction.streams import stream
 
-#: Shares of stuck patches for which a restoring force is stated, as far as there are enough patches.
-SHARES = (1e-2, 1e-3, 1e-4)
+#: Shares of stuck patches for which a restoring force is stated, down to one in a million.
+SHARES = (1e-2, 1e-3, 1e-4, 1e-6)
 #: Distance of the humidities along the fine axis [-].
 STEP = 0.01
 #: Probabilities of the stored quantiles of the pull-off force.
@@ -31,6 +33,7 @@ PROBABILITIES = np.array([0.05, 0.5, 0.95])
 class Settings:
     """Everything that the forces of a stopper depend on apart from its contact."""
 
+    seed: int
     water: Water
     contact: tuple[float, float]  #: sides of the patch [m]
     restoring_force: float  #: [N]
@@ -55,7 +58,8 @@ def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = No
     at = {h: forces(one, h, settings) for h, one in progress(contacts.items(), "humidities", total=len(contacts))}
     chosen = np.array([at[h] for h in settings.humidities])
     along = np.array([at[float(h)] for h in axis])
-    return layout(settings, chosen, axis, along)
+    flat = max(share_flat(one, h, settings.water.at(h)) for h, one in contacts.items())
+    return layout(settings, chosen, axis, along).assign(share_flat=((), flat, {"units": "1"}))
 
 
 def axis_of(settings: Settings) -> np.ndarray:
@@ -83,19 +87,20 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
     worst, worst_error = _worst(axis, along)
     stuck = np.array([_stuck(row, settings.restoring_force) for row in along]).T
     stuck_chosen = np.array([_stuck(row, settings.restoring_force) for row in chosen]).T
-    safe, safe_along = (np.array([[_safe(row, p) for p in SHARES] for row in rows]) for rows in (chosen, along))
+    (safe, basis), (safe_along, _) = (_safe(rows, settings.seed) for rows in (chosen, along))
     mean, error = mean_with_error(along.T)
     return xr.Dataset(
         {
             "pull_off": (("humidity", "sample"), chosen, newton),
             "stuck": (("bound", "humidity"), stuck_chosen, none | {"long_name": "P(stuck) and its 95 % band"}),
-            "safe_force": (("part", "humidity", "share"), np.moveaxis(safe, -1, 0), newton),
+            "safe_force": (("part", "humidity", "share"), safe, newton),
+            "basis": ("share", basis),
             "restoring_force": ((), settings.restoring_force, newton),
             "mean_along": ("axis", mean, newton),
             "mean_along_error": ("axis", error, newton),
             "quantile_along": (("probability", "axis"), np.quantile(along, PROBABILITIES, axis=1), newton),
             "stuck_along": (("bound", "axis"), stuck, none),
-            "safe_force_along": (("axis", "share"), safe_along[..., 0], newton),
+            "safe_force_along": (("axis", "share"), safe_along[0], newton),
             "worst_humidity": ((), worst, none),
             "worst_humidity_error": ((), worst_error, none),
         },
@@ -127,9 +132,18 @@ def _stuck(pull_off, force):
     return [float(part[0]) for part in stuck_patches(pull_off, np.array([force]))]
 
 
-def _safe(pull_off, share):
-    """`safe_force`; NaN if there are too few patches for this share."""
-    return safe_force(pull_off, share) if len(pull_off) >= samples_for(share) else (np.nan,) * 3
+def _safe(rows, seed):
+    """Safe forces of rows of patches, their estimates and errors (3, rows, shares) [N], and what each share rests on.
+
+    NaN, resting on nothing, for shares for which there are too few patches.
+    """
+    parts, bases = np.full((3, len(rows), len(SHARES)), np.nan), [""] * len(SHARES)
+    for k, share in enumerate(SHARES):
+        with suppress(ValueError):
+            found = safe_forces(rows, share, stream(seed, "safe force"))
+            parts[..., k] = np.transpose([(one.force, one.estimate, one.error) for one in found])
+            bases[k] = str(found[0].basis)
+    return parts, bases
 
 
 def is_at_an_end(dataset: xr.Dataset) -> bool:
@@ -158,7 +172,8 @@ def _settings(plan, at):
     """Water, patch, restoring force and humidities of a stopper, and its fine axis of humidities."""
     section, air = plan.config["devices"][at.device], plan.air_of_devices
     pair = air.contact(section["pair"], max(section["humidities"]))
-    return select(Settings, plan.config["design"] | section | {"water": air.water(pair)})
+    own = {"seed": plan.config["seed"], "restoring_force_uN": restoring_force(section), "water": air.water(pair)}
+    return select(Settings, plan.config["design"] | section | own)
 
 
 def _inputs(plan, at):

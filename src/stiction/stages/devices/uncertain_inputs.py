@@ -161,6 +161,7 @@ class Settings:
     waters: dict[str, Water] = field(
         default_factory=dict
     )  #: by choices of the model that change attraction across gaps
+    known: dict[str, Known] = field(default_factory=dict)  #: what is stated about surfaces without scans, by name
 
     def water_under(self, choice: str) -> Water:
         """Water, and attraction across gaps, under a choice of the model."""
@@ -272,11 +273,27 @@ def covariances(
 ) -> dict[str, Known]:
     """What is known of the quantities of every uncertain surface."""
     return {
-        name: of_scans(estimates[name], described[0])
-        if name in estimates
-        else of_one_scan(*described, settings.uncertainty.scan)
+        name: of_scans(estimates[name], described[0]) if name in estimates else of_stated(name, described, settings)
         for name, described in surfaces.items()
     }
+
+
+def of_stated(name: str, described: tuple[xr.Dataset, xr.Dataset], settings: Settings) -> Known:
+    """What is known of a surface by numbers: errors as stated, and those of the scan that gave its moments."""
+    stated = [settings.known[name]] if name in settings.known else []
+    side = settings.uncertainty.scan
+    return together([*stated, *([of_one_scan(*described, side)] if side else [])])
+
+
+def together(causes: Sequence[Known]) -> Known:
+    """Quantities whose errors have several independent causes."""
+    used = {quantity for cause in causes for quantity in cause.quantities}
+    quantities = tuple(name for name in MOMENT_QUANTITIES + SPECTRUM_QUANTITIES if name in used)
+    covariance = np.zeros((len(quantities), len(quantities)))
+    for cause in causes:
+        places = [quantities.index(name) for name in cause.quantities]
+        covariance[np.ix_(places, places)] += cause.covariance
+    return Known(quantities, covariance)
 
 
 def of_scans(estimate: xr.Dataset, heights_of: xr.Dataset) -> Known:

@@ -15,7 +15,7 @@ from stiction.config.cases import PairInAir
 from stiction.config.kinds import ROUGHNESSES
 from stiction.config.merging import merged
 from stiction.config.units import without_unit
-from stiction.devices.risk import samples_for
+from stiction.devices.risk import VERIFIED, samples_for
 from stiction.plan.stage import At, Stage
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
@@ -127,12 +127,12 @@ def contacts_of(plan: Any, device: str, number: int) -> dict[str, dict[bool, str
 def _of_patch(plan, pair, device):
     """Settings of the contact of the patch of a device, with as many stoppers as its share of stuck ones needs.
 
-    The pair is that of the device in its air.
+    Those of smaller shares than have been verified are extrapolated. The pair is that of the device in its air.
     """
     ground, share = plan.devices.ground(device), plan.config["devices"][device]["requirement"]["share"]
     samples = plan.config["contact"]["samples"]
     if not plan.devices.kind(device).is_beam:
-        samples = max(samples, samples_for(share))
+        samples = max(samples, samples_for(max(share, VERIFIED)))
     return GROUND.settings(plan, At(**ground._replace(pair=pair)._asdict()), samples)
 
 

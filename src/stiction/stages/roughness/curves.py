@@ -13,21 +13,23 @@ import numpy as np
 import xarray as xr
 
 from stiction.chaos.model import Truncation
-from stiction.config.kinds import ROUGHNESSES
+from stiction.config.kinds import ROUGHNESSES, restoring_force
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.contact.environment import Water
 from stiction.devices import risk
 from stiction.devices.roughness import crossings, margins, sufficient
-from stiction.devices.stoppers import safe_force, stuck_patches
+from stiction.devices.stoppers import safe_forces, stuck_patches
 from stiction.errors import NotConverged
 from stiction.plan.stage import Stage, select
+from stiction.rounding import is_equal
 from stiction.stages.contact import curves
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.devices import sticking, stoppers
 from stiction.stages.devices.contact_names import corrections_of
 from stiction.stages.devices.opening import FORCE, DesignedBeam, section_of_beam
 from stiction.stages.roughness.contacts import POINTS, contacts_of, points_of, roughness_of, varied
+from stiction.streams import stream
 
 #: Value of a second quantity of a point of a map, and that of the surface as it is given.
 OTHERS = ("other", "other_given")
@@ -80,19 +82,16 @@ class OfBeam:
     def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> list[Response]:
         """Safe lengths at a humidity by shape."""
         met = sticking.ground(contact, tips, humidity, self)
-        lengths = sticking.released(self.device, met, self)
-        bounds = sticking.flooded_lengths(self.device, self.water, humidity)
-        numbers = sticking.bound(self.device, self.water, humidity), self._scatter(contact, humidity)
-        return [self._response(held, bound, *numbers) for held, bound in zip(lengths.values(), bounds, strict=True)]
+        lengths, reach = sticking.released(self.device, met, self)
+        known = sticking.known(self.device, self.water, humidity, reach)
+        scatter, safe = self._scatter(contact, humidity), sticking.by_shape(lengths, self, known)
+        return [self._response(held, *safe[shape], known[shape], scatter) for shape, held in lengths.items()]
 
-    def _response(self, lengths, bound, least, scatter):
-        """Response from sticking lengths (n,) [m], their bounds and their relative error by the number of samples."""
-        stuck = tuple(float(part[0]) for part in risk.stuck_share(np.array([self.length]), lengths))
-        if not np.isfinite(lengths).any():
-            return Response(np.inf, np.inf, 0.0, bound, stuck)
-        (safe,) = sticking.safe_lengths(lengths, self, least)
-        error = float(np.hypot(safe.error, scatter * safe.estimate))
-        return Response(safe.length, safe.estimate, error, bound, stuck)
+    def _response(self, lengths, safe, known, scatter):
+        """Response from sticking lengths (n,) [m], their safe length, what else is known, and the samples' error."""
+        shares = risk.stuck_share(np.array([self.length]), lengths, known.reach)
+        error = float(np.hypot(safe.error, scatter * safe.estimate)) if np.isfinite(safe.estimate) else 0.0
+        return Response(safe.length, safe.estimate, error, known.flat, tuple(float(part[0]) for part in shares))
 
     def _scatter(self, contact, humidity):
         """Relative standard error of the length on the mean of the samples [-]."""
@@ -110,6 +109,7 @@ class OfBeam:
 class OfStopper:
     """As `OfBeam`, of a stopper that a force restores."""
 
+    seed: int
     water: Water
     humidities: tuple[float, ...]  #: [-]
     contact: tuple[float, float]  #: sides of the patch [m]
@@ -127,7 +127,8 @@ class OfStopper:
         """Safe force at a humidity."""
         forces = stoppers.forces(contact, humidity, self)
         stuck = tuple(float(part[0]) for part in stuck_patches(forces, np.array([self.restoring_force])))
-        return [Response(*safe_force(forces, self.share), np.nan, stuck)]
+        (safe,) = safe_forces(forces[None], self.share, stream(self.seed, "safe force"))
+        return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)]
 
 
 def of_job(settings: dict[str, Any]) -> OfBeam | OfStopper:
@@ -205,7 +206,8 @@ def joined(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Dataset:
         Name of the surface.
     """
     *others, given = points
-    apart = [point for point in others if not np.isclose(point.roughness, given.roughness, rtol=1e-6, atol=0)]
+    largest = max(abs(float(point.roughness)) for point in points)
+    apart = [point for point in others if not is_equal(point.roughness, given.roughness, largest)]
     shared = ["required", "share", "samples"]
     over = [point.drop_vars(shared).set_coords("roughness") for point in (*apart, given)]
     curve = xr.concat(over, "roughness").sortby("roughness")
@@ -239,10 +241,10 @@ def mapped(points: Sequence[xr.Dataset], surface: str, key: str, other: str = ""
     ]
     if not more:
         return first
-    given = float(points[-1].other_given)
+    given, others = float(points[-1].other_given), [float(point.other) for point in points[POINTS::POINTS]]
     curves = {given: first}
-    for value, curve in zip((float(point.other) for point in points[POINTS::POINTS]), more, strict=True):
-        if not np.isclose(value, given, rtol=1e-6, atol=1e-12):
+    for value, curve in zip(others, more, strict=True):
+        if not is_equal(value, given, max(map(abs, others))):
             curves[value] = curve
     values = sorted(curves)
     alone = [curves[value].drop_dims(["crossing", "range"]) for value in values]
@@ -296,7 +298,7 @@ def _settings(plan, at):
     wettest = air.contact(section["pair"], max(section["humidities"]))
     own = plan.config["design"] | section | section["requirement"] | {"water": air.water(wettest)}
     if not plan.devices.kind(at.device).is_beam:
-        return select(OfStopper, own)
+        return select(OfStopper, own | {"seed": plan.config["seed"]} | {"restoring_force_uN": restoring_force(section)})
     common = {key: plan.config[key] for key in ("seed", "chaos")}
     return select(OfBeam, own | common | {"device": section_of_beam(plan, at.device)})
 

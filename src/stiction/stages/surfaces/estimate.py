@@ -50,6 +50,7 @@ class Settings:
     evaluation: evaluation.Settings
     model_scans: int  #: number of model scans, more if there are more scans
     files: tuple[str, ...] = ()  #: names of the files; they do not affect the numbers
+    left_out: tuple[str, ...] = ()  #: sentences on files that are not used, as well
 
 
 def compute(scans: Sequence[xr.Dataset], surface: str, settings: Settings) -> xr.Dataset:
@@ -64,7 +65,7 @@ def compute(scans: Sequence[xr.Dataset], surface: str, settings: Settings) -> xr
     estimate = evaluation.estimate(maps, settings.seed, settings.evaluation, surface, settings.model_scans)
     for sentence in estimate.flags:
         warnings.warn(f"surface {surface}: {sentence}", stacklevel=2)
-    return layout(estimate, [note for dataset in scans for note in stage_scan.notes(dataset)])
+    return layout(estimate, [*settings.left_out, *(note for data in scans for note in stage_scan.notes(data))])
 
 
 def layout(estimate: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:

@@ -36,8 +36,6 @@ FURTHER = (10, 100)
 _SMALL = 50
 #: What may hold a counted beam.
 _COUNTED = (S_SHAPE, ARC)
-#: Logarithms of lengths of a device, less those that were computed.
-_MOVED_BY_TIPS = ("result_shift", "result_quantile")
 #: Keys of the data of the configuration.
 _COLUMNS = {
     "crack_lengths": ("humidity", "mean_um", "std_um", "beams"),
@@ -150,15 +148,17 @@ def compute(
     counts = counted([*beams, *of_tips], responses, settings.stuck, grounds, tips)
     posterior = inference.given(prior, lengths, counts, stream(settings.seed, "test beams", "counts"))
     device, own = responses[len(of_arrays) :], len(inputs.names)
+    if len(lengths.differences):
+        device = with_errors_of_cracks(of_device, device, own)
     parts = [
         of_inputs(prior, posterior, own + 2),
         of_data(beams, responses, prior, posterior, settings),
         of_counts(counts, posterior, settings.stuck),
-        of_results(of_device, device, inputs, prior, posterior),
+        of_results(of_device, device, own, prior, posterior),
         of_further(beams, responses, of_device, device, posterior),
         of_agreement(prior, lengths, counts, own),
     ]
-    merged = with_adhesion_of_tips(xr.merge(parts, combine_attrs="no_conflicts"))
+    merged = xr.merge(parts, combine_attrs="no_conflicts")
     return with_forces(merged, predicted) if settings.device is None else with_lengths(merged, predicted)
 
 
@@ -178,7 +178,7 @@ def with_discrepancy(
     """As `stiction.devices.inference.with_discrepancy`; responses are those of test beams and, after them, of others.
 
     ASSUME: cracks say nothing about how much the model errs at the middle of a bridge and at stoppers, and at tips only
-    what `with_adhesion_of_tips` takes from them. Without a discrepancy, these have the uncertainty of their budget.
+    what `with_errors_of_cracks` takes from them. Without a discrepancy, these have the uncertainty of their budget.
     """
     results = [*beams, *others]
     responses = np.zeros((len(results), len(inputs.names)))
@@ -187,6 +187,23 @@ def with_discrepancy(
     reduced = np.array([result.reduced for result in results]) - np.mean([result.reduced for result in beams])
     conditions = [result.condition if result.response == S_SHAPE else None for result in results]
     return inference.with_discrepancy(inputs, responses, reduced, conditions, stated)
+
+
+def with_errors_of_cracks(results: Sequence[Result], responses: np.ndarray, own: int) -> np.ndarray:
+    """Responses of a device (n, k), in which tips err with the model of its cracks in the same air.
+
+    The first ``own`` responses are to inputs, the others to the discrepancy of the model.
+
+    ASSUME: an error of the model in the adhesion is that of the surfaces, and acts on tips as well, where crack lengths
+    show it. Counts alone do not, because tips of counted beams have no error of the model that they could show.
+    """
+    pairs = list(zip(results, responses, strict=True))
+    cracks = {result.humidity: row[own:] for result, row in pairs if result.response == S_SHAPE}
+    shared = responses.copy()
+    for result, row in zip(results, shared, strict=True):
+        if result.response == ARC:
+            row[own:] = arcs.LENGTH_POWER / CRACK_LENGTH_POWER * cracks[result.humidity]
+    return shared
 
 
 def measured(beams: Sequence[Result], responses: np.ndarray, crack_lengths: Mapping[str, CrackLengths]) -> Lengths:
@@ -256,10 +273,7 @@ def of_shapes(cracks: Result, ground: xr.Dataset, tips: xr.Dataset, water: Water
 
 def of_inputs(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Dataset:
     """The first inputs before and after the measurement, and their combinations that the data determine or do not."""
-    before, after = (
-        Knowledge(state.names[:count], state.mean[:count], state.covariance[:count, :count])
-        for state in (prior, posterior)
-    )
+    before, after = (first_inputs(state, count) for state in (prior, posterior))
     combinations = inference.combinations(before, after)
     return xr.Dataset(
         {
@@ -329,9 +343,14 @@ def of_counts(counts: Counts, posterior: Knowledge, stuck: Mapping[str, Stuck]) 
     )
 
 
+def first_inputs(knowledge: Knowledge, count: int) -> Knowledge:
+    """Knowledge of the first inputs alone."""
+    return Knowledge(knowledge.names[:count], knowledge.mean[:count], knowledge.covariance[:count, :count])
+
+
 def of_agreement(prior: Knowledge, lengths: Lengths, counts: Counts, own: int) -> xr.Dataset:
     """Whether the data agree with inputs and model, and with the inputs alone, of which there are ``own``."""
-    inputs = Knowledge(prior.names[:own], prior.mean[:own], prior.covariance[:own, :own])
+    inputs = first_inputs(prior, own)
     alone = [replace(data, responses=data.responses[..., :own]) for data in (lengths, counts)]
     p_values = {
         "p_value": inference.p_value(prior, lengths, counts),
@@ -353,17 +372,24 @@ def _quantiles(of, posterior, responses):
 
 
 def of_results(
-    of_device: Sequence[Result], responses: np.ndarray, inputs: Knowledge, prior: Knowledge, posterior: Knowledge
+    of_device: Sequence[Result], responses: np.ndarray, own: int, prior: Knowledge, posterior: Knowledge
 ) -> xr.Dataset:
-    """Results of a device before and after the measurement: mean crack lengths, lengths that few tips hold, forces."""
-    numbers = {"of_inputs": inputs.of(responses[:, : len(inputs.names)])[1]} | _both(prior, posterior, responses)
+    """Results of a device before and after the measurement: mean crack lengths, lengths that few tips hold, forces.
+
+    The first ``own`` responses are to inputs. ASSUME: where cracks show less adhesion than the inputs explain, tips do
+    not adhere less, which is the safe side; they are as uncertain.
+    """
+    numbers = {"of_inputs": first_inputs(prior, own).of(responses[:, :own])[1]} | _both(prior, posterior, responses)
     numbers |= {"reduced": [result.reduced for result in of_device]}
     centre = [float(result.budget.centre) for result in of_device], {"units": of_device[0].budget.centre.attrs["units"]}
     sizes = {size: [getattr(result.beam, size) for result in of_device] for size in OWN if of_device[0].beam}
-    return xr.Dataset(
+    is_tip = np.array([result.response == ARC for result in of_device])
+    shown = np.where(is_tip, responses[:, own:] @ posterior.mean[own:], 0.0)
+    found = xr.Dataset(
         {"centre": ("result", *centre)}
         | {f"own_{size}": ("result", values, {"units": "m"}) for size, values in sizes.items()}
         | {f"result_{name}": ("result", value, {"units": "1"}) for name, value in numbers.items()}
+        | {"adhesion_of_tips": ("result", np.exp(np.minimum(shown, 0) / arcs.LENGTH_POWER), {"units": "1"})}
         | _quantiles("result", posterior, responses),
         coords={
             "result": [result.condition for result in of_device],
@@ -371,25 +397,8 @@ def of_results(
             "humidity_of_result": ("result", [result.humidity for result in of_device]),
         },
     )
-
-
-def with_adhesion_of_tips(update: xr.Dataset) -> xr.Dataset:
-    """The dataset with results of tips that adhere as much more than the inputs explain as the cracks show.
-
-    ASSUME: an error of the model in the adhesion is that of the surfaces, and acts on tips as well. Where cracks show
-    less adhesion than computed, tips do not adhere less, which is the safe side. Counts do not change this, because
-    tips have no error of the model that they could show. Counts without crack lengths show none.
-    """
-    errors = update["shift"].sel(input=[inference.FACTOR, inference.SLOPE]).values
-    of_model = errors[0] + errors[1] * (update.result_reduced - update.datum_reduced.mean()).values
-    rows = list(zip(update.humidity_of_result.values, update.response.values, of_model, strict=True))
-    shown = {humidity: min(error, 0.0) for humidity, response, error in rows if response == S_SHAPE}
-    of_tips = [
-        shown.get(humidity, 0.0) if response == ARC and update.sizes["datum"] else 0.0 for humidity, response, _ in rows
-    ]
-    adhesion = update.result_shift.copy(data=np.exp(np.array(of_tips) / CRACK_LENGTH_POWER))
-    moved = {name: update[name] + arcs.LENGTH_POWER * np.log(adhesion) for name in _MOVED_BY_TIPS}
-    return update.assign(moved | {"adhesion_of_tips": adhesion})
+    longer = xr.DataArray(np.maximum(shown, 0), dims="result")
+    return found.assign({name: found[name] - longer for name in ("result_shift", "result_quantile")})
 
 
 def of_further(

@@ -1,0 +1,35 @@
+"""Schema for editors that complete and check YAML: of files that change single keys."""
+
+import json
+from pathlib import Path
+
+from stiction.config.relations import schema
+
+#: Where the examples of a checkout expect it; `make` writes it there. `stiction init` writes it next to a study.
+OF_CHECKOUT = Path(__file__).parents[1] / "config" / "schema.json"
+#: Keywords of JSON Schema that hold for a complete configuration and not for a file that changes single keys.
+_OF_COMPLETE = ("required", "if", "else", "then", "allOf", "minProperties")
+
+
+def text() -> str:
+    """Schema of files that change single keys, as JSON for editors that complete and check YAML."""
+    return json.dumps(_reduced(schema()) | {"$schema": "http://json-schema.org/draft-07/schema#"}, indent=1) + "\n"
+
+
+def _reduced(entry):
+    """Part of the schema without what only a complete configuration must fulfil."""
+    if not isinstance(entry, dict):
+        return entry
+    kept = {name: value for name, value in entry.items() if name not in _OF_COMPLETE}
+    if "word" in kept:
+        return {"description": kept.pop("description"), "anyOf": [{"const": kept.pop("word")}, kept]}
+    for name in ("additionalProperties", "items"):
+        if name in kept:
+            kept[name] = _reduced(kept[name])
+    if "properties" in kept:
+        kept["properties"] = {name: _reduced(value) for name, value in kept["properties"].items()}
+    return kept
+
+
+if __name__ == "__main__":
+    OF_CHECKOUT.write_text(text(), encoding="utf-8")

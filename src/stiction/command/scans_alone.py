@@ -1,0 +1,71 @@
+"""Scans without anything that is simulated: a configuration of their surfaces alone, and sheets of those refused."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from stiction.config import files, scans
+from stiction.config.messages import ConfigError, schema_problems
+from stiction.config.relations import schema
+from stiction.run.atomic import save_text
+
+#: Configuration of the surfaces, and folder of their preliminary numbers, below the folder of a run.
+_CONFIGURATION, _KEPT = Path(".snakemake", "scans.yaml"), Path(".snakemake", "scans")
+
+
+@dataclass(frozen=True)
+class Alone:
+    """Measured surfaces of a configuration."""
+
+    overlay: dict[str, Any]  #: changes of the configuration of the paper: the surfaces that can be estimated
+    refused: dict[str, tuple[dict, list[str]]]  #: section of every other surface, and why it cannot be estimated
+
+    def write(self, directory: Path) -> str:
+        """Write the configuration into the folder of a run, and return its path."""
+        path = directory / _CONFIGURATION
+        path.parent.mkdir(parents=True, exist_ok=True)
+        save_text(yaml.safe_dump(self.overlay, allow_unicode=True), path)
+        return str(path)
+
+
+def alone(overlays: Iterable[str], directory: Path) -> Alone:
+    """Surfaces that files of a configuration describe by scans, each with the files that can be evaluated.
+
+    Raises
+    ------
+    ConfigError
+        If a key of these surfaces is wrong on its own.
+    """
+    config = files.joined(*overlays)
+    measured = {name: _entry(entry) for name, entry in config["surfaces"].items() if scans.is_measured(entry)}
+    overlay = {"surfaces": measured, "scans": config["scans"], "seed": config["seed"], "run": {"pairs": []}}
+    if faults := schema_problems(files.joined(overlay), schema()):
+        raise ConfigError(*map(str, faults))
+    used, refused = {}, {}
+    for name, entry in measured.items():
+        usable, reasons = scans.usable(entry, config["scans"], directory / _KEPT)
+        if usable is None:
+            refused[name] = entry, reasons
+        else:
+            used[name] = usable
+    return Alone(overlay | {"surfaces": used}, refused)
+
+
+def _entry(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """Section of a surface without its material, which scans do not need."""
+    return {key: value for key, value in entry.items() if key != "material"}
+
+
+def draw_refused(name: str, entry: Mapping[str, Any], reasons: Sequence[str], results: Path) -> Path:
+    """Draw the sheet of a surface that cannot be estimated, with the map of its first scan if one can be read."""
+    from stiction.config.scans import readable
+    from stiction.report.scans.figures import refused_sheet
+    from stiction.report.style import save
+
+    paths = [results / "figures" / f"surface_sheet_{name}.{ending}" for ending in ("pdf", "png")]
+    paths[0].parent.mkdir(parents=True, exist_ok=True)
+    save(refused_sheet(name, readable(entry), reasons), *paths)
+    return paths[1]

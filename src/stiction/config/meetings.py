@@ -1,0 +1,210 @@
+"""Relations that hold wherever two surfaces meet: in pairs that run, in devices, and in test beams in their place."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from stiction.config.cases import TOO_LITTLE
+from stiction.config.keys import Keys, Relations
+from stiction.config.kinds import KINDS
+from stiction.config.units import NM_PER_UM, from_si, to_si
+from stiction.contact.meniscus import dry_air, is_wetted, meniscus_height
+from stiction.devices import limits
+from stiction.devices.materials import COATING
+from stiction.models import SIDES
+from stiction.rounding import is_at_most
+
+#: Relations between what meets, its gaps and the air between.
+relation = Relations()
+
+TEMPERATURE = "water.temperature_K"
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """Two surfaces that meet, over some gaps and in some air."""
+
+    config: Keys
+    pair: str  #: need not be defined
+    airs: list[str]  #: keys of humidities
+    gaps: list[tuple[str, str]]  #: keys of gaps, each with that of the humidities at this gap
+    stated: list[str]  #: keys that say what meets
+    asked: tuple[str, ...] = ()  #: key that says whether it is computed
+    deviation: str = ""  #: key of the uncertainty of the humidities
+
+    def given(self, *more: str) -> list[str]:
+        """List the keys on which a refusal depends, ``more`` among them."""
+        return [*self.asked, *more, *self.stated]
+
+    @cached_property
+    def surfaces(self) -> list[str | None]:
+        """Names of both surfaces, which need not be defined."""
+        return surfaces_of(self.pair, self.config)
+
+    @cached_property
+    def sides(self) -> list[dict]:
+        """Sections of both surfaces; empty if one is not defined or has no numbers (yet)."""
+        return sides_of(*self.surfaces, self.config["surfaces"])
+
+    @cached_property
+    def materials(self) -> list[dict]:
+        """Stated properties of the material of each surface; empty for the solid of both bodies."""
+        sections = [self.config["surfaces"].get(name, {}) for name in self.surfaces]
+        return [self.config["materials"].get(section.get("material"), {}) for section in sections]
+
+    def wetting(self, more: float = 0) -> tuple[float, ...]:
+        """Contact angles [rad]; empty without surfaces or without water, which other relations report.
+
+        ``more`` degrees are added to both angles.
+        """
+        angles = [to_si(material.get("contact_angle_deg", 0) + more, "deg") for material in self.materials]
+        return tuple(angles) if self.sides and is_wetted(angles) else ()
+
+    @property
+    def is_wetted(self) -> bool:
+        """Whether water condenses in humid air, as far as it is known."""
+        return not self.sides or bool(self.wetting())
+
+    def too_dry(self, humidities: float | list, more: float = 0, warmer: float = 0) -> str | None:
+        """Refusal of the lowest humidity if the film is no liquid there, at larger angles [degrees] or warmer [K]."""
+        angles, humid = self.wetting(more), above_zero(humidities)
+        return dry_air(min(humid), self.config[TEMPERATURE] + warmer, angles) if angles and humid else None
+
+
+def surfaces_of(pair: str, config: Keys) -> list[str | None]:
+    """Names of the surfaces of a pair, which need not be defined."""
+    return [config["pairs"].get(pair, {}).get(side) for side in SIDES]
+
+
+def sides_of(beam: str, substrate: str, surfaces: dict) -> list[dict]:
+    """Sections of the surfaces of a pair; empty if one is not defined or has no numbers (yet)."""
+    sides = [surfaces.get(name, {}) for name in (beam, substrate)]
+    return sides if all("rms_nm" in surface and "scans" not in surface for surface in sides) else []
+
+
+def above_zero(humidities: float | list) -> list[float]:
+    """Humidities, of one or several, without that of dry air."""
+    return [float(humidity) for humidity in np.ravel(humidities) if humidity > 0]
+
+
+def meetings(config: Keys) -> Iterator[Meeting]:
+    """Yield everything that meets."""
+    yield from of_pairs(config)
+    for name, _ in config.entries("devices", "pair"):
+        yield of_device(name, config)
+
+
+def of_pairs(config: Keys) -> Iterator[Meeting]:
+    """Yield the pairs that run."""
+    running = [pair for _, pairs in config.known("run.pairs") for pair in pairs]
+    for pair, *surfaces in config.entries("pairs", *SIDES):
+        if pair in running:
+            section, shown = f"pairs.{pair}", "figures.humidity"
+            airs = [f"{section}.humidities", shown]
+            stated = [*(f"{section}.{side}" for side in SIDES), *config.scanned(*surfaces)]
+            yield Meeting(config, pair, airs, [(f"{section}.gap_um", air) for air in airs], stated, ("run.pairs",))
+
+
+def of_device(name: str, config: Keys) -> Meeting:
+    """What meets at a device, also along its chart, and for a stopper where its worst humidity is sought."""
+    section = f"devices.{name}"
+    pair, humidities = config[f"{section}.pair"], f"{section}.humidities"
+    airs, gaps = [humidities], [(f"{section}.gap_um", humidities)]
+    for _, chart in config.known(f"{section}.chart"):
+        airs.append(f"{section}.chart.humidities")
+        gaps.append((f"{section}.{'chart.gaps_um' if 'gaps_um' in chart else 'gap_um'}", airs[-1]))
+    known = dict(config.known(f"{section}.kind", humidities))
+    if len(known) == 2 and not KINDS[known[f"{section}.kind"]].is_beam and any(known[humidities]):
+        airs.append("design.worst_humidities")
+    scanned = config.scanned(*surfaces_of(pair, config))
+    return Meeting(config, pair, airs, gaps, scanned, deviation=f"{section}.uncertainty.humidity")
+
+
+@relation
+def gaps_are_far_above_the_film(config):
+    """Along most of a crack, a beam is far from the water film and the peaks of the substrate."""
+    for meeting in meetings(config):
+        for gap, air in meeting.gaps:
+            values = dict(config.known(gap, air))
+            if len(values) == 2 and meeting.sides:
+                refusal = _too_low(np.min(values[gap]), values[air], meeting)
+                yield gap, refusal, air, *meeting.given(TEMPERATURE)
+
+
+def _too_low(gap, humidities, meeting):
+    """Refusal of a gap [µm] that is not far above the film at the highest humidity."""
+    angles, humid = meeting.wetting(), above_zero(humidities)
+    heights = meniscus_height(humid, meeting.config[TEMPERATURE], angles) if angles and humid else 0.0
+    height, rms = float(np.max(heights)), math.hypot(*(to_si(side["rms_nm"], "nm") for side in meeting.sides))
+    least = from_si(limits.least_gap(height, rms), "um")
+    if gap >= least:
+        return None
+    return (
+        f"must be at least {least:.4g} µm, {limits.FILMS} times the sum of the height of the water film, "
+        f"{from_si(height, 'nm'):.5g} nm, and the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
+    )
+
+
+@relation
+def coatings_leave_a_gap(config):
+    """Both coatings together are thinner than the gap."""
+    for meeting in meetings(config):
+        coatings = sum(material.get(COATING, 0) for material in meeting.materials)
+        for key, gap in config.known(*dict.fromkeys(gap for gap, _ in meeting.gaps)):
+            if np.min(gap) * NM_PER_UM <= coatings:
+                message = f"must be above the thickness of the coatings of both surfaces, {coatings:g} nm"
+                yield key, message, *meeting.given()
+
+
+@relation
+def water_is_a_liquid(config):
+    """The air is not too dry for a film of liquid water; the humidity of the figures is refused once."""
+    refused = {}
+    for meeting in meetings(config):
+        for key, humidities in config.known(*meeting.airs):
+            if refusal := meeting.too_dry(humidities):
+                refused.setdefault(key, (key, refusal, *meeting.given(TEMPERATURE)))
+    yield from refused.values()
+
+
+#: Values with which attraction ends where surfaces touch, and those that have it across gaps.
+_TOO_SHORT = {
+    "attraction.reach": ("touching", "all"),
+    "contact.model": ("full", "summits"),
+    "van_der_waals": ("none", "water or dry"),
+}
+
+
+@relation
+def attraction_reaches_across_dry_gaps(config):
+    """Where no water condenses, surfaces attract each other mostly where they do not touch."""
+    for meeting in meetings(config):
+        dry = [key for key, humidities in config.known(*meeting.airs) if np.min(humidities) == 0]
+        if meeting.is_wetted and not dry:
+            continue
+        angles = " and ".join(f"{material.get('contact_angle_deg', 0):g}" for material in meeting.materials)
+        why = "in dry air" if meeting.is_wetted else f"where no water condenses at contact angles of {angles} degrees"
+        for key, value in config.known(*_TOO_SHORT):
+            refused, allowed = _TOO_SHORT[key]
+            if value == refused:
+                yield key, f"must be {allowed} for pair {meeting.pair}, {why}: {TOO_LITTLE}", *dry, *meeting.given()
+
+
+@relation
+def corrections_are_not_extrapolated(config):
+    """Pairs and devices are corrected to full elastic contact within the humidities of their pair."""
+    if config["contact"].get("model") != "full":
+        return
+    for meeting in meetings(config):
+        of_pair, (own, *others) = f"pairs.{meeting.pair}.humidities", meeting.airs
+        known, uncertain = config[of_pair], dict(config.known(meeting.deviation))
+        for key, humidities in config.known(own, *others):
+            more = sum(uncertain.values()) if key == own else 0
+            if is_at_most(min(known), np.min(humidities) - more) and is_at_most(np.max(humidities) + more, max(known)):
+                continue
+            words = ", with its uncertainty," if more else ""
+            restricted = "to which the correction of contact.model full is restricted"
+            yield key, f"must be{words} within the humidities of pair {meeting.pair}, {restricted}", of_pair

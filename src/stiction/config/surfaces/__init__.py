@@ -1,0 +1,1 @@
+"""How surfaces are described in a configuration."""

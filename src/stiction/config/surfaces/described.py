@@ -1,0 +1,242 @@
+"""Surfaces without scans, described as papers do or by their rms alone, and how well their quantities are known.
+
+``{like: B2, rms_nm: 5}`` is surface B2 of the library of typical surfaces with another rms. ``{rms_nm: 5, hurst: 0.8,
+correlation_length_nm: 60, cutoff_rad_per_um: 125}`` is a self-affine surface. What such a section leaves open is from
+the surface in ``like``, or is the mean of the library, and is listed as ``unknown``: its uncertainty is the scatter
+over the library. In the normal form, every such surface has moments and the parameters of Eq. (7).
+
+ASSUME: the library, the four surfaces of the paper (Tables I and II), stands for the surfaces of MEMS. Their skewness
+is negative. Gaussian heights would stick less, which is not the safe side.
+"""
+
+from collections.abc import Collection, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from stiction.config.messages import Problem, did_you_mean, shown
+from stiction.config.surfaces.knowledge import Library, slope
+from stiction.config.units import from_si, to_si
+from stiction.models import SIDES
+from stiction.surface import self_affine
+
+#: Keys of the spectrum as papers state it, and all keys of a section that is to be completed.
+_OF_SPECTRUM = ("hurst", "correlation_length_nm", "corner_rad_per_um", "cutoff_rad_per_um")
+KEYS = ("like", *_OF_SPECTRUM)
+#: Other descriptions of a surface.
+_OTHERS = ("psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2", "scans", "heights", "beyond")
+_FORM = ("skewness", "kurtosis")
+#: Significant digits of computed parameters: the same on every machine.
+_DIGITS = 9
+
+
+def is_described(entry: Mapping) -> bool:
+    """Whether a section of ``surfaces`` is to be completed."""
+    return not entry.keys().isdisjoint(KEYS) and "psd" not in entry
+
+
+def complete(entry: dict[str, Any], library: Library) -> dict[str, Any]:
+    """Section of a surface in normal form: moments, parameters of Eq. (7), and what of these is unknown.
+
+    Raises
+    ------
+    ValueError
+        If no spectrum has the stated correlation length.
+    """
+    if not is_described(entry):
+        return entry
+    typical = library.get(entry.get("like"), {})
+    heights = {key: entry.get(key, typical.get(key, _mean(library, key))) for key in _FORM}
+    left_open = [name for name, keys in _LEAVES_OPEN.items() if not any(key in entry for key in keys)]
+    unknown = list(dict.fromkeys([*left_open, *entry.get("unknown", ())]))
+    psd = _spectrum(entry, typical.get("published_psd"))
+    kept = {key: value for key, value in entry.items() if key in ("rms_nm", "material")}
+    more = {"unknown": unknown} if unknown else {}
+    more |= {"uncertainty": _uncertainty(entry, psd)} if "uncertainty" in entry else {}
+    return kept | heights | {"psd": "published", "published_psd": psd} | more
+
+
+#: Words of key ``unknown`` by the keys that state their quantities.
+_LEAVES_OPEN = {
+    "skewness": ("skewness",),
+    "kurtosis": ("kurtosis",),
+    "corner": ("corner_rad_per_um", "correlation_length_nm"),
+    "hurst": ("hurst",),
+}
+
+
+def _mean(library, key):
+    """Mean of a moment over the library."""
+    return float(np.mean([entry[key] for entry in library.values()]))
+
+
+def _spectrum(entry, typical):
+    """Section ``published_psd`` of a surface; what it leaves open is that of a typical surface."""
+    falling = self_affine.slope_of(entry["hurst"]) if "hurst" in entry else slope(typical)
+    cutoff = entry.get("cutoff_rad_per_um") or typical["cutoff_rad_per_um"]
+    corner = entry.get("corner_rad_per_um") or _corner(entry, typical, falling, cutoff)
+    ends = to_si(corner, "rad_per_um"), to_si(cutoff, "rad_per_um")
+    found = self_affine.spectrum(to_si(entry["rms_nm"], "nm"), falling, *ends)
+    numbers = {"plateau_nm4": from_si(found.plateau, "nm4"), "floor_nm4": from_si(found.floor, "nm4")}
+    return {key: _rounded(value) for key, value in numbers.items()} | {
+        "corner_rad_per_um": corner,
+        "cutoff_rad_per_um": cutoff,
+    }
+
+
+def _corner(entry, typical, slope, cutoff):
+    """Corner of the spectrum [rad/µm], from the correlation length if it is stated."""
+    if "correlation_length_nm" not in entry:
+        return typical["corner_rad_per_um"]
+    length = to_si(entry["correlation_length_nm"], "nm")
+    return _rounded(from_si(self_affine.corner_of(length, slope, to_si(cutoff, "rad_per_um")), "rad_per_um"))
+
+
+def _rounded(value):
+    return float(f"{value:.{_DIGITS}g}")
+
+
+def _uncertainty(entry, psd):
+    """Section ``uncertainty`` with that of the corner in place of that of the correlation length.
+
+    At a given slope, and far from the cut-off, one is inversely proportional to the other.
+    """
+    stated = dict(entry["uncertainty"])
+    if "correlation_length_nm" in stated:
+        relative = stated.pop("correlation_length_nm") / entry["correlation_length_nm"]
+        stated["corner_rad_per_um"] = _rounded(relative * psd["corner_rad_per_um"])
+    return stated
+
+
+# Checks
+
+
+def completed(
+    config: dict[str, Any], library: Library, faults: Collection[tuple]
+) -> tuple[dict[str, Any], list[Problem]]:
+    """Configuration with complete surfaces, and the problems of those that cannot be completed.
+
+    Surfaces with keys that are wrong on their own, the ``faults``, stay as they are. A device on a surface that is not
+    known exactly has a section of its uncertainty.
+    """
+    wrong, surfaces, problems = {fault[1] for fault in faults if fault[0] == "surfaces"}, {}, []
+    for name, entry in config["surfaces"].items():
+        refused = None if name in wrong else next(_refusals(entry, library), None)
+        problems += [_problem(name, entry, *refused)] if refused else []
+        surfaces[name] = entry if refused or name in wrong else complete(entry, library)
+    uncertain = [name for name, entry in surfaces.items() if name not in wrong and _is_uncertain(entry)]
+    return config | {"surfaces": surfaces} | _devices(config, uncertain), problems
+
+
+def _is_uncertain(entry):
+    return bool(entry.get("unknown") or entry.get("uncertainty"))
+
+
+def _devices(config, uncertain):
+    """Section ``devices`` in which those on uncertain surfaces have a section of their uncertainty."""
+    devices = config["devices"]
+    if not (uncertain and isinstance(devices, dict)):
+        return {}
+    return {"devices": {name: _with_uncertainty(device, config, uncertain) for name, device in devices.items()}}
+
+
+def _with_uncertainty(device, config, surfaces):
+    """Section of a device with a section of its uncertainty, if one of its surfaces is among these."""
+    try:
+        is_uncertain = any(config["pairs"][device["pair"]][side] in surfaces for side in SIDES)
+    except (KeyError, TypeError):
+        return device  # other relations report what is missing
+    return {"uncertainty": {}} | device if is_uncertain else device
+
+
+def _problem(name, entry, key, message):
+    """Problem with a key of a surface, or with the surface as a whole."""
+    if not key:
+        return Problem(("surfaces", name), message)
+    return Problem(("surfaces", name, *key.split(".")), f"is {shown(_value(entry, key))}, {message}")
+
+
+def _value(entry, key):
+    for part in key.split("."):
+        entry = entry[part]
+    return entry
+
+
+def _refusals(entry, library) -> Iterator[tuple[str, str]]:
+    """Keys of a surface, none for the surface as a whole, with the reasons why they cannot be used."""
+    stated = [key for key in KEYS if key in entry]
+    if stated and (beside := [key for key in _OTHERS if key in entry]):
+        yield stated[0], f"must not be given beside {', '.join(beside)}; give the surface a name of its own"
+    elif stated:
+        yield from _refusals_of_described(entry, library)
+    elif "scans" not in entry and (missing := [key for key in (*_FORM, "psd") if key not in entry]):
+        yield "", _without(missing, library)
+    yield from _refusals_of_uncertainty(entry)
+
+
+def _without(missing, library):
+    """Message about a surface that nothing describes but its rms."""
+    return (
+        f"lacks {', '.join(missing)}; state rms_nm, skewness, kurtosis and psd; or rms_nm and like: one of "
+        f"{', '.join(library)}, a typical surface for what is not known; or rms_nm, hurst, correlation_length_nm and "
+        "cutoff_rad_per_um; or scans"
+    )
+
+
+def _refusals_of_described(entry, library):
+    """As `_refusals`, of a surface that is to be completed."""
+    if "like" in entry and entry["like"] not in library:
+        hint = did_you_mean(entry["like"], library)
+        yield "like", f"must be one of {', '.join(library)}, the library of typical surfaces{hint}"
+    if "correlation_length_nm" in entry and "corner_rad_per_um" in entry:
+        yield "correlation_length_nm", "must come without corner_rad_per_um: one gives the other"
+    needed = {"hurst": ("hurst",), "cutoff_rad_per_um": ("cutoff_rad_per_um",)}
+    needed["correlation_length_nm or corner_rad_per_um"] = _LEAVES_OPEN["corner"]
+    missing = [words for words, keys in needed.items() if not any(key in entry for key in keys)]
+    if missing and "like" not in entry:
+        first = next(key for key in KEYS if key in entry)
+        yield first, f"must come with {', '.join(missing)}, or with like: one of {', '.join(library)}"
+    for key, other in (_FORM, _FORM[::-1]):
+        if key in entry and other not in entry:
+            yield key, f"must come with {other}: both are stated or neither"
+    try:
+        _spectrum(entry, library.get(entry.get("like"), {}).get("published_psd"))
+    except ValueError as reason:
+        key = next((key for key in _LEAVES_OPEN["corner"][::-1] if key in entry), "cutoff_rad_per_um")
+        yield key if key in entry else "like", f"no spectrum has it: {reason}"
+
+
+def _refusals_of_uncertainty(entry):
+    """As `_refusals`, of what is known of the quantities of a surface."""
+    for key in ("unknown", "uncertainty"):
+        if key in entry and "scans" in entry:
+            yield key, "must not be given beside scans, which give the errors of the surface"
+    has_spectrum = "published_psd" in entry or is_described(entry)
+    for key in entry.get("uncertainty", {}):
+        if key == "correlation_length_nm" and key not in entry:
+            yield f"uncertainty.{key}", f"must come with {key} of the surface"
+        elif key in ("corner_rad_per_um", "hurst") and not has_spectrum:
+            yield f"uncertainty.{key}", "must come with published_psd, or with the spectrum as papers state it"
+
+
+def origins(config: Mapping[str, Any]) -> dict[tuple, tuple]:
+    """Keys that users stated, as paths with their values, by those of complete surfaces that follow from them."""
+    found = {}
+    for name, entry in config["surfaces"].items():
+        if isinstance(entry, dict) and is_described(entry):
+            for key, sources in _SOURCES.items():
+                source = next((source for source in (*sources, "like") if source in entry), "rms_nm")
+                found["surfaces", name, *key] = ("surfaces", name, source), entry.get(source)
+    return found
+
+
+#: Keys of a complete surface, and those that they follow from.
+_SOURCES = {
+    ("skewness",): ("skewness",),
+    ("kurtosis",): ("kurtosis",),
+    ("published_psd",): (*_LEAVES_OPEN["corner"], *_OF_SPECTRUM),
+    ("published_psd", "plateau_nm4"): (),
+    ("published_psd", "floor_nm4"): ("hurst",),
+    ("published_psd", "corner_rad_per_um"): _LEAVES_OPEN["corner"],
+    ("published_psd", "cutoff_rad_per_um"): ("cutoff_rad_per_um",),
+}

@@ -1,0 +1,126 @@
+"""How well the quantities of surfaces without scans are known: as stated, or as typical surfaces scatter.
+
+The library of typical surfaces is given as sections of a configuration with moments and the parameters of Eq. (7).
+"""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
+from stiction.surface import self_affine
+
+#: Quantities of `stiction.analysis.shifts` by the words of key ``unknown``, and by the keys of ``uncertainty``.
+_QUANTITIES = {"rms": "rms", "skewness": "skewness", "kurtosis": "kurtosis", "corner": "corner", "hurst": "slope"}
+_OF_UNCERTAINTY = {"rms_nm": "rms", "skewness": "skewness", "kurtosis": "kurtosis"}
+_OF_UNCERTAINTY |= {"corner_rad_per_um": "corner", "hurst": "slope"}
+#: Quantities whose errors are independent of those of the others.
+_PARTS = (MOMENT_QUANTITIES[:1], MOMENT_QUANTITIES[1:], SPECTRUM_QUANTITIES)
+_ALL = MOMENT_QUANTITIES + SPECTRUM_QUANTITIES
+
+Library = Mapping[str, Mapping[str, Any]]
+
+
+class Knowledge(NamedTuple):
+    """Uncertain quantities of a surface, keys of `stiction.analysis.shifts.STEPS`, and covariance of their errors."""
+
+    quantities: tuple[str, ...]
+    covariance: np.ndarray  #: (k, k); of ln rms and ln corner for these
+
+    @property
+    def section(self) -> dict[str, list]:
+        """Settings of a job, with numbers that are the same on every machine."""
+        rounded = [[float(f"{value:.9g}") for value in row] for row in self.covariance]
+        return {"quantities": list(self.quantities), "covariance": rounded}
+
+
+def slope(psd: Mapping[str, float]) -> float:
+    """Exponent of the power law of a section ``published_psd``."""
+    falls = np.log(psd["floor_nm4"] / psd["plateau_nm4"])
+    return float(falls / np.log(psd["cutoff_rad_per_um"] / psd["corner_rad_per_um"]))
+
+
+def knowledge(entry: Mapping[str, Any], library: Library) -> Knowledge:
+    """What the section of a surface in normal form says about the errors of its quantities.
+
+    A stated uncertainty takes the place of the scatter over the library.
+    """
+    variances = {quantity: deviation**2 for quantity, deviation in _deviations(entry).items()}
+    unknown = assumed(entry)
+    names = tuple(name for name in _ALL if name in unknown or variances.get(name))
+    places = [_ALL.index(name) for name in names]
+    covariance = scatter(library)[np.ix_(places, places)]
+    for place, name in enumerate(names):
+        if name in variances:
+            covariance[place], covariance[:, place] = 0.0, 0.0
+            covariance[place, place] = variances[name]
+    return Knowledge(names, covariance)
+
+
+def assumed(entry: Mapping[str, Any]) -> dict[str, str]:
+    """Quantities of a surface that are assumed, with their words in key ``unknown``."""
+    stated = _deviations(entry)
+    words = {_QUANTITIES[word]: word for word in entry.get("unknown", ())}
+    return {name: word for name, word in words.items() if name not in stated}
+
+
+def _deviations(entry):
+    """Stated standard uncertainties by quantity: of ln rms, skewness, kurtosis, ln corner and slope."""
+    stated, psd = entry.get("uncertainty", {}), entry.get("published_psd", {})
+    scale = {"rms_nm": entry.get("rms_nm"), "corner_rad_per_um": psd.get("corner_rad_per_um"), "hurst": 0.5}
+    return {_OF_UNCERTAINTY[key]: value / scale.get(key, 1.0) for key, value in stated.items()}
+
+
+def scatter(library: Library) -> np.ndarray:
+    """Covariance over the library of ln rms, skewness, kurtosis, ln corner and slope, (5, 5).
+
+    ASSUME: the rms, the form of the heights and the spectrum of a surface say nothing about each other. Correlations
+    between them over few surfaces are chance; that of skewness and kurtosis holds for all heights with a long tail.
+    """
+    rows = [
+        [
+            np.log(entry["rms_nm"]),
+            entry["skewness"],
+            entry["kurtosis"],
+            np.log(entry["published_psd"]["corner_rad_per_um"]),
+            slope(entry["published_psd"]),
+        ]
+        for entry in library.values()
+    ]
+    part = np.repeat(np.arange(len(_PARTS)), list(map(len, _PARTS)))
+    return np.cov(np.transpose(rows)) * (part[:, None] == part)
+
+
+def sentences(name: str, entry: Mapping[str, Any], library: Library) -> list[str]:
+    """Sentence on what is unknown of a surface in normal form, for those who read results; none if nothing is."""
+    if not (unknown := assumed(entry)):
+        return []
+    known = knowledge(entry, library)
+    errors = dict(zip(known.quantities, np.sqrt(np.diag(known.covariance)), strict=True))
+    values = {"rms": entry["rms_nm"], "skewness": entry["skewness"], "kurtosis": entry["kurtosis"]}
+    if psd := entry.get("published_psd"):
+        values |= {"corner": psd["corner_rad_per_um"], "hurst": self_affine.hurst_of(slope(psd))}
+    listed = [_assumed(word, values.get(word), errors[name]) for name, word in unknown.items()]
+    return [
+        f"surface {name}: not measured but assumed, with the scatter over {len(library)} typical surfaces "
+        f"({', '.join(library)}) as standard uncertainty: {'; '.join(listed)}"
+    ]
+
+
+def _assumed(word, value, error):
+    """An assumed value with its standard uncertainty, in words."""
+    label, unit, relative = _WORDS[word]
+    scale = 100 * error if relative else error / 2 if word == "hurst" else error
+    number = "" if value is None else f" {value:.3g}{unit}"
+    return f"{label}{number} ± {scale:.2g}{' %' if relative else ''}"
+
+
+#: Words of key ``unknown`` for readers: name, unit, and whether its uncertainty is relative.
+_WORDS = {
+    "rms": ("rms", " nm", True),
+    "skewness": ("skewness", "", False),
+    "kurtosis": ("kurtosis", "", False),
+    "corner": ("corner of the spectrum", " rad/µm", True),
+    "hurst": ("Hurst exponent", "", False),
+}

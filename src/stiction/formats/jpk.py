@@ -1,0 +1,53 @@
+"""Scans of JPK in HDF5, ``.h5-jpk``: every channel is a column of levels per frame, with its scale.
+
+Every frame is a map of the same area.
+"""
+
+import io
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from stiction.formats.channel import Channel, numbered
+
+#: First bytes of a file of HDF5.
+MAGIC = b"\x89HDF\r\n\x1a\n"
+_MEASUREMENT, _CHANNEL, _SCALING = re.compile(r"Measurement_\d+"), re.compile(r"Channel_\d+"), "net-encoder.scaling"
+
+
+def channels(content: bytes) -> list[Channel]:
+    """Channels of a file; none if it is another file of HDF5."""
+    import h5py  # comes with the library for files
+
+    with h5py.File(io.BytesIO(content)) as file:
+        measured = [file[name] for name in file if _MEASUREMENT.fullmatch(name)]
+        return numbered(
+            channel
+            for measurement in measured
+            for name in measurement
+            if _CHANNEL.fullmatch(name)
+            for channel in _frames(measurement.attrs, measurement[name])
+        )
+
+
+def _frames(scan, group) -> Iterator[Channel]:
+    """Channel of every frame of a group."""
+    levels = next(group[name] for name in group if name != "thumbnail")[()]
+    points = tuple(int(scan[f"position-pattern.grid.{side}length"]) for side in "ij")
+    sides = tuple(float(scan[f"position-pattern.grid.{side}length"]) for side in "uv")
+    scale, offset = (float(group.attrs[f"{_SCALING}.{name}"]) for name in ("multiplier", "offset"))
+    direction = "retrace" if _text(group.attrs["retrace"]) == "true" else "trace"
+    name, unit = f"{_text(group.attrs['channel.name'])} ({direction})", _text(group.attrs[f"{_SCALING}.unit.unit"])
+    for frame in levels.T:
+        yield Channel(name, unit, points, sides, lambda frame=frame: _map(scale * frame + offset, points))
+
+
+def _map(values, points):
+    """Values (n_x, n_y) from those of one line after another."""
+    return np.asarray(values, float).reshape(points[::-1]).T
+
+
+def _text(attribute: Any) -> str:
+    return attribute.decode() if isinstance(attribute, bytes) else str(attribute)

@@ -1,0 +1,72 @@
+"""Contents of compressed files and of archives, as the library for files reads them."""
+
+import gzip
+import io
+import posixpath
+import re
+import struct
+import zipfile
+import zlib
+from collections.abc import Mapping
+
+#: First bytes of files that are packed: by gzip, in an archive, and by Digital Surf.
+_GZIP, _ZIP, _COMPRESSED_SURF, _SURF = b"\x1f\x8b", b"PK\x03\x04", b"DSCOMPRESSED", b"DIGITAL SURF"
+#: Positions of the sizes of two texts behind the header of Digital Surf, and the size of this header.
+_TEXTS, _HEADER = 334, 512
+#: Files that macOS and Windows add to archives, and the index of an x3p file.
+_ADDED, _INDEX = re.compile(r"(?:^|/)(?:__MACOSX/.*|\.DS_Store|\._[^/]*|Thumbs\.db)$"), "main.xml"
+#: What some programs write into this index, and what is meant.
+_MEANT = {"ISO5436 – 2000".encode(): b"ISO5436 - 2000", b"<Offset/>": b"<Offset>0</Offset>"}
+
+
+def unpacked(name: str, content: bytes) -> tuple[str, bytes]:
+    """Name and content of the file within a packed one, or of the file itself if it is not packed."""
+    if content.startswith(_GZIP):
+        return unpacked(re.sub(r"\.gz$", "", name, flags=re.IGNORECASE), gzip.decompress(content))
+    if content.startswith(_ZIP):
+        return _from_archive(name, content)
+    if content.startswith(_COMPRESSED_SURF):
+        return name, _surf(content)
+    return name, content
+
+
+def _from_archive(name, content):
+    """The only file of an archive, or the archive without what other programs added to it."""
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        members = [member for member in archive.namelist() if not member.endswith("/")]
+        own = [member for member in members if not _ADDED.search(member)]
+        if len(own) == 1:
+            return unpacked(posixpath.basename(own[0]), archive.read(own[0]))
+        index = next((member for member in own if posixpath.basename(member) == _INDEX), _INDEX)
+        folder = index.removesuffix(_INDEX)
+        stored = {member.removeprefix(folder): archive.read(member) for member in own}
+    written = stored | ({_INDEX: _meant(stored[_INDEX])} if _INDEX in stored else {})
+    return name, content if own == members and not folder and written == stored else _archive(written)
+
+
+def _meant(index):
+    """Index of an x3p file as the library reads it."""
+    for found, meant in _MEANT.items():
+        index = index.replace(found, meant)
+    return index
+
+
+def _archive(members: Mapping[str, bytes]):
+    """Archive of these files."""
+    written = io.BytesIO()
+    with zipfile.ZipFile(written, "w") as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+    return written.getvalue()
+
+
+def _surf(content):
+    """File of Digital Surf without compression: the streams that its directory lists, one after another."""
+    start = _HEADER + sum(struct.unpack_from("<2H", content, _TEXTS))
+    (count,) = struct.unpack_from("<I", content, start)
+    sizes = struct.unpack_from(f"<{2 * count}I", content, start + 4)[1::2]
+    position, streams = start + 4 + 8 * count, []
+    for size in sizes:
+        streams.append(zlib.decompress(content[position : position + size]))
+        position += size
+    return _SURF + content[len(_SURF) : start] + b"".join(streams)

@@ -1,0 +1,54 @@
+r"""What frees a device: the force of its spring, a shock, and how often it may touch.
+
+A shock frees a stopper if its inertia adds what the spring lacks, :math:`a = (F_\mathrm{hold} - F) / m`. The force
+:math:`F_\mathrm{hold}` is that of slow separation. A shock separates surfaces faster than water evaporates: menisci
+then keep their volume and hold more, so that this acceleration is the least that is needed.
+
+A device touches n times. If it meets other summits each time, it sticks with :math:`1 - (1 - P)^n`. If it meets the
+same ones, it sticks the first time or never, with P. How much touchdowns have in common is unknown: both are bounds.
+"""
+
+import numpy as np
+
+from stiction.beam.cantilever import Beam
+from stiction.devices.bridges import pull
+
+
+def force_at_contact(beam: Beam, clamps: int) -> float:
+    """Force with which a beam pulls at its tip, 3 EI h / L³, or at its middle [N]."""
+    if clamps == 2:
+        return float(pull(beam.length, beam)[0])
+    return 3 * beam.bending_stiffness * beam.gap / beam.length**3
+
+
+def freeing_acceleration(hold: float, restoring_force: float, mass: float) -> float:
+    """Least acceleration away from the substrate that frees a stopper [m s⁻²]; zero if its spring does.
+
+    Examples
+    --------
+    >>> round(freeing_acceleration(30e-6, 20e-6, 1e-9)), freeing_acceleration(10e-6, 20e-6, 1e-9)
+    (10000, 0.0)
+    """
+    return max(hold - restoring_force, 0.0) / mass
+
+
+def stuck_after(probability: float, touchdowns: int) -> float:
+    """P(stuck) after n independent touchdowns [-], 1 - (1 - P)^n, from that of one.
+
+    Examples
+    --------
+    >>> round(stuck_after(1e-3, 1000), 3)
+    0.632
+    """
+    return float(-np.expm1(touchdowns * np.log1p(-probability))) if probability < 1 else 1.0
+
+
+def probability_for(stuck: float, touchdowns: int) -> float:
+    """P(stuck) of one touchdown that leaves a fraction stuck after n independent ones, `stuck_after` inverted [-].
+
+    Examples
+    --------
+    >>> round(1e6 * probability_for(0.1, 1000), 1)
+    105.4
+    """
+    return float(-np.expm1(np.log1p(-stuck) / touchdowns))

@@ -1,0 +1,82 @@
+"""CPU time of jobs, estimated from the numbers in their settings and from measured times.
+
+ASSUME: a run consists of fields of random surfaces in contact and of beams; all else is a fixed time for each job.
+`docs/performance.md` says how well that agrees with measured runs.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from stiction.config.units import NM_PER_UM
+
+#: CPU time [s] of a job apart from the following, of one point of a field of a sample in contact, and of one beam, on
+#: one core of an AMD EPYC: 7 ms for 2.5 µm x 31 µm at 10 nm, and 0.24 s for 100 beams (docs/tables/bench.md).
+PER_JOB, PER_POINT, PER_BEAM = 0.7, 7e-3 / (250 * 3100), 2.4e-3
+#: The same of a strip of the paper in full elastic contact at one humidity (docs/tables/full_contact_times.md).
+PER_STRIP = 2.0
+#: Units of time [s].
+_TIMES = ((86_400, "days"), (3600, "h"), (60, "min"), (1, "s"))
+#: Sections of the settings of a job that draws surface pairs.
+_DRAWN = {"sampling", "contact", "beam"}
+#: Those of a job that computes full elastic contact.
+_FULL = {"strips", "humidities"}
+
+
+def of_job(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets: int = 1, repeats: int = 1) -> float:
+    """CPU time of a job [s], from its settings in the units of the configuration.
+
+    A job that writes several ``datasets`` computes as many contacts, a chunk of them its part of the samples. Beams are
+    released ``repeats`` times.
+
+    Examples
+    --------
+    >>> beam, sampling = {"width_um": 30}, {"spacing_nm": 10, "strip_length_um": 1.5, "margin_um": 1}
+    >>> settings = {"sampling": sampling, "beam": beam, "contact": {"samples": 5000}}
+    >>> round(of_job(settings, {})), round(of_job(settings, {"chunk": "0", "number": "5"}), 1)
+    (36, 7.7)
+    """
+    parts, sections = int(wildcards["number"]) if "chunk" in wildcards else 1, list(_sections(settings))
+    contacts = sum(map(_of_contact, sections)) * datasets / parts
+    full = (section for section in sections if section.keys() >= _FULL)
+    strips = sum(section["strips"] * len(section["humidities"]) for section in full)
+    return PER_JOB + contacts + PER_STRIP * strips + PER_BEAM * repeats * sum(map(_beams, sections))
+
+
+def _sections(settings: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    """Settings, and all sections in them."""
+    yield settings
+    for value in settings.values():
+        if isinstance(value, Mapping):
+            yield from _sections(value)
+
+
+def _of_contact(section):
+    """CPU time of the samples of surface pairs that a section describes [s]."""
+    samples = section["contact"].get("samples") if section.keys() >= _DRAWN else None
+    if not samples:
+        return 0.0
+    sampling = section["sampling"]
+    sides = (side + sampling["margin_um"] for side in (sampling["strip_length_um"], section["beam"]["width_um"]))
+    length, width = (NM_PER_UM * side / sampling["spacing_nm"] for side in sides)
+    return samples * length * width * PER_POINT
+
+
+def _beams(section):
+    """Number of beams that a section describes: of devices, of all sizes of a chart, or samples of a beam."""
+    sizes = math.prod(len(section.get(key, [0])) for key in ("thicknesses_um", "gaps_um"))
+    has_elements = isinstance(section.get("beam"), Mapping) and "elements" in section["beam"]
+    number = section.get("beams", section.get("samples") if has_elements else None)
+    return number * sizes if isinstance(number, int) else 0
+
+
+def in_words(seconds: float, megabytes: float) -> str:
+    """CPU time and memory of a run in words.
+
+    Examples
+    --------
+    >>> in_words(40, 800), in_words(20000, 1600)
+    ('about 40 s of CPU time and 800 MB for each job', 'about 5.6 h of CPU time and 1600 MB for each job')
+    """
+    size, unit = next(((size, unit) for size, unit in _TIMES if seconds >= 1.5 * size), (1, "s"))
+    return f"about {seconds / size:.2g} {unit} of CPU time and {megabytes:.0f} MB for each job"

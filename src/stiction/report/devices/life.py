@@ -1,0 +1,267 @@
+"""The life of devices: what brings them into contact, whether they stick, what holds and what frees them."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from stiction.constants import FREE_FALL
+from stiction.life.holding import BREAKDOWN
+from stiction.plan.names import by_name
+from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN
+from stiction.report.style import (
+    OUTLINED,
+    SINGLE,
+    at_most_double,
+    columns_of_panels,
+    figure_stage,
+    letter_lines,
+    styled,
+)
+from stiction.report.table import Table, table_stage
+from stiction.stages.devices.life import (
+    AFTER,
+    AT_VOLTAGE,
+    COLLAPSE,
+    FIELD,
+    QUESTIONS,
+    RELEASED,
+    SHOCK,
+    VOLTAGE,
+    Answer,
+    answers_of,
+)
+
+#: Units of the answers by those in SI: factor and text.
+_UNITS = {
+    "m": (TO_UM, "µm"),
+    "V": (1.0, "V"),
+    "V m-1": (1 / TO_NM, "V/nm"),
+    "m s-2": (1 / FREE_FALL, "g"),
+    "N": (TO_UN, "µN"),
+    "N m-1": (1.0, "N/m"),
+    "J m-2": (TO_MJ, "mJ/m²"),
+    "1": (100.0, "%"),
+}
+#: What the answers are, for the table and for pages.
+CAPTION = (
+    "The life of a device, in the order of a designer's questions: what brings a device into contact (touch), whether "
+    "it then sticks (stick), what holds it (hold), what frees it (free). Every answer is between at least and at most, "
+    "which are equal where the model leaves nothing open. No bound is known where there is –. The column ± has the "
+    "standard uncertainty of the lower bound, due to the stated uncertainties of the device or to sampled surfaces. "
+    "Voltage, shock, energy and force of a beam are those of its length, which is stated or its least safe one. A "
+    "liquid that dries is not humid air: it holds the whole area that it wets."
+)
+_COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#D55E00", "#CC79A7", "#009E73"), strict=True))
+#: Height of a row, and of everything else in a panel [in].
+_ROW, _AROUND = 0.3, 1.1
+
+
+def table(datasets: Mapping[str, xr.Dataset]) -> Table:
+    """Answers about all devices, one row each."""
+    rows = []
+    for device, dataset in datasets.items():
+        for answer in answers_of(dataset):
+            factor, unit = _UNITS[answer.unit]
+            numbers = {"at_least": answer.low, "at_most": answer.high, "standard_uncertainty": answer.error}
+            head = {"device": device, "length_um": TO_UM * float(dataset.length), "question": answer.question}
+            scaled = {name: factor * value for name, value in numbers.items()}
+            tail = {"unit": unit, "form": answer.form, "source": answer.source}
+            rows.append(head | {"answer": str(answer.name), "what": answer.what} | scaled | tail)
+    columns = {
+        "device": (str, "device"),
+        "question": (str, "question"),
+        "what": (str, "what"),
+        "at least": (significant, "at_least"),
+        "at most": (significant, "at_most"),
+        "±": (lambda error: significant(float(f"{error:.2g}")), "standard_uncertainty"),
+        "unit": (str, "unit"),
+        "form": (str, "form"),
+        "source": (str, "source"),
+    }
+    return Table.of(rows, CAPTION, columns)
+
+
+def significant(value: float) -> str:
+    """Number with three significant digits and without an exponent; – for NaN.
+
+    Examples
+    --------
+    >>> significant(128764.0), significant(381.96), significant(0.0123), significant(float("inf"))
+    ('129 000', '382', '0.0123', 'any')
+    """
+    if np.isnan(value):
+        return MISSING
+    if np.isinf(value):
+        return "any"
+    rounded = float(f"{value:.3g}")
+    return f"{rounded:,.0f}".replace(",", " ") if abs(rounded) >= 100 else f"{rounded:g}"
+
+
+# Sentences
+
+
+def sentences(dataset: xr.Dataset) -> list[str]:
+    """The life of a device in words: what brings it into contact, what drying does, and many touchdowns."""
+    answers, length = {answer.name: answer for answer in answers_of(dataset)}, float(dataset.length)
+    at = f"At {TO_UM * length:.0f} µm it" if np.isfinite(length) else "It"
+    potential = float(dataset.potential)
+    said = [*_touching(answers, at), *_pulled_in(answers, potential), *_drying(answers, at, length)]
+    return [*said, *_biased(answers, potential), *_often(answers, int(dataset.touchdowns))]
+
+
+def _touching(answers, at):
+    """Voltage and shock below which a device does not touch; nothing if neither is known."""
+    limits = [f"{_low(answers[VOLTAGE])} V"] if VOLTAGE in answers else []
+    limits += [f"a half-sine shock of {_low(answers[SHOCK])} g"] if SHOCK in answers else []
+    slow = f" A slow shock of {_high(answers[SHOCK])} g brings it down." if SHOCK in answers else ""
+    return [f"{at} does not touch below {' or '.join(limits)}.{slow}"] if limits else []
+
+
+def _pulled_in(answers, potential):
+    """Whether its own voltage pulls a device in."""
+    if VOLTAGE not in answers or potential < answers[VOLTAGE].low:
+        return []
+    return [f"Its own voltage of {significant(potential)} V pulls it in."]
+
+
+def _biased(answers, potential):
+    """What a voltage does to a device that touches, and whether its dielectric stands the field."""
+    if AT_VOLTAGE not in answers:
+        return []
+    one, field = answers[AT_VOLTAGE], answers[FIELD]
+    is_length, on = one.unit == "m", f"While {significant(potential)} V are on,"
+    said = [
+        f"{on} its safe length is {_low(one)} µm." if is_length else f"{on} up to {_high(one)} µN hold it in addition."
+    ]
+    if field.high > BREAKDOWN:
+        said.append(f"The field in its dielectric, {_high(field)} V/nm, is above 1 V/nm, where thin oxides break down.")
+    return said
+
+
+def _drying(answers, at, length):
+    """Which beams stand while liquids dry, what becomes of one of this length, and what comes free afterwards."""
+    standing = _liquids(answers, COLLAPSE)
+    if not standing:
+        return []
+    fates = {liquid: _fate(one, length) for liquid, one in standing.items()}
+    now = [f"{_FATES[fate]} from {' and '.join(names)}" for fate, names in _inverted(fates).items()]
+    limits = ", ".join(f"{_low(one)} and {_high(one)} µm ({liquid})" for liquid, one in standing.items())
+    free = ", ".join(f"{_high(one)} µm ({liquid})" for liquid, one in _liquids(answers, RELEASED).items())
+    return [
+        *([f"{at} {', and '.join(now)}."] if np.isfinite(length) else []),
+        f"Beams that dry stand up to the first of these lengths and collapse beyond the second: {limits}. After a "
+        f"collapse they stay down if they are longer than {free}.",
+    ]
+
+
+#: What becomes of a beam that dries.
+_FATES = {
+    "stands": "stands when it is dried",
+    "may": "may collapse when it is dried",
+    "collapses": "collapses when it is dried",
+}
+
+
+def _fate(answer, length):
+    """What becomes of a beam of a length [m] while a liquid dries, key of `_FATES`."""
+    if not length > answer.low:
+        return "stands"
+    return "may" if length <= answer.high else "collapses"
+
+
+def _inverted(values):
+    """Keys of a dict by their value."""
+    return {value: [key for key, other in values.items() if other == value] for value in dict.fromkeys(values.values())}
+
+
+def _liquids(answers, name):
+    """Answers of one kind by the liquid that they are about."""
+    return {key.removeprefix(f"{name}_"): one for key, one in answers.items() if key.startswith(f"{name}_")}
+
+
+def _often(answers, touchdowns):
+    """What is safe for many touchdowns, as far as it is known."""
+    if AFTER not in answers:
+        return []
+    one = answers[AFTER]
+    is_length = one.unit == "m"
+    bounds = [_low(one), _high(one)] if is_length else [_high(one), _low(one)]
+    what = "its safe length is" if is_length else "it needs a restoring force of"
+    unit = _UNITS[one.unit][1]
+    return [
+        f"For {touchdowns} touchdowns {what} {bounds[0]} {unit} if each meets other summits, and {bounds[1]} {unit} if "
+        "all meet the same ones."
+    ]
+
+
+def _low(answer: Answer) -> str:
+    """Lower bound of an answer in its unit."""
+    return significant(_UNITS[answer.unit][0] * answer.low)
+
+
+def _high(answer: Answer) -> str:
+    """Upper bound of an answer in its unit."""
+    return significant(_UNITS[answer.unit][0] * answer.high)
+
+
+# Figure
+
+
+@styled
+def figure(datasets: Mapping[str, xr.Dataset]) -> Figure:
+    """Lengths of beams, or forces of stoppers, that limit their lives, on one axis; a panel for each device."""
+    rows = {name: _rows(dataset) for name, dataset in datasets.items()}
+    height = _AROUND + _ROW * max(map(len, rows.values()))
+    made, columns, lines = columns_of_panels(len(rows), 1, at_most_double(1.6 * SINGLE), height)
+    for panel, (name, answers) in zip(columns[:, 0], rows.items(), strict=True):
+        _bars(panel, answers, float(datasets[name].length))
+    letter_lines(lines, list(rows))
+    entries = [Line2D([], [], color=colour, linewidth=4, label=name) for name, colour in _COLOURS.items()]
+    made.legend(handles=entries, loc="outside upper center", ncols=4)
+    return made
+
+
+def _rows(dataset):
+    """Answers of a device that are lengths or, for a stopper, forces, and finite."""
+    unit = "m" if np.isfinite(float(dataset.length)) else "N"
+    return [one for one in answers_of(dataset) if one.unit == unit and np.isfinite(one.high)]
+
+
+def _bars(panel: Axes, answers, length):
+    """One bar for each answer from its lower to its upper bound, and the length of a beam."""
+    factor, unit = _UNITS[answers[0].unit]
+    for row, one in enumerate(reversed(answers)):
+        low, high = factor * (one.high if np.isnan(one.low) else one.low), factor * one.high
+        panel.plot([low, high], [row, row], color=_COLOURS[one.question], linewidth=4, solid_capstyle="butt")
+        panel.plot([low, high], [row, row], "|", color=_COLOURS[one.question], markersize=8)
+        text = one.what.partition(":")[0]
+        panel.annotate(text, (0.02, row + 0.2), xycoords=("axes fraction", "data"), fontsize=6, path_effects=OUTLINED)
+    if np.isfinite(length):
+        panel.axvline(factor * length, color="0.4", linestyle=":", linewidth=0.8)
+    what = "length" if unit == "µm" else "force"
+    panel.set(xlabel=f"{what} [{unit}]", xlim=(0, 1.05 * panel.dataLim.x1), ylim=(-0.5, len(answers) - 0.3), yticks=[])
+
+
+STAGES = (
+    table_stage(
+        "life",
+        "what brings devices into contact, holds and frees them",
+        inputs=lambda plan, at: {"life": by_name("devices/life", plan.devices.sections)},
+        compute=lambda data: table(data["life"]),
+        jobs=lambda plan: [{}] if plan.devices.sections else [],
+        targets=("devices",),
+    ),
+    figure_stage(
+        "life",
+        "what limits the life of devices, on one axis",
+        "Devices",
+        inputs=lambda plan, at: {"life": by_name("devices/life", plan.devices.sections)},
+        compute=lambda data: figure(data["life"]),
+        jobs=lambda plan: [{}] if plan.devices.sections else [],
+        targets=("devices",),
+    ),
+)

@@ -1,0 +1,85 @@
+"""P(stuck) of a beam at the length that its device states, for tables and pages."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from stiction.report.format import MISSING, UM, airs, number, one_in
+from stiction.stages.devices.budget import budget_of
+
+CAPTION = (
+    "P(stuck): share of the devices that stick at the length that they have, with its 95 % band given the drawn "
+    "surfaces, and the standard error due to the number of these."
+)
+
+
+def numbers(dataset: xr.Dataset) -> dict[str, float]:
+    """Columns of a row of the table of safe lengths, from a dataset of one shape; none without a stated length."""
+    if "length_of_device" not in dataset:
+        return {}
+    stuck, low, high = map(float, dataset.stuck_at_length)
+    row = {"length_um": float(dataset.length_of_device) / UM, "share_stuck": stuck}
+    row |= {"share_stuck_low": low, "share_stuck_high": high}
+    return row | {"share_stuck_se_surfaces": float(dataset.stuck_surfaces_error)}
+
+
+def _percent(stuck, low, high, error):
+    """A share with its band and error in percent; – for devices without a length."""
+    if np.isnan(stuck):
+        return MISSING
+    surfaces = f", ± {100 * error:.2g}" if error > 0 else ""
+    return f"{100 * stuck:.3g} ({100 * low:.3g} to {100 * high:.3g}{surfaces})"
+
+
+COLUMNS = {
+    "length [µm]": (lambda length: number(length, "g"), "length_um"),
+    "P(stuck) [%]": (_percent, "share_stuck", "share_stuck_low", "share_stuck_high", "share_stuck_se_surfaces"),
+}
+
+
+def sentences(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> list[str]:
+    """P(stuck) at the length of a device in each of its airs, the worst first; none without a stated length.
+
+    Parameters
+    ----------
+    safe_lengths : dict
+        Humidity to the dataset of stage safe_lengths.
+    budgets : dict
+        Humidity and more to the dataset of stage budget, of what holds the shortest devices; may be empty.
+    """
+    stated = [(humidity, one.isel(shape=-1)) for humidity, one in safe_lengths.items() if "length_of_device" in one]
+    worst_first = sorted(stated, key=lambda case: -float(case[1].stuck_at_length.sel(end="high")))
+    return [_sentence(humidity, one, _total(humidity, budgets)) for humidity, one in worst_first]
+
+
+def _total(humidity, budgets):
+    """Relative uncertainty of the length at a humidity due to the measurements [-]; 0 if none is stated."""
+    totals = [budget_of(budget).total for key, budget in budgets.items() if key[0] == humidity]
+    return max(filter(np.isfinite, totals), default=0.0)
+
+
+def _sentence(humidity, held, total):
+    """P(stuck) at one humidity in words, with the safe length for the middle one of the shares."""
+    length, (stuck, low, high) = float(held.length_of_device), map(float, held.stuck_at_length)
+    error, reach = float(held.stuck_surfaces_error), float(held.reach)
+    surfaces = f", and ± {100 * error:.2g} % by the number of drawn surfaces" if error > 0 else ""
+    band = f"{100 * low:.3g} to {100 * high:.3g} %"
+    what = f"{100 * stuck:.3g} % ({band} with 95 % confidence{surfaces})"
+    if length > reach:
+        what = f"between {band} (devices were simulated up to {reach / UM:.0f} µm; longer ones may all stick)"
+    share = float(held.share[held.sizes["share"] // 2])
+    safe = f"{float(held.safe_length.sel(share=share)) / UM:.0f} µm are safe for {one_in(share)}"
+    return f"Of devices of {length / UM:g} µm, {what} stick {airs([humidity])}; {safe}.{_measured(held, length, total)}"
+
+
+def _measured(held: xr.Dataset, length: float, total: float) -> str:
+    """What the measurements leave uncertain of P(stuck): lengths that stick change by a relative amount ``total``."""
+    if total == 0:
+        return ""
+    at: Sequence[float] = length / np.array([1 + total, max(1 - total, 0.01)])
+    low, high = np.interp(at, held.length.values, held.stuck.values, left=0.0)
+    return (
+        f" With the measurements one standard uncertainty off, {100 * total:.2g} % of the length, it is "
+        f"{100 * low:.3g} to {100 * high:.3g} %."
+    )

@@ -1,0 +1,240 @@
+"""Sentences on the pages of devices: the length to build, the force that suffices, and who sticks in which air."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from stiction.devices.risk import Basis, samples_for
+from stiction.report.format import UM, UN, airs, one_in
+from stiction.stages.devices.budget import budget_of
+from stiction.stages.devices.opening import EITHER
+from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
+
+#: Keys of a surface, what they are called and their unit.
+_OF_SURFACES = {
+    "rms_nm": ("rms", " nm"),
+    "skewness": ("skewness", ""),
+    "kurtosis": ("kurtosis", ""),
+    "mean_summit_radius_um": ("mean radius of summits", " µm"),
+    "summit_density_per_um2": ("density of summits", " per µm²"),
+}
+#: The same of its material.
+_OF_MATERIALS = {"contact_angle_deg": ("contact angle", "°"), "coating_nm": ("coating", " nm")}
+
+
+def described(surface: Mapping, material: Mapping) -> str:
+    """A surface of the configuration by its numbers, or by its scans, and by its material.
+
+    Examples
+    --------
+    >>> described({"rms_nm": 3.4, "skewness": -0.76, "kurtosis": 3.9}, {})
+    'rms 3.4 nm, skewness -0.76, kurtosis 3.9'
+    >>> described({"rms_nm": 3.4, "material": "FDTS"}, {"contact_angle_deg": 110, "coating_nm": 1.2})
+    'rms 3.4 nm, FDTS, contact angle 110°, coating 1.2 nm'
+    """
+    stated = _stated(surface, _OF_SURFACES)
+    if "scans" in surface:
+        files = len(surface["scans"]["files"])
+        stated.append(f"described by {files} {'scan' if files == 1 else 'scans'}")
+    stated += [surface["material"]] if "material" in surface else []
+    return ", ".join(stated + _stated(material, _OF_MATERIALS))
+
+
+def _stated(section, words):
+    """Numbers that a section states, in words."""
+    return [f"{name} {section[key]:g}{unit}" for key, (name, unit) in words.items() if key in section]
+
+
+def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> str:
+    """The length to build for all humidities of a device, for the middle one of the shares.
+
+    It is the least safe length, less twice the largest uncertainty of what holds the shortest devices, if any is known.
+
+    Parameters
+    ----------
+    safe_lengths, budgets : dict
+        As in `of_beam`.
+    """
+    least = min(_safe(dataset).item() for dataset in safe_lengths.values())
+    totals = [budget_of(budget).total for budget in of_shortest(safe_lengths, budgets).values()]
+    total = max((total for total in totals if np.isfinite(total)), default=0.0)
+    length = (1 - 2 * total) * least / UM
+    if length <= 0:
+        return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
+    sentence = (
+        f"Build it no longer than {length:.0f} µm: then at most {one_in(_chosen(_any(safe_lengths)))} sticks "
+        f"{airs(safe_lengths)} (95 % confidence, given the drawn surfaces)."
+    )
+    if not np.isfinite(totals).all():
+        sentence += " What the measurements leave uncertain is not known, because too few of the simulated beams stick."
+    elif total == 0:
+        sentence += " No uncertainty of the measurements is subtracted, because none is stated."
+    if total == 0:
+        return sentence
+    return (
+        f"{sentence} The shortest safe length, {least / UM:.0f} µm, is reduced by {200 * total:.2g} %, twice the "
+        "uncertainty due to the measurements."
+    )
+
+
+def _any(safe_lengths):
+    """One of the datasets of a device, which have the same shares and shapes."""
+    return next(iter(safe_lengths.values()))
+
+
+def _safe(dataset):
+    """Safe length for the chosen share, however the device is held [m]."""
+    return dataset.safe_length.sel(share=_chosen(dataset)).min()
+
+
+def _chosen(dataset):
+    """The share of stuck devices for which sentences state lengths: the middle one [-]."""
+    return float(dataset.share[dataset.sizes["share"] // 2])
+
+
+def of_shortest(
+    safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
+) -> dict[tuple, xr.Dataset]:
+    """Budgets of what holds the shortest devices: of tips, if there are tips."""
+    of_tips = EITHER in _any(safe_lengths)["shape"].values
+    return {key: budget for key, budget in budgets.items() if ("tip" in key) == of_tips}
+
+
+def verdict(stopper: xr.Dataset) -> str:
+    """Whether the restoring force of a stopper suffices, for the smallest share that its patches can bound."""
+    force, where = float(stopper.restoring_force), airs(stopper.humidity.values)
+    stated, any_air = stopper.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(stopper)[1]
+    sampled = stated.where(stopper.basis == Basis.SAMPLED)
+    known = [float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))]
+    if not known:
+        return _verdict_of_few(stopper)
+    share = min(known)
+    at_these, anywhere = (float(needed.sel(share=share)) for needed in (stated, any_air))
+    head = f"The restoring force of {force / UN:g} µN"
+    tail = f"at most {one_in(share)} sticks (95 % confidence, given the drawn surfaces)."
+    if force < at_these:
+        return f"{head} does not suffice {where}: a larger one is needed if {tail}"
+    if force < anywhere:
+        return f"{head} suffices {where}, but not at all{_range(stopper)}: {tail}"
+    dry = ["in dry air"] if stopper.axis[0] == 0 else []
+    humid = [f"at all relative humidities{_range(stopper)}"] if ends(stopper) else []
+    return f"{head} suffices {' and '.join(dry + humid)}: {tail}"
+
+
+def _verdict_of_few(stopper):
+    """The verdict where there are too few patches to bound any of the shares from above."""
+    (humidity, _, low, _), share = max(shares_stuck(stopper), key=lambda row: row[2]), float(stopper.share.max())
+    if low <= share:
+        return "There are too few patches to say whether the restoring force suffices."
+    where, force = airs([humidity]), float(stopper.restoring_force)
+    return (
+        f"The restoring force of {force / UN:g} µN does not suffice {where}: at least {100 * low:.3g} % of the "
+        "stoppers stick (95 % confidence, given the drawn surfaces)."
+    )
+
+
+def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
+    """The safe lengths of a device at one humidity in words, for the middle one of the shares."""
+    share = _chosen(dataset)
+    lengths = dataset.safe_length.sel(share=share) / UM
+    shortest, longest = float(lengths.min()), float(lengths.max())
+    air, but = _at(humidity), f"at most {one_in(share)}"
+    sentence = (
+        f"{air}, devices of up to {shortest:.0f} µm come free after they were pressed down, except for {but} (95 % "
+        "confidence, given the drawn surfaces)."
+    )
+    if longest == shortest:
+        return sentence
+    return f"{sentence} If the tip cannot hold them, this is true of up to {longest:.0f} µm."
+
+
+def few_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:
+    """How many devices stick at most at each humidity at which hardly any does."""
+    return [few_sentence(humidity, one) for humidity, one in safe_lengths.items() if _few_stick(one)]
+
+
+def _few_stick(dataset):
+    """Whether the safe length of the chosen share is as long as the simulated devices, or that of flat surfaces."""
+    return dataset.basis.sel(share=_chosen(dataset)).values[-1] in (Basis.LONGEST, Basis.FLAT)
+
+
+def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
+    """How many devices stick at most at one humidity, in words, where so few do that no smaller share is known."""
+    held, number, share = dataset.isel(shape=-1), int(dataset.beams), _chosen(dataset)
+    shortest, most, reach = float(held.shortest), float(held.most_stuck), float(held.reach)
+    none = f"shorter than {shortest / UM:.0f} µm " if np.isfinite(shortest) else ""
+    sentence = (
+        f"{_at(humidity)}, hardly any device sticks: none of the {number} simulated ones {none}does, and at most "
+        f"{100 * most:.2g} % of those of {reach / UM:.0f} µm (95 % confidence, given the drawn surfaces)."
+    )
+    if str(held.basis.sel(share=share).values) == Basis.LONGEST:
+        return sentence
+    return (
+        f"{sentence} For {one_in(share)}, the length that sticks on flat surfaces counts; {samples_for(share)} "
+        "devices in design.beams show whether longer ones are safe."
+    )
+
+
+def stuck_sentence(humidity: float, stuck: float, low: float, high: float, force: float) -> str:
+    """P(stuck) of a stopper at one humidity in words; restoring force [N].
+
+    Examples
+    --------
+    >>> stuck_sentence(0.67, 0.012, 0.01, 0.015, 20e-6)
+    'At a relative humidity of 0.67, 1.2 % of the stoppers (1 to 1.5 %) hold more than the restoring force of 20 µN.'
+    """
+    share, band = f"{100 * stuck:.3g} %", f"{100 * low:.3g} to {100 * high:.3g} %"
+    return f"{_at(humidity)}, {share} of the stoppers ({band}) hold more than the restoring force of {force / UN:g} µN."
+
+
+#: What a safe force rests on.
+_ON = {
+    Basis.SAMPLED: "95 % confidence",
+    Basis.FITTED: "95 % confidence, by a line through the largest 5 % of the forces",
+    Basis.EXTRAPOLATED: "extrapolated, by a line through the largest 5 % of the forces beyond what was verified",
+}
+
+
+def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
+    """Restoring forces that would suffice at the humidities of a stopper, and in any air of its fine axis.
+
+    For the shares that its patches can bound.
+    """
+    stated = stopper.safe_force.sel(part="safe").max("humidity").assign_coords(basis=stopper.basis)
+    where = "At all these humidities" if stopper.sizes["humidity"] > 1 else _at(float(stopper.humidity[0]))
+    return [
+        f"{where}, a restoring force of {float(force) / UN:.3g} µN leaves at most "
+        f"{one_in(float(force.share))} stuck ({_ON[str(force.basis.values)]})"
+        + (f"; at any humidity{_range(stopper)}, {float(more) / UN:.3g} µN are needed." if ends(stopper) else ".")
+        for force, more in zip(stated, in_any_air(stopper)[1], strict=True)
+        if np.isfinite(force)
+    ]
+
+
+def worst_sentence(stopper: xr.Dataset) -> str:
+    """The worst humidity of a stopper in words."""
+    worst = float(stopper.worst_humidity)
+    share, least, most = (100 * share for share in in_any_air(stopper)[0])
+    stuck = f" In no air of this range do more than {share:.3g} % ({least:.3g} to {most:.3g} %) stick."
+    stuck = "" if f"{share:.3g}" == "100" else stuck
+    if is_at_an_end(stopper):
+        low, high = ends(stopper)
+        return f"Between relative humidities of {low:g} and {high:g}, the stopper holds most at {worst:g}.{stuck}"
+    if not worst:
+        return f"The stopper holds most in dry air; humid air{_range(stopper)} is less critical.{stuck}"
+    return (
+        f"The stopper holds most at a relative humidity of {worst:.2f}; drier and wetter air,{_range(stopper)}, "
+        f"are less critical.{stuck}"
+    )
+
+
+def _range(stopper):
+    """Range of humidities along which the worst was sought, in words."""
+    low, high = ends(stopper)
+    return f" from {low:g} to {high:g}"
+
+
+def _at(humidity):
+    """One humidity, for the beginning of a sentence."""
+    return airs([humidity]).capitalize()

@@ -1,0 +1,31 @@
+"""HTML from templates, which show every text as its characters alone.
+
+A stage that writes HTML has the `files` of its template among its inputs: a change of them makes its pages again.
+"""
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, meta
+
+from stiction.plan.stage import File
+
+TEMPLATES = Path(__file__).with_name("templates")
+_ENVIRONMENT = Environment(
+    loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+)
+
+
+def rendered(template: str, **values: Any) -> str:
+    """Fill a template with values."""
+    return _ENVIRONMENT.get_template(template).render(values)
+
+
+@cache
+def files(template: str) -> tuple[File, ...]:
+    """Files of a template: itself, and all that it includes."""
+    text = (TEMPLATES / template).read_text(encoding="utf-8")
+    included = meta.find_referenced_templates(_ENVIRONMENT.parse(text))
+    inside = [file for name in included for file in files(name)]
+    return tuple(dict.fromkeys([File(TEMPLATES / template), *inside]))

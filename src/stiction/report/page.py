@@ -1,0 +1,59 @@
+"""Page of a device as one file of HTML: the answer in words, tables, figures, warnings and terms."""
+
+import base64
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from stiction.report import html
+from stiction.report.style import png
+
+TEMPLATE = "page.html"
+#: Pixels of a page for one inch of a figure, and most rows of a table that is not folded.
+_PIXELS, _ROWS = 120, 30
+
+
+@dataclass(frozen=True)
+class Section:
+    """Part of a page: paragraphs, a table and a figure, each of which may be missing."""
+
+    title: str
+    paragraphs: Sequence[str] = ()
+    cells: pd.DataFrame | None = None
+    figure: Figure | None = None
+
+    @property
+    def is_long(self) -> bool:
+        """Whether the table is folded."""
+        return len(self.cells) > _ROWS
+
+    @property
+    def picture(self) -> str:
+        """The figure as PNG in Base64."""
+        return base64.b64encode(png(self.figure)).decode()
+
+    @property
+    def width(self) -> int:
+        """Width of the figure on the page [pixels]."""
+        return round(_PIXELS * self.figure.get_figwidth())
+
+
+@dataclass(frozen=True)
+class Page:
+    """Everything that the page of a device shows."""
+
+    title: str
+    facts: Mapping[str, str]  #: dimensions and conditions, by name
+    answer: Sequence[str]  #: sentences at the top, the first of which is the verdict
+    sections: Sequence[Section] = ()
+    warnings: Sequence[str] = ()  #: where the model ends for this device
+    words: Mapping[str, str] = field(default_factory=dict)  #: terms and what they mean
+    made: Sequence[str] = ()  #: when and by which code
+    not_modelled: str = ""  #: what is not in the model
+
+    @property
+    def html(self) -> str:
+        """The page as one file: figures are part of it."""
+        return html.rendered(TEMPLATE, page=self)

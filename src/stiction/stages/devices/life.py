@@ -1,0 +1,523 @@
+"""Stage life: what brings a device into contact, whether it then sticks, what holds it, and what frees it.
+
+Every answer is a number between two bounds, which are equal where the model leaves nothing open. Voltage and shock of a
+beam are those of its length: the stated one, or its least safe length.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from stiction.beam.cantilever import Beam
+from stiction.beam.energy import apparent_adhesion_energy
+from stiction.config.cases import case_id, in_air
+from stiction.config.kinds import restoring_force
+from stiction.config.materials import material_of
+from stiction.config.units import from_si, in_si
+from stiction.constants import DENSITY, LIQUIDS
+from stiction.devices.bridges import half_of_bridge
+from stiction.devices.risk import Basis, samples_for
+from stiction.devices.stoppers import safe_force
+from stiction.life import drying, freeing, holding, touch
+from stiction.plan.stage import Stage, select
+from stiction.stages.devices.opening import DesignedBeam, section_of_beam
+from stiction.stages.devices.safe_lengths import chosen_share
+
+#: Questions of a designer, in their order.
+QUESTIONS = TOUCH, STICK, HOLD, FREE = "touch", "stick", "hold", "free"
+#: Names of answers that sentences are about.
+VOLTAGE, SHOCK, COLLAPSE, RELEASED, AFTER = "voltage", "shock", "collapse", "released", "after"
+AT_VOLTAGE, FIELD = "at_voltage", "field"
+
+
+class Answer(NamedTuple):
+    """One answer to a question; numbers in SI."""
+
+    name: str
+    question: str
+    what: str
+    low: float  #: at least; NaN if no such bound is known
+    high: float  #: at most; NaN if no such bound is known
+    error: float  #: standard uncertainty of the lower bound, or of the upper one alone; NaN if none is known
+    unit: str
+    form: str
+    source: str
+
+
+@dataclass(frozen=True)
+class Liquid:
+    """A liquid in which devices are released."""
+
+    surface_tension: float  #: γ [N m⁻¹]
+    contact_angle: float = 0.0  #: θ on the device [rad]. ASSUME: 0, the safe side, where it is not stated
+
+    @property
+    def adhesion(self) -> float:
+        """Adhesion tension γ cos θ [N m⁻¹]."""
+        return float(self.surface_tension * np.cos(self.contact_angle))
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Standard uncertainties of the inputs of a beam."""
+
+    thickness: float = 0.0  #: [m]
+    gap: float = 0.0  #: [m]
+    young_modulus: float = 0.0  #: [Pa]
+    residual_stress: float = 0.0  #: [Pa]
+
+
+@dataclass(frozen=True)
+class Dielectric:
+    """What keeps a device and its substrate apart at a voltage."""
+
+    thickness: float  #: [m]
+    permittivity: float  #: relative [-]
+
+    @property
+    def distance(self) -> float:
+        """Gap of air of the same capacity [m]."""
+        return self.thickness / self.permittivity
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stated:
+    """What any device may state beside its dimensions."""
+
+    touchdowns: int = 1
+    voltage: float = 0.0  #: [V]
+    offset: float = 0.0  #: by charge and contact potential [V]
+    dielectric: Dielectric | None = None
+
+    @property
+    def potential(self) -> float:
+        """Largest difference of potential [V]; ASSUME: voltages of both signs occur."""
+        return abs(self.voltage) + abs(self.offset)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfBeam(Stated):
+    """A beam, and what it meets beside its ground."""
+
+    device: DesignedBeam
+    density: float  #: ρ [kg m⁻³]
+    liquids: dict[str, Liquid]
+    uncertainty: Errors
+    length: float = 0.0  #: as stated [m]; otherwise the least safe length counts
+
+    @property
+    def clamps(self) -> int:
+        """Number of its clamps."""
+        return self.device.opening.arms
+
+    def beam(self, length: float, **changed: float) -> Beam:
+        """Beam of a length [m] under its tension, with some inputs changed."""
+        device = replace(self.device, **changed)
+        sizes = length, device.width, device.thickness, device.young_modulus, device.gap
+        return half_of_bridge(Beam(*sizes, elements=1), device.residual_stress)
+
+    def number(self, of: Callable[[Beam], float], length: float) -> tuple[float, float]:
+        """A number that depends on the beam, and its standard uncertainty to first order; NaN if no input has any."""
+        squares, value = 0.0, of(self.beam(length))
+        for field in fields(self.uncertainty):
+            mean, error = getattr(self.device, field.name), getattr(self.uncertainty, field.name)
+            if error and np.isfinite(value):
+                ends = max(mean - error, 0.0), mean + error
+                low, high = (of(self.beam(length, **{field.name: end})) for end in ends)
+                squares += ((high - low) / 2) ** 2
+        return value, squares**0.5 or np.nan
+
+
+@dataclass(frozen=True)
+class Electrode:
+    """An electrode that pulls a stopper down."""
+
+    area: float  #: [m²]
+    gap: float  #: from the moving part at rest [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfStopper(Stated):
+    """A stopper, and what it meets beside its ground; zero where nothing is stated."""
+
+    restoring_force: float  #: [N]
+    contact: tuple[float, float]  #: sides of its area [m]
+    stiffness: float = 0.0  #: of its spring [N m⁻¹]
+    gap: float = 0.0  #: way to the contact [m]
+    mass: float = 0.0  #: that moves [kg]
+    electrode: Electrode | None = None
+
+
+# Beams
+
+
+def of_beam(lengths: Mapping[float, xr.Dataset], after: Mapping[float, xr.Dataset], of: OfBeam) -> list[Answer]:
+    """Answers about a beam from its safe lengths by humidity, for one touchdown and, if there are more, after all."""
+    share = chosen_share(next(iter(lengths.values())))
+    safe = {humidity: _safe(dataset, share) for humidity, dataset in lengths.items()}
+    length = length_of(lengths, of)
+    answers = [
+        Answer(
+            f"safe_length_{humidity:g}",
+            STICK,
+            f"safe length {in_air(humidity)}: at most {_one_in(share)} sticks after one touchdown",
+            *(value, value, error),
+            *("m", f"bound of random beams, 95 %, {basis}", "stage safe_lengths"),
+        )
+        for humidity, (value, error, basis) in safe.items()
+    ]
+    answers += _touched(of, length) + _held(of, length) if 0 < length < np.inf else []
+    answers += [answer for name, liquid in of.liquids.items() for answer in _dried(of, name, liquid.adhesion)]
+    answers += _after_touchdowns(of, share, min(safe.values()), after) if after else []
+    return _in_order(answers + _at_voltage(of, min(safe.values())))
+
+
+def length_of(lengths: Mapping[float, xr.Dataset], of: OfBeam) -> float:
+    """Length at which a beam is asked for voltage and shock [m]: the stated one, or its least safe length."""
+    return of.length or min(_safe(dataset, chosen_share(dataset))[0] for dataset in lengths.values())
+
+
+def _safe(dataset, share):
+    """Least safe length of all end states [m], the standard error of its estimate, and its basis."""
+    one = dataset.sel(share=share)
+    one = one.isel(shape=int(one.safe_length.argmin("shape")))
+    errors = [float(one[name]) for name in ("beams_error", "surfaces_error")]
+    error = float(np.sqrt(np.nansum(np.square(errors)))) or np.nan
+    return float(one.safe_length), error, str(one.basis.values)
+
+
+def _touched(of, length):
+    """Voltage and shock that bring a beam of a length [m] into contact."""
+    clamps, end = of.clamps, "tip" if of.clamps == 1 else "middle"
+    forms = {
+        1: ("V² = 0.2801 E t³ h³ / (ε₀ L⁴)", "a = 2 E t² h / (3 ρ L⁴)"),
+        2: (
+            "V² = λ E t³ h³ / (6 ε₀ L⁴), λ = 70.095 without tension",
+            "a = 32 E t² h / (ρ L⁴) without tension",
+        ),
+    }[clamps]
+    rigid = "" if clamps == 1 else "; at most: rigid clamps"
+    voltage, error = of.number(lambda beam: touch.pull_in_voltage(beam, clamps), length)
+    shock, shock_error = of.number(lambda beam: touch.touching_acceleration(beam, clamps, of.density), length)
+    factor, beam = touch.half_sine_factor(of.beam(length), clamps), of.beam(length)
+    return [
+        Answer(
+            VOLTAGE,
+            TOUCH,
+            f"voltage that pulls the {end} in",
+            *(voltage, touch.pull_in_voltage(beam, clamps, rigid=True), error),
+            *("V", forms[0] + rigid, "stiction.life.touch"),
+        ),
+        Answer(
+            SHOCK,
+            TOUCH,
+            f"peak of a shock that brings the {end} down",
+            *(shock / factor, touch.touching_acceleration(beam, clamps, of.density, rigid=True), shock_error / factor),
+            "m s-2",
+            f"{forms[1]}, ρ = {of.density:g} kg/m³; at least: / {factor:.2f}, any half-sine{rigid}",
+            "stiction.life.touch",
+        ),
+    ]
+
+
+def _dried(of, liquid, adhesion):
+    """Lengths that stand while a liquid dries, and that come free afterwards."""
+    clamps = of.clamps
+    each, error = of.number(lambda beam: drying.longest_standing_each(beam, clamps, adhesion), 1.0)
+    free, free_error = of.number(lambda beam: drying.longest_free(beam, clamps, adhesion), 1.0)
+    connected = drying.longest_standing(of.beam(1.0), clamps, adhesion)
+    standing, released = {
+        1: ("L⁴ = N E t³ h² / (γ cos θ), N = 0.1160 or 0.2295 (connected)", "L⁴ = 3 E t³ h² / (16 γ cos θ)"),
+        2: (
+            "L⁴ = N E t³ h² / (γ cos θ), N = 4.873 or 8.466 (connected) without tension",
+            "two cracks meet at the energy 2 γ cos θ; shorter bridges may be held by their middle",
+        ),
+    }[clamps]
+    source = f"stiction.life.drying, γ cos θ = {from_si(adhesion, 'mN_per_m'):.3g} mN/m"
+    return [
+        Answer(
+            f"{COLLAPSE}_{liquid}",
+            TOUCH,
+            f"longest beam that does not collapse while {liquid} dries",
+            *(each, connected, error),
+            *("m", standing, source),
+        ),
+        Answer(
+            f"{RELEASED}_{liquid}",
+            STICK,
+            f"longest beam that comes free after {liquid} dried",
+            *(free if clamps == 1 else np.nan, free, free_error),
+            *("m", released, source),
+        ),
+    ]
+
+
+def _held(of, length):
+    """Adhesion that holds a beam of a length [m], and the force with which it pulls."""
+    clamps = of.clamps
+    along, error = of.number(lambda beam: float(apparent_adhesion_energy(length / clamps, beam)), length)
+    force, force_error = of.number(lambda beam: freeing.force_at_contact(beam, clamps), length)
+    forms = {
+        1: ("Γ = 3 E t³ h² / (2 L⁴), Eq. (13)", "F = 3 E I h / L³"),
+        2: ("energy at which two cracks meet", "F = 192 E I h / L³ without tension"),
+    }[clamps]
+    answers = [
+        Answer(
+            "energy",
+            HOLD,
+            "adhesion energy that holds it along the beam" if clamps == 1 else "adhesion energy that holds both cracks",
+            *(along, along, error, "J m-2", forms[0], "stiction.beam.energy"),
+        ),
+        Answer(
+            "force",
+            FREE,
+            f"force with which it pulls at its {'tip' if clamps == 1 else 'middle'}",
+            *(force, force, force_error, "N", forms[1], "stiction.life.freeing"),
+        ),
+    ]
+    if clamps == 1:
+        tip, form = along / 4, "Γ = 3 E t³ h² / (8 L⁴)"
+        what = "adhesion energy that holds its tip, on uniform surfaces"
+        answers.append(Answer("tip", HOLD, what, tip, tip, error / 4, "J m-2", form, "stiction.devices.arcs"))
+    return answers
+
+
+def _at_voltage(of, safe):
+    """What a voltage adds, and the length that is then safe, from the safe length without it and its error [m]."""
+    if not of.dielectric:
+        return []
+    added = holding.energy_of_voltage(of.potential, of.dielectric.distance, of.device.gap)
+    form = f"Γ_V = ε₀ V² / 2 (1 / D - 1 / (D + h)), D = {from_si(of.dielectric.distance, 'nm'):.3g} nm"
+    answers = [
+        Answer(
+            "voltage_energy",
+            HOLD,
+            f"adhesion energy that {of.potential:g} V add",
+            *(np.nan, added, np.nan, "J m-2", form, "stiction.life.holding"),
+        ),
+        _field(of),
+    ]
+    if not (of.device.opening.has_tip and 0 < safe[0] < np.inf):
+        return answers
+    length, beam = safe[0], of.beam(1.0)
+    shorter = holding.length_at_voltage(length, beam, added, holding.ARC)
+    what = f"safe length while {of.potential:g} V are on"
+    error, form = safe[1] * (shorter / length) ** 5, "1 / L_V⁴ = 1 / L⁴ + 8 Γ_V / (3 E t³ h²) (at least)"
+    return [*answers, Answer(AT_VOLTAGE, HOLD, what, shorter, length, error, "m", form, "stiction.life.holding")]
+
+
+def _field(of):
+    """Field in the dielectric of a device whose surfaces touch."""
+    field = of.potential / of.dielectric.thickness
+    what, form = "field in the dielectric in contact", "V / t; thin oxides break down near 1 V/nm"
+    return Answer(FIELD, HOLD, what, np.nan, field, np.nan, "V m-1", form, "stiction.life.holding")
+
+
+def _after_touchdowns(of, share, once, after):
+    """Safe length and P(stuck) after all touchdowns, from the safe length of one, and its standard error [m]."""
+    independent = min(_safe(dataset, chosen_share(dataset)) for dataset in after.values())
+    stuck = freeing.stuck_after(share, of.touchdowns)
+    numbers = f"{of.touchdowns} touchdowns"
+    return [
+        Answer(
+            AFTER,
+            FREE,
+            f"safe length for {numbers}: at most {_one_in(share)} sticks after all of them",
+            *(independent[0], max(once[0], independent[0]), independent[1], "m"),
+            "P of one = 1 - (1 - p)^(1/n) (at least); the same summits each time (at most)",
+            "stage touchdowns",
+        ),
+        Answer(
+            "stuck_after",
+            FREE,
+            f"probability of sticking after {numbers} at the safe length of one",
+            *(share, stuck, np.nan, "1", "P (at least) and 1 - (1 - P)^n (at most)", "stiction.life.freeing"),
+        ),
+    ]
+
+
+# Stoppers
+
+
+def of_stopper(stopper: xr.Dataset, of: OfStopper) -> list[Answer]:
+    """Answers about a stopper from the dataset of its pull-off forces."""
+    worst = int(stopper.mean_along.argmax("axis"))
+    mean, error = (float(stopper[name][worst]) for name in ("mean_along", "mean_along_error"))
+    where = in_air(round(float(stopper.worst_humidity), 2))
+    answers = [
+        Answer(
+            f"stuck_{float(humidity):g}",
+            STICK,
+            f"probability of sticking {in_air(float(humidity))}",
+            *map(float, stopper.stuck.sel(humidity=humidity, bound=["low", "high"])),
+            *(np.nan, "1", "fraction of random patches, 95 %", "stage stoppers"),
+        )
+        for humidity in stopper.humidity.values
+    ]
+    what = f"mean pull-off force {where}, the worst air"
+    answers.append(Answer("force", HOLD, what, mean, mean, error, "N", "largest attraction x area", "stage stoppers"))
+    answers += _moved(of) + _freed(stopper, of) + _often(stopper, of)
+    if of.dielectric:
+        area = of.contact[0] * of.contact[1]
+        force = holding.pressure_of_voltage(of.potential, of.dielectric.distance) * area
+        what, form = f"force that {of.potential:g} V add", "F = ε₀ V² A / (2 D²), flats in contact"
+        answers.append(Answer(AT_VOLTAGE, HOLD, what, np.nan, force, np.nan, "N", form, "stiction.life.holding"))
+        answers.append(_field(of))
+    return _in_order(answers)
+
+
+def _moved(of):
+    """Shock and voltage that bring a stopper into contact, as far as mass and electrode are stated."""
+    answers = []
+    if of.mass:
+        slow = of.restoring_force / of.mass
+        form = f"a = F / m; at least: / {touch.HALF_SINE:.3g}, any half-sine"
+        numbers = slow / touch.HALF_SINE, slow, np.nan
+        what = "peak of a shock that brings it into contact"
+        answers.append(Answer(SHOCK, TOUCH, what, *numbers, "m s-2", form, "stiction.life.touch"))
+    if of.electrode:
+        voltage = touch.stopper_voltage(of.stiffness, of.gap, of.electrode.area, of.electrode.gap)
+        form = "V² = 8 k g³ / (27 ε₀ A), or that of its way if it touches before g / 3"
+        what = "voltage on its electrode that brings it into contact"
+        answers.append(Answer(VOLTAGE, TOUCH, what, voltage, voltage, np.nan, "V", form, "stiction.life.touch"))
+    return answers
+
+
+def _freed(stopper, of):
+    """Restoring force, stiffness and shock that free all but a small fraction of the stoppers."""
+    bounded = [float(share) for share in stopper.share[stopper.basis == Basis.SAMPLED]]
+    if not bounded:
+        return []
+    at = stopper.safe_force.sel(share=min(bounded))
+    at = at.isel(humidity=int(at.sel(part="safe").argmax("humidity")))
+    force, error = float(at.sel(part="safe")), float(at.sel(part="error"))
+    but = f"all but {_one_in(min(bounded))}, {in_air(float(at.humidity))}"
+    form, source = "quantile of the pull-off force, 95 %", "stage stoppers"
+    answers = [
+        Answer("restoring_force", FREE, f"restoring force that frees {but}", force, force, error, "N", form, source)
+    ]
+    if of.gap:
+        stiffness, spread = force / of.gap, error / of.gap
+        what, form = f"stiffness of the spring that frees {but}", "k = F / gap"
+        answers.append(Answer("stiffness", FREE, what, stiffness, stiffness, spread, "N m-1", form, source))
+    if of.mass:
+        shock = freeing.freeing_acceleration(force, of.restoring_force, of.mass)
+        # Without water nothing keeps its volume: the shock of slow separation is all that is needed.
+        most = np.nan if float(at.humidity) else shock
+        form = "a = (F_hold - F) / m (at least); water that keeps its volume holds more"
+        what = f"shock that frees {but}"
+        answers.append(
+            Answer("freeing", FREE, what, shock, most, error / of.mass, "m s-2", form, "stiction.life.freeing")
+        )
+    return answers
+
+
+def _often(stopper, of):
+    """P(stuck) after all touchdowns in the worst stated air, and the force that leaves a small fraction stuck."""
+    if of.touchdowns == 1:
+        return []
+    once = float(stopper.stuck.sel(bound="estimate").max())
+    numbers, form = f"{of.touchdowns} touchdowns", "P (at least) and 1 - (1 - P)^n (at most)"
+    what, after = f"probability of sticking after {numbers}", freeing.stuck_after(once, of.touchdowns)
+    answers = [Answer("stuck_after", FREE, what, once, after, np.nan, "1", form, "stiction.life.freeing")]
+    share = float(stopper.share.max())
+    rare = freeing.probability_for(share, of.touchdowns)
+    if stopper.sizes["sample"] >= samples_for(rare):
+        few, many = (max(safe_force(row, p)[::2] for row in stopper.pull_off.values) for p in (share, rare))
+        what = f"restoring force that frees all but {_one_in(share)} after {numbers}"
+        form = "the same summits each time (at least); P of one = 1 - (1 - p)^(1/n) (at most)"
+        answers.append(Answer(AFTER, FREE, what, few[0], many[0], few[1], "N", form, "stage stoppers"))
+    return answers
+
+
+def _one_in(share):
+    """A fraction in words."""
+    return f"1 in {1 / share:.6g}"
+
+
+def _in_order(answers):
+    """Answers in the order of the questions."""
+    return sorted(answers, key=lambda answer: QUESTIONS.index(answer.question))
+
+
+# Dataset
+
+
+def compute(
+    settings: dict[str, Any],
+    lengths: Mapping[float, xr.Dataset] | None = None,
+    after: Mapping[float, xr.Dataset] | None = None,
+    stopper: xr.Dataset | None = None,
+) -> xr.Dataset:
+    """Answers about a device, from its safe lengths by humidity or from the forces of a stopper."""
+    if stopper is not None:
+        of = in_si(OfStopper, settings["stopper"])
+        return layout(of_stopper(stopper, of), of)
+    of = in_si(OfBeam, settings["beam"])
+    return layout(of_beam(lengths, after, of), of, length_of(lengths, of))
+
+
+def layout(answers: Sequence[Answer], of: Stated, length: float = np.nan) -> xr.Dataset:
+    """Dataset of the answers about a device; ``length`` is that at which a beam is asked for voltage and shock [m]."""
+    columns = dict(zip(Answer._fields, zip(*answers, strict=True), strict=True))
+    numbers = {"low": "at least", "high": "at most", "error": "standard uncertainty"}
+    return xr.Dataset(
+        {name: ("answer", list(columns[name])) for name in ("question", "what", "unit", "form", "source")}
+        | {name: ("answer", list(columns[name]), {"long_name": text}) for name, text in numbers.items()}
+        | {"length": ((), length, {"units": "m"}), "touchdowns": ((), of.touchdowns, {"units": "1"})}
+        | {"potential": ((), of.potential, {"units": "V"})},
+        coords={"answer": list(columns["name"])},
+    )
+
+
+def answers_of(dataset: xr.Dataset) -> list[Answer]:
+    """Answers about a device from its dataset."""
+    texts = ("name", "question", "what", "unit", "form", "source")
+    rows = zip(*(dataset["answer" if name == "name" else name].values for name in Answer._fields), strict=True)
+    return [
+        Answer(
+            *(str(value) if name in texts else float(value) for name, value in zip(Answer._fields, row, strict=True))
+        )
+        for row in rows
+    ]
+
+
+def _inputs(plan, at):
+    """Safe lengths at all humidities of a beam, for all touchdowns as well, or the forces of a stopper."""
+    section = plan.config["devices"][at.device]
+    if not plan.devices.kind(at.device).is_beam:
+        return {"stopper": f"devices/stoppers/{at.device}"}
+    cases = {humidity: case_id(at.device, humidity) for humidity in section["humidities"]}
+    more = cases if "touchdowns" in section else {}
+    return {
+        "lengths": {humidity: f"devices/safe_lengths/{case}" for humidity, case in cases.items()},
+        "after": {humidity: f"devices/touchdowns/{case}" for humidity, case in more.items()},
+    }
+
+
+def _settings(plan, at):
+    """A device, the liquids and its density, or what a stopper states."""
+    section = plan.config["devices"][at.device]
+    if not plan.devices.kind(at.device).is_beam:
+        return {"stopper": select(OfStopper, section, restoring_force_uN=restoring_force(section))}
+    material = material_of(plan.config, plan.config["pairs"][section["pair"]]["beam"])
+    density = material.get("density_kg_per_m3", DENSITY)
+    known = {name: {"surface_tension_mN_per_m": from_si(tension, "mN_per_m")} for name, tension in LIQUIDS.items()}
+    own = {"uncertainty": {}} | section | {"device": section_of_beam(plan, at.device)}
+    own |= {"density_kg_per_m3": density, "liquids": known | plan.config.get("liquids", {})}
+    return {"beam": select(OfBeam, own)}
+
+
+STAGES = (
+    Stage.writing(
+        "life",
+        "devices/life/{device}",
+        inputs=_inputs,
+        settings=_settings,
+        compute=compute,
+        message="Life of device {device}.",
+    ),
+)

@@ -1,0 +1,73 @@
+"""Voltage as adhesion: cracks with the field along the open beam, solved as a boundary value problem, and limits."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import quad, solve_bvp
+
+from stiction.beam.cantilever import Beam
+from stiction.beam.energy import arrest_length
+from stiction.constants import VACUUM_PERMITTIVITY
+from stiction.life.holding import ARC, S_SHAPE, energy_of_voltage, length_at_voltage, pressure_of_voltage
+
+PAPER = Beam(1500e-6, 30e-6, 2.6e-6, 164e9, 20e-6, 1)
+CONTACT = 1.72e-3  # adhesion at contact that arrests the crack near 1001 µm [J m⁻²]
+
+
+def crack_in_field(voltage, distance):
+    """Crack length of a beam that adheres at contact, with the attraction of a voltage along its open part [m]."""
+    gap, scale = PAPER.gap, arrest_length(CONTACT, PAPER)
+    per_width = PAPER.bending_stiffness / PAPER.width
+
+    def bent(_, y, p):
+        length = p[0] * scale
+        load = -VACUUM_PERMITTIVITY * voltage**2 / (2 * (np.maximum(y[0], 0) * gap + distance) ** 2)
+        return np.vstack([y[1:], load * length**4 / (per_width * gap)])
+
+    def ends(clamp, front, p):
+        length = p[0] * scale
+        moment = front[2] * gap / length**2
+        return np.array([clamp[0] - 1, clamp[1], front[0], front[1], per_width * moment**2 / (2 * CONTACT) - 1])
+
+    x = 1 - np.linspace(1, 0, 800) ** 2
+    start = np.vstack([1 - 3 * x**2 + 2 * x**3, 6 * (x**2 - x), 12 * x - 6, 12 + 0 * x])
+    found = solve_bvp(bent, ends, x, start, p=[1.0], tol=1e-6, max_nodes=100_000)
+    assert found.success, found.message
+    return found.p[0] * scale
+
+
+@pytest.mark.parametrize(("voltage", "distance"), [(0.0, 1e-7), (1.0, 1e-7), (3.0, 1e-7), (10.0, 1e-7), (1.0, 25.6e-9)])
+def test_a_crack_in_the_field_stops_where_the_sum_of_both_energies_says(voltage, distance):
+    added = energy_of_voltage(voltage, distance, PAPER.gap)
+    expected = length_at_voltage(arrest_length(CONTACT, PAPER), PAPER, added, S_SHAPE)
+    zone = (distance / (3 * PAPER.gap)) ** 0.5  # of the field, over the length
+    assert -1e-3 < crack_in_field(voltage, distance) / expected - 1 < zone / 2
+
+
+def test_the_law_of_cracks_refuses_half_and_twice_the_energy():
+    found, bare = crack_in_field(10.0, 1e-7), arrest_length(CONTACT, PAPER)
+    zone = (1e-7 / (3 * PAPER.gap)) ** 0.5
+    for factor in (0.5, 2.0):
+        wrong = length_at_voltage(bare, PAPER, factor * energy_of_voltage(10.0, 1e-7, PAPER.gap), S_SHAPE)
+        assert abs(found / wrong - 1) > zone / 2
+
+
+def test_the_energy_is_the_integral_of_the_pressure_over_the_gap():
+    voltage, distance, gap = 5.0, 25e-9, 2e-6
+    work = quad(lambda g: pressure_of_voltage(voltage, distance + g), 0, gap, points=[1e-8, 1e-7])[0]
+    assert_allclose(energy_of_voltage(voltage, distance, gap), work, rtol=1e-9)
+    assert_allclose(
+        energy_of_voltage(voltage, distance, 1.0), VACUUM_PERMITTIVITY * voltage**2 / 2 / distance, rtol=1e-6
+    )
+
+
+def test_no_voltage_changes_nothing_and_more_voltage_shortens_more():
+    assert energy_of_voltage(0.0, 1e-8, 1e-6) == 0
+    assert_allclose(length_at_voltage(3e-4, PAPER, 0.0, ARC), 3e-4, rtol=1e-14)
+    added = [energy_of_voltage(voltage, 1e-8, 1e-6) for voltage in range(1, 30)]
+    assert np.all(np.diff([length_at_voltage(3e-4, PAPER, energy, ARC) for energy in added]) < 0)
+
+
+def test_where_the_voltage_alone_holds_the_length_is_that_of_its_energy():
+    added = 0.05
+    assert_allclose(length_at_voltage(1.0, PAPER, added, S_SHAPE), arrest_length(added, PAPER), rtol=1e-9)

@@ -1,0 +1,44 @@
+"""Templates: what they are filled with is text, and all files of which they consist are known."""
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from hostile import HOSTILE, Reading
+from jinja2 import UndefinedError
+
+from stiction.report import html
+from stiction.report.page import Page
+from stiction.report.table import Table
+
+#: Templates, each with what fills it.
+FILLED = {
+    "table.html": lambda: Table(pd.DataFrame(), HOSTILE, pd.DataFrame({HOSTILE: [HOSTILE]})).html,
+    "page.html": lambda: Page(HOSTILE, {HOSTILE: HOSTILE}, [HOSTILE]).html,
+    "front.html": lambda: html.rendered(
+        "front.html", **dict.fromkeys(["subjects", "checks", "changes"], HOSTILE),
+        **dict.fromkeys(["answers", "opened", "warnings", "provenance"], [HOSTILE]),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("template", FILLED)
+def test_a_template_reads_no_other_files_than_those_it_is_said_to_consist_of(template, monkeypatch):
+    read, loader = set(), html._ENVIRONMENT.loader
+    load = loader.get_source
+    monkeypatch.setattr(loader, "get_source", lambda environment, file: read.add(file) or load(environment, file))
+    html._ENVIRONMENT.cache.clear()
+    FILLED[template]()
+    assert {Path(file) for file in html.files(template)} == {html.TEMPLATES / file for file in read}
+
+
+@pytest.mark.parametrize("template", FILLED)
+def test_whatever_fills_a_template_is_text(template):
+    shown = Reading(FILLED[template]())
+    assert {*shown.code} <= {"meta"}
+    assert sum(text == HOSTILE for texts in shown.text.values() for text in texts) >= 3
+
+
+def test_a_value_that_a_template_lacks_is_an_error():
+    with pytest.raises(UndefinedError, match="'caption' is undefined"):
+        html.rendered("table.html", cells=pd.DataFrame({"pair": ["b"]}))

@@ -1,0 +1,305 @@
+"""The life of devices: each answer is that of its form, in the right units, and the parts agree with each other."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from ground import C1, R1, safe_with_tips, safe_without_tips
+from legends import covering
+from numpy.testing import assert_allclose
+from plans import job_settings
+from test_tables_budget import stopper_dataset
+
+from stiction.config.files import load
+from stiction.config.units import in_si
+from stiction.devices.risk import samples_for
+from stiction.devices.stoppers import safe_force
+from stiction.life import drying, freeing, holding, touch
+from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
+from stiction.report.devices import life as report
+from stiction.report.devices.pages import Page, Section, with_life
+from stiction.run import storage
+from stiction.stages.devices import life
+from stiction.stages.devices.life import Dielectric, Electrode, Errors, Liquid, OfBeam, OfStopper
+
+LIQUIDS = {"water": Liquid(0.072), "mine": Liquid(0.03, np.pi / 3)}
+OF = OfBeam(device=C1, density=2330.0, liquids=LIQUIDS, uncertainty=Errors())
+AREA = (3e-6, 3e-6)
+STOPPER = OfStopper(
+    restoring_force=18.99e-6,
+    contact=AREA,
+    stiffness=10.0,
+    gap=1.899e-6,
+    mass=50e-12,
+    electrode=Electrode(1e-8, 3e-6),
+    touchdowns=4,
+)
+SECTION = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
+MINE = {"mine": {"surface_tension_mN_per_m": 30, "contact_angle_deg": 60}}
+SPRING = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "stiffness_N_per_m": 10, "gap_um": 1.899}
+SPRING |= {"humidities": [0.44], "mass_ng": 50, "electrode": {"area_um2": 10000, "gap_um": 3}, "touchdowns": 4}
+
+
+@pytest.fixture(scope="module")
+def lengths():
+    tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(400))
+    return {0.44: safe_with_tips(tips), 0.67: safe_with_tips(1.5 * tips)}
+
+
+def answers(of, lengths=None, after=None):
+    """Answers about a beam, or a stopper, by name."""
+    found = life.of_stopper(stopper_dataset(), of) if lengths is None else life.of_beam(lengths, after or {}, of)
+    return {one.name: one for one in found}
+
+
+def test_a_beam_is_asked_at_its_least_safe_length_unless_it_states_one(lengths):
+    least = min(float(one.safe_length.isel(share=1).min()) for one in lengths.values())
+    assert_allclose(life.length_of(lengths, OF), least, rtol=1e-12)
+    found = answers(OF, lengths)
+    beam = replace(OF.beam(1.0), length=least)
+    assert_allclose(found["voltage"].low, touch.pull_in_voltage(beam, 1), rtol=1e-12)
+    assert found["voltage"].low == found["voltage"].high
+    assert_allclose(found["shock"].high, touch.touching_acceleration(beam, 1, 2330.0), rtol=1e-12)
+    assert_allclose(found["shock"].high / found["shock"].low, touch.half_sine_factor(beam, 1), rtol=1e-12)
+    stated = answers(replace(OF, length=2 * least), lengths)
+    assert_allclose(found["voltage"].low / stated["voltage"].low, 4, rtol=1e-9)
+    assert_allclose(found["shock"].low / stated["shock"].low, 16, rtol=1e-9)
+    assert found["collapse_water"] == stated["collapse_water"]
+
+
+def test_liquids_act_through_their_tension_and_angle(lengths):
+    found, beam = answers(OF, lengths), OF.beam(1.0)
+    for name, adhesion in (("water", 0.072), ("mine", 0.015)):
+        bounds = drying.longest_standing_each(beam, 1, adhesion), drying.longest_standing(beam, 1, adhesion)
+        assert_allclose((found[f"collapse_{name}"].low, found[f"collapse_{name}"].high), bounds, rtol=1e-9)
+        assert_allclose(found[f"released_{name}"].high, drying.longest_free(beam, 1, adhesion), rtol=1e-9)
+    assert answers(replace(OF, liquids={"oil": Liquid(0.03, 2.0)}), lengths)["collapse_oil"].low == np.inf
+
+
+def test_a_beam_held_by_the_energy_that_is_stated_pulls_with_the_stated_force(lengths):
+    found, length = answers(OF, lengths), life.length_of(lengths, OF)
+    beam = replace(OF.beam(1.0), length=length)
+    assert_allclose(found["energy"].low, 4 * found["tip"].low, rtol=1e-12)
+    # The force at the tip times its slope is the adhesion energy of the tip times the width.
+    assert_allclose(found["force"].low * 1.5 * beam.gap / length, found["tip"].low * beam.width, rtol=1e-9)
+
+
+def test_errors_are_those_of_the_powers_of_the_closed_forms(lengths):
+    relative = {"thickness": 0.01, "gap": 0.02, "young_modulus": 0.03}
+    errors = Errors(**{name: share * getattr(C1, name) for name, share in relative.items()})
+    found = answers(replace(OF, uncertainty=errors, length=300e-6), lengths)
+    powers = {"voltage": (1.5, 1.5, 0.5), "shock": (2, 1, 1), "collapse_water": (0.75, 0.5, 0.25), "tip": (3, 2, 1)}
+    for name, exponents in powers.items():
+        expected = np.hypot.reduce(np.array(exponents) * list(relative.values()))
+        assert_allclose(found[name].error / found[name].low, expected, rtol=2e-3)
+    assert np.isnan(answers(OF, lengths)["voltage"].error)
+
+
+def test_residual_stress_of_a_bridge_has_an_error_and_rigid_clamps_an_upper_bound():
+    of = replace(OF, device=R1, liquids={"water": LIQUIDS["water"]}, uncertainty=Errors(residual_stress=5e6))
+    found = answers(of, {0.67: safe_without_tips()})
+    for name in ("voltage", "shock"):
+        assert found[name].low < found[name].high
+        assert 0 < found[name].error < 0.1 * found[name].low
+    assert np.isnan(found["released_water"].low)
+    assert found["released_water"].high > 0
+    assert "tip" not in found
+
+
+def test_many_touchdowns_are_between_other_summits_each_time_and_the_same_ones(lengths):
+    rare = {
+        h: one.isel(share=[1]).assign(safe_length=0.9 * one.isel(share=[1]).safe_length) for h, one in lengths.items()
+    }
+    found = answers(replace(OF, touchdowns=50), lengths, rare)
+    least = life.length_of(lengths, OF)
+    assert_allclose((found["after"].low, found["after"].high), (0.9 * least, least), rtol=1e-12)
+    assert_allclose((found["stuck_after"].low, found["stuck_after"].high), (1e-3, freeing.stuck_after(1e-3, 50)))
+    assert "after" not in answers(OF, lengths)
+
+
+def test_a_safe_length_without_an_error_has_none_and_says_its_basis(lengths):
+    bare = {h: one.assign(beams_error=np.nan * one.beams_error) for h, one in lengths.items()}
+    bare = {h: one.assign(surfaces_error=np.nan * one.surfaces_error) for h, one in bare.items()}
+    answer = answers(OF, bare)["safe_length_0.67"]
+    assert np.isnan(answer.error)
+    assert answer.form.endswith(str(lengths[0.67].basis.isel(shape=1).sel(share=1e-3).values))
+
+
+def test_answers_come_in_the_order_of_the_questions(lengths):
+    for found in (answers(OF, lengths), answers(STOPPER)):
+        asked = [life.QUESTIONS.index(one.question) for one in found.values()]
+        assert asked == sorted(asked)
+        assert len(set(found)) == len(found)
+    assert {one.question for one in answers(OF, lengths).values()} == set(life.QUESTIONS)
+
+
+# Stoppers
+
+
+def test_a_stopper_touches_under_its_restoring_force_and_is_freed_by_what_it_lacks():
+    found, dataset = answers(STOPPER), stopper_dataset()
+    assert_allclose(found["shock"].high, 18.99e-6 / 50e-12, rtol=1e-12)
+    assert_allclose(found["shock"].high / found["shock"].low, touch.HALF_SINE, rtol=1e-12)
+    assert_allclose(found["voltage"].low, touch.stopper_voltage(10.0, 1.899e-6, 1e-8, 3e-6), rtol=1e-12)
+    force = float(dataset.safe_force.sel(part="safe", share=0.01).max())
+    assert_allclose(found["restoring_force"].low, force, rtol=1e-12)
+    assert_allclose(found["stiffness"].low, force / 1.899e-6, rtol=1e-12)
+    assert_allclose(found["freeing"].low, (force - 18.99e-6) / 50e-12, rtol=1e-9)
+    assert np.isnan(found["freeing"].high)
+    assert_allclose(found["stuck_after"].high, freeing.stuck_after(found["stuck_after"].low, 4), rtol=1e-12)
+
+
+def test_in_dry_air_a_shock_that_frees_slowly_frees_fast():
+    dry = stopper_dataset().isel(humidity=[0]).assign_coords(humidity=[0.0])
+    (shock,) = [one for one in life.of_stopper(dry, STOPPER) if one.name == "freeing"]
+    assert shock.low == shock.high
+
+
+def test_the_force_for_many_touchdowns_is_that_of_a_smaller_fraction_if_there_are_patches_enough():
+    rare = freeing.probability_for(0.01, 1)
+    assert samples_for(rare) <= 400 < samples_for(freeing.probability_for(0.01, 4))
+    assert "after" not in answers(STOPPER)
+    many = stopper_dataset()
+    many = many.isel(sample=np.arange(1600) % 400)
+    found = {one.name: one for one in life.of_stopper(many, STOPPER)}["after"]
+    forces = [
+        max(safe_force(row, p)[0] for row in many.pull_off.values) for p in (0.01, freeing.probability_for(0.01, 4))
+    ]
+    assert_allclose((found.low, found.high), forces, rtol=1e-12)
+
+
+def test_what_is_not_stated_has_no_answer():
+    found = answers(OfStopper(restoring_force=18.99e-6, contact=AREA))
+    assert not {"shock", "voltage", "freeing", "stiffness", "stuck_after", "after"} & set(found)
+
+
+# Voltage
+
+
+def test_a_voltage_shortens_the_safe_length_of_a_beam_as_its_energy_says(lengths):
+    of = replace(OF, voltage=-5.0, offset=0.3, dielectric=Dielectric(100e-9, 4.0))
+    found, least = answers(of, lengths), life.length_of(lengths, OF)
+    assert of.potential == 5.3
+    added = holding.energy_of_voltage(5.3, 25e-9, C1.gap)
+    assert_allclose(found["voltage_energy"].high, added, rtol=1e-12)
+    assert_allclose(found["field"].high, 5.3 / 100e-9, rtol=1e-12)
+    at = found["at_voltage"]
+    shorter, longer = (holding.length_at_voltage(by * least, OF.beam(1.0), added, 3 / 8) for by in (1, 1.001))
+    assert_allclose((at.low, at.high), (shorter, least), rtol=1e-12)
+    # To first order, the error moves with the derivative of the length.
+    of_least = min((one.low, one.error) for name, one in found.items() if name.startswith("safe_length"))[1]
+    assert_allclose(at.error, of_least * (longer - shorter) / (1e-3 * least), rtol=1e-2)
+
+
+def test_without_voltage_nothing_is_said_of_it_and_a_vanishing_one_changes_nothing(lengths):
+    assert not {"at_voltage", "field", "voltage_energy"} & set(answers(OF, lengths))
+    little = answers(replace(OF, voltage=1e-6, dielectric=Dielectric(100e-9, 4.0)), lengths)["at_voltage"]
+    assert_allclose(little.low, little.high, rtol=1e-9)
+
+
+def test_a_bridge_states_the_energy_of_the_voltage_alone():
+    of = replace(OF, device=R1, liquids={}, voltage=5.0, dielectric=Dielectric(100e-9, 4.0))
+    found = answers(of, {0.67: safe_without_tips()})
+    assert "at_voltage" not in found
+    assert found["voltage_energy"].high > 0
+
+
+def test_a_voltage_holds_a_stopper_with_the_pressure_of_flats_on_its_area():
+    found = answers(replace(STOPPER, voltage=5.0, dielectric=Dielectric(100e-9, 4.0)))
+    assert_allclose(found["at_voltage"].high, holding.pressure_of_voltage(5.0, 25e-9) * 9e-12, rtol=1e-12)
+    assert found["restoring_force"] == answers(STOPPER)["restoring_force"]
+
+
+@pytest.mark.parametrize(("voltage", "breaks", "pulls"), [(5.0, False, False), (120.0, True, False), (4e4, True, True)])
+def test_sentences_warn_of_breakdown_and_of_a_voltage_that_pulls_in(lengths, voltage, breaks, pulls):
+    of = replace(OF, voltage=voltage, dielectric=Dielectric(100e-9, 4.0))
+    said = report.sentences(life.layout(life.of_beam(lengths, {}, of), of, life.length_of(lengths, of)))
+    assert any("break down" in sentence for sentence in said) == breaks
+    assert any("pulls it in" in sentence for sentence in said) == pulls
+    assert any(f"While {report.significant(voltage)} V are on" in sentence for sentence in said)
+
+
+# Configuration, files, report
+
+
+def test_settings_come_from_the_device_its_material_and_the_liquids():
+    gold = {"materials": {"Gold": {"density_kg_per_m3": 19300}}, "surfaces": {"B2": {"material": "Gold"}}}
+    one = SECTION | {"length_um": 300, "touchdowns": 9, "uncertainty": {"gap_um": 1}}
+    devices = {"devices": {"C1": one, "S1": SPRING, "C2": SECTION | {"pair": "a"}}}
+    plan = Plan(load(gold | devices | {"liquids": MINE}))
+    of = in_si(OfBeam, job_settings(plan, "devices/life/C1")["beam"])
+    assert (of.density, of.touchdowns, of.uncertainty) == (19300, 9, Errors(gap=1e-6))
+    assert_allclose(of.length, 300e-6)
+    assert_allclose([one.adhesion for one in of.liquids.values()], [0.072, 0.0217, 0.015], rtol=1e-12)
+    stopper = in_si(OfStopper, job_settings(plan, "devices/life/S1")["stopper"])
+    assert_allclose([stopper.restoring_force, stopper.mass, stopper.electrode.area], [18.99e-6, 50e-12, 1e-8])
+    shares = job_settings(plan, "devices/touchdowns/C1_rh067")["shares"]
+    assert_allclose(shares, [freeing.probability_for(1e-3, 9)])
+    assert in_si(OfBeam, job_settings(plan, "devices/life/C2")["beam"]).density == 2330
+    assert list(Graph(plan).job("devices/life/C1").inputs["after"]) == [0.67]
+    assert not Graph(plan).job("devices/life/C2").inputs["after"]
+
+
+@pytest.fixture(scope="module")
+def found(lengths):
+    many = replace(OF, touchdowns=50)
+    return {
+        "C1": life.layout(life.of_beam(lengths, lengths, many), many, life.length_of(lengths, OF)),
+        "S1": life.layout(life.of_stopper(stopper_dataset(), STOPPER), STOPPER),
+    }
+
+
+def test_the_dataset_is_stored_and_read_with_all_answers(found, tmp_path):
+    for name, dataset in found.items():
+        storage.save(dataset, tmp_path / f"{name}.nc", "life", {}, [])
+        again = life.answers_of(storage.load(tmp_path / f"{name}.nc", "life"))
+        for one, other in zip(again, life.answers_of(dataset), strict=True):
+            np.testing.assert_equal(one, other)
+
+
+def test_the_table_has_every_answer_in_its_unit(found):
+    frame = report.table(found).frame.set_index(["device", "answer"])
+    beam = {one.name: one for one in life.answers_of(found["C1"])}
+    assert len(frame) == sum(one.sizes["answer"] for one in found.values())
+    assert_allclose(frame.loc[("C1", "shock"), "at_most"], beam["shock"].high / 9.80665, rtol=1e-12)
+    assert_allclose(frame.loc[("C1", "collapse_water"), "at_least"], 1e6 * beam["collapse_water"].low, rtol=1e-12)
+    assert_allclose(frame.loc[("C1", "tip"), "at_least"], 1e3 * beam["tip"].low, rtol=1e-12)
+    assert set(frame.unit) == {"µm", "V", "g", "µN", "N/m", "mJ/m²", "%"}
+    assert frame.form.str.len().min() > 0 < frame.source.str.len().min()
+
+
+def test_sentences_say_below_which_voltage_and_shock_nothing_touches_and_what_drying_does(found, lengths):
+    first, second, third, last = report.sentences(found["C1"])
+    assert "does not touch below" in first
+    assert " V or a half-sine shock of " in first
+    assert "collapses when it is dried from water" in second
+    assert "(water)" in third
+    assert last.startswith("For 50 touchdowns its safe length is ")
+    short = life.layout(life.of_beam(lengths, {}, replace(OF, length=60e-6)), OF, 60e-6)
+    assert report.sentences(short)[1] == "At 60 µm it stands when it is dried from water and mine."
+    between = life.layout(life.of_beam(lengths, {}, replace(OF, length=230e-6)), OF, 230e-6)
+    assert (
+        "may collapse when it is dried from water, and stands when it is dried from mine"
+        in report.sentences(between)[1]
+    )
+    (stopper,) = report.sentences(found["S1"])
+    assert stopper.startswith("It does not touch below ")
+
+
+def test_the_figure_has_a_bar_for_every_length_and_covers_nothing(found):
+    figure = report.figure(found)
+    for panel, dataset, unit in zip(figure.axes, found.values(), "mN", strict=True):
+        shown = [one for one in life.answers_of(dataset) if one.unit == unit and np.isfinite(one.high)]
+        assert len(panel.texts) >= len(shown)
+        assert len(panel.lines) == 2 * len(shown) + (unit == "m")
+    assert not covering(figure)
+
+
+def test_a_page_says_the_life_below_its_verdict_and_shows_all_answers(found):
+    page = Page("C1", {}, ["Build it so.", "Because."], [Section("First"), Section("Last")])
+    shown = with_life(page, "C1", found["C1"])
+    assert shown.answer == ["Build it so.", *report.sentences(found["C1"]), "Because."]
+    assert [section.title for section in shown.sections] == ["First", "From the first contact to the last", "Last"]
+    assert len(shown.sections[1].cells) == found["C1"].sizes["answer"]
+    assert "does not touch below" in shown.html

@@ -1,0 +1,23 @@
+"""Devices on drawn surfaces end in an answer, or in sentences before the first job; draws that failed once."""
+
+import pytest
+from drawn_devices import drawn, outcome
+
+#: Draws that are refused, whose jobs once failed, and others of each kind.
+REFUSED = [2, 3]
+#: Laws with d_max < 0, ground that differs by tens of lengths 1/a, no beam that sticks, and a chart of such beams.
+ANSWERED = [1, 51, 101, 102]
+
+
+@pytest.mark.parametrize("number", REFUSED)
+def test_what_the_model_does_not_hold_for_is_refused_in_one_sentence_before_the_first_job(number):
+    found = outcome(drawn(number))
+    assert found.startswith("refused ")
+    assert found.count(", must ") == 1
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("number", ANSWERED)
+def test_drawn_surfaces_end_in_an_answer(number):
+    assert outcome(drawn(number)).startswith("answer <p><strong>")
