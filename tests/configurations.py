@@ -12,11 +12,12 @@ from stiction.config.files import read
 from stiction.config.merging import merged
 from stiction.config.messages import ConfigError
 from stiction.config.relations import schema
+from stiction.config.surfaces.grid import completed
 from stiction.config.validation import validate
 from stiction.surface import maxent
 
 ROOT = Path(__file__).parents[1]
-PAPER = read(ROOT / "config.yaml")
+PAPER = completed(read(ROOT / "config.yaml"), {})
 SCHEMA = schema()
 SOLVED_ONCE = cache(maxent.solve)  # the tests validate thousands of configurations with the same densities
 

@@ -172,12 +172,9 @@ WRONG_RELATIONS = [
     ("surfaces: {B1: {published_psd: {floor_nm4: 525}}}", "surfaces.B1.published_psd.floor_nm4", "525", "plateau"),
     ("surfaces: {B1: {published_psd: {cutoff_rad_per_um: 315}}}", "surfaces.B1.published_psd.cutoff_rad_per_um", "315",
      "at most the Nyquist wave number of the grid, 314.159 rad/µm (given sampling.spacing_nm = 10)"),
-    ("sampling: {strip_length_um: 0.75}\nbeam: {elements: 400}\nstudies: {variants: {every: []}}",
-     "sampling.strip_length_um", "0.75",
-     "surfaces.Sub1.published_psd ="),
     ("sampling: {margin_um: 0.75}", "sampling.margin_um", "0.75", "above the correlation length of the surface,"),
     ("identification: {patch_um: 0.75}", "identification.patch_um", "0.75", "above the correlation length of the"),
-    ("surfaces: {B2: {psd: identified, mean_summit_radius_um: 5, summit_density_per_um2: 2}}\nrun: {pairs: [a]}",
+    ("surfaces: {B2: {psd: identified, mean_summit_radius_um: 5, summit_density_per_um2: 2}}\nrun: {pairs: [b]}",
      "sampling.margin_um", "1", "must be above the correlation length of the surface, estimated as 1.9 µm from its"),
     ("identification: {patch_um: 5.005}", "identification.patch_um", "5.005", "whole number of grid spacings of 10 nm"),
     ("beam: {width_um: 30.005}\nstudies: {variants: {every: []}}", "beam.width_um", "30.005",
@@ -187,7 +184,8 @@ WRONG_RELATIONS = [
     ("studies: {variants: {spacing_nm: [5, 20]}}", "studies.variants.spacing_nm[1]", "20",
      "at most 11.9 nm, for the Nyquist wave number of the grid (given surfaces.Sub1.published_psd.cutoff_rad_per_um ="),
     ("surfaces: {Mine: {rms_nm: 2, skewness: -0.5, kurtosis: 3.5, psd: identified, mean_summit_radius_um: 0.5, "
-     "summit_density_per_um2: 30}}\ncharacter: {spacing_nm: 10}\nstudies: {variants: {spacing_nm: [11.71875]}}",
+     "summit_density_per_um2: 30}}\npairs: {a: {beam: Mine}}\ncharacter: {spacing_nm: 10}\n"
+     "studies: {variants: {spacing_nm: [11.71875]}}",
      "studies.variants.spacing_nm[0]", "11.71875", "at most that of Table I (given character.spacing_nm = 10"),
     ("studies: {variants: {strips_per_element: [3]}}", "studies.variants.strips_per_element[0]", "3",
      "must divide the strips along the beam into whole elements"),

@@ -241,7 +241,7 @@ def _too_long(use, length, error, samples):
     thickness = use.thickness * (strip / enough) ** (4 / 3)
     return (
         f"must be so large that strips of {strip:g} µm resolve its cracks, at least {thickness:.3g} µm: {evidence}; or "
-        f"decrease strip_um to at most {enough:.3g} µm, which must stay above the correlation length"
+        f"decrease strip_um to at most {enough:.3g} µm"
     )
 
 

@@ -38,7 +38,8 @@ def grid_of(spacing):
 
 def refused(spacing, psd):
     """Whether relations or physics refuse a spectrum on a grid, and on that of a variant, each by itself."""
-    entry = {"surfaces": {"Mine": {"published_psd": psd}}}
+    pairs = {"pairs": {"mine": {"beam": "Mine", "substrate": "Mine"}}, "run": {"pairs": ["mine"]}, "devices": {}}
+    entry = {"surfaces": {"Mine": {"published_psd": psd}}} | pairs
     yield bool(refusals(relations.grid_carries_the_roughness, **entry, sampling={"spacing_nm": spacing}))
     variant = {"studies": {"variants": {"spacing_nm": [spacing]}}}
     yield bool(refusals(relations.other_grids_carry_the_roughness, **entry, **variant))
@@ -77,7 +78,13 @@ def test_a_strip_of_one_point_is_not_shorter_than_its_spacing():
 def test_three_summits_fit_on_a_strip_of_three_spacings():
     for spacing in SPACINGS[:1000]:
         side = float(3 * Decimal(str(spacing)) / 1000)  # as users write it [µm]
-        sides = {"beam": {"width_um": side}, "sampling": {}, "identification": {}}
+        sides = {
+            "beam": {"width_um": side},
+            "sampling": {},
+            "identification": {},
+            "run": {"pairs": ["a"]},
+            "surfaces": {},
+        }
         for coarse, fits in ((spacing, True), (1.001 * spacing, False)):
             found = refusals(relations.strips_can_hold_a_summit, character={"spacing_nm": coarse}, **sides)
             assert bool(found) != fits, spacing

@@ -19,6 +19,7 @@ from written_scans import BAD, SIDE, bad_files, etched, scans_of, write
 from stiction.config import files, scans
 from stiction.config.cases import Case
 from stiction.config.merging import merged
+from stiction.config.surfaces.grid import completed
 from stiction.config.units import in_si
 from stiction.config.validation import validate
 from stiction.errors import ScanError
@@ -250,34 +251,48 @@ def test_none_of_forty_gaussian_scans_is_refused_before_a_run_or_in_it(tmp_path)
     assert 8 < np.count_nonzero(distances) < 32  # every other one is beyond the border
 
 
-def test_moments_without_a_density_are_refused_unless_the_heights_are_measured(tmp_path):
-    z = published("B2", SIDE, 1)[0].heights.copy()
-    z[::50, ::50] += 60e-9
-    path = write(tmp_path / "dirt.gwy", z)
-    (line,) = problems(configured(path))
-    assert line.startswith("surfaces.Etched.heights is 'moments', but no maximum-entropy density has moments near the")
-    assert line.endswith("of dirt.gwy, must be measured")
-    assert problems(configured(path, heights="measured")) == ()
+def test_surfaces_whose_moments_have_no_density_get_the_measured_one(tmp_path):
+    clean = published("B2", SIDE, 1)[0].heights
+    dirty = clean.copy()
+    dirty[::50, ::50] += 60e-9
+    for name, z, source in (("dirt", dirty, "measured"), ("clean", clean, "moments")):
+        config = configured(write(tmp_path / f"{name}.gwy", z))
+        found = completed(config, validate(config))
+        assert files.normalised(found)["surfaces"]["Etched"]["heights"] == source
+
+
+def test_a_power_law_that_no_pixel_resolves_does_not_go_on(tmp_path):
+    (fine,) = published("B1", SIDE, 1)
+    coarse = write(tmp_path / "coarse.gwy", fine.heights[:249:3, :249:3], (4.98e-6, 4.98e-6))
+    (line,) = problems(configured(coarse, beyond="continued"))
+    assert line == (
+        "surfaces.Etched.beyond is 'continued', but the pixels of coarse.gwy do not resolve the power law that would "
+        "go on, must be cut"
+    )
+    assert problems(configured(coarse)) == ()
+    assert problems(configured(write(tmp_path / "fine.gwy", fine.heights, fine.size), beyond="continued")) == ()
 
 
 @pytest.mark.filterwarnings("ignore:surface Etched")
 @pytest.mark.parametrize("share", [0.5, pytest.param(0.9, marks=pytest.mark.slow)])
-def test_scans_of_two_heights_are_refused_before_a_run_and_never_in_it(tmp_path, share):
+def test_scans_of_two_heights_have_their_measured_density_or_are_refused_before_a_run(tmp_path, share):
     (drawn,) = published("B2", SIDE, 1)
     steps = np.sign(drawn.heights - np.quantile(drawn.heights, share))
-    refused = []
+    ends = []
     for k, roughness in enumerate((0, 0.1, 0.3)):
         z = 5e-9 * (steps + roughness * drawn.heights / drawn.heights.std())
         path = write(tmp_path / f"{k}.gwy", z, drawn.size)
-        found = problems(configured(path))
-        # Lines on one height are constant, as those of a scan that was stopped.
-        reasons = ("are those of two heights, which no maximum-entropy density describes", "of its points undefined (")
-        refused.append(any(reason in f for f in found for reason in reasons))
-        if not refused[-1]:
-            read = scan.layout(ScanFile(replace(drawn, heights=z), "Height", "nm", ()))
-            estimated = stage_estimate.compute([read], "Etched", stage_estimate.Settings(1, estimate.Settings(), 8))
-            heights.compute(estimated, heights.Settings("Etched", "moments"))
-    assert refused == [True, True, False]
+        config = configured(path)
+        if found := problems(config):  # lines on one height are constant, as those of a scan that was stopped
+            assert any("of its points undefined (" in line or "equal" in line for line in found)
+            ends.append("refused")
+            continue
+        entry = files.normalised(completed(config, validate(config)))["surfaces"]["Etched"]
+        read = scan.layout(ScanFile(replace(drawn, heights=z), "Height", "nm", ()))
+        estimated = stage_estimate.compute([read], "Etched", stage_estimate.Settings(1, estimate.Settings(), 8))
+        heights.compute(estimated, heights.Settings("Etched", entry["heights"]))
+        ends.append(entry["heights"])
+    assert ends[1:] == ["measured", "moments"]
 
 
 #: Wrong keys of measured surfaces: keys, section of the surface, beginning of the only line.

@@ -122,7 +122,6 @@ WRONG = [
     ({"humidities": [0.65001]}, "devices.C1.humidities", "at most 4 decimals"),
     ({"gap_um": 0.1}, "devices.C1.gap_um", "20 times the sum of the height of the water film"),
     ({"humidities": [0.9999]}, "devices.C1.gap_um", "must be at least 207.9"),
-    ({"strip_um": 0.75}, "devices.C1.strip_um", "above the correlation length of the surface"),
     ({"strip_um": 1.505}, "devices.C1.strip_um", "whole number of contact points"),
     ({"width_um": 30.005}, "devices.C1.width_um", "whole number of contact points"),
     ({"width_um": 9000}, "devices.C1.width_um", "within 8 GB of memory: 2.5 x 9001 µm every 10 nm take 13.9 GB"),

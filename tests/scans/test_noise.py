@@ -47,6 +47,16 @@ def test_heights_that_no_surface_has_without_noise_have_none():
     assert not can_be_noise(np.array([0.0, 0.0, 3.0]), 1.0)
 
 
+def test_a_floor_that_heights_cannot_have_stays_in_them_and_is_kept():
+    (drawn,) = published("B2", SIDE, 1)
+    steps = 5e-9 * np.sign(drawn.heights)
+    two, one = (inspect([noisy(Scan(z, drawn.size), rms)], Settings()).largest
+                for z, rms in ((steps, 3e-9), (drawn.heights, 0.3e-9)))  # fmt: skip
+    assert two.kept.density > two.floor.density == 0
+    np.testing.assert_array_equal(two.moments, two.noisy_moments)
+    assert one.floor.density > one.kept.density == 0, "control: the noise of other heights is subtracted"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["B2", "Sub1"])
 def test_without_noise_nothing_changes(name):
@@ -104,9 +114,7 @@ def test_rounded_heights_have_the_noise_of_their_step():
 @pytest.mark.slow
 def test_noise_is_named_and_its_error_is_part_of_that_of_the_moments():
     found = estimate([noisy(fine("Sub1", 3), 50e-12)], 2, model_scans=4)
-    assert any(
-        flag.startswith("white noise of 0.05 nm in scans of 5 x 5 µm is subtracted from rms") for flag in found.flags
-    )
+    assert any(flag.startswith("white noise of 0.05 nm in scans of 5 x 5 µm, ") for flag in found.flags)
     assert not any(flag.startswith("white noise") for flag in estimate([fine("B2", 3)], 2, model_scans=4).flags)
     maps = found.inspection.largest
     variance, error = maps.floor.variance(maps.frame.pixel)

@@ -1,6 +1,7 @@
 import dataclasses
 import functools
 import re
+from itertools import product
 
 import numpy as np
 import pytest
@@ -9,12 +10,14 @@ from published import IDENTITY, SPACING, SURFACES
 from scipy import stats
 
 from stiction.errors import ScanError
+from stiction.estimates import mean_with_error
 from stiction.scans import estimate as evaluation
 from stiction.scans.estimate import Settings, _model, _residual, estimate, inspect, nearest_density, widened
 from stiction.scans.flags import ENOUGH_WAVELENGTHS
 from stiction.scans.levelling import Levelling
 from stiction.scans.model_scans import ModelScans, draw_model_scans
 from stiction.scans.moments import homogeneity, moments, powers, tile_errors
+from stiction.scans.noise import Floor
 from stiction.scans.quantiles import SCORES, Feasible, measured_density
 from stiction.scans.scan import Scan
 from stiction.streams import stream
@@ -136,7 +139,7 @@ def test_the_spectrum_and_the_model_end_where_that_of_the_surface_does():
     assert of_b2().inspection.reach.end == pytest.approx(cutoff, rel=0.01)
     assert of_b2().model.spectrum == of_b2().inspection.spectrum
     assert of_b2().inspection.spectrum.cutoff == of_b2().inspection.reach.end
-    assert about(of_b2().flags, "the spectrum ends near 12")
+    assert about(of_b2().flags, "beyond 125 rad/µm the scans show less than half of the power law: either surface or ")
 
 
 @pytest.mark.slow
@@ -222,14 +225,28 @@ def test_too_many_undefined_points_are_refused():
     assert inspect([scan], Settings(undefined_share=0.02)).names == ("a.spm",)
 
 
-def test_a_scan_without_plateau_is_refused():
+def test_a_scan_without_plateau_gives_a_smoother_surface_and_says_so():
     z = np.cumsum(np.cumsum(stream(1, "walk").standard_normal((200, 200)), axis=0), axis=1)  # a power law throughout
     walks = [Scan(1e-10 * part, (SIDE, SIDE), f"{name}.spm") for name, part in (("a", z), ("b", z.T))]
-    assert "files: a.spm, b.spm shows no plateau of the spectrum: " in refused(walks)
-    number, side = re.search(r": (\S+) wavelengths .* on a side of about (\S+) µm", refused(walks)).groups()
+    found = estimate(walks, SEED, Settings(Levelling("mean")), model_scans=4)
+    number, side = re.match(
+        r"the scans show no plateau of the spectrum: (\S+) wavelengths .* on a side of (\S+) µm", found.flags[0]
+    ).groups()
     assert float(side) == pytest.approx(4 / float(number) * 1e6 * SIDE, rel=0.05)
+    assert not about(of_b2().flags, "no plateau"), "control"
     tiny = Scan(B2[0].heights[:34, :34], (0.7e-6, 0.7e-6), "tiny.spm")
     assert "files: tiny.spm cannot give a spectrum: 8 rings are needed" in refused([tiny])
+
+
+def test_scans_without_plateau_give_smoother_surfaces_than_they_are_parts_of():
+    maps = [SURFACES["B2"].on(grid(SIDE)).draw(stream(1, "parts", k)).astype(float) for k in range(4)]
+    corners = list(product(range(0, 436, 100), repeat=2))
+    parts = [whole[i : i + 64, j : j + 64] for whole in maps for i, j in corners]
+    found = [inspect([Scan(z, (0.64e-6, 0.64e-6))], Settings()) for z in parts]
+    found = [one for one in found if one.wavelengths < 4]
+    assert len(found) >= 6
+    variance = mean_with_error(np.exp(2 * np.array([one.moments[0] for one in found])) / SURFACES["B2"].rms ** 2)
+    assert variance[0] + 3 * variance[1] < 1
 
 
 def changed(**values):
@@ -246,6 +263,11 @@ def with_frame(**values):
     return dataclasses.replace(of_b2().inspection, sizes=(maps,))
 
 
+def floor_of(rms):
+    """Floor of white noise with an rms [m] on pixels of 20 nm."""
+    return Floor((rms * 20e-9 / (2 * np.pi)) ** 2)
+
+
 def fit_with(**values):
     return with_inspection(fit=dataclasses.replace(of_b2().inspection.fit, **values))
 
@@ -260,12 +282,23 @@ FLAGS = {
     "the spectrum is not of the form of Eq. (7) (chi²/dof 4); the measured spectrum is used instead, as with "
     "psd: tabulated":
         lambda: fit_with(chi2=400.0, freedom=100),
-    "the spectrum ends near 101 rad/µm; beyond: cut ends there, too":
+    "beyond 101 rad/µm the scans show less than half of the power law: either surface or microscope has no shorter "
+    "waves, or the spectrum becomes steeper; beyond: cut leaves these waves out":
         lambda: with_inspection(reach=dataclasses.replace(of_b2().inspection.reach, end=1.01e8)),
+    "pixels of 20 nm do not resolve the power law of the spectrum, which falls by less than half up to 78.5 rad/µm: "
+    "corner and slope are not measured; roughness beyond 125 rad/µm is left out, so that surfaces are too smooth and "
+    "stick more, the safe side":
+        lambda: fit_with(corner=7.8e7),
+    "a floor of the spectrum like that of white noise of 2 nm in scans of 5 x 5 µm is not subtracted, because no "
+    "heights have the moments that would remain; if it is noise, the surface is smoother than computed and sticks more":
+        lambda: with_inspection(sizes=(dataclasses.replace(of_b2().inspection.largest, kept=floor_of(2e-9)),)),
+    "white noise of 1 nm in scans of 5 x 5 µm, 8.8 % of their variance, is subtracted from rms, skewness, kurtosis and "
+    "spectrum, not from heights: measured":
+        lambda: with_inspection(sizes=(dataclasses.replace(of_b2().inspection.largest, floor=floor_of(1e-9)),)),
     "the spectrum is 2 times as large at 79° to the fast axis as in the weakest direction":
         lambda: changed(sectors=np.array([1.0, 1, 1, 2, 1, 1, 1, 1])),
     "skewness 0.1 with kurtosis 9 has no maximum-entropy density, nor have others within their errors; "
-    "only heights: measured can be used":
+    "the measured density is used instead":
         lambda: changed(moments=np.array([-20.0, 0.1, 9.0]), feasible=None),
     "skewness 0.1 with kurtosis 3.1 has no maximum-entropy density; skewness 0.15 with kurtosis 3.06, which is 1.5 "
     "standard errors away, is used":

@@ -3,12 +3,13 @@ import warnings
 
 import numpy as np
 import pytest
-from drawn_scans import PIXELS, published
+from drawn_scans import PIXELS, grid, published
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from published import SPACING, SURFACES
 
 from stiction.estimates import mean_with_error
+from stiction.scans.inspection import Settings, inspect
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.periodogram import Rings, periodogram, rings
 from stiction.scans.scan import Scan
@@ -258,3 +259,21 @@ def test_a_sharp_point_on_one_of_the_scans_limits_the_reach():
     sharp[100, 3] += 5e-9
     assert tip_reach([ripple], 20e-9, 1e-6) == np.inf
     assert tip_reach([ripple, sharp], 20e-9, 1e-6) < 1.6e8
+
+
+@pytest.mark.parametrize(("name", "coarse", "fine"), [("B1", (3, 5, 8), (1,)), ("B2", (8, 12), (1, 3))])
+def test_pixels_that_do_not_resolve_the_power_law_are_known_and_leave_smoother_surfaces(name, coarse, fine):
+    truth = SURFACES[name].spectrum
+    heights = SURFACES[name].on(grid(12e-6)).draw(stream(1, "resolved", name))[::2, ::2].astype(float)
+
+    def inspected(every):
+        points = len(heights) // every
+        part = heights[: every * points : every, : every * points : every]
+        return inspect([Scan(part, (every * points * 20e-9,) * 2)], Settings())
+
+    assert all(inspected(every).is_resolved for every in fine), "control"
+    for every in coarse:
+        found = inspected(every)
+        assert not found.is_resolved
+        curvature = [spectrum.moment(4) / spectrum.moment(0) for spectrum in (found.spectrum, truth)]
+        assert curvature[0] < curvature[1], "of surfaces of the same rms"

@@ -268,3 +268,9 @@ def test_ring_means_are_plain_means_over_equal_wave_numbers(n):
     wavenumber, rings = radial_spectrum(values, 0.5)
     np.testing.assert_array_equal(wavenumber, 0.5 * np.arange(1, n // 2 + 1))
     np.testing.assert_array_equal(rings, ring_means(values)[1 : n // 2 + 1])
+
+
+def test_waves_far_shorter_than_those_of_the_corner_do_not_change_the_correlation_length():
+    lengths = [correlation_length(CutoffSelfAffine(1.0e-30, 1.0e-30 * (cut / 1e6) ** -4.6, 1e6, cut)) for cut in
+               (2e7, 2.9e7, 3.1e7, 1e9, 1e12)]  # fmt: skip
+    np.testing.assert_allclose(lengths, lengths[0], rtol=0.02)

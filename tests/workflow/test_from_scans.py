@@ -36,7 +36,7 @@ def finished(tmp_path_factory):
 @pytest.mark.slow
 def test_the_workflow_gives_the_numbers_of_one_process(finished):
     run, configs = finished
-    few, end = (f"^surface Etched: {flag}" for flag in ("only", "the spectrum ends near 125 rad/µm"))
+    few, end = (f"^surface Etched: {flag}" for flag in ("only", "beyond 12. rad/µm the scans show"))
     with pytest.warns(UserWarning, match=few), pytest.warns(UserWarning, match=end):
         study = PairStudy.of(load(*configs), "b")
     contact = dataset(run / "results/contact/b_NG.nc", "contact")

@@ -37,10 +37,14 @@ def code(file):
 
 
 def validated():
-    """Preliminary numbers of the measured surfaces of a valid configuration."""
+    """Preliminary numbers of the measured surfaces of a valid configuration, and the sections that follow from them."""
+    from stiction.config.surfaces.grid import completed
     from stiction.config.validation import validate
 
-    return validate(config, kept=".snakemake/scans")
+    preliminary = validate(config, kept=".snakemake/scans")
+    normal = files.normalised(config)
+    complete = completed(normal, preliminary)
+    return [preliminary, {key: complete[key] for key in complete if complete[key] != normal[key]}]
 
 
 def rules_of_the_configuration():
@@ -48,7 +52,7 @@ def rules_of_the_configuration():
     folder = PACKAGE / "config"
     modules = [
         code(folder / f"{name}.py")
-        for name in ("validation", "keys", "meetings", "relations", "relations_devices", "messages")
+        for name in ("validation", "surfaces/grid", "keys", "meetings", "relations", "relations_devices", "messages")
     ]
     return [*modules, (folder / "schema.yaml").read_text(encoding="utf-8")]
 
@@ -61,10 +65,14 @@ try:
         config.update(test_beams.with_files(config, contents[file], file.parent))
     config.update(merging.expanded(config))
     scanned = scans.has_scans(config)
-    preliminary = validated() if scanned else remember(["valid", config, rules_of_the_configuration()], validated)
+    preliminary, following = (
+        validated() if scanned else remember(["valid", config, rules_of_the_configuration()], validated)
+    )
 except messages.ConfigError as error:
     raise WorkflowError(f"The configuration is invalid:\n{error}")
 
+config.update(files.normalised(config))
+config.update(following)
 config.update(files.normalised(config))
 remember_jobs = DiskCache(".snakemake/jobs.json")
 planner = Planner(config, preliminary, remember, remember_jobs)

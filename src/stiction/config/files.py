@@ -1,6 +1,5 @@
 """Configuration files: reading, overlays on the configuration of the paper, and the normal form."""
 
-import copy
 import functools
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import Any
 from stiction.config import test_beams
 from stiction.config.cases import in_numbers
 from stiction.config.merging import expanded, merged
-from stiction.config.reading import paper, read
+from stiction.config.reading import PAPER, paper, read
 from stiction.config.scans import complete, resolve_scan_paths
 from stiction.config.surfaces import described
 
@@ -34,17 +33,18 @@ def load(*overlays: str | Path | Mapping) -> dict:
     {'pairs': ['b']}
     """
     # Imports the physics, which reading alone does not need.
+    from stiction.config.surfaces.grid import completed
     from stiction.config.validation import validate
 
     config = joined(*overlays)
-    validate(config)
-    return normalised(config)
+    estimates = validate(config)
+    return normalised(completed(normalised(config), estimates))
 
 
 def joined(*overlays: str | Path | Mapping) -> dict:
     """Configuration of the paper, changed by overlays as in `load`, as it is: neither checked nor in normal form."""
     changes = (_in_memory(one) if isinstance(one, Mapping) else located(one) for one in overlays)
-    return expanded(functools.reduce(merged, changes, copy.deepcopy(paper())))
+    return expanded(functools.reduce(merged, changes, read(PAPER)))
 
 
 def _in_memory(overlay):

@@ -6,6 +6,8 @@ from stiction.config.kinds import kind_of
 from stiction.config.units import NM_PER_UM, from_si
 from stiction.models import FIELD
 
+#: Grid of the paper, that of all surfaces that need no other: see `stiction.config.surfaces.grid`.
+GRID = {"spacing_nm": 10, "margin_um": 1}
 #: Side of the periodic fields on which spectra are estimated [µm].
 FIELD_UM = from_si(FIELD, "um")
 #: Memory of a job: libraries and small arrays [MB]; fields, their waves and their spectra [bytes per point]. Measured:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import yaml
 
+from stiction.config.memory import GRID
 from stiction.config.messages import ConfigError, duplicates, shown
 from stiction.regular_files import require_regular
 
@@ -54,8 +55,9 @@ def read(path: str | Path) -> dict:
 
 @cache
 def paper() -> dict:
-    """Configuration of the paper, read once; not to be changed."""
-    return read(PAPER)
+    """Complete configuration of the paper, read once; not to be changed."""
+    config = read(PAPER)
+    return config | {"sampling": GRID | config["sampling"]}
 
 
 def _one_line(reason):

@@ -18,9 +18,9 @@ from stiction.config.messages import duplicates
 from stiction.config.relations import (
     cases_have_unique_names,
     correlated,
-    correlated_as_estimated,
     field_too_large,
     off_grid,
+    pairs_run,
     references_are_defined,
     repeated,
     schema,
@@ -51,7 +51,7 @@ def strips_and_patches_are_whole_on_the_grid(config):
     """Sides of strips, and of the area of a stopper, are multiples of the distance between contact points."""
     sides = ("strip_um", "width_um", "contact_um")
     of_devices = [f"devices.{name}.{key}" for key in sides for name, _ in config.entries("devices", key)]
-    for key, stated in config.known("beam.width_um", _STRIP, *of_devices):
+    for key, stated in config.known(*["beam.width_um"] * pairs_run(config), _STRIP, *of_devices):
         refusals = (off_grid(float(side), *(config[step] for step in _GRID)) for side in np.ravel(stated))
         yield key, next(filter(None, refusals), None), *_GRID
 
@@ -155,29 +155,6 @@ def uncertain_water_of_devices_is_a_liquid(config):
                 message = f"must leave water that is a liquid: the humidity, {driest:g}, {refusal}"
                 given = f"devices.{name}.humidities", *meeting.given(TEMPERATURE)
                 yield f"devices.{name}.uncertainty.{key}", message, *given
-
-
-@relation
-def strips_of_devices_exceed_the_correlation(config):
-    """Strips are independent samples; those of tips, which are never next to each other, may be shorter.
-
-    So may those of bridges: force laws of neighbouring strips of 0.25 and 0.5 µm correlate by less than 0.05 on pair b.
-    """
-    spacing = config["character.spacing_nm"]
-    for name, strip, kind, pair in config.entries("devices", "strip_um", "kind", "pair"):
-        names = surfaces_of(pair, config)
-        refusals = (_correlated(strip, side, spacing) for side in sides_of(*names, config["surfaces"]))
-        if not KINDS[kind].has_short_strips and (refusal := next(filter(None, refusals), None)):
-            given = *(f"devices.{name}.{key}" for key in ("kind", "pair")), "character.spacing_nm"
-            yield f"devices.{name}.strip_um", refusal, *given, *config.scanned(*names)
-
-
-def _correlated(strip, side, spacing):
-    """Refusal of strips within the correlation length of a surface."""
-    if side["psd"] == "published":
-        return correlated(strip, side["published_psd"])
-    summits = side["rms_nm"], side.get("mean_summit_radius_um"), side.get("summit_density_per_um2")
-    return correlated_as_estimated(strip, *summits, spacing)
 
 
 @relation
@@ -368,9 +345,7 @@ def varied_skewnesses_have_a_density(config):
 @relation
 def varied_corners_are_those_of_spectra(config):
     """A corner lies below the cut-off, and patches are samples of the field where it is lowest, at the same slope."""
-    for name, ends, surface, kind in config.entries(
-        "devices", "roughness.corner_rad_per_um", "roughness.surface", "kind"
-    ):
+    for name, ends, surface in config.entries("devices", "roughness.corner_rad_per_um", "roughness.surface"):
         key, section = f"devices.{name}.roughness.corner_rad_per_um", config["surfaces"].get(surface, {})
         if section.get("psd") != "published":
             continue
@@ -381,11 +356,9 @@ def varied_corners_are_those_of_spectra(config):
             continue
         slope = math.log(psd["floor_nm4"] / plateau) / math.log(cutoff / psd["corner_rad_per_um"])
         longest = psd | {"corner_rad_per_um": low, "floor_nm4": plateau * (cutoff / low) ** slope}
-        for length in ["margin_um"] + ["strip_length_um"] * (KINDS[kind].is_beam and not KINDS[kind].has_short_strips):
-            if refusal := correlated(config["sampling"][length], longest):
-                message = f"must be larger at {low:g} rad/µm, where sampling.{length} {refusal}"
-                yield key, message, f"sampling.{length}", *config.scanned(surface)
-                break
+        if refusal := correlated(config["sampling.margin_um"], longest):
+            message = f"must be larger at {low:g} rad/µm, where sampling.margin_um {refusal}"
+            yield key, message, "sampling.margin_um", *config.scanned(surface)
 
 
 # Test beams, for which the relations of devices hold as well: see stiction.config.validation

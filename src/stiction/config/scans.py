@@ -16,8 +16,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from stiction.config.memory import GRID
 from stiction.config.messages import Problem
-from stiction.config.units import NM_PER_UM, from_si, in_si
+from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
 from stiction.errors import ScanError
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.regular_files import require_regular
@@ -136,7 +137,7 @@ def preliminary_estimates(
         if name not in wrong and is_measured(entry):
             try:
                 estimates[name] = _evaluated(complete(entry), config["scans"], kept)
-                problems += _without_density(name, entry, estimates[name]) if simulates(config) else []
+                problems += _without_power_law(name, entry, estimates[name])
             except ScanError as refusal:
                 problems.append(_problem(name, complete(entry), refusal))
     return estimates, problems
@@ -276,7 +277,20 @@ def _preliminary(files, reading, evaluating):
         "corner_rad_per_um": from_si(inspection.fit.corner, "rad_per_um"),
         "slope": inspection.fit.slope,
         "end_rad_per_um": from_si(float(inspection.reach.end), "rad_per_um"),
+        "resolved": inspection.is_resolved,
+        "correlation_um": {psd: _correlation(inspection, psd) for psd in ("fitted", "tabulated")},
     }
+
+
+def _correlation(inspection, psd):
+    """Distance beyond which heights with the spectrum of a source are not correlated [µm]."""
+    from stiction.scans.whittle import spectrum
+    from stiction.surface.spectrum import uncorrelated_beyond
+
+    within, coarsest = inspection.reach, math.pi / to_si(GRID["spacing_nm"], "nm")
+    ends = {within.end, min(within.end, coarsest)}
+    drawn = (spectrum(psd, inspection.fit, inspection.rings, within, end) for end in ends)
+    return from_si(max(map(uncorrelated_beyond, drawn)), "um")
 
 
 def _scan(path, label, settings):
@@ -298,19 +312,31 @@ def _in_range(rms, file, reading):
     raise ScanError(file, key, f"{reason}: they are in another unit than is stated")
 
 
-def _without_density(name, entry, preliminary):
-    """Problem of a surface whose moments have no maximum-entropy density, if it is to have it."""
-    if complete(entry)["heights"] != "moments":
-        return []
+def with_heights(config: dict[str, Any], estimates: Mapping[str, dict]) -> dict[str, Any]:
+    """Configuration in which measured surfaces have their measured density where none has their moments.
+
+    ASSUME: it follows the scans, as does a measured spectrum that is not of the form of Eq. (7). A flag says so.
+    """
+    changed = {
+        name: config["surfaces"][name] | {"heights": "measured"}
+        for name, preliminary in estimates.items()
+        if complete(config["surfaces"][name])["heights"] == "moments" and _without_density(preliminary)
+    }
+    return config | {"surfaces": config["surfaces"] | changed} if changed else config
+
+
+def _without_density(preliminary):
+    """Whether no maximum-entropy density has the moments of scans, or they are those of two heights."""
     skewness, kurtosis = preliminary["measured"]
-    shown, files = f"the skewness {skewness:.3g} and kurtosis {kurtosis:.3g}", ", ".join(_labels(entry))
-    if not preliminary["feasible"]:
-        reason = f"no maximum-entropy density has moments near {shown} of {files}"
-    elif kurtosis < _OF_TWO_HEIGHTS * (1 + skewness**2):
-        reason = f"{shown} of {files} are those of two heights, which no maximum-entropy density describes"
-    else:
+    return not preliminary["feasible"] or kurtosis < _OF_TWO_HEIGHTS * (1 + skewness**2)
+
+
+def _without_power_law(name, entry, preliminary):
+    """Problem of a surface whose power law is to go on, where its scans do not show one."""
+    if complete(entry)["beyond"] == "cut" or preliminary["resolved"]:
         return []
-    return [Problem(("surfaces", name, "heights"), f"is 'moments', but {reason}, must be measured")]
+    reason = f"the pixels of {', '.join(_labels(entry))} do not resolve the power law that would go on"
+    return [Problem(("surfaces", name, "beyond"), f"is 'continued', but {reason}, must be cut")]
 
 
 def _problem(name, entry, refusal):

@@ -9,7 +9,7 @@ from stiction.config.keys import Keys, Relations
 from stiction.config.messages import ConfigError, schema_problems
 from stiction.config.reading import paper
 from stiction.config.relations import schema
-from stiction.config.surfaces import described
+from stiction.config.surfaces import described, grid
 
 #: Relations between the keys of devices, and of arrays of test beams in their place.
 _OF_DEVICES = Relations([*meetings.relation, *relations_devices.relation])
@@ -45,7 +45,8 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     config = in_numbers(test_beams.without_files(config))
     faults = schema_problems(config, schema())
     wrong = [path for fault in faults for path in (fault.path, *fault.others)]
-    sections, incomplete, origins = _completed(config, wrong)
+    surfaces, incomplete, origins = _completed(config, wrong)
+    sections = grid.completed(surfaces, {})
     wrong += [problem.path for problem in incomplete]
     broken = _broken(sections, wrong, origins=origins)
     of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
@@ -53,7 +54,8 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     problems = faults + incomplete + broken + refused
     if estimates and scans.simulates(sections):
         files = {name: config["surfaces"][name]["scans"]["files"] for name in estimates}
-        problems += _broken(scans.with_preliminary_estimates(sections, estimates), wrong, files, origins)
+        on_grid = grid.completed(surfaces, estimates)
+        problems += _broken(scans.with_preliminary_estimates(on_grid, estimates), wrong, files, origins)
     if problems:
         raise ConfigError(*dict.fromkeys(test_beams.in_files(str(problem), stated) for problem in problems))
     return estimates

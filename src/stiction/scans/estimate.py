@@ -130,36 +130,50 @@ def estimate(
         residuals.append(_residual(nearest, drawn[0].quantiles, moments(drawn[0].powers)))
         model, nearest = _model(inspection, values, heights, farthest)
     largest, count = inspection.largest, len(inspection.largest.names)
-    covariances = [
-        seen(inspection, model, maps).covariance / maps.number + part.bias_covariance + maps.noise_covariance
-        for maps, part in zip(inspection.counted, drawn, strict=False)
-    ]
-    closed_form = inspection.propagated(covariances)
-    by_tiles = np.sqrt(
-        inspection.propagated([tile_errors(maps.levelled, settings.tiles) ** 2 for maps in inspection.counted])
-    )
     fitness = goodness(_residual(nearest, largest.quantiles, largest.noisy_moments), np.vstack(residuals), count)
-    described = nearest is not None and not fitness[1] < UNLIKELY
-    resolved = inspection.reach.low, min(inspection.reach.high, largest.reach.high)
-    sectors, sector_errors = spectra.sectors(largest.periodogram, inspection.rings, *resolved)
     return SurfaceEstimate(
         inspection=inspection,
         moments=values,
-        covariance=closed_form if described else widened(closed_form, by_tiles),
-        closed_form_errors=np.sqrt(np.diag(closed_form)),
-        tile_errors=by_tiles,
         homogeneity=_homogeneity(inspection, model),
-        agreement=_agreement(of_sizes, values, covariances),
         model=model,
         feasible=nearest,
         quantiles=heights,
         quantile_errors=_quantile_errors(inspection, drawn),
         goodness=fitness,
-        sectors=sectors,
-        sector_errors=sector_errors,
+        **_errors(inspection, model, drawn, nearest is not None and not fitness[1] < UNLIKELY),
+        agreement=_agreement(of_sizes, values, _covariances(inspection, model, drawn)),
+        **_sectors(inspection),
         **_summits(inspection, drawn),
         line_jump=max(line_jump(z, maps.frame.pixel) for maps in inspection.sizes for z in maps.levelled),
     )
+
+
+def _covariances(inspection, model, drawn):
+    """Covariance of the moments of every size, (3, 3) each."""
+    return [
+        seen(inspection, model, maps).covariance / maps.number + part.bias_covariance + maps.noise_covariance
+        for maps, part in zip(inspection.counted, drawn, strict=False)
+    ]
+
+
+def _errors(inspection, model, drawn, described):
+    """Covariance of the moments, whose heights four moments describe or not, and their errors of both kinds."""
+    closed_form = inspection.propagated(_covariances(inspection, model, drawn))
+    of_tiles = [tile_errors(maps.levelled, inspection.settings.tiles) ** 2 for maps in inspection.counted]
+    by_tiles = np.sqrt(inspection.propagated(of_tiles))
+    return {
+        "covariance": closed_form if described else widened(closed_form, by_tiles),
+        "closed_form_errors": np.sqrt(np.diag(closed_form)),
+        "tile_errors": by_tiles,
+    }
+
+
+def _sectors(inspection):
+    """Spectrum of the largest scans in directions relative to that in all, where these resolve it, and its errors."""
+    reach, largest = inspection.reach, inspection.largest
+    resolved = reach.low, min(reach.high, largest.reach.high)
+    sectors, errors = spectra.sectors(largest.periodogram, inspection.rings, *resolved)
+    return {"sectors": sectors, "sector_errors": errors}
 
 
 def _unbiased(inspection, drawn, model):

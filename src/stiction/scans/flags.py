@@ -9,6 +9,7 @@ import numpy as np
 from scipy.special import chdtrc
 
 from stiction.scans import periodogram as spectra
+from stiction.scans.inspection import FEWEST_WAVELENGTHS
 from stiction.scans.levelling import LEVELS
 
 #: Wavelengths of the corner along a scan from which errors are reliable.
@@ -38,9 +39,22 @@ def infeasible(estimate: Any) -> str:
     return f"skewness {skewness:.3g} with kurtosis {kurtosis:.3g} has no maximum-entropy density"
 
 
+def _no_plateau(estimate):
+    inspection = estimate.inspection
+    number, side = inspection.wavelengths, 1e6 * min(inspection.largest.frame.size)
+    if number >= FEWEST_WAVELENGTHS:
+        return ""
+    return (
+        f"the scans show no plateau of the spectrum: {number:.2g} wavelengths of its corner fit into {side:.3g} µm, "
+        f"{FEWEST_WAVELENGTHS} are needed, as on a side of {FEWEST_WAVELENGTHS * side / number:.2g} µm or more. Longer "
+        "waves are left out, so that surfaces are too smooth and stick more, the safe side; skewness and kurtosis are "
+        "hardly known"
+    )
+
+
 def _few_wavelengths(estimate):
     number = estimate.inspection.wavelengths
-    if number < ENOUGH_WAVELENGTHS:
+    if FEWEST_WAVELENGTHS <= number < ENOUGH_WAVELENGTHS:
         return f"only {number:.2g} wavelengths of the corner fit into the scan; errors are reliable from 10 on"
     return ""
 
@@ -117,10 +131,32 @@ def _noise(estimate):
     noisy = [maps for maps in estimate.inspection.counted if np.any(_by_noise(maps) > _NOISE * estimate.errors)]
     if not noisy:
         return ""
-    levels = " and ".join(f"{1e9 * maps.noise:.2g} nm in scans of {maps.size}" for maps in noisy)
+    levels = " and ".join(f"{_in_scans(maps, maps.floor)}, {_share(maps):.2g} % of their variance," for maps in noisy)
     return (
         f"white noise of {levels} is subtracted from rms, skewness, kurtosis and spectrum, not from heights: measured"
     )
+
+
+def _noise_stays(estimate):
+    """Floor like that of noise that stays in the heights."""
+    levels = [_in_scans(maps, maps.kept) for maps in estimate.inspection.sizes if maps.kept.density > 0]
+    if not levels:
+        return ""
+    return (
+        f"a floor of the spectrum like that of white noise of {' and '.join(levels)} is not subtracted, because no "
+        "heights have the moments that would remain; if it is noise, the surface is smoother than computed and sticks "
+        "more"
+    )
+
+
+def _in_scans(maps, floor):
+    """Rms of noise in words."""
+    return f"{1e9 * np.sqrt(floor.variance(maps.frame.pixel)[0]):.2g} nm in scans of {maps.size}"
+
+
+def _share(maps):
+    """Share of noise in the variance of scans [%]."""
+    return 100 * maps.noise**2 / np.exp(2 * maps.noisy_moments[0])
 
 
 def _by_noise(maps):
@@ -130,9 +166,24 @@ def _by_noise(maps):
 
 def _spectrum_ends(estimate):
     within = estimate.inspection.reach
-    if within.end < within.nyquist:
-        return f"the spectrum ends near {1e-6 * within.end:.3g} rad/µm; beyond: cut ends there, too"
-    return ""
+    if within.end == within.nyquist or not estimate.inspection.is_resolved:
+        return ""
+    return (
+        f"beyond {1e-6 * within.end:.3g} rad/µm the scans show less than half of the power law: either surface or "
+        "microscope has no shorter waves, or the spectrum becomes steeper; beyond: cut leaves these waves out"
+    )
+
+
+def _power_law_is_not_resolved(estimate):
+    inspection = estimate.inspection
+    if inspection.is_resolved:
+        return ""
+    pixel, within = 1e9 * np.pi / inspection.reach.nyquist, inspection.reach
+    return (
+        f"pixels of {pixel:.3g} nm do not resolve the power law of the spectrum, which falls by less than half up to "
+        f"{1e-6 * within.high:.3g} rad/µm: corner and slope are not measured; roughness beyond {1e-6 * within.end:.3g} "
+        "rad/µm is left out, so that surfaces are too smooth and stick more, the safe side"
+    )
 
 
 def _anisotropic(estimate):
@@ -148,7 +199,7 @@ def _anisotropic(estimate):
 
 def _moments_have_no_density(estimate):
     if estimate.feasible is None:
-        return f"{infeasible(estimate)}, nor have others within their errors; only heights: measured can be used"
+        return f"{infeasible(estimate)}, nor have others within their errors; the measured density is used instead"
     if estimate.feasible.distance > 0:
         near = f"skewness {estimate.feasible.skewness:.3g} with kurtosis {estimate.feasible.kurtosis:.3g}"
         return (
@@ -207,6 +258,7 @@ def _no_summits(estimate):
 
 
 _FLAGS = (
+    _no_plateau,
     _few_wavelengths,
     _bowed,
     _holes,
@@ -215,8 +267,10 @@ _FLAGS = (
     _sizes_differ,
     _spectra_differ,
     _small_scans,
+    _power_law_is_not_resolved,
     _spectrum_misfits,
     _noise,
+    _noise_stays,
     _spectrum_ends,
     _anisotropic,
     _moments_have_no_density,

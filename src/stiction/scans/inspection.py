@@ -27,7 +27,8 @@ from stiction.scans.scan import FEWEST_POINTS, Frame, Scan
 from stiction.scans.whittle import NON_GAUSSIAN, Reach, WhittleFit, fit_to_the_end, reach, spectrum, tip_reach
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 
-#: Fewest wavelengths of the corner along a scan: for a plateau at all.
+#: Fewest wavelengths of the corner along a scan: for a plateau at all. ASSUME: the spectrum of smaller scans is flat up
+#: to the first waves that they show. Longer waves would only make the surface rougher.
 FEWEST_WAVELENGTHS = 4
 #: ASSUME: fewest waves along a side from which the smaller scans count for the spectrum. A ring is one wave wide, so
 #: that its mean of a power law of slope -n is too large by about n (n + 1) / 24 over the square of this number: 1 %.
@@ -61,6 +62,7 @@ class Maps:
     rings: Rings  #: without the floor of the noise
     reach: Reach
     floor: Floor  #: of white noise
+    kept: Floor  #: floor that stays in heights and spectrum, because no heights are left without it
 
     @classmethod
     def of(cls, alike: Mapping[int, Scan], settings: Settings) -> "Maps":
@@ -73,12 +75,13 @@ class Maps:
         noisy = spectra.periodogram(complete, part.size)
         tip = np.inf if settings.tip_radius is None else tip_reach(complete, frame.pixel[0], settings.tip_radius)
         within = reach(part.size, frame.pixel, settings.shortest, tip)
-        floor = white_floor(spectra.rings(noisy), within)
+        floor, kept = white_floor(spectra.rings(noisy), within), Floor()
         if not can_be_noise(moments(np.mean([powers(z) for z in levelled], axis=0)), floor.variance(frame.pixel)[0]):
-            floor = Floor()
+            floor, kept = kept, floor
         within, clean = above(spectra.rings(noisy), within, floor), spectra.without_floor(noisy, floor.density)
         names = tuple(scan.name for scan in scans)
-        return cls(names, tuple(alike), frame, levelled, complete, part, clean, spectra.rings(clean), within, floor)
+        spectrum_of = spectra.rings(clean)
+        return cls(names, tuple(alike), frame, levelled, complete, part, clean, spectrum_of, within, floor, kept)
 
     @property
     def size(self) -> str:
@@ -173,8 +176,9 @@ class Inspection:
 
     @property
     def counted(self) -> tuple[Maps, ...]:
-        """Sizes that count for moments and quantiles, the largest first: those that show the plateau."""
-        return tuple(maps for maps in self.sizes if maps.wavelengths(self.fit) >= FEWEST_WAVELENGTHS)
+        """Sizes that count for moments and quantiles, the largest first: those that show the plateau, if any do."""
+        shown = tuple(maps for maps in self.sizes if maps.wavelengths(self.fit) >= FEWEST_WAVELENGTHS)
+        return shown or (self.largest,)
 
     @cached_property
     def weights(self) -> np.ndarray:
@@ -208,6 +212,11 @@ class Inspection:
     def spectrum_in(self, maps: Maps) -> CutoffSelfAffine | TabulatedSpectrum:
         """Spectrum that the scans do not contradict, without the waves that are shorter than two pixels of some."""
         return spectrum("fitted", self.fit, self.rings, self.reach, min(self.reach.end, maps.reach.nyquist))
+
+    @property
+    def is_resolved(self) -> bool:
+        """Whether the scans resolve the power law."""
+        return self.fit.is_resolved(self.reach)
 
     @property
     def filled_share(self) -> float:
@@ -254,7 +263,7 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
     Raises
     ------
     ScanError
-        If too many points are undefined, or if the scans are too small to show the plateau of the spectrum.
+        If too many points are undefined, or if the scans are too small to give a spectrum.
     """
     names = ", ".join(scan.name for scan in scans)
     groups = [Maps.of(alike, settings) for alike in by_size(scans, settings.undefined_share)]
@@ -263,16 +272,7 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
         fitted, rings, within = _fitted(sizes)
     except ValueError as reason:
         raise ScanError(names, "files", f"cannot give a spectrum: {reason}") from None
-    inspection = Inspection(sizes, settings, rings, within, fitted)
-    if inspection.wavelengths < FEWEST_WAVELENGTHS:
-        side = min(inspection.largest.part.size) * FEWEST_WAVELENGTHS / inspection.wavelengths
-        raise ScanError(
-            names,
-            "files",
-            f"shows no plateau of the spectrum: {inspection.wavelengths:.2g} wavelengths of its corner fit into the "
-            f"scan, {FEWEST_WAVELENGTHS} are needed, as on a side of about {1e6 * side:.2g} µm or more",
-        )
-    return inspection
+    return Inspection(sizes, settings, rings, within, fitted)
 
 
 def _whole(settings, scan, levelled):

@@ -20,8 +20,6 @@ from stiction.scans.whittle import FEWEST_RINGS, NON_GAUSSIAN, UNLIKELY, Reach, 
 
 #: A floor is flat over this factor of wave numbers up to the Nyquist one, unless the spectrum ends before it.
 _OCTAVE = 2.0
-#: Scans resolve the power law if the fit falls below this part of its plateau.
-_FALLEN = 0.5
 #: Directions of a ring in an eighth of a turn, of which all have the same aliases.
 _DIRECTIONS = 4
 #: Ends of the spectrum that are tried on either side of the best one, and logarithms of their ratios.
@@ -90,7 +88,7 @@ def white_floor(rings: Rings, within: Reach) -> Floor:
     if len(rings.between(within.low, within.high).wavenumber) < FEWEST_RINGS:
         return Floor()
     fitted, found = fit_to_the_end(rings, within)
-    if shape(found.high, np.log(fitted.corner), fitted.slope) > _FALLEN:
+    if not fitted.is_resolved(found):
         return Floor()
     ended = found.end < found.nyquist
     beyond = rings.between(found.end if ended else found.nyquist / _OCTAVE, found.nyquist)

@@ -40,14 +40,14 @@ def correlation_areas(spectrum: Spectrum, variance: float, area: float) -> float
 def measured_density(heights: np.ndarray, areas: float) -> MeasuredDensity:
     """Density of measured quantiles (49,) at `SCORES`, of scans with a number of `correlation_areas`.
 
+    Quantiles at scores of ±1 are used of few areas as well.
+
     Raises
     ------
     ValueError
-        If the scans hold too few of them for quantiles at scores of ±1, or all these heights are equal.
+        If nearly all heights are equal.
     """
-    largest = -ndtri(min(_AREAS_BEYOND / areas, 0.5))
-    if largest < 1:
-        raise ValueError(f"the heights of {areas:.3g} independent areas do not give a density")
+    largest = max(-ndtri(min(_AREAS_BEYOND / areas, 0.5)), 1.0)
     inside = np.abs(SCORES) <= largest + 1e-9
     known = np.asarray(heights)[inside]
     if not known[-1] > known[0]:

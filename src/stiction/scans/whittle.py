@@ -27,6 +27,8 @@ _ENDED, _RINGS_BEYOND = 0.5, 4
 #: Parts of the reach differ by this factor, and so do ends that are the same at most; parts from the end over this
 #: factor up to it show it, and the power law is as long.
 _STEP, _SOON = 1.1, 2.0
+#: Scans resolve the power law if the fit falls below this part of its plateau.
+_FALLEN = 0.5
 #: Fewest rings of a fit.
 FEWEST_RINGS = 8
 #: Largest χ² per degree of freedom of a fit, unless chance exceeds it with this probability.
@@ -109,6 +111,10 @@ class WhittleFit:
     def likely(self) -> bool:
         """Whether a spectrum of the form of Eq. (7) has such deviations by chance."""
         return chdtrc(self.freedom, self.chi2 / NON_GAUSSIAN**2) >= UNLIKELY
+
+    def is_resolved(self, within: Reach) -> bool:
+        """Whether a reach shows the power law: the fit falls below half of its plateau there."""
+        return bool(shape(within.high, np.log(self.corner), self.slope) < _FALLEN)
 
     def spectrum(self, cutoff: float) -> CutoffSelfAffine:
         """Eq. (7) with a cut-off [rad m⁻¹]."""

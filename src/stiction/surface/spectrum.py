@@ -18,6 +18,9 @@ from scipy.special import j0
 
 from stiction.rounding import is_at_most
 
+#: Wavelengths of the corner within which heights become uncorrelated, and corners beyond which waves are too short to
+#: correlate heights that far apart: a table of them is not needed.
+_REACH, _SHORT = 6.0, 30.0
 #: ASSUME: largest density of a surface [m⁴], which only numbers in nm⁴ exceed. The fourth root is a millimetre.
 _LARGEST_DENSITY = 1e-12
 
@@ -165,7 +168,7 @@ def require_resolved(cutoff: float, spacing: float) -> None:
         )
 
 
-def autocovariance(spectrum: Spectrum, lag: np.ndarray, panels: int = 4000) -> np.ndarray:
+def autocovariance(spectrum: Spectrum, lag: np.ndarray, panels: int = 4000, end: float = np.inf) -> np.ndarray:
     """Autocovariance r_Z(τ) = 2π ∫ s_Z J₀(ζτ) ζ dζ of an isotropic spectrum.
 
     Parameters
@@ -175,19 +178,21 @@ def autocovariance(spectrum: Spectrum, lag: np.ndarray, panels: int = 4000) -> n
         Distances τ [m].
     panels : int
         Number of trapezoids up to the cut-off.
+    end : float
+        Wave number beyond which waves are left out [rad m⁻¹].
 
     Returns
     -------
     (n,) array
         In the unit of the heights squared, [m²].
     """
-    zeta = np.linspace(0, spectrum.cutoff, panels + 1)
+    zeta = np.linspace(0, min(spectrum.cutoff, end), panels + 1)
     weights = np.full(panels + 1, zeta[1])
     weights[[0, -1]] /= 2
     return 2 * np.pi * j0(np.outer(lag, zeta)) @ (weights * zeta * spectrum(zeta))
 
 
-def correlation_length(spectrum: Spectrum, threshold: float = 0.01, reach: float = 6.0) -> float:
+def correlation_length(spectrum: Spectrum, threshold: float = 0.01, reach: float = _REACH) -> float:
     """Distance l^m beyond which r_Z remains below ``threshold`` · m₂ (Sec. III) [m].
 
     Searched up to ``reach`` wavelengths of the corner; the slowest decay, that of a pure plateau, needs 4.7.
@@ -198,14 +203,24 @@ def correlation_length(spectrum: Spectrum, threshold: float = 0.01, reach: float
         If the heights are still correlated at the end of the search.
     """
     lag = np.linspace(0, reach * 2 * np.pi / spectrum.corner, 1201)
-    covariance = autocovariance(spectrum, lag, panels=1500)
-    last = np.flatnonzero(covariance >= threshold * covariance[0])[-1]
+    end = _SHORT * spectrum.corner
+    covariance = autocovariance(spectrum, lag, panels=1500, end=end)
+    variance = covariance[0] if spectrum.cutoff <= end else spectrum.variance
+    last = np.flatnonzero(covariance >= threshold * variance)[-1]
     if last == len(lag) - 1:
         raise ValueError(
             f"heights {1e6 * lag[-1]:.3g} µm apart, {reach:g} wavelengths of the corner of their spectrum, are still "
             f"correlated by {threshold:g} or more"
         )
     return float(lag[last])
+
+
+def uncorrelated_beyond(spectrum: Spectrum) -> float:
+    """`correlation_length`, or the end of its search where heights of a measured spectrum still are correlated [m]."""
+    try:
+        return correlation_length(spectrum)
+    except ValueError:
+        return _REACH * 2 * np.pi / spectrum.corner
 
 
 def ring_means(values: np.ndarray, inside: np.ndarray | None = None) -> np.ndarray:

@@ -296,14 +296,16 @@ def test_a_grid_that_cuts_the_spectrum_off_is_a_warning():
     assert surface_flags.flags(spectrum_with()) == []
 
 
+@pytest.mark.filterwarnings("ignore:surface Etched")
 @pytest.mark.parametrize("psd", ["fitted", "tabulated"])
-@pytest.mark.parametrize("key", ["strip_length", "margin"])
-def test_strips_must_be_longer_than_the_correlation_of_the_measured_surface(psd, key):
-    short = dataclasses.replace(USE, **{key: 0.2e-6})
-    with pytest.raises(
-        ValueError, match=f"sampling.{key}.*_um is 0.2, .* surface Etched, .* from B2-scan-0.spm, B2-sc"
-    ):
-        spectrum_with(use=short, psd=psd)
+@pytest.mark.parametrize(
+    ("key", "words"), [("strip_length", "strips of 0.2 µm count as"), ("margin", "of 0.2 µm makes")]
+)
+def test_strips_and_margins_within_the_correlation_length_are_named(psd, key, words):
+    found = spectrum_with(use=dataclasses.replace(USE, **{key: 0.2e-6}), psd=psd)
+    (sentence,) = surface_flags.flags(found)
+    assert sentence.startswith("heights are correlated over 0.")
+    assert words in sentence
 
 
 def test_a_spectrum_that_cannot_be_drawn_is_refused_with_surface_and_files():

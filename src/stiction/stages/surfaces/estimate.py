@@ -219,6 +219,11 @@ def fit(estimate: xr.Dataset) -> WhittleFit:
     return WhittleFit(plateau, corner, slope, estimate.fit_covariance.values, chi2, int(estimate.fit_freedom))
 
 
+def is_resolved(estimate: xr.Dataset) -> bool:
+    """Whether the scans resolve the power law of the fit."""
+    return fit(estimate).is_resolved(reach(estimate))
+
+
 def rings(estimate: xr.Dataset) -> Rings:
     """Measured spectrum."""
     return Rings(*(estimate[name].values for name in ("wavenumber", "density", "modes", "weight")))

@@ -11,9 +11,9 @@ from stiction.errors import NotConverged
 from stiction.plan.stage import Stage, select
 from stiction.rounding import is_at_most
 from stiction.stages.surfaces import estimate as stage_estimate
-from stiction.stages.surfaces import parameters
 from stiction.stages.surfaces import spectrum as stage_spectrum
 from stiction.stages.surfaces.spectrum import Use
+from stiction.surface.spectrum import uncorrelated_beyond
 
 
 @dataclass(frozen=True)
@@ -34,20 +34,32 @@ def compute(estimate: xr.Dataset, heights: xr.Dataset, settings: Settings) -> xr
     Raises
     ------
     ValueError
-        If strips are not longer than the correlation length, or no Gaussian field has these heights and this spectrum.
+        If no Gaussian field has these heights and this spectrum.
     """
     use, source = settings.use, f"from {', '.join(stage_estimate.files(estimate))}"
     cutoff, clipped = cutoff_and_clipping(stage_estimate.reach(estimate).end, settings)
-    if clipped:
-        warnings.warn(f"surface {use.surface}: {clipped}", stacklevel=2)
     try:
         target = stage_estimate.spectrum(estimate, settings.psd, cutoff)
         spectrum = stage_spectrum.on_grid(target, heights, settings.spacing)
     except (ValueError, NotConverged) as reason:
         raise ValueError(f"surface {use.surface} {source} cannot be drawn: {reason}") from None
-    lengths = {"sampling.strip_length_um": use.strip_length, "sampling.margin_um": use.margin}
-    parameters.refuse_long_correlation(use.surface, target, lengths, source)
-    return spectrum.assign(flags=((), clipped))
+    limits = [sentence for sentence in (clipped, *_within_correlation(target, use)) if sentence]
+    for sentence in limits:
+        warnings.warn(f"surface {use.surface}: {sentence}", stacklevel=2)
+    return spectrum.assign(flags=((), "\n".join(limits)))
+
+
+def _within_correlation(spectrum, use):
+    """Sentences about strips and margins within the correlation length."""
+    length = uncorrelated_beyond(spectrum)
+    strip, margin, heights = (from_si(value, "um") for value in (use.strip_length, use.margin, length))
+    if use.strip_length <= length:
+        yield f"heights are correlated over {heights:.2g} µm; strips of {strip:g} µm count as independent nevertheless"
+    if use.margin <= length:
+        yield (
+            f"heights are correlated over {heights:.2g} µm, so that a margin of {margin:g} µm makes opposite edges of "
+            "a strip alike; a longer sampling.margin_um does not"
+        )
 
 
 def cutoff_and_clipping(end: float, settings: Settings) -> tuple[float, str]:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import xarray as xr
 
 from stiction.config.units import from_si
-from stiction.surface.spectrum import CutoffSelfAffine, Spectrum, TabulatedSpectrum, correlation_length
+from stiction.surface.spectrum import CutoffSelfAffine, Spectrum, TabulatedSpectrum, uncorrelated_beyond
 
 _UNITS = {"plateau": "m4", "floor": "m4", "corner": "rad m-1", "cutoff": "rad m-1"}
 
@@ -41,17 +41,10 @@ def refuse_long_correlation(
 ) -> None:
     """Raise a ValueError if the heights are correlated over any of the lengths, by key of the configuration [m].
 
-    It is raised as well if the heights of a tabulated spectrum do not become uncorrelated.
-
     The same condition as for published spectra, see `stiction.config.relations.lengths_exceed_the_correlation`. The
     message states the source of the spectrum.
     """
-    try:
-        bound = correlation_length(spectrum)
-    except ValueError as error:
-        raise ValueError(
-            f"surface {surface} has no correlation length ({error}) for the spectrum {source}; psd: fitted has one"
-        ) from error
+    bound = uncorrelated_beyond(spectrum)
     for key, length in lengths.items():
         if length <= bound:
             raise ValueError(

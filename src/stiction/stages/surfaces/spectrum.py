@@ -73,11 +73,10 @@ def refuse_misuse(identification: xr.Dataset, use: Use) -> None:
     Raises
     ------
     ValueError
-        If strips are not longer than its correlation length, or its summits do not resemble the measured ones.
+        If the margin is not longer than its correlation length, or its summits do not resemble the measured ones.
     """
     spectrum = parameters.spectrum_of(identification)
-    lengths = {"sampling.strip_length_um": use.strip_length, "sampling.margin_um": use.margin}
-    parameters.refuse_long_correlation(use.surface, spectrum, lengths)
+    parameters.refuse_long_correlation(use.surface, spectrum, {"sampling.margin_um": use.margin})
     ratios = {word: 1 + off / 100 for word, (off, _) in parameters.misfits(identification).items()}
     if not all(1 / RESEMBLES <= ratio <= RESEMBLES for ratio in ratios.values()):
         raise ValueError(

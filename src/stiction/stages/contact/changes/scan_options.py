@@ -63,6 +63,8 @@ def _otherwise(name, estimate, choice, settings):
     source = other(settings.sources[name], choice)
     if source.heights == "moments" and np.isnan(stage_estimate.distance(estimate)):
         source = replace(source, heights="measured")  # the only one that exists
+    if not stage_estimate.is_resolved(estimate):
+        source = replace(source, beyond="cut")  # as is no power law that could go on
     heights = measured_heights.compute(estimate, measured_heights.Settings(name, source.heights))
     sampling = settings.sampling
     use = Use(name, sampling.strip_length, sampling.margin)

@@ -1,0 +1,118 @@
+"""Grid of the drawn surfaces where a configuration does not state it: as fine and as wide as the surfaces need.
+
+The distance between heights is the largest whole part of 10 nm whose Nyquist wave number is not below the end of any
+spectrum, or the smallest one whose fields take half of the memory of a job, which leaves room for longer tips. The
+margin is 1 µm, or the smallest multiple of 0.5 µm above the correlation length of every surface. Only surfaces of pairs
+that run, of devices and of test beams count. Those of the paper have the paper's grid.
+"""
+
+import functools
+import math
+from collections.abc import Iterator, Mapping
+from itertools import chain
+from typing import Any
+
+from stiction.config import memory, scans
+from stiction.config.units import NM_PER_UM, from_si, in_si
+from stiction.models import SIDES
+from stiction.rounding import is_at_most
+from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
+
+#: Distance between heights [nm] and margin [µm] of the paper, and the steps of longer margins [µm].
+_SPACING, _MARGIN, _STEP = memory.GRID["spacing_nm"], memory.GRID["margin_um"], 0.5
+
+
+def completed(config: dict[str, Any], estimates: Mapping[str, dict]) -> dict[str, Any]:
+    """Configuration, which need not be valid, with all keys of section ``sampling``, and heights that have a density.
+
+    Variants on grids that are not finer than one that follows the surfaces are left out. The estimates are the
+    preliminary numbers of measured surfaces.
+    """
+    sampling = config.get("sampling") if isinstance(config, dict) else None
+    if not isinstance(sampling, dict):
+        return config
+    config = scans.with_heights(config, estimates)
+    if {"spacing_nm", "margin_um"} <= set(sampling):
+        return config
+    waves = list(filter(None, (_waves(config, name, estimates) for name in dict.fromkeys(used(config)))))
+    chosen = {"margin_um": max((_margin(length) for _, length in waves), default=_MARGIN)} | sampling
+    config = config | {"sampling": {"spacing_nm": _SPACING} | chosen}
+    parts = _parts(config, max((end for end, _ in waves), default=0.0))
+    if "spacing_nm" in sampling or parts == 1:
+        return config
+    return _on_finer_grid(config, _SPACING / parts)
+
+
+def _section(config, *place):
+    """Nested section of a configuration; empty where there is none."""
+    for name in place:
+        config = config.get(name) if isinstance(config, dict) and isinstance(name, str) else None
+    return config if isinstance(config, dict) else {}
+
+
+def used(config: Mapping[str, Any]) -> Iterator[str]:
+    """Names of the surfaces of pairs that run, of devices and of test beams, as often as they occur."""
+    running = _section(config, "run").get("pairs")
+    devices = chain.from_iterable(_section(config, section).values() for section in ("devices", "test_beams"))
+    pairs = [
+        *(running if isinstance(running, list) else ()),
+        *(_section({"": entry}, "").get("pair") for entry in devices),
+    ]
+    for pair in pairs:
+        yield from filter(None, (_section(config, "pairs", pair).get(side) for side in SIDES))
+
+
+def _waves(config, name, estimates):
+    """Largest wave number of a surface [rad/µm] and correlation length [µm]; ``None`` if they are not known."""
+    entry = _section(config, "surfaces", name)
+    if name in estimates:
+        return estimates[name]["end_rad_per_um"], estimates[name]["correlation_um"][scans.complete(entry)["psd"]]
+    if entry.get("psd") != "published":
+        return None
+    try:
+        return float(entry["published_psd"]["cutoff_rad_per_um"]), published_correlation(**entry["published_psd"])
+    except (KeyError, TypeError, ValueError):
+        return None  # relations report what is missing or out of range
+
+
+@functools.cache
+def published_correlation(**psd: float) -> float:
+    """Correlation length of a published spectrum [µm]; raises a ValueError if it does not decay."""
+    return from_si(correlation_length(in_si(CutoffSelfAffine, psd)), "um")
+
+
+def _margin(correlation):
+    """Margin above a correlation length [µm]."""
+    return _MARGIN if correlation < _MARGIN else _STEP * (math.floor(correlation / _STEP) + 1)
+
+
+def _parts(config, end):
+    """Number of parts of the paper's distance that carry waves up to a wave number [rad/µm], as memory allows."""
+    nyquist = math.pi / _SPACING * NM_PER_UM
+    parts = next(n for n in range(max(1, math.floor(end / nyquist)), 10**6) if is_at_most(end, n * nyquist))
+    largest = max(length * width for length, width in _fields(config))
+    while parts > 1 and memory.of_field(largest, 1, _SPACING / parts) > memory.LARGEST / 2:
+        parts -= 1
+    return parts
+
+
+def _fields(config):
+    """Sides of the fields that are drawn [µm]."""
+    yield memory.FIELD_UM, memory.FIELD_UM
+    sampling, width = config["sampling"], _section(config, "beam").get("width_um")
+    try:
+        yield sampling["strip_length_um"] + sampling["margin_um"], width + sampling["margin_um"]
+        for device in _section(config, "devices").values():
+            yield tuple(side + sampling["margin_um"] for side in memory.patch_of(device, sampling))
+    except (KeyError, TypeError, ValueError):
+        return  # other relations report what is missing or out of range
+
+
+def _on_finer_grid(config, spacing):
+    """Configuration with another distance between heights [nm], and the variants with finer ones."""
+    studies, variants = _section(config, "studies"), _section(config, "studies", "variants")
+    listed = variants.get("spacing_nm")
+    finer = [other for other in listed if not is_at_most(spacing, other)] if isinstance(listed, list) else listed
+    changed = {"variants": variants | {"spacing_nm": finer}} if "spacing_nm" in variants else {}
+    sampling = config["sampling"] | {"spacing_nm": spacing}
+    return config | {"sampling": sampling, "studies": studies | changed}

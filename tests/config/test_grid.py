@@ -1,0 +1,133 @@
+"""The grid of a configuration follows its surfaces, unless the configuration states it."""
+
+import numpy as np
+import pytest
+import yaml
+from configurations import ROOT, problems
+
+from stiction.config import memory
+from stiction.config.files import load, paper
+from stiction.config.merging import merged
+from stiction.config.reading import read
+from stiction.config.surfaces.grid import completed, published_correlation
+
+#: Grid of the paper.
+PAPER = {"spacing_nm": 10, "margin_um": 1, "strip_length_um": 1.5}
+BASE = read(ROOT / "config.yaml")
+
+
+def b2(corner=12.0, cutoff=125.0, slope=-4.6):
+    """Section of the surface of pair b with another spectrum [rad/µm]."""
+    psd = {"plateau_nm4": 1.0, "floor_nm4": (cutoff / corner) ** slope}
+    return {"surfaces": {"B2": {"published_psd": psd | {"corner_rad_per_um": corner, "cutoff_rad_per_um": cutoff}}}}
+
+
+def sampling(*changes, estimates=()):
+    config = BASE
+    for change in changes:
+        config = merged(config, change)
+    return completed(config, dict(estimates))["sampling"]
+
+
+def test_surfaces_of_the_paper_have_its_grid():
+    assert load()["sampling"] == paper()["sampling"] == PAPER
+    assert completed(BASE, {})["studies"] == BASE["studies"]
+
+
+@pytest.mark.parametrize("cutoff", [100.0, 314.159, 314.2, 500.0, 1608.5, 2000.0])
+def test_the_grid_carries_every_spectrum_with_no_more_points_than_needed(cutoff):
+    spacing = sampling({"run": {"pairs": ["b"]}}, b2(12.0, cutoff))["spacing_nm"]
+    parts = 10 / spacing
+    assert parts == pytest.approx(round(parts))
+    assert cutoff <= 1.000001 * 1e3 * np.pi / spacing
+    assert spacing == 10 or cutoff > 1e3 * np.pi * (parts - 1) / 10
+
+
+def test_a_grid_that_does_not_fit_into_memory_is_as_fine_as_fits():
+    spacing = sampling({"run": {"pairs": ["b"]}}, b2(cutoff=1e6))["spacing_nm"]
+    field = memory.FIELD_UM, memory.FIELD_UM
+    assert memory.of_field(*field, spacing) <= memory.LARGEST / 2 < memory.of_field(*field, 10 / (10 / spacing + 1))
+
+
+@pytest.mark.parametrize("corner", [0.5, 2.0, 12.0, 50.0])
+def test_the_margin_exceeds_the_correlation_length_by_half_a_micrometre_at_most(corner):
+    found = sampling({"run": {"pairs": ["b"]}}, b2(corner))["margin_um"]
+    length = published_correlation(**b2(corner)["surfaces"]["B2"]["published_psd"])
+    assert max(1, length) <= found <= max(1, length + 0.5)
+    assert (found > 1) == (corner < 10)
+
+
+@pytest.mark.parametrize(
+    ("more", "finer"),
+    [
+        ("run: {pairs: [b]}", True),
+        ("run: {pairs: [a]}", False),
+        ("run: {pairs: []}", False),
+        ("run: {pairs: []}\ndevices: {C1: {pair: b}}", True),
+        ("run: {pairs: []}\ntest_beams: {T1: {pair: b}}", True),
+        ("run: {pairs: []}\ndevices: {C1: {pair: a}}", False),
+    ],
+)
+def test_surfaces_count_that_are_drawn(more, finer):
+    found = sampling(b2(cutoff=500.0), yaml.safe_load(more))
+    assert (found["spacing_nm"] == 5) == finer
+
+
+def test_what_is_stated_stays():
+    found = sampling(b2(0.5, 900.0), {"run": {"pairs": ["b"]}, "sampling": {"spacing_nm": 8, "margin_um": 0.7}})
+    assert found == {"spacing_nm": 8, "margin_um": 0.7, "strip_length_um": 1.5}
+    one = sampling(b2(0.5, 900.0), {"run": {"pairs": ["b"]}, "sampling": {"spacing_nm": 8}})
+    assert one["spacing_nm"] == 8
+    assert one["margin_um"] > 1
+
+
+def test_variants_have_finer_grids_than_that_of_the_surfaces():
+    changes = {"run": {"pairs": ["b"]}, "studies": {"variants": {"spacing_nm": [5, 2]}}}
+    config = completed(merged(merged(BASE, b2(cutoff=500.0)), changes), {})
+    assert config["studies"]["variants"]["spacing_nm"] == [2]
+    assert problems(config) == ()
+
+
+def test_a_measured_surface_counts_up_to_the_end_of_its_spectrum():
+    mine = {"surfaces": {"Mine": {"scans": {"files": ["a.gwy"]}}}, "run": {"pairs": []}}
+    mine |= {"pairs": {"m": {"beam": "Mine", "substrate": "Sub1"}}, "devices": {"C1": {"pair": "m"}}}
+    numbers = {
+        "measured": [0.0, 3.0],
+        "feasible": [0.0, 3.0],
+        "end_rad_per_um": 1608.0,
+        "correlation_um": {"fitted": 3.2, "tabulated": 7.1},
+    }
+    found = sampling(mine, estimates={"Mine": numbers}.items())
+    assert found["spacing_nm"] == pytest.approx(10 / 6)
+    assert found["margin_um"] == 3.5
+    tabulated = merged(mine, {"surfaces": {"Mine": {"psd": "tabulated"}}})
+    assert sampling(tabulated, estimates={"Mine": numbers}.items())["margin_um"] == 7.5
+    assert sampling(mine) == PAPER, "without its numbers"
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [None, [], {"sampling": []}, {"sampling": {}, "run": {"pairs": [[]]}}, {"sampling": {}, "devices": {"C1": None}}],
+)
+def test_what_is_no_configuration_is_left_to_the_schema(wrong):
+    assert completed(wrong, {}) == wrong or completed(wrong, {})["sampling"] == {"spacing_nm": 10, "margin_um": 1}
+
+
+@pytest.mark.parametrize(
+    "unused",
+    [
+        "character: {spacing_nm: 25}",
+        "character: {spacing_nm: 510}",
+        "beam: {width_um: 30.005}",
+        "beam: {elements: 333}",
+        "identification: {patch_um: 0.755}",
+        "studies: {mesh: {elements_um: [7]}}",
+        "surfaces: {B2: {published_psd: {cutoff_rad_per_um: 900}}}",
+    ],
+)
+def test_studies_that_do_not_run_refuse_nothing(unused):
+    stopper = {"kind": "stopper", "pair": "a", "contact_um": [4, 4], "restoring_force_uN": 5, "humidities": [0.6]}
+    alone = merged(completed(BASE, {}), {"run": {"pairs": []}, "devices": {"S1": stopper}})
+    config = merged(alone, yaml.safe_load(unused))
+    assert problems(config) == ()
+    assert problems(merged(config, {"run": {"pairs": ["a", "b"]}})) != (), "control"
