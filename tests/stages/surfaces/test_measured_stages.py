@@ -299,13 +299,20 @@ def test_a_grid_that_cuts_the_spectrum_off_is_a_warning():
 @pytest.mark.filterwarnings("ignore:surface Etched")
 @pytest.mark.parametrize("psd", ["fitted", "tabulated"])
 @pytest.mark.parametrize(
-    ("key", "words"), [("strip_length", "strips of 0.2 µm count as"), ("margin", "of 0.2 µm makes")]
+    ("key", "words"), [("strip_length", "strips of 0.3 µm count as"), ("margin", "of 0.3 µm makes")]
 )
 def test_strips_and_margins_within_the_correlation_length_are_named(psd, key, words):
-    found = spectrum_with(use=dataclasses.replace(USE, **{key: 0.2e-6}), psd=psd)
+    found = spectrum_with(use=dataclasses.replace(USE, **{key: 0.3e-6}), psd=psd)
     (sentence,) = surface_flags.flags(found)
     assert sentence.startswith("heights are correlated over 0.")
     assert words in sentence
+    assert "unsafe" not in sentence
+
+
+@pytest.mark.filterwarnings("ignore:surface Etched")
+def test_strips_of_which_many_are_correlated_are_named_as_unsafe():
+    (sentence,) = surface_flags.flags(spectrum_with(use=dataclasses.replace(USE, strip_length=0.05e-6)))
+    assert sentence.endswith("safe lengths too long: the unsafe side")
 
 
 def test_a_spectrum_that_cannot_be_drawn_is_refused_with_surface_and_files():
