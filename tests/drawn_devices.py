@@ -1,7 +1,7 @@
 """Devices on drawn surfaces: from a configuration to all files of the target ``devices``, in one process.
 
 Smooth and rough, humid and dry, beams and stoppers: every draw must end in an answer, or in sentences before the first
-job. ``tests/benchmarks/drawn_devices.py`` runs many draws, a test some that failed once.
+job. ``tests/benchmarks/draw_devices.py`` runs many draws, a test some that failed once.
 """
 
 import json

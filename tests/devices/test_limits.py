@@ -32,6 +32,7 @@ CASES = [
         "coating_hamaker_constant_zJ includes it",
         ("FDTS", tuple(OF_COATINGS.values())),
     ),
+    (limits.flat_patches, (0.024,), "2.4 % of the patches.*safe side", (0.0,)),
     (limits.thin_film, (1 * NM,), "1 nm high, thinner than 4 molecules, 1.12 nm", (1.13 * NM,)),
     (limits.thin_film, (1 * NM,), "Results for dry air and for the next humidity above bracket it", (0.0,)),
     (

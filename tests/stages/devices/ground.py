@@ -42,7 +42,8 @@ def contact():
 def computed(wanted, vectors, groups=2):
     """Dataset of stage cracks on given vectors, with fewer groups."""
     limit = 1.2 * vectors[:, 1].max()
-    with patch.object(curves, "vectors", lambda *_: (vectors, limit)), patch.object(cracks, "GROUPS", groups):
+    drawn = {"vectors": lambda *_: (vectors, limit), "share_flat": lambda *_: 0.0}
+    with patch.multiple(curves, **drawn), patch.object(cracks, "GROUPS", groups):
         return cracks.compute(contact(), wanted)
 
 

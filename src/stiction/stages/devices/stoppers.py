@@ -132,6 +132,11 @@ def _stuck(pull_off, force):
     return [float(part[0]) for part in stuck_patches(pull_off, np.array([force]))]
 
 
+def numbers_of_fits(seed: int) -> np.random.Generator:
+    """Random numbers of the errors of fitted forces: the same for all stoppers, so that their errors compare."""
+    return stream(seed, "safe force")
+
+
 def _safe(rows, seed):
     """Safe forces of rows of patches, their estimates and errors (3, rows, shares) [N], and what each share rests on.
 
@@ -140,7 +145,7 @@ def _safe(rows, seed):
     parts, bases = np.full((3, len(rows), len(SHARES)), np.nan), [""] * len(SHARES)
     for k, share in enumerate(SHARES):
         with suppress(ValueError):
-            found = safe_forces(rows, share, stream(seed, "safe force"))
+            found = safe_forces(rows, share, numbers_of_fits(seed))
             parts[..., k] = np.transpose([(one.force, one.estimate, one.error) for one in found])
             bases[k] = str(found[0].basis)
     return parts, bases

@@ -29,7 +29,6 @@ from stiction.stages.devices import sticking, stoppers
 from stiction.stages.devices.contact_names import corrections_of
 from stiction.stages.devices.opening import FORCE, DesignedBeam, section_of_beam
 from stiction.stages.roughness.contacts import POINTS, contacts_of, points_of, roughness_of, varied
-from stiction.streams import stream
 
 #: Value of a second quantity of a point of a map, and that of the surface as it is given.
 OTHERS = ("other", "other_given")
@@ -127,7 +126,7 @@ class OfStopper:
         """Safe force at a humidity."""
         forces = stoppers.forces(contact, humidity, self)
         stuck = tuple(float(part[0]) for part in stuck_patches(forces, np.array([self.restoring_force])))
-        (safe,) = safe_forces(forces[None], self.share, stream(self.seed, "safe force"))
+        (safe,) = safe_forces(forces[None], self.share, stoppers.numbers_of_fits(self.seed))
         return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)]
 
 

@@ -1,4 +1,4 @@
-"""Run devices on drawn surfaces, ``python tests/benchmarks/drawn_devices.py FIRST LAST``: two lines each.
+"""Run devices on drawn surfaces, ``python tests/benchmarks/draw_devices.py FIRST LAST``: two lines each.
 
 Every draw must end in an answer, or be refused before the first job.
 """

@@ -13,6 +13,7 @@ import pytest
 
 from stiction.errors import ScanError
 from stiction.formats import high_speed, packed, text
+from stiction.formats.content import content_of, own_reader
 from stiction.scans.reading import Source, read
 from stiction.streams import stream
 
@@ -354,3 +355,8 @@ def test_the_reader_of_the_ending_comes_first(tmp_path, monkeypatch, ending, oth
     monkeypatch.setattr(greedy, "__init__", lambda *_, **__: None)
     monkeypatch.setattr(IO, "readers", [greedy, *IO.readers])
     same(read(written(tmp_path, ending)).scan, 1e-15)
+
+
+@pytest.mark.parametrize("stored", [b"", b":NANONIS", b"\x89HDF", b"GWYP", b"1 2 3"])
+def test_a_file_without_the_first_bytes_of_a_format_has_no_reader_of_our_own(stored):
+    assert own_reader(content_of("a.dat", "a.dat", stored)) is None
