@@ -284,7 +284,7 @@ def test_a_check_says_what_takes_most_of_the_time_of_a_device_on_measured_surfac
 
 def test_a_check_draws_the_first_samples_and_remembers_what_they_showed(tmp_path, capsys, monkeypatch):
     path = tmp_path / "mine.yaml"
-    path.write_text("run: {pairs: [b]}\nbeam: {width_um: 0.06}\nstudies: {variants: {every: []}}\n")
+    path.write_text("run: {pairs: [b]}\nbeam: {width_um: 0.06}\nattraction: {reach: touching}\n")
     words = ["check", str(path), "--directory", str(tmp_path)]
     assert main(words) == 2
     refusal = capsys.readouterr().err

@@ -43,8 +43,9 @@ def test_the_grid_carries_every_spectrum_with_no_more_points_than_needed(cutoff)
     assert spacing == 10 or cutoff > 1e3 * np.pi * (parts - 1) / 10
 
 
-def test_a_grid_that_does_not_fit_into_memory_is_as_fine_as_fits():
-    spacing = sampling({"run": {"pairs": ["b"]}}, b2(cutoff=1e6))["spacing_nm"]
+@pytest.mark.parametrize("cutoff", [1e6, 1e30])
+def test_a_grid_that_does_not_fit_into_memory_is_as_fine_as_fits(cutoff):
+    spacing = sampling({"run": {"pairs": ["b"]}}, b2(cutoff=cutoff))["spacing_nm"]
     field = memory.FIELD_UM, memory.FIELD_UM
     assert memory.of_field(*field, spacing) <= memory.LARGEST / 2 < memory.of_field(*field, 10 / (10 / spacing + 1))
 
@@ -107,10 +108,26 @@ def test_a_measured_surface_counts_up_to_the_end_of_its_spectrum():
 
 @pytest.mark.parametrize(
     "wrong",
-    [None, [], {"sampling": []}, {"sampling": {}, "run": {"pairs": [[]]}}, {"sampling": {}, "devices": {"C1": None}}],
+    [
+        None,
+        [],
+        {"sampling": []},
+        {"sampling": {}, "run": {"pairs": [[]]}},
+        {"sampling": {}, "run": {"pairs": ["a"]}, "pairs": {"a": {"beam": [None], "substrate": {}}}},
+        {"sampling": {}, "devices": {"C1": None}},
+    ],
 )
 def test_what_is_no_configuration_is_left_to_the_schema(wrong):
     assert completed(wrong, {}) == wrong or completed(wrong, {})["sampling"] == {"spacing_nm": 10, "margin_um": 1}
+
+
+def test_a_surface_that_is_wrong_on_its_own_does_not_count():
+    config = merged(BASE, b2(0.5, 500.0))
+    assert completed(config, {})["sampling"] != PAPER, "control"
+    assert (
+        completed(config, {}, [("beam",), ("surfaces", "B2", "published_psd", "corner_rad_per_um")])["sampling"]
+        == PAPER
+    )
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from functools import partial, reduce
 import jsonschema
 import pytest
 import yaml
-from configurations import LEAVES, NUMBERS, PAPER, SCHEMA, changed, entries, problems, replaced, without
+from configurations import LEAVES, NUMBERS, PAPER, ROOT, SCHEMA, changed, entries, problems, replaced, without
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from wrong_configurations import OF_SURFACES, UNKNOWN, UNNAMEABLE, WRONG, WRONG_VALUES
@@ -17,6 +17,7 @@ from stiction.config import messages
 from stiction.config.cases import in_numbers
 from stiction.config.kinds import KINDS
 from stiction.config.merging import merged
+from stiction.config.reading import read
 
 
 @pytest.mark.parametrize(
@@ -263,6 +264,8 @@ def test_a_long_value_is_cut_off_in_a_message():
     assert "w" * 90 in line
 
 
+#: Without its grid, which then follows the surfaces.
+WITHOUT_GRID = read(ROOT / "config.yaml")
 FUZZ = settings(max_examples=120, suppress_health_check=[HealthCheck.too_slow])
 JUNK = st.recursive(
     st.one_of(
@@ -287,7 +290,7 @@ JUNK = st.recursive(
 @st.composite
 def mutilated(draw):
     """The paper's configuration with up to four errors: values replaced or scaled, keys removed or added."""
-    config = {"root": copy.deepcopy(PAPER)}
+    config = {"root": copy.deepcopy(draw(st.sampled_from([PAPER, WITHOUT_GRID])))}
     for _ in range(draw(st.integers(1, 4))):
         section, key = config, "root"
         while isinstance(section[key], dict) and section[key] and draw(st.integers(0, 9)):

@@ -286,3 +286,12 @@ def test_waves_far_shorter_than_those_of_the_corner_do_not_change_the_correlatio
     lengths = [correlation_length(CutoffSelfAffine(1.0e-30, 1.0e-30 * (cut / 1e6) ** -4.6, 1e6, cut)) for cut in
                (2e7, 2.9e7, 3.1e7, 1e9, 1e12)]  # fmt: skip
     np.testing.assert_allclose(lengths, lengths[0], rtol=0.02)
+
+
+def test_white_noise_is_correlated_over_its_shortest_waves_alone():
+    # r/m₂ = 2 J₁(x)/x with x = cut-off · distance is below 0.01 beyond x = 27.
+    cut = np.array([2e6, 2e7, 2.9e7, 3.1e7, 1e8, 1e9, 1e12])
+    lengths = np.array([correlation_length(CutoffSelfAffine(1.0e-30, 1.0e-30, 1e6, end)) for end in cut])
+    assert np.all(np.diff(lengths) <= 0)
+    assert np.all(cut * lengths < 30)
+    assert lengths[-1] == 0

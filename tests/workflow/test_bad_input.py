@@ -37,7 +37,7 @@ def test_a_wrong_configuration_stops_before_the_first_job(planner, tmp_path, ove
 
 
 def test_what_the_first_samples_show_stops_before_the_first_job(planner, tmp_path, overlay):
-    file = overlay("run: {pairs: [b]}\nbeam: {width_um: 0.06}\nstudies: {variants: {every: []}}")
+    file = overlay("run: {pairs: [b]}\nbeam: {width_um: 0.06}\nattraction: {reach: touching}")
     folder = tmp_path / "work"
     folder.mkdir()
     status, printed = planner("--directory", folder, "--cores", 1, "results/heights/B2.nc", config=[file])

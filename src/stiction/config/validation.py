@@ -46,7 +46,7 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     faults = schema_problems(config, schema())
     wrong = [path for fault in faults for path in (fault.path, *fault.others)]
     surfaces, incomplete, origins = _completed(config, wrong)
-    sections = grid.completed(surfaces, {})
+    sections = grid.completed(surfaces, {}, wrong)
     wrong += [problem.path for problem in incomplete]
     broken = _broken(sections, wrong, origins=origins)
     of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
@@ -54,7 +54,7 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
     problems = faults + incomplete + broken + refused
     if estimates and scans.simulates(sections):
         files = {name: config["surfaces"][name]["scans"]["files"] for name in estimates}
-        on_grid = grid.completed(surfaces, estimates)
+        on_grid = grid.completed(surfaces, estimates, wrong)
         problems += _broken(scans.with_preliminary_estimates(on_grid, estimates), wrong, files, origins)
     if problems:
         raise ConfigError(*dict.fromkeys(test_beams.in_files(str(problem), stated) for problem in problems))

@@ -205,8 +205,9 @@ def correlation_length(spectrum: Spectrum, threshold: float = 0.01, reach: float
     lag = np.linspace(0, reach * 2 * np.pi / spectrum.corner, 1201)
     end = _SHORT * spectrum.corner
     covariance = autocovariance(spectrum, lag, panels=1500, end=end)
-    variance = covariance[0] if spectrum.cutoff <= end else spectrum.variance
-    last = np.flatnonzero(covariance >= threshold * variance)[-1]
+    if spectrum.cutoff > end:
+        covariance[0] = spectrum.variance  # with the waves that are left out
+    last = np.flatnonzero(covariance >= threshold * covariance[0])[-1]
     if last == len(lag) - 1:
         raise ValueError(
             f"heights {1e6 * lag[-1]:.3g} µm apart, {reach:g} wavelengths of the corner of their spectrum, are still "

@@ -177,7 +177,7 @@ def _refusals(entry, library) -> Iterator[tuple[str, str]]:
 def _without(missing, library):
     """Message about a surface that nothing describes but its rms."""
     return (
-        f"lacks {', '.join(missing)}; state rms_nm, skewness, kurtosis and psd; or rms_nm and like: one of "
+        f"is without {', '.join(missing)}, must state rms_nm, skewness, kurtosis and psd; or rms_nm and like: one of "
         f"{', '.join(library)}, a typical surface for what is not known; or rms_nm, hurst, correlation_length_nm and "
         "cutoff_rad_per_um; or scans"
     )

@@ -8,8 +8,8 @@ that run, of devices and of test beams count. Those of the paper have the paper'
 
 import functools
 import math
-from collections.abc import Iterator, Mapping
-from itertools import chain
+from collections.abc import Collection, Iterator, Mapping
+from itertools import chain, count
 from typing import Any
 
 from stiction.config import memory, scans
@@ -22,11 +22,12 @@ from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
 _SPACING, _MARGIN, _STEP = memory.GRID["spacing_nm"], memory.GRID["margin_um"], 0.5
 
 
-def completed(config: dict[str, Any], estimates: Mapping[str, dict]) -> dict[str, Any]:
+def completed(config: dict[str, Any], estimates: Mapping[str, dict], faults: Collection[tuple] = ()) -> dict[str, Any]:
     """Configuration, which need not be valid, with all keys of section ``sampling``, and heights that have a density.
 
     Variants on grids that are not finer than one that follows the surfaces are left out. The estimates are the
-    preliminary numbers of measured surfaces.
+    preliminary numbers of measured surfaces. Surfaces with one of the faults, keys that are wrong on their own, do not
+    count.
     """
     sampling = config.get("sampling") if isinstance(config, dict) else None
     if not isinstance(sampling, dict):
@@ -34,7 +35,9 @@ def completed(config: dict[str, Any], estimates: Mapping[str, dict]) -> dict[str
     config = scans.with_heights(config, estimates)
     if {"spacing_nm", "margin_um"} <= set(sampling):
         return config
-    waves = list(filter(None, (_waves(config, name, estimates) for name in dict.fromkeys(used(config)))))
+    wrong = {path[1] for path in faults if path[:1] == ("surfaces",) and len(path) > 1}
+    waves = [_waves(config, name, estimates) for name in dict.fromkeys(used(config)) if name not in wrong]
+    waves = list(filter(None, waves))
     chosen = {"margin_um": max((_margin(length) for _, length in waves), default=_MARGIN)} | sampling
     config = config | {"sampling": {"spacing_nm": _SPACING} | chosen}
     parts = _parts(config, max((end for end, _ in waves), default=0.0))
@@ -59,7 +62,8 @@ def used(config: Mapping[str, Any]) -> Iterator[str]:
         *(_section({"": entry}, "").get("pair") for entry in devices),
     ]
     for pair in pairs:
-        yield from filter(None, (_section(config, "pairs", pair).get(side) for side in SIDES))
+        sides = (_section(config, "pairs", pair).get(side) for side in SIDES)
+        yield from (name for name in sides if isinstance(name, str))
 
 
 def _waves(config, name, estimates):
@@ -89,22 +93,23 @@ def _margin(correlation):
 def _parts(config, end):
     """Number of parts of the paper's distance that carry waves up to a wave number [rad/µm], as memory allows."""
     nyquist = math.pi / _SPACING * NM_PER_UM
-    parts = next(n for n in range(max(1, math.floor(end / nyquist)), 10**6) if is_at_most(end, n * nyquist))
-    largest = max(length * width for length, width in _fields(config))
-    while parts > 1 and memory.of_field(largest, 1, _SPACING / parts) > memory.LARGEST / 2:
-        parts -= 1
-    return parts
+    largest = max(_areas(config))
+
+    def too_many(parts):
+        return memory.of_field(largest, 1, _SPACING / parts) > memory.LARGEST / 2
+
+    return next(n for n in count(1) if is_at_most(end, n * nyquist) or too_many(n + 1))
 
 
-def _fields(config):
-    """Sides of the fields that are drawn [µm]."""
-    yield memory.FIELD_UM, memory.FIELD_UM
+def _areas(config):
+    """Areas of the fields that are drawn [µm²]."""
+    yield memory.FIELD_UM**2
     sampling, width = config["sampling"], _section(config, "beam").get("width_um")
     try:
-        yield sampling["strip_length_um"] + sampling["margin_um"], width + sampling["margin_um"]
+        yield float((sampling["strip_length_um"] + sampling["margin_um"]) * (width + sampling["margin_um"]))
         for device in _section(config, "devices").values():
-            yield tuple(side + sampling["margin_um"] for side in memory.patch_of(device, sampling))
-    except (KeyError, TypeError, ValueError):
+            yield float(math.prod(side + sampling["margin_um"] for side in memory.patch_of(device, sampling)))
+    except (KeyError, TypeError, ValueError, OverflowError):
         return  # other relations report what is missing or out of range
 
 
