@@ -263,7 +263,7 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
     Raises
     ------
     ScanError
-        If too many points are undefined, or if the scans are too small to give a spectrum.
+        If a scan has no part without holes that is large enough, or if the scans are too small to give a spectrum.
     """
     names = ", ".join(scan.name for scan in scans)
     groups = [Maps.of(alike, settings) for alike in by_size(scans, settings.undefined_share)]
