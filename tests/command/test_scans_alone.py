@@ -111,12 +111,15 @@ def test_wrong_keys_are_told_before_any_file_is_read(folder, tmp_path):
         scans_alone.alone([study(folder, Etched={"files": ["B2-0.gwy"], "level": "steep"})], tmp_path)
 
 
-def test_moments_without_a_density_are_no_reason_to_draw_nothing(folder, monkeypatch):
+@pytest.mark.parametrize("pairs", [["b"], []])
+def test_moments_without_a_density_leave_the_measured_one_whether_or_not_anything_is_simulated(
+    folder, monkeypatch, pairs
+):
+    overlays = etched(folder / "B2-0.gwy"), {"run": {"pairs": pairs}}
+    assert files.load(*overlays)["surfaces"]["Etched"]["heights"] == "moments", "control"
     estimate = scans._evaluated
     monkeypatch.setattr(scans, "_evaluated", lambda *given: estimate(*given) | {"feasible": None})
-    overlay = etched(folder / "B2-0.gwy")
-    assert any("heights" in line for line in problems(files.joined(overlay)))
-    assert problems(files.joined(overlay, {"run": {"pairs": []}})) == ()
+    assert files.load(*overlays)["surfaces"]["Etched"]["heights"] == "measured"
 
 
 @pytest.mark.slow

@@ -209,6 +209,20 @@ def test_scans_with_many_holes_stand_alone():
     assert found.names == ("holes", scan.name)
 
 
+@pytest.mark.parametrize("rest", [np.nan, 0.0, 2e-9])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_scan_that_was_stopped_is_the_scan_of_its_lines(rest, axis):
+    z = np.moveaxis(WHOLE.heights.copy(), axis, 0)
+    z[180:] = rest
+    stopped = dataclasses.replace(WHOLE, heights=np.moveaxis(z, 0, axis))
+    size = tuple(SIDE * (180 / len(z) if k == axis else 1) for k in range(2))
+    lines = dataclasses.replace(WHOLE, heights=np.moveaxis(z[:180], 0, axis), size=size)
+    found, expected = (inspect([scan], Settings()) for scan in (stopped, lines))
+    assert found.largest.part.shape == lines.heights.shape
+    np.testing.assert_allclose(found.moments, expected.moments, rtol=1e-9)
+    np.testing.assert_allclose(parameters(found), parameters(expected), rtol=1e-9)
+
+
 def test_a_scan_without_any_whole_part_is_refused():
     z = WHOLE.heights.copy()
     z[::30, :], z[:, ::30] = np.nan, np.nan

@@ -65,10 +65,11 @@ def test_an_outermost_quantile_with_just_enough_areas_beyond_it_is_used():
         assert measured_density(SCORES, 10 / ndtr(-score)).scores[-1] == score
 
 
-def test_small_scans_have_no_measured_density():
-    assert measured_density(SCORES, 70).scores[-1] < 1.2
-    with pytest.raises(ValueError, match="heights of 40 independent areas do not give a density"):
-        measured_density(SCORES, 40)
+@pytest.mark.parametrize("areas", [0.5, 10, 20, 40, 60])
+def test_small_scans_have_the_measured_density_of_their_middle_quantiles(areas):
+    found = measured_density(SCORES, areas).scores
+    np.testing.assert_array_equal(found, SCORES[np.abs(SCORES) <= 1])
+    assert 1 < measured_density(SCORES, 77).scores[-1] < 1.2, "control"
 
 
 def test_heights_that_are_equal_apart_from_a_few_have_no_measured_density():

@@ -80,14 +80,15 @@ def test_maps_of_all_microscopes_are_scans(rms, pixel):
 @pytest.mark.parametrize("axis", [0, 1])
 def test_lines_that_were_not_scanned_are_undefined(rest, axis):
     z = np.moveaxis(HEIGHTS.copy(), axis, 0)
-    lines = {"zero": 0.0, "constant": 2e-9, "last line": z[19], "earlier lines": z[:12], "missing": np.nan}[rest]
-    z[20:32] = lines
+    lines = {"zero": 0.0, "constant": 2e-9, "last line": z[19], "earlier lines": z[:13], "missing": np.nan}[rest]
+    z[20:33] = lines
     scan = Scan(np.moveaxis(z, 0, axis), SIZE, "a.spm")
     expected = np.ones(z.shape, bool)
-    expected[20:32] = False
+    expected[20:33] = False
     np.testing.assert_array_equal(np.moveaxis(scan.defined, axis, 0), expected)
-    assert scan.stopped == "12 empty, constant or repeated lines, as where a scan was stopped"
-    with pytest.raises(ScanError, match=r"a.spm has (18.8|25) % of its points undefined \(12 empty, .* stopped\), at"):
+    assert scan.stopped == "13 empty, constant or repeated lines, as where a scan was stopped"
+    words = r"a.spm has (27.1|20.3) % of its points undefined \(13 empty, .* stopped\), and no part without holes that"
+    with pytest.raises(ScanError, match=words):
         inspect([scan], Settings())
 
 

@@ -217,12 +217,14 @@ def refused(scans, settings=None):
     return str(caught.value)
 
 
-def test_too_many_undefined_points_are_refused():
+def test_a_part_gives_the_spectrum_of_a_scan_with_more_undefined_points_than_may_be_filled():
     z = B2[0].heights.copy()
     z[:10, :100] = np.nan
     scan = Scan(z, (SIDE, SIDE), "a.spm")
-    assert refused([B2[1], scan]) == "files: a.spm has 1.6 % of its points undefined, at most 1 % may be"
-    assert inspect([scan], Settings(undefined_share=0.02)).names == ("a.spm",)
+    (other, many), (filled,) = (inspect([B2[1], scan], Settings(undefined_share=share)).sizes for share in (0.01, 0.02))
+    assert (many.names, many.part.shape) == (("a.spm",), (240, 250)), "1.6 % are undefined"
+    assert (other.names, other.part.shape) == ((B2[1].name,), z.shape)
+    assert (filled.names, filled.part.shape) == ((B2[1].name, "a.spm"), z.shape)
 
 
 def test_a_scan_without_plateau_gives_a_smoother_surface_and_says_so():
@@ -485,7 +487,7 @@ def test_particles_leave_the_measured_density():
     assert found.feasible is None
     assert np.isnan(found.goodness).all()
     assert any(flag.startswith("parts of a scan differ") for flag in found.flags)
-    assert any("only heights: measured can be used" in flag for flag in found.flags)
+    assert any("the measured density is used instead" in flag for flag in found.flags)
 
 
 @pytest.mark.slow

@@ -115,29 +115,14 @@ USE = spectrum.Use("Mine", 1.5e-6, 1e-6)
 
 
 @pytest.mark.slow
-def test_an_identified_spectrum_is_used_for_strips_longer_than_its_correlation():
+def test_an_identified_spectrum_is_used_for_strips_of_any_length_with_margins_longer_than_its_correlation():
     for corner in np.geomspace(3e6, 60e6, 9):
         bound = correlation_length(CutoffSelfAffine(525e-36, 0.8e-36, corner, 138e6))
-        for length, margin in ((bound * 1.01, bound * 1.01), (bound * 0.99, 9e-6), (9e-6, bound * 0.99)):
-            use = spectrum.Use("Mine", length, margin)
-            if min(length, margin) > bound:
-                spectrum.refuse_misuse(identified(corner=corner), use)
-                continue
-            key = "strip_length_um" if length < bound else "margin_um"
-            with pytest.raises(
-                ValueError, match=f"sampling.{key} is .* surface Mine, {1e6 * bound:.3g} µm for the .* identified"
-            ):
-                spectrum.refuse_misuse(identified(corner=corner), use)
-
-
-def test_heights_that_never_become_uncorrelated_are_reported_with_surface_source_and_remedy():
-    wavenumber = np.array([0.99e7, 1e7, 1.01e7])
-    wave = TabulatedSpectrum(wavenumber, np.array([0.0, 1e-32, 0.0]), 1.01e7)
-    message = (
-        r"surface B2 has no correlation length \(heights .* µm apart.*\) for the spectrum from a.spm; psd: fitted has"
-    )
-    with pytest.raises(ValueError, match=message):
-        parameters.refuse_long_correlation("B2", wave, {"sampling.margin_um": 1e-6}, "from a.spm")
+        message = f"sampling.margin_um is .* surface Mine, {1e6 * bound:.3g} µm for the .* identified"
+        for length in (bound * 0.99, bound * 1.01):
+            spectrum.refuse_misuse(identified(corner=corner), spectrum.Use("Mine", length, bound * 1.01))
+            with pytest.raises(ValueError, match=message):
+                spectrum.refuse_misuse(identified(corner=corner), spectrum.Use("Mine", length, bound * 0.99))
 
 
 def test_a_patch_is_longer_than_the_correlation_of_the_identified_spectrum(monkeypatch):

@@ -16,6 +16,7 @@ from stiction.surface.spectrum import (
     correlation_length,
     radial_spectrum,
     ring_means,
+    uncorrelated_beyond,
 )
 
 #: Flat up to the cut-off: a disc, for which closed forms exist.
@@ -145,6 +146,17 @@ def test_heights_farther_apart_than_the_correlation_length_are_nearly_uncorrelat
 def test_search_that_ends_while_heights_are_correlated_is_an_error():
     with pytest.raises(ValueError, match=r"µm apart, 0\.2 wavelengths of the corner"):
         correlation_length(SURFACES["B2"].spectrum, reach=0.2)
+
+
+def test_heights_that_never_become_uncorrelated_count_as_correlated_up_to_the_end_of_the_search():
+    wave = TabulatedSpectrum(np.array([0.99e7, 1e7, 1.01e7]), np.array([0.0, 1e-32, 0.0]), 1.01e7)
+    with pytest.raises(
+        ValueError, match="3.73 µm apart, 6 wavelengths of the corner of their spectrum, are still corr"
+    ):
+        correlation_length(wave)
+    assert uncorrelated_beyond(wave) == pytest.approx(6 * 2 * np.pi / wave.corner)
+    for surface in SURFACES.values():
+        assert uncorrelated_beyond(surface.spectrum) == correlation_length(surface.spectrum)
 
 
 def test_autocovariance_of_a_pure_plateau_decays_most_slowly():

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+import xarray as xr
 from drawn_scans import published, truth
 from numpy.testing import assert_allclose, assert_array_equal
 from published import SURFACES
@@ -313,6 +314,16 @@ def test_strips_and_margins_within_the_correlation_length_are_named(psd, key, wo
 def test_strips_of_which_many_are_correlated_are_named_as_unsafe():
     (sentence,) = surface_flags.flags(spectrum_with(use=dataclasses.replace(USE, strip_length=0.05e-6)))
     assert sentence.endswith("safe lengths too long: the unsafe side")
+
+
+@pytest.mark.filterwarnings("ignore:surface Etched")
+def test_heights_that_never_become_uncorrelated_are_named_for_strips_and_margins(monkeypatch):
+    wave = TabulatedSpectrum(np.array([0.99e7, 1e7, 1.01e7]), np.array([0.0, 1e-32, 0.0]), 1.01e7)
+    monkeypatch.setattr(spectrum.stage_estimate, "spectrum", lambda *_: wave)
+    monkeypatch.setattr(spectrum.stage_spectrum, "on_grid", lambda *_: xr.Dataset())
+    strips, margin = surface_flags.flags(spectrum_with())
+    assert strips.startswith("heights are correlated over 3.7 µm; strips of 1.5 µm count as independent")
+    assert margin.startswith("heights are correlated over 3.7 µm, so that a margin of 1 µm makes opposite edges")
 
 
 def test_a_spectrum_that_cannot_be_drawn_is_refused_with_surface_and_files():

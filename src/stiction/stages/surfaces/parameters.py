@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import xarray as xr
 
 from stiction.config.units import from_si
-from stiction.surface.spectrum import CutoffSelfAffine, Spectrum, TabulatedSpectrum, uncorrelated_beyond
+from stiction.surface.spectrum import CutoffSelfAffine, Spectrum, TabulatedSpectrum, correlation_length
 
 _UNITS = {"plateau": "m4", "floor": "m4", "corner": "rad m-1", "cutoff": "rad m-1"}
 
@@ -33,23 +33,17 @@ def spectrum_of(dataset: xr.Dataset) -> Spectrum:
     return CutoffSelfAffine(**{name: float(dataset[name]) for name in _UNITS})
 
 
-def refuse_long_correlation(
-    surface: str,
-    spectrum: Spectrum,
-    lengths: Mapping[str, float],
-    source: str = "identified from its summits",
-) -> None:
+def refuse_long_correlation(surface: str, spectrum: Spectrum, lengths: Mapping[str, float]) -> None:
     """Raise a ValueError if the heights are correlated over any of the lengths, by key of the configuration [m].
 
-    The same condition as for published spectra, see `stiction.config.relations.lengths_exceed_the_correlation`. The
-    message states the source of the spectrum.
+    The same condition as for published spectra, see `stiction.config.relations.lengths_exceed_the_correlation`.
     """
-    bound = uncorrelated_beyond(spectrum)
+    bound = correlation_length(spectrum)
     for key, length in lengths.items():
         if length <= bound:
             raise ValueError(
                 f"{key} is {from_si(length, 'um'):.4g}, must be above the correlation length of surface {surface}, "
-                f"{from_si(bound, 'um'):.3g} µm for the spectrum {source}"
+                f"{from_si(bound, 'um'):.3g} µm for the spectrum identified from its summits"
             )
 
 
