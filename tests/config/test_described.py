@@ -133,7 +133,7 @@ def test_readers_are_told_what_is_assumed_and_how_uncertain_it_is():
     [
         (
             {"rms_nm": 5},
-            "surfaces.Mine is without skewness, kurtosis, psd, must state rms_nm, skewness, kurtosis and psd; or rms_nm",
+            "surfaces.Mine is without skewness, kurtosis, psd, must state rms_nm, skewness, kurtosis and psd; or",
         ),
         ({"like": "B2"}, "surfaces.Mine.rms_nm is missing, must be a number"),
         (
