@@ -1,41 +1,12 @@
-"""P(stuck) of a beam at the length that its device states, for tables and pages."""
+"""Sentences on P(stuck) of a beam at the length that its device states."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
 
-from stiction.report.format import MISSING, UM, airs, number, one_in
+from stiction.report.format import UM, airs, one_in
 from stiction.stages.devices.budget import budget_of
-
-CAPTION = (
-    "P(stuck): share of the devices that stick at the length that they have, with its 95 % band given the drawn "
-    "surfaces, and the standard error due to the number of these."
-)
-
-
-def numbers(dataset: xr.Dataset) -> dict[str, float]:
-    """Columns of a row of the table of safe lengths, from a dataset of one shape; none without a stated length."""
-    if "length_of_device" not in dataset:
-        return {}
-    stuck, low, high = map(float, dataset.stuck_at_length)
-    row = {"length_um": float(dataset.length_of_device) / UM, "share_stuck": stuck}
-    row |= {"share_stuck_low": low, "share_stuck_high": high}
-    return row | {"share_stuck_se_surfaces": float(dataset.stuck_surfaces_error)}
-
-
-def _percent(stuck, low, high, error):
-    """A share with its band and error in percent; – for devices without a length."""
-    if np.isnan(stuck):
-        return MISSING
-    surfaces = f", ± {100 * error:.2g}" if error > 0 else ""
-    return f"{100 * stuck:.3g} ({100 * low:.3g} to {100 * high:.3g}{surfaces})"
-
-
-COLUMNS = {
-    "length [µm]": (lambda length: number(length, "g"), "length_um"),
-    "P(stuck) [%]": (_percent, "share_stuck", "share_stuck_low", "share_stuck_high", "share_stuck_se_surfaces"),
-}
 
 
 def sentences(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> list[str]:

@@ -9,8 +9,7 @@ import xarray as xr
 
 from stiction.devices.risk import Basis
 from stiction.plan.names import by_case
-from stiction.report.devices import own_length
-from stiction.report.format import UM, error_alone, humidity_text, number
+from stiction.report.format import MISSING, UM, error_alone, humidity_text, number
 from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
@@ -64,6 +63,36 @@ _CHART_WARNINGS = "The warnings are about the shortest length of each thickness 
 #: Ends what is said about bounds if water condenses in some cases only.
 _WHERE_DRY = "Where no water condenses, bounds are those of flats in contact."
 
+#: P(stuck) of a beam at the length that its device states.
+_AT_LENGTH = (
+    "P(stuck): share of the devices that stick at the length that they have, with its 95 % band given the drawn "
+    "surfaces, and the standard error due to the number of these."
+)
+
+
+def _at_length(dataset: xr.Dataset) -> dict[str, float]:
+    """Columns of a row of the table of safe lengths, from a dataset of one shape; none without a stated length."""
+    if "length_of_device" not in dataset:
+        return {}
+    stuck, low, high = map(float, dataset.stuck_at_length)
+    row = {"length_um": float(dataset.length_of_device) / UM, "share_stuck": stuck}
+    row |= {"share_stuck_low": low, "share_stuck_high": high}
+    return row | {"share_stuck_se_surfaces": float(dataset.stuck_surfaces_error)}
+
+
+def _percent(stuck, low, high, error):
+    """A share with its band and error in percent; – for devices without a length."""
+    if np.isnan(stuck):
+        return MISSING
+    surfaces = f", ± {100 * error:.2g}" if error > 0 else ""
+    return f"{100 * stuck:.3g} ({100 * low:.3g} to {100 * high:.3g}{surfaces})"
+
+
+_COLUMNS_AT_LENGTH = {
+    "length [µm]": (lambda length: number(length, "g"), "length_um"),
+    "P(stuck) [%]": (_percent, "share_stuck", "share_stuck_low", "share_stuck_high", "share_stuck_se_surfaces"),
+}
+
 
 def safe_lengths(
     datasets: Mapping[tuple[str, float], xr.Dataset],
@@ -80,15 +109,15 @@ def safe_lengths(
     for (device, humidity), dataset in datasets.items():
         for shape in map(str, dataset["shape"].values):
             head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[shape].by}
-            head |= own_length.numbers(dataset.sel(shape=shape))
+            head |= _at_length(dataset.sel(shape=shape))
             last = model_errors.of_device(errors, device, humidity, shape)
             last |= {"warnings": " ".join(warnings[device, humidity, shape])}
             rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
-    own = own_length.COLUMNS if "length_um" in frame else {}
+    own = _COLUMNS_AT_LENGTH if "length_um" in frame else {}
     said = [
-        *([own_length.CAPTION] if own else []),
+        *([_AT_LENGTH] if own else []),
         _SAFE_LENGTHS,
         *_few(datasets),
         about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY),
