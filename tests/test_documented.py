@@ -25,11 +25,12 @@ TEXT = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
 BLOCKS = re.findall(r"^```yaml\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
 #: Two keys have to agree with a file of scans: tests/scans/test_scan_reading.py reads such files.
 OF_FILES = {("surfaces", "*", "scans", "channel"), ("surfaces", "*", "scans", "height_unit")}
-#: A study of the paper's pair b alone, and another whose beam is of a material of its own.
+#: A study of the paper's pair b alone, and another whose beam is of a material of its own, with a liquid of its own.
 PAIR_B = {"run": {"pairs": ["b"]}}
 OXIDE = {
     "materials": {"Oxide": {"hamaker_constant_zJ": {"water": 5, "dry": 65}}},
     "surfaces": {"B2": {"material": "Oxide"}},
+    "liquids": {"Hexane": {"surface_tension_mN_per_m": 18}},
 }
 #: Snippets such as `level: plane`, `attraction.reach: all` and `run: {pairs: []}`; those with other values in words.
 SNIPPETS = sorted(

@@ -83,7 +83,11 @@ REFUSALS = [
         "run.pairs[0] is 'b'",
         f"{WEAK} for its humidities: at RH 0.44 and others, water",
     ),
-    ("surfaces: {B2: {rms_nm: 0.3}}", "run.pairs[0] is 'b'", "or choose other humidities in pairs.b.humidities"),
+    (
+        f"surfaces: {{B2: {{rms_nm: 0.3}}}}\n{TOUCHING}",
+        "run.pairs[0] is 'b'",
+        "or choose other humidities in pairs.b.humidities",
+    ),
     ("surfaces: {B2: {rms_nm: 0.2, psd: identified}}", "run.pairs[0]", "(preliminary, given surfaces.B2.psd = 'identi"),
     ("solid: {young_modulus_GPa: 0.1}", "run.pairs[0] is 'b'", "the summits of sample 0 of"),
     (
