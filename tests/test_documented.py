@@ -32,6 +32,12 @@ OXIDE = {
     "surfaces": {"B2": {"material": "Oxide"}},
     "liquids": {"Hexane": {"surface_tension_mN_per_m": 18}},
 }
+#: Devices with a voltage, and a stopper on a spring.
+DIELECTRIC = {"voltage_V": 1, "dielectric": {"thickness_nm": 100, "permittivity": 3.9}}
+BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
+SPRING = {"stiffness_N_per_m": 2, "gap_um": 1.5, "electrode": {"area_um2": 1e4, "gap_um": 3}}
+STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "humidities": [0.67]}
+LIFE = {"devices": {"C": BEAM | DIELECTRIC, "S": STOPPER | SPRING}}
 #: Snippets such as `level: plane`, `attraction.reach: all` and `run: {pairs: []}`; those with other values in words.
 SNIPPETS = sorted(
     set(re.findall(r"`([a-z_]+(?:\.[a-z_]+)*: [^`<>…]+)`", re.sub(r"```.*?```", "", TEXT, flags=re.DOTALL)))
@@ -80,7 +86,9 @@ def bases() -> dict[str, dict]:
     """Studies that a key may be added to, by name."""
     found = {Path(name).parent.name + Path(name).name: (ROOT / f"{name}.yaml").read_text() for name in EXAMPLES}
     found |= {f"block{number}": block for number, block in enumerate(BLOCKS)}
-    return {"paper": PAIR_B, "oxide": PAIR_B | OXIDE} | {name: yaml.safe_load(text) for name, text in found.items()}
+    return {"paper": PAIR_B, "oxide": PAIR_B | OXIDE, "life": PAIR_B | LIFE} | {
+        name: yaml.safe_load(text) for name, text in found.items()
+    }
 
 
 BASES = bases()
