@@ -49,7 +49,7 @@ READ_BY = {
     "chart": "table_chart figure_chart device_warnings device_page",
     "tip_slope_contact": "tip_budget",
     "tip_choice_contact": "tip_budget",
-    "stoppers": "table_stoppers figure_stoppers device_page life",
+    "stoppers": "table_stoppers figure_stoppers device_page life device_warnings",
     "budget": "table_budget figure_budget device_page",
     "tip_budget": "table_budget figure_budget device_page",
 }
@@ -65,7 +65,7 @@ BODY = "surfaces: {B2: {material: Other}}\nmaterials: {Other: "
 #: Description of a change; overlay; rules that it affects directly, whose readers rerun as well; rules excepted because
 #: their files do not depend on it; pattern of files that must not rerun.
 MATRIX = [
-    ("restoring force", "devices: {S1: {restoring_force_uN: 30}}", "stoppers", (), "C1|R1|budget"),
+    ("restoring force", "devices: {S1: {restoring_force_uN: 30}}", "stoppers", ("table_safe_lengths", "figure_risk", "table_chart", "figure_chart"), "C1|R1|budget"),
     ("uncertainty of a dimension", "devices: {C1: {uncertainty: {gap_um: 0.5}}}", "budget tip_budget life", (),
      "R1|S1|contact|chart"),
     ("tension of a liquid", "liquids: {Mine: {surface_tension_mN_per_m: 30}}", "life", (), "S1|contact|cracks|safe"),
@@ -144,7 +144,7 @@ LAYOUTS = {
 }
 LAYOUTS |= {
     "stages/devices/cracks": {"cracks", "safe_lengths"},
-    "stages/devices/safe_lengths": {"safe_lengths", "touchdowns"},
+    "stages/devices/safe_lengths": {"safe_lengths"},
 }
 LAYOUTS |= {"stages/devices/life": {"life"}}
 
