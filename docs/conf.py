@@ -38,7 +38,11 @@ napoleon_use_ivar = True
 default_role = "py:obj"
 nitpick_ignore = [("py:obj", "ast.dump")]
 # Types of other libraries have no pages here; `range` is also the name of attributes.
-nitpick_ignore_regex = [("py:class", r"(?!stiction\.).*"), ("py:class", r"stiction\.[\w.]+\.[A-Z]")]
+nitpick_ignore_regex = [
+    ("py:class", r"(?!stiction\.).*"),
+    ("py:exc", r"(?!stiction\.).*"),
+    ("py:class", r"stiction\.[\w.]+\.[A-Z]"),
+]
 suppress_warnings = ["ref.python"]
 # Public names are described where they are defined.
 nitpick_ignore += [("py:obj", f"stiction.{name}") for name in stiction.__all__]

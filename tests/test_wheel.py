@@ -155,11 +155,13 @@ def test_the_wheel_installs_the_command_and_the_plugin_of_snakemake(site):
 def test_the_command_plans_every_kind_of_run_in_an_empty_folder(command, tmp_path):
     status, printed = command("init")
     assert status == 0, printed
-    assert command("check", "study.yaml") == (0, "study.yaml can run: pair mine.\n")
+    status, printed = command("check", "study.yaml")
+    assert status == 0, printed
+    assert printed.startswith("study.yaml can run: pair mine.\nIt takes about "), printed
     for words in (("paper",), ("devices",), ("run", "study.yaml"), ("figures", "study.yaml")):
         status, printed = command(*words, "--dry-run")
         assert status == 0, printed
-        assert re.match(r"\d+ jobs would run\.\n", printed), printed
+        assert re.match(r"\d+ jobs would run, about .* for each job\.\n", printed), printed
     assert command("report")[0] == 2
     assert {path.name for path in tmp_path.iterdir()} - {".snakemake"} == {"study.yaml", "stiction.schema.json"}
 

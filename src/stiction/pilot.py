@@ -69,7 +69,9 @@ class Use:
     longest_strip: Callable[[np.ndarray], float] | None = None  #: on force laws (n, 4) [m]; none for a stopper
     strip: tuple = ()  #: key that a refusal of its strips is about
     thickness: float | None = None  #: of its beam, if this key is its thickness [µm]
-    of_devices: bool = True  #: or of a pair that runs, whose solids may attract each other less, see `Air`
+    of_devices: bool = (
+        True  #: or of a pair that runs, whose solids may attract each other less, see `stiction.plan.environment.Air`
+    )
 
 
 def problems(

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from stiction.config.relations import schema
 
-#: Where the examples of a checkout expect it; `make` writes it there. `stiction init` writes it next to a study.
+#: Where the examples of a checkout expect it; ``make`` writes it there. ``stiction init`` writes it next to a study.
 OF_CHECKOUT = Path(__file__).parents[1] / "config" / "schema.json"
 #: Keywords of JSON Schema that hold for a complete configuration and not for a file that changes single keys.
 _OF_COMPLETE = ("required", "if", "else", "then", "allOf", "minProperties")

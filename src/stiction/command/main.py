@@ -177,7 +177,7 @@ def _check(arguments):
     named = {f"pair{'s' * (len(pairs) > 1)}": pairs, "devices": devices, "scans of": scanned}
     parts = [f"{what} {', '.join(names)}" for what, names in named.items() if names]
     say(f"{' '.join(arguments.files)} can run: {' and '.join(parts) or 'nothing'}.")
-    say(f"It takes {_cost(config)}, as far as no result is there yet.")
+    say(f"It takes {_cost(config)}, less for results that are already there.")
     of_pairs = {name: {pair[side] for side in SIDES} for name, pair in config["pairs"].items()}
     if long := [name for name, device in devices.items() if of_pairs[device["pair"]] & {*scanned}]:
         say(

@@ -15,7 +15,8 @@ fringes of the field, which lower the voltage of narrow beams, no dielectric, no
 
 :math:`a = 2 E t^2 h / 3 \rho L^4` for a cantilever. This is the peak of a shock that is slow compared with the beam. A
 half-sine moves an oscillator without damping by at most 1.7685 times as much (`HALF_SINE`), and a beam by at most
-`Bent.overshoot` times that, because its modes may add up. ASSUME: the frame stays rigid and the air does not damp.
+`stiction.life.bending.Bent.overshoot` times that, because its modes may add up. ASSUME: the frame stays rigid and the
+air does not damp.
 
 **Stoppers** on a spring touch under their restoring force F, at F/m, and are pulled down by an electrode of area A
 at the distance g. After the way u,

@@ -1,7 +1,7 @@
 """CPU time of jobs, estimated from the numbers in their settings and from measured times.
 
 ASSUME: a run consists of fields of random surfaces in contact and of beams; all else is a fixed time for each job.
-`docs/performance.md` says how well that agrees with measured runs.
+``docs/performance.md`` says how well that agrees with measured runs.
 """
 
 import math

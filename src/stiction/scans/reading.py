@@ -41,7 +41,7 @@ class Source:
     channel: str | None = None  #: name, or name#2 for the second of equal names
     fast_axis: str = "x"  #: axis of the file along which the microscope scans a line, x or y
     size: tuple[float, float] | None = None  #: along x and y, for files without a size [m]
-    height_unit: str | None = None  #: for files without a unit, one of `UNITS`
+    height_unit: str | None = None  #: for files without a unit, one of ``UNITS``
 
 
 @dataclass(frozen=True)

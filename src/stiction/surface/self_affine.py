@@ -48,7 +48,7 @@ def hurst_of(slope: float) -> float:
 
 
 def spectrum(rms: float, slope: float, corner: float, cutoff: float) -> CutoffSelfAffine:
-    """Spectrum with the variance ``rms``² [m²], this slope [-], corner and cut-off [rad m⁻¹]."""
+    """Spectrum of a surface with this rms height [m], slope [-], corner and cut-off [rad m⁻¹]."""
     plateau = rms**2 / (np.pi * corner**2)  # of a surface without roughness beyond the corner
     decay = (cutoff / corner) ** slope
     whole = CutoffSelfAffine(plateau, plateau * decay, corner, cutoff)

@@ -54,7 +54,7 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     Parameters
     ----------
     safe_lengths, budgets : dict
-        As in `of_beam`.
+        As in `stiction.report.devices.pages.of_beam`.
     """
     least = min(_safe(dataset).item() for dataset in safe_lengths.values())
     totals = [budget_of(budget).total for budget in of_shortest(safe_lengths, budgets).values()]
