@@ -196,7 +196,7 @@ def test_a_patch_that_does_not_resist_is_refused_with_the_forces_of_its_weakest_
 
 
 @pytest.mark.slow
-def test_strips_are_allowed_as_the_jobs_allow_them_within_the_error_of_the_samples():
+def test_strips_are_allowed_where_those_of_the_jobs_are_accurate_within_the_error_of_the_samples():
     config = configured(
         B, f"contact: {{samples: 300}}\nchaos: {{order: 4}}\ndevices: {{D: {{{BEAM}, thickness_um: 1, width_um: 10}}}}"
     )
@@ -207,17 +207,17 @@ def test_strips_are_allowed_as_the_jobs_allow_them_within_the_error_of_the_sampl
     vectors, limit = curves.vectors(device.contact, 0.67, settings.water)
     laws = draw_laws(fitted(vectors, limit, settings.chaos), 10_000, np.random.default_rng(1))
 
-    def job(thickness_um, strip_um):
-        """What stage cracks finds for another thickness and length of the strips on the same force laws."""
+    def is_accurate(thickness_um, strip_um):
+        """Whether stage cracks resolves another thickness and length of the strips on the same force laws."""
         beam = replace(settings.device, thickness=1e-6 * thickness_um, strip=1e-6 * strip_um)
-        return beam.opening.resolved(beam, laws)
+        beam.opening.resolved(beam, laws)  # goes on even if they are too long
+        return beam.strip <= beam.opening.longest_strip(beam, laws)
 
-    job(1, longest - 4 * error)
-    job(1, enough)
-    job(thickness, 1.5)
-    for refused_by_job in ((1, longest + 4 * error), (0.9 * thickness, 1.5)):
-        with pytest.raises(ValueError, match="do not resolve a crack"):
-            job(*refused_by_job)
+    assert is_accurate(1, longest - 4 * error)
+    assert is_accurate(1, enough)
+    assert is_accurate(thickness, 1.5)
+    assert not is_accurate(1, longest + 4 * error)
+    assert not is_accurate(0.9 * thickness, 1.5)
 
 
 #: Thickness that would do, longest strip and its error, strips that would do.
@@ -340,7 +340,8 @@ def test_single_samples_that_do_not_resist_are_left_to_jobs_that_count_them_as_f
     def shown(curves, law=True, flat=(1e-7, 50.0)):
         return pilot.shown_by(ForceCurves(DISTANCE, np.array(curves).__getitem__, len(curves), None, flat), law)
 
-    assert len(shown([strong, strong, soft])["laws"]) == 3
+    # With the law of a flat surface, no strips would be short enough; jobs then state the safe side.
+    assert shown([strong, strong, soft])["laws"] == shown([strong, strong])["laws"]
     assert shown([strong, strong, soft], law=False) == {"laws": []}
     assert "weak" in shown([strong, soft, soft])
     assert "weak" in shown([strong, strong, soft], flat=None)

@@ -3,7 +3,8 @@
 They show whether the summits of every patch resist the adhesion (Sec. III-B1), and whether strips resolve the cracks
 (Sec. III-C). Samples and criteria are those of the jobs. A patch is refused if one of its samples does not resist or,
 where jobs count single ones as flat surfaces, if half of them do not; a strip, if it is longer than allowed by more
-than three standard errors of the samples. What passes may still fail in a job, with the error of the same criterion.
+than three standard errors of the samples. What passes may still be longer than the force laws of a job allow, which
+then go on with a warning.
 
 The spectrum of measured surfaces and of those whose spectrum is to be identified is preliminary, and so are force laws
 that will be corrected to full elastic contact: these are refused only if none of their samples resists, or if strips
@@ -336,6 +337,9 @@ class Samples:
 def shown_by(curves: ForceCurves, law: bool, preliminary: bool = False) -> dict[str, Any]:
     """What force curves show: their force laws, or the sample that resists the adhesion least if it does not resist.
 
+    Those that jobs count as flat surfaces have no part in the laws: with them, no strips may be short enough, and jobs
+    then state the safe side.
+
     Parameters
     ----------
     curves : ForceCurves
@@ -375,4 +379,5 @@ def shown_by(curves: ForceCurves, law: bool, preliminary: bool = False) -> dict[
     )
     if lawful.sum() < 2:
         raise ValueError(f"{lawful.sum()} of {len(kept)} samples have a force law of Eq. (12)")
-    return {"laws": laws[lawful].tolist()}
+    held = np.array([forcelaw.resists(force) for force in kept])
+    return {"laws": laws[lawful & held].tolist()}

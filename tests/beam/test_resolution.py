@@ -9,7 +9,7 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
 from stiction.beam.release import released_beam
-from stiction.beam.resolution import ALONG_SHORTEST, resolved
+from stiction.beam.resolution import ALONG_SHORTEST, longest, resolved
 
 LAW = uniform_laws(1)
 LENGTH = foundation_length(PAPER, LAW)
@@ -30,13 +30,19 @@ def test_a_beam_keeps_its_elements_if_they_are_short_enough():
     assert resolved(replace(PAPER, elements=500), 1000, LAW).elements == 500
 
 
-def test_strips_that_are_too_long_are_refused_with_the_longest_allowed():
+def test_strips_that_are_far_too_long_are_refused_with_the_longest_allowed():
     weak, strong = (uniform_laws(1, factor * E_BAR, factor * 2e6) for factor in (1, 50))
     assert resolved(PAPER, 1000, weak).elements >= 200
     allowed = 1e6 * STRIP * foundation_length(PAPER, strong)
-    with pytest.raises(ValueError, match=rf"strips of 1.5 µm .* at most {allowed:.3g} µm"):
-        resolved(PAPER, 1000, strong)
+    with pytest.raises(ValueError, match=rf"strips of {2.1 * allowed:.3g} µm .* at most {allowed:.3g} µm"):
+        resolved(replace(PAPER, length=2.1e-3 * allowed), 1000, strong)
     assert resolved(PAPER, round(1500 / allowed) + 1, strong).element_length <= ELEMENT / STRIP * allowed * 1e-6
+
+
+@pytest.mark.parametrize("longer", [1.01, 1.5, 1.99])
+def test_strips_that_are_too_long_have_an_element_each(longer):
+    strip = longer * longest(PAPER, LAW)[0]
+    assert resolved(replace(PAPER, length=1000 * strip), 1000, LAW).elements == 1000
 
 
 def test_the_crack_from_which_a_beam_is_released_has_several_elements():

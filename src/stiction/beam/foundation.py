@@ -13,6 +13,8 @@ from stiction.beam.cantilever import Beam
 STRIP, ELEMENT = 0.7, 2.2
 #: Largest relative error of the length of a crack on a mesh of these lengths.
 ACCURACY = 0.01
+#: Strips that are longer by up to this factor still stop cracks, but too early: by at most this part of their length.
+LONGER, TOO_EARLY = 2.0, 0.06
 
 
 def decay_length(bending: float, stiffness: float) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
-from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
+from stiction.beam.foundation import ELEMENT, LONGER, STRIP, foundation_length
 from stiction.contact import forcelaw
 
 #: Elements along the shortest crack that a mesh resolves, and that crack relative to the one that Eq. (13) predicts
@@ -26,7 +26,8 @@ def resolved(beam: Beam, points: int, laws: np.ndarray) -> Beam:
     """Beam with as many elements as its laws require, and at least its original number.
 
     Every element contains a whole number of the ``points`` along the beam, each with a force law; a sample of these has
-    rows [f_max, d_max, a_left, a_right] (n, 4), SI.
+    rows [f_max, d_max, a_left, a_right] (n, 4), SI. Where strips are longer than `longest` allows, but not by more
+    than the factor `LONGER`, each is an element.
 
     Raises
     ------
@@ -34,11 +35,13 @@ def resolved(beam: Beam, points: int, laws: np.ndarray) -> Beam:
         If the strips are too long for these laws, whatever the elements.
     """
     length, strip, (allowed, element) = foundation_length(beam, laws), beam.length / points, longest(beam, laws)
-    if strip > allowed:
+    if strip > LONGER * allowed:
         raise ValueError(
             f"strips of {1e6 * strip:.3g} µm do not resolve a crack on these surfaces: the adhesion needs strips of at "
             f"most {1e6 * allowed:.3g} µm (foundation length {1e6 * length:.3g} µm); decrease strip_length_um, or "
             "increase the thickness or the gap of the beam"
         )
+    if strip > allowed:
+        return replace(beam, elements=points)
     whole = (n for n in range(beam.elements, points + 1) if points % n == 0 and beam.length / n <= element)
     return replace(beam, elements=next(whole))

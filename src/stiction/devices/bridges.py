@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
-from stiction.beam.foundation import STRIP, foundation_length
+from stiction.beam.foundation import LONGER, STRIP, foundation_length
 from stiction.beam.middle import outwards, shortest_held
 from stiction.beam.tension import end_stiffness
 from stiction.contact import forcelaw
@@ -70,7 +70,7 @@ def middle_zone(part: Beam, strip: float, laws: np.ndarray) -> tuple[Beam, int]:
         If the strips are too long for the laws.
     """
     foundation, allowed = foundation_length(part, laws), longest_strip(part, laws)
-    if strip > allowed:
+    if strip > LONGER * allowed:
         raise ValueError(
             f"strips of {1e6 * strip:.3g} µm do not resolve the middle of a bridge on these surfaces: they must be at "
             f"most {1e6 * allowed:.3g} µm long; decrease strip_um, or increase the thickness of the bridge"

@@ -6,6 +6,7 @@ Lengths are in metres, angles of rotation in radians, shares between 0 and 1.
 import math
 from collections.abc import Mapping, Sequence
 
+from stiction.beam.foundation import ACCURACY, LONGER, TOO_EARLY
 from stiction.constants import WATER_MOLECULE
 from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
 
@@ -57,6 +58,25 @@ def arcs_of_elements(share: float, strip: float) -> str | None:
         f"{100 * share:.4g} % of the beams end as arcs, held by the tip only. This share depends on the strip length, "
         f"here {strip * 1e6:.3g} µm. For a realistic share, describe the beam under `devices`, where tips are computed "
         "on tilted strips."
+    )
+
+
+def long_strips(strip: float, longest: float, is_bridge: bool = False) -> str | None:
+    """Strips that are longer than the longest ones which resolve the cracks, or the middle, of a beam."""
+    if strip <= longest:
+        return None
+    what = "middle of this bridge" if is_bridge else "cracks of this beam"
+    head = f"Strips of {strip * 1e6:.3g} µm are longer than the {longest * 1e6:.3g} µm that resolve the {what}"
+    if strip > LONGER * longest:
+        return (
+            f"{head}, by so much that nothing is simulated: all devices count as stuck that surfaces could hold which "
+            "are everywhere like their strongest patch, the safe side."
+        )
+    if is_bridge:
+        return f"{head}: its lengths may be off to either side. Shorter strips are more accurate."
+    return (
+        f"{head} within {100 * ACCURACY:.0f} %: they stop too early, by at most {100 * TOO_EARLY:.0f} % where strips "
+        f"are {LONGER:g} times as long, which is the safe side. Shorter strips are more accurate."
     )
 
 

@@ -57,7 +57,7 @@ def lognormal_cracks(device=C1, number=400, groups=4, spread=0.025, seed=1):
     laws = forcelaw.coefficients(VECTORS[:50], 1.2 * VECTORS[:, 1].max())
     beam = Beam(1500 * UM, 30 * UM, 2.6 * UM, 164e9, 20 * UM, 200)
     return cracks.layout(device.opening, found[0], list(found[1:]), beam, laws, RMS).assign(
-        reach=np.inf, share_flat=0.0
+        reach=np.inf, share_flat=0.0, longest_strip=device.strip
     )
 
 

@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 from beams import uniform_laws
 from ground import C1, R1, UM, VECTORS, settings
+from numpy.testing import assert_array_equal
 
 from stiction.beam.energy import arrest_length
-from stiction.beam.foundation import ELEMENT, STRIP, foundation_length
+from stiction.beam.foundation import ELEMENT, LONGER, STRIP, foundation_length
 from stiction.beam.resolution import ALONG_SHORTEST, SHORTEST
 from stiction.chaos.model import draw_laws, fit
-from stiction.config.files import load
 from stiction.contact import forcelaw
 from stiction.stages.devices import opening
 from stiction.streams import stream
@@ -47,19 +47,45 @@ def test_long_beams_follow_the_mesh_rule_and_are_longer_than_their_cracks(thickn
     assert strips == opening.PER_ELEMENT or strips * 1.5 * UM <= longest < (strips + 1) * 1.5 * UM
 
 
-def test_a_beam_that_its_strips_do_not_resolve_is_refused_with_the_key_that_helps():
-    with pytest.raises(ValueError, match="strips of 1.5 µm do not resolve") as refused:
-        opening.long_beam(replace(C1, thickness=0.5 * UM), uniform_laws(20))
-    assert "strip_um, here 1.5 µm" in refused.value.__notes__[0]
+#: Cantilever on ground with single patches that are so strong that strips of 1.5 µm do not resolve them.
+LOW = replace(C1, gap=2 * UM)
+SOME_STRONG = np.concatenate([uniform_laws(19), [[1e9, 8e-9, 8e9, 1e10]]])
 
 
-def test_what_the_configuration_lets_pass_near_the_limit_is_refused_on_the_force_laws():
-    # The relation takes the foundation length from an estimated law, up to a quarter too long.
-    thickness = 1.2
-    load({"devices": {"C1": {"kind": "cantilever", "pair": "b", "thickness_um": thickness, "gap_um": 20, "width_um": 30,
-                             "humidities": [0.67]}}})  # fmt: skip
-    with pytest.raises(ValueError, match=r"strips of 1.5 µm .* strips of at most 1.43 µm \(foundation length 2.05 µm"):
-        opening.long_beam(replace(C1, thickness=thickness * UM), uniform_laws(20))
+@pytest.mark.parametrize("device", [LOW, replace(R1, strip=3 * UM)])
+def test_strips_that_are_far_too_long_are_not_simulated_and_all_devices_have_the_safe_side(device):
+    assert device.strip > LONGER * device.opening.longest_strip(device, SOME_STRONG)
+    ground = opening.ground_of(device, SOME_STRONG)
+
+    def draw(number, _):
+        return np.resize(SOME_STRONG, (number, 4))
+
+    safe = opening.least_length(device, SOME_STRONG)
+    assert_array_equal(opening.arrests(device, ground, draw, 3, lambda _: None), [safe] * 3)
+    assert safe < 0.5 * opening.least_length(device, SOME_STRONG[:19])
+
+
+def test_no_crack_stops_before_the_length_that_all_devices_have_where_nothing_is_simulated():
+    fine, each = replace(LOW, strip=0.1 * UM), 15
+    resolved = opening.ground_of(fine, SOME_STRONG)
+    assert resolved[1] > 0
+
+    def draw(number, rng):
+        patches = SOME_STRONG[rng.integers(len(SOME_STRONG), size=number // each)]
+        return np.repeat(patches, each, axis=0)
+
+    stopped = opening.arrests(fine, resolved, draw, 4, partial(stream, 1, "ground"))
+    assert np.all(stopped > opening.least_length(LOW, SOME_STRONG))
+    # Control: without its strong patches, the ground would have a bound that is none.
+    assert np.any(stopped < opening.least_length(LOW, SOME_STRONG[:19]))
+
+
+@pytest.mark.parametrize(("device", "thickness"), [(C1, 1.2), (R1, 0.25)])
+def test_what_the_first_samples_let_pass_near_the_limit_goes_on_with_the_strips_as_they_are(device, thickness):
+    laws, near = uniform_laws(20), replace(device, thickness=thickness * UM)
+    ground, strips = near.opening.resolved(near, laws)
+    assert near.opening.longest_strip(near, laws) < near.strip
+    assert ground.length / strips == pytest.approx(near.strip, rel=1e-12)
 
 
 def test_a_bridge_has_two_arms_under_its_tension_and_its_middle_is_resolved():

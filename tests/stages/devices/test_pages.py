@@ -45,7 +45,9 @@ def safe(kind="cantilever", longest=600e-6, reach=np.inf):
     known = sticking.known(device, settings.water, 0.67, reach)
     bounds = {shape: sticking.safe_lengths(values, settings, known[shape]) for shape, values in shapes.items()}
     errors = {shape: np.full(3, 1e-6) for shape in shapes}
-    return safe_lengths.layout(shapes, bounds, known, errors, settings).assign(rms=3e-9, share_flat=0.0)
+    return safe_lengths.layout(shapes, bounds, known, errors, settings).assign(
+        rms=3e-9, share_flat=0.0, longest_strip=1e-3
+    )
 
 
 @pytest.fixture(scope="module")
@@ -100,7 +102,8 @@ def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_sec
     responses = {
         rms: Response(1.1 * force, force, 0.03 * force, np.nan, (0.1, 0.05, 0.15)) for rms, force in forces.items()
     }
-    points = [curves.layout([[one]], [""], rms, 400, asked) for rms, one in responses.items()]
+    said = {name: ("humidity", [""]) for name in ("flagged", "refused")}
+    points = [curves.layout([[one]], rms, 400, asked).assign(said) for rms, one in responses.items()]
     rough = curves.joined(points, "rms_nm", "B2")
     section = STOPPER | {"requirement": {"share": 0.05}, "roughness": {"surface": "B2", "rms_nm": [2, 8]}}
     page = pages.of_stopper("S1", section, STOPPERS["S1"], {}, [], roughness=rough)

@@ -149,6 +149,14 @@ def test_a_choice_of_the_model_changes_the_mean_by_its_effect():
     assert_allclose(budget.effect(BASE, BASE, BEAMS), [0, 0], atol=1e-12)
 
 
+def test_a_choice_under_which_patches_have_no_bound_has_no_effect_that_is_known():
+    def respond(_):
+        raise ValueError("sample 9: the force does not rise to zero")
+
+    assert np.isnan(budget.effect_if_known(BASE, BASE, respond)).all()
+    assert budget.effect_if_known(BASE, BASE, BEAMS) == budget.effect(BASE, BASE, BEAMS)
+
+
 def test_lengths_that_are_not_known_leave_the_median():
     assert BEAMS([BASE]).centre is np.mean
     # A short beam on a weak ground has no S-shape.

@@ -297,7 +297,7 @@ def test_cases_of_the_main_line_in_air_that_is_hardly_humid_enough_are_said():
 # Charts
 
 
-def charted(longest, film=3e-9):
+def charted(longest, film=3e-9, longest_strip=1.5):
     """Dataset of stage chart of two thicknesses and two shapes, whose arcs are half as long as beams alone."""
     lengths = longest * np.array([[[[1.0, 0.9], [0.5, 0.45]]], [[[1.5, 1.4], [0.75, 0.7]]]])
     return xr.Dataset(
@@ -306,6 +306,7 @@ def charted(longest, film=3e-9):
             "flooded_length": (("thickness", "gap", "shape"), UM * np.array([[[300, 200]], [[400, 210]]])),
             "film": film,
             "rms": 3e-9,
+            "longest_strip": (("thickness", "gap"), UM * np.array([[longest_strip], [2]])),
         },
         coords={"thickness": [2 * UM, 3 * UM], "gap": [20 * UM], "shape": [S_SHAPE, EITHER], "share": [1e-2, 1e-3]},
     )
@@ -468,3 +469,34 @@ def test_patches_that_count_as_flat_surfaces_are_said_of_beams_and_stoppers(warn
     assert sentence.startswith("2 % of the patches of surface have too few summits to resist the adhesion.")
     assert warned({"S1": stopper()}, share_flat=0.02).patches["S1"] == [sentence]
     assert warned({"S1": stopper()}).patches["S1"] == []
+
+
+# Strips that are too long
+
+
+BRIDGE = safe_without_tips(), device_warnings.OfDevice(R1)
+
+
+@pytest.mark.parametrize(("found", "of", "side"), [(*device(), "is the safe side"), (*BRIDGE, "off to either side")])
+def test_strips_that_are_too_long_are_said_of_lengths(found, of, side):
+    def said(longest):
+        every = device_warnings.of_device(found.assign(longest_strip=longest), of)
+        return [sentence for sentences in every.values() for sentence in sentences if sentence.startswith("Strips of")]
+
+    sentences = said(of.device.strip / 1.2)
+    assert len(sentences) == len(of.device.opening.shapes)
+    assert all(f"{1e6 * of.device.strip / 1.2:.3g} µm that resolve" in one and side in one for one in sentences)
+    assert said(of.device.strip) == []
+
+
+def test_strips_that_are_too_long_for_one_size_are_said_of_its_curves():
+    along = [charted(800 * UM), charted(700 * UM, longest_strip=1.4), charted(600 * UM)]
+    found = device_warnings.of_chart(along, device_warnings.OfDevice(C1))
+    said = {curve for curve, sentences in found.items() if any("longer than the 1.4 µm" in one for one in sentences)}
+    assert said == {(2 * UM, 20 * UM, S_SHAPE), (2 * UM, 20 * UM, EITHER)}
+
+
+def test_strips_that_are_too_long_are_said_of_pairs():
+    (sentence,) = pair_warnings.of_beams(beams(50, 0).assign(longest_strip=1.4 * UM), PAPER, 1.5 * UM)
+    assert sentence.startswith("Strips of 1.5 µm are longer than the 1.4 µm that resolve the cracks")
+    assert pair_warnings.of_beams(beams(50, 0).assign(longest_strip=1.6 * UM), PAPER, 1.5 * UM) == []

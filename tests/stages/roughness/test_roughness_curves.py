@@ -179,14 +179,15 @@ def test_a_range_that_ends_at_the_given_roughness_has_it_once():
     np.testing.assert_array_equal(found.roughness, [1e-9, 2e-9, 3.4e-9 * (1 + 1e-15)])
 
 
-def point(rms, refused="", force=None):
+def point(rms, refused="", force=None, flagged=""):
     """Point of a curve of a stopper with the force 1e-6 (4 nm / rms)³, or with another one [N]."""
     settings = curves.OfStopper(
         seed=1, water=None, humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
     )
     force = 1e-6 * (4e-9 / rms) ** 3 if force is None else force
     response = curves.Response(1.1 * force, force, 0.03 * force, np.nan, (0.1, 0.05, 0.15))
-    return curves.layout([[response]], [refused], rms, 400, settings)
+    said = {"flagged": ("humidity", [flagged]), "refused": ("humidity", [refused])}
+    return curves.layout([[response]], rms, 400, settings).assign(said)
 
 
 RANGE = np.geomspace(1e-9, 8e-9, POINTS - 1)
@@ -227,7 +228,10 @@ def test_a_beam_that_sticks_at_no_length_is_an_answer():
     beam = curves.OfBeam(**common, share=SHARE, length=1e-4)
     known, lengths = Known(2e-4, 5e-5, 5e-5), np.full(100, np.inf)
     never = beam._response(lengths, *sticking.safe_lengths(lengths, beam, known), known, 0.0)
-    points = [curves.layout([[never]], [""], rms, 100, beam) for rms in RANGE]
+    points = [
+        curves.layout([[never]], rms, 100, beam).assign(flagged=("humidity", [""]), refused=("humidity", [""]))
+        for rms in RANGE
+    ]
     found = curves.joined(points, "rms_nm", "B2")
     (sentence,) = tables_roughness.answers(found)
     assert "at most 1 in 20 sticks at any rms of B2 of 1 to 8 nm" in sentence
@@ -262,6 +266,12 @@ def test_what_cannot_be_computed_is_named_with_its_reason_and_leaves_the_rest():
     nowhere = [point(rms, "too smooth", np.nan) for rms in RANGE8]
     sentence, _ = tables_roughness.answers(curves.joined(nowhere, "rms_nm", "B2"))
     assert "nothing is computed" in sentence
+
+
+def test_what_is_less_accurate_is_named_with_its_place():
+    points = [point(RANGE[0], flagged="Strips are long."), *map(point, RANGE[1:]), point(3.4e-9)]
+    _, flag = tables_roughness.answers(curves.joined(points, "rms_nm", "B2"))
+    assert flag == "Where the rms of B2 is 1 nm (RH 0.6): Strips are long."
 
 
 # Two quantities

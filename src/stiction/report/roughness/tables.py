@@ -80,7 +80,9 @@ def answers(dataset: xr.Dataset) -> list[str]:
 
 def _answers(curve):
     """As `answers`, of one curve."""
-    return [_answer(curve, *subject) for subject in _subjects(curve)] + _refusals(curve)
+    said = {"flagged": "Where", "refused": "Not computed where"}
+    notes = [note for name, begins in said.items() for note in _notes(curve, name, begins)]
+    return [_answer(curve, *subject) for subject in _subjects(curve)] + notes
 
 
 def briefly(dataset: xr.Dataset) -> list[str]:
@@ -209,15 +211,15 @@ def _share(dataset):
     return one_in(float(dataset.share))
 
 
-def _refusals(curve):
-    """Where nothing is computed, by reason."""
+def _notes(curve, name, begins):
+    """What a variable says about single points, each sentence with the places of which it is true."""
     places = {}
     for humidity in curve.humidity.values:
         for value in curve.roughness.values:
-            if reason := str(curve.refused.sel(humidity=humidity, roughness=value).values):
+            if said := str(curve[name].sel(humidity=humidity, roughness=value).values):
                 at = f"{_shown(curve, value)}{_unit(curve)} ({air(humidity)})"
-                places.setdefault(reason, []).append(at)
-    return [f"Not computed where the {name_of(curve)} is {', '.join(at)}: {reason}." for reason, at in places.items()]
+                places.setdefault(said.rstrip("."), []).append(at)
+    return [f"{begins} the {name_of(curve)} is {', '.join(at)}: {said}." for said, at in places.items()]
 
 
 def _unit(dataset, key="key"):

@@ -25,9 +25,13 @@ def compute(chaos: xr.Dataset, case: Case, settings: Settings, threads: int = 1)
     The name of the case is part of the addresses of random numbers; ``threads``, the number of beams computed in
     parallel, does not affect the results.
     """
-    columns = releases.released(chaos_model(chaos), case, settings, threads, shapes=_KEPT)
+    model = chaos_model(chaos)
+    columns = releases.released(model, case, settings, threads, shapes=_KEPT)
     elements = columns["deflection"].shape[1] - 1
-    return layout(columns, replace(cantilever(settings, case.pair), elements=elements).nodes)
+    dataset = layout(columns, replace(cantilever(settings, case.pair), elements=elements).nodes)
+    if not settings.refined:
+        return dataset
+    return dataset.assign(longest_strip=((), releases.longest_strip(model, case, settings), {"units": "m"}))
 
 
 def layout(columns: dict[str, np.ndarray], nodes: np.ndarray) -> xr.Dataset:

@@ -41,6 +41,8 @@ def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
     """Warnings about the beams of a case of the main line: dataset of stage beams, length of the strips [m]."""
     s_shaped = ended(beams, "S-shape")
     warnings = [limits.arcs_of_elements(float(ended(beams, "arc").mean()), strip)]
+    if "longest_strip" in beams:
+        warnings.append(limits.long_strips(strip, float(beams.longest_strip)))
     if s_shaped.any():
         mean = float(stuck_lengths(beams).mean())
         warnings += [

@@ -13,7 +13,7 @@ import xarray as xr
 
 from stiction.beam.montecarlo import Experiment, released_beams
 from stiction.beam.release import EndState
-from stiction.beam.resolution import resolved
+from stiction.beam.resolution import longest, resolved
 from stiction.chaos.model import ChaosModel, draw_laws
 from stiction.config.cases import Case
 from stiction.plan.stage import select
@@ -80,6 +80,12 @@ def _resolved(beam, strips, laws, case):
     except ValueError as error:
         error.add_note(f"in case {case}")
         raise
+
+
+def longest_strip(model: ChaosModel, case: Case, settings: OnStrips) -> float:
+    """Longest strip that resolves the cracks of a case on the laws from which `released` chooses the elements [m]."""
+    laws = draw_laws(model, _LAWS, stream(settings.seed, "beams", case, "mesh"))
+    return longest(cantilever(settings, case.pair), laws)[0]
 
 
 def ended(beams: xr.Dataset, state: str) -> np.ndarray:

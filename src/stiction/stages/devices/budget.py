@@ -6,6 +6,7 @@ the same random numbers, and device j meets the same samples on both sides. The 
 those of the samples.
 """
 
+import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -30,7 +31,15 @@ from stiction.stages.contact.contact import first
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.error_notes import explain_errors
 from stiction.stages.devices.contact_names import contacts_of_budget, contacts_of_tip_budget
-from stiction.stages.devices.opening import ARC, FORCE, DesignedBeam, addresses, arrests, section_of_beam
+from stiction.stages.devices.opening import (
+    ARC,
+    FORCE,
+    DesignedBeam,
+    addresses,
+    arrests,
+    ground_of,
+    section_of_beam,
+)
 from stiction.stages.devices.uncertain_inputs import Input, Known, Settings, State, countable, covariances, uncertain
 
 
@@ -75,7 +84,7 @@ class BeamBudget(Settings):
     def responder(self, state: State) -> Respond:
         """How the devices respond: cracks of long beams."""
         laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water)])[0]
-        part, strips = self.device.opening.resolved(self.device, laws)
+        part, strips = ground_of(self.device, laws)
         return partial(of_beams, mesh=part, strips=strips, number=self.beams, address=addresses(self))
 
 
@@ -143,7 +152,8 @@ def compute(
     for name, changed in choices.items():
         base = replace(state, contact=first(contact, changed.sizes["sample"]))
         with explain_errors(f"This is the contact under the choice {name}."):
-            changes[name] = effect(base, replace(state, contact=changed, water=settings.water_under(name)), respond)
+            under = replace(state, contact=changed, water=settings.water_under(name))
+            changes[name] = effect_if_known(base, under, respond)
     return layout(inputs, slopes_with_errors, covariance, respond([state]), changes, settings)
 
 
@@ -232,6 +242,18 @@ def effect(base: State, changed: State, respond: Respond) -> tuple[float, float]
     """Relative change of the response by another choice of the model, with its standard error [-]."""
     responses = respond([base, changed])
     return choice_effect(*map(responses.centre, responses.values)), _slope(responses, 1.0)[1]
+
+
+def effect_if_known(base: State, changed: State, respond: Respond) -> tuple[float, float]:
+    """As `effect`, NaN where nothing can be computed under the choice.
+
+    Without attraction across gaps, patches that do not resist the adhesion have no bound.
+    """
+    try:
+        return effect(base, changed, respond)
+    except ValueError:
+        traceback.print_exc()  # the log keeps where the reason arose, should it be an error of the code
+        return np.nan, np.nan
 
 
 # Dataset

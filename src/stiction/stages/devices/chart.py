@@ -61,12 +61,18 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
         return np.array([[one.length for one in of_shape] for of_shape in safe.values()])
 
     chart = filled(settings.thicknesses, settings.gaps, by_elements)
-    return layout(chart, surface_rms(contact), settings)
+    longest = [settings.device.opening.longest_strip(device, met.laws) for device in _designed(settings)]
+    return layout(chart, surface_rms(contact), longest, settings)
 
 
 def _of_size(settings, thickness, gap):
     """The designed beam with another thickness and gap [m]."""
     return replace(settings.device, thickness=float(thickness), gap=float(gap))
+
+
+def _designed(settings):
+    """Beams of all sizes, in the order of `filled`."""
+    return [_of_size(settings, *size) for size in product(settings.thicknesses, settings.gaps)]
 
 
 def filled(
@@ -113,20 +119,20 @@ def _power_laws(sizes, computed, test):
         return []
 
 
-def layout(filled: Filled, rms: float, settings: Settings) -> xr.Dataset:
+def layout(filled: Filled, rms: float, longest_strips: Sequence[float], settings: Settings) -> xr.Dataset:
     """Dataset of safe lengths (sizes, shapes, shares) [m] over thickness and gap at one humidity.
 
-    The rms is that of the sum of both surfaces [m].
+    The rms is that of the sum of both surfaces [m], and the longest strips (sizes,) resolve the cracks [m].
     """
     grid, size = (len(settings.thicknesses), len(settings.gaps)), ("thickness", "gap")
     shapes = list(settings.device.opening.shapes)
-    designed = (_of_size(settings, *size) for size in product(settings.thicknesses, settings.gaps))
-    limits = [sticking.flooded_lengths(device, settings.water, settings.humidity) for device in designed]
+    limits = [sticking.flooded_lengths(device, settings.water, settings.humidity) for device in _designed(settings)]
     metres, none = {"units": "m"}, {"units": "1"}
     return xr.Dataset(
         {
             "safe_length": ((*size, "shape", "share"), filled.lengths.reshape(*grid, len(shapes), -1), metres),
             "flooded_length": ((*size, "shape"), np.reshape(limits, (*grid, -1)), metres),
+            "longest_strip": (size, np.reshape(longest_strips, grid), metres),
             "by_elements": (size, filled.by_elements.reshape(grid).astype(np.int8), none),
             "power_law_error": ((), filled.error, none),
             "film": ((), settings.water.film(settings.humidity)[0], metres),

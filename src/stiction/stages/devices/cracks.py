@@ -31,6 +31,7 @@ from stiction.stages.devices.opening import (
     addresses,
     arrests,
     fitted,
+    ground_of,
     reach,
     settings_of_beam,
 )
@@ -52,25 +53,20 @@ class Settings:
 
 
 def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Fit the force laws and release long beams, with all samples and with each group of them alone.
-
-    Raises
-    ------
-    ValueError
-        If the strips of the device do not resolve its cracks.
-    """
+    """Fit the force laws and release long beams, with all samples and with each group of them alone."""
     with on_patch(settings.device.strip, settings.device.width):
         vectors, limit = curves.vectors(contact, settings.humidity, settings.water)
     model = fitted(vectors, limit, settings.chaos)
     address = addresses(settings)
     laws = draw_laws(model, LAWS, address("mesh"))
-    device, ground = settings.device, settings.device.opening.resolved(settings.device, laws)
+    device, ground = settings.device, ground_of(settings.device, laws)
     groups = max(2, min(GROUPS, len(vectors) // PER_GROUP))
     models = [model, *(fitted(vectors[k::groups], limit, settings.chaos) for k in range(groups))]
     released = [arrests(device, ground, partial(draw_laws, of), settings.beams, address) for of in models]
     tried = reach(device, ground, partial(draw_laws, model), released[0], address)
     dataset = layout(device.opening, released[0], released[1:], ground[0], laws, surface_rms(contact))
     return dataset.assign(
+        longest_strip=((), device.opening.longest_strip(device, laws), {"units": "m"}),
         reach=((), tried, {"units": "m", "long_name": "longest simulated length, if not all devices stick"}),
         share_flat=((), curves.share_flat(contact, settings.humidity, settings.water), {"units": "1"}),
     )

@@ -78,6 +78,7 @@ def of_chart(
     for thickness, gap, shape in curves(charts[0]):
         along = [curve.sel(thickness=thickness, gap=gap, shape=shape) for curve in charts]
         shortest = min(along, key=lambda curve: float(curve.safe_length.min()))
+        shortest = shortest.assign(longest_strip=min(curve.longest_strip for curve in along))
         of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
         length = float(shortest.safe_length.min())
         warnings[thickness, gap, shape] = _of_length(
@@ -92,15 +93,17 @@ def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
 
 
 def _of_length(length, dataset, of, plastic, thinnest=None):
-    """Warnings about a device of a length [m]; film and rms from a dataset.
+    """Warnings about a device of a length [m]; film, rms and the longest strip from a dataset.
 
     The thinnest film [m] is that of the dataset, or along the axis of a chart.
     """
     device = of.device
     sizes = device.gap, device.width, device.thickness, length / device.opening.arms
+    is_bridge = device.opening.arms == 2
     return limits.of_beam(*sizes, float(dataset.film), float(dataset.rms)) + limits.given(
+        limits.long_strips(device.strip, float(dataset.longest_strip), is_bridge),
         limits.thin_film(thinnest or float(dataset.film)),
-        limits.stretched_bridge(device.gap, device.thickness) if device.opening.arms == 2 else None,
+        limits.stretched_bridge(device.gap, device.thickness) if is_bridge else None,
         *contact_warnings(plastic, of.materials),
     )
 

@@ -16,21 +16,16 @@ import numpy as np
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
+from stiction.beam.foundation import LONGER
 from stiction.beam.montecarlo import Experiment, released_beams
 from stiction.beam.release import EndState
 from stiction.beam.resolution import longest, resolved
 from stiction.chaos.model import ChaosModel, Truncation, fit
 from stiction.config.cases import Case
-from stiction.config.units import from_si
 from stiction.contact import forcelaw
-from stiction.devices.bridges import (
-    half_of_bridge,
-    held_lengths,
-    least_length,
-    longest_strip,
-    longest_tried,
-    middle_zone,
-)
+from stiction.devices import bridges
+from stiction.devices.arcs import arc_length
+from stiction.devices.bridges import half_of_bridge, held_lengths, longest_strip, longest_tried, middle_zone
 from stiction.plan.stage import chosen, select
 from stiction.streams import stream
 
@@ -110,12 +105,23 @@ def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
         If the strips are too long for the force laws (n, 4).
     """
     beam, points = _unresolved(device, laws)
-    try:
-        return resolved(beam, points, laws), points
-    except ValueError as error:
-        strip = from_si(device.strip, "um")
-        error.add_note(f"The length of the strips of a device is its strip_um, here {strip:g} µm.")
-        raise
+    return resolved(beam, points, laws), points
+
+
+def ground_of(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
+    """Part of a device that finite elements resolve on force laws (n, 4), and its number of strips.
+
+    There are none where strips are too long: a patch that counts as a flat surface may be much stiffer than all others.
+    """
+    if device.strip > LONGER * device.opening.longest_strip(device, laws):
+        return device.beam, 0
+    return device.opening.resolved(device, laws)
+
+
+def least_length(device: DesignedBeam, laws: np.ndarray) -> float:
+    """Length below which no ground holds a device that is nowhere stronger than some force laws (n, 4) [m]."""
+    strongest = device.opening.contribution(laws).max(axis=0)
+    return float(device.opening.bound(strongest, device.beam))
 
 
 def arrests(
@@ -123,10 +129,13 @@ def arrests(
 ) -> np.ndarray:
     """Crack lengths of cantilevers, infinite if not S-shaped, or of the shortest bridges that are held (n,) [m].
 
-    The ground is the part of the device that finite elements resolve and its number of strips, from `Opening.resolved`;
-    ``draw(n, rng)`` gives n force laws (n, 4) [SI], and ``address(k)`` the stream of device k.
+    The ground is from `ground_of`; ``draw(n, rng)`` gives n force laws (n, 4) [SI], and ``address(k)`` the stream of
+    device k. Where the ground has no strips, all have the `least_length`, the safe side.
     """
-    return device.opening.arrests(*ground, draw, number, address)
+    part, strips = ground
+    if not strips:
+        return np.full(number, least_length(device, draw(LAWS, address("mesh"))))
+    return device.opening.arrests(part, strips, draw, number, address)
 
 
 def reach(
@@ -167,6 +176,7 @@ class Opening:
     #: What the samples of force laws (..., m, 4) contribute to the length (..., m, ...), and the length on their mean.
     contribution: Callable[[np.ndarray], np.ndarray]
     length_on_mean: Callable[[np.ndarray, Beam], float]
+    bound: Callable[[np.ndarray, Beam], float]  #: length below which nothing of at most a contribution holds it
 
     @property
     def has_tip(self) -> bool:
@@ -175,7 +185,8 @@ class Opening:
 
 
 #: How beams open by kind. ASSUME: crack lengths follow the mean energy of the samples as in Eq. (13), and lengths of
-#: bridges their mean energy and pull-off force as in ``least_length``, as far as the error of the samples is concerned.
+#: bridges their mean energy and pull-off force as in ``bridges.least_length``, as far as the error of the samples is
+#: concerned.
 BEAMS = {
     "cantilever": Opening(
         arms=1,
@@ -189,6 +200,7 @@ BEAMS = {
         tried=lambda beam, *_: beam.length,
         contribution=forcelaw.energy,
         length_on_mean=lambda sample, beam: arrest_length(sample.mean(), beam),
+        bound=arc_length,
     ),
     "bridge": Opening(
         arms=2,
@@ -201,7 +213,8 @@ BEAMS = {
         arrests=held_lengths,
         tried=longest_tried,
         contribution=_energies_and_pull_offs,
-        length_on_mean=lambda sample, beam: least_length(*sample.mean(axis=0), beam),
+        length_on_mean=lambda sample, beam: bridges.least_length(*sample.mean(axis=0), beam),
+        bound=lambda strongest, beam: bridges.least_length(*strongest, beam),
     ),
 }
 

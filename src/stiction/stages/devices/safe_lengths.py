@@ -47,7 +47,9 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
         shape: [[one.estimate for one in safe_lengths(group[shape], settings)] for group in groups] for shape in safe
     }
     errors = {shape: risk.error_of_surfaces(lengths) for shape, lengths in estimates.items()}
-    dataset = layout(sticking, safe, without_samples, errors, settings).assign(cracks[["rms", "share_flat"]])
+    dataset = layout(sticking, safe, without_samples, errors, settings).assign(
+        cracks[["rms", "share_flat", "longest_strip"]]
+    )
     if settings.length is None:
         return dataset
     return dataset.assign(at_length(sticking, groups, float(cracks.reach), settings.length))

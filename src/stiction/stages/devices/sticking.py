@@ -64,7 +64,7 @@ def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> tuple
 
     With the length up to which they are known [m].
     """
-    resolved = device.opening.resolved(device, met.laws)
+    resolved = opening.ground_of(device, met.laws)
     address, draw = opening.addresses(settings), partial(draw_laws, met.model)
     cracks = opening.arrests(device, resolved, draw, settings.beams, address)
     held = None if met.tips is None else arcs.longest_free(*met.tips, device.beam)

@@ -18,6 +18,7 @@ from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.contact.environment import Water
 from stiction.devices import risk
+from stiction.devices.limits import long_strips
 from stiction.devices.roughness import crossings, margins, sufficient
 from stiction.devices.stoppers import safe_forces, stuck_patches
 from stiction.errors import NotConverged
@@ -78,13 +79,18 @@ class OfBeam:
         """End states in which the device may stick."""
         return self.device.opening.shapes
 
-    def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> list[Response]:
-        """Safe lengths at a humidity by shape."""
+    def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> tuple[list[Response], str]:
+        """Safe lengths at a humidity by shape, and a sentence about strips that are too long."""
         met = sticking.ground(contact, tips, humidity, self)
         lengths, reach = sticking.released(self.device, met, self)
         known = sticking.known(self.device, self.water, humidity, reach)
         scatter, safe = self._scatter(contact, humidity), sticking.by_shape(lengths, self, known)
-        return [self._response(held, *safe[shape], known[shape], scatter) for shape, held in lengths.items()]
+        flag = long_strips(
+            self.device.strip, self.device.opening.longest_strip(self.device, met.laws), self.device.opening.arms == 2
+        )
+        return [
+            self._response(held, *safe[shape], known[shape], scatter) for shape, held in lengths.items()
+        ], flag or ""
 
     def _response(self, lengths, safe, known, scatter):
         """Response from sticking lengths (n,) [m], their safe length, what else is known, and the samples' error."""
@@ -122,12 +128,12 @@ class OfStopper:
         """What is required, with its unit."""
         return self.restoring_force, "N"
 
-    def responses(self, contact: xr.Dataset, _tips: None, humidity: float) -> list[Response]:
-        """Safe force at a humidity."""
+    def responses(self, contact: xr.Dataset, _tips: None, humidity: float) -> tuple[list[Response], str]:
+        """Safe force at a humidity; nothing is to be said about strips."""
         forces = stoppers.forces(contact, humidity, self)
         stuck = tuple(float(part[0]) for part in stuck_patches(forces, np.array([self.restoring_force])))
         (safe,) = safe_forces(forces[None], self.share, stoppers.numbers_of_fits(self.seed))
-        return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)]
+        return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)], ""
 
 
 def of_job(settings: dict[str, Any]) -> OfBeam | OfStopper:
@@ -145,29 +151,32 @@ def compute(
 
     The contacts are those of `stiction.stages.roughness.contacts`; there are none of tips of other devices.
     """
-    responses, refused = [], []
+    responses, flagged, refused = [], [], []
     for humidity in settings.humidities:
         met, air = (contacts[humidity > 0], tips.get(humidity > 0)), settings.water.at(humidity)
         try:
-            responses.append(replace(settings, water=air).responses(*met, humidity))
-            refused.append("")
-        except (ValueError, NotConverged) as reason:
+            found, flag = replace(settings, water=air).responses(*met, humidity)
+            reason = ""
+        except (ValueError, NotConverged) as error:
             traceback.print_exc()  # the log keeps where the reason arose, should it be an error of the code
-            responses.append([Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)] * len(settings.shapes))
-            refused.append(str(reason))
+            found, flag = [Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)] * len(settings.shapes), ""
+            reason = str(error)
+        responses.append(found)
+        flagged.append(flag)
+        refused.append(reason)
     contact = next(iter(contacts.values()))
-    point = layout(responses, refused, roughness_of(contact), contact.sizes["sample"], settings)
+    said = {"flagged": ("humidity", flagged), "refused": ("humidity", refused)}
+    point = layout(responses, roughness_of(contact), contact.sizes["sample"], settings).assign(said)
     return point.assign({name: contact[name] for name in (*OTHERS, KURTOSIS) if name in contact})
 
 
 def layout(
     responses: Sequence[Sequence[Response]],
-    refused: Sequence[str],
     value: float,
     samples: int,
     settings: OfBeam | OfStopper,
 ) -> xr.Dataset:
-    """Dataset of a point: responses by humidity and shape, and why those of a humidity are missing."""
+    """Dataset of a point: responses by humidity and shape."""
     required, unit = settings.required
     over, note = ("humidity", "shape"), {"units": unit}
     columns = {name: [[getattr(one, name) for one in row] for row in responses] for name in Response._fields}
@@ -175,7 +184,6 @@ def layout(
         {name: (over, columns[name], note) for name in ("safe", "estimate", "error", "bound")}
         | {
             "stuck": ((*over, "end"), columns["stuck"], {"units": "1"}),
-            "refused": ("humidity", list(refused)),
             "roughness": ((), value),
             "samples": ((), samples if isinstance(settings, OfStopper) else settings.beams),
             "required": ((), required, note),
