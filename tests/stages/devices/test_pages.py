@@ -156,9 +156,9 @@ def test_the_length_to_build_is_the_least_less_twice_the_uncertainty():
     inputs = budget_dataset(2.0, TIPS)
     total = np.sqrt(inputs.slope.values @ inputs.covariance.values @ inputs.slope.values)
     sentence = sentences.build_sentence(found, budgets)
-    assert length_to_build(sentence) == round(least * (1 - 2 * total))
+    assert length_to_build(sentence) == round(least * np.exp(-2 * total))
     assert "at most 1 in 1000 sticks at relative humidities of 0.44, 0.67 (95 % confidence" in sentence
-    assert f"is reduced by {200 * total:.2g} %" in sentence
+    assert f"is reduced by {100 * (1 - np.exp(-2 * total)):.2g} %" in sentence
 
 
 def test_sentences_on_safe_forces_begin_with_the_humidities_of_the_stopper():
@@ -177,8 +177,15 @@ def test_budgets_of_bridges_are_not_those_of_tips():
     )
 
 
-def test_no_length_is_stated_if_it_is_too_uncertain():
-    assert sentences.build_sentence({0.67: safe("bridge")}, {(0.67,): budget_dataset(20.0)}).startswith("No length")
+def test_every_doubling_of_an_uncertainty_squares_what_is_left_of_a_length_and_none_is_too_uncertain():
+    found = {0.67: safe("bridge", longest=1.0)}
+    least, *left = (
+        length_to_build(sentences.build_sentence(found, budgets))
+        for budgets in ({}, *({(0.67,): budget_dataset(scale)} for scale in (5.0, 10.0, 20.0)))
+    )
+    parts = [length / least for length in left]
+    np.testing.assert_allclose(parts[1:], np.square(parts[:-1]), rtol=1e-2)
+    assert left[-1] > 0
 
 
 def test_the_verdict_compares_the_restoring_force_with_what_is_needed():

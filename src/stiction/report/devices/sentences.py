@@ -49,7 +49,8 @@ def _stated(section, words):
 def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> str:
     """The length to build for all humidities of a device, for the middle one of the shares.
 
-    It is the least safe length, less twice the largest uncertainty of what holds the shortest devices, if any is known.
+    It is the least safe length, less twice the largest uncertainty of what holds the shortest devices, if any is known;
+    that is one of the logarithm of the length.
 
     Parameters
     ----------
@@ -59,11 +60,9 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     least = min(_safe(dataset).item() for dataset in safe_lengths.values())
     totals = [budget_of(budget).total for budget in of_shortest(safe_lengths, budgets).values()]
     total = max((total for total in totals if np.isfinite(total)), default=0.0)
-    length = (1 - 2 * total) * least / UM
-    if length <= 0:
-        return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
+    part, few = np.exp(-2 * total), one_in(_chosen(_any(safe_lengths)))
     sentence = (
-        f"Build it no longer than {length:.0f} µm: then at most {one_in(_chosen(_any(safe_lengths)))} sticks "
+        f"Build it no longer than {part * least / UM:.0f} µm: then at most {few} sticks "
         f"{airs(safe_lengths)} (95 % confidence, given the drawn surfaces)."
     )
     if not np.isfinite(totals).all():
@@ -73,7 +72,7 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     if total == 0:
         return sentence
     return (
-        f"{sentence} The shortest safe length, {least / UM:.0f} µm, is reduced by {200 * total:.2g} %, twice the "
+        f"{sentence} The shortest safe length, {least / UM:.0f} µm, is reduced by {100 * (1 - part):.2g} %, twice the "
         "uncertainty due to the measurements."
     )
 
