@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from published import SPACING, SURFACES
 
 from stiction.estimates import mean_with_error
+from stiction.scans import whittle
 from stiction.scans.inspection import Settings, inspect
 from stiction.scans.levelling import Levelling, level
 from stiction.scans.periodogram import Rings, periodogram, rings
@@ -277,3 +278,19 @@ def test_pixels_that_do_not_resolve_the_power_law_are_known_and_leave_smoother_s
         assert not found.is_resolved
         curvature = [spectrum.moment(4) / spectrum.moment(0) for spectrum in (found.spectrum, truth)]
         assert curvature[0] < curvature[1], "of surfaces of the same rms"
+
+
+def test_what_no_ring_shows_has_an_infinite_error_and_all_else_a_finite_one():
+    wavenumber, weight = np.geomspace(1e6, 1e8, 30), np.full(30, 100.0)
+
+    def errors(corner):
+        covariance = whittle._covariance(wavenumber, weight, np.log(corner), -4.0)
+        return whittle.WhittleFit(1.0, corner, -4.0, covariance, 30.0, 27).errors
+
+    assert np.isfinite(errors(1e7)).all()
+    assert np.isfinite(errors(2e8)).tolist() == [True, False, False]  # beyond the last ring: a plateau alone
+    one_beyond = errors(np.sqrt(wavenumber[-2] * wavenumber[-1]))  # shows a product of corner and slope, neither alone
+    assert np.isfinite(one_beyond).tolist() == [True, False, False]
+    np.testing.assert_allclose(
+        errors(1e7), np.sqrt(np.diag(whittle._covariance(wavenumber, weight, np.log(1e7), -4.0)))
+    )

@@ -38,6 +38,8 @@ _CORNERS, _SLOPES = 12, -np.geomspace(0.5, 12, 16)
 #: Steepest and flattest exponent of the search.
 _BOUNDS = (-40.0, -0.05)
 _POINTS = 2000
+#: Variance that is zero but for rounding, relative to the largest one.
+_ROUNDING = 1e-10
 
 
 @dataclass(frozen=True)
@@ -96,6 +98,17 @@ class WhittleFit:
     covariance: np.ndarray  #: of (ln plateau, ln corner, slope), (3, 3) [-]
     chi2: float  #: sum over the rings of the squared relative deviations in standard errors [-]
     freedom: int  #: rings less parameters
+
+    @property
+    def errors(self) -> np.ndarray:
+        """Standard errors of (ln plateau, ln corner, slope), infinite of those that the rings do not show (3,) [-].
+
+        The covariance is zero along what the rings do not show, as its information is.
+        """
+        variances, axes = np.linalg.eigh(self.covariance)
+        not_shown = axes[:, variances <= _ROUNDING * variances.max()]
+        is_shown = (np.abs(not_shown) < np.sqrt(_ROUNDING)).all(axis=1)
+        return np.where(is_shown, np.sqrt(np.maximum(np.diag(self.covariance), 0.0)), np.inf)
 
     @property
     def misfit(self) -> float:
