@@ -337,7 +337,8 @@ def p_value(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) ->
     chi-squared distribution of deviances is that of many beams; that of few, all or none of them stuck, is narrower.
     """
     values = [chdtrc(number, misfit) for misfit, number in least_misfits(prior, lengths, counts) if number]
-    return float(-np.expm1(len(values) * np.log1p(-min(values)))) if min(values) < 1 else 1.0
+    least = min(values, default=1.0)
+    return float(-np.expm1(len(values) * np.log1p(-least))) if least < 1 else 1.0
 
 
 @dataclass(frozen=True)
@@ -374,7 +375,10 @@ def expected_share(margins: np.ndarray, weights: np.ndarray, quantiles: np.ndarr
 
     The margins are ln(length of the devices / length that sticks), as computed, and the weights the shares of the
     devices with each of these (n,) [-]; the others never stick. Beyond the quantiles, their distances stay as they are.
+    NaN if the quantiles are not known.
     """
+    if np.isnan(quantiles).any():
+        return np.nan
     score = make_interp_spline(quantiles + _APART * SCORES, SCORES, k=1)
     return float(weights @ ndtr(score(margins)))
 

@@ -266,6 +266,64 @@ def test_the_true_lengths_that_tips_hold_are_inside_the_stated_intervals_or_long
     assert np.mean(np.abs(of_inputs[adhere_more]) < 1.96) < 0.9  # control: even with those before the measurement
 
 
+# Devices and test beams of which too few stick in the simulation
+
+
+def unknown(dataset):
+    """Budget of too few devices that stick."""
+    return dataset.assign({name: dataset[name] * np.nan for name in ("slope", "scatter")}).assign(
+        centre=dataset.centre.copy(data=np.nan)
+    )
+
+
+def only_known(monkeypatch, is_known):
+    """Let budgets be known where ``is_known(beam, humidity, response)``."""
+    whole = budget
+
+    def of_some(beam, humidity, response=S_SHAPE):
+        found = whole(beam, humidity, response)
+        return found if is_known(beam, humidity, response) else unknown(found)
+
+    monkeypatch.setitem(globals(), "budget", of_some)
+
+
+RESULTS = ["result_shift", "result_after", "p_value", "updated_safe"]
+
+
+def test_data_of_which_the_simulation_shows_nothing_are_left_out_and_named(monkeypatch):
+    without = computed(as_computed(1.1)[1:], humidities=HUMIDITIES[1:])
+    only_known(monkeypatch, lambda beam, humidity, _: (beam, humidity) != (ARRAY, 0.44))
+    found = computed(as_computed(1.1))
+    xr.testing.assert_allclose(found[RESULTS], without[RESULTS])
+    assert "Left out are arrayA, RH 0.44: so few" in tables_test_beams.explained(found)
+    assert "Left out" not in tables_test_beams.explained(without)
+
+
+def test_data_of_which_all_are_left_out_leave_the_device_as_it_was(monkeypatch):
+    only_known(monkeypatch, lambda beam, *_: beam is not ARRAY)
+    found = computed(as_computed(1.1))
+    assert_allclose(found.result_after, found.result_before, rtol=1e-12)
+    assert_allclose(found.result_shift, 0)
+    assert float(found.p_value) == 1
+    assert "arrayA, RH 0.92" in tables_test_beams.explained(found)
+    assert "measured" not in tables_test_beams.test_beams({"C1": found}).cells
+    assert figures_test_beams.test_beams(found).axes
+
+
+def test_what_is_not_known_of_a_device_is_said_and_leaves_the_rest(monkeypatch):
+    whole = computed(as_computed(1.02))
+    only_known(monkeypatch, lambda beam, humidity, _: (beam, humidity) != (DEVICE, 0.44))
+    found = computed(as_computed(1.02))
+    known = found.humidity_of_result.values > 0.44
+    assert_allclose(found.result_after[known], whole.result_after[known])
+    assert np.isnan(found.result_after[~known]).all()
+    assert "no length is stated: so few of the simulated devices stick" in tables_test_beams.built(found)
+    assert len(tables_test_beams.stuck(found)) == 2
+    table = tables_test_beams.test_beams({"C1": found})
+    assert "nan" not in f"{table.caption} {table.cells.to_string()}"
+    assert figures_test_beams.test_beams(found).axes
+
+
 # Bridges and stoppers
 
 BRIDGE = replace(DEVICE, kind="bridge", residual_stress=50e6)
@@ -387,7 +445,7 @@ def test_lengths_to_build_are_the_least_safe_ones_less_twice_the_uncertainty_of_
 
     def built(shape, response, safe, deviation):
         doubt = float(found[deviation][(found.response == response).values].max())
-        return f"{float(found[safe].sel(shape=shape).min()) / UM * (1 - 2 * doubt):.0f} µm"
+        return f"{float(found[safe].sel(shape=shape).min()) / UM * np.exp(-2 * doubt):.0f} µm"
 
     cases = [
         (*held, *columns)
@@ -499,7 +557,7 @@ def test_lengths_to_build_after_counts_are_their_quantile_two_standard_deviation
     assert said not in tables_test_beams.built(computed(as_computed(0.7)))
     least = float(found.updated_safe.sel(shape=EITHER).min()) / UM
     assert tables_test_beams.built(found).startswith(
-        f"With the test beams, build it no longer than {least * (1 - doubt):.0f} µm"
+        f"With the test beams, build it no longer than {least * np.exp(-doubt):.0f} µm"
     )
     assert doubt > 2.05 * float(tips.result_after.max())  # control
 

@@ -27,6 +27,8 @@ NOTICED = 1.01
 #: Standard errors beyond which the linear update and its rerun count as different.
 DIFFERENT = 3.0
 _MORE = {True: "more", False: "less"}
+#: Why nothing is known of a result, or of what test beams say.
+_FEW = "so few of the simulated devices stick that they do not show what an input changes"
 #: Ways in which devices are held, that of the shortest devices first.
 _WEAKEST = tuple(reversed(END_STATES))
 #: P(stuck) before and after, and its scale.
@@ -61,9 +63,11 @@ def combinations(update: xr.Dataset) -> list[str]:
 
 def advised(update: xr.Dataset) -> str:
     """Which further test beams would help the device most, where it is known least."""
-    worst = int(np.argmax(update.result_after.values))
+    if update.result_after.isnull().all():
+        return f"Which further test beams would help is not known: {_FEW}."
+    worst = int(np.nanargmax(update.result_after.values))
     left = 100 * update.result_after_further.isel(result=worst)
-    best = int(np.argmin(left.isel(beams=0).values))
+    best = int(np.nanargmin(left.isel(beams=0).values))
     after = [f"{float(one):.2g} % with {int(one.beams)} beams" for one in left.isel(further=best)]
     return (
         f"Further test beams would help most with the dimensions and in the air of {update.further.values[best]}, at "
@@ -75,11 +79,15 @@ def advised(update: xr.Dataset) -> str:
 
 def explained(update: xr.Dataset) -> str:
     """Whether the data agree with the model."""
+    left_out = f"Left out are {update.attrs['left_out']}: {_FEW}." if update.attrs["left_out"] else ""
+    if not update.sizes["datum"]:
+        return left_out
     together, of_inputs = float(update.p_value), float(update.p_value_of_inputs)
     agree = "The test beams are as computed, within the stated errors. " * (min(together, of_inputs) >= UNLIKELY)
     return (
         f"{agree}Differences from the computed lengths and counts as large as measured, or larger, have a probability "
         f"of {together:.2g} if inputs and model err as stated, and of {of_inputs:.2g} if the inputs alone do."
+        + f" {left_out}".rstrip()
     )
 
 
@@ -91,8 +99,11 @@ def built(update: xr.Dataset) -> str:
     with twice the uncertainty added. Where nothing explains the test beams, they give no length, but a warning.
     """
     responses = list(dict.fromkeys(map(str, update.response.values)))
+    none = f"With the test beams, no {'force' if FORCE in responses else 'length'} is stated"
     if not is_reliable(update):
-        return f"With the test beams, no {'force' if FORCE in responses else 'length'} is stated. {_wrong(update)}"
+        return f"{none}. {_wrong(update)}"
+    if update.result_after.isnull().any():
+        return f"{none}: {_FEW}."
     (before, after), *others = (_built(update, response) for response in sorted(responses, key=_WEAKEST.index))
     if FORCE in responses:
         return (
@@ -145,7 +156,7 @@ def _built(update, response):
     for safe, doubts in (("safe", 2 * chosen.result_before), ("updated_safe", updated)):
         sizes, doubt = update[safe].sel(share=share, shape=shape_of(response)), float(doubts.max())
         least, most = (TO_UM * float(size) for size in (sizes.min(), sizes.max()))
-        yield most * (1 + doubt) if response == FORCE else least * max(1 - doubt, 0.0)
+        yield most * np.exp(doubt) if response == FORCE else least * np.exp(-doubt)
 
 
 def again(update: xr.Dataset) -> str:
@@ -161,7 +172,7 @@ def again(update: xr.Dataset) -> str:
 
 def _again(update):
     """Each result that was computed again."""
-    return [update.isel(again=k) for k in range(update.sizes["again"])]
+    return [update.isel(again=k) for k in range(update.sizes["again"]) if np.isfinite(update.linear[k])]
 
 
 def _change(result):
@@ -184,7 +195,8 @@ def stuck(update: xr.Dataset) -> list[str]:
     if "share" in chosen.expected_stuck.dims:
         chosen = chosen.isel(share=update.sizes["share"] // 2)
     sentences = []
-    for at in (chosen.sel(humidity=humidity) for humidity in update.humidity.values):
+    every = (chosen.sel(humidity=humidity) for humidity in update.humidity.values)
+    for at in (one for one in every if np.isfinite(one.updated_stuck)):
         size = "at its restoring force" if shape == FORCE else f"of {TO_UM * float(at.safe):.0f} µm, the safe length,"
         sentences.append(
             f"{airs([float(at.humidity)]).capitalize()}, {_percent(at.expected_stuck)} of the devices {size} are "
@@ -223,7 +235,9 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
         "inputs and, of crack lengths and of tips beside measured ones, due to the model. Inputs in their standard "
         "uncertainties."
     )
-    return Table.of(rows, with_list(caption, sentences), _COLUMNS)
+    missing = {"measured"} - {name for row in rows for name in row}
+    columns = {name: column for name, column in _COLUMNS.items() if name not in missing}
+    return Table.of(rows, with_list(caption, sentences), columns)
 
 
 def _rows(device, update):
@@ -383,7 +397,9 @@ def _nonlinear(update):
 
 
 def _extrapolated(update):
-    """Conditions of the device beyond those of its test beams."""
+    """Conditions of the device beyond those of its test beams, if any of these say something."""
+    if not update.sizes["datum"]:
+        return
     measured = set(update.datum_humidity.values.tolist())
     humid = sorted(measured - {0.0}) or [np.inf]
     results = sorted(set(update.humidity_of_result.values.tolist()) - measured)

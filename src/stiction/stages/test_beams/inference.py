@@ -96,6 +96,11 @@ class Result(NamedTuple):
         return response_of(self.budget)[0]
 
     @property
+    def is_known(self) -> bool:
+        """Whether enough of the simulated devices stick to show what its inputs change."""
+        return bool(np.isfinite([self.budget.centre, *self.budget.slope]).all())
+
+    @property
     def reduced(self) -> float:
         """u, the logarithm of the crack length over that at an adhesion energy of 1 J/m²; zero of other results [-]."""
         if self.response != S_SHAPE:
@@ -136,8 +141,12 @@ def compute(
     Budgets are by device or array, humidity and, for tips, more. What is predicted are the datasets of stage
     safe_lengths of a beam by humidity, or that of stage stoppers. ``grounds`` and ``tips`` are the contacts on which
     the beams of an array with counts stick in humid air, if true, or in dry air, and those of their tips.
+
+    Data of test beams of which too few stick in the simulation say nothing, and are left out.
     """
-    of_arrays = [Result(*key[:2], budget, settings.arrays[key[0]]) for key, budget in test_beams.items()]
+    every = [Result(*key[:2], budget, settings.arrays[key[0]]) for key, budget in test_beams.items()]
+    of_arrays = [result for result in every if result.is_known]
+    stuck = known_counts(settings.stuck, of_arrays)
     beams, of_tips = (
         [budget for budget in of_arrays if (budget.response == ARC) == is_tip] for is_tip in (False, True)
     )
@@ -145,7 +154,7 @@ def compute(
     inputs = common_inputs([*beams, *of_tips, *of_device])
     prior, responses = with_discrepancy(inputs, beams, [*of_tips, *of_device], settings.discrepancy)
     lengths = measured(beams, responses, settings.crack_lengths)
-    counts = counted([*beams, *of_tips], responses, settings.stuck, grounds, tips)
+    counts = counted([*beams, *of_tips], responses, stuck, grounds, tips)
     posterior = inference.given(prior, lengths, counts, stream(settings.seed, "test beams", "counts"))
     device, own = responses[len(of_arrays) :], len(inputs.names)
     if len(lengths.differences):
@@ -153,12 +162,13 @@ def compute(
     parts = [
         of_inputs(prior, posterior, own + 2),
         of_data(beams, responses, prior, posterior, settings),
-        of_counts(counts, posterior, settings.stuck),
+        of_counts(counts, posterior, stuck),
         of_results(of_device, device, own, prior, posterior),
         of_further(beams, responses, of_device, device, posterior),
         of_agreement(prior, lengths, counts, own),
     ]
-    merged = xr.merge(parts, combine_attrs="no_conflicts")
+    left_out = "; ".join(result.condition for result in every if not result.is_known)
+    merged = xr.merge(parts, combine_attrs="no_conflicts").assign_attrs(left_out=left_out)
     return with_forces(merged, predicted) if settings.device is None else with_lengths(merged, predicted)
 
 
@@ -184,7 +194,8 @@ def with_discrepancy(
     responses = np.zeros((len(results), len(inputs.names)))
     for row, result in zip(responses, results, strict=True):
         row[[inputs.names.index(name) for name in result.names]] = result.budget.slope.values
-    reduced = np.array([result.reduced for result in results]) - np.mean([result.reduced for result in beams])
+    reduced = np.array([result.reduced for result in results])
+    reduced -= np.mean(reduced[: len(beams)]) if beams else 0.0
     conditions = [result.condition if result.response == S_SHAPE else None for result in results]
     return inference.with_discrepancy(inputs, responses, reduced, conditions, stated)
 
@@ -225,6 +236,17 @@ def _place(result, crack_lengths):
     """Place of a result of test beams among the humidities at which crack lengths of its array were measured."""
     measured_at = crack_lengths[result.owner].humidity if result.owner in crack_lengths else ()
     return measured_at.index(result.humidity) if result.humidity in measured_at else None
+
+
+def known_counts(stuck: Mapping[str, Stuck], results: Sequence[Result]) -> dict[str, Stuck]:
+    """Counts at the humidities at which some results tell of every shape that may hold a beam."""
+    known = {(result.owner, result.humidity, result.response) for result in results}
+    kept = {}
+    for name, data in stuck.items():
+        at = [k for k, humidity in enumerate(data.humidity) if known >= {(name, humidity, shape) for shape in _COUNTED}]
+        columns = ("humidity", "length", "stuck", "of")
+        kept[name] = replace(data, **{key: tuple(getattr(data, key)[k] for k in at) for key in columns})
+    return kept
 
 
 def counted(
