@@ -21,6 +21,7 @@ from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
+from stiction.plan.stage import chosen
 
 #: Steps of the distance for the contact of tips, in those of section contact. ASSUME: they suffice for the largest
 #: attraction, the vertex of a parabola: with four, lengths of pair b are 0.02 to 0.19 % longer than with one.
@@ -122,6 +123,10 @@ class DevicePlan:
         """Patch on which a device sticks: strips along a beam, or the whole area of a stopper."""
         section = self.sections[device]
         return patch(section["pair"], *self.kind(device).sides(section, self.config["sampling"]["strip_length_um"]))
+
+    def capacitor(self, device: str) -> dict:
+        """Voltage of a device and its dielectric; empty without a voltage."""
+        return chosen(self.sections[device], ("voltage_V", "offset_V", "dielectric"))
 
     def has_strips_of_pair(self, device: str) -> bool:
         """Whether a device sticks on the strips of its pair in the main line, whose contact it then shares."""

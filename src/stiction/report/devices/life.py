@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from stiction.constants import FREE_FALL
-from stiction.life.holding import BREAKDOWN
+from stiction.contact.voltage import BREAKDOWN
 from stiction.plan.names import by_name
 from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN
 from stiction.report.style import (
@@ -134,9 +134,9 @@ def _biased(answers, potential):
         return []
     one, field = answers[AT_VOLTAGE], answers[FIELD]
     is_length, on = one.unit == "m", f"While {significant(potential)} V are on,"
-    said = [
-        f"{on} its safe length is {_low(one)} µm." if is_length else f"{on} up to {_high(one)} µN hold it in addition."
-    ]
+    what, unit = ("its safe length is", "µm") if is_length else ("they hold it with a further", "µN")
+    ends = list(dict.fromkeys(end for end, value in ((_low(one), one.low), (_high(one), one.high)) if value == value))
+    said = [f"{on} {what} {' to '.join(ends)} {unit}."]
     if field.high > BREAKDOWN:
         said.append(f"The field in its dielectric, {_high(field)} V/nm, is above 1 V/nm, where thin oxides break down.")
     return said

@@ -49,8 +49,8 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
             f"humidity of {humidity:g} is {from_si(layer[0], 'nm'):.3g} nm high: state this humidity with the device"
         )
     solid, bearing, starts, step = tables(contact)
-    if water.gaps is not None:
-        work = partial(water.gaps.work, height=layer[0])
+    if water.reaches_across:
+        work = partial(water.work_across, height=layer[0])
         pressure, _ = gaps.gap_pressures(bearing, starts[1], contact.distance.values, step, work)
         rest = work(contact.distance.values + reach) / (contact.slope.values[:, None] * float(contact.length))
         solid = solid + pressure - rest.astype(np.float32)

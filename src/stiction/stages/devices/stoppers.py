@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -19,6 +19,7 @@ from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.curves import pull_offs, share_flat
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices.contact_names import contact_of, corrections_of
+from stiction.stages.devices.opening import at_voltage
 from stiction.streams import stream
 
 #: Shares of stuck patches for which a restoring force is stated, down to one in a million.
@@ -189,14 +190,22 @@ def _inputs(plan, at):
     return {"contact": contact_of(plan, wettest)} | dry | corrections_of(plan, at.device)
 
 
+_STOPPERS = Stage.writing(
+    "stoppers",
+    "devices/stoppers/{device}",
+    inputs=_inputs,
+    settings=_settings,
+    kind=Settings,
+    compute=lambda data, settings: compute(data["contact"], corrected(settings, data), data.get("dry")),
+    message="Pull-off force of stopper {device}.",
+)
 STAGES = (
-    Stage.writing(
-        "stoppers",
-        "devices/stoppers/{device}",
-        inputs=_inputs,
-        settings=_settings,
-        kind=Settings,
-        compute=lambda data, settings: compute(data["contact"], corrected(settings, data), data.get("dry")),
-        message="Pull-off force of stopper {device}.",
+    _STOPPERS,
+    replace(
+        _STOPPERS,
+        name="stoppers_at_voltage",
+        files={"dataset": "devices/at_voltage/{device}"},
+        settings=lambda plan, at: at_voltage(plan, at.device, _settings(plan, at)),
+        message="Pull-off force of stopper {device} at its voltage.",
     ),
 )
