@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from stiction.config.units import from_si
 from stiction.constants import FREE_FALL
 from stiction.contact.voltage import BREAKDOWN
 from stiction.plan.names import by_name
@@ -30,7 +31,9 @@ from stiction.stages.devices.life import (
     QUESTIONS,
     RELEASED,
     SHOCK,
+    TILTED,
     VOLTAGE,
+    WEDGE,
     Answer,
     answers_of,
 )
@@ -45,6 +48,7 @@ _UNITS = {
     "N m-1": (1.0, "N/m"),
     "J m-2": (TO_MJ, "mJ/m²"),
     "1": (100.0, "%"),
+    "rad": (from_si(1.0, "deg"), "°"),
 }
 #: What the answers are, for the table and for pages.
 CAPTION = (
@@ -110,7 +114,7 @@ def sentences(dataset: xr.Dataset) -> list[str]:
     at = f"At {TO_UM * length:.0f} µm it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
     said = [*_touching(answers, at), *_pulled_in(answers, potential), *_drying(answers, at, length)]
-    return [*said, *_biased(answers, potential), *_often(answers, int(dataset.touchdowns))]
+    return [*said, *_tilted(answers), *_biased(answers, potential), *_often(answers, int(dataset.touchdowns))]
 
 
 def _touching(answers, at):
@@ -126,6 +130,15 @@ def _pulled_in(answers, potential):
     if VOLTAGE not in answers or potential < answers[VOLTAGE].low:
         return []
     return [f"Its own voltage of {significant(potential)} V pulls it in."]
+
+
+def _tilted(answers):
+    """Force on a stopper at its tilts, and the tilt that makes it that of a wedge."""
+    if TILTED not in answers:
+        return []
+    one, wedge = answers[TILTED], answers[WEDGE]
+    ends, limit = (" to ".join(dict.fromkeys((_low(each), _high(each)))) for each in (one, wedge))
+    return [f"Its {one.what}, is {ends} µN. Beyond a tilt of {limit}°, a longer side of its area hardly holds more."]
 
 
 def _biased(answers, potential):

@@ -33,8 +33,9 @@ QUESTIONS = TOUCH, STICK, HOLD, FREE = "touch", "stick", "hold", "free"
 #: Names of answers that sentences are about.
 VOLTAGE, SHOCK, COLLAPSE, RELEASED, AFTER = "voltage", "shock", "collapse", "released", "after"
 AT_VOLTAGE, FIELD = "at_voltage", "field"
-#: Source of the answers about a voltage.
-_OF_VOLTAGE = "stage at_voltage, stiction.life.holding"
+TILTED, WEDGE = "force_tilted", "wedge"
+#: Sources of the answers about voltages and tilts.
+_OF_VOLTAGE, _OF_TILT = "stage at_voltage, stiction.life.holding", "stage tilted_stoppers"
 
 
 class Answer(NamedTuple):
@@ -357,8 +358,10 @@ def _after_touchdowns(of, share, once, after):
 # Stoppers
 
 
-def of_stopper(stopper: xr.Dataset, of: OfStopper, biased: xr.Dataset | None = None) -> list[Answer]:
-    """Answers about a stopper from the datasets of its pull-off forces, without and at its voltage."""
+def of_stopper(
+    stopper: xr.Dataset, of: OfStopper, biased: xr.Dataset | None = None, tilted: xr.Dataset | None = None
+) -> list[Answer]:
+    """Answers about a stopper from the datasets of its pull-off forces: as it is, at its voltage, and tilted."""
     worst = int(stopper.mean_along.argmax("axis"))
     mean, error = (float(stopper[name][worst]) for name in ("mean_along", "mean_along_error"))
     where = in_air(round(float(stopper.worst_humidity), 2))
@@ -375,7 +378,47 @@ def of_stopper(stopper: xr.Dataset, of: OfStopper, biased: xr.Dataset | None = N
     what = f"mean pull-off force {where}, the worst air"
     answers.append(Answer("force", HOLD, what, mean, mean, error, "N", "largest attraction x area", "stage stoppers"))
     answers += _moved(of) + _freed(stopper, of) + _often(stopper, of)
+    answers += [] if tilted is None else _tilted(tilted)
     return _in_order(answers + (_pulled(stopper, of, biased) if of.capacitor else []))
+
+
+def _tilted(tilted):
+    """How many stoppers stick at their tilts, the force on them, and the tilt that makes it that of a wedge."""
+    ends = dict.fromkeys(f"{from_si(float(tilt), 'deg'):.3g}" for tilt in tilted.tilt)
+    by, form = (
+        f"tilted by {' to '.join(ends)}°",
+        "random patches; w e / s on smooth surfaces beyond the tilt of a wedge",
+    )
+    answers = [
+        Answer(
+            f"stuck_tilted_{float(humidity):g}",
+            STICK,
+            f"probability of sticking {by}, {in_air(float(humidity))}",
+            float(tilted.stuck.sel(humidity=humidity, bound="low").min()),
+            float(tilted.stuck.sel(humidity=humidity, bound="high").max()),
+            *(np.nan, "1", "fraction of random patches, 95 %", _OF_TILT),
+        )
+        for humidity in tilted.humidity.values
+    ]
+    most = tilted.isel(humidity=int(tilted["mean"].max("tilt").argmax("humidity")))
+    low, high, air = int(most["mean"].argmin("tilt")), float(most["mean"].max()), in_air(float(most.humidity))
+    numbers = float(most["mean"][low]), high, float(most.mean_error[low])
+    answers.append(Answer(TILTED, HOLD, f"mean pull-off force {by}, {air}", *numbers, "N", form, _OF_TILT))
+    what, form = "tilt beyond which a longer first side hardly holds more", "e / (f_max a), parallel patches"
+    numbers = float(tilted.wedge.min()), float(tilted.wedge.max()), np.nan
+    answers.append(Answer(WEDGE, HOLD, what, *numbers, "rad", form, _OF_TILT))
+    bounded = [float(share) for share in tilted.share[tilted.basis == Basis.SAMPLED]]
+    if bounded:
+        safe = tilted.safe_force.sel(share=min(bounded)).max("humidity")
+        low = int(safe.sel(part="safe").argmin("tilt"))
+        numbers = (
+            float(safe.sel(part="safe")[low]),
+            float(safe.sel(part="safe").max()),
+            float(safe.sel(part="error")[low]),
+        )
+        what, form = f"restoring force that frees all but {_one_in(min(bounded))} {by}", "quantile of the force, 95 %"
+        answers.append(Answer("restoring_force_tilted", FREE, what, *numbers, "N", form, _OF_TILT))
+    return answers
 
 
 def _pulled(stopper, of, biased):
@@ -477,11 +520,12 @@ def compute(
     after: Mapping[float, xr.Dataset] | None = None,
     stopper: xr.Dataset | None = None,
     biased: Mapping[float, xr.Dataset] | xr.Dataset | None = None,
+    tilted: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """Answers about a device, from its safe lengths by humidity or from the forces of a stopper."""
     if stopper is not None:
         of = in_si(OfStopper, settings["stopper"])
-        return layout(of_stopper(stopper, of, biased), of)
+        return layout(of_stopper(stopper, of, biased, tilted), of)
     of = in_si(OfBeam, settings["beam"])
     return layout(of_beam(lengths, after, of, biased), of, length_of(lengths, of))
 
@@ -520,7 +564,8 @@ def _inputs(plan, at):
     is_biased = bool(capacitor) and in_si(Capacitor, capacitor).field <= BREAKDOWN
     if not plan.devices.kind(at.device).is_beam:
         biased = {"biased": f"devices/at_voltage/{at.device}"} if is_biased else {}
-        return {"stopper": f"devices/stoppers/{at.device}"} | biased
+        tilted = {"tilted": f"devices/tilted/{at.device}"} if "tilt_deg" in section else {}
+        return {"stopper": f"devices/stoppers/{at.device}"} | biased | tilted
     cases = {humidity: case_id(at.device, humidity) for humidity in section["humidities"]}
     more, biased = cases if "touchdowns" in section else {}, cases if is_biased else {}
     return {
