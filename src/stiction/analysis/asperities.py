@@ -1,4 +1,4 @@
-"""Readings of an asperity: deviation of the crack lengths that they give, Eq. (13), from a reference."""
+"""Readings of an asperity: deviation of their crack lengths, Eq. (13), from a reference."""
 
 import numpy as np
 

@@ -17,7 +17,7 @@ def shifted(moment: float, step: float) -> tuple[float, float]:
 
 
 def normalised_slope(values: Sequence[np.ndarray], at: Sequence[float]) -> np.ndarray:
-    """Central difference of ln y over ln |x|, with the sign of an increase of x [-]; exact for a power law.
+    """Central difference of ln y over ln |x|, with the sign of an increase of x [-]. Exact for a power law.
 
     Parameters
     ----------

@@ -62,7 +62,7 @@ def identify(
     rngs: Callable[[], Iterable[np.random.Generator]],
     control: Callable[[], Iterable[np.random.Generator]],
 ) -> Identification:
-    """Fit corner and slope to radius and density of simulated summits; the plateau follows from the rms.
+    """Fit corner and slope to radius and density of simulated summits. The plateau follows from the rms.
 
     The surfaces of every trial spectrum are drawn from the same streams, so that the simulated statistics are smooth
     functions of the parameters. If no spectrum of the form of Eq. (7) matches both targets (Sub2), the result is the
@@ -113,7 +113,7 @@ def identify(
 
 
 def estimated_spectrum(target: SummitTarget) -> CutoffSelfAffine:
-    """Spectrum from which the search starts; its correlation length is at most 1.5 times that of the result."""
+    """Spectrum at the start of the search. Its correlation length is at most 1.5 times the result's."""
     return _spectrum(_start(target), target)
 
 
@@ -127,7 +127,7 @@ def _spectrum(parameters, target):
 
 
 def _start(target):
-    """Point of a coarse lattice whose summits on a continuous Gaussian surface (Nayak) are closest to the target."""
+    """Point of a coarse lattice with summits on a continuous Gaussian surface (Nayak) closest to the target."""
     corners, slopes = (np.log(np.geomspace(*ends, 30)[1:-1]) for ends in (_CORNERS, _SLOPES))
     lattice = [(corner, slope) for corner in corners for slope in slopes]
 
