@@ -67,7 +67,7 @@ PARTS = (beam_kernels, contact_kernels, chaos_kernels)
 
 
 class _NotCachedError(Exception):
-    """A kernel would have to be compiled."""
+    """Signal of a kernel without machine code in the cache."""
 
 
 class _OnlyCached(Listener):
@@ -81,7 +81,7 @@ class _OnlyCached(Listener):
 
 
 def main() -> None:
-    """Load all kernels; if one is not in the cache, compile each part in another process first."""
+    """Load all kernels. If one is not in the cache, compile each part in another process first."""
     try:
         with install_listener("numba:compile", _OnlyCached()):
             load()
