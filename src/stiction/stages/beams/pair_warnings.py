@@ -1,4 +1,4 @@
-"""Where results of pairs are beyond the limits of the model, in sentences of `stiction.devices.limits`."""
+"""Results of pairs beyond the limits of the model, in sentences of `stiction.devices.limits`."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -55,13 +55,13 @@ def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
 def contact_warnings(
     plastic: Plastic, materials: StatedProperties, effect: str = limits.SHORTER, remedy: str = limits.DISTANCE
 ) -> list[str | None]:
-    """Warnings, or None, about the contact of a pair, with the remedy where its plasticity was not studied."""
+    """Warnings, or None, about the contact of a pair, with the remedy if its plasticity was not studied."""
     about = (limit(*material) for material in materials for limit in (limits.default_material, limits.spacer))
     return [limits.plastic_contact(*plastic, effect, remedy), *about]
 
 
 def plastic_contact(plasticity: Mapping[str, xr.Dataset], pair: str) -> Plastic:
-    """How plastic the contact of a pair is, from the datasets of study plasticity."""
+    """Plastic fraction of the contact of a pair and its pressure, from the datasets of study plasticity."""
     if pair not in plasticity:
         return NOT_STUDIED
     return float(plasticity[pair].plastic_share), float(plasticity[pair].pressure)
@@ -74,7 +74,7 @@ def of_pairs(
     settings: OfPairs,
     remedy: str = limits.DISTANCE,
 ) -> Warnings:
-    """Warnings about the main line; plasticity is that of the pairs for which it was studied; others have a remedy.
+    """Warnings about the main line, with the plasticity of studied pairs and a remedy for the others.
 
     Each pair has the names of its materials, each with the properties that are stated.
     """
@@ -95,13 +95,13 @@ def of_pairs(
 
 
 def _without_water(pair, cases, water):
-    """Warning, or None, about a pair that no water wets; pair, humidity and model of all cases."""
+    """Warning, or None, about a pair without water. All cases give pair, humidity and model."""
     wettest = max((humidity for of, humidity, _ in cases if of == pair), default=0.0)
     return limits.no_water(water.film(wettest)[0], wettest)
 
 
 def of_films(cases: Collection[tuple[str, float, str]], water: Mapping[str, Water]) -> list[str]:
-    """Warnings about pairs that no water wets, and about films that are hardly a liquid, at each humidity of a pair.
+    """Warnings about pairs without water, and about films too thin for a liquid, at each humidity of a pair.
 
     The cases are pair, humidity and model.
     """
@@ -129,7 +129,7 @@ def with_numbers(warnings: Mapping[Any, list[str]]) -> list[str]:
 
 
 def as_markdown(warnings: Warnings, not_modelled: str) -> str:
-    """Warnings as a page, each sentence with all its subjects, and a sentence on what is not in the model."""
+    """Warnings as a page, each sentence with all its subjects, and a sentence on effects not in the model."""
     sentences, _ = numbered(warnings)
     about = ["; ".join(name for name, said in warnings.items() if sentence in said) for sentence in sentences]
     lines = [f"- {literal(f'{names}: {sentence}')}" for names, sentence in zip(about, sentences, strict=True)]
@@ -142,7 +142,7 @@ def of_surfaces(
     surfaces: Mapping[str, Sequence[str]],
     assumed: Mapping[str, Sequence[str]] = {},
 ) -> Warnings:
-    """Flags of the measured surfaces of every pair, and sentences on what is assumed of the others.
+    """Flags of the measured surfaces of every pair, and sentences on assumptions about the others.
 
     Datasets of ``surface_flags.inputs``, measured surfaces and sentences by pair.
     """

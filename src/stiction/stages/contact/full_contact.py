@@ -81,7 +81,7 @@ def strips(
 
 
 def _both_models(distance, force, strip, hardness):
-    """Variables of one strip at one humidity; ``distance``, ``force``: curve of the sum over summits."""
+    """Variables of one strip at one humidity. ``distance``, ``force``: curve of the sum over summits."""
     found = elements.separation(*strip, (distance, force))
     pressure = found.closed.pressure
     touching = pressure[pressure > 0] / hardness
@@ -127,7 +127,7 @@ def pull_offs(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def settings_of(plan: Any, at: At) -> dict[str, Any]:
-    """As those of the contact, with the lowest, the middle and the highest humidity of the pair.
+    """Settings of the contact, with the lowest, the middle and the highest humidity of the pair.
 
     ASSUME: attraction across gaps is left out, so that both models have the same forces.
     """

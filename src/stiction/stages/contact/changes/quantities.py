@@ -27,7 +27,7 @@ def compute(
     settings: Settings,
     estimate: xr.Dataset | None = None,
 ) -> list[xr.Dataset]:
-    """Contact with less and with more of a quantity, in this order; the samples have the same random numbers.
+    """Contact with less and with more of a quantity, in this order. The samples have the same random numbers.
 
     The two surfaces and the pair are as in stage contact. The named surface has the quantity, a key of
     `stiction.analysis.shifts.STEPS`, shifted; on both sides of the pair if both have this surface. With an estimate,
@@ -57,7 +57,7 @@ def difference(contact: xr.Dataset) -> float:
 
 
 def _with_estimate(plan, at, _named):
-    """The two surfaces, and the estimate of the surface if one of its modes is shifted.
+    """Two surfaces, and the estimate of the surface if one of its modes is shifted.
 
     Modes are those of the measured heights, which the surface may not have.
     """

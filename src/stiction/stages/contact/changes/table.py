@@ -1,4 +1,4 @@
-"""Contacts of a pair: what is changed x the kind of patch on which its surfaces meet.
+"""Contacts of a pair: changes x kinds of patch for the contact of its surfaces.
 
 A row of `TABLE` is a change, and a cell of it a kind of patch for which it is computed. Each change is described in its
 module, with the function that computes it. All contacts of a patch have the same random numbers, so that their
