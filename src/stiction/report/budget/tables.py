@@ -1,4 +1,4 @@
-"""Tables of stoppers and of the uncertainty of devices: P(stuck) of patches, and what to measure better."""
+"""Tables of stoppers and of the uncertainty of devices: P(stuck) of patches, and advice on measurements."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -59,7 +59,7 @@ def stoppers(
     errors: Mapping[str, xr.Dataset] | None = None,
     not_modelled: str = "",
 ) -> Table:
-    """Stoppers: pull-off force, P(stuck), restoring force needed, worst humidity; everything is by device.
+    """Stoppers: pull-off force, P(stuck), restoring force needed, worst humidity. Everything is by device.
 
     The caption ends with what is not in the model.
     """
@@ -118,7 +118,7 @@ def _stopper(dataset, pull, stuck, safe):
 
 
 def _columns_of_stoppers(rows):
-    """Columns for reading; those of the safe forces depend on the shares."""
+    """Columns for reading. The columns of the safe forces depend on the fractions."""
     shares = dict.fromkeys(name.rpartition("_")[2] for row in rows for name in row if name.startswith("safe_force_uN"))
     return DEVICE | {
         "RH": (_humidities, "relative_humidity", "lowest_humidity", "highest_humidity"),
@@ -134,19 +134,19 @@ def _columns_of_stoppers(rows):
 
 
 def _with_basis(force, basis):
-    """A safe force, and what it rests on if that is not sampled patches."""
+    """Safe force, and its basis unless it is sampled patches."""
     return number(force, ".3g") + (f" ({basis})" if basis in (Basis.FITTED, Basis.EXTRAPOLATED) else "")
 
 
 def _humidities(humidity, lowest, highest):
-    """Humidity of a row, or the range of all, which dry air may precede."""
+    """Humidity of a row, or the range of all, possibly after dry air."""
     if np.isnan(humidity):
         return " to ".join(dict.fromkeys(map(humidity_text, (lowest, highest))))
     return humidity_text(humidity)
 
 
 def percentage(share: float, low: float, high: float) -> str:
-    """A share and its band, in percent.
+    """Fraction and its band, in percent.
 
     Examples
     --------
@@ -157,7 +157,7 @@ def percentage(share: float, low: float, high: float) -> str:
 
 
 def worst_humidity(humidity: float, error: float, is_an_end: bool) -> str:
-    """Worst humidity as text, also if it is an end of the humidities that were computed.
+    """Worst humidity as text, marked at an end of the computed humidities.
 
     Examples
     --------
@@ -203,7 +203,7 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
 
 
 def advised(dataset: xr.Dataset) -> str:
-    """Sentence on what to measure better."""
+    """Sentence on the most useful measurement."""
     uncertainty = budget_of(dataset)
     if np.isnan(uncertainty.total):
         return "So few of the simulated devices stick that they do not show what an input changes."
@@ -213,7 +213,7 @@ def advised(dataset: xr.Dataset) -> str:
 
 
 def decided(datasets: Iterable[xr.Dataset], assumed: Sequence[str]) -> list[str]:
-    """Sentence about the most uncertain of some budgets, if inputs that are assumed are what to measure first."""
+    """Sentence about the most uncertain of some budgets, if assumed inputs are the first to measure."""
     budgets = [(budget_of(dataset), dataset) for dataset in datasets]
     budgets = [budget for budget in budgets if np.isfinite(budget[0].total)]
     uncertainty, dataset = max(budgets, key=lambda budget: budget[0].total, default=(None, None))
@@ -229,13 +229,13 @@ def decided(datasets: Iterable[xr.Dataset], assumed: Sequence[str]) -> list[str]
 
 
 def response_text(dataset: xr.Dataset) -> str:
-    """What the inputs move, in words."""
+    """Quantity changed by the inputs, in words."""
     response, share = response_of(dataset)
     return END_STATES[response].budget.format(f"{1 / share:g}" if share else "")
 
 
 def counted_as_exact(dataset: xr.Dataset) -> str:
-    """Sentence on what has no stated uncertainty."""
+    """Sentence on inputs without a stated uncertainty."""
     return f"Counted as exact: {', '.join(map(str, dataset.exact.values))}."
 
 
@@ -274,12 +274,12 @@ def _effect(budget, inputs, slope_errors):
 
 
 def _part(part, name):
-    """What a row is about."""
+    """Subject of a row."""
     return f"choice: {choice_label(name)}" if part == "choice" else name
 
 
 def _effect_as_text(part, effect, error):
-    """Effect with its standard error, if it has one; that of a choice, or of the model, has a sign."""
+    """Effect with its standard error, if it has one. Effects of a choice, or of the model, have a sign."""
     if part in MODEL:
         return column.marked(effect, error, part == MODEL[1])
     if not error > 0 or np.isnan(effect):

@@ -1,4 +1,4 @@
-"""The error of the model of the contact beside the predictions for devices: rows of tables, sentences of pages."""
+"""Error of the model of the contact beside the predictions for devices: rows of tables, sentences of pages."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -14,7 +14,7 @@ from stiction.stages.devices.opening import EITHER, FORCE
 
 
 def of_device(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: float, shape: str) -> dict[str, Any]:
-    """Change of a device by full contact, in an end state; nothing without datasets of stage device_model_error."""
+    """Change of a device by full contact, in an end state, or nothing without datasets of stage device_model_error."""
     if not errors:
         return {}
     error = errors.get(device)
@@ -23,7 +23,7 @@ def of_device(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: fl
 
 
 def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]:
-    """What full contact changes of a device in words, and which side of it is safe; none without errors.
+    """Changes of a device by full contact in words, and the safe side of them, none without errors.
 
     The errors are known of devices whose pair has humid air.
     """
@@ -62,7 +62,7 @@ def _percent(row):
 
 
 def _safe_side(known, sign):
-    """Whether what is stated is on the safe side: longer beams and smaller forces stick less under full contact."""
+    """Sentence on the safe side: longer beams and smaller forces stick less under full contact."""
     unsafe = {
         humidity: abs(row["model_error_percent"])
         for humidity, row in known.items()
@@ -75,7 +75,7 @@ def _safe_side(known, sign):
 
 
 def of_devices(plan: Any, *devices: str) -> dict[str, Any]:
-    """Errors of some devices, as inputs of a stage; none unless they are wanted.
+    """Errors of some devices, as inputs of a stage, none unless they are wanted.
 
     Devices on pairs in dry air alone are left out: full contact is computed where water condenses.
     """
