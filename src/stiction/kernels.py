@@ -69,6 +69,7 @@ class _Cache(FunctionCache):
     _impl_class = _Names
 
     def save_overload(self, sig, data):
+        """Save a compiled kernel, unless the disk refuses."""
         with suppress(OSError):  # a full disk costs time alone
             self._save(sig, data)
 

@@ -31,6 +31,7 @@ def factors(
     shape = (2, *full.shape[1:])
 
     def computed(means):
+        """Ratio of the responses to both means [-]."""
         changed, base = map(response, means.reshape(shape))
         return changed / base
 

@@ -75,6 +75,7 @@ def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: 
     stopped = []
 
     def interrupt(*received):
+        """Note the interrupt, and pass it on."""
         stopped.append(received)
         warnings.filterwarnings("ignore", "coroutine .* was never awaited", RuntimeWarning)  # of jobs about to start
         signal.default_int_handler(*received)

@@ -167,6 +167,7 @@ def _renamed(entry, section, copied, end):
         return entry
 
     def new(key, value):
+        """Value with the suffix on names of copies, nested sections and lists included."""
         if isinstance(value, dict):
             return {inner: new(inner, below) for inner, below in value.items()}
         names = copied[_NAMED[section][key]] if key in _NAMED[section] else ()

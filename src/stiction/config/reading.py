@@ -88,18 +88,21 @@ class _Strict(yaml.SafeLoader):
     """
 
     def construct_document(self, node):
+        """Construct a document of at most `MOST` values."""
         if (values := _number_of_values(node, {})) > MOST:
             message = f"the file has {values:.6g} values, with aliases written out, must have at most {MOST}"
             raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
         return super().construct_document(node)
 
     def construct_scalar(self, node):
+        """Construct a scalar of at most `LONGEST` characters."""
         if isinstance(node, yaml.ScalarNode) and len(node.value) > LONGEST:
             message = f"a value has {len(node.value)} characters, must have at most {LONGEST}"
             raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
         return super().construct_scalar(node)
 
     def construct_mapping(self, node, deep=False):  # noqa: ARG002
+        """Construct a mapping without duplicate keys."""
         keys = [key for key, _ in node.value if key.tag != "tag:yaml.org,2002:merge"]
         # Deep construction also rejects a mapping that contains itself.
         mapping = super().construct_mapping(node, deep=True)

@@ -215,8 +215,11 @@ def only_if(runs: Callable[[Keys], bool]) -> Callable:
     """Condition of a relation. Without it the relation refuses nothing."""
 
     def decorated(relation):
+        """Relation under the condition."""
+
         @functools.wraps(relation)
         def conditional(config):
+            """Yield from the relation under the condition."""
             if runs(config):
                 yield from relation(config)
 

@@ -126,7 +126,7 @@ def pull(length: float, part: Beam) -> tuple[float, float]:
 
 
 def least_length(energy: float, pull_off: float, part: Beam) -> float:
-    r"""Least length of adhesion of a bridge at its middle, for any law of this energy [J m⁻²] and pull-off [Pa] [m].
+    r"""Least length of a bridge to stick at its middle, over all laws of this energy [J m⁻²] and pull-off [Pa] [m].
 
     The law that holds most attracts with f_max as far as e / f_max, and not beyond. It balances the force P of the
     bridge on a half-width :math:`b = P / (2 w f_\mathrm{max})`, where the middle, of curvature κ under a point force,
@@ -147,6 +147,7 @@ def least_length(energy: float, pull_off: float, part: Beam) -> float:
     """
 
     def excess(length):
+        """Gap at the end of the stuck width beyond the reach of the law, at a length of the bridge [m]."""
         force, curvature = pull(length, part)
         width = force / (2 * part.width * pull_off)
         rise = curvature * width**2 / 2 - 7 / 48 * force * width**3 / part.bending_stiffness

@@ -94,6 +94,7 @@ def log_slope(
     """
 
     def slope(used):
+        """Central difference of ln length over the step, NaN without finite lengths."""
         ends = length(less[used]), length(more[used])
         return np.log(ends[1] / ends[0]) / step if np.isfinite(ends).all() else np.nan
 

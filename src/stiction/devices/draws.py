@@ -102,6 +102,7 @@ def _power(before, ratio):
     """Largest power of the ratio of densities, up to 1, with draws still worth enough."""
 
     def spare(power):
+        """Worth of the draws at a power, less the required one."""
         return _worth(before + power * ratio) - _ENOUGH
 
     return 1.0 if spare(1.0) >= 0 else brentq(spare, 0.0, 1.0, rtol=1e-6)

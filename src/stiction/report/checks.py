@@ -119,6 +119,7 @@ def scatter_falls(case: str, weaker: xr.Dataset, stronger: xr.Dataset) -> Check:
     """
 
     def change(means):
+        """Change of the relative standard deviation, from moments of both cases."""
         x, xx, y, yy = means
         return np.sqrt(yy / y**2 - 1) - np.sqrt(xx / x**2 - 1)
 

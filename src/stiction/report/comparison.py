@@ -119,11 +119,13 @@ def _stages(source):
     name = f"compared_{source.table}"
 
     def jobs(plan):
+        """One job if copies of a subject are compared."""
         devices = plan.devices.stoppers if source.table == "stoppers" else plan.devices.beams
         subjects = plan.pairs if source.subject == "pair" else devices
         return [{}] if any(one.endswith(tuple(values(plan.config))) for one in subjects) else []
 
     def settings(plan, _at):
+        """Compared keys and their values by suffix of the copies."""
         ends = {end: list(numbers) for end, numbers in values(plan.config).items()}
         return {"keys": sorted(plan.config.get("compare", {})), "ends": ends}
 
@@ -136,6 +138,7 @@ def _stages(source):
     shows = f"{source.words.partition(' [')[0]} for values of one key"
 
     def made(show):
+        """Function of a stage to show its table."""
         return lambda data, settings: show(pd.read_csv(data["table"]), source, settings["keys"], settings["ends"])
 
     return (

@@ -56,6 +56,7 @@ def fork_jobs() -> bool:
         return _refused(str(error))
 
     def execute_script(job, fname, edit=False):
+        """Run the script of a job as a fork, or as Snakemake does."""
         if _plain(job, server):
             try:
                 return _run(server, fname)
@@ -109,6 +110,7 @@ def compare_without_pandas() -> None:
     compared = records._serialize_param_pandas
 
     def serialize(record, value):
+        """Text of a parameter, without pandas unless it is imported."""
         return compared(record, value) if "pandas" in sys.modules else record._serialize_param_builtin(value)
 
     records._serialize_param_pandas = serialize
@@ -122,6 +124,7 @@ def look_for_scripts_once() -> None:
         return
 
     def process_job(self, job):
+        """Look for the script of a rule, unless it was found for another job."""
         rule, present = job.rule.name, vars(self).setdefault("present", set())
         if rule not in present:
             look_for(self, job)
@@ -141,6 +144,7 @@ def remember_signatures() -> None:
     known = cache(inspected)
 
     def get_function_params(func):
+        """Names of the parameters of a function, from memory if it has a hash."""
         try:
             return known(func)
         except TypeError:  # it has no hash
@@ -162,12 +166,14 @@ def limit_timers(workflow: Any) -> None:
     waiting = threading.Lock()
 
     def reevaluate(delay):
+        """Start a timer, unless one is waiting."""
         if waiting.acquire(blocking=False):
             timer = threading.Timer(delay, awake)
             timer.daemon = True  # otherwise Snakemake would wait for it at the end
             timer.start()
 
     def awake():
+        """Wake the scheduler up."""
         waiting.release()
         scheduler._open_jobs.release()
 

@@ -74,9 +74,11 @@ class _OnlyCached(Listener):
     """Refuses to compile."""
 
     def on_start(self, _event):
+        """Refuse to compile."""
         raise _NotCachedError
 
     def on_end(self, _event):
+        """Do nothing."""
         pass
 
 

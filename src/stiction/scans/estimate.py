@@ -211,6 +211,7 @@ def _model(inspection, values, heights, largest=LARGEST_DISTANCE_OF_SCANS):
     correlation = _CORRELATED * 2 * np.pi / inspection.fit.corner
 
     def surface(density):
+        """Surface with a density, and the spectrum of the scans."""
         spectrum = inspection.spectrum_in(inspection.largest)
         return SurfaceModel(density, spectrum, correlation, float(np.exp(values[0])), inspection.largest.frame)
 

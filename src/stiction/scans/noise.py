@@ -184,10 +184,12 @@ def _noisy(rings, waves, end, start, floor=True):
     seen = waves.up_to(end)
 
     def total(parameters):
+        """Spectrum in the rings relative to its plateau, with the floor [-]."""
         form = seen.share * shape(seen.wavenumber, *parameters[:2])
         return np.bincount(seen.ring, form, len(rings.density)) + (np.exp(parameters[2]) if floor else 0.0)
 
     def objective(parameters):
+        """Half of the deviance per weight of the rings, at the best plateau."""
         relative = total(parameters)
         plateau = np.average(rings.density / relative, weights=rings.weight)
         return np.log(plateau) + np.average(np.log(relative), weights=rings.weight)

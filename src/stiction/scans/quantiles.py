@@ -100,6 +100,7 @@ def compared_slopes(skewness: float, kurtosis: float) -> np.ndarray:
     base, step = kurtosis - _STEP, np.copysign(_STEP / 2, skewness)
 
     def compared(s, k):
+        """Compared heights of the density of a skewness and kurtosis [-]."""
         return maxent.solve(s, k).quantile_of_normal(SCORES[COMPARED])
 
     centre = compared(skewness, base)

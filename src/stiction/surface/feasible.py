@@ -128,6 +128,7 @@ def nearest_feasible(
     errors, inverse = np.sqrt(np.diag(covariance)), np.linalg.inv(covariance)
 
     def on_border(trial):
+        """Moments on the border at a skewness, and their distance from the measured ones."""
         border = largest_kurtosis(float(trial))
         off = np.array([trial - skewness, border - kurtosis])
         return Moments(float(trial), border, float(np.sqrt(off @ inverse @ off)))

@@ -87,6 +87,7 @@ def identify(
     """
 
     def simulated(parameters, streams):
+        """Number and curvature of summits per area of simulated surfaces, by stream."""
         underlying, _ = underlying_spectrum(_spectrum(parameters, target), translation, grid.spacing, points=512)
         surface = RoughSurface(underlying, translation, target.rms, grid)
         return _summits_per_area(surface, target.spacing, streams)
@@ -94,6 +95,7 @@ def identify(
     known = {}
 
     def misfit(parameters):
+        """Logarithm of radius and density over their targets (2,)."""
         key = tuple(parameters)
         if key not in known:
             radius, density = radius_and_density(simulated(parameters, rngs()).mean(axis=0))
@@ -101,6 +103,7 @@ def identify(
         return known[key]
 
     def slopes(parameters):
+        """Derivatives of the misfit by the parameters (2, 2), as differences."""
         there = [misfit(parameters + step) for step in _STEP * np.eye(2)]
         return (np.transpose(there) - misfit(parameters)[:, None]) / _STEP
 
@@ -132,6 +135,7 @@ def _start(target):
     lattice = [(corner, slope) for corner in corners for slope in slopes]
 
     def distance(parameters):
+        """Distance of ln radius and ln density of Nayak's summits from the target."""
         summits = NayakSummits(_spectrum(parameters, target))
         misfit = np.log([summits.mean_curvature * target.mean_radius, summits.density / target.density])
         return np.hypot(*misfit)

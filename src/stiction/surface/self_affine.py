@@ -81,6 +81,7 @@ def corner_of(correlation_length: float, slope: float, cutoff: float) -> float:
     largest = cutoff * (1 - 1e-9)  # a corner is below the cut-off
 
     def excess(corner):
+        """Autocorrelation at the correlation length, less its required value, for a corner [rad m⁻¹]."""
         return correlation_at(correlation_length, slope, corner, cutoff) - FALLEN_TO
 
     if excess(largest) > 0:

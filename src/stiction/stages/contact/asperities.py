@@ -83,6 +83,7 @@ class _Medium(NamedTuple):
 
     @classmethod
     def of(cls, settings, name):
+        """Both solids of the settings with a medium between them."""
         one, other = bodies(settings)
         both = (between(one, other, name) for between in (solids.asperity_between, solids.attraction_between))
         return cls(solids.composite_modulus(one, other), *both)

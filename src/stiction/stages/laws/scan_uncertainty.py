@@ -80,6 +80,7 @@ def compute(
     """
 
     def of_all(of_one):
+        """Values of one function for every surface."""
         return np.array([of_one(dataset, errors[name]) for name, dataset in slopes.items()])
 
     uncertainty = Uncertainty(*map(of_all, (_parts, _sampling, _form)))

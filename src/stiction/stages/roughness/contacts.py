@@ -146,6 +146,7 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
     """Stage of one contact of a point. ``contact`` gives its settings by plan, pair in its air and device."""
 
     def settings(plan, at):
+        """Settings of the contact of a point, with its values of the varied quantities."""
         pair = plan.config["devices"][at.device]["pair"]
         what, *others = varied(plan, at.device)
         curve, point = divmod(int(at.number), POINTS)

@@ -99,6 +99,7 @@ class OfBeam:
         parts, groups = self.device.opening.contribution(laws), min(GROUPS, len(laws))
 
         def length(samples):
+            """Sticking length on the mean of samples [m]."""
             return self.device.opening.length_on_mean(samples, self.device.beam)
 
         return risk.error_of_surfaces([length(parts[k::groups]) for k in range(groups)]) / length(parts)

@@ -100,6 +100,7 @@ def statistics(character: xr.Dataset, units: Sequence[float] = (1, 1, 1, 1, 1)) 
     """
 
     def estimate(mean):
+        """Statistics from the means of powers of the heights and of summits, in the units of the tables."""
         *powers, density, curvature, with_summit = mean
         variance, third, fourth = central_moments(*powers)
         rms = np.sqrt(variance)

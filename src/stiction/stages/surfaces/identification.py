@@ -54,6 +54,7 @@ def compute(heights: xr.Dataset, surface: str, settings: Settings) -> xr.Dataset
     grid = StripGrid(patch, patch, settings.spacing, margin=0.0)
 
     def patches(*part):
+        """Streams of the random numbers of all patches, the same at every call."""
         numbers = range(settings.identification.patches)
         return lambda: (stream(settings.seed, "identification", surface, *part, k) for k in numbers)
 

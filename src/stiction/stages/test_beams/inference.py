@@ -448,6 +448,7 @@ def with_lengths(update: xr.Dataset, safe_lengths: Mapping[float, xr.Dataset]) -
     )
 
     def share(humidity, shape, length, quantiles):
+        """P(stuck) of a length [m] at a humidity, after a shift with these quantiles."""
         lengths, shares = sticking(safe_lengths[humidity].sel(shape=shape))
         return inference.expected_share(np.log(length / lengths), np.diff(shares, prepend=0.0), quantiles)
 
@@ -479,6 +480,7 @@ def with_forces(update: xr.Dataset, stopper: xr.Dataset) -> xr.Dataset:
     stated = xr.full_like(safe.isel(share=0, drop=True), float(stopper.restoring_force))
 
     def share(humidity, _, force, quantiles):
+        """P(stuck) of a restoring force [N] at a humidity, after a shift with these quantiles."""
         held = np.maximum(stopper.pull_off.sel(humidity=humidity).values, np.finfo(float).tiny)
         return inference.expected_share(np.log(held / force), np.full(len(held), 1 / len(held)), -quantiles[::-1])
 

@@ -71,6 +71,7 @@ def _stage(change, place):
     """Stage of a cell of the table."""
 
     def inputs(plan, at):
+        """Inputs of a change, with names of contacts on this patch."""
         return change.inputs(plan, at, lambda other, **different: file_of(other, place, **vars(at) | different))
 
     rule, _ = TABLE[change][place]
