@@ -92,12 +92,12 @@ def above_zero(humidities: float | list) -> list[float]:
 
 def meetings(config: Keys) -> Iterator[Meeting]:
     """Yield all meetings."""
-    yield from of_pairs(config)
+    yield from pair_meetings(config)
     for name, _ in config.entries("devices", "pair"):
-        yield of_device(name, config)
+        yield device_meeting(name, config)
 
 
-def of_pairs(config: Keys) -> Iterator[Meeting]:
+def pair_meetings(config: Keys) -> Iterator[Meeting]:
     """Yield the meetings of the pairs in the run."""
     running = [pair for _, pairs in config.known("run.pairs") for pair in pairs]
     for pair, *surfaces in config.entries("pairs", *SIDES):
@@ -108,7 +108,7 @@ def of_pairs(config: Keys) -> Iterator[Meeting]:
             yield Meeting(config, pair, airs, [(f"{section}.gap_um", air) for air in airs], stated, ("run.pairs",))
 
 
-def of_device(name: str, config: Keys) -> Meeting:
+def device_meeting(name: str, config: Keys) -> Meeting:
     """Meeting at a device, also along its chart, and for a stopper at the humidities of its search."""
     section = f"devices.{name}"
     pair, humidities = config[f"{section}.pair"], f"{section}.humidities"

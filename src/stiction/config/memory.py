@@ -19,12 +19,12 @@ _PER_SLOPE = 6000
 USUAL, LARGEST = 800, 8000
 
 
-def of_field(length_um: float, width_um: float, spacing_nm: float) -> float:
+def field_memory(length_um: float, width_um: float, spacing_nm: float) -> float:
     """Memory of a job with fields of this size on a grid of this spacing [MB].
 
     Examples
     --------
-    >>> round(of_field(10.24, 10.24, 10))
+    >>> round(field_memory(10.24, 10.24, 10))
     413
     """
     points = (NM_PER_UM * length_um / spacing_nm) * (NM_PER_UM * width_um / spacing_nm)
@@ -41,12 +41,12 @@ def spacings_of(device: dict, spacing_nm: float, others_nm: Sequence[float]) -> 
     return (spacing_nm, *others_nm) if "uncertainty" in device else (spacing_nm,)
 
 
-def of_tips(slopes: int) -> float:
+def tip_memory(slopes: int) -> float:
     """Memory of a job with the contacts of tips, for this number of slopes of all of them together [MB].
 
     Examples
     --------
-    >>> round(of_tips(12 * 400 * 15))  # 12 slopes of 400 tips in 15 contacts
+    >>> round(tip_memory(12 * 400 * 15))  # 12 slopes of 400 tips in 15 contacts
     1232
     """
     return USUAL + from_si(_PER_SLOPE * slopes, "MB")

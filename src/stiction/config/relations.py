@@ -18,7 +18,7 @@ from stiction.config import memory
 from stiction.config.cases import DRY, IN_HUMID_AIR, NAMEABLE, decimals
 from stiction.config.keys import Keys, Relations
 from stiction.config.materials import hamaker_constants
-from stiction.config.meetings import above_zero, of_pairs
+from stiction.config.meetings import above_zero, pair_meetings
 from stiction.config.messages import did_you_mean, duplicates, shown
 from stiction.config.surfaces.grid import published_correlation, used
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, to_si
@@ -477,7 +477,7 @@ def studies_in_humid_air_have_some(config):
     """
     humid = {
         meeting.pair: above_zero(humidities) and meeting.is_wetted
-        for meeting in of_pairs(config)
+        for meeting in pair_meetings(config)
         for _, humidities in config.known(f"pairs.{meeting.pair}.humidities")
     }
     running = [pair for pair in config["run.pairs"] if pair in humid]
@@ -546,7 +546,7 @@ def patches_fit_into_memory(config):
 
 def field_too_large(length: float, width: float, spacing: float) -> str | None:
     """Refusal of a field [µm, nm] if its memory exceeds the largest job's."""
-    needed = memory.of_field(length, width, spacing)
+    needed = memory.field_memory(length, width, spacing)
     if needed <= memory.LARGEST:
         return None
     return (

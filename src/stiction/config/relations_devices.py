@@ -13,7 +13,7 @@ from stiction.config.cases import in_air
 from stiction.config.keys import Relations
 from stiction.config.kinds import KEYS, KINDS, KNOWN, ROUGHNESSES, kind_of
 from stiction.config.materials import hamaker_constant
-from stiction.config.meetings import TEMPERATURE, above_zero, of_device, sides_of, surfaces_of
+from stiction.config.meetings import TEMPERATURE, above_zero, device_meeting, sides_of, surfaces_of
 from stiction.config.messages import duplicates
 from stiction.config.relations import (
     cases_have_unique_names,
@@ -147,7 +147,10 @@ def uncertain_water_of_devices_is_a_liquid(config):
     keys = "humidity", "temperature_K", "contact_angle_deg"
     for key in keys:
         for name, deviation, humidities in config.entries("devices", f"uncertainty.{key}", "humidities"):
-            meeting, (drier, warmer, more) = of_device(name, config), (deviation * (key == wrong) for wrong in keys)
+            meeting, (drier, warmer, more) = (
+                device_meeting(name, config),
+                (deviation * (key == wrong) for wrong in keys),
+            )
             driest = min(above_zero(humidities), default=0) - drier
             if driest <= 0 or _freezes_or_boils(warmer, config[TEMPERATURE]) or meeting.too_dry(humidities):
                 continue  # other relations report it
@@ -260,7 +263,7 @@ def uncertain_contact_angles_leave_water(config):
     """Require the same answer on condensation one standard uncertainty around the contact angles."""
     key = "uncertainty.contact_angle_deg"
     for name, deviation in config.entries("devices", key):
-        meeting = of_device(name, config)
+        meeting = device_meeting(name, config)
         if meeting.wetting() and not meeting.wetting(deviation):
             message = "must leave contact angles at which water condenses: their cosines must add up to more than zero"
             yield f"devices.{name}.{key}", message, *_scanned(config, name)

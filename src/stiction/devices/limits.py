@@ -246,7 +246,9 @@ def given(*warnings: str | None) -> list[str]:
     return [warning for warning in warnings if warning is not None]
 
 
-def of_beam(gap: float, width: float, thickness: float, crack_length: float, film: float, rms: float) -> list[str]:
+def beam_warnings(
+    gap: float, width: float, thickness: float, crack_length: float, film: float, rms: float
+) -> list[str]:
     """All warnings about the dimensions of a beam with this crack length, film height and rms roughness [m]."""
     return given(
         filled_gap(gap, film, rms),

@@ -281,7 +281,7 @@ def crack_is_resolved(
     yield Check("energy of the cracks is one of the strips", case, bool(low <= gamma <= high), message)
 
 
-def of_surfaces(
+def surface_checks(
     heights: Mapping[str, xr.Dataset],
     characters: Mapping[tuple[str, str], xr.Dataset],
     targets: Mapping[str, Mapping],
@@ -301,13 +301,13 @@ def of_surfaces(
         yield from moments_meet_targets(f"{surface} {model}", character, wanted, defects[surface])
 
 
-def of_identifications(identifications: Mapping[str, xr.Dataset]) -> Iterator[Check]:
+def identification_checks(identifications: Mapping[str, xr.Dataset]) -> Iterator[Check]:
     """Yield checks of identified spectra, from the dataset of stage identification by surface."""
     for surface, identification in identifications.items():
         yield from identification_meets_targets(surface, identification)
 
 
-def of_force_laws(
+def case_checks(
     forces: Mapping[Outcome, xr.Dataset], chaoses: Mapping[Outcome, xr.Dataset], flooded: Mapping[str, Flooded]
 ) -> Iterator[Check]:
     """Yield checks of single cases: samples, chaos model and rejection. ``flooded`` bounds the energies of a pair."""
@@ -319,7 +319,7 @@ def of_force_laws(
         yield few_draws_rejected(case, chaos, samples, REJECTED if key[2] == "NG" else 1.0)
 
 
-def of_trends(
+def trend_checks(
     forces: Mapping[Outcome, xr.Dataset], skewed: Collection[str], wetted: Collection[str]
 ) -> Iterator[Check]:
     """Yield comparisons between cases. No trend leads to dry air.
@@ -342,7 +342,7 @@ def of_trends(
             yield skewness_increases_adhesion(f"{pair}, {air(humidity)}", *models)
 
 
-def of_beams(
+def beam_checks(
     outcomes: Mapping[Outcome, xr.Dataset],
     forces: Mapping[Outcome, xr.Dataset],
     beams: Mapping[str, Beam],
@@ -364,7 +364,9 @@ def of_beams(
         yield from crack_is_resolved(case, released, laws, beam, strip, accuracy)
 
 
-def of_resampling(outcomes: Mapping[Outcome, xr.Dataset], resampled: Mapping[Outcome, xr.Dataset]) -> Iterator[Check]:
+def resampling_checks(
+    outcomes: Mapping[Outcome, xr.Dataset], resampled: Mapping[Outcome, xr.Dataset]
+) -> Iterator[Check]:
     """Yield the effect of the chaos model on crack lengths, of cases with at least two stuck beams."""
     for key, reference in resampled.items():
         if min(len(stuck_lengths(beams)) for beams in (outcomes[key], reference)) >= 2:
@@ -420,12 +422,12 @@ def _checked(data, settings):
     resampled = {(*case, "NG"): study for case, study in data["resampling"].items()}
     return table(
         chain(
-            of_surfaces(data["heights"], data["character"], settings["targets"], defects),
-            of_identifications(data["identification"]),
-            of_force_laws(data["forces"], data["chaos"], flooded),
-            of_trends(data["forces"], settings["skewed"], wetted),
-            of_beams(data["beams"], data["forces"], beams, strip, settings["on_mesh_of_paper"], settings["scatter"]),
-            of_resampling(data["beams"], resampled),
+            surface_checks(data["heights"], data["character"], settings["targets"], defects),
+            identification_checks(data["identification"]),
+            case_checks(data["forces"], data["chaos"], flooded),
+            trend_checks(data["forces"], settings["skewed"], wetted),
+            beam_checks(data["beams"], data["forces"], beams, strip, settings["on_mesh_of_paper"], settings["scatter"]),
+            resampling_checks(data["beams"], resampled),
         )
     )
 

@@ -1,7 +1,7 @@
 """Published tables, with the measurements, as frames. The CSV files are in the folder ``resources``.
 
 The first column identifies the surface or pair of a row. A user's own surface or pair may have a name of the paper.
-Tables and figures compare all rows that they receive, so that callers first select the rows with `of_paper`.
+Tables and figures compare all rows that they receive, so that callers first select the rows with `rows_of_paper`.
 """
 
 from collections.abc import Iterable, Mapping
@@ -25,20 +25,20 @@ def read(path: str | PathLike) -> pd.DataFrame:
     return pd.read_csv(path, comment="#", keep_default_na=False, na_values=[""])
 
 
-def of_paper(published: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
+def rows_of_paper(published: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
     """Rows of the surfaces or pairs of these names: those equal to the paper's.
 
     Examples
     --------
-    >>> of_paper(pd.DataFrame({"pair": ["a", "b"], "ng": [716, 1031]}), ["b", "mine"]).ng.tolist()
+    >>> rows_of_paper(pd.DataFrame({"pair": ["a", "b"], "ng": [716, 1031]}), ["b", "mine"]).ng.tolist()
     [1031]
     """
     return published[published.iloc[:, 0].isin(list(names))]
 
 
 def compared(data: Mapping[str, Any], settings: Mapping[str, Any]) -> pd.DataFrame:
-    """Published values of the surfaces or pairs equal to the paper's: settings ``of_paper`` of a stage."""
-    return of_paper(read(data["published"]), settings["of_paper"])
+    """Published values of the surfaces or pairs equal to the paper's: settings ``rows_of_paper`` of a stage."""
+    return rows_of_paper(read(data["published"]), settings["of_paper"])
 
 
 def rows(published: pd.DataFrame, /, **key: str | float) -> pd.DataFrame:

@@ -97,7 +97,7 @@ def _parts(config, end):
 
     def too_many(parts):
         """Whether the largest field takes half of the memory of a job."""
-        return memory.of_field(largest, 1, _SPACING / parts) > memory.LARGEST / 2
+        return memory.field_memory(largest, 1, _SPACING / parts) > memory.LARGEST / 2
 
     return next(n for n in count(1) if is_at_most(end, n * nyquist) or too_many(n + 1))
 

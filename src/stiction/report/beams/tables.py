@@ -247,8 +247,8 @@ def _table_3(data, settings):
     scanned = ((pair, pair_errors(study)) for pair, study in data["by_scans"].items())
     by_scans = {(pair, humidity): error for pair, errors in scanned for humidity, error in errors.items()}
     water = {pair: in_si(Water, section) for pair, section in settings["water"].items()}
-    warnings = pair_warnings.of_films(data["beams"], water)
-    flags = pair_warnings.of_surfaces(data, settings["surfaces"], settings["assumed"])
+    warnings = pair_warnings.film_warnings(data["beams"], water)
+    flags = pair_warnings.surface_notes(data, settings["surfaces"], settings["assumed"])
     warnings += [f"Pair {pair}: {sentence}" for pair, said in flags.items() for sentence in said]
     known = published.compared(data, settings)
     return table_3(data["beams"], data["forces"], known, by_scans, warnings, data.get("errors"))
@@ -265,7 +265,7 @@ STAGES = (
                 "by_scans": by_name("studies/scan_uncertainty", plan.scanned_pairs),
                 "published": published.file("table_3"),
             }
-            | beside.of_pairs(plan)
+            | beside.error_inputs(plan)
             | surface_flags.inputs(plan, *plan.pairs)
         ),
         settings=lambda plan, at: {

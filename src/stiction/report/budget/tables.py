@@ -64,7 +64,7 @@ def stoppers(
     The caption ends with what is not in the model.
     """
     rows = [row for device, dataset in datasets.items() for row in _of_stopper(device, dataset)]
-    rows = [row | model_errors.of_device(errors, row["device"], row["relative_humidity"], FORCE) for row in rows]
+    rows = [row | model_errors.device_change(errors, row["device"], row["relative_humidity"], FORCE) for row in rows]
     rows = [row | {"warnings": " ".join(warnings[row["device"]])} for row in rows]
     caption = (
         "Stoppers: force that pulls a patch off, an upper bound if it tilts or bends, mean ± standard error and "
@@ -262,7 +262,7 @@ def _of_model(device, humidity, dataset, errors):
     """Row of the error of the model, if it is known."""
     response, _ = response_of(dataset)
     head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[response].by}
-    for error in filter(None, [model_errors.of_device(errors, device, humidity, response)]):
+    for error in filter(None, [model_errors.device_change(errors, device, humidity, response)]):
         effect = {"effect_percent": error["model_error_percent"], "effect_se_percent": error["model_error_se_percent"]}
         yield head | {"part": MODEL[error["interpolated"]], "name": "model error: full elastic contact"} | effect
 
@@ -304,7 +304,7 @@ STAGES = (
                 "stoppers": by_name("devices/stoppers", plan.devices.stoppers),
                 "warnings": device_warnings.files_of(*plan.devices.stoppers),
             }
-            | model_errors.of_devices(plan, *plan.devices.stoppers)
+            | model_errors.error_inputs(plan, *plan.devices.stoppers)
         ),
         settings=lambda plan, at: {"not_modelled": device_warnings.not_modelled(plan, *plan.devices.stoppers)},
         compute=lambda data, settings: stoppers(
@@ -318,7 +318,7 @@ STAGES = (
         "uncertainty of devices, and what to measure better",
         inputs=lambda plan, at: (
             {"budgets": budgets_of(plan, *plan.devices.budgeted)}
-            | model_errors.of_devices(plan, *plan.devices.budgeted)
+            | model_errors.error_inputs(plan, *plan.devices.budgeted)
         ),
         compute=lambda data: budget(data["budgets"], data.get("errors")),
         jobs=lambda plan: [{}] if plan.devices.budgeted else [],

@@ -52,6 +52,6 @@ def caption(errors: Mapping[Any, xr.Dataset]) -> str:
     )
 
 
-def of_pairs(plan: Any) -> dict[str, Any]:
+def error_inputs(plan: Any) -> dict[str, Any]:
     """Errors of all pairs, as inputs of a stage, none unless they are wanted."""
     return {"errors": by_name("studies/model_error", plan.humid_pairs)} if plan.states_model_error else {}

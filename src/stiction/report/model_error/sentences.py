@@ -13,7 +13,7 @@ from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import EITHER, FORCE
 
 
-def of_device(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: float, shape: str) -> dict[str, Any]:
+def device_change(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: float, shape: str) -> dict[str, Any]:
     """Change of a device by full contact, in an end state, or nothing without datasets of stage device_model_error."""
     if not errors:
         return {}
@@ -37,7 +37,7 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
     error = errors[device]
     shape = str(error["shape"].values[0])
     what = "pull-off force" if shape == FORCE else f"lengths held by the {END_STATES[shape].by}"
-    rows = {float(humidity): of_device(errors, device, humidity, shape) for humidity in error.humidity.values}
+    rows = {float(humidity): device_change(errors, device, humidity, shape) for humidity in error.humidity.values}
     known = {humidity: row for humidity, row in rows.items() if np.isfinite(row["model_error_percent"])}
     if not known:
         return [f"The model's error in the {what} is not known {airs(rows)}, beyond the humidities of the pair."]
@@ -74,7 +74,7 @@ def _safe_side(known, sign):
     return f"What is stated is not on the safe side of it {airs(unsafe)}: {mend} by {max(unsafe.values()):.2g} %."
 
 
-def of_devices(plan: Any, *devices: str) -> dict[str, Any]:
+def error_inputs(plan: Any, *devices: str) -> dict[str, Any]:
     """Errors of some devices, as inputs of a stage, none unless they are wanted.
 
     Devices on pairs in dry air alone are left out: full contact is computed where water condenses.

@@ -37,7 +37,7 @@ class OfPairs(Cantilevers):
     water: dict[str, Water]  #: by pair
 
 
-def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
+def beam_warnings(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
     """Warnings about the beams of a case of the main line: dataset of stage beams, length of the strips [m]."""
     s_shaped = ended(beams, "S-shape")
     warnings = [limits.arcs_of_elements(float(ended(beams, "arc").mean()), strip)]
@@ -67,7 +67,7 @@ def plastic_contact(plasticity: Mapping[str, xr.Dataset], pair: str) -> Plastic:
     return float(plasticity[pair].plastic_share), float(plasticity[pair].pressure)
 
 
-def of_pairs(
+def main_line_warnings(
     beams: Mapping[tuple[str, float, str], xr.Dataset],
     plasticity: Mapping[str, xr.Dataset],
     materials: Mapping[str, StatedProperties],
@@ -88,7 +88,7 @@ def of_pairs(
     for (pair, humidity, model), dataset in beams.items():
         nominal = cantilever(settings, pair)
         film = limits.given(limits.thin_film(settings.water[pair].film(humidity)[0]))
-        warnings[f"pair {pair}, {air(humidity)}, {model}"] = film + of_beams(
+        warnings[f"pair {pair}, {air(humidity)}, {model}"] = film + beam_warnings(
             dataset, nominal, settings.sampling.strip_length
         )
     return warnings
@@ -100,7 +100,7 @@ def _without_water(pair, cases, water):
     return limits.no_water(water.film(wettest)[0], wettest)
 
 
-def of_films(cases: Collection[tuple[str, float, str]], water: Mapping[str, Water]) -> list[str]:
+def film_warnings(cases: Collection[tuple[str, float, str]], water: Mapping[str, Water]) -> list[str]:
     """Warnings about pairs without water, and about films too thin for a liquid, at each humidity of a pair.
 
     The cases are pair, humidity and model.
@@ -137,7 +137,7 @@ def as_markdown(warnings: Warnings, not_modelled: str) -> str:
     return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", literal(not_modelled), ""])
 
 
-def of_surfaces(
+def surface_notes(
     data: Mapping[str, Mapping[str, xr.Dataset]],
     surfaces: Mapping[str, Sequence[str]],
     assumed: Mapping[str, Sequence[str]] = {},
@@ -157,8 +157,8 @@ def _of_pairs(data, settings):
     """Warnings about all pairs as a page."""
     nominal = in_si(OfPairs, settings["pairs"])
     remedy = limits.DISTANCE if settings["plasticity_runs"] else limits.NAMED
-    warnings = of_pairs(data["beams"], data["plasticity"], settings["materials"], nominal, remedy)
-    for pair, flags in of_surfaces(data, settings["surfaces"], settings["assumed"]).items():
+    warnings = main_line_warnings(data["beams"], data["plasticity"], settings["materials"], nominal, remedy)
+    for pair, flags in surface_notes(data, settings["surfaces"], settings["assumed"]).items():
         warnings[f"pair {pair}"] += flags
     return as_markdown(warnings, settings["not_modelled"])
 

@@ -73,7 +73,9 @@ def _inputs(plan, at):
     pair, shared = at.case.pair, plan.variants.contact_under(at.variant)
     other = f"studies/variants/{'islands' if plan.variants.has_islands(shared) else 'contact'}/{pair}_{shared}"
     of_main_line = shared == "base" and plan.variants.has_samples
-    return {"contact": f"contact/{pair}_NG" if of_main_line else other} | corrections.of_pair(plan, pair, at.variant)
+    return {"contact": f"contact/{pair}_NG" if of_main_line else other} | corrections.correction_inputs(
+        plan, pair, at.variant
+    )
 
 
 def _settings(plan, at):

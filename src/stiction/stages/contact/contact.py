@@ -48,7 +48,7 @@ def compute_each(
     streams = streams_of_sides(settings.seed, pair)
     contacts = contacts_of_samples(pairs, streams, progress(samples, "surface pairs"))
     datasets = [layout(*curves, rough.distances, samples) for curves, rough in zip(contacts, pairs, strict=True)]
-    return [of_tips(*each) for each in zip(datasets, pairs, strict=True)] if settings.tilt else datasets
+    return [tip_dataset(*each) for each in zip(datasets, pairs, strict=True)] if settings.tilt else datasets
 
 
 def drawn(data: Mapping[str, Any], pair: str, settings: Settings) -> xr.Dataset:
@@ -77,7 +77,7 @@ def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceG
     )
 
 
-def of_tips(contact: xr.Dataset, pair: TiltedPair) -> xr.Dataset:
+def tip_dataset(contact: xr.Dataset, pair: TiltedPair) -> xr.Dataset:
     """Dataset of tips: with their slopes, and the reference length of pressures and areas along the strip."""
     slopes = ("slope", list(pair.tilt.slopes), {"units": "1"})
     return contact.assign(length=((), pair.length, {"units": "m"})).assign_coords(slope=slopes)

@@ -16,7 +16,7 @@ def correction(error: xr.Dataset) -> Correction:
     return Correction(error.humidity.values, error.energy_ratio.values, error.pull_off_ratio.values)
 
 
-def of_pair(plan: Any, pair: str, variant: str = "base", model: str = "NG") -> dict[str, str]:
+def correction_inputs(plan: Any, pair: str, variant: str = "base", model: str = "NG") -> dict[str, str]:
     """Error of the model of a pair, as input of a stage with corrected force laws, otherwise none.
 
     Those of Gaussian heights do, for which full contact is not computed.

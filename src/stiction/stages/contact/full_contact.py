@@ -17,7 +17,7 @@ from stiction.progress import progress
 from stiction.stages.contact import contact, pairs
 from stiction.stages.contact.curves import force_curves
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 #: Variables of a sample at a humidity: unit and meaning.
 _VARIABLES = {
@@ -142,7 +142,7 @@ STAGES = (
     Stage.writing(
         "full_contact",
         "studies/full_contact/{pair}",
-        inputs=lambda plan, at: of_pair(plan, at.pair),
+        inputs=lambda plan, at: surface_inputs(plan, at.pair),
         settings=settings_of,
         kind=Settings,
         compute=lambda data, at, settings: compute(both(data), at.pair, settings),

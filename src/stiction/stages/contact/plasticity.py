@@ -15,7 +15,7 @@ from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import pairs
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,7 +86,7 @@ STAGES = (
     Stage.writing(
         "plasticity",
         "studies/plasticity/{pair}",
-        inputs=lambda plan, at: of_pair(plan, at.pair),
+        inputs=lambda plan, at: surface_inputs(plan, at.pair),
         settings=_settings,
         kind=Settings,
         compute=lambda data, at, settings: compute(both(data), at.pair, settings),

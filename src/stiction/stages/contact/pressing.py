@@ -13,7 +13,7 @@ from stiction.contact.halfspace import HalfSpace
 from stiction.plan.stage import Stage
 from stiction.stages.contact import full_contact
 from stiction.stages.contact.pairs import bodies
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 #: Variables of a strip that is pressed: unit and meaning.
 _PRESSED = {
@@ -128,7 +128,7 @@ STAGES = (
     Stage.writing(
         "pressed",
         "studies/pressing/{pair}",
-        inputs=lambda plan, at: of_pair(plan, at.pair),
+        inputs=lambda plan, at: surface_inputs(plan, at.pair),
         settings=_settings,
         kind=Settings,
         compute=lambda data, at, settings: compute(both(data), at.pair, settings),

@@ -58,7 +58,7 @@ STAGES = (
         "humidity",
         "humidity/{pair}_{model}",
         inputs=lambda plan, at: (
-            {"contact": f"contact/{at.pair}_{at.model}"} | corrections.of_pair(plan, at.pair, model=at.model)
+            {"contact": f"contact/{at.pair}_{at.model}"} | corrections.correction_inputs(plan, at.pair, model=at.model)
         ),
         settings=_settings,
         kind=Settings,

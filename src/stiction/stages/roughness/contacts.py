@@ -21,7 +21,7 @@ from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import GROUND, TIPS
 from stiction.stages.surfaces.descriptions import description, drawn_as
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 #: Folder of the contacts of patches; those of tips have one in it.
 FOLDER = "devices/contact"
@@ -164,7 +164,7 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
     return Stage.writing(
         name,
         f"{folder}/roughness/{{device}}{in_air('')}_{{number}}",
-        inputs=lambda plan, at: of_pair(plan, plan.config["devices"][at.device]["pair"]),
+        inputs=lambda plan, at: surface_inputs(plan, plan.config["devices"][at.device]["pair"]),
         settings=settings,
         kind=Settings,
         compute=lambda data, settings: compute(both(data), settings),

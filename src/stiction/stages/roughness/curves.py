@@ -131,7 +131,7 @@ class OfStopper:
         return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)]
 
 
-def of_job(settings: dict[str, Any]) -> OfBeam | OfStopper:
+def point_settings(settings: dict[str, Any]) -> OfBeam | OfStopper:
     """Settings of a point from those of a job: those of beams have their dimensions."""
     return in_si(OfBeam if "device" in settings else OfStopper, settings)
 
@@ -317,7 +317,7 @@ STAGES = (
         inputs=lambda plan, at: contacts_of(plan, at.device, int(at.number)) | corrections_of(plan, at.device),
         settings=_settings,
         compute=lambda data, settings: compute(
-            data["contact"], data.get("tips", {}), corrected(of_job(settings), data)
+            data["contact"], data.get("tips", {}), corrected(point_settings(settings), data)
         ),
         message="Device {device} at roughness {number}.",
         cluster=True,

@@ -37,7 +37,7 @@ def rough_surface(heights: xr.Dataset, spectrum: xr.Dataset, model: str, grid: S
     return RoughSurface(underlying(spectrum, model), Translation(density(heights, model)), moments(heights).rms, grid)
 
 
-def of_pair(plan: Any, pair: str) -> dict[str, list[str]]:
+def surface_inputs(plan: Any, pair: str) -> dict[str, list[str]]:
     """Names of the datasets of both surfaces of a pair, by stage, for `both`."""
     return {stage: [f"{stage}/{name}" for name in plan.sides(pair)] for stage in ("heights", "spectrum")}
 

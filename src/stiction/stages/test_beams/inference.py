@@ -151,12 +151,12 @@ def compute(
     if len(lengths.differences):
         device = with_errors_of_cracks(of_device, device, own)
     parts = [
-        of_inputs(prior, posterior, own + 2),
-        of_data(beams, responses, prior, posterior, settings),
-        of_counts(counts, posterior, settings.stuck),
-        of_results(of_device, device, own, prior, posterior),
-        of_further(beams, responses, of_device, device, posterior),
-        of_agreement(prior, lengths, counts, own),
+        input_dataset(prior, posterior, own + 2),
+        length_dataset(beams, responses, prior, posterior, settings),
+        count_dataset(counts, posterior, settings.stuck),
+        result_dataset(of_device, device, own, prior, posterior),
+        further_dataset(beams, responses, of_device, device, posterior),
+        agreement_dataset(prior, lengths, counts, own),
     ]
     merged = xr.merge(parts, combine_attrs="no_conflicts")
     return with_forces(merged, predicted) if settings.device is None else with_lengths(merged, predicted)
@@ -248,7 +248,9 @@ def counted(
         shapes = {}
         for humidity in set(data.humidity):
             met = grounds[name, humidity > 0], tips[name, humidity > 0]
-            shapes[humidity] = of_shapes(results[places[name, humidity, S_SHAPE]], *met, data.water.at(humidity))
+            shapes[humidity] = lengths_and_scores(
+                results[places[name, humidity, S_SHAPE]], *met, data.water.at(humidity)
+            )
         for humidity, length in zip(data.humidity, data.length, strict=True):
             behind, of_humidity = shapes[humidity]
             rows.append(responses[[places[name, humidity, shape] for shape in _COUNTED]])
@@ -259,7 +261,9 @@ def counted(
     return Counts(np.reshape(rows, (*shape, responses.shape[1])), np.reshape(lengths, shape), scores, *numbers)
 
 
-def of_shapes(cracks: Result, ground: xr.Dataset, tips: xr.Dataset, water: Water) -> tuple[np.ndarray, list[PPoly]]:
+def lengths_and_scores(
+    cracks: Result, ground: xr.Dataset, tips: xr.Dataset, water: Water
+) -> tuple[np.ndarray, list[PPoly]]:
     """Lengths of beams for an S-shaped crack and an arc (2,) [m], and the normal scores of both."""
     beam, humidity = cracks.beam.beam, cracks.humidity
     laws = shared_laws([curves.vectors(ground, humidity, water)])[0]
@@ -271,7 +275,7 @@ def of_shapes(cracks: Result, ground: xr.Dataset, tips: xr.Dataset, water: Water
 # Datasets
 
 
-def of_inputs(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Dataset:
+def input_dataset(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Dataset:
     """First inputs before and after the measurement, and their combinations with or without evidence."""
     before, after = (first_inputs(state, count) for state in (prior, posterior))
     combinations = inference.combinations(before, after)
@@ -287,7 +291,7 @@ def of_inputs(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Dataset:
     )
 
 
-def of_data(
+def length_dataset(
     beams: Sequence[Result], responses: np.ndarray, prior: Knowledge, posterior: Knowledge, settings: Settings
 ) -> xr.Dataset:
     """Measured and computed crack lengths, and expected ones before and after the measurement.
@@ -324,7 +328,7 @@ def _measured_length(result, crack_lengths):
     return {"measured": data.mean[at], "error": error, "beam_length": data.length}
 
 
-def of_counts(counts: Counts, posterior: Knowledge, stuck: Mapping[str, Stuck]) -> xr.Dataset:
+def count_dataset(counts: Counts, posterior: Knowledge, stuck: Mapping[str, Stuck]) -> xr.Dataset:
     """Counted beams and their P(stuck) before and after the measurement, for the expected inputs."""
     rows = [(name, *row) for name, data in stuck.items() for row in zip(data.humidity, data.length, strict=True)]
     names, humidities, lengths = zip(*rows, strict=True) if rows else ((), (), ())
@@ -348,7 +352,7 @@ def first_inputs(knowledge: Knowledge, count: int) -> Knowledge:
     return Knowledge(knowledge.names[:count], knowledge.mean[:count], knowledge.covariance[:count, :count])
 
 
-def of_agreement(prior: Knowledge, lengths: Lengths, counts: Counts, own: int) -> xr.Dataset:
+def agreement_dataset(prior: Knowledge, lengths: Lengths, counts: Counts, own: int) -> xr.Dataset:
     """Agreement of the data with inputs and model, and with the first ``own`` inputs alone."""
     inputs = first_inputs(prior, own)
     alone = [replace(data, responses=data.responses[..., :own]) for data in (lengths, counts)]
@@ -371,7 +375,7 @@ def _quantiles(of, posterior, responses):
     return {f"{of}_quantile": ((of, "score"), quantiles, {"units": "1"}), "score": ("score", inference.SCORES)}
 
 
-def of_results(
+def result_dataset(
     of_device: Sequence[Result], responses: np.ndarray, own: int, prior: Knowledge, posterior: Knowledge
 ) -> xr.Dataset:
     """Results of a device before and after the measurement: mean crack lengths, lengths of few stuck tips, forces.
@@ -401,7 +405,7 @@ def of_results(
     return found.assign({name: found[name] - longer for name in ("result_shift", "result_quantile")})
 
 
-def of_further(
+def further_dataset(
     beams: Sequence[Result],
     responses: np.ndarray,
     of_device: Sequence[Result],

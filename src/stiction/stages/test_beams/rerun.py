@@ -23,7 +23,7 @@ from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact.changes.patches import GROUND
 from stiction.stages.contact.changes.solids import with_property
 from stiction.stages.contact.contact import first
-from stiction.stages.contact.corrections import corrected, of_pair
+from stiction.stages.contact.corrections import corrected, correction_inputs
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices import budget as stage_budget
 from stiction.stages.devices.budget import AnyBudget, budgets_of, budgets_of_arrays, effect, of_job
@@ -118,7 +118,7 @@ def _inputs(plan, at):
     cases = _cases(plan, at.device)
     patches = {patch_of(of, case): (of, case) for of, case, _ in cases.values()}
     sides = dict.fromkeys(side for patch in patches for side in plan.sides(patch.pair))
-    ratios = {patch.name: of_pair(plan, PairInAir(patch.pair).pair).get("model_error") for patch in patches}
+    ratios = {patch.name: correction_inputs(plan, PairInAir(patch.pair).pair).get("model_error") for patch in patches}
     return {
         "updated": f"devices/test_beams/{at.device}",
         "budgets": {key: name for key, (*_, name) in cases.items()},

@@ -10,7 +10,7 @@ from stiction.plan.devices import OF_TIPS, Patch
 from stiction.plan.stage import Names, select
 from stiction.stages.contact import contact
 from stiction.stages.contact.pairs import Settings
-from stiction.stages.surfaces.rough_surfaces import of_pair
+from stiction.stages.surfaces.rough_surfaces import surface_inputs
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ class Change:
     settings: Callable[[Any, Any, Place], dict]  #: by the plan, the wildcards and the kind of patch
     kind: type | None = Settings  #: dataclass of the settings
     #: By the plan, the wildcards, and a function that names the contact of the patch with another change.
-    inputs: Callable[[Any, Any, Callable], Mapping[str, Names]] = lambda plan, at, named: of_pair(plan, at.pair)
+    inputs: Callable[[Any, Any, Callable], Mapping[str, Names]] = lambda plan, at, named: surface_inputs(plan, at.pair)
     compute: Callable[..., Any] = contact.drawn
     each: Callable[[Any], Sequence[str]] | None = None  #: ends of the names of files that one job writes, by the plan
     end: str = ""  #: of the names of files

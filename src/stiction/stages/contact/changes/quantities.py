@@ -16,7 +16,7 @@ from stiction.stages.contact.changes.patches import Change
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.surfaces import measured_heights
 from stiction.stages.surfaces.descriptions import description, drawn_as
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 
 def compute(
@@ -62,7 +62,7 @@ def _with_estimate(plan, at, _named):
     Modes are those of the measured heights, which the surface may not have.
     """
     estimate = {"estimate": f"estimate/{at.surface}"} if at.quantity in MODE_QUANTITIES[1:] else {}
-    return of_pair(plan, at.pair) | estimate
+    return surface_inputs(plan, at.pair) | estimate
 
 
 #: A quantity of one surface.

@@ -14,7 +14,7 @@ from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import Change
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import measured_heights, measured_spectrum
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 from stiction.stages.surfaces.spectrum import Use
 
 
@@ -93,7 +93,9 @@ def _with_sources(plan, at, place):
 
 def _with_estimates(plan, at, _named):
     """Two surfaces, and the estimates of the measured ones."""
-    return of_pair(plan, at.pair) | {"estimates": {name: f"estimate/{name}" for name in plan.scans.sides(at.pair)}}
+    return surface_inputs(plan, at.pair) | {
+        "estimates": {name: f"estimate/{name}" for name in plan.scans.sides(at.pair)}
+    }
 
 
 #: An option for the evaluation of scans.

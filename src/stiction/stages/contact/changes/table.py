@@ -14,7 +14,7 @@ from stiction.stages.contact.changes.scan_options import SCAN_OPTION
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
 from stiction.stages.contact.changes.variants import SUMMITS, VARIANT, VARIANT_OF_ISLANDS
 from stiction.stages.contact.pairs import Settings
-from stiction.stages.surfaces.rough_surfaces import of_pair
+from stiction.stages.surfaces.rough_surfaces import surface_inputs
 
 #: No change.
 AS_IT_IS = Change(settings=lambda plan, at, place: place.settings(plan, at, plan.config["contact"]["samples"]))
@@ -103,7 +103,7 @@ OF_PAIR = (
     Stage.writing(
         "contact_chunk",
         "contact/{pair}_{model}/{chunk}-of-{number}",
-        inputs=lambda plan, at: of_pair(plan, at.pair),
+        inputs=lambda plan, at: surface_inputs(plan, at.pair),
         settings=lambda plan, at: AS_IT_IS.settings(plan, at, STRIPS),
         kind=Settings,
         compute=contact.drawn_chunk,
