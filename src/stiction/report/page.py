@@ -52,6 +52,7 @@ class Page:
     words: Mapping[str, str] = field(default_factory=dict)  #: terms and what they mean
     made: Sequence[str] = ()  #: when and by which code
     not_modelled: str = ""  #: what is not in the model
+    drawing: str = ""  #: of the device, as SVG
 
     @property
     def html(self) -> str:

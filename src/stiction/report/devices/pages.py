@@ -20,6 +20,7 @@ from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import life, own_length, sentences
 from stiction.report.devices import tables as tables_devices
+from stiction.report.drawings.devices import of_device
 from stiction.report.format import MISSING, humidity_text, one_in
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
@@ -167,7 +168,7 @@ def _title(name, section):
 def _facts_of(section):
     """Dimensions and conditions of a device, by name."""
     facts = {"surfaces": f"pair {section['pair']}"} | section.get("surfaces", {})
-    stated = section if kind_of(section).is_beam else section | {"restoring_force_uN": restoring_force(section)}
+    stated = _with_force(section)
     for key in (key for key in KEYS if key in stated):
         (name, unit), value = KEYS[key], stated[key]
         values = value if isinstance(value, list) else [value]
@@ -175,6 +176,11 @@ def _facts_of(section):
     name = "relative humidities" if len(section["humidities"]) > 1 else "relative humidity"
     facts[name] = ", ".join(map(humidity_text, section["humidities"]))
     return facts | _asked(section)
+
+
+def _with_force(section):
+    """Section of a device, of a stopper with its restoring force."""
+    return section if kind_of(section).is_beam else section | {"restoring_force_uN": restoring_force(section)}
 
 
 def _asked(section):
@@ -292,7 +298,8 @@ def _page(data, at, settings):
     else:
         lengths, charts = data["safe_lengths"], data["charts"]
         page = of_beam(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
-    return replace(with_life(page, at.device, data["life"]), not_modelled=settings["not_modelled"])
+    drawing = of_device(_with_force(settings)).svg
+    return replace(with_life(page, at.device, data["life"]), not_modelled=settings["not_modelled"], drawing=drawing)
 
 
 def with_life(page: Page, name: str, answers: xr.Dataset) -> Page:
