@@ -3,12 +3,12 @@
 The library of typical surfaces is given as sections of a configuration with moments and the parameters of Eq. (7).
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
+from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.surface import self_affine
 
 #: Quantities of `stiction.analysis.shifts` by the words of key ``unknown``, and by the keys of ``uncertainty``.
@@ -33,6 +33,23 @@ class Knowledge(NamedTuple):
         """Settings of a job, with the same numbers on every machine."""
         rounded = [[float(f"{value:.9g}") for value in row] for row in self.covariance]
         return {"quantities": list(self.quantities), "covariance": rounded}
+
+
+def with_uncertain_devices(config: dict[str, Any], surfaces: Collection[str]) -> dict[str, Any]:
+    """Configuration with a section of uncertainty in every device on one of these surfaces."""
+    devices = config.get("devices")
+    if not (surfaces and isinstance(devices, dict)):
+        return config
+    return config | {"devices": {name: _with_uncertainty(device, config, surfaces) for name, device in devices.items()}}
+
+
+def _with_uncertainty(device, config, surfaces):
+    """Section of a device with a section of its uncertainty, if one of its surfaces is among these."""
+    try:
+        is_uncertain = any(config["pairs"][device["pair"]][side] in surfaces for side in SIDES)
+    except (KeyError, TypeError):
+        return device  # other relations report what is missing
+    return {"uncertainty": {}} | device if is_uncertain else device
 
 
 def slope(psd: Mapping[str, float]) -> float:
