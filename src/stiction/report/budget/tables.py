@@ -191,11 +191,11 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
     sentences = [f"{device}, {air(humidity)}: {advised(one)}" for (device, humidity, *_), one in datasets.items()]
     omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in datasets.items()}
     caption = with_list(
-        "Relative standard uncertainty of the mean length at which beams stick as S-shapes, of the length at which "
-        "few are held by their tip, of the mean length at which bridges are held by their middle, and of the mean "
-        "pull-off force of stoppers, due to every measurement, the others being exact, ± standard error of the "
-        "simulation. Remaining: what would be left if the measurement were exact. Scatter between devices and other "
-        "choices of the model, with the sign of their effect, are no part of the total."
+        "Relative standard uncertainty of a result due to each measurement, if all others were exact, ± standard error "
+        "of the simulation. The result is the mean length of beams stuck as S-shapes, the length at which few stick "
+        "at their tip, the mean length of bridges stuck at their middle, or the mean pull-off force of stoppers. "
+        "Remaining: the uncertainty left if the measurement were exact. Scatter between devices and other choices of "
+        "the model, with the sign of their effect, are no part of the total."
         + (f" {column.caption(errors)}" if errors else ""),
         [*sentences, *omitted],
     )
@@ -206,7 +206,7 @@ def advised(dataset: xr.Dataset) -> str:
     """Sentence on the most useful measurement."""
     uncertainty = budget_of(dataset)
     if np.isnan(uncertainty.total):
-        return "So few of the simulated devices stick that they do not show what an input changes."
+        return "Too few of the simulated devices stick to show the effect of an input."
     if uncertainty.total == 0:
         return "No uncertainty of an input is stated."
     return advice(uncertainty, groups_of(dataset), response_text(dataset))

@@ -34,7 +34,7 @@ _CAPTION = (
     "Crack lengths of Table III, model NG, under several readings of an asperity, from the ratio of the mean adhesion "
     "energies of the same strips to the power -1/4: change against spheres on summits, on the grid of the contact and "
     "with attraction of the solids, at the lowest and at the highest humidity; root mean square over the humidities of "
-    "the deviation from the published length, and from that under full elastic contact where it was computed; "
+    "the deviation from the published length, and from the length under full elastic contact, if computed; "
     "processor time of a strip over that of spheres on summits; ± standard error over strips. Island: a sphere of the "
     "area of every island; fitted: a sphere by least squares; shape: every island with its true shape, solved alone. "
     "vdW: the medium through which the solids attract, or none."

@@ -376,9 +376,9 @@ def _nonlinear(update):
             different.append(f"{with_error(100 * apart, 100 * error)} % ({result['again'].values})")
     if different:
         yield (
-            f"The update is not linear: results that were computed again differ from it by {', '.join(different)}. If "
-            "that matters beside their standard uncertainties, state the inputs that the test beams suggest, and "
-            "compute the device again with them."
+            f"The update is not linear: results computed again differ from it by {', '.join(different)}. If this "
+            "matters beside their standard uncertainties, set the inputs to the values from the test beams and "
+            "compute the device again."
         )
 
 
