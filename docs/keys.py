@@ -90,7 +90,7 @@ def page() -> str:
     for name, entry in schema()["properties"].items():
         named = isinstance(entry.get("additionalProperties"), dict)
         rows = [_row(key, 1 + named) for key in keys(entry, (name,))]
-        head = ["| key | meaning | unit | allowed | default | example |", "|---|---|---|---|---|---|"]
+        head = ["| key | meaning | allowed | default (or example) |", "|---|---|---|---|"]
         about = entry["description"].partition(" [")[0]
         below = f" Keys below `{name}.NAME`:" if named else f" Keys below `{name}`:" if len(rows) > 1 else ""
         parts.append("\n".join([f"## {name}", "", f"{about[0].upper()}{about[1:]}.{below}", "", *head, *rows]))
@@ -107,10 +107,9 @@ def sections() -> str:
 def _row(key, above):
     """Row of one key, without the first names of its path; defaults hold without a file of one's own."""
     default = "" if "*" in key.path else next((_yaml(value) for value in _values(PAPER, key.path)), "")
-    example = "" if default else _yaml(key.example)
     name = ".".join(key.path[above:] or key.path).replace("*", "NAME")
-    cells = [f"`{name}`", key.meaning, key.unit, allowed(key.entry), default, example]
-    return f"| {' | '.join(cells)} |"
+    values = f"{allowed(key.entry)} [{key.unit}]" if key.unit else allowed(key.entry)
+    return f"| `{name}` | {key.meaning} | {values} | {default or f'({_yaml(key.example)})'} |"
 
 
 def _yaml(value):

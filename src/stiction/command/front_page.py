@@ -1,4 +1,4 @@
-"""Front page of the report: the answer in words, what to open first, checks, warnings and provenance.
+"""Front page of the report: the answer in words, the first files to open, checks, warnings and provenance.
 
 Snakemake fills the page in as a template, with all that Jinja can do. Text of configurations, files and names is on the
 page only as characters: HTML shows it as it is, and Jinja finds no brace in it.
@@ -67,7 +67,7 @@ def subjects(config: Mapping[str, Any]) -> str:
 
 
 def answers(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
-    """What the results say about every device and every pair, a sentence each."""
+    """Yield the results about every device and every pair, a sentence each."""
     for name in config.get("devices", {}):
         yield f"Device {name}: {_text(results / 'devices' / f'{name}.txt').splitlines()[0]}"
     if config["run"]["pairs"]:
@@ -83,7 +83,7 @@ def of_pairs(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
 
 
 def cracks(pair: str, rows: Sequence[Mapping[str, str]], length: float) -> str:
-    """How the beams of a pair end at each humidity, from their rows of Table III; length of the beams [µm].
+    """Ends of the beams of a pair at each humidity, from their rows of Table III, with the beams' length [µm].
 
     Examples
     --------
@@ -150,7 +150,7 @@ def provenance(run: Mapping[str, Any], number: int) -> Iterator[str]:
 
 
 def differing(config: Mapping[str, Any], base: Mapping[str, Any]) -> dict[str, Any]:
-    """Keys of nested sections whose values differ from those of others.
+    """Keys of nested sections with other values than in another configuration.
 
     Examples
     --------

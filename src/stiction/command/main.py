@@ -1,4 +1,4 @@
-"""The command line: ``stiction COMMAND [FILE ...] [OPTIONS] [-- ARGUMENTS OF SNAKEMAKE]``."""
+"""Command line: ``stiction COMMAND [FILE ...] [OPTIONS] [-- ARGUMENTS OF SNAKEMAKE]``."""
 
 import argparse
 import os
@@ -81,7 +81,7 @@ def _parser():
 
 
 class _Version(argparse.Action):
-    """Shows the version, which takes an import of its own."""
+    """Shows the version. This takes an import of its own."""
 
     def __call__(self, parser, *_):
         from importlib import metadata
@@ -136,7 +136,7 @@ def _init_test_beams(target):
 
 
 def _write(contents):
-    """Write new files from texts, or from the files that hold them; a file of the same content remains."""
+    """Write new files from texts, or from files with them. A file of the same content remains."""
     texts = {target: _text(content) for target, content in contents.items()}
     missing = {target: text for target, text in texts.items() if not (target.is_file() and _text(target) == text)}
     if there := [target for target in missing or texts if os.path.lexists(target)]:
@@ -152,7 +152,7 @@ def _write(contents):
 
 
 def _text(content):
-    """Text itself, or that of a file."""
+    """Text itself, or a file's."""
     return content if isinstance(content, str) else content.read_text(encoding="utf-8", errors="replace")
 
 
@@ -223,7 +223,7 @@ def _run(arguments, *targets):
 
 
 def _devices(arguments):
-    """Run what devices need."""
+    """Run the jobs of devices."""
     arguments.files = arguments.files or [str(launch.WORKFLOW / "examples" / "devices.yaml")]
     if not any(content.get("devices") for content in reading.contents(arguments.files, arguments.more)):
         raise launch.RefusedError(f"{' '.join(arguments.files)} describes no devices: add a section devices")
@@ -303,7 +303,7 @@ def _show(arguments):
 
 
 def _explain(arguments):
-    """Say what would be computed, and why."""
+    """Say the jobs of a run and their reasons."""
     arguments.dry_run = True
     return _run(arguments)
 

@@ -148,4 +148,4 @@ def test_what_is_left_out_is_said_and_is_empty_in_the_tables():
     assert said.startswith("The error of the model is not known: full elastic contact needs a humidity")
     assert model_errors.sentences("S3", {}) == [said]
     assert model_errors.sentences("S3", None) == []
-    assert np.isnan(model_errors.of_device(ERRORS, "S3", 0.67, FORCE)["model_error_percent"])
+    assert np.isnan(model_errors.device_change(ERRORS, "S3", 0.67, FORCE)["model_error_percent"])

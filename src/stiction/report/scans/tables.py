@@ -112,7 +112,7 @@ def _rows(pair, study, k):
 
 
 def _crack_length(error):
-    """Relative error of the mean crack length by that of ē."""
+    """Relative error of the mean crack length from the error of ē."""
     return {"crack_length_percent": 100 * abs(CRACK_LENGTH_POWER) * error}
 
 
