@@ -326,7 +326,7 @@ def timing(results):
     costs = list(jobs.costs(results))
     _, number, longest, seconds, megabytes, *_ = zip(*costs, strict=True)
     run = json.loads((results / "provenance.json").read_text(encoding="utf-8"))[-1]
-    machine, git = run["machine"], run["git"]
+    machine = run["machine"]
     return {
         "jobs": str(sum(number)),
         "job_minutes": f"{sum(seconds) / 60:.1f}",
@@ -334,7 +334,6 @@ def timing(results):
         "job_memory": f"{max(megabytes):.0f}",
         "cpu": " ".join(machine["cpu"].split()),
         "cores": str(machine["cores"]),
-        "commit": git["commit"][:7] + " with changes" * bool(git["changed"]),
     }
 
 
@@ -387,7 +386,6 @@ def quoted_numbers():
             "studies",
             "checks",
             "timings",
-            "earlier_timings",
         )
     }
     return quoted.numbers(frames | {TAILS: quoted.of_markdown(DOCS / "tables" / f"{TAILS}.md")})
