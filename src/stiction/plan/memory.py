@@ -34,4 +34,6 @@ def _of_largest_field(config):
     for device in devices.sections.values():
         length, width = patch_of(device, sampling)
         drawn += [((length + margin, width + margin), at) for at in spacings_of(device, spacing, others)]
+        if "dimples" in device:
+            drawn.append((tuple(side + margin for side in device["dimples"]["contact_um"]), spacing))
     return max(field_memory(*side, at) for side, at in drawn)

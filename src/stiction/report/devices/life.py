@@ -26,8 +26,12 @@ from stiction.report.table import Table, table_stage
 from stiction.stages.devices.life import (
     AFTER,
     AT_VOLTAGE,
+    BESIDE,
     COLLAPSE,
+    DIMPLES,
     FIELD,
+    ON_DIMPLES,
+    PULLED,
     QUESTIONS,
     RELEASED,
     SHOCK,
@@ -114,7 +118,8 @@ def sentences(dataset: xr.Dataset) -> list[str]:
     at = f"At {TO_UM * length:.0f} µm it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
     said = [*_touching(answers, at), *_pulled_in(answers, potential), *_drying(answers, at, length)]
-    return [*said, *_tilted(answers), *_biased(answers, potential), *_often(answers, int(dataset.touchdowns))]
+    said += [*_dimpled(answers), *_tilted(answers)]
+    return [*said, *_biased(answers, potential), *_often(answers, int(dataset.touchdowns))]
 
 
 def _touching(answers, at):
@@ -130,6 +135,21 @@ def _pulled_in(answers, potential):
     if VOLTAGE not in answers or potential < answers[VOLTAGE].low:
         return []
     return [f"Its own voltage of {significant(potential)} V pulls it in."]
+
+
+def _dimpled(answers):
+    """Whether a beam sticks on its dimples, and whether it touches beside them."""
+    if DIMPLES not in answers:
+        return []
+    pulls, holds = answers[PULLED], answers[DIMPLES]
+    often = max((one for one in answers.values() if one.name.startswith(f"{ON_DIMPLES}_")), key=lambda one: one.high)
+    said = (
+        f"Its dimples together are pulled off by {_low(pulls)} µN and held by {_low(holds)} µN on average: "
+        f"{_low(often)} to {_high(often)} % of the beams stick on them in the worst of its air."
+    )
+    if answers[BESIDE].low > 0:
+        return [f"{said} Beside them, {_low(answers[BESIDE])} % of the gap is left."]
+    return [f"{said} But it touches beside them, where they do not protect it."]
 
 
 def _tilted(answers):

@@ -4,7 +4,7 @@ from typing import Any
 
 from stiction.config.cases import Case
 from stiction.models import SHIFTS
-from stiction.plan.devices import Patch
+from stiction.plan.devices import Patch, patch
 from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS
 from stiction.stages.contact.changes.quantities import QUANTITY
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
@@ -23,6 +23,12 @@ def contact_of(plan: Any, case: Case) -> str:
 def patch_of(plan: Any, case: Case) -> Patch:
     """Patch on which a device sticks, named with its pair in the air of a case, see `stiction.plan.environment`."""
     return plan.devices.ground(case.device)._replace(pair=plan.contact_of_device(case))
+
+
+def dimples_of(plan: Any, case: Case) -> str:
+    """Contact of one dimple under a beam at a humidity."""
+    sides = plan.devices.sections[case.device]["dimples"]["contact_um"]
+    return file_of(AS_IT_IS, GROUND, **patch(plan.contact_of_device(case), *sides)._asdict())
 
 
 def tilted_of(plan: Any, case: Case) -> str:

@@ -21,9 +21,10 @@ from stiction.constants import DENSITY, LIQUIDS
 from stiction.contact.voltage import BREAKDOWN, Capacitor, Dielectric
 from stiction.devices.bridges import half_of_bridge
 from stiction.devices.risk import Basis, samples_for
-from stiction.devices.stoppers import safe_force
+from stiction.devices.stoppers import safe_force, stuck_patches
 from stiction.estimates import mean_with_error
 from stiction.life import drying, freeing, holding, touch
+from stiction.life.dimples import row
 from stiction.plan.stage import Stage, select
 from stiction.stages.devices.opening import DesignedBeam, section_of_beam
 from stiction.stages.devices.safe_lengths import chosen_share
@@ -34,6 +35,7 @@ QUESTIONS = TOUCH, STICK, HOLD, FREE = "touch", "stick", "hold", "free"
 VOLTAGE, SHOCK, COLLAPSE, RELEASED, AFTER = "voltage", "shock", "collapse", "released", "after"
 AT_VOLTAGE, FIELD = "at_voltage", "field"
 TILTED, WEDGE = "force_tilted", "wedge"
+ON_DIMPLES, BESIDE, DIMPLES, PULLED = "stuck_dimples", "beside_dimples", "dimples", "dimples_force"
 #: Sources of the answers about voltages and tilts.
 _OF_VOLTAGE, _OF_TILT = "stage at_voltage, stiction.life.holding", "stage tilted_stoppers"
 
@@ -95,6 +97,15 @@ class Stated:
         return self.capacitor.potential if self.capacitor else 0.0
 
 
+@dataclass(frozen=True)
+class Dimples:
+    """A row of dimples across a beam."""
+
+    number: int
+    at: float  #: distance from a clamp [m]
+    height: float  #: [m]
+
+
 @dataclass(frozen=True, kw_only=True)
 class OfBeam(Stated):
     """A beam, and what it meets beside its ground."""
@@ -104,6 +115,7 @@ class OfBeam(Stated):
     liquids: dict[str, Liquid]
     uncertainty: Errors
     length: float = 0.0  #: as stated [m]; otherwise the least safe length counts
+    dimples: Dimples | None = None
 
     @property
     def clamps(self) -> int:
@@ -156,8 +168,12 @@ def of_beam(
     after: Mapping[float, xr.Dataset],
     of: OfBeam,
     biased: Mapping[float, xr.Dataset] | None = None,
+    dimples: Mapping[float, xr.Dataset] | None = None,
 ) -> list[Answer]:
-    """Answers about a beam from its safe lengths by humidity: for one touchdown, after all, and at its voltage."""
+    """Answers about a beam from its safe lengths by humidity: for one touchdown, after all, and at its voltage.
+
+    With the forces of its dimples by humidity, if it has any.
+    """
     share = chosen_share(next(iter(lengths.values())))
     safe = {humidity: _safe(dataset, share) for humidity, dataset in lengths.items()}
     length = length_of(lengths, of)
@@ -174,6 +190,7 @@ def of_beam(
     answers += _touched(of, length) + _held(of, length) if 0 < length < np.inf else []
     answers += [answer for name, liquid in of.liquids.items() for answer in _dried(of, name, liquid.adhesion)]
     answers += _after_touchdowns(of, share, min(safe.values()), after) if after else []
+    answers += _on_dimples(of, dimples) if dimples else []
     return _in_order(answers + _at_voltage(of, min(safe.values()), biased))
 
 
@@ -330,6 +347,46 @@ def _field(of):
     """Field in the dielectric of a device whose surfaces touch."""
     what, form = "field in the dielectric in contact", "V / t; thin oxides break down near 1 V/nm"
     return Answer(FIELD, HOLD, what, np.nan, of.capacitor.field, np.nan, "V m-1", form, "stiction.contact.voltage")
+
+
+def _on_dimples(of, dimples):
+    """Whether a beam sticks on its dimples, and what holds it there, from the forces of rows by humidity."""
+    number, bent = of.dimples.number, _bent_to_dimples(of)
+    means = {humidity: tuple(map(float, mean_with_error(one.pull_off.values))) for humidity, one in dimples.items()}
+    worst = max(means, key=means.get)
+    what, form = f"mean force on its {number} dimples together {in_air(worst)}", "sum of largest attractions x area"
+    mean, error = means[worst]
+    held = Answer(DIMPLES, HOLD, what, mean, mean, error, "N", form, "stage dimples")
+    force = np.array([bent[-1].low])
+    sticking = [
+        Answer(
+            f"{ON_DIMPLES}_{humidity:g}",
+            STICK,
+            f"probability of sticking on its {number} dimples {in_air(humidity)}",
+            *(float(end[0]) for end in stuck_patches(one.pull_off.values, force)[1:]),
+            *(np.nan, "1", "fraction of random rows, 95 %", "stage dimples"),
+        )
+        for humidity, one in dimples.items()
+    ]
+    return [*bent, held, *sticking]
+
+
+def _bent_to_dimples(of):
+    """Gap that is left beside the dimples of a beam while they touch, and the force with which it pulls there."""
+    at, height = of.dimples.at, of.dimples.height
+
+    def left(beam):
+        return 1 - row(beam, of.clamps, at).deepest * (beam.gap - height) / beam.gap
+
+    def pull(beam):
+        return row(beam, of.clamps, at).stiffness * (beam.gap - height)
+
+    (rest, rest_error), (force, error) = of.number(left, of.length), of.number(pull, of.length)
+    what, form = "part of the gap that is left beside its dimples", "bent by the force on the row alone"
+    source = "stiction.life.dimples"
+    beside = Answer(BESIDE, TOUCH, what, max(rest, 0.0), max(rest, 0.0), rest_error, "1", form, source)
+    what, form = f"force with which it pulls at its {of.dimples.number} dimples together", "k (h - h_d)"
+    return [beside, Answer(PULLED, FREE, what, force, force, error, "N", form, source)]
 
 
 def _after_touchdowns(of, share, once, after):
@@ -514,20 +571,14 @@ def _in_order(answers):
 # Dataset
 
 
-def compute(
-    settings: dict[str, Any],
-    lengths: Mapping[float, xr.Dataset] | None = None,
-    after: Mapping[float, xr.Dataset] | None = None,
-    stopper: xr.Dataset | None = None,
-    biased: Mapping[float, xr.Dataset] | xr.Dataset | None = None,
-    tilted: xr.Dataset | None = None,
-) -> xr.Dataset:
+def compute(data: Mapping[str, Any], settings: dict[str, Any]) -> xr.Dataset:
     """Answers about a device, from its safe lengths by humidity or from the forces of a stopper."""
-    if stopper is not None:
+    if "stopper" in data:
         of = in_si(OfStopper, settings["stopper"])
-        return layout(of_stopper(stopper, of, biased, tilted), of)
-    of = in_si(OfBeam, settings["beam"])
-    return layout(of_beam(lengths, after, of, biased), of, length_of(lengths, of))
+        return layout(of_stopper(data["stopper"], of, data.get("biased"), data.get("tilted")), of)
+    of, lengths = in_si(OfBeam, settings["beam"]), data["lengths"]
+    answers = of_beam(lengths, data.get("after", {}), of, data.get("biased"), data.get("dimples"))
+    return layout(answers, of, length_of(lengths, of))
 
 
 def layout(answers: Sequence[Answer], of: Stated, length: float = np.nan) -> xr.Dataset:
@@ -568,10 +619,12 @@ def _inputs(plan, at):
         return {"stopper": f"devices/stoppers/{at.device}"} | biased | tilted
     cases = {humidity: case_id(at.device, humidity) for humidity in section["humidities"]}
     more, biased = cases if "touchdowns" in section else {}, cases if is_biased else {}
+    dimpled = cases if "dimples" in section else {}
     return {
         "lengths": {humidity: f"devices/safe_lengths/{case}" for humidity, case in cases.items()},
         "after": {humidity: f"devices/touchdowns/{case}" for humidity, case in more.items()},
         "biased": {humidity: f"devices/at_voltage/{case}" for humidity, case in biased.items()},
+        "dimples": {humidity: f"devices/dimples/{case}" for humidity, case in dimpled.items()},
     }
 
 
