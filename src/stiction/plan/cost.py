@@ -37,7 +37,7 @@ def job_cost(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets
     (36, 7.7)
     """
     parts, sections = int(wildcards["number"]) if "chunk" in wildcards else 1, list(_sections(settings))
-    contacts = sum(map(_of_contact, sections)) * datasets / parts
+    contacts = sum(map(_contact_time, sections)) * datasets / parts
     full = (section for section in sections if section.keys() >= _FULL)
     strips = sum(section["strips"] * len(section["humidities"]) for section in full)
     return PER_JOB + contacts + PER_STRIP * strips + PER_BEAM * repeats * sum(map(_beams, sections))
@@ -51,7 +51,7 @@ def _sections(settings: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
             yield from _sections(value)
 
 
-def _of_contact(section):
+def _contact_time(section):
     """CPU time of the samples of surface pairs that a section describes [s]."""
     samples = section["contact"].get("samples") if section.keys() >= _DRAWN else None
     if not samples:
