@@ -64,12 +64,12 @@ def _values(config, path):
 
 
 def allowed(entry: dict) -> str:
-    """Allowed values in words.
+    """Allowed values in short.
 
     Examples
     --------
     >>> allowed({"type": "number", "exclusiveMinimum": 0, "maximum": 5})
-    'above 0, at most 5'
+    '> 0, ≤ 5'
     """
     if entry["type"] == "array":
         number = f"{entry['maxItems']} entries" if "maxItems" in entry else "list"
@@ -78,8 +78,8 @@ def allowed(entry: dict) -> str:
         return ", ".join(f"`{choice}`" for choice in entry["enum"])
     if entry["type"] == "string":
         return "text"
-    words = {"exclusiveMinimum": "above", "minimum": "at least", "exclusiveMaximum": "below", "maximum": "at most"}
-    bounds = ", ".join(f"{word} {entry[bound]}" for bound, word in words.items() if bound in entry)
+    signs = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
+    bounds = ", ".join(f"{sign} {entry[bound]}" for bound, sign in signs.items() if bound in entry)
     bounds += f", or `{entry['word']}`" if "word" in entry else ""
     return f"whole number, {bounds}" if entry["type"] == "integer" else bounds
 

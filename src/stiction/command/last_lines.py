@@ -110,6 +110,8 @@ def where_to_look(results: Path, targets: Sequence[str] = ()) -> Iterator[str]:
     tables = [*(f"tables/{name}.md" for name in targets), *_TABLES]
     if first := [*_first(results, pages), *_first(results, tables)]:
         yield f"Open first: {' and '.join(map(str, first))}."
+    if (results / "index.html").exists():
+        yield f"All results: {results / 'index.html'}; stiction show opens it."
 
 
 def _warnings(page):

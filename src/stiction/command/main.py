@@ -75,6 +75,7 @@ def _parser():
     _add(commands, "scans", _scans, "evaluate scans alone: sheets, statistics and warnings", files="+")
     _add(commands, "figures", _figures, "draw the figures", files="*")
     _add(commands, "report", _report, "put the results into one file, results/report.html", files="*")
+    _add(commands, "show", _show, "open the index of the results, results/index.html", files=None)
     _add(commands, "explain", _explain, "say what would be computed, and why", files="*")
     return parser
 
@@ -103,7 +104,7 @@ def _add(commands, name: str, run: Callable, purpose: str, files: str | None):
         added.add_argument(
             "--test-beams", action="store_true", help="write test_beams.csv, a table of single test beams"
         )
-    if run not in (_init, _check):
+    if run not in (_init, _check, _show):
         added.add_argument("--cores", "-c", metavar="N", help="number of jobs at the same time (default: all cores)")
         added.add_argument("--dry-run", "-n", action="store_true", help="only say what would be computed")
         added.add_argument("--verbose", "-v", action="store_true", help="show everything that Snakemake prints")
@@ -280,6 +281,25 @@ def _report(arguments):
     if ended == Status.DONE and not arguments.dry_run:
         say(f"The report is one file: {results / 'report.html'}.")
     return ended
+
+
+def _show(arguments):
+    """Write the index of the results as they are now, name it, and open it where there is a display."""
+    import webbrowser
+
+    from stiction.command import index  # imports the libraries for numbers
+
+    results = Path(arguments.directory) / "results"
+    try:
+        page = index.of_last_run(results)
+    except ValueError as damaged:
+        raise launch.RefusedError(str(damaged)) from None
+    if page is None:
+        raise launch.RefusedError(f"there are no results in {results}: run stiction paper or stiction run FILE first")
+    say(str(page))
+    if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+        webbrowser.open(page.resolve().as_uri())
+    return Status.DONE
 
 
 def _explain(arguments):

@@ -27,6 +27,7 @@ from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.roughness import figures as figures_roughness
 from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import STYLE
+from stiction.report.surfaces.words import described
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import provenance
@@ -281,7 +282,7 @@ def _settings(plan, at):
     names = {f"surface of the {part}": pair[part] for part in ("beam", "substrate")}
     materials = [material_of(plan.config, name) for name in names.values()]
     surfaces = {
-        part: f"{name}: {sentences.described(plan.config['surfaces'][name], material)}"
+        part: f"{name}: {described(plan.config['surfaces'][name], material)}"
         for (part, name), material in zip(names.items(), materials, strict=True)
     }
     not_modelled = {"not_modelled": device_warnings.not_modelled(plan, at.device)}

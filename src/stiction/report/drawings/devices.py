@@ -60,7 +60,7 @@ def _sizes(y: float, words: Mapping[str, str]) -> list[str]:
     """Gap and thickness of a beam with a clamp on the left of the drawing."""
     top = y - _GAP - _THICK
     return [
-        *measure((_CLAMP + 40, y - _GAP + 9), (_CLAMP + 40, y - 1), words.get("gap_um", "gap"), (10, 8)),
+        *measure((_CLAMP + 40, y - _GAP + 9), (_CLAMP + 40, y - 1), words.get("gap_um", "gap"), (10, 32)),
         arrow((_CLAMP + 14, top - 26), (_CLAMP + 14, top)),
         arrow((_CLAMP + 14, y - _GAP + 26), (_CLAMP + 14, y - _GAP)),
         text((_CLAMP + 24, top - 14), words.get("thickness_um", "thickness"), "quiet"),
@@ -143,7 +143,7 @@ def _strip(top: float, bottom: float) -> list[str]:
         area([(x[0], top), *zip(x, upper, strict=True), (x[-1], top)], "solid"),
         area([(x[0], bottom), *zip(x, lower, strict=True), (x[-1], bottom)], "ground"),
         *water,
-        text((x[first], top + 36), "asperity in contact", anchor="middle"),
+        text((MARGIN + 10, top + 36), "asperity in contact"),
         arrow((x[first], top + 46), (x[first], upper[first] - 4), "line"),
         text((WIDTH - MARGIN - 10, bottom - 12), "meniscus of condensed water", anchor="end"),
         arrow((x[last] - 6, bottom - 32), (x[last] - 6, lower[last] + 4), "line"),
@@ -224,10 +224,10 @@ _OF_KINDS: Mapping[str, tuple[Callable[..., list[str]], float, str]] = {
 }
 
 
-def of_device(section: Mapping, length: str = "length") -> Drawing:
+def of_device(section: Mapping) -> Drawing:
     """Draw a device with its own sizes, from its section of the configuration."""
     parts, y, description = _OF_KINDS[section["kind"]]
-    words = {"length_um": length} | {key: _label(key, section[key]) for key in KEYS if key in section}
+    words = {key: _label(key, section[key]) for key in KEYS if key in section}
     return Drawing(section["kind"], "The device, stuck", description, y + 124, parts(y, words))
 
 
@@ -235,4 +235,4 @@ def _label(key, value):
     """Size with its name and unit."""
     (name, unit), values = KEYS[key], value if isinstance(value, list) else [value]
     size = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
-    return size if key in ("contact_um", "restoring_force_uN") else f"{name} {size}"
+    return f"{name} {size}" if key in ("thickness_um", "length_um") else size
